@@ -1,0 +1,2 @@
+//! `cargo mixer`.
+fn main() {}

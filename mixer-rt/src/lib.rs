@@ -1,0 +1,2 @@
+//! Runtime of compiled coaxial mixers.
+#![no_std]
