@@ -1,0 +1,306 @@
+//! The checked airframe: a model of which every value is known to make sense.
+
+mod allocation;
+mod inverse;
+mod name;
+mod pair;
+mod unit;
+mod voltage;
+
+use std::ops::Range;
+
+use toml::Spanned;
+
+pub use self::allocation::{Airmode, Allocation, Axis};
+pub use self::inverse::{EVALUATORS, HIGHEST_DEGREE, Inverse, Method};
+pub use self::pair::{Basis, Pair, Spin};
+pub(crate) use self::unit::FARTHEST_M;
+pub use self::unit::{MOST_UNITS, Unit};
+pub use self::voltage::{Voltage, VoltageLaw};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, any_of, nearest, number, quoted};
+use crate::layout;
+use crate::source::Source;
+use crate::spec::{self, Places, Spec};
+
+/// An airframe whose values are checked, in SI units. Made by [`Airframe::read`] alone, so that the ranges stated
+/// on the fields hold.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Airframe {
+    /// Lower-case letters and digits in parts joined by `-` or `_`, from a letter on; at most 64.
+    pub name: String,
+    /// Free text; empty where the file has none.
+    pub description: String,
+    /// Range of every throttle.
+    pub throttle: Throttle,
+    /// Model of one pair at the reference voltage.
+    pub pair: Pair,
+    /// Supply voltage; `None` where thrust and torque do not depend on it.
+    pub voltage: Option<Voltage>,
+    /// The units in the order of the file: 1 to 32, no two in one place, their channels 0 to 2n - 1 each once.
+    pub units: Vec<Unit>,
+    /// How to invert the pair's map.
+    pub inverse: Inverse,
+    /// Controlled axes and priorities.
+    pub allocation: Allocation,
+    places: Places,
+}
+
+/// Range of the throttle, 0 <= min < max <= 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Throttle {
+    /// Idle: no rotor is commanded below.
+    pub min: f64,
+    /// Full throttle.
+    pub max: f64,
+}
+
+impl Airframe {
+    /// Reads and checks an airframe file, version 1.
+    ///
+    /// # Errors
+    ///
+    /// All faults of the file at once: of its shape ([`Spec::read`]) and of its values. Only text that is not TOML
+    /// is refused for that alone.
+    pub fn read(source: &Source) -> Result<Airframe, Diagnostics> {
+        let mut faults = Vec::new();
+        let airframe = Spec::read(source, &mut faults).and_then(|spec| check(spec, &mut faults));
+        match airframe {
+            Some(airframe) if faults.is_empty() => Ok(airframe),
+            _ => Err(Diagnostics::new(source.clone(), faults)),
+        }
+    }
+
+    /// The name as a Rust module: `isae_x8`.
+    pub fn module_name(&self) -> String {
+        name::module(&self.name)
+    }
+
+    /// The name as a Rust type: `IsaeX8`.
+    pub fn type_name(&self) -> String {
+        name::type_(&self.name)
+    }
+
+    /// Number of rotors, twice that of the units.
+    pub fn rotors(&self) -> usize {
+        2 * self.units.len()
+    }
+
+    /// Place of a key like `unit[3].channels` in the file, or of the nearest table or array around it that the file
+    /// has; else of the name.
+    pub fn place(&self, key: &str) -> Option<Range<usize>> {
+        let mut key = key;
+        loop {
+            if let Some(place) = self.places.get(key) {
+                return Some(place.clone());
+            }
+            match key.rfind(['.', '[']) {
+                Some(parent) => key = &key[..parent],
+                None => return self.places.get("name").cloned(),
+            }
+        }
+    }
+
+    /// A fault that a later stage found in `key`, at its place.
+    pub fn diagnostic(
+        &self,
+        code: Code,
+        key: &str,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Diagnostic {
+        Diagnostic::new(code, key, self.place(key), message)
+            .label(label)
+            .help(help)
+    }
+}
+
+fn check(spec: Spec, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
+    let name = spec.name.as_ref().and_then(|field| name::check(field, faults));
+    let throttle = spec.throttle.as_ref().and_then(|table| throttle(table, faults));
+    let pair = spec.pair.as_ref().and_then(|table| pair::check(table, faults));
+    let voltage = spec.voltage.as_ref().map(|table| voltage::check(table, faults));
+    let units = units(&spec, faults).and_then(|units| unit::check(&units, faults));
+    let inverse = spec
+        .inverse
+        .as_ref()
+        .map_or(Some(Inverse::default()), |table| inverse::check(table, faults));
+    let allocation = spec
+        .allocation
+        .as_ref()
+        .map_or(Some(Allocation::default()), |table| {
+            allocation::check(table, faults)
+        });
+
+    let units = units?;
+    let mut places = spec.places;
+    if let Some(layout) = &spec.layout {
+        // Later stages know units alone; what they find in one is to be pointed at in the layout.
+        let of_units = (0..units.len()).map(|k| (format!("unit[{k}]"), layout.place.clone()));
+        places.extend(of_units.chain([("unit".to_string(), layout.place.clone())]));
+    }
+    Some(Airframe {
+        name: name?,
+        description: spec.description.map(Spanned::into_inner).unwrap_or_default(),
+        throttle: throttle?,
+        pair: pair?,
+        voltage: match voltage {
+            Some(voltage) => Some(voltage?),
+            None => None,
+        },
+        units,
+        inverse: inverse?,
+        allocation: allocation?,
+        places,
+    })
+}
+
+fn throttle(table: &spec::Throttle, faults: &mut Vec<Diagnostic>) -> Option<Throttle> {
+    let before = faults.len();
+    for (key, field) in [("min", &table.min), ("max", &table.max)] {
+        if let Some(field) = field
+            && !(0.0..=1.0).contains(field.get_ref())
+        {
+            let help = match *field.get_ref() {
+                percent if (1.0..=100.0).contains(&percent) => {
+                    format!("if per cent were meant, write {}", number(percent / 100.0))
+                }
+                _ => "0 is a rotor at rest, 1 is full throttle".to_string(),
+            };
+            faults.push(
+                Diagnostic::new(
+                    Code::ThrottleRange,
+                    format!("throttle.{key}"),
+                    field.span(),
+                    format!(
+                        "`throttle.{key}` = {} is not between 0 and 1",
+                        number(*field.get_ref())
+                    ),
+                )
+                .label("outside [0, 1]")
+                .help(help),
+            );
+        }
+    }
+    let (min, max) = (table.min.as_ref()?, table.max.as_ref()?);
+    if faults.len() > before {
+        return None;
+    }
+    let (low, high) = (*min.get_ref(), *max.get_ref());
+    if low >= high {
+        faults.push(
+            Diagnostic::new(
+                Code::ThrottleRange,
+                "throttle.min",
+                min.span(),
+                format!(
+                    "`throttle.min` = {} is not below `throttle.max` = {}",
+                    number(low),
+                    number(high)
+                ),
+            )
+            .label(format!("must be below {}", number(high)))
+            .help("`min` is the idle, typically 0.05 to 0.15, and `max` is mostly 1"),
+        );
+        return None;
+    }
+    Some(Throttle {
+        min: low + 0.0,
+        max: high,
+    })
+}
+
+/// The units as written, from `[[unit]]` or from `[layout]`.
+fn units(spec: &Spec, faults: &mut Vec<Diagnostic>) -> Option<Vec<spec::Unit>> {
+    let written = spec.places.get("unit");
+    match (&spec.layout, written) {
+        (None, Some(_)) if !spec.units.is_empty() => Some(spec.units.clone()),
+        (None, None) if !spec.places.contains_key("layout") => {
+            faults.push(
+                Diagnostic::new(
+                    Code::MissingKey,
+                    "unit",
+                    spec.places.get("name").cloned().unwrap_or(0..0),
+                    "the airframe has 0 units",
+                )
+                .label("this airframe has no `[[unit]]`")
+                .help("add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame"),
+            );
+            None
+        }
+        (None, Some(place)) if !faults.iter().any(|fault| fault.key.starts_with("unit")) => {
+            faults.push(
+                Diagnostic::new(
+                    Code::WrongLength,
+                    "unit",
+                    place.clone(),
+                    "the airframe has 0 units",
+                )
+                .label("empty")
+                .help("add a `[[unit]]` for each pair of rotors"),
+            );
+            None
+        }
+        (None, _) => None,
+        (Some(layout), written) => {
+            let bench_spin = spec
+                .pair
+                .as_ref()
+                .and_then(|pair| pair.upper_spin.as_ref())
+                .and_then(|spin| {
+                    Spin::WORDS
+                        .iter()
+                        .find(|(word, _)| word == spin.get_ref())
+                        .map(|&(_, spin)| spin)
+                });
+            if written.is_some() {
+                faults.push(
+                    Diagnostic::new(
+                        Code::Conflict,
+                        "layout",
+                        layout.place.clone(),
+                        format!("the file has `[layout]` and {} `[[unit]]`", spec.units.len()),
+                    )
+                    .label("second description of the units")
+                    .help("keep one: `[layout]` for a regular frame, else `[[unit]]`"),
+                );
+                return None;
+            }
+            layout::expand(layout, bench_spin, faults)
+        }
+    }
+}
+
+/// The meaning of one of the words that a key takes.
+pub(crate) fn word<T: Copy>(
+    field: &Spanned<String>,
+    key: &str,
+    words: &[(&'static str, T)],
+    faults: &mut Vec<Diagnostic>,
+) -> Option<T> {
+    let written = field.get_ref();
+    let found = words
+        .iter()
+        .find(|(word, _)| word == written)
+        .map(|&(_, meaning)| meaning);
+    if found.is_none() {
+        let names = || words.iter().map(|&(word, _)| word);
+        let label = match nearest(written, names()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("expected {}", any_of(names())),
+        };
+        faults.push(
+            Diagnostic::new(
+                Code::UnknownWord,
+                key,
+                field.span(),
+                format!("`{key}` is {}, not {}", quoted(written), any_of(names())),
+            )
+            .label(label)
+            .help(format!("write {}", any_of(names()))),
+        );
+    }
+    found
+}

@@ -1,0 +1,192 @@
+//! Which axes are controlled, and what gives way when they cannot all be had.
+
+use toml::Spanned;
+
+use super::word;
+use crate::diagnostic::{Code, Diagnostic, number};
+use crate::spec;
+
+/// Whether the thrust may rise to make room for the attitude, with PX4's meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Airmode {
+    /// Never above the request.
+    Disabled,
+    /// For roll and pitch.
+    RollPitch,
+    /// For roll, pitch and yaw.
+    RollPitchYaw,
+}
+
+impl Airmode {
+    const WORDS: [(&'static str, Airmode); 3] = [
+        ("disabled", Airmode::Disabled),
+        ("roll-pitch", Airmode::RollPitch),
+        ("roll-pitch-yaw", Airmode::RollPitchYaw),
+    ];
+
+    /// The word in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Airmode::Disabled => "disabled",
+            Airmode::RollPitch => "roll-pitch",
+            Airmode::RollPitchYaw => "roll-pitch-yaw",
+        }
+    }
+}
+
+/// A component of the wrench, in its order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Axis {
+    /// Moment about x, N m.
+    Roll,
+    /// Moment about y, N m.
+    Pitch,
+    /// Moment about z, N m.
+    Yaw,
+    /// Force along -z, N.
+    Thrust,
+}
+
+impl Axis {
+    /// All axes, in the order of the wrench.
+    pub const ALL: [Axis; 4] = [Axis::Roll, Axis::Pitch, Axis::Yaw, Axis::Thrust];
+
+    /// The word in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Axis::Roll => "roll",
+            Axis::Pitch => "pitch",
+            Axis::Yaw => "yaw",
+            Axis::Thrust => "thrust",
+        }
+    }
+
+    /// Row of the axis in the wrench and in the effectiveness matrix, 0 to 3.
+    pub fn row(self) -> usize {
+        self as usize
+    }
+}
+
+/// `[allocation]` with its defaults.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Allocation {
+    /// Whether the thrust may rise for the attitude.
+    pub airmode: Airmode,
+    /// The controlled axes in the order of the wrench, each once, the thrust among them.
+    pub axes: Vec<Axis>,
+    /// Yaw moment kept available either way, N m, at least 0, and 0 where yaw is not controlled.
+    pub yaw_reserve_nm: f64,
+}
+
+impl Default for Allocation {
+    fn default() -> Self {
+        Self {
+            airmode: Airmode::Disabled,
+            axes: Axis::ALL.to_vec(),
+            yaw_reserve_nm: 0.0,
+        }
+    }
+}
+
+impl Allocation {
+    /// Whether `axis` is controlled.
+    pub fn controls(&self, axis: Axis) -> bool {
+        self.axes.contains(&axis)
+    }
+}
+
+pub(super) fn check(allocation: &spec::Allocation, faults: &mut Vec<Diagnostic>) -> Option<Allocation> {
+    let default = Allocation::default();
+    let airmode = match &allocation.airmode {
+        Some(field) => word(field, "allocation.airmode", &Airmode::WORDS, faults),
+        None => Some(default.airmode),
+    };
+    let axes = match &allocation.axes {
+        Some(field) => axes(field, faults),
+        None => Some(default.axes),
+    };
+    let yaw_reserve_nm = match &allocation.yaw_reserve_nm {
+        Some(field) => yaw_reserve(field, axes.as_deref(), faults),
+        None => Some(default.yaw_reserve_nm),
+    };
+    Some(Allocation {
+        airmode: airmode?,
+        axes: axes?,
+        yaw_reserve_nm: yaw_reserve_nm?,
+    })
+}
+
+fn axes(field: &Spanned<Vec<Spanned<String>>>, faults: &mut Vec<Diagnostic>) -> Option<Vec<Axis>> {
+    let words = Axis::ALL.map(|axis| (axis.name(), axis));
+    let before = faults.len();
+    let fault =
+        |place, message: String| Diagnostic::new(Code::ControlAxes, "allocation.axes", place, message);
+    let mut axes = Vec::new();
+    for written in field.get_ref() {
+        let Some(axis) = word(written, "allocation.axes", &words, faults) else {
+            continue;
+        };
+        if axes.contains(&axis) {
+            faults.push(
+                fault(written.span(), format!("`{}` is listed twice", axis.name()))
+                    .label("again")
+                    .help("list every controlled axis once"),
+            );
+        } else {
+            axes.push(axis);
+        }
+    }
+    if faults.len() > before {
+        return None;
+    }
+    if !axes.contains(&Axis::Thrust) {
+        let message = match field.get_ref().len() {
+            0 => "`allocation.axes` is empty".to_string(),
+            count => format!("the {count} axes of `allocation.axes` lack the thrust"),
+        };
+        faults.push(
+            fault(field.span(), message)
+                .label("`thrust` must be among them")
+                .help("leave out only what the units cannot produce, as in `axes = [\"yaw\", \"thrust\"]`"),
+        );
+        return None;
+    }
+    axes.sort();
+    Some(axes)
+}
+
+fn yaw_reserve(field: &Spanned<f64>, axes: Option<&[Axis]>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
+    let reserve = *field.get_ref();
+    let key = "allocation.yaw_reserve_nm";
+    if reserve < 0.0 {
+        faults.push(
+            Diagnostic::new(
+                Code::OutOfRange,
+                key,
+                field.span(),
+                format!("`{key}` = {} is negative", number(reserve)),
+            )
+            .label("must be 0 or more")
+            .help("the reserve holds either way about zero yaw; write its size"),
+        );
+        return None;
+    }
+    if reserve > 0.0 && axes.is_some_and(|axes| !axes.contains(&Axis::Yaw)) {
+        faults.push(
+            Diagnostic::new(
+                Code::YawReserve,
+                key,
+                field.span(),
+                format!(
+                    "a yaw reserve of {} N m without yaw in `allocation.axes`",
+                    number(reserve)
+                ),
+            )
+            .label("yaw is not controlled")
+            .help("remove the reserve, or add `yaw` to `axes`"),
+        );
+        return None;
+    }
+    Some(reserve + 0.0)
+}

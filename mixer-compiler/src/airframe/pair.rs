@@ -1,0 +1,202 @@
+//! The model of one pair: total thrust and torque as polynomials of the two throttles.
+
+use toml::Spanned;
+
+use super::word;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::spec;
+
+/// The monomials u^a l^b of the pair's polynomials, u the upper and l the lower throttle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// Degree 2 in each throttle without the constant, 8 terms: eq. (1) of Chebbi et al. 2020.
+    Biquadratic,
+    /// Total degree 3 without the constant, 9 terms.
+    Cubic,
+    /// Total degree 4 without the constant, 14 terms.
+    Quartic,
+}
+
+impl Basis {
+    /// All bases, by ascending number of terms.
+    pub const ALL: [Basis; 3] = [Basis::Biquadratic, Basis::Cubic, Basis::Quartic];
+
+    /// The word in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Basis::Biquadratic => "biquadratic",
+            Basis::Cubic => "cubic",
+            Basis::Quartic => "quartic",
+        }
+    }
+
+    /// Exponents (of u, of l) of each term, in the order of the file's coefficients. No term is constant: rotors
+    /// that stand still give nothing.
+    pub fn exponents(self) -> &'static [(u8, u8)] {
+        match self {
+            // u2l2, u2l, u2, ul2, ul, u, l2, l
+            Basis::Biquadratic => &[(2, 2), (2, 1), (2, 0), (1, 2), (1, 1), (1, 0), (0, 2), (0, 1)],
+            // u3, u2l, ul2, l3, u2, ul, l2, u, l
+            Basis::Cubic => &[
+                (3, 0),
+                (2, 1),
+                (1, 2),
+                (0, 3),
+                (2, 0),
+                (1, 1),
+                (0, 2),
+                (1, 0),
+                (0, 1),
+            ],
+            // u4, u3l, u2l2, ul3, l4, then as the cubic
+            Basis::Quartic => &[
+                (4, 0),
+                (3, 1),
+                (2, 2),
+                (1, 3),
+                (0, 4),
+                (3, 0),
+                (2, 1),
+                (1, 2),
+                (0, 3),
+                (2, 0),
+                (1, 1),
+                (0, 2),
+                (1, 0),
+                (0, 1),
+            ],
+        }
+    }
+
+    /// The terms in words, like `u2l2, u2l, ..`.
+    pub fn terms(self) -> String {
+        let power = |letter: &str, exponent: u8| match exponent {
+            0 => String::new(),
+            1 => letter.to_string(),
+            _ => format!("{letter}{exponent}"),
+        };
+        let terms: Vec<_> = self
+            .exponents()
+            .iter()
+            .map(|&(u, l)| power("u", u) + &power("l", l))
+            .collect();
+        terms.join(", ")
+    }
+}
+
+/// Sense of rotation of a unit's upper rotor, seen from above. The lower rotor turns the other way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spin {
+    /// Clockwise.
+    Cw,
+    /// Counter-clockwise.
+    Ccw,
+}
+
+impl Spin {
+    /// The words in the file.
+    pub(crate) const WORDS: [(&'static str, Spin); 2] = [("cw", Spin::Cw), ("ccw", Spin::Ccw)];
+
+    /// The word in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Spin::Cw => "cw",
+            Spin::Ccw => "ccw",
+        }
+    }
+
+    /// The other sense.
+    #[must_use]
+    pub fn reversed(self) -> Spin {
+        match self {
+            Spin::Cw => Spin::Ccw,
+            Spin::Ccw => Spin::Cw,
+        }
+    }
+}
+
+/// Total thrust and torque of one pair at the reference voltage, as measured on the bench.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Pair {
+    /// Terms of both polynomials.
+    pub basis: Basis,
+    /// Coefficients of the thrust, N, one per term of [`Basis::exponents`].
+    pub thrust_n: Vec<f64>,
+    /// Coefficients of the torque, N m, one per term, signed as on the bench.
+    pub torque_nm: Vec<f64>,
+    /// Spin of the upper rotor on the bench.
+    pub upper_spin: Spin,
+}
+
+pub(super) fn check(pair: &spec::Pair, faults: &mut Vec<Diagnostic>) -> Option<Pair> {
+    let bases = Basis::ALL.map(|basis| (basis.name(), basis));
+    let basis = pair
+        .basis
+        .as_ref()
+        .and_then(|field| word(field, "pair.basis", &bases, faults));
+    let thrust_n = coefficients("pair.thrust_n", pair.thrust_n.as_ref(), basis, faults);
+    let torque_nm = coefficients("pair.torque_nm", pair.torque_nm.as_ref(), basis, faults);
+    let upper_spin = pair
+        .upper_spin
+        .as_ref()
+        .and_then(|field| word(field, "pair.upper_spin", &Spin::WORDS, faults));
+    Some(Pair {
+        basis: basis?,
+        thrust_n: thrust_n?,
+        torque_nm: torque_nm?,
+        upper_spin: upper_spin?,
+    })
+}
+
+fn coefficients(
+    key: &str,
+    field: Option<&Spanned<Vec<Spanned<f64>>>>,
+    basis: Option<Basis>,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<Vec<f64>> {
+    let (field, basis) = (field?, basis?);
+    let (found, terms) = (field.get_ref().len(), basis.exponents().len());
+    if found != terms {
+        let fits = Basis::ALL
+            .into_iter()
+            .find(|other| other.exponents().len() == found);
+        let help = match fits {
+            Some(other) => format!("{found} coefficients are those of basis = \"{}\"", other.name()),
+            None => format!(
+                "the terms are {}, in this order; a term that is not needed is 0",
+                basis.terms()
+            ),
+        };
+        faults.push(
+            Diagnostic::new(
+                Code::WrongLength,
+                key,
+                field.span(),
+                format!(
+                    "`{key}` has {found} coefficients, basis \"{}\" takes {terms}",
+                    basis.name()
+                ),
+            )
+            .label(format!("expected {terms} numbers"))
+            .help(help),
+        );
+        return None;
+    }
+    Some(field.get_ref().iter().map(|number| *number.get_ref()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terms_follow_the_contract() {
+        assert_eq!(Basis::Biquadratic.terms(), "u2l2, u2l, u2, ul2, ul, u, l2, l");
+        assert_eq!(Basis::Cubic.terms(), "u3, u2l, ul2, l3, u2, ul, l2, u, l");
+        assert_eq!(
+            Basis::Quartic.terms(),
+            "u4, u3l, u2l2, ul3, l4, u3, u2l, ul2, l3, u2, ul, l2, u, l"
+        );
+    }
+}

@@ -1,0 +1,227 @@
+//! Faults in an airframe file: what is wrong, where, by how much, and what would mend it.
+
+mod code;
+mod wording;
+
+use std::fmt;
+use std::ops::Range;
+
+use annotate_snippets::renderer::DecorStyle;
+use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
+use serde::Serialize;
+
+pub use self::code::Code;
+pub(crate) use self::wording::{any_of, nearest, number, quoted, rounded};
+use crate::source::{BYTE_ORDER_MARK, Source};
+
+/// One fault.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Kind of fault.
+    pub code: Code,
+    /// Path of the key at fault, like `unit[3].channels`; empty where the whole file is.
+    pub key: String,
+    /// Bytes of the text to point at; `None` where the file has no such place.
+    pub span: Option<Range<usize>>,
+    /// One sentence with the number that matters, without a full stop.
+    pub message: String,
+    /// A few words beside the caret; may be empty.
+    pub label: String,
+    /// What would mend it; may be empty.
+    pub help: String,
+}
+
+impl Diagnostic {
+    /// A fault of kind `code` in `key`, without label and help yet.
+    pub fn new(
+        code: Code,
+        key: impl Into<String>,
+        span: impl Into<Option<Range<usize>>>,
+        message: impl Into<String>,
+    ) -> Self {
+        Self {
+            code,
+            key: key.into(),
+            span: span.into(),
+            message: message.into(),
+            label: String::new(),
+            help: String::new(),
+        }
+    }
+
+    /// The same fault with a few words beside the caret.
+    #[must_use]
+    pub fn label(mut self, label: impl Into<String>) -> Self {
+        self.label = label.into();
+        self
+    }
+
+    /// The same fault with advice.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = help.into();
+        self
+    }
+}
+
+/// All faults of one airframe file, in the order of their places.
+///
+/// Its `Display` is what the macro, the build-script helper and the command line show:
+///
+/// ```text
+/// error[MIX101]: throttle.min = 0.9 is not below throttle.max = 0.5
+///  --> airframes/x8.toml:4:7
+///   |
+/// 4 | min = 0.9
+///   |       ^^^ not below 0.5
+///   |
+///   = help: idle is typically 0.05 to 0.15
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostics {
+    source: Source,
+    faults: Vec<Diagnostic>,
+}
+
+/// One fault for machines: `cargo mixer check --json`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Record {
+    /// `MIX014`.
+    pub code: String,
+    /// Path of the file as given.
+    pub file: String,
+    /// Line from 1, if the fault has a place.
+    pub line: Option<usize>,
+    /// Column in characters from 1, if the fault has a place.
+    pub column: Option<usize>,
+    /// Path of the key at fault.
+    pub key: String,
+    /// One sentence with the number that matters.
+    pub message: String,
+    /// A few words on the place.
+    pub label: String,
+    /// What would mend it.
+    pub help: String,
+}
+
+impl Diagnostics {
+    /// The faults of `source`, sorted by place; those without a place come last.
+    pub fn new(source: Source, mut faults: Vec<Diagnostic>) -> Self {
+        // Stable: faults of one place stay in the order in which the stages found them.
+        faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
+        faults.dedup();
+        Self { source, faults }
+    }
+
+    /// The file that the faults are in.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// The faults, sorted by place.
+    pub fn faults(&self) -> &[Diagnostic] {
+        &self.faults
+    }
+
+    /// Line of a fault, from 1.
+    pub fn line(&self, fault: &Diagnostic) -> Option<usize> {
+        fault.span.as_ref().map(|span| self.source.place(span.start).line)
+    }
+
+    /// Column of a fault in characters, from 1.
+    pub fn column(&self, fault: &Diagnostic) -> Option<usize> {
+        fault
+            .span
+            .as_ref()
+            .map(|span| self.source.place(span.start).column)
+    }
+
+    /// The faults for machines, in the same order.
+    pub fn records(&self) -> Vec<Record> {
+        self.faults
+            .iter()
+            .map(|fault| Record {
+                code: fault.code.to_string(),
+                file: self.source.name.clone(),
+                line: self.line(fault),
+                column: self.column(fault),
+                key: fault.key.clone(),
+                message: fault.message.clone(),
+                label: fault.label.clone(),
+                help: fault.help.clone(),
+            })
+            .collect()
+    }
+
+    /// The text for `compile_error!`. Editors show its first line alone, so that line says where and what;
+    /// all faults follow as in `Display`.
+    pub fn compile_error(&self) -> String {
+        let Some(first) = self.faults.first() else {
+            return format!("{}: refused", self.source.name);
+        };
+        let place = match (self.line(first), self.column(first)) {
+            (Some(line), Some(column)) => format!("{}:{line}:{column}", self.source.name),
+            _ => self.source.name.clone(),
+        };
+        let others = match self.faults.len() {
+            1 => String::new(),
+            count => format!(" (first of {count} faults)"),
+        };
+        format!("{place}: {}{others}\n\n{self}", first.message)
+    }
+
+    fn render(&self, fault: &Diagnostic) -> String {
+        let title = Level::ERROR
+            .primary_title(fault.message.as_str())
+            .id(fault.code.to_string());
+        let mut group = match &fault.span {
+            Some(span) => title.element(self.snippet(span, &fault.label)),
+            None => title.element(Origin::path(self.source.name.as_str())),
+        };
+        if !fault.help.is_empty() {
+            group = group.element(Level::HELP.message(fault.help.as_str()));
+        }
+        Renderer::plain().decor_style(DecorStyle::Ascii).render(&[group])
+    }
+
+    fn snippet<'a>(
+        &'a self,
+        span: &Range<usize>,
+        label: &'a str,
+    ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
+        // The mark would be printed and counted as a character.
+        let (text, skipped) = match self.source.text.strip_prefix(BYTE_ORDER_MARK) {
+            Some(text) => (text, BYTE_ORDER_MARK.len_utf8()),
+            None => (self.source.text.as_str(), 0),
+        };
+        let start = self.source.boundary(span.start);
+        let mut end = self.source.boundary(span.end).max(start);
+        // One line is enough to find the place, and a caret across lines would push the label away from it.
+        if let Some(length) = self.source.text[start..end].find(['\r', '\n']) {
+            end = start + length;
+        }
+        let span = start.saturating_sub(skipped)..end.saturating_sub(skipped);
+        let caret = AnnotationKind::Primary.span(span);
+        Snippet::source(text)
+            .path(self.source.name.as_str())
+            .annotation(if label.is_empty() {
+                caret
+            } else {
+                caret.label(label)
+            })
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, fault) in self.faults.iter().enumerate() {
+            if index > 0 {
+                write!(f, "\n\n")?;
+            }
+            f.write_str(&self.render(fault))?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostics {}

@@ -1,0 +1,130 @@
+//! The catalogue of faults.
+
+use std::fmt;
+
+macro_rules! catalogue {
+    ($(#[doc = $meaning:literal] $code:ident = $number:literal,)+) => {
+        /// Every kind of fault that the compiler reports. A code keeps its number and its meaning for good, so that
+        /// it can be searched for and scripts can rely on it.
+        ///
+        /// Below 100: the file is not in the form of an airframe file. From 100: a value cannot be an airframe's.
+        /// From 200: the airframe is sound in itself, but no mixer can be made of it.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum Code {
+            $(#[doc = $meaning] $code = $number,)+
+        }
+
+        impl Code {
+            /// All codes, in the order of their numbers.
+            pub const ALL: &[Code] = &[$(Code::$code),+];
+
+            /// What the code means, in one sentence.
+            pub fn meaning(self) -> &'static str {
+                match self {
+                    $(Code::$code => $meaning.trim_ascii_start(),)+
+                }
+            }
+        }
+    };
+}
+
+catalogue! {
+    /// The text is not TOML.
+    Syntax = 1,
+    /// A key that airframe files do not have.
+    UnknownKey = 2,
+    /// A key or table that must be there is not.
+    MissingKey = 3,
+    /// A value of another type than the key takes.
+    WrongType = 4,
+    /// An array with more or fewer elements than it must have.
+    WrongLength = 5,
+    /// A number that is infinite or not a number.
+    NotFinite = 6,
+    /// A word that is not among those that the key takes.
+    UnknownWord = 7,
+    /// A number outside the range that the key allows.
+    OutOfRange = 8,
+    /// Keys or tables that exclude one another.
+    Conflict = 9,
+
+    /// A name that cannot become a Rust module, a Rust type and a file.
+    Name = 100,
+    /// Throttle limits that leave no range inside [0, 1].
+    ThrottleRange = 101,
+    /// A voltage range that is empty or lacks the reference voltage.
+    VoltageRange = 102,
+    /// A voltage law that leaves no thrust or torque somewhere in the voltage range.
+    VoltageNotPositive = 103,
+    /// A voltage law that is not 1 at the reference voltage.
+    VoltageNotOne = 104,
+    /// Voltage points that do not ascend or do not cover the voltage range.
+    VoltagePoints = 105,
+    /// An output channel that two rotors share.
+    DuplicateChannel = 110,
+    /// An output channel beyond the number of rotors, which leaves another without a rotor.
+    ChannelRange = 111,
+    /// Two units in one place.
+    SamePlace = 112,
+    /// A unit implausibly far from the centre of gravity.
+    FarUnit = 113,
+    /// A thrust axis that is not a unit vector.
+    AxisLength = 114,
+    /// A thrust axis that does not point upward.
+    AxisNotUpward = 115,
+    /// More units than a mixer takes.
+    TooManyUnits = 116,
+    /// Control axes that are repeated or lack the thrust.
+    ControlAxes = 120,
+    /// A yaw reserve where yaw is not controlled.
+    YawReserve = 121,
+
+    /// The units cannot produce an axis: the effectiveness matrix has not the rank that the axes ask for.
+    RankDeficient = 200,
+    /// The pair's map folds inside the throttle range: det J falls to zero or below.
+    Fold = 201,
+    /// The pair's map is not proven injective: two throttle pairs may give one thrust and torque.
+    NotInjective = 202,
+    /// No evaluator of the inverse meets the tolerances.
+    Tolerance = 203,
+    /// The airframe cannot hover: no thrust is attainable without roll, pitch and yaw.
+    Hover = 204,
+    /// A voltage law that cannot be tabulated to the tolerance.
+    VoltageTable = 205,
+}
+
+impl Code {
+    /// The number in `MIX014`.
+    pub fn number(self) -> u16 {
+        self as u16
+    }
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "MIX{:03}", self.number())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_distinct_ordered_and_explained() {
+        assert!(
+            Code::ALL
+                .windows(2)
+                .all(|pair| pair[0].number() < pair[1].number())
+        );
+        for code in Code::ALL {
+            assert!(
+                code.meaning().ends_with('.') && code.meaning().len() > 15,
+                "{code}: {:?}",
+                code.meaning()
+            );
+        }
+        assert_eq!(Code::Syntax.to_string(), "MIX001");
+    }
+}

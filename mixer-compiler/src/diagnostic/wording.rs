@@ -1,0 +1,113 @@
+//! Words and numbers as a user would write them, and what the user may have meant.
+
+/// The candidate nearest to `word`: equal but for case and separators, one that continues `word` (`arm` for
+/// `arm_m`), or one within a third of the word's letters in edits. `None` where nothing is near.
+pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // Distances cost the product of the lengths; no key is nearly this long.
+    if word.len() > 64 {
+        return None;
+    }
+    let word = plain(word);
+    let allowed = (word.chars().count() / 3).max(1);
+    candidates
+        .into_iter()
+        .filter_map(|candidate| {
+            let other = plain(candidate);
+            let stem = word.len() >= 3 && (other.starts_with(&word) || word.starts_with(&other));
+            let distance = if stem {
+                1
+            } else {
+                strsim::osa_distance(&word, &other)
+            };
+            (distance <= allowed).then_some((distance, candidate))
+        })
+        // The first of equals, so that the order of the candidates decides.
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Lower case, `-` for the separators that people mix up.
+fn plain(word: &str) -> String {
+    word.chars()
+        .map(|c| {
+            if matches!(c, '_' | ' ') {
+                '-'
+            } else {
+                c.to_ascii_lowercase()
+            }
+        })
+        .collect()
+}
+
+/// Text of the user's between backticks, on one line and of bounded length.
+pub(crate) fn quoted(text: &str) -> String {
+    const LONGEST: usize = 48;
+    let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        shown.push_str("..");
+    }
+    format!("`{shown}`")
+}
+
+/// `` `a`, `b` or `c` ``.
+pub(crate) fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    let words: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
+    match words.split_last() {
+        None => String::new(),
+        Some((only, [])) => only.clone(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+    }
+}
+
+/// A number as the file may have it: no `.0`, an exponent only where zeros would have to be counted.
+pub(crate) fn number(x: f64) -> String {
+    if x != 0.0 && !(1e-4..1e7).contains(&x.abs()) {
+        format!("{x:e}")
+    } else {
+        format!("{x}")
+    }
+}
+
+/// A computed number to four significant digits.
+pub(crate) fn rounded(x: f64) -> String {
+    number(format!("{x:.3e}").parse().unwrap_or(x))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearest_finds_typing_errors_and_nothing_else() {
+        let words = [
+            "arm_m",
+            "units",
+            "first_angle_deg",
+            "first_spin",
+            "spins",
+            "channels",
+        ];
+        assert_eq!(nearest("unit", words), Some("units"));
+        assert_eq!(nearest("arm", words), Some("arm_m"));
+        assert_eq!(nearest("chanels", words), Some("channels"));
+        assert_eq!(nearest("first-angle", words), Some("first_angle_deg"));
+        assert_eq!(nearest("mass_kg", words), None);
+        assert_eq!(nearest("", words), None);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(number(318.0), "318");
+        assert_eq!(number(1e-4), "0.0001");
+        assert_eq!(number(1e300), "1e300");
+        assert_eq!(rounded(0.123_456_789), "0.1235");
+        assert_eq!(rounded(-0.0), "-0");
+        assert_eq!(rounded(f64::NAN), "NaN");
+    }
+
+    #[test]
+    fn quoted_is_one_short_line() {
+        assert_eq!(quoted("a\nb"), "`a\\nb`");
+        assert!(quoted(&"é".repeat(1000)).chars().count() <= 52);
+    }
+}

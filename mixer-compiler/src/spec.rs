@@ -1,0 +1,293 @@
+//! The airframe file as written: every field with its place, none of it judged yet.
+//!
+//! The structures mirror the file, version 1. A field is `None` where the file does not have it, and also where
+//! its value was of a wrong shape, which is then among the faults. Whether numbers make sense is for
+//! [`crate::airframe`] to say.
+
+mod fields;
+mod keys;
+mod syntax;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+pub use toml::Spanned;
+
+use self::fields::Fields;
+use crate::diagnostic::Diagnostic;
+use crate::source::Source;
+
+/// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where their value
+/// is, arrays, which may run over many lines, where their key is, and tables where their header is.
+pub type Places = BTreeMap<String, Range<usize>>;
+
+/// Three numbers, each with its place.
+pub type Triple = [Spanned<f64>; 3];
+
+/// A voltage and its factor.
+pub type Point = Spanned<[Spanned<f64>; 2]>;
+
+/// The output channels of the upper and of the lower rotor.
+pub type Channels = [Spanned<usize>; 2];
+
+/// The whole file.
+#[derive(Clone, Debug)]
+pub struct Spec {
+    /// `name`
+    pub name: Option<Spanned<String>>,
+    /// `description`
+    pub description: Option<Spanned<String>>,
+    /// `[throttle]`
+    pub throttle: Option<Throttle>,
+    /// `[pair]`
+    pub pair: Option<Pair>,
+    /// `[voltage]`
+    pub voltage: Option<Voltage>,
+    /// `[layout]`
+    pub layout: Option<Layout>,
+    /// `[[unit]]`
+    pub units: Vec<Unit>,
+    /// `[inverse]`
+    pub inverse: Option<Inverse>,
+    /// `[allocation]`
+    pub allocation: Option<Allocation>,
+    /// Where every key is.
+    pub places: Places,
+}
+
+/// `[throttle]`
+#[derive(Clone, Debug)]
+pub struct Throttle {
+    /// `min`
+    pub min: Option<Spanned<f64>>,
+    /// `max`
+    pub max: Option<Spanned<f64>>,
+}
+
+/// `[pair]`
+#[derive(Clone, Debug)]
+pub struct Pair {
+    /// `basis`
+    pub basis: Option<Spanned<String>>,
+    /// `thrust_n`
+    pub thrust_n: Option<Spanned<Vec<Spanned<f64>>>>,
+    /// `torque_nm`
+    pub torque_nm: Option<Spanned<Vec<Spanned<f64>>>>,
+    /// `upper_spin`
+    pub upper_spin: Option<Spanned<String>>,
+}
+
+/// `[voltage]`
+#[derive(Clone, Debug)]
+pub struct Voltage {
+    /// Place of the header.
+    pub place: Range<usize>,
+    /// `reference_v`
+    pub reference_v: Option<Spanned<f64>>,
+    /// `range_v`
+    pub range_v: Option<Spanned<[Spanned<f64>; 2]>>,
+    /// `thrust_exponent`, `thrust_polynomial`, `thrust_points`
+    pub thrust: VoltageLaw,
+    /// `torque_exponent`, `torque_polynomial`, `torque_points`
+    pub torque: VoltageLaw,
+}
+
+/// The three forms of a voltage law.
+#[derive(Clone, Debug)]
+pub struct VoltageLaw {
+    /// The forms that the file has, also those of a wrong shape.
+    pub present: Vec<(&'static str, Range<usize>)>,
+    /// `.._exponent`
+    pub exponent: Option<Spanned<f64>>,
+    /// `.._polynomial`
+    pub polynomial: Option<Spanned<Vec<Spanned<f64>>>>,
+    /// `.._points`
+    pub points: Option<Spanned<Vec<Point>>>,
+}
+
+/// `[layout]`
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// Place of the header.
+    pub place: Range<usize>,
+    /// `arm_m`
+    pub arm_m: Option<Spanned<f64>>,
+    /// `units`
+    pub units: Option<Spanned<usize>>,
+    /// `first_angle_deg`
+    pub first_angle_deg: Option<Spanned<f64>>,
+    /// `first_spin`
+    pub first_spin: Option<Spanned<String>>,
+    /// `spins`
+    pub spins: Option<Spanned<Vec<Spanned<String>>>>,
+    /// `channels`
+    pub channels: Option<Spanned<Vec<Spanned<Channels>>>>,
+}
+
+/// `[[unit]]`
+#[derive(Clone, Debug)]
+pub struct Unit {
+    /// Path, like `unit[3]`.
+    pub path: String,
+    /// Place of the header.
+    pub place: Range<usize>,
+    /// `position_m`
+    pub position_m: Option<Spanned<Triple>>,
+    /// `upper_spin`
+    pub upper_spin: Option<Spanned<String>>,
+    /// `channels`
+    pub channels: Option<Spanned<Channels>>,
+    /// `axis`
+    pub axis: Option<Spanned<Triple>>,
+}
+
+/// `[inverse]`
+#[derive(Clone, Debug)]
+pub struct Inverse {
+    /// Place of the header.
+    pub place: Range<usize>,
+    /// `thrust_tolerance_n`
+    pub thrust_tolerance_n: Option<Spanned<f64>>,
+    /// `torque_tolerance_nm`
+    pub torque_tolerance_nm: Option<Spanned<f64>>,
+    /// `method`
+    pub method: Option<Spanned<String>>,
+    /// `degree`
+    pub degree: Option<Spanned<usize>>,
+}
+
+/// `[allocation]`
+#[derive(Clone, Debug)]
+pub struct Allocation {
+    /// `airmode`
+    pub airmode: Option<Spanned<String>>,
+    /// `axes`
+    pub axes: Option<Spanned<Vec<Spanned<String>>>>,
+    /// `yaw_reserve_nm`
+    pub yaw_reserve_nm: Option<Spanned<f64>>,
+}
+
+impl Spec {
+    /// Reads the file and notes all faults of its shape: syntax, unknown and missing keys, wrong types and lengths,
+    /// numbers that are not finite. `None` where the text is not TOML, so that nothing more can be said of it.
+    pub fn read(source: &Source, faults: &mut Vec<Diagnostic>) -> Option<Spec> {
+        let table = syntax::parse(source, faults)?;
+        let places = syntax::places(&table);
+        let top = places.get("name").cloned().unwrap_or(0..0);
+        let mut file = Fields::new(&table, keys::FILE, String::new(), top, faults);
+        file.require(&["name", "throttle", "pair"]);
+        Some(Spec {
+            name: file.read("name"),
+            description: file.read("description"),
+            throttle: file.table("throttle", keys::THROTTLE, Throttle::read),
+            pair: file.table("pair", keys::PAIR, Pair::read),
+            voltage: file.table("voltage", keys::VOLTAGE, Voltage::read),
+            layout: file.table("layout", keys::LAYOUT, Layout::read),
+            units: file.tables("unit", keys::UNIT, Unit::read),
+            inverse: file.table("inverse", keys::INVERSE, Inverse::read),
+            allocation: file.table("allocation", keys::ALLOCATION, Allocation::read),
+            places,
+        })
+    }
+}
+
+impl Throttle {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require(&["min", "max"]);
+        Self {
+            min: fields.read("min"),
+            max: fields.read("max"),
+        }
+    }
+}
+
+impl Pair {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require(&["basis", "thrust_n", "torque_nm", "upper_spin"]);
+        Self {
+            basis: fields.read("basis"),
+            thrust_n: fields.read("thrust_n"),
+            torque_nm: fields.read("torque_nm"),
+            upper_spin: fields.read("upper_spin"),
+        }
+    }
+}
+
+impl Voltage {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require(&["reference_v", "range_v"]);
+        Self {
+            place: fields.place(),
+            reference_v: fields.read("reference_v"),
+            range_v: fields.read("range_v"),
+            thrust: VoltageLaw::read(fields, ["thrust_exponent", "thrust_polynomial", "thrust_points"]),
+            torque: VoltageLaw::read(fields, ["torque_exponent", "torque_polynomial", "torque_points"]),
+        }
+    }
+}
+
+impl VoltageLaw {
+    fn read(fields: &mut Fields<'_, '_>, names: [&'static str; 3]) -> Self {
+        let [exponent, polynomial, points] = names;
+        Self {
+            present: names
+                .into_iter()
+                .filter_map(|name| Some((name, fields.key_place(name)?)))
+                .collect(),
+            exponent: fields.read(exponent),
+            polynomial: fields.read(polynomial),
+            points: fields.read(points),
+        }
+    }
+}
+
+impl Layout {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require(&["arm_m", "units", "first_angle_deg"]);
+        Self {
+            place: fields.place(),
+            arm_m: fields.read("arm_m"),
+            units: fields.read("units"),
+            first_angle_deg: fields.read("first_angle_deg"),
+            first_spin: fields.read("first_spin"),
+            spins: fields.read("spins"),
+            channels: fields.read("channels"),
+        }
+    }
+}
+
+impl Unit {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require(&["position_m", "upper_spin", "channels"]);
+        Self {
+            path: fields.path().to_string(),
+            place: fields.place(),
+            position_m: fields.read("position_m"),
+            upper_spin: fields.read("upper_spin"),
+            channels: fields.read("channels"),
+            axis: fields.read("axis"),
+        }
+    }
+}
+
+impl Inverse {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        Self {
+            place: fields.place(),
+            thrust_tolerance_n: fields.read("thrust_tolerance_n"),
+            torque_tolerance_nm: fields.read("torque_tolerance_nm"),
+            method: fields.read("method"),
+            degree: fields.read("degree"),
+        }
+    }
+}
+
+impl Allocation {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        Self {
+            airmode: fields.read("airmode"),
+            axes: fields.read("axes"),
+            yaw_reserve_nm: fields.read("yaw_reserve_nm"),
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! Airframe files that are sound, and what becomes of them.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use mixer_compiler::airframe::{Airframe, Airmode, Axis, Basis, Method, Spin, VoltageLaw};
+use mixer_compiler::diagnostic::{Code, Diagnostics};
+use mixer_compiler::source::Source;
+
+fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()
+}
+
+fn read(text: &str) -> Airframe {
+    Airframe::read(&Source::new("test.toml", text)).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// A sound file: `PAIR` and what a test adds.
+const PAIR: &str = r#"
+name = "test-y6"
+[throttle]
+min = 0
+max = 1
+[pair]
+basis = "cubic"
+thrust_n = [0, 0, 0, 0, 5, 1, 4, 0.5, 0.25]
+torque_nm = [0, 0, 0, 0, -0.1, 0, 0.1, 0, 0]
+upper_spin = "cw"
+"#;
+
+#[test]
+fn every_airframe_of_the_project_reads_and_fast() {
+    let mut read = 0;
+    for entry in std::fs::read_dir(workspace().join("airframes")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let source = Source::new(
+            path.display().to_string(),
+            std::fs::read_to_string(&path).unwrap(),
+        );
+        // The best of a few: others share the machine.
+        let mut fastest = Duration::MAX;
+        for _ in 0..10 {
+            let start = Instant::now();
+            let airframe = Airframe::read(&source).unwrap_or_else(|faults| panic!("{faults}"));
+            fastest = fastest.min(start.elapsed());
+            assert_eq!(
+                Some(airframe.name.as_str()),
+                path.file_stem().and_then(|stem| stem.to_str())
+            );
+        }
+        assert!(
+            fastest < Duration::from_millis(5),
+            "{}: {fastest:?}",
+            path.display()
+        );
+        read += 1;
+    }
+    assert!(read > 0);
+}
+
+#[test]
+fn isae_x8_is_as_in_the_paper() {
+    let path = workspace().join("airframes/isae-x8.toml");
+    let airframe = read(&std::fs::read_to_string(path).unwrap());
+    assert_eq!(airframe.module_name(), "isae_x8");
+    assert_eq!(airframe.type_name(), "IsaeX8");
+    assert_eq!((airframe.throttle.min, airframe.throttle.max), (0.1, 1.0));
+    assert_eq!(airframe.pair.basis, Basis::Biquadratic);
+    assert_eq!(airframe.pair.thrust_n[0], 5.2075);
+    assert_eq!(airframe.pair.torque_nm[7], 0.0720);
+    assert_eq!(airframe.rotors(), 8);
+    let signs: Vec<_> = airframe
+        .units
+        .iter()
+        .map(|unit| unit.spin_sign(airframe.pair.upper_spin))
+        .collect();
+    assert_eq!(signs, [1.0, -1.0, 1.0, -1.0]);
+    assert_eq!(airframe.units[1].position_m, [0.3182, -0.3182, 0.0]);
+    assert_eq!(airframe.units[1].axis, [0.0, 0.0, -1.0]);
+    assert_eq!(
+        (airframe.units[3].upper_channel, airframe.units[3].lower_channel),
+        (3, 7)
+    );
+    let voltage = airframe.voltage.unwrap();
+    assert_eq!(voltage.thrust, VoltageLaw::Exponent(1.75));
+    assert_eq!(voltage.thrust_factor(14.8), 1.0);
+    assert!((voltage.torque_factor(16.8) - libm::pow(16.8 / 14.8, 1.75)).abs() < 1e-15);
+    assert_eq!(airframe.inverse.method, Method::Auto);
+    assert_eq!(airframe.allocation.airmode, Airmode::Disabled);
+    assert_eq!(airframe.allocation.axes, Axis::ALL);
+}
+
+#[test]
+fn layout_expands_to_units_clockwise_from_the_nose() {
+    let airframe = read(&format!(
+        "{PAIR}[layout]\narm_m = 0.5\nunits = 4\nfirst_angle_deg = 0\n"
+    ));
+    let positions: Vec<_> = airframe.units.iter().map(|unit| unit.position_m).collect();
+    // Exact zeros, though cos(90 degrees) is not.
+    assert_eq!(
+        positions,
+        [
+            [0.5, 0.0, 0.0],
+            [0.0, 0.5, 0.0],
+            [-0.5, 0.0, 0.0],
+            [0.0, -0.5, 0.0]
+        ]
+    );
+    assert!(
+        positions
+            .iter()
+            .flatten()
+            .all(|x| *x != 0.0 || x.is_sign_positive())
+    );
+    let spins: Vec<_> = airframe.units.iter().map(|unit| unit.upper_spin).collect();
+    assert_eq!(spins, [Spin::Cw, Spin::Ccw, Spin::Cw, Spin::Ccw]);
+    let channels: Vec<_> = airframe
+        .units
+        .iter()
+        .map(|unit| (unit.upper_channel, unit.lower_channel))
+        .collect();
+    assert_eq!(channels, [(0, 4), (1, 5), (2, 6), (3, 7)]);
+}
+
+#[test]
+fn layout_equals_the_units_that_it_stands_for() {
+    let short = read(&format!(
+        "{PAIR}[layout]\narm_m = 0.5\nunits = 3\nfirst_angle_deg = 60\nchannels = [[0, 1], [2, 3], [4, 5]]\n"
+    ));
+    // PX4's hexa_cox: front right, rear, front left; on odd counts all upper rotors turn alike.
+    let long = read(&format!(
+        "{PAIR}[[unit]]\nposition_m = [0.25, 0.4330127018922193, 0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n\
+         [[unit]]\nposition_m = [-0.5, 0, 0]\nupper_spin = \"cw\"\nchannels = [2, 3]\n\
+         [[unit]]\nposition_m = [0.25, -0.4330127018922193, 0]\nupper_spin = \"cw\"\nchannels = [4, 5]\n"
+    ));
+    for (short, long) in short.units.iter().zip(&long.units) {
+        for (a, b) in short.position_m.iter().zip(long.position_m) {
+            assert!((a - b).abs() < 1e-15, "{short:?} {long:?}");
+        }
+        assert_eq!((short.upper_spin, short.axis), (long.upper_spin, long.axis));
+        assert_eq!(
+            (short.upper_channel, short.lower_channel),
+            (long.upper_channel, long.lower_channel)
+        );
+    }
+    assert_eq!(short.units.len(), 3);
+}
+
+#[test]
+fn layout_takes_spins_and_first_spin() {
+    let layout = |more: &str| {
+        let text = format!("{PAIR}[layout]\narm_m = 0.5\nunits = 2\nfirst_angle_deg = 90\n{more}\n");
+        read(&text)
+            .units
+            .iter()
+            .map(|unit| unit.upper_spin)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(layout("first_spin = \"ccw\""), [Spin::Ccw, Spin::Cw]);
+    assert_eq!(layout("spins = [\"ccw\", \"ccw\"]"), [Spin::Ccw, Spin::Ccw]);
+}
+
+#[test]
+fn axes_are_normalised_and_ordered() {
+    let airframe = read(&format!(
+        "{PAIR}[[unit]]\nposition_m = [0, 0, -0.1]\nupper_spin = \"ccw\"\nchannels = [1, 0]\naxis = [0.26, 0, -0.966]\n\
+         [allocation]\naxes = [\"thrust\", \"yaw\"]\nairmode = \"roll-pitch-yaw\"\nyaw_reserve_nm = 0.01\n\
+         [inverse]\nmethod = \"polynomial\"\ndegree = 9\n"
+    ));
+    let [x, y, z] = airframe.units[0].axis;
+    assert!((x * x + y * y + z * z - 1.0).abs() < 1e-15);
+    assert_eq!(airframe.allocation.axes, [Axis::Yaw, Axis::Thrust]);
+    assert!(airframe.allocation.controls(Axis::Yaw) && !airframe.allocation.controls(Axis::Roll));
+    assert_eq!(airframe.inverse.method, Method::Polynomial { degree: 9 });
+    assert_eq!(airframe.units[0].spin_sign(airframe.pair.upper_spin), -1.0);
+}
+
+#[test]
+fn later_stages_point_at_the_nearest_key() {
+    let text = format!("{PAIR}[[unit]]\nposition_m = [0, 0, 0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n");
+    let source = Source::new("test.toml", text.as_str());
+    let airframe = Airframe::read(&source).unwrap();
+    let pointed = |key: &str| airframe.place(key).map(|span| &text[span]);
+    assert_eq!(pointed("throttle.min"), Some("0"));
+    assert_eq!(pointed("pair.thrust_n"), Some("thrust_n"));
+    assert_eq!(pointed("pair.thrust_n[6]"), Some("4"));
+    assert_eq!(pointed("unit[0].channels[1]"), Some("1"));
+    assert_eq!(pointed("unit[0].axis"), Some("[[unit]]"));
+    assert_eq!(pointed("unit[7].axis"), Some("unit"));
+    assert_eq!(pointed("inverse.thrust_tolerance_n"), Some("\"test-y6\""));
+
+    let fault = airframe.diagnostic(
+        Code::Fold,
+        "throttle.min",
+        "det J falls to -2.1",
+        "",
+        "min = 0.094 would do",
+    );
+    let faults = Diagnostics::new(source, vec![fault]);
+    let record = &faults.records()[0];
+    assert_eq!(
+        (record.line, record.column, record.code.as_str()),
+        (Some(4), Some(7), "MIX201")
+    );
+}
+
+#[test]
+fn later_stages_point_at_the_layout_for_its_units() {
+    let text = format!("{PAIR}[layout]\narm_m = 0.5\nunits = 3\nfirst_angle_deg = 0\n");
+    let airframe = read(&text);
+    assert_eq!(
+        airframe.place("unit[2].position_m").map(|span| &text[span]),
+        Some("[layout]")
+    );
+}
