@@ -1,2 +1,53 @@
-//! Runtime of compiled coaxial mixers.
+//! Runtime of compiled coaxial multirotor mixers.
+//!
+//! A coaxial push-pull multirotor has `n` units of two stacked, contra-rotating rotors. The lower rotor works in
+//! the wake of the upper one, so a unit's thrust and torque are polynomials of *both* throttles (Chebbi et al.
+//! 2020, eq. (1)). This crate evaluates what `mixer-compiler` has tabulated from an airframe file:
+//!
+//! ```text
+//! setpoint u = [roll, pitch, yaw, thrust]                                     wrench.rs
+//!   -> efforts eta = M+ u            eq. (8), least norm                      tables.rs
+//!   -> divided by k_f(V), k_Q(V)     to the reference voltage                 voltage.rs
+//!   -> throttles of every unit       inverse of (f, Q)(u, l)                  inverse.rs, forward.rs
+//!   -> if a unit cannot: desaturate  within the attainable set, by priority   desaturation.rs, attainable.rs
+//!   -> achieved wrench               M (k_f f(u, l), k_Q Q(u, l))             mix.rs
+//! ```
+//!
+//! No heap, no dependencies, no panic path, no `unsafe` but for the hardware square root. All arithmetic is plain
+//! IEEE 754 single precision (`+ - * /` and a correctly rounded square root), so the bits are the same on every
+//! target.
+//!
+//! Conventions: body frame FRD (x forward, y right, z down), SI units, clockwise yaw seen from above positive,
+//! thrust positive upwards; throttles inside `[min, max]` within `[0, 1]`.
 #![no_std]
+
+mod attainable;
+mod desaturation;
+mod forward;
+mod inverse;
+mod mix;
+mod saturation;
+mod sqrt;
+mod tables;
+mod voltage;
+mod wrench;
+
+pub use attainable::AttainableSet;
+pub use desaturation::{Airmode, Desaturation};
+pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
+pub use inverse::{
+    BilinearSeed, EightTermSeed, Inverse, PolynomialInverse, RootCoordinates, Seed, Seeded, ThrottleRange,
+};
+pub use mix::{Mix, mix, mix_into};
+pub use saturation::{Direction, Saturation};
+pub use sqrt::sqrt;
+pub use tables::{Tables, Tolerance, Unit};
+pub use voltage::{Voltage, VoltageLaw};
+pub use wrench::{Axis, SetpointError, Wrench};
+
+/// `x` limited to `[low, high]`; `low` where `x` is NaN. (`f32::clamp` has a panic path.)
+#[inline(always)]
+fn clamp(x: f32, low: f32, high: f32) -> f32 {
+    let x = if x > low { x } else { low };
+    if x < high { x } else { high }
+}

@@ -1,0 +1,56 @@
+//! What the compiler emits for one airframe.
+
+use crate::{AttainableSet, Desaturation, Pair, ThrottleRange, Voltage};
+
+/// One coaxial unit's share of M and M+.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// Rows of the pseudo-inverse M+ (2n x 4, eq. (8)): thrust in N and torque in N m of this unit per
+    /// `[roll, pitch, yaw, thrust]` asked.
+    pub allocation: [[f32; 4]; 2],
+    /// Columns of the effectiveness M (4 x 2n, eq. (5)): `[roll, pitch, yaw, thrust]` per N of this unit's thrust
+    /// and per N m of its torque.
+    pub effectiveness: [[f32; 4]; 2],
+    /// Output indices of the upper and of the lower rotor.
+    pub channels: [u8; 2],
+}
+
+impl Unit {
+    /// This unit's least-norm efforts `[f, Q]` for a wrench `[roll, pitch, yaw, thrust]`: two rows of M+ u.
+    #[inline(always)]
+    pub(crate) fn efforts(&self, wrench: &[f32; 4]) -> [f32; 2] {
+        self.allocation.map(|[roll, pitch, yaw, thrust]| {
+            (roll * wrench[0] + pitch * wrench[1]) + (yaw * wrench[2] + thrust * wrench[3])
+        })
+    }
+}
+
+/// What the inverse map may miss; beyond it something has been given up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Of one unit's efforts `[f, Q]` at the reference voltage, N and N m.
+    pub efforts: [f32; 2],
+    /// Of the wrench `[roll, pitch, yaw, thrust]`: what those errors add up to, with rounding.
+    pub wrench: [f32; 4],
+}
+
+/// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator of its inverse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tables<'a, P, I> {
+    /// The units, in the order of the airframe file.
+    pub units: &'a [Unit],
+    /// The forward map of every unit.
+    pub pair: Pair<P>,
+    /// The inverse map of every unit.
+    pub inverse: I,
+    /// The allowed throttles.
+    pub throttle: ThrottleRange,
+    /// The voltage correction; without one k = 1.
+    pub voltage: Option<Voltage<'a>>,
+    /// A polygon inside the attainable set.
+    pub attainable: AttainableSet<'a>,
+    /// What is given up when a unit cannot follow.
+    pub desaturation: Desaturation,
+    /// What the mixer may miss.
+    pub tolerance: Tolerance,
+}

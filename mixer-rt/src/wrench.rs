@@ -1,0 +1,85 @@
+//! The setpoint and the achieved wrench.
+
+use core::fmt;
+
+/// A wrench in the body frame FRD: what the controller asks for, or what the rotors deliver.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// Torque about x (forward), N m; positive lowers the right side.
+    pub roll_nm: f32,
+    /// Torque about y (right), N m; positive raises the nose.
+    pub pitch_nm: f32,
+    /// Torque about z (down), N m; positive turns clockwise seen from above.
+    pub yaw_nm: f32,
+    /// Thrust along -z, N; positive upwards.
+    pub thrust_n: f32,
+}
+
+impl Wrench {
+    /// `[roll, pitch, yaw, thrust]`: the order of the paper's u (section II).
+    #[inline]
+    pub const fn to_array(self) -> [f32; 4] {
+        [self.roll_nm, self.pitch_nm, self.yaw_nm, self.thrust_n]
+    }
+
+    /// The inverse of [`Wrench::to_array`].
+    #[inline]
+    pub const fn from_array([roll_nm, pitch_nm, yaw_nm, thrust_n]: [f32; 4]) -> Self {
+        Self {
+            roll_nm,
+            pitch_nm,
+            yaw_nm,
+            thrust_n,
+        }
+    }
+}
+
+/// An axis of the [`Wrench`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Axis {
+    /// Torque about x.
+    Roll,
+    /// Torque about y.
+    Pitch,
+    /// Torque about z.
+    Yaw,
+    /// Thrust along -z.
+    Thrust,
+}
+
+impl Axis {
+    /// All axes, in the order of [`Wrench::to_array`].
+    pub const ALL: [Axis; 4] = [Axis::Roll, Axis::Pitch, Axis::Yaw, Axis::Thrust];
+
+    /// The name used in airframe files, CSV columns and messages.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Axis::Roll => "roll",
+            Axis::Pitch => "pitch",
+            Axis::Yaw => "yaw",
+            Axis::Thrust => "thrust",
+        }
+    }
+}
+
+/// Why a mix was refused. The caller keeps its last outputs or disarms; no throttle is ever made of a NaN.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SetpointError {
+    /// The setpoint is infinite or NaN on this axis (the first such axis is named).
+    NonFinite(Axis),
+    /// The voltage is infinite or NaN, and the airframe has a voltage correction.
+    NonFiniteVoltage,
+}
+
+impl fmt::Display for SetpointError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SetpointError::NonFinite(axis) => {
+                write!(f, "the {} setpoint is not finite", axis.name())
+            }
+            SetpointError::NonFiniteVoltage => f.write_str("the voltage is not finite"),
+        }
+    }
+}
+
+impl core::error::Error for SetpointError {}
