@@ -1,7 +1,122 @@
-//! Compiler of coaxial mixers.
+//! Compiler from an airframe file to the tables of a coaxial multirotor mixer.
+//!
+//! Text in, tables or diagnostics out; files, the environment and macros are the business of its three front ends:
+//! `mixer-macros`, [`build_script`] and `cargo mixer`. [`compile`] shows the pipeline.
 
 pub mod airframe;
+mod attainable;
+#[cfg(feature = "format")]
+pub mod build_script;
 pub mod diagnostic;
+pub mod effectiveness;
+mod emit;
+pub mod evaluator;
+mod hover;
+pub mod injectivity;
+pub mod interval;
+pub mod inversion;
 mod layout;
+pub mod model;
+pub mod polynomial;
+pub mod report;
+pub mod residual;
+mod selection;
 pub mod source;
 pub mod spec;
+pub mod tables;
+pub mod voltage;
+
+use airframe::Airframe;
+use diagnostic::{Diagnostic, Diagnostics};
+use effectiveness::Effectiveness;
+use evaluator::Evaluator;
+use injectivity::Injectivity;
+use proc_macro2::TokenStream;
+use residual::Residual;
+use tables::MixerTables;
+
+pub use source::Source;
+
+/// A compiled airframe: what emission and reports read.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// The source's name, as its user knows it.
+    pub source_name: String,
+    /// The checked model.
+    pub airframe: Airframe,
+    /// M and M+.
+    pub effectiveness: Effectiveness,
+    /// That the forward map can be inverted.
+    pub injectivity: Injectivity,
+    /// The least idle at which it can.
+    pub least_idle: f64,
+    /// The chosen evaluator.
+    pub evaluator: Evaluator,
+    /// What it misses.
+    pub residual: Residual,
+    /// What is emitted.
+    pub tables: MixerTables,
+}
+
+/// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> tables.
+///
+/// # Errors
+/// All faults that were found. Faults of the file itself end the compilation; later stages report together.
+pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
+    let airframe = Airframe::read(source)?;
+    compile_airframe(source, airframe).map_err(|faults| Diagnostics::new(source.clone(), faults))
+}
+
+fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
+    let mut faults = Vec::new();
+    let effectiveness = keep(
+        Effectiveness::new(&airframe).map_err(|fault| vec![fault]),
+        &mut faults,
+    );
+    let invertible = keep(
+        injectivity::prove(&airframe).map_err(|fault| vec![fault]),
+        &mut faults,
+    );
+    let voltage = keep(voltage::table(&airframe), &mut faults);
+    let (Some(effectiveness), Some((injectivity, least_idle)), Some(voltage)) =
+        (effectiveness, invertible, voltage)
+    else {
+        return Err(faults);
+    };
+    let (mut tables, evaluator, residual) =
+        selection::select(&airframe, &effectiveness, voltage).map_err(|fault| vec![fault])?;
+    let limits = hover::limits(&airframe, &tables).map_err(|fault| vec![fault])?;
+    tables.desaturation = hover::desaturation(&airframe, limits);
+    Ok(Compiled {
+        source_name: source.name.clone(),
+        airframe,
+        effectiveness,
+        injectivity,
+        least_idle,
+        evaluator,
+        residual,
+        tables,
+    })
+}
+
+/// The value, or its faults added to the others.
+fn keep<T>(result: Result<T, Vec<Diagnostic>>, faults: &mut Vec<Diagnostic>) -> Option<T> {
+    result.map_err(|found| faults.extend(found)).ok()
+}
+
+impl Compiled {
+    /// The generated Rust as tokens: one module.
+    pub fn tokens(&self) -> TokenStream {
+        emit::module(self)
+    }
+
+    /// The generated Rust, formatted.
+    #[cfg(feature = "format")]
+    pub fn rust(&self) -> String {
+        match syn::parse2(self.tokens()) {
+            Ok(file) => prettyplease::unparse(&file),
+            // Unformatted Rust is still Rust; the tests keep this from happening.
+            Err(_) => self.tokens().to_string(),
+        }
+    }
+}

@@ -38,7 +38,7 @@ pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
 pub use inverse::{
     BilinearSeed, EightTermSeed, Inverse, PolynomialInverse, RootCoordinates, Seed, Seeded, ThrottleRange,
 };
-pub use mix::{Mix, mix, mix_into};
+pub use mix::{Airframe, Mix, mix, mix_into};
 pub use saturation::{Direction, Saturation};
 pub use sqrt::sqrt;
 pub use tables::{Tables, Tolerance, Unit};

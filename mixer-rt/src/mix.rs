@@ -107,3 +107,17 @@ fn invert<P: Quantity, I: Inverse<P>>(
     }
     (achieved, delivered)
 }
+
+/// An airframe's mixer as a type, for code that is generic over airframes. The compiler implements it.
+pub trait Airframe {
+    /// The name in the airframe file.
+    const NAME: &'static str;
+    /// [`Mix`] for the airframe's number of channels.
+    type Mix;
+
+    /// As [`mix`].
+    ///
+    /// # Errors
+    /// As [`mix`].
+    fn mix(setpoint: &Wrench, voltage_v: f32) -> Result<Self::Mix, SetpointError>;
+}

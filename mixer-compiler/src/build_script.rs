@@ -1,0 +1,77 @@
+//! Compiling an airframe from a build script.
+//!
+//! ```no_run
+//! // build.rs
+//! fn main() {
+//!     mixer_compiler::build_script::compile("airframes/isae-x8.toml");
+//! }
+//! ```
+//!
+//! and in the crate: `include!(concat!(env!("OUT_DIR"), "/isae-x8.rs"));`. The generated module is the one that the
+//! macro gives.
+
+use std::path::{Path, PathBuf};
+use std::{env, fs, io, process};
+
+use crate::{Source, compile as compile_source};
+
+/// Why no mixer was written.
+#[derive(Debug)]
+pub enum Error {
+    /// The airframe file or the output cannot be read or written.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What happened.
+        error: io::Error,
+    },
+    /// Not run by cargo: this environment variable is missing.
+    Environment(&'static str),
+    /// The airframe file is refused.
+    Airframe(crate::diagnostic::Diagnostics),
+}
+
+impl std::fmt::Display for Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Error::File { path, error } => write!(f, "{}: {error}", path.display()),
+            Error::Environment(name) => write!(f, "{name} is not set: call this from a build script"),
+            Error::Airframe(diagnostics) => diagnostics.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Compiles the airframe at `path` (relative to the package) into `OUT_DIR/<file stem>.rs` and has cargo run the
+/// build script again when the file changes. A fault is printed and ends the build script with status 1.
+pub fn compile(path: impl AsRef<Path>) {
+    if let Err(error) = try_compile(path.as_ref()) {
+        eprintln!("{error}");
+        process::exit(1);
+    }
+}
+
+/// [`compile`] for build scripts that handle faults themselves. Returns the path of the generated file.
+///
+/// # Errors
+/// See [`Error`]; nothing is written then.
+pub fn try_compile(path: &Path) -> Result<PathBuf, Error> {
+    println!("cargo::rerun-if-changed={}", path.display());
+    let directory = env::var_os("OUT_DIR")
+        .map(PathBuf::from)
+        .ok_or(Error::Environment("OUT_DIR"))?;
+    let text = fs::read_to_string(path).map_err(|error| Error::File {
+        path: path.to_owned(),
+        error,
+    })?;
+    let compiled = compile_source(&Source::new(path.display().to_string(), text)).map_err(Error::Airframe)?;
+    let output = directory
+        .join(path.file_stem().unwrap_or(path.as_os_str()))
+        .with_extension("rs");
+    fs::write(&output, compiled.rust()).map_err(|error| Error::File {
+        path: output.clone(),
+        error,
+    })?;
+    Ok(output)
+}

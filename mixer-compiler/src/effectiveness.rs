@@ -1,0 +1,155 @@
+//! Effectiveness M and its pseudo-inverse M+.
+//!
+//! A unit at r with unit thrust axis a gives the force f a and, about the centre of gravity, the torque r x (f a);
+//! the reaction of its rotors adds -s Q a (for a = (0, 0, -1): s Q about z, clockwise positive). Thrust counts
+//! upwards, T = -f a_z. With eta = [f_1 .. f_n, Q_1 .. Q_n] this is u = M eta, M being 4 x 2n (eq. (5)); for
+//! vertical axes its rows are eq. (4). The least-norm solution is eta = M+ u (eq. (7), (8)).
+//!
+//! An airframe may leave axes out: their rows are dropped before inversion and their columns of M+ are zero.
+
+use nalgebra::{DMatrix, Matrix4xX, MatrixXx4};
+
+use crate::airframe::{Airframe, Axis};
+use crate::diagnostic::{Code, Diagnostic};
+
+/// M and M+ with what is known about them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effectiveness {
+    /// M, 4 x 2n: `[roll, pitch, yaw (N m), thrust (N)]` per `[f_1.. (N), Q_1.. (N m)]`.
+    pub matrix: Matrix4xX<f64>,
+    /// M+, 2n x 4.
+    pub pseudo_inverse: MatrixXx4<f64>,
+    /// Rank of M's rows that are served.
+    pub rank: usize,
+    /// Largest over smallest singular value of those rows.
+    pub condition: f64,
+}
+
+/// Singular values below this share of the largest count as zero: geometry is known to a millimetre in a metre.
+const RANK_TOLERANCE: f64 = 1e-6;
+
+impl Effectiveness {
+    /// M of the layout and M+ over the axes that the airframe serves.
+    ///
+    /// # Errors
+    /// A served axis that the layout cannot produce independently of the others, by name.
+    pub fn new(airframe: &Airframe) -> Result<Self, Diagnostic> {
+        let matrix = matrix(airframe);
+        let served: Vec<usize> = Axis::ALL
+            .into_iter()
+            .filter(|&axis| airframe.allocation.controls(axis))
+            .map(Axis::row)
+            .collect();
+        let rows = matrix.select_rows(&served).transpose();
+        let rows = DMatrix::from_columns(&rows.column_iter().collect::<Vec<_>>()).transpose();
+        let svd = rows.clone().svd(true, true);
+        let (largest, smallest) = (svd.singular_values.max(), svd.singular_values.min());
+        let threshold = RANK_TOLERANCE * largest;
+        let rank = svd.rank(threshold);
+        if rank < served.len() {
+            return Err(deficiency(airframe, &rows, &served, rank, threshold));
+        }
+        let inverse = svd.pseudo_inverse(threshold).map_err(|reason| {
+            airframe.diagnostic(
+                Code::RankDeficient,
+                "unit",
+                reason.to_owned(),
+                "",
+                "check the positions of the units",
+            )
+        })?;
+        let mut pseudo_inverse = MatrixXx4::zeros(matrix.ncols());
+        for (column, &axis) in served.iter().enumerate() {
+            pseudo_inverse.set_column(axis, &inverse.column(column).map(|x| clean(x, inverse.amax())));
+        }
+        Ok(Effectiveness {
+            matrix,
+            pseudo_inverse,
+            rank,
+            condition: largest / smallest,
+        })
+    }
+}
+
+/// M of the layout.
+fn matrix(airframe: &Airframe) -> Matrix4xX<f64> {
+    let n = airframe.units.len();
+    let mut matrix = Matrix4xX::zeros(2 * n);
+    for (i, unit) in airframe.units.iter().enumerate() {
+        let ([x, y, z], [ax, ay, az]) = (unit.position_m, unit.axis);
+        let sign = unit.spin_sign(airframe.pair.upper_spin);
+        let by_thrust = [y * az - z * ay, z * ax - x * az, x * ay - y * ax, -az];
+        let by_torque = [-sign * ax, -sign * ay, -sign * az, 0.0];
+        for axis in 0..4 {
+            matrix[(axis, i)] = by_thrust[axis] + 0.0; // no negative zeros in reports and tables
+            matrix[(axis, n + i)] = by_torque[axis] + 0.0;
+        }
+    }
+    matrix
+}
+
+/// Rounding residues of the SVD (a few units in the last place of the largest entry) become the zeros they stand
+/// for: symmetric frames then have sparse tables.
+fn clean(x: f64, largest: f64) -> f64 {
+    if x.abs() < 1e-14 * largest { 0.0 } else { x }
+}
+
+/// Names the axes that cannot be produced: those whose row can be left out without losing rank.
+fn deficiency(
+    airframe: &Airframe,
+    rows: &DMatrix<f64>,
+    served: &[usize],
+    rank: usize,
+    threshold: f64,
+) -> Diagnostic {
+    let mut names: Vec<&str> = Vec::new();
+    let mut kept: Vec<&str> = Vec::new();
+    for (index, &axis) in served.iter().enumerate() {
+        let without = rows.clone().remove_row(index);
+        let dependent = without.nrows() == 0 || without.rank(threshold) == rank;
+        let name = Axis::ALL[axis].name();
+        // A row of zeros is the culprit itself; otherwise every row of the dependent set is named.
+        if rows.row(index).amax() <= threshold || (dependent && !has_zero_row(rows, threshold)) {
+            names.push(name);
+        } else {
+            kept.push(name);
+        }
+    }
+    let units = airframe.units.len();
+    let message = match names.as_slice() {
+        [one] => format!(
+            "rank {rank} of {}: {one} cannot be produced by this layout",
+            served.len()
+        ),
+        many => format!(
+            "rank {rank} of {}: {} cannot be produced independently by this layout",
+            served.len(),
+            many.join(", ")
+        ),
+    };
+    let mend = match names.as_slice() {
+        [_] => {
+            let list: Vec<String> = kept.iter().map(|name| format!("\"{name}\"")).collect();
+            format!(
+                "give {} a lever arm, or leave it out: [allocation] axes = [{}]",
+                names.join(", "),
+                list.join(", ")
+            )
+        }
+        _ => format!(
+            "leave {} of these out of [allocation] axes, or move the units",
+            served.len() - rank
+        ),
+    };
+    airframe.diagnostic(
+        Code::RankDeficient,
+        "allocation.axes",
+        message,
+        format!("{units} unit(s)"),
+        mend,
+    )
+}
+
+fn has_zero_row(rows: &DMatrix<f64>, threshold: f64) -> bool {
+    rows.row_iter().any(|row| row.amax() <= threshold)
+}

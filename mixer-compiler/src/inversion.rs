@@ -1,0 +1,173 @@
+//! Fits of the inverse map: efforts (f, Q) to throttles (u, l).
+//!
+//! Samples are throttles on a grid with the efforts they give, so the whole attainable set is covered, its border
+//! included. Fits are least squares with Lawson's weights: after each solution every sample's weight is multiplied
+//! by a power of its error, *measured as the residual after the evaluator's Newton steps*, which drives the fit
+//! towards the least possible maximum of what the mixer really misses.
+
+mod coordinates;
+mod lawson;
+
+pub use coordinates::Coordinates;
+
+use crate::evaluator::{Evaluator, SeedForm};
+use crate::model::PairMap;
+use lawson::Lawson;
+
+/// Points per side of the sample grid.
+const GRID: usize = 21;
+
+/// A fitted inverse, in f64.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FittedInverse {
+    /// Coefficients of a polynomial in scaled (f, Q).
+    Polynomial {
+        /// Total degree.
+        degree: u8,
+        /// Scale and offset of f to [-1, 1].
+        thrust: [f64; 2],
+        /// Scale and offset of Q to [-1, 1].
+        torque: [f64; 2],
+        /// Coefficients of u and of l, in the order of `mixer_rt::PolynomialInverse`.
+        coefficients: [Vec<f64>; 2],
+    },
+    /// Coefficients of a seed.
+    Seeded {
+        /// The seed's form.
+        seed: SeedForm,
+        /// Newton steps.
+        steps: u8,
+        /// The root coordinates.
+        coordinates: Coordinates,
+        /// Coefficients of u and of l.
+        coefficients: [Vec<f64>; 2],
+    },
+}
+
+/// One throttle pair with its efforts.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    throttles: [f64; 2],
+    efforts: [f64; 2],
+}
+
+/// Fits evaluators to one pair; the search for coordinates is shared.
+#[derive(Debug)]
+pub struct Inversion<'a> {
+    pair: &'a PairMap,
+    /// `[N, N m]`: errors are counted in these units.
+    tolerance: [f64; 2],
+    samples: Vec<Sample>,
+    coordinates: Option<Coordinates>,
+}
+
+impl<'a> Inversion<'a> {
+    /// Inversion of `pair` to `tolerance` `[N, N m]`.
+    pub fn new(pair: &'a PairMap, tolerance: [f64; 2]) -> Self {
+        Inversion {
+            pair,
+            tolerance,
+            samples: samples(pair, GRID),
+            coordinates: None,
+        }
+    }
+
+    /// Fits an evaluator. Returns it with its largest error over the samples in units of the tolerance.
+    pub fn fit(&mut self, evaluator: Evaluator) -> (FittedInverse, f64) {
+        match evaluator {
+            Evaluator::Polynomial { degree } => self.fit_polynomial(degree),
+            Evaluator::Seeded { seed, steps } => self.fit_seed(seed, steps),
+        }
+    }
+
+    fn fit_seed(&mut self, seed: SeedForm, steps: u8) -> (FittedInverse, f64) {
+        let pair = self.pair;
+        let coordinates = *self.coordinates.get_or_insert_with(|| Coordinates::search(pair));
+        let rows: Vec<Vec<f64>> = self
+            .samples
+            .iter()
+            .map(|sample| {
+                let [x, y] = coordinates.at(sample.efforts);
+                seed.monomials(x, y)[..seed.terms()].to_vec()
+            })
+            .collect();
+        let (coefficients, error) = self.lawson(&rows, steps);
+        (
+            FittedInverse::Seeded {
+                seed,
+                steps,
+                coordinates,
+                coefficients,
+            },
+            error,
+        )
+    }
+
+    fn fit_polynomial(&self, degree: u8) -> (FittedInverse, f64) {
+        let range = |index: usize| {
+            let values = self.samples.iter().map(|sample| sample.efforts[index]);
+            let low = values.clone().fold(f64::INFINITY, f64::min);
+            let high = values.fold(f64::NEG_INFINITY, f64::max);
+            [2.0 / (high - low), -(high + low) / (high - low)]
+        };
+        let (thrust, torque) = (range(0), range(1));
+        let rows: Vec<Vec<f64>> = self
+            .samples
+            .iter()
+            .map(|Sample { efforts: [f, q], .. }| {
+                monomials(degree, thrust[0] * f + thrust[1], torque[0] * q + torque[1])
+            })
+            .collect();
+        let (coefficients, error) = self.lawson(&rows, 0);
+        (
+            FittedInverse::Polynomial {
+                degree,
+                thrust,
+                torque,
+                coefficients,
+            },
+            error,
+        )
+    }
+
+    /// The minimax fit of both throttles in the given terms, and its error after `steps` Newton steps.
+    fn lawson(&self, rows: &[Vec<f64>], steps: u8) -> ([Vec<f64>; 2], f64) {
+        let targets: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.throttles).collect();
+        let error = |index: usize, guess: [f64; 2]| {
+            let efforts = self.samples[index].efforts;
+            let mut throttles = guess.map(|throttle| self.pair.clamp(throttle));
+            for _ in 0..steps {
+                throttles = self.pair.newton(throttles, efforts);
+            }
+            let given = self.pair.efforts(throttles);
+            let miss = |k: usize| (given[k] - efforts[k]).abs() / self.tolerance[k];
+            miss(0).max(miss(1))
+        };
+        Lawson {
+            rows,
+            targets: &targets,
+        }
+        .fit(&error)
+    }
+}
+
+fn samples(pair: &PairMap, points: usize) -> Vec<Sample> {
+    let grid = pair.grid(points).into_iter();
+    grid.map(|throttles| Sample {
+        throttles,
+        efforts: pair.efforts(throttles),
+    })
+    .collect()
+}
+
+/// The terms s^(d-i) t^(i-j) in the order of `mixer_rt::PolynomialInverse`.
+fn monomials(degree: u8, s: f64, t: f64) -> Vec<f64> {
+    let power = |x: f64, exponent: u8| (0..exponent).fold(1.0, |product, _| product * x);
+    let mut terms = Vec::new();
+    for i in 0..=degree {
+        for j in 0..=i {
+            terms.push(power(s, degree - i) * power(t, i - j));
+        }
+    }
+    terms
+}

@@ -1,0 +1,258 @@
+//! What `check` prints and golden reports hold: the compiled airframe in numbers with units.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::Compiled;
+
+/// `cargo mixer check --json`, but for the time taken.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Name of the airframe.
+    pub name: String,
+    /// Number of coaxial units.
+    pub units: usize,
+    /// Number of rotors.
+    pub rotors: usize,
+    /// Name of the evaluator as in `inverse.method`.
+    pub evaluator: &'static str,
+    /// The evaluator with its parameters.
+    pub evaluator_description: String,
+    /// Proven bound of one unit's thrust residual, N; null as long as nothing is proven.
+    pub proven_thrust_n: Option<f64>,
+    /// Proven bound of one unit's torque residual, N m; null as long as nothing is proven.
+    pub proven_torque_nm: Option<f64>,
+    /// Largest thrust residual of one unit that was observed at the reference voltage, N.
+    pub observed_thrust_n: f64,
+    /// Largest torque residual of one unit that was observed at the reference voltage, N m.
+    pub observed_torque_nm: f64,
+    /// Efforts at which the residual was observed.
+    pub observed_points: usize,
+    /// Bytes of the tables.
+    pub table_bytes: usize,
+    /// Least idle at which the forward map is proven injective.
+    pub min_idle: f64,
+    /// Proven lower bound of det J over the throttle box, N N m.
+    pub least_det_j: f64,
+    /// Rank of M over the served axes.
+    pub rank: usize,
+    /// Condition number of M over the served axes.
+    pub condition: f64,
+    /// Served axes.
+    pub axes: Vec<&'static str>,
+    /// Bare thrust `[least, largest]` that is attainable at the reference voltage with least-norm efforts, N.
+    pub thrust_range_n: [f32; 2],
+}
+
+impl Summary {
+    /// The summary of a compiled airframe.
+    pub fn new(compiled: &Compiled) -> Self {
+        let airframe = &compiled.airframe;
+        let limits = &compiled.tables.desaturation;
+        Summary {
+            name: airframe.name.clone(),
+            units: airframe.units.len(),
+            rotors: airframe.rotors(),
+            evaluator: compiled.evaluator.name(),
+            evaluator_description: compiled.evaluator.description(),
+            proven_thrust_n: None,
+            proven_torque_nm: None,
+            observed_thrust_n: compiled.residual.efforts[0],
+            observed_torque_nm: compiled.residual.efforts[1],
+            observed_points: compiled.residual.points,
+            table_bytes: compiled.tables.bytes(),
+            min_idle: compiled.least_idle,
+            least_det_j: compiled.injectivity.least_determinant,
+            rank: compiled.effectiveness.rank,
+            condition: compiled.effectiveness.condition,
+            axes: airframe.allocation.axes.iter().map(|axis| axis.name()).collect(),
+            thrust_range_n: [limits.thrust_floor_n, limits.thrust_ceiling_n],
+        }
+    }
+}
+
+/// The report of a compiled airframe; its `Display` is the text.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'a>(pub &'a Compiled);
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let compiled = self.0;
+        let airframe = &compiled.airframe;
+        let summary = Summary::new(compiled);
+        writeln!(f, "{}: {}", airframe.name, airframe.description)?;
+        writeln!(
+            f,
+            "{} coaxial units, {} rotors; FRD, SI units",
+            summary.units, summary.rotors
+        )?;
+        writeln!(f)?;
+        self.units(f)?;
+        self.matrices(f)?;
+        writeln!(
+            f,
+            "rank            {} of {} served axes ({})",
+            summary.rank,
+            summary.axes.len(),
+            summary.axes.join(", ")
+        )?;
+        writeln!(f, "condition       {:.4}", summary.condition)?;
+        writeln!(f)?;
+        self.domain(f, &summary)?;
+        let [thrust, torque] = compiled.residual.efforts;
+        writeln!(
+            f,
+            "evaluator       {} ({})",
+            summary.evaluator_description, summary.evaluator
+        )?;
+        writeln!(
+            f,
+            "tolerance       {:?} N, {:?} N m per unit, at every voltage",
+            airframe.inverse.thrust_tolerance_n, airframe.inverse.torque_tolerance_nm
+        )?;
+        writeln!(
+            f,
+            "residual        {} N, {} N m: largest of {} efforts, f32 tables, reference voltage",
+            rounded_up(thrust),
+            rounded_up(torque),
+            summary.observed_points
+        )?;
+        writeln!(f, "tables          {} bytes", summary.table_bytes)
+    }
+}
+
+impl Report<'_> {
+    fn units(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "unit   x (m)    y (m)    z (m)    upper spin  upper channel  lower channel"
+        )?;
+        for (index, unit) in self.0.airframe.units.iter().enumerate() {
+            let [x, y, z] = unit.position_m;
+            writeln!(
+                f,
+                "{index:<4}  {x:>7.4}  {y:>7.4}  {z:>7.4}    {:<10}  {:<13}  {}",
+                unit.upper_spin.name(),
+                unit.upper_channel,
+                unit.lower_channel
+            )?;
+        }
+        writeln!(f)
+    }
+
+    fn matrices(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let n = self.0.airframe.units.len();
+        let efforts: Vec<String> = (0..n)
+            .map(|i| format!("f{i}"))
+            .chain((0..n).map(|i| format!("Q{i}")))
+            .collect();
+        let axes = ["roll", "pitch", "yaw", "thrust"];
+        let m = &self.0.effectiveness.matrix;
+        writeln!(f, "M: wrench (N m, N m, N m, N) = M efforts (f in N, Q in N m)")?;
+        header(f, &efforts)?;
+        for (row, axis) in axes.iter().enumerate() {
+            line(f, axis, m.row(row).iter())?;
+        }
+        writeln!(f)?;
+        let inverse = &self.0.effectiveness.pseudo_inverse;
+        writeln!(f, "M+: least-norm efforts = M+ wrench")?;
+        header(f, &axes.map(str::to_owned))?;
+        for (row, effort) in efforts.iter().enumerate() {
+            line(f, effort, inverse.row(row).iter())?;
+        }
+        writeln!(f)
+    }
+
+    fn domain(&self, f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
+        let airframe = &self.0.airframe;
+        let tables = &self.0.tables;
+        let extent = |index: usize| {
+            let values = tables.attainable.iter().map(|vertex| vertex[index]);
+            (
+                values.clone().fold(f32::INFINITY, f32::min),
+                values.fold(f32::NEG_INFINITY, f32::max),
+            )
+        };
+        let ((f_low, f_high), (q_low, q_high)) = (extent(0), extent(1));
+        writeln!(
+            f,
+            "throttle        {:?} to {:?}",
+            airframe.throttle.min, airframe.throttle.max
+        )?;
+        writeln!(
+            f,
+            "invertible      proven: det J >= {:.4e} N N m and injective; least idle {}",
+            summary.least_det_j, summary.min_idle
+        )?;
+        writeln!(
+            f,
+            "attainable set  f {f_low:.3} to {f_high:.3} N, Q {q_low:.4} to {q_high:.4} N m per unit, {} vertices",
+            tables.attainable.len()
+        )?;
+        let [floor, ceiling] = summary.thrust_range_n;
+        writeln!(
+            f,
+            "bare thrust     {floor:.3} to {ceiling:.3} N (no torque, least norm)"
+        )?;
+        match &airframe.voltage {
+            None => writeln!(f, "voltage         no correction"),
+            Some(voltage) => {
+                let [low, high] = voltage.range_v;
+                writeln!(
+                    f,
+                    "voltage         {low:?} to {high:?} V, reference {:?} V; k_f {:.4} to {:.4}, k_Q {:.4} to {:.4}",
+                    voltage.reference_v,
+                    voltage.thrust_factor(low),
+                    voltage.thrust_factor(high),
+                    voltage.torque_factor(low),
+                    voltage.torque_factor(high)
+                )
+            }
+        }
+    }
+}
+
+fn header(f: &mut fmt::Formatter<'_>, columns: &[String]) -> fmt::Result {
+    write!(f, "{:8}", "")?;
+    for column in columns {
+        write!(f, "{column:>9}")?;
+    }
+    writeln!(f)
+}
+
+fn line<'a>(f: &mut fmt::Formatter<'_>, name: &str, values: impl Iterator<Item = &'a f64>) -> fmt::Result {
+    write!(f, "{name:<8}")?;
+    for value in values {
+        write!(f, "{value:>9.4}")?;
+    }
+    writeln!(f)
+}
+
+/// A bound to three significant digits, rounded up, in the shortest form that a file can hold.
+pub fn rounded_up(x: f64) -> String {
+    if x <= 0.0 || !x.is_finite() {
+        return format!("{x:?}");
+    }
+    let mut text = format!("{x:.2e}");
+    if text.parse::<f64>().is_ok_and(|rounded| rounded < x) {
+        let unit = text
+            .split_once('e')
+            .and_then(|(_, exponent)| format!("0.01e{exponent}").parse::<f64>().ok());
+        text = format!("{:.2e}", x + unit.unwrap_or(0.0));
+    }
+    text.parse::<f64>().map_or(text, |rounded| format!("{rounded:?}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded_up;
+
+    #[test]
+    fn bounds_are_rounded_up() {
+        assert_eq!(rounded_up(0.003_211), "0.00322");
+        assert_eq!(rounded_up(0.009_999), "0.01");
+        assert_eq!(rounded_up(3.6e-5), "3.6e-5");
+        assert_eq!(rounded_up(1234.5), "1240.0");
+    }
+}

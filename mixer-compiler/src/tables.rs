@@ -1,0 +1,415 @@
+//! What is emitted, as values: the only place where f64 becomes f32.
+//!
+//! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the generated Rust
+//! holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs `mixer-rt` itself on them.
+
+use mixer_rt::{
+    Airmode, AttainableSet, BilinearSeed, Biquadratic, Cubic, Desaturation, EightTermSeed, Inverse, Pair,
+    PolynomialInverse, Quantity, Quartic, RootCoordinates, Saturation, Seeded, SetpointError, Tables,
+    ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw, Wrench,
+};
+
+use crate::airframe::{Airframe, Basis};
+use crate::effectiveness::Effectiveness;
+use crate::evaluator::SeedForm;
+use crate::inversion::FittedInverse;
+use crate::voltage::TabulatedLaw;
+
+/// The tables of one airframe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MixerTables {
+    /// Shares of M and M+.
+    pub units: Vec<Unit>,
+    /// The forward map.
+    pub pair: Pair<QuantityTable>,
+    /// The inverse map.
+    pub inverse: InverseTable,
+    /// The allowed throttles.
+    pub throttle: ThrottleRange,
+    /// The voltage correction.
+    pub voltage: Option<VoltageTable>,
+    /// Polygon inside the attainable set.
+    pub attainable: Vec<[f32; 2]>,
+    /// Limits and priorities of desaturation.
+    pub desaturation: Desaturation,
+    /// What the mixer may miss.
+    pub tolerance: Tolerance,
+}
+
+/// A quantity in any basis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum QuantityTable {
+    /// Eight terms.
+    Biquadratic(Biquadratic),
+    /// Nine terms.
+    Cubic(Cubic),
+    /// Fourteen terms.
+    Quartic(Quartic),
+}
+
+/// An inverse in any form.
+#[derive(Clone, Debug, PartialEq)]
+pub enum InverseTable {
+    /// [`PolynomialInverse`].
+    Polynomial {
+        /// Scale and offset of f.
+        thrust: [f32; 2],
+        /// Scale and offset of Q.
+        torque: [f32; 2],
+        /// Total degree.
+        degree: u8,
+        /// Coefficients of u and of l.
+        coefficients: [Vec<f32>; 2],
+    },
+    /// [`Seeded`] with a [`BilinearSeed`].
+    Bilinear {
+        /// The coordinates.
+        coordinates: RootCoordinates,
+        /// The seed.
+        seed: BilinearSeed,
+        /// Newton steps.
+        steps: u8,
+    },
+    /// [`Seeded`] with an [`EightTermSeed`].
+    EightTerm {
+        /// The coordinates.
+        coordinates: RootCoordinates,
+        /// The seed.
+        seed: EightTermSeed,
+        /// Newton steps.
+        steps: u8,
+    },
+}
+
+/// The voltage correction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VoltageTable {
+    /// The declared range, V.
+    pub range_v: [f32; 2],
+    /// k_f and k_Q.
+    pub laws: [LawTable; 2],
+}
+
+/// One voltage law.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LawTable {
+    /// [`VoltageLaw::Polynomial`].
+    Polynomial {
+        /// Scale and offset of the variable.
+        variable: [f32; 2],
+        /// Coefficients in descending powers.
+        coefficients: Vec<f32>,
+    },
+    /// [`VoltageLaw::Points`].
+    Points(Vec<[f32; 2]>),
+}
+
+/// What [`MixerTables::mix`] gives: throttle per channel, achieved wrench, saturation.
+pub type AnyMix = (Vec<f32>, Wrench, Saturation);
+
+impl MixerTables {
+    /// The tables as `mixer-rt` reads them.
+    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable> {
+        Tables {
+            units: &self.units,
+            pair: self.pair,
+            inverse: &self.inverse,
+            throttle: self.throttle,
+            voltage: self.voltage.as_ref().map(VoltageTable::view),
+            attainable: AttainableSet {
+                vertices: &self.attainable,
+            },
+            desaturation: self.desaturation,
+            tolerance: self.tolerance,
+        }
+    }
+
+    /// Mixes with `mixer-rt`, operation by operation as the generated mixer does.
+    ///
+    /// # Errors
+    /// As [`mixer_rt::mix`].
+    pub fn mix(&self, setpoint: &Wrench, voltage_v: f32) -> Result<AnyMix, SetpointError> {
+        let mut efforts = vec![[0.0; 2]; self.units.len()];
+        let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
+        let (achieved, saturation) =
+            mixer_rt::mix_into(&self.view(), setpoint, voltage_v, &mut efforts, &mut throttle)?;
+        Ok((throttle, achieved, saturation))
+    }
+
+    /// Bytes of the tables in flash: four per number, one per channel.
+    pub fn bytes(&self) -> usize {
+        let floats = self.units.len() * 16
+            + 2 * self.pair.thrust.terms()
+            + self.inverse.floats()
+            + 2 // throttle range
+            + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
+            + 2 * self.attainable.len()
+            + 4 // desaturation
+            + 6; // tolerance
+        4 * floats + 2 * self.units.len()
+    }
+}
+
+impl QuantityTable {
+    /// Rounds the coefficients of a quantity.
+    fn new(basis: Basis, coefficients: &[f64]) -> Self {
+        fn rounded<const TERMS: usize>(coefficients: &[f64]) -> [f32; TERMS] {
+            std::array::from_fn(|index| coefficients.get(index).map_or(0.0, |&c| c as f32))
+        }
+        match basis {
+            Basis::Biquadratic => QuantityTable::Biquadratic(Biquadratic(rounded(coefficients))),
+            Basis::Cubic => QuantityTable::Cubic(Cubic(rounded(coefficients))),
+            Basis::Quartic => QuantityTable::Quartic(Quartic(rounded(coefficients))),
+        }
+    }
+
+    /// Number of terms.
+    pub fn terms(&self) -> usize {
+        self.coefficients().len()
+    }
+
+    /// The coefficients in the order of the airframe file.
+    pub fn coefficients(&self) -> &[f32] {
+        match self {
+            QuantityTable::Biquadratic(quantity) => &quantity.0,
+            QuantityTable::Cubic(quantity) => &quantity.0,
+            QuantityTable::Quartic(quantity) => &quantity.0,
+        }
+    }
+}
+
+impl Quantity for QuantityTable {
+    fn value(&self, u: f32, l: f32) -> f32 {
+        match self {
+            QuantityTable::Biquadratic(quantity) => quantity.value(u, l),
+            QuantityTable::Cubic(quantity) => quantity.value(u, l),
+            QuantityTable::Quartic(quantity) => quantity.value(u, l),
+        }
+    }
+
+    fn value_and_gradient(&self, u: f32, l: f32) -> [f32; 3] {
+        match self {
+            QuantityTable::Biquadratic(quantity) => quantity.value_and_gradient(u, l),
+            QuantityTable::Cubic(quantity) => quantity.value_and_gradient(u, l),
+            QuantityTable::Quartic(quantity) => quantity.value_and_gradient(u, l),
+        }
+    }
+}
+
+impl InverseTable {
+    /// Rounds a fitted inverse.
+    pub fn new(fitted: &FittedInverse) -> Self {
+        match fitted {
+            FittedInverse::Polynomial {
+                degree,
+                thrust,
+                torque,
+                coefficients,
+            } => InverseTable::Polynomial {
+                thrust: thrust.map(|x| x as f32),
+                torque: torque.map(|x| x as f32),
+                degree: *degree,
+                coefficients: coefficients
+                    .clone()
+                    .map(|c| c.iter().map(|&x| x as f32).collect()),
+            },
+            FittedInverse::Seeded {
+                seed,
+                steps,
+                coordinates,
+                coefficients: [upper, lower],
+            } => {
+                fn rounded<const TERMS: usize>(coefficients: &[f64]) -> [f32; TERMS] {
+                    std::array::from_fn(|index| coefficients.get(index).map_or(0.0, |&c| c as f32))
+                }
+                let coordinates = RootCoordinates {
+                    x: coordinates.x.map(|x| x as f32),
+                    y: coordinates.y.map(|x| x as f32),
+                };
+                let steps = *steps;
+                match seed {
+                    SeedForm::Bilinear => {
+                        let seed = BilinearSeed {
+                            upper: rounded(upper),
+                            lower: rounded(lower),
+                        };
+                        InverseTable::Bilinear {
+                            coordinates,
+                            seed,
+                            steps,
+                        }
+                    }
+                    SeedForm::EightTerm => {
+                        let seed = EightTermSeed {
+                            upper: rounded(upper),
+                            lower: rounded(lower),
+                        };
+                        InverseTable::EightTerm {
+                            coordinates,
+                            seed,
+                            steps,
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn floats(&self) -> usize {
+        match self {
+            InverseTable::Polynomial { coefficients, .. } => 4 + 2 * coefficients[0].len(),
+            InverseTable::Bilinear { .. } => 6 + 8,
+            InverseTable::EightTerm { .. } => 6 + 16,
+        }
+    }
+}
+
+impl<P: Quantity> Inverse<P> for &InverseTable {
+    fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
+        fn seeded<P: Quantity, S: mixer_rt::Seed>(
+            (coordinates, seed, steps): (RootCoordinates, S, u8),
+            pair: &Pair<P>,
+            range: &ThrottleRange,
+            efforts: [f32; 2],
+        ) -> [f32; 2] {
+            match steps {
+                0 => Seeded::<S, 0> { coordinates, seed }.throttles(pair, range, efforts),
+                1 => Seeded::<S, 1> { coordinates, seed }.throttles(pair, range, efforts),
+                _ => Seeded::<S, 2> { coordinates, seed }.throttles(pair, range, efforts),
+            }
+        }
+        match self {
+            InverseTable::Polynomial {
+                thrust,
+                torque,
+                degree,
+                coefficients: [upper, lower],
+            } => {
+                let (thrust, torque, degree) = (*thrust, *torque, *degree);
+                PolynomialInverse {
+                    thrust,
+                    torque,
+                    degree,
+                    upper,
+                    lower,
+                }
+                .throttles(pair, range, efforts)
+            }
+            InverseTable::Bilinear {
+                coordinates,
+                seed,
+                steps,
+            } => seeded((*coordinates, *seed, *steps), pair, range, efforts),
+            InverseTable::EightTerm {
+                coordinates,
+                seed,
+                steps,
+            } => seeded((*coordinates, *seed, *steps), pair, range, efforts),
+        }
+    }
+}
+
+impl VoltageTable {
+    /// Rounds tabulated laws over the range `[low, high]` V.
+    pub fn new(range_v: [f64; 2], laws: &[TabulatedLaw; 2]) -> Self {
+        let [low, high] = range_v;
+        let variable = [2.0 / (high - low), -(high + low) / (high - low)].map(|x| x as f32);
+        let law = |law: &TabulatedLaw| match law {
+            TabulatedLaw::Polynomial(coefficients) => LawTable::Polynomial {
+                variable,
+                coefficients: coefficients.iter().map(|&c| c as f32).collect(),
+            },
+            TabulatedLaw::Points(points) => {
+                LawTable::Points(points.iter().map(|point| point.map(|x| x as f32)).collect())
+            }
+        };
+        VoltageTable {
+            range_v: range_v.map(|v| v as f32),
+            laws: [law(&laws[0]), law(&laws[1])],
+        }
+    }
+
+    fn view(&self) -> Voltage<'_> {
+        let [thrust, torque] = &self.laws;
+        Voltage {
+            range_v: self.range_v,
+            thrust: thrust.view(),
+            torque: torque.view(),
+        }
+    }
+}
+
+impl LawTable {
+    fn view(&self) -> VoltageLaw<'_> {
+        match self {
+            LawTable::Polynomial {
+                variable,
+                coefficients,
+            } => VoltageLaw::Polynomial {
+                variable: *variable,
+                coefficients,
+            },
+            LawTable::Points(points) => VoltageLaw::Points(points),
+        }
+    }
+
+    fn floats(&self) -> usize {
+        match self {
+            LawTable::Polynomial { coefficients, .. } => 2 + coefficients.len(),
+            LawTable::Points(points) => 2 * points.len(),
+        }
+    }
+}
+
+/// Rounds the forward map.
+pub fn pair_table(airframe: &Airframe) -> Pair<QuantityTable> {
+    let pair = &airframe.pair;
+    Pair {
+        thrust: QuantityTable::new(pair.basis, &pair.thrust_n),
+        torque: QuantityTable::new(pair.basis, &pair.torque_nm),
+    }
+}
+
+/// Rounds the allowed throttles, never outwards: an idle that f32 cannot represent becomes the next larger one.
+pub fn throttle_table(airframe: &Airframe) -> ThrottleRange {
+    let (min, max) = (airframe.throttle.min as f32, airframe.throttle.max as f32);
+    ThrottleRange {
+        min: if f64::from(min) < airframe.throttle.min {
+            min.next_up()
+        } else {
+            min
+        },
+        max: if f64::from(max) > airframe.throttle.max {
+            max.next_down()
+        } else {
+            max
+        },
+    }
+}
+
+/// Rounds M and M+, unit by unit.
+pub fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> {
+    let n = airframe.units.len();
+    let row = |index: usize| -> [f32; 4] {
+        std::array::from_fn(|axis| effectiveness.pseudo_inverse[(index, axis)] as f32)
+    };
+    let column =
+        |index: usize| -> [f32; 4] { std::array::from_fn(|axis| effectiveness.matrix[(axis, index)] as f32) };
+    let units = airframe.units.iter().enumerate();
+    units
+        .map(|(i, unit)| Unit {
+            allocation: [row(i), row(n + i)],
+            effectiveness: [column(i), column(n + i)],
+            channels: [unit.upper_channel as u8, unit.lower_channel as u8],
+        })
+        .collect()
+}
+
+/// The runtime's airmode.
+pub fn airmode(airmode: crate::airframe::Airmode) -> Airmode {
+    match airmode {
+        crate::airframe::Airmode::Disabled => Airmode::Disabled,
+        crate::airframe::Airmode::RollPitch => Airmode::RollPitch,
+        crate::airframe::Airmode::RollPitchYaw => Airmode::RollPitchYaw,
+    }
+}

@@ -1,0 +1,140 @@
+//! The voltage correction as the runtime evaluates it.
+//!
+//! Polynomials and points are taken over; an exponent law k = (V / Vref)^e is fitted over the range by Chebyshev
+//! interpolation, since there is no power function in a mixer.
+
+use crate::airframe::{Airframe, Voltage, VoltageLaw};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::tables::VoltageTable;
+
+/// A law as the runtime evaluates it, in f64.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TabulatedLaw {
+    /// Coefficients in descending powers of a variable that runs through [-1, 1] over the range.
+    Polynomial(Vec<f64>),
+    /// Points `[volts, k]`, ascending.
+    Points(Vec<[f64; 2]>),
+}
+
+/// Largest relative error of a fitted law: 25 uN of 25 N.
+pub(crate) const FIT_TOLERANCE: f64 = 1e-6;
+
+/// Highest degree that is tried.
+const HIGHEST_DEGREE: usize = 12;
+
+/// Largest correction factors `[k_f, k_Q]` over the range; `[1, 1]` without a correction.
+pub fn largest_factors(airframe: &Airframe) -> [f64; 2] {
+    factors_over_range(airframe)
+        .into_iter()
+        .fold([0.0, 0.0], |[f, q], [k_f, k_q]| [k_f.max(f), k_q.max(q)])
+}
+
+/// Correction factors `[k_f, k_Q]` at voltages over the whole range, both ends and the points of a law included.
+pub fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
+    let Some(voltage) = &airframe.voltage else {
+        return vec![[1.0, 1.0]];
+    };
+    let [low, high] = voltage.range_v;
+    let mut volts: Vec<f64> = (0..=32)
+        .map(|k| low + (high - low) * f64::from(k) / 32.0)
+        .collect();
+    for law in [&voltage.thrust, &voltage.torque] {
+        if let VoltageLaw::Points(points) = law {
+            volts.extend(
+                points
+                    .iter()
+                    .map(|point| point[0])
+                    .filter(|v| (low..=high).contains(v)),
+            );
+        }
+    }
+    volts
+        .into_iter()
+        .map(|v| [voltage.thrust_factor(v), voltage.torque_factor(v)])
+        .collect()
+}
+
+/// The airframe's correction, rounded; `None` where it has none.
+///
+/// # Errors
+/// As [`tabulate`].
+pub fn table(airframe: &Airframe) -> Result<Option<VoltageTable>, Vec<Diagnostic>> {
+    let Some(voltage) = &airframe.voltage else {
+        return Ok(None);
+    };
+    Ok(Some(VoltageTable::new(
+        voltage.range_v,
+        &tabulate(airframe, voltage)?,
+    )))
+}
+
+/// The laws of thrust and torque, tabulated.
+///
+/// # Errors
+/// A range over which a law is no polynomial of moderate degree.
+pub fn tabulate(airframe: &Airframe, voltage: &Voltage) -> Result<[TabulatedLaw; 2], Vec<Diagnostic>> {
+    let law = |key: &str, law: &VoltageLaw| {
+        tabulate_law(law, voltage).map_err(|error| {
+            airframe.diagnostic(
+                Code::VoltageTable,
+                key,
+                format!("no polynomial up to degree {HIGHEST_DEGREE} follows this law within {FIT_TOLERANCE:e}; the best is {error:.1e} off"),
+                "",
+                "narrow voltage.range_v to the voltages of the pack, or give points",
+            )
+        })
+    };
+    match (
+        law("voltage.thrust_exponent", &voltage.thrust),
+        law("voltage.torque_exponent", &voltage.torque),
+    ) {
+        (Ok(thrust), Ok(torque)) => Ok([thrust, torque]),
+        (thrust, torque) => Err([thrust.err(), torque.err()].into_iter().flatten().collect()),
+    }
+}
+
+/// One law, or the relative error of the best polynomial.
+fn tabulate_law(law: &VoltageLaw, voltage: &Voltage) -> Result<TabulatedLaw, f64> {
+    if let VoltageLaw::Points(points) = law {
+        return Ok(TabulatedLaw::Points(points.clone()));
+    }
+    let [low, high] = voltage.range_v;
+    let factor = |x: f64| law.factor(0.5 * (low + high) + 0.5 * (high - low) * x, voltage.reference_v);
+    let mut best = f64::INFINITY;
+    for degree in 0..=HIGHEST_DEGREE {
+        let coefficients = interpolate(&factor, degree);
+        let error = (0..=64)
+            .map(|k| f64::from(k) / 32.0 - 1.0)
+            .map(|x| (coefficients.iter().fold(0.0, |value, c| value * x + c) / factor(x) - 1.0).abs())
+            .fold(0.0, f64::max);
+        best = best.min(error);
+        if error <= FIT_TOLERANCE {
+            return Ok(TabulatedLaw::Polynomial(coefficients));
+        }
+    }
+    Err(best)
+}
+
+/// Interpolates at Chebyshev's nodes: Newton's divided differences, expanded to descending powers.
+fn interpolate(function: &dyn Fn(f64) -> f64, degree: usize) -> Vec<f64> {
+    let count = degree + 1;
+    let node = |k: usize| libm::cos(std::f64::consts::PI * (k as f64 + 0.5) / count as f64);
+    let nodes: Vec<f64> = (0..count).map(node).collect();
+    let mut differences: Vec<f64> = nodes.iter().map(|&x| function(x)).collect();
+    for order in 1..count {
+        for k in (order..count).rev() {
+            differences[k] = (differences[k] - differences[k - 1]) / (nodes[k] - nodes[k - order]);
+        }
+    }
+    // Horner on the Newton form: p <- p (x - node) + difference, ascending powers.
+    let mut ascending = vec![0.0; count];
+    for k in (0..count).rev() {
+        for i in (0..count).rev() {
+            let carried = if i > 0 { ascending[i - 1] } else { 0.0 };
+            ascending[i] = carried - nodes[k] * ascending[i];
+        }
+        ascending[0] += differences[k];
+    }
+    ascending.reverse();
+    ascending
+}
