@@ -1,0 +1,122 @@
+//! Instructions counted with SysTick under QEMU's instruction counter.
+//!
+//! With `-icount shift=10` every instruction takes 2^10 = 1024 ns of virtual time, and SysTick of the MPS2 board
+//! counts down at 25 MHz, one tick per 40 ns. A stretch of n instructions therefore lasts n * 25.6 ticks, and
+//! n = ticks * 40 / 1024 rounded to the nearest whole number. A reading is less than one tick off at either end, far
+//! below the 12.8 ticks that would round wrongly, so the count is exact to the instruction.
+//!
+//! Both readings and what lies between them stand in one piece of assembly: the compiler can schedule nothing of its own
+//! into the stretch. Two readings that follow one another directly are one instruction apart, the second reading
+//! itself; this cost is measured once and subtracted. [`Counter::new`] then counts one hundred `nop`s and accepts no
+//! other answer.
+
+use core::arch::{asm, naked_asm};
+
+use cortex_m::peripheral::{SYST, syst::SystClkSource};
+use mixer_rt::Wrench;
+
+const TICK_NS: u32 = 40;
+const INSTRUCTION_NS: u32 = 1024;
+/// SysTick is 24 bits wide: 655,360 instructions until it comes round.
+const TICK_MASK: u32 = 0x00ff_ffff;
+/// Length of the stretch that [`Counter::new`] checks itself with.
+pub(crate) const NOPS: u32 = 100;
+
+/// A mixer behind the C calling convention, so that assembly can call it: setpoint, where to write the result, voltage.
+pub(crate) type Mixer = unsafe extern "C" fn(*const Wrench, *mut (), f32);
+
+/// SysTick, running, with the cost of a measurement known.
+pub(crate) struct Counter {
+    current: *const u32,
+    overhead: u32,
+}
+
+/// The counter does not count instructions: not in QEMU, or without `-icount shift=10`.
+pub(crate) struct Inexact {
+    /// Instructions counted over [`NOPS`] of them.
+    pub(crate) counted: u32,
+}
+
+/// Ticks over `$work`, between two readings in one `asm!` block.
+macro_rules! ticks {
+    ($current:expr, $work:literal) => {{
+        let (start, end): (u32, u32);
+        asm!(
+            "ldr {start}, [{current}]",
+            $work,
+            "ldr {end}, [{current}]",
+            start = out(reg) start,
+            end = lateout(reg) end,
+            current = in(reg) $current,
+            options(nostack, preserves_flags),
+        );
+        start.wrapping_sub(end) & TICK_MASK
+    }};
+}
+
+impl Counter {
+    /// Starts SysTick, measures an empty stretch, and checks the count of one hundred `nop`s.
+    pub(crate) fn new(mut systick: SYST) -> Result<Counter, Inexact> {
+        systick.set_clock_source(SystClkSource::Core);
+        systick.set_reload(TICK_MASK);
+        systick.clear_current();
+        systick.enable_counter();
+        // It reads zero until the first tick has loaded it.
+        while SYST::get_current() == 0 {}
+
+        let current = &raw const systick.cvr as *const u32;
+        // SAFETY: two loads of a register that may be read at any time; `nop` touches nothing.
+        let (empty, nops) = unsafe { (ticks!(current, ""), ticks!(current, ".rept 100\nnop\n.endr")) };
+        let overhead = instructions(empty);
+        let counted = instructions(nops).saturating_sub(overhead);
+        if counted == NOPS {
+            Ok(Counter { current, overhead })
+        } else {
+            Err(Inexact { counted })
+        }
+    }
+
+    /// Mixes once and counts the instructions from the call to the return, both included.
+    ///
+    /// # Safety
+    ///
+    /// `output` must be what `mix` writes its result to.
+    pub(crate) unsafe fn count(&self, mix: Mixer, setpoint: &Wrench, output: *mut (), voltage_v: f32) -> u32 {
+        // SAFETY: SysTick may be read at any time; the caller answers for `output`.
+        let ticks = unsafe { ticks_of_call(mix, setpoint, output, self.current, voltage_v) };
+        instructions(ticks & TICK_MASK).saturating_sub(self.overhead)
+    }
+
+    /// Instructions of an empty measurement, already subtracted from every count.
+    pub(crate) fn overhead(&self) -> u32 {
+        self.overhead
+    }
+}
+
+/// Reads SysTick at `current`, mixes, reads again; returns the difference, of which 24 bits count.
+#[unsafe(naked)]
+unsafe extern "C" fn ticks_of_call(
+    mix: Mixer,
+    setpoint: *const Wrench,
+    output: *mut (),
+    current: *const u32,
+    voltage_v: f32,
+) -> u32 {
+    // The voltage is in s0 already.
+    naked_asm!(
+        "push {{r4, r5, r6, lr}}",
+        "mov r4, r3",
+        "mov r3, r0",
+        "mov r0, r1",
+        "mov r1, r2",
+        "ldr r5, [r4]",
+        "blx r3",
+        "ldr r0, [r4]",
+        "sub r0, r5, r0",
+        "pop {{r4, r5, r6, pc}}",
+    )
+}
+
+fn instructions(ticks: u32) -> u32 {
+    (ticks * TICK_NS + INSTRUCTION_NS / 2) / INSTRUCTION_NS
+}

@@ -1,0 +1,84 @@
+//! What the example has in place of a flight controller's peripherals: QEMU's MPS2 board has neither speed
+//! controllers nor a battery. A port to a real board replaces this file.
+
+use mixer_rt::Wrench;
+
+use crate::control::{Battery, EscOutputs};
+
+/// Frequency of the core and of SysTick, Hz.
+pub(crate) const CORE_HZ: u32 = 25_000_000;
+
+/// Pulse widths as a timer's compare registers would hold them, microseconds.
+pub(crate) struct Pulses<const CHANNELS: usize> {
+    pub(crate) width_us: [u16; CHANNELS],
+}
+
+impl<const CHANNELS: usize> Pulses<CHANNELS> {
+    /// Below the range of throttle: the speed controller stops its motor.
+    const DISARMED_US: u16 = 900;
+
+    pub(crate) fn new() -> Self {
+        Pulses {
+            width_us: [Self::DISARMED_US; CHANNELS],
+        }
+    }
+}
+
+impl<const CHANNELS: usize> EscOutputs<CHANNELS> for Pulses<CHANNELS> {
+    /// 1000 us to 2000 us for throttle 0 to 1.
+    fn write(&mut self, throttle: &[f32; CHANNELS]) {
+        self.width_us = throttle.map(|throttle| (1000.0 + 1000.0 * throttle + 0.5) as u16);
+    }
+
+    fn disarm(&mut self) {
+        self.width_us = [Self::DISARMED_US; CHANNELS];
+    }
+}
+
+/// A pack that loses a little voltage with every reading.
+pub(crate) struct DischargingPack {
+    voltage_v: f32,
+}
+
+impl DischargingPack {
+    pub(crate) fn full() -> Self {
+        DischargingPack { voltage_v: 16.8 }
+    }
+}
+
+impl Battery for DischargingPack {
+    fn voltage_v(&mut self) -> f32 {
+        self.voltage_v -= 0.002;
+        self.voltage_v
+    }
+}
+
+/// The wrench that a rate controller would ask for in cycle `cycle` of the flight; `None` after landing.
+///
+/// Hover, roll and pitch, a full yaw step, three lost estimates (held), hover again, and an estimator that fails
+/// for good (disarmed).
+pub(crate) fn setpoint(cycle: u32) -> Option<Wrench> {
+    let hover = Wrench {
+        roll_nm: 0.0,
+        pitch_nm: 0.0,
+        yaw_nm: 0.0,
+        thrust_n: 40.0,
+    };
+    let lost = Wrench {
+        yaw_nm: f32::NAN,
+        ..hover
+    };
+    match cycle {
+        0..400 => Some(hover),
+        400..600 => Some(Wrench {
+            roll_nm: 1.5,
+            pitch_nm: -0.75,
+            ..hover
+        }),
+        600..800 => Some(Wrench { yaw_nm: 2.0, ..hover }),
+        800..803 => Some(lost),
+        803..1200 => Some(hover),
+        1200..1300 => Some(lost),
+        _ => None,
+    }
+}
