@@ -1,0 +1,145 @@
+//! The mixers on a Cortex-M4F in QEMU: the same bits as on the host, and what they cost.
+//!
+//! Run with `--nocapture` (or through `tests/run`) to see the tables.
+#![allow(missing_docs)]
+
+use mixer_tests::airframes;
+use mixer_tests::firmware::Toolchain;
+use mixer_tests::image::Image;
+
+/// Below the caller's frame, any airframe.
+const STACK_LIMIT_BYTES: u64 = 512;
+/// Code and tables, [`REFERENCE`].
+const SIZE_LIMIT_BYTES: u64 = 6 * 1024;
+/// Over the golden vectors, [`REFERENCE`].
+const MEAN_LIMIT_INSTRUCTIONS: f64 = 1200.0;
+/// Over the golden vectors, [`REFERENCE`].
+const WORST_LIMIT_INSTRUCTIONS: u64 = 2500;
+/// The airframe that the limits are for.
+const REFERENCE: &str = "isae-x8";
+
+/// One line of what the `golden` image prints.
+#[derive(Debug)]
+struct Line {
+    airframe: String,
+    vectors: u64,
+    mismatches: u64,
+    mean: f64,
+    worst: u64,
+    stack: u64,
+}
+
+/// Lines after the one that begins with `airframe`.
+fn table(text: &str) -> Vec<Line> {
+    let lines = text
+        .lines()
+        .skip_while(|line| !line.starts_with("airframe"))
+        .skip(1);
+    lines
+        .map(|line| {
+            let cells: Vec<&str> = line.split_whitespace().collect();
+            let [airframe, vectors, mismatches, mean, worst, stack] = cells[..] else {
+                panic!("not a line of the table: {line}")
+            };
+            Line {
+                airframe: airframe.to_owned(),
+                vectors: vectors.parse().expect("vectors"),
+                mismatches: mismatches.parse().expect("mismatches"),
+                mean: mean.parse().expect("mean"),
+                worst: worst.parse().expect("worst"),
+                stack: stack.parse().expect("stack"),
+            }
+        })
+        .collect()
+}
+
+fn toolchain() -> Toolchain {
+    Toolchain::find().unwrap_or_else(|missing| panic!("{missing}"))
+}
+
+#[test]
+fn golden_vectors_have_the_same_bits_as_on_the_host() {
+    let toolchain = toolchain();
+    let text = toolchain.run("golden").unwrap_or_else(|e| panic!("{e}"));
+    println!("{text}");
+
+    let lines = table(&text);
+    let names: Vec<&str> = lines.iter().map(|line| line.airframe.as_str()).collect();
+    assert_eq!(names, airframes().expect("airframes"), "every airframe, in order");
+    for line in &lines {
+        assert!(line.vectors > 0, "{line:?}");
+        assert_eq!(line.mismatches, 0, "{line:?}");
+        assert!(
+            line.stack <= STACK_LIMIT_BYTES,
+            "stack is over {STACK_LIMIT_BYTES} bytes: {line:?}"
+        );
+    }
+    let reference = lines
+        .iter()
+        .find(|line| line.airframe == REFERENCE)
+        .expect(REFERENCE);
+    assert!(reference.mean <= MEAN_LIMIT_INSTRUCTIONS, "{reference:?}");
+    assert!(reference.worst <= WORST_LIMIT_INSTRUCTIONS, "{reference:?}");
+
+    let again = toolchain.run("golden").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(text, again, "a second run counts the same instructions");
+}
+
+#[test]
+fn mixers_are_small_and_cannot_panic() {
+    let toolchain = toolchain();
+    let image = |cfgs: &[String]| {
+        let path = toolchain.build("size", cfgs).unwrap_or_else(|e| panic!("{e}"));
+        Image::read(&path).unwrap_or_else(|e| panic!("{e}"))
+    };
+    // What one mixer adds to an image that does nothing.
+    let empty = image(&[]);
+    println!(
+        "bytes added to an image\n{:<24} {:>8} {:>8} {:>8}",
+        "airframe", "code", "tables", "sum"
+    );
+    for airframe in airframes().expect("airframes") {
+        let image = image(&["airframe".into(), format!("airframe={airframe:?}")]);
+        let (code, tables) = (image.code - empty.code, image.tables - empty.tables);
+        println!("{airframe:<24} {code:>8} {tables:>8} {:>8}", code + tables);
+
+        assert!(code > 100, "{airframe}: the mixer is not in the image");
+        assert_eq!(image.ram, empty.ram, "{airframe}: a mixer has no state");
+        assert_eq!(image.panic_symbols(), [""; 0], "{airframe}");
+        if airframe == REFERENCE {
+            assert!(
+                code + tables <= SIZE_LIMIT_BYTES,
+                "{airframe}: over {SIZE_LIMIT_BYTES} bytes"
+            );
+        }
+    }
+}
+
+/// The size image proves by linking that no panic is reachable: here is the panic that must not link.
+#[test]
+fn a_reachable_panic_does_not_link() {
+    let linked = toolchain().build("size", &["panic_path".into()]);
+    let message = linked.expect_err("an index out of range went unnoticed");
+    assert!(message.contains("the_mixer_can_panic"), "{message}");
+}
+
+#[test]
+fn panic_symbols_are_found_where_there_are_some() {
+    let this_test = std::env::current_exe().expect("path of this test");
+    let image = Image::read(&this_test).unwrap_or_else(|e| panic!("{e}"));
+    assert!(!image.panic_symbols().is_empty());
+}
+
+/// The flight of `board::setpoint`: 1200 cycles less three lost ones are mixed; the three are held, and so are the first
+/// forty of a hundred at the end,
+/// after which the rotors stop.
+#[test]
+fn control_loop_holds_and_then_disarms() {
+    let text = toolchain().run("firmware").unwrap_or_else(|e| panic!("{e}"));
+    println!("{text}");
+    assert!(text.contains("mixed 1197, held 43, disarmed 60\n"), "{text}");
+    assert!(
+        text.contains("after landing [900, 900, 900, 900, 900, 900, 900, 900] us\n"),
+        "{text}"
+    );
+}

@@ -1,0 +1,169 @@
+//! Builds `examples/firmware` and runs it in QEMU.
+
+use std::ffi::OsString;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::root;
+
+const TARGET: &str = "thumbv7em-none-eabihf";
+/// Far more than any image needs; an image that hangs must not hang the tests.
+const TIME_LIMIT: Duration = Duration::from_secs(120);
+
+/// What builds firmware on this machine.
+pub struct Toolchain {
+    cargo: OsString,
+    environment: Vec<(&'static str, OsString)>,
+    arguments: Vec<&'static str>,
+    /// Inside the firmware's own `target`, apart from what its user builds, and one per toolchain.
+    target_dir: PathBuf,
+}
+
+impl Toolchain {
+    /// The running toolchain if it has the target, else Debian's compiler, which builds `core` from its sources.
+    ///
+    /// # Errors
+    ///
+    /// If there is neither, or no QEMU: what to install.
+    pub fn find() -> Result<Toolchain, String> {
+        if Command::new("qemu-system-arm").arg("--version").output().is_err() {
+            return Err("qemu-system-arm is missing: apt-get install qemu-system-arm".into());
+        }
+        let target = folder().join("target");
+        let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+        let target_libdir = print(Path::new(&rustc), &["target-libdir", "--target", TARGET]);
+        if target_libdir.is_some_and(|libraries| libraries.is_dir()) {
+            return Ok(Toolchain {
+                cargo: std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()),
+                environment: Vec::new(),
+                arguments: Vec::new(),
+                target_dir: target.join("tests"),
+            });
+        }
+        let debian = Path::new("/usr/bin/rustc");
+        let sources = print(debian, &["sysroot"]).map(|root| root.join("lib/rustlib/src/rust/library/core"));
+        let linker = Command::new("arm-none-eabi-ld").arg("--version").output();
+        if sources.is_some_and(|core| core.is_dir()) && Path::new("/usr/bin/cargo").exists() && linker.is_ok()
+        {
+            return Ok(Toolchain {
+                cargo: "/usr/bin/cargo".into(),
+                environment: vec![
+                    ("RUSTC", debian.into()),
+                    // `-Zbuild-std` is not stable, and Debian has no other way to a bare-metal `core`.
+                    ("RUSTC_BOOTSTRAP", "1".into()),
+                    (
+                        "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER",
+                        "arm-none-eabi-ld".into(),
+                    ),
+                ],
+                arguments: vec!["-Zbuild-std=core"],
+                target_dir: target.join("tests-build-std"),
+            });
+        }
+        Err(format!(
+            "no compiler for {TARGET}: `rustup target add {TARGET}`, or on Debian 12 \
+             `apt-get install rustc-web cargo-web rust-web-src binutils-arm-none-eabi`"
+        ))
+    }
+
+    /// Builds one image in release mode, its own crate with `cfgs`, and returns the path of its ELF file.
+    ///
+    /// # Errors
+    ///
+    /// What the compiler said.
+    pub fn build(&self, image: &str, cfgs: &[String]) -> Result<PathBuf, String> {
+        let mut command = self.command("rustc", image);
+        command.arg("--");
+        for cfg in cfgs {
+            command.args(["--cfg", cfg]);
+        }
+        let output = command.output().map_err(|e| format!("cannot start cargo: {e}"))?;
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+        }
+        Ok(self.target_dir.join(TARGET).join("release").join(image))
+    }
+
+    /// Builds one image, runs it in QEMU and returns what it printed.
+    ///
+    /// # Errors
+    ///
+    /// What the compiler said, or what the image printed before it failed or was stopped for taking too long.
+    pub fn run(&self, image: &str) -> Result<String, String> {
+        self.build(image, &[])?;
+        // The runner in `.cargo/config.toml` is QEMU, and cargo replaces itself by it.
+        let mut child = self
+            .command("run", image)
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(|e| format!("cannot start cargo: {e}"))?;
+        let mut stdout = child.stdout.take().ok_or("no standard output")?;
+        let printed = thread::spawn(move || {
+            let mut text = String::new();
+            stdout.read_to_string(&mut text).map(|_| text)
+        });
+        let started = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().map_err(|e| e.to_string())? {
+                break Some(status);
+            }
+            if started.elapsed() > TIME_LIMIT {
+                child.kill().map_err(|e| e.to_string())?;
+                child.wait().map_err(|e| e.to_string())?;
+                break None;
+            }
+            thread::sleep(Duration::from_millis(20));
+        };
+        let text = printed
+            .join()
+            .map_err(|_| "reading standard output failed")?
+            .map_err(|e| e.to_string())?;
+        match status {
+            Some(status) if status.success() => Ok(text),
+            Some(status) => Err(format!("{image}: {status}\n{text}")),
+            None => Err(format!(
+                "{image}: not finished after {} s\n{text}",
+                TIME_LIMIT.as_secs()
+            )),
+        }
+    }
+
+    fn command(&self, subcommand: &str, image: &str) -> Command {
+        let mut command = Command::new(&self.cargo);
+        // What the toolchain of the tests, or its caller, has set for itself would mislead the other one.
+        for variable in [
+            "CARGO_BUILD_TARGET",
+            "CARGO_ENCODED_RUSTFLAGS",
+            "CARGO_TARGET_DIR",
+            "LD_LIBRARY_PATH",
+            "RUSTC_WORKSPACE_WRAPPER",
+            "RUSTC_WRAPPER",
+            "RUSTFLAGS",
+        ] {
+            command.env_remove(variable);
+        }
+        command
+            .current_dir(folder())
+            .stdin(Stdio::null())
+            .args([subcommand, "--quiet", "--locked", "--release", "--bin", image])
+            .args(&self.arguments)
+            .arg("--target-dir")
+            .arg(&self.target_dir)
+            .envs(self.environment.iter().map(|(name, value)| (name, value)));
+        command
+    }
+}
+
+fn folder() -> PathBuf {
+    root().join("examples/firmware")
+}
+
+/// Answer of `rustc --print`, a path.
+fn print(rustc: &Path, what: &[&str]) -> Option<PathBuf> {
+    let output = Command::new(rustc).arg("--print").args(what).output().ok()?;
+    let path = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| PathBuf::from(path.trim_end()))
+}

@@ -1,0 +1,32 @@
+//! What the tests of the whole way share: building firmware, running it in QEMU, looking into its image.
+
+pub mod firmware;
+pub mod image;
+
+use std::path::{Path, PathBuf};
+
+/// The project's folder.
+pub fn root() -> PathBuf {
+    // This package lies directly in it.
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .map(Path::to_path_buf)
+        .unwrap_or_default()
+}
+
+/// Names of the files `airframes/<name>.toml`, sorted.
+///
+/// # Errors
+///
+/// If the folder cannot be read.
+pub fn airframes() -> std::io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(root().join("airframes"))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            names.extend(path.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
+        }
+    }
+    names.sort();
+    Ok(names)
+}
