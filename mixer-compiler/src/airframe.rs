@@ -164,7 +164,7 @@ fn throttle(table: &spec::Throttle, faults: &mut Vec<Diagnostic>) -> Option<Thro
             && !(0.0..=1.0).contains(field.get_ref())
         {
             let help = match *field.get_ref() {
-                percent if (1.0..=100.0).contains(&percent) => {
+                percent if (2.0..=100.0).contains(&percent) => {
                     format!("if per cent were meant, write {}", number(percent / 100.0))
                 }
                 _ => "0 is a rotor at rest, 1 is full throttle".to_string(),
@@ -215,22 +215,11 @@ fn throttle(table: &spec::Throttle, faults: &mut Vec<Diagnostic>) -> Option<Thro
 /// The units as written, from `[[unit]]` or from `[layout]`.
 fn units(spec: &Spec, faults: &mut Vec<Diagnostic>) -> Option<Vec<spec::Unit>> {
     let written = spec.places.get("unit");
-    match (&spec.layout, written) {
-        (None, Some(_)) if !spec.units.is_empty() => Some(spec.units.clone()),
-        (None, None) if !spec.places.contains_key("layout") => {
-            faults.push(
-                Diagnostic::new(
-                    Code::MissingKey,
-                    "unit",
-                    spec.places.get("name").cloned().unwrap_or(0..0),
-                    "the airframe has 0 units",
-                )
-                .label("this airframe has no `[[unit]]`")
-                .help("add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame"),
-            );
-            None
-        }
-        (None, Some(place)) if !faults.iter().any(|fault| fault.key.starts_with("unit")) => {
+    let Some(layout) = &spec.layout else {
+        if let Some(place) = written
+            && spec.units.is_empty()
+            && !faults.iter().any(|fault| fault.key.starts_with("unit"))
+        {
             faults.push(
                 Diagnostic::new(
                     Code::WrongLength,
@@ -241,36 +230,25 @@ fn units(spec: &Spec, faults: &mut Vec<Diagnostic>) -> Option<Vec<spec::Unit>> {
                 .label("empty")
                 .help("add a `[[unit]]` for each pair of rotors"),
             );
-            None
         }
-        (None, _) => None,
-        (Some(layout), written) => {
-            let bench_spin = spec
-                .pair
-                .as_ref()
-                .and_then(|pair| pair.upper_spin.as_ref())
-                .and_then(|spin| {
-                    Spin::WORDS
-                        .iter()
-                        .find(|(word, _)| word == spin.get_ref())
-                        .map(|&(_, spin)| spin)
-                });
-            if written.is_some() {
-                faults.push(
-                    Diagnostic::new(
-                        Code::Conflict,
-                        "layout",
-                        layout.place.clone(),
-                        format!("the file has `[layout]` and {} `[[unit]]`", spec.units.len()),
-                    )
-                    .label("second description of the units")
-                    .help("keep one: `[layout]` for a regular frame, else `[[unit]]`"),
-                );
-                return None;
-            }
-            layout::expand(layout, bench_spin, faults)
-        }
+        return (!spec.units.is_empty()).then(|| spec.units.clone());
+    };
+    if written.is_some() {
+        faults.push(
+            Diagnostic::new(
+                Code::Conflict,
+                "layout",
+                layout.place.clone(),
+                format!("the file has `[layout]` and {} `[[unit]]`", spec.units.len()),
+            )
+            .label("second description of the units")
+            .help("keep one: `[layout]` for a regular frame, else `[[unit]]`"),
+        );
+        return None;
     }
+    let bench_spin = spec.pair.as_ref().and_then(|pair| pair.upper_spin.as_ref());
+    let bench_spin = bench_spin.and_then(|spin| Spin::WORDS.iter().find(|(word, _)| word == spin.get_ref()));
+    layout::expand(layout, bench_spin.map(|&(_, spin)| spin), faults)
 }
 
 /// The meaning of one of the words that a key takes.
@@ -289,14 +267,14 @@ pub(crate) fn word<T: Copy>(
         let names = || words.iter().map(|&(word, _)| word);
         let label = match nearest(written, names()) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("expected {}", any_of(names())),
+            None => "unknown word".to_string(),
         };
         faults.push(
             Diagnostic::new(
                 Code::UnknownWord,
                 key,
                 field.span(),
-                format!("`{key}` is {}, not {}", quoted(written), any_of(names())),
+                format!("`{key}` cannot be {}", quoted(written)),
             )
             .label(label)
             .help(format!("write {}", any_of(names()))),

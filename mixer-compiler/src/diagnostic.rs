@@ -83,6 +83,9 @@ pub struct Diagnostics {
     faults: Vec<Diagnostic>,
 }
 
+/// Faults that are shown. Nobody reads more at once, and a file that is no airframe at all may have thousands.
+const MOST_SHOWN: usize = 100;
+
 /// One fault for machines: `cargo mixer check --json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Record {
@@ -200,6 +203,14 @@ impl Diagnostics {
         if let Some(length) = self.source.text[start..end].find(['\r', '\n']) {
             end = start + length;
         }
+        // A caret needs a character to stand under, where the line has one.
+        let next = self.source.text[start..]
+            .chars()
+            .next()
+            .filter(|next| !matches!(next, '\r' | '\n'));
+        if let (true, Some(next)) = (start == end, next) {
+            end += next.len_utf8();
+        }
         let span = start.saturating_sub(skipped)..end.saturating_sub(skipped);
         let caret = AnnotationKind::Primary.span(span);
         Snippet::source(text)
@@ -214,13 +225,16 @@ impl Diagnostics {
 
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, fault) in self.faults.iter().enumerate() {
+        for (index, fault) in self.faults.iter().take(MOST_SHOWN).enumerate() {
             if index > 0 {
                 write!(f, "\n\n")?;
             }
             f.write_str(&self.render(fault))?;
         }
-        Ok(())
+        match self.faults.len().checked_sub(MOST_SHOWN) {
+            None | Some(0) => Ok(()),
+            Some(others) => write!(f, "\n\n{others} more faults are not shown"),
+        }
     }
 }
 

@@ -176,17 +176,12 @@ fn spins(
         return Some((0..units).map(spin).collect());
     };
     if let Some(first) = &layout.first_spin {
+        let message = "`first_spin` and `spins` both say how the first unit turns".to_string();
         faults.push(
-            fault(
-                Code::Conflict,
-                "first_spin",
-                first.span(),
-                "`first_spin` and `spins` both say how the first unit turns".to_string(),
-            )
-            .label("first said here")
-            .help("remove `first_spin`: `spins` names every unit's upper rotor"),
+            fault(Code::Conflict, "first_spin", first.span(), message)
+                .label("`spins` says it too")
+                .help("remove `first_spin`: `spins` names every unit's upper rotor"),
         );
-        return None;
     }
     let spins: Vec<_> = field
         .get_ref()

@@ -14,7 +14,7 @@ use std::ops::Range;
 pub use toml::Spanned;
 
 use self::fields::Fields;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Source;
 
 /// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where their value
@@ -169,13 +169,27 @@ pub struct Allocation {
 
 impl Spec {
     /// Reads the file and notes all faults of its shape: syntax, unknown and missing keys, wrong types and lengths,
-    /// numbers that are not finite. `None` where the text is not TOML, so that nothing more can be said of it.
+    /// numbers that are not finite. `None` where the text is not TOML or empty, so that nothing more can be said of it.
     pub fn read(source: &Source, faults: &mut Vec<Diagnostic>) -> Option<Spec> {
         let table = syntax::parse(source, faults)?;
         let places = syntax::places(&table);
         let top = places.get("name").cloned().unwrap_or(0..0);
+        if table.is_empty() {
+            faults.push(
+                Diagnostic::new(Code::MissingKey, "name", top, "the file is empty")
+                    .label("expected an airframe")
+                    .help("an airframe has a `name`, `[throttle]`, `[pair]`, and a `[[unit]]` for each pair of rotors"),
+            );
+            return None;
+        }
         let mut file = Fields::new(&table, keys::FILE, String::new(), top, faults);
         file.require(&["name", "throttle", "pair"]);
+        if file.key_place("unit").is_none() && file.key_place("layout").is_none() {
+            let fault = Diagnostic::new(Code::MissingKey, "unit", file.place(), "the airframe has 0 units")
+                .label("this airframe has no `[[unit]]`")
+                .help("add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame");
+            file.report(fault);
+        }
         Some(Spec {
             name: file.read("name"),
             description: file.read("description"),

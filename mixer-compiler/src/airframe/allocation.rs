@@ -143,7 +143,10 @@ fn axes(field: &Spanned<Vec<Spanned<String>>>, faults: &mut Vec<Diagnostic>) -> 
     if !axes.contains(&Axis::Thrust) {
         let message = match field.get_ref().len() {
             0 => "`allocation.axes` is empty".to_string(),
-            count => format!("the {count} axes of `allocation.axes` lack the thrust"),
+            _ => {
+                let names: Vec<_> = axes.iter().map(|axis| axis.name()).collect();
+                format!("`allocation.axes` has {} and no thrust", names.join(", "))
+            }
         };
         faults.push(
             fault(field.span(), message)

@@ -131,10 +131,10 @@ fn method(inverse: &spec::Inverse, faults: &mut Vec<Diagnostic>) -> Option<Metho
                     Code::UnknownWord,
                     "inverse.method",
                     field.span(),
-                    format!("`inverse.method` is {}, which is no evaluator", quoted(name)),
+                    format!("`inverse.method` cannot be {}", quoted(name)),
                 )
                 .label(label)
-                .help(format!("one of {}", any_of(words()))),
+                .help(format!("write {}", any_of(words()))),
             );
             None
         }

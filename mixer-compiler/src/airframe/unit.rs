@@ -159,6 +159,12 @@ fn axis(unit: &spec::Unit, field: &Spanned<spec::Triple>, faults: &mut Vec<Diagn
     }
     let [x, y, z] = axis;
     if z >= 0.0 {
+        let help = if z > 0.0 {
+            let [x, y, z] = [x, y, -z].map(number);
+            format!("if z was meant upward, write axis = [{x}, {y}, {z}]")
+        } else {
+            "leave the key out for a thrust straight up; a tilted arm keeps z below 0".to_string()
+        };
         faults.push(
             Diagnostic::new(
                 Code::AxisNotUpward,
@@ -170,13 +176,8 @@ fn axis(unit: &spec::Unit, field: &Spanned<spec::Triple>, faults: &mut Vec<Diagn
                     number(z)
                 ),
             )
-            .label("z is down, so upward is negative")
-            .help(format!(
-                "the axis is where the thrust pushes, in forward, right, down: [{}, {}, {}]?",
-                number(x),
-                number(y),
-                if z > 0.0 { number(-z) } else { "-1".to_string() }
-            )),
+            .label("forward, right, down: upward is negative")
+            .help(help),
         );
         return None;
     }
@@ -263,11 +264,14 @@ fn channels(units: &[spec::Unit], faults: &mut Vec<Diagnostic>) {
         .map(|(output, _)| output.to_string())
         .collect();
     let help = match free.as_slice() {
-        [output] if complete => format!("output {output} drives no rotor yet"),
+        [output] if complete => format!("outputs count from 0; output {output} drives no rotor yet"),
         [first @ .., last] if complete => {
-            format!("outputs {} and {last} drive no rotor yet", first.join(", "))
+            format!(
+                "outputs count from 0; outputs {} and {last} drive no rotor yet",
+                first.join(", ")
+            )
         }
-        _ => "outputs are counted from 0, two for each unit, without a gap".to_string(),
+        _ => "outputs count from 0, two for each unit, without a gap".to_string(),
     };
     faults.extend(bad.into_iter().map(|fault| fault.help(help.as_str())));
 }

@@ -204,7 +204,7 @@ fn law(
                     )
                     .label("second law")
                     .help(format!(
-                        "keep one of {}",
+                        "keep one: {}",
                         any_of(forms.present.iter().map(|(name, _)| *name))
                     )),
                 );
@@ -289,7 +289,7 @@ fn polynomial(
         return None;
     }
     let law = VoltageLaw::Polynomial(coefficients);
-    one_at_reference(key, field.span(), &law, supply, faults)?;
+    one_at_reference(key, field.span(), &law, "coefficient", supply, faults)?;
     Some(law)
 }
 
@@ -358,7 +358,7 @@ fn points(
         return None;
     }
     let law = VoltageLaw::Points(points);
-    one_at_reference(key, field.span(), &law, supply, faults)?;
+    one_at_reference(key, field.span(), &law, "factor", supply, faults)?;
     Some(law)
 }
 
@@ -377,6 +377,7 @@ fn one_at_reference(
     key: &str,
     place: Range<usize>,
     law: &VoltageLaw,
+    parts: &str,
     supply: Supply,
     faults: &mut Vec<Diagnostic>,
 ) -> Option<()> {
@@ -394,7 +395,7 @@ fn one_at_reference(
         )
         .label("must be 1 there, within 0.001")
         .help(format!(
-            "divide every factor by {k}, or set `reference_v` to the voltage of the bench model"
+            "divide every {parts} by {k}, or set `reference_v` to the voltage of the bench model"
         )),
     );
     None

@@ -1,7 +1,7 @@
 //! Words and numbers as a user would write them, and what the user may have meant.
 
-/// The candidate nearest to `word`: equal but for case and separators, one that continues `word` (`arm` for
-/// `arm_m`), or one within a third of the word's letters in edits. `None` where nothing is near.
+/// The candidate nearest to `word`: within a third of its letters in edits, case and separators aside, or else one
+/// that continues it (`arm` for `arm_m`). `None` where nothing is near.
 pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Distances cost the product of the lengths; no key is nearly this long.
     if word.len() > 64 {
@@ -13,13 +13,9 @@ pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         .into_iter()
         .filter_map(|candidate| {
             let other = plain(candidate);
-            let stem = word.len() >= 3 && (other.starts_with(&word) || word.starts_with(&other));
-            let distance = if stem {
-                1
-            } else {
-                strsim::osa_distance(&word, &other)
-            };
-            (distance <= allowed).then_some((distance, candidate))
+            let distance = strsim::osa_distance(&word, &other);
+            let continued = word.len() >= 3 && other.starts_with(&word);
+            (distance <= allowed || continued).then_some((distance.min(allowed + 1), candidate))
         })
         // The first of equals, so that the order of the candidates decides.
         .min_by_key(|&(distance, _)| distance)
@@ -91,6 +87,11 @@ mod tests {
         assert_eq!(nearest("arm", words), Some("arm_m"));
         assert_eq!(nearest("chanels", words), Some("channels"));
         assert_eq!(nearest("first-angle", words), Some("first_angle_deg"));
+        assert_eq!(
+            nearest("bilinear-newtown", ["bilinear", "bilinear-newton"]),
+            Some("bilinear-newton")
+        );
+        assert_eq!(nearest("maximum_rpm", ["min", "max"]), None);
         assert_eq!(nearest("mass_kg", words), None);
         assert_eq!(nearest("", words), None);
     }

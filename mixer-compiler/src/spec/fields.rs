@@ -1,5 +1,6 @@
 //! Reading of typed values from TOML tables; every fault is noted and reading goes on.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -51,10 +52,10 @@ impl<'a, 'f> Fields<'a, 'f> {
         Some(Spanned::new(item.place, value))
     }
 
-    /// Reports those of `names` that are absent.
+    /// Reports those of `names` that are absent, except where a misspelt key was reported in their stead.
     pub(crate) fn require(&mut self, names: &[&str]) {
         for name in names {
-            if !self.table.contains_key(*name) {
+            if self.key_place(name).is_none() {
                 let fault = self.missing(name);
                 self.faults.push(fault);
             }
@@ -132,9 +133,21 @@ impl<'a, 'f> Fields<'a, 'f> {
         self.place.clone()
     }
 
-    /// Place of a key, if the table has it.
+    /// Place of a key, if the table has it, or what is likely to be meant for it.
     pub(crate) fn key_place(&self, name: &str) -> Option<Range<usize>> {
-        self.table.get_key_value(name).map(|(key, _)| key.span())
+        let is_meant = |key: &str| self.shape.key(key).is_none() && self.nearest(key) == Some(name);
+        let written = self.table.get_key_value(name).map(|(key, _)| key);
+        let meant = || self.table.keys().find(|key| is_meant(key.get_ref()));
+        written.or_else(meant).map(Spanned::span)
+    }
+
+    /// Reports a fault of the table as a whole.
+    pub(crate) fn report(&mut self, fault: Diagnostic) {
+        self.faults.push(fault);
+    }
+
+    fn nearest(&self, key: &str) -> Option<&'static str> {
+        nearest(key, self.shape.keys.iter().map(|key| key.name))
     }
 
     fn key_path(&self, name: &str) -> String {
@@ -160,10 +173,13 @@ impl<'a, 'f> Fields<'a, 'f> {
         let path = self.key_path(name);
         let example = self.shape.key(name).map_or(name, |key| key.example);
         let (message, help) = match example.strip_prefix('[') {
-            Some(_) => (
-                format!("the table `{example}` is missing"),
-                format!("add the table `{example}`"),
-            ),
+            Some(_) => {
+                let shape = keys::ALL.iter().find(|shape| shape.header == example);
+                let keys = shape.map_or(&[] as &[Key], |shape| shape.keys);
+                let keys: Vec<_> = keys.iter().map(|key| key.name).collect();
+                let help = format!("add the table `{example}` with {}", keys.join(", "));
+                (format!("the table `{example}` is missing"), help)
+            }
             None => (
                 format!("`{path}` is missing"),
                 format!("add a line like `{example}`"),
@@ -178,40 +194,39 @@ impl<'a, 'f> Fields<'a, 'f> {
             .help(help)
     }
 
-    fn unknown(&self, key: &Spanned<std::borrow::Cow<'a, str>>) -> Diagnostic {
+    fn unknown(&self, key: &Spanned<Cow<'a, str>>) -> Diagnostic {
         let name = key.get_ref();
-        let here = match self.shape.header {
-            "" => "the top of the file".to_string(),
-            header => format!("`{header}`"),
+        let (here, shape) = match self.shape.header {
+            "" => ("at the top of the file".to_string(), "the file".to_string()),
+            header => (format!("in `{header}`"), format!("`{header}`")),
         };
         let home = keys::ALL.iter().find(|shape| shape.key(name).is_some());
-        let (label, help) = match (nearest(name, self.shape.keys.iter().map(|key| key.name)), home) {
+        let (label, help) = match (self.nearest(name), home) {
+            (Some(near), _) => (
+                format!("did you mean `{near}`?"),
+                format!("rename it `{near}`, or remove it"),
+            ),
             // A key written under the wrong header is spelt as elsewhere.
-            (_, Some(Shape { header: "", .. })) => (
+            (None, Some(Shape { header: "", .. })) => (
                 "belongs at the top".into(),
                 "move it above the first `[table]` of the file".into(),
             ),
-            (_, Some(shape)) => (
-                format!("belongs in `{}`", shape.header),
-                format!("move it under `{}`", shape.header),
+            (None, Some(home)) => (
+                format!("belongs in `{}`", home.header),
+                format!("move it under `{}`", home.header),
             ),
-            (Some(near), None) => (format!("did you mean `{near}`?"), format!("{here} has `{near}`")),
             (None, None) => {
                 let known: Vec<_> = self.shape.keys.iter().map(|key| key.name).collect();
                 (
                     "unknown".into(),
-                    format!("the keys of {here} are {}", known.join(", ")),
+                    format!("remove it; the keys of {shape} are {}", known.join(", ")),
                 )
             }
         };
-        Diagnostic::new(
-            Code::UnknownKey,
-            self.key_path(name),
-            key.span(),
-            format!("{} is not a key of {here}", quoted(name)),
-        )
-        .label(label)
-        .help(help)
+        let message = format!("there is no key {} {here}", quoted(name));
+        Diagnostic::new(Code::UnknownKey, self.key_path(name), key.span(), message)
+            .label(label)
+            .help(help)
     }
 }
 
@@ -258,7 +273,8 @@ pub(super) fn place_of(key: Range<usize>, value: &Spanned<DeValue<'_>>) -> Range
 fn type_of(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a string",
-        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Integer(_) => "a whole number",
+        DeValue::Float(_) => "a decimal number",
         DeValue::Boolean(_) => "a boolean",
         DeValue::Datetime(_) => "a date or time",
         DeValue::Array(elements) if elements.iter().any(|element| element.get_ref().is_table()) => {
@@ -289,11 +305,7 @@ impl Read for f64 {
     fn read(item: &Item<'_>, faults: &mut Vec<Diagnostic>) -> Option<Self> {
         let number = match item.value {
             DeValue::Float(float) => float.as_str().parse().ok(),
-            // Wider than any number of the file needs; beyond it, decimal digits still read as a float.
-            DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix())
-                .map(|integer| integer as f64)
-                .or_else(|_| integer.as_str().parse())
-                .ok(),
+            DeValue::Integer(integer) => whole(integer.as_str(), integer.radix()),
             DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
                 faults.push(item.wrong_type("a number").help("remove the quotes"));
                 return None;
@@ -323,6 +335,16 @@ impl Read for f64 {
             return None;
         }
         Some(number)
+    }
+}
+
+/// A whole number, rounded as a float is where it has more digits than that holds.
+fn whole(digits: &str, radix: u32) -> Option<f64> {
+    match radix {
+        10 => digits.parse().ok(),
+        _ => digits.chars().try_fold(0.0, |sum, digit| {
+            Some(sum * f64::from(radix) + f64::from(digit.to_digit(radix)?))
+        }),
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, quoted};
 use crate::source::Source;
 
 /// What the parser says of a key that is there twice; the rest of the file is read all the same.
@@ -22,11 +22,13 @@ pub(super) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     for error in &errors {
         let line = source.place(start(error)).line;
         // The parser goes on within the line and within an array that is never closed, and trips over the
-        // consequences of the first fault. Those are no faults of the user's.
-        if line == last_line {
+        // consequences of the first fault; a table that is there twice repeats its keys line by line. Those are no
+        // further faults of the user's.
+        let follows = line == last_line || (error.message() == DUPLICATE && line == last_line + 1);
+        last_line = line;
+        if follows {
             continue;
         }
-        last_line = line;
         faults.push(diagnostic(source, error));
         if within_lines(&table, &source.text, start(error)) {
             break;
@@ -59,39 +61,69 @@ fn within_lines(table: &DeTable<'_>, text: &str, offset: usize) -> bool {
 }
 
 fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
-    let message = error.message();
-    let message = message.strip_suffix(", expected nothing").unwrap_or(message);
+    let said = error.message();
+    let said = said.strip_suffix(", expected nothing").unwrap_or(said);
     let span = error.span().unwrap_or(0..0);
-    let written = source.text.get(span.clone()).unwrap_or("");
-    let rest = source
-        .text
+    let text = source.text.as_str();
+    let written = text.get(span.clone()).unwrap_or("");
+    let rest = text
         .get(span.start..)
-        .unwrap_or("")
-        .lines()
-        .next()
+        .and_then(|rest| rest.lines().next())
         .unwrap_or("");
-    let before = source
-        .text
+    let before = text
         .get(..span.start)
-        .and_then(|text| text.lines().next_back())
+        .and_then(|before| before.split('\n').next_back())
         .unwrap_or("")
         .trim_end();
-    let help = if message == DUPLICATE {
-        "keep one of the two; units are headed `[[unit]]`, with two brackets on either side".to_string()
+    let after_word = before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+
+    let (message, help) = if said == DUPLICATE {
+        let help = match written {
+            "unit" => "head every unit `[[unit]]`, with two brackets on either side",
+            _ => "keep one of the two",
+        };
+        (format!("{} is there twice", quoted(written)), help.to_string())
+    } else if written.contains(char::is_control) && !written.contains(char::is_whitespace) {
+        (
+            "an invisible control character".to_string(),
+            "remove it; a tab in a string is written `\\t`".to_string(),
+        )
     } else if rest.starts_with(',') && before.ends_with(|c: char| c.is_ascii_digit()) {
-        "decimals are written with a point: 5.2".to_string()
-    } else if rest.starts_with(':')
-        || (before.ends_with(|c: char| c.is_alphanumeric()) && rest.starts_with(' '))
-    {
-        "a key and its value are joined by `=`, as in `min = 0.10`".to_string()
-    } else if written.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        format!("text needs quotes: \"{}\"", written.trim())
+        (
+            "a comma after a number".to_string(),
+            "decimals are written with a point: 0.1, not 0,1".to_string(),
+        )
+    } else if rest.starts_with(':') && after_word {
+        (
+            "a key with `:`".to_string(),
+            "a key and its value are joined by `=`, as in `min = 0.10`".to_string(),
+        )
+    } else if before.ends_with('=') && written.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        (
+            "text without quotes".to_string(),
+            format!("quote it: \"{}\"", written.trim()),
+        )
+    } else if written.contains(' ') && written.starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c)) {
+        let help = "part the elements of an array with commas, and keys with line breaks";
+        ("two values in a row".to_string(), help.to_string())
     } else if before.ends_with('.') || rest.starts_with('.') {
-        "a decimal point has digits on both sides: 0.5, 1.0".to_string()
-    } else if message.contains("array") || message.contains("table") || message.contains("string") {
-        "check that every bracket and quote is closed and that a comma parts the elements".to_string()
+        (
+            said.to_string(),
+            "a decimal point has digits on both sides: 0.5, 1.0".to_string(),
+        )
+    } else if rest.is_empty() && said.contains("string") {
+        (
+            "a string that does not end".to_string(),
+            "close it with the quote that opens it".to_string(),
+        )
+    } else if said.contains("array") {
+        let help = "close the array, which may start on an earlier line, with `]`; commas part its elements";
+        (said.to_string(), help.to_string())
     } else {
-        "a line is `key = value`, `[table]` or `# comment`; see https://toml.io".to_string()
+        (
+            said.to_string(),
+            "a line is `key = value`, `[table]` or `# comment`; see https://toml.io".to_string(),
+        )
     };
     Diagnostic::new(Code::Syntax, "", span, format!("not TOML: {message}")).help(help)
 }
