@@ -7,6 +7,7 @@
 mod fields;
 mod keys;
 mod syntax;
+mod value;
 
 use std::collections::BTreeMap;
 use std::ops::Range;

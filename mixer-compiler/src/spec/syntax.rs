@@ -128,11 +128,11 @@ fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
     Diagnostic::new(Code::Syntax, "", span, format!("not TOML: {message}")).help(help)
 }
 
-/// Where each key is, by its path: see [`super::fields::place_of`].
+/// Where each key is, by its path: see [`super::value::place_of`].
 pub(super) fn places(table: &DeTable<'_>) -> super::Places {
     let mut places = super::Places::new();
     for (key, value) in table {
-        let place = super::fields::place_of(key.span(), value);
+        let place = super::value::place_of(key.span(), value);
         note(key.get_ref().to_string(), place, value, &mut places);
     }
     places
@@ -142,7 +142,7 @@ fn note(path: String, place: Range<usize>, value: &Spanned<DeValue<'_>>, places:
     match value.get_ref() {
         DeValue::Table(table) => {
             for (key, value) in table {
-                let place = super::fields::place_of(key.span(), value);
+                let place = super::value::place_of(key.span(), value);
                 note(format!("{path}.{}", key.get_ref()), place, value, places);
             }
         }

@@ -1,0 +1,328 @@
+//! What makes a voltage table sound.
+
+use std::ops::Range;
+
+use toml::Spanned;
+
+use super::least::{LEAST_FACTOR, below_least};
+use super::{Voltage, VoltageLaw};
+use crate::diagnostic::{Code, Diagnostic, any_of, number, rounded};
+use crate::spec;
+
+/// How far k may be from 1 at the reference voltage: coefficients and points are written to three or four digits.
+const REFERENCE_TOLERANCE: f64 = 1e-3;
+
+/// Steepest power that is taken for a law. Thrust follows about V^1.75; V^3 would be power.
+const LARGEST_EXPONENT: f64 = 4.0;
+
+/// Highest degree of a polynomial law. Bench data support 1 or 2.
+const HIGHEST_DEGREE: usize = 8;
+
+/// Above this, millivolts were meant.
+const LARGEST_V: f64 = 1000.0;
+
+pub(in crate::airframe) fn check(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Voltage> {
+    let supply = supply(voltage, faults);
+    let thrust = law("thrust", &voltage.thrust, voltage, supply, faults);
+    let torque = law("torque", &voltage.torque, voltage, supply, faults);
+    let supply = supply?;
+    Some(Voltage {
+        reference_v: supply.reference_v,
+        range_v: supply.range_v,
+        thrust: thrust?,
+        torque: torque?,
+    })
+}
+
+/// Reference and range once they are sound.
+#[derive(Clone, Copy)]
+struct Supply {
+    reference_v: f64,
+    range_v: [f64; 2],
+}
+
+fn supply(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Supply> {
+    let range = voltage.range_v.as_ref()?;
+    let [low, high] = range.get_ref().each_ref().map(|volts| *volts.get_ref());
+    let fault =
+        |message: String| Diagnostic::new(Code::VoltageRange, "voltage.range_v", range.span(), message);
+    if low <= 0.0 || low >= high {
+        let (low, high) = (number(low), number(high));
+        faults.push(
+            fault(format!(
+                "the voltage range from {low} V to {high} V is empty or not positive"
+            ))
+            .label("expected [lowest, highest]")
+            .help("write the pack's voltage under load when empty, then when full"),
+        );
+        return None;
+    }
+    if high > LARGEST_V {
+        faults.push(
+            fault(format!("a voltage of {} V is beyond {LARGEST_V} V", number(high)))
+                .label("expected volts")
+                .help(format!(
+                    "if millivolts were meant, write {} V",
+                    number(high / 1000.0)
+                )),
+        );
+        return None;
+    }
+    let reference = voltage.reference_v.as_ref()?;
+    let reference_v = *reference.get_ref();
+    if !(low..=high).contains(&reference_v) {
+        let (reference_v, low, high) = (number(reference_v), number(low), number(high));
+        faults.push(
+            Diagnostic::new(
+                Code::VoltageRange,
+                "voltage.reference_v",
+                reference.span(),
+                format!("the reference of {reference_v} V is outside the range from {low} V to {high} V"),
+            )
+            .label(format!("not in [{low}, {high}]"))
+            .help(
+                "the reference is the voltage at which the bench model holds; widen `range_v` to contain it",
+            ),
+        );
+        return None;
+    }
+    Some(Supply {
+        reference_v,
+        range_v: [low, high],
+    })
+}
+
+fn law(
+    quantity: &str,
+    forms: &spec::VoltageLaw,
+    voltage: &spec::Voltage,
+    supply: Option<Supply>,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<VoltageLaw> {
+    let path = |name: &str| format!("voltage.{name}");
+    match forms.present.as_slice() {
+        [] => {
+            faults.push(
+                Diagnostic::new(
+                    Code::MissingKey,
+                    format!("voltage.{quantity}_exponent"),
+                    voltage.place.clone(),
+                    format!("`[voltage]` says nothing of the {quantity}"),
+                )
+                .label(format!(
+                    "no `{quantity}_exponent`, `{quantity}_polynomial` or `{quantity}_points`"
+                ))
+                .help(format!(
+                    "where only one voltage was measured, `{quantity}_exponent = 1.75` is typical"
+                )),
+            );
+            return None;
+        }
+        [_] => {}
+        [(first, _), others @ ..] => {
+            for (other, place) in others {
+                faults.push(
+                    Diagnostic::new(
+                        Code::Conflict,
+                        path(other),
+                        place.clone(),
+                        format!("`{other}` and `{first}` are two laws for the {quantity}"),
+                    )
+                    .label("second law")
+                    .help(format!(
+                        "keep one: {}",
+                        any_of(forms.present.iter().map(|(name, _)| *name))
+                    )),
+                );
+            }
+            return None;
+        }
+    }
+    let (name, _) = forms.present.first()?;
+    let key = path(name);
+    if let Some(field) = &forms.exponent {
+        exponent(&key, field, supply, faults)
+    } else if let Some(field) = &forms.polynomial {
+        polynomial(&key, field, supply?, faults)
+    } else {
+        points(&key, forms.points.as_ref()?, supply?, faults)
+    }
+}
+
+fn exponent(
+    key: &str,
+    field: &Spanned<f64>,
+    supply: Option<Supply>,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<VoltageLaw> {
+    let exponent = *field.get_ref();
+    if (0.0..=LARGEST_EXPONENT).contains(&exponent) {
+        let (supply, law) = (supply?, VoltageLaw::Exponent(exponent));
+        let low = supply.range_v[0];
+        let k = law.factor(low, supply.reference_v);
+        if k < LEAST_FACTOR {
+            faults.push(too_small(key, field.span(), k, low).help("raise the lower end of `range_v`"));
+            return None;
+        }
+        return Some(law);
+    }
+    faults.push(
+        Diagnostic::new(
+            Code::OutOfRange,
+            key,
+            field.span(),
+            format!(
+                "`{key}` = {} is not between 0 and {LARGEST_EXPONENT}",
+                number(exponent)
+            ),
+        )
+        .label("not a motor's exponent")
+        .help("thrust and torque follow about the power 1.75 of the voltage"),
+    );
+    None
+}
+
+fn polynomial(
+    key: &str,
+    field: &Spanned<Vec<Spanned<f64>>>,
+    supply: Supply,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<VoltageLaw> {
+    let coefficients: Vec<f64> = field.get_ref().iter().map(|c| *c.get_ref()).collect();
+    if !(1..=HIGHEST_DEGREE + 1).contains(&coefficients.len()) {
+        faults.push(
+            Diagnostic::new(
+                Code::WrongLength,
+                key,
+                field.span(),
+                format!(
+                    "`{key}` has {} coefficients, not 1 to {}",
+                    coefficients.len(),
+                    HIGHEST_DEGREE + 1
+                ),
+            )
+            .label("c0, c1, .. in V/Vref")
+            .help("two or three are enough for a measured pack"),
+        );
+        return None;
+    }
+    let range = supply.range_v.map(|volts| volts / supply.reference_v);
+    if let Some((x, k)) = below_least(&coefficients, range) {
+        faults.push(
+            too_small(key, field.span(), k, x * supply.reference_v)
+                .help("the coefficients multiply 1, V/Vref, (V/Vref)^2, .., not volts"),
+        );
+        return None;
+    }
+    let law = VoltageLaw::Polynomial(coefficients);
+    one_at_reference(key, field.span(), &law, "coefficient", supply, faults)?;
+    Some(law)
+}
+
+fn points(
+    key: &str,
+    field: &Spanned<Vec<spec::Point>>,
+    supply: Supply,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<VoltageLaw> {
+    let before = faults.len();
+    let fault = |code, place: Range<usize>, message: String| Diagnostic::new(code, key, place, message);
+    let points: Vec<[f64; 2]> = field
+        .get_ref()
+        .iter()
+        .map(|point| point.get_ref().each_ref().map(|x| *x.get_ref()))
+        .collect();
+    let [low, high] = supply.range_v;
+    for (index, (&[volts, k], written)) in points.iter().zip(field.get_ref()).enumerate() {
+        if let Some(&[previous, _]) = index.checked_sub(1).and_then(|index| points.get(index))
+            && volts <= previous
+        {
+            let (volts, previous) = (number(volts), number(previous));
+            faults.push(
+                fault(
+                    Code::VoltagePoints,
+                    written.span(),
+                    format!("{volts} V does not come after {previous} V"),
+                )
+                .label("expected ascending voltages")
+                .help("sort the points by voltage and keep one at each"),
+            );
+        }
+        if k < LEAST_FACTOR {
+            faults.push(
+                too_small(key, written.span(), k, volts)
+                    .help("a point is [volts, factor], the factor relative to the reference voltage"),
+            );
+        }
+    }
+    let covered = points
+        .first()
+        .zip(points.last())
+        .filter(|(first, last)| first[0] <= low && high <= last[0]);
+    if covered.is_none() && faults.len() == before {
+        let reach = match (points.first(), points.last()) {
+            (Some(first), Some(last)) => {
+                format!("reaches from {} V to {} V", number(first[0]), number(last[0]))
+            }
+            _ => "is empty".to_string(),
+        };
+        faults.push(
+            fault(
+                Code::VoltagePoints,
+                field.span(),
+                format!(
+                    "`{key}` {reach}, `range_v` from {} V to {} V",
+                    number(low),
+                    number(high)
+                ),
+            )
+            .label("does not cover `range_v`")
+            .help("add measured points at both ends, or narrow `range_v`"),
+        );
+    }
+    if faults.len() > before {
+        return None;
+    }
+    let law = VoltageLaw::Points(points);
+    one_at_reference(key, field.span(), &law, "factor", supply, faults)?;
+    Some(law)
+}
+
+fn too_small(key: &str, place: Range<usize>, k: f64, volts: f64) -> Diagnostic {
+    let (k, volts) = (rounded(k), rounded(volts));
+    Diagnostic::new(
+        Code::VoltageNotPositive,
+        key,
+        place,
+        format!("`{key}` falls to {k} at {volts} V"),
+    )
+    .label(format!("must stay above {LEAST_FACTOR} over `range_v`"))
+}
+
+fn one_at_reference(
+    key: &str,
+    place: Range<usize>,
+    law: &VoltageLaw,
+    parts: &str,
+    supply: Supply,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<()> {
+    let k = law.factor(supply.reference_v, supply.reference_v);
+    if (k - 1.0).abs() <= REFERENCE_TOLERANCE {
+        return Some(());
+    }
+    let (k, volts) = (rounded(k), number(supply.reference_v));
+    faults.push(
+        Diagnostic::new(
+            Code::VoltageNotOne,
+            key,
+            place,
+            format!("`{key}` is {k} at the reference of {volts} V"),
+        )
+        .label("must be 1 there, within 0.001")
+        .help(format!(
+            "divide every {parts} by {k}, or set `reference_v` to the voltage of the bench model"
+        )),
+    );
+    None
+}
