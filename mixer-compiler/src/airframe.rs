@@ -46,7 +46,13 @@ pub struct Airframe {
     places: Places,
 }
 
-/// Range of the throttle, 0 <= min < max <= 1.
+/// Least room between idle and full throttle: less is a mistake, and none is left in single precision.
+const LEAST_THROTTLE_RANGE: f64 = 0.01;
+
+/// Largest coefficient, N or N m: far beyond any rotor, far within single precision.
+pub(crate) const LARGEST_EFFORT: f64 = 1e6;
+
+/// Range of the throttle, 0 <= min < max <= 1, at least 0.01 wide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Throttle {
@@ -189,19 +195,19 @@ fn throttle(table: &spec::Throttle, faults: &mut Vec<Diagnostic>) -> Option<Thro
         return None;
     }
     let (low, high) = (*min.get_ref(), *max.get_ref());
-    if low >= high {
+    if high - low < LEAST_THROTTLE_RANGE {
         faults.push(
             Diagnostic::new(
                 Code::ThrottleRange,
                 "throttle.min",
                 min.span(),
                 format!(
-                    "`throttle.min` = {} is not below `throttle.max` = {}",
+                    "`throttle.min` = {} is not {LEAST_THROTTLE_RANGE} or more below `throttle.max` = {}",
                     number(low),
                     number(high)
                 ),
             )
-            .label(format!("must be below {}", number(high)))
+            .label("too high, or `max` too low")
             .help("`min` is the idle, typically 0.05 to 0.15, and `max` is mostly 1"),
         );
         return None;

@@ -69,13 +69,13 @@ impl Diagnostic {
 /// Its `Display` is what the macro, the build-script helper and the command line show:
 ///
 /// ```text
-/// error[MIX101]: throttle.min = 0.9 is not below throttle.max = 0.5
+/// error[MIX101]: `throttle.min` = 0.9 is not 0.01 or more below `throttle.max` = 0.5
 ///  --> airframes/x8.toml:4:7
 ///   |
 /// 4 | min = 0.9
-///   |       ^^^ not below 0.5
+///   |       ^^^ too high, or `max` too low
 ///   |
-///   = help: idle is typically 0.05 to 0.15
+///   = help: `min` is the idle, typically 0.05 to 0.15, and `max` is mostly 1
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostics {

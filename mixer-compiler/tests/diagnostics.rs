@@ -131,7 +131,9 @@ fn text_for_compile_error_starts_with_place_and_fault() {
     let mut lines = text.lines();
     assert_eq!(
         lines.next(),
-        Some("throttle-reversed.toml:4:7: `throttle.min` = 0.9 is not below `throttle.max` = 0.5")
+        Some(
+            "throttle-reversed.toml:4:7: `throttle.min` = 0.9 is not 0.01 or more below `throttle.max` = 0.5"
+        )
     );
     assert!(text.ends_with(&faults.to_string()));
     let many = refuse("many-faults").unwrap();

@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::word;
+use super::{LARGEST_EFFORT, word};
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
@@ -75,7 +75,7 @@ pub struct Allocation {
     pub airmode: Airmode,
     /// The controlled axes in the order of the wrench, each once, the thrust among them.
     pub axes: Vec<Axis>,
-    /// Yaw moment kept available either way, N m, at least 0, and 0 where yaw is not controlled.
+    /// Yaw moment kept available either way, N m, 0 to 1e6, and 0 where yaw is not controlled.
     pub yaw_reserve_nm: f64,
 }
 
@@ -162,15 +162,19 @@ fn axes(field: &Spanned<Vec<Spanned<String>>>, faults: &mut Vec<Diagnostic>) -> 
 fn yaw_reserve(field: &Spanned<f64>, axes: Option<&[Axis]>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
     let reserve = *field.get_ref();
     let key = "allocation.yaw_reserve_nm";
-    if reserve < 0.0 {
+    if !(0.0..=LARGEST_EFFORT).contains(&reserve) {
         faults.push(
             Diagnostic::new(
                 Code::OutOfRange,
                 key,
                 field.span(),
-                format!("`{key}` = {} is negative", number(reserve)),
+                format!(
+                    "`{key}` = {} is not between 0 and {}",
+                    number(reserve),
+                    number(LARGEST_EFFORT)
+                ),
             )
-            .label("must be 0 or more")
+            .label("must be 0 or more newton metres")
             .help("the reserve holds either way about zero yaw; write its size"),
         );
         return None;

@@ -2,8 +2,8 @@
 
 use toml::Spanned;
 
-use super::word;
-use crate::diagnostic::{Code, Diagnostic};
+use super::{LARGEST_EFFORT, word};
+use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
 /// The monomials u^a l^b of the pair's polynomials, u the upper and l the lower throttle.
@@ -121,9 +121,9 @@ impl Spin {
 pub struct Pair {
     /// Terms of both polynomials.
     pub basis: Basis,
-    /// Coefficients of the thrust, N, one per term of [`Basis::exponents`].
+    /// Coefficients of the thrust, N, one per term of [`Basis::exponents`], each within 1e6.
     pub thrust_n: Vec<f64>,
-    /// Coefficients of the torque, N m, one per term, signed as on the bench.
+    /// Coefficients of the torque, N m, one per term, signed as on the bench, each within 1e6.
     pub torque_nm: Vec<f64>,
     /// Spin of the upper rotor on the bench.
     pub upper_spin: Spin,
@@ -183,7 +183,26 @@ fn coefficients(
         );
         return None;
     }
-    Some(field.get_ref().iter().map(|number| *number.get_ref()).collect())
+    let mut coefficients = Vec::with_capacity(terms);
+    for written in field.get_ref() {
+        let coefficient = *written.get_ref();
+        if coefficient.abs() <= LARGEST_EFFORT {
+            coefficients.push(coefficient);
+            continue;
+        }
+        let (coefficient, largest) = (number(coefficient), number(LARGEST_EFFORT));
+        faults.push(
+            Diagnostic::new(
+                Code::OutOfRange,
+                key,
+                written.span(),
+                format!("a coefficient of {coefficient} in `{key}` is beyond {largest}"),
+            )
+            .label("no rotor gives that")
+            .help("the throttles of the polynomial run from 0 to 1, not in microseconds"),
+        );
+    }
+    (coefficients.len() == terms).then_some(coefficients)
 }
 
 #[cfg(test)]

@@ -147,8 +147,10 @@ impl<'a, 'f> Fields<'a, 'f> {
         self.faults.push(fault);
     }
 
+    /// The key that an unknown one is likely to be meant for, rather one that the table still lacks.
     fn nearest(&self, key: &str) -> Option<&'static str> {
-        nearest(key, self.shape.keys.iter().map(|key| key.name))
+        let names = || self.shape.keys.iter().map(|key| key.name);
+        nearest(key, names().filter(|name| !self.table.contains_key(*name))).or_else(|| nearest(key, names()))
     }
 
     fn key_path(&self, name: &str) -> String {

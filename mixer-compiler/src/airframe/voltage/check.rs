@@ -18,6 +18,9 @@ const LARGEST_EXPONENT: f64 = 4.0;
 /// Highest degree of a polynomial law. Bench data support 1 or 2.
 const HIGHEST_DEGREE: usize = 8;
 
+/// Below this, nothing turns.
+const LEAST_V: f64 = 0.1;
+
 /// Above this, millivolts were meant.
 const LARGEST_V: f64 = 1000.0;
 
@@ -46,11 +49,11 @@ fn supply(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Suppl
     let [low, high] = range.get_ref().each_ref().map(|volts| *volts.get_ref());
     let fault =
         |message: String| Diagnostic::new(Code::VoltageRange, "voltage.range_v", range.span(), message);
-    if low <= 0.0 || low >= high {
+    if low < LEAST_V || low >= high {
         let (low, high) = (number(low), number(high));
         faults.push(
             fault(format!(
-                "the voltage range from {low} V to {high} V is empty or not positive"
+                "the voltage range from {low} V to {high} V is empty or goes below {LEAST_V} V"
             ))
             .label("expected [lowest, highest]")
             .help("write the pack's voltage under load when empty, then when full"),

@@ -104,6 +104,7 @@ mod tests {
                 let polynomial = [r * r + d, r * r - 2.0 * r, 1.0 - 2.0 * r, 1.0];
                 let found = below_least(&polynomial, [0.5, 1.5]);
                 assert_eq!(found.is_none(), positive, "{r} {d}");
+                assert!(found.is_none_or(|(_, k)| k < LEAST_FACTOR), "{r} {found:?}");
                 assert!(found.is_none_or(|(x, _)| (x - r).abs() < 3e-3), "{r} {found:?}");
             }
         }
