@@ -1,14 +1,34 @@
-//! `cargo mixer`.
-fn main() {
-    let path = std::env::args().nth(1).unwrap();
-    let text = std::fs::read_to_string(&path).unwrap();
-    let t = std::time::Instant::now();
-    match mixer_compiler::compile(&mixer_compiler::Source::new(path, text)) {
-        Ok(c) => {
-            eprintln!("{:?}", t.elapsed());
-            println!("{}", mixer_compiler::report::Report(&c));
-            println!("{}", c.rust());
-        }
-        Err(e) => println!("{e}"),
+//! The command line; see `cargo mixer --help`.
+
+use std::process::ExitCode;
+
+use cargo_mixer::{check, expand, mix};
+use clap::{Parser, Subcommand};
+
+/// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
+#[derive(Parser)]
+#[command(name = "cargo mixer", bin_name = "cargo mixer", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Check(check::CheckArgs),
+    Mix(mix::MixArgs),
+    Expand(expand::ExpandArgs),
+}
+
+fn main() -> ExitCode {
+    // Cargo passes the subcommand's own name to an installed `cargo-mixer`; the repository's alias does not.
+    let arguments = std::env::args_os().enumerate();
+    let arguments = arguments
+        .filter(|(index, word)| *index != 1 || word != "mixer")
+        .map(|(_, word)| word);
+    match Arguments::parse_from(arguments).command {
+        Command::Check(args) => check::run(&args),
+        Command::Mix(args) => mix::run(&args),
+        Command::Expand(args) => expand::run(&args),
     }
 }

@@ -1,10 +1,9 @@
 //! Compiling an airframe from a build script.
 //!
+//! In `build.rs`:
+//!
 //! ```no_run
-//! // build.rs
-//! fn main() {
-//!     mixer_compiler::build_script::compile("airframes/isae-x8.toml");
-//! }
+//! mixer_compiler::build_script::compile("airframes/isae-x8.toml");
 //! ```
 //!
 //! and in the crate: `include!(concat!(env!("OUT_DIR"), "/isae-x8.rs"));`. The generated module is the one that the

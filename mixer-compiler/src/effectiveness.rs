@@ -33,7 +33,7 @@ impl Effectiveness {
     ///
     /// # Errors
     /// A served axis that the layout cannot produce independently of the others, by name.
-    pub fn new(airframe: &Airframe) -> Result<Self, Diagnostic> {
+    pub fn new(airframe: &Airframe) -> Result<Self, Vec<Diagnostic>> {
         let matrix = matrix(airframe);
         let served: Vec<usize> = Axis::ALL
             .into_iter()
@@ -47,16 +47,17 @@ impl Effectiveness {
         let threshold = RANK_TOLERANCE * largest;
         let rank = svd.rank(threshold);
         if rank < served.len() {
-            return Err(deficiency(airframe, &rows, &served, rank, threshold));
+            return Err(vec![deficiency(airframe, &rows, &served, rank, threshold)]);
         }
         let inverse = svd.pseudo_inverse(threshold).map_err(|reason| {
-            airframe.diagnostic(
+            let message = format!("no pseudo-inverse: {reason}");
+            vec![airframe.diagnostic(
                 Code::RankDeficient,
                 "unit",
-                reason.to_owned(),
+                message,
                 "",
                 "check the positions of the units",
-            )
+            )]
         })?;
         let mut pseudo_inverse = MatrixXx4::zeros(matrix.ncols());
         for (column, &axis) in served.iter().enumerate() {

@@ -16,7 +16,7 @@ const STEPS: usize = 256;
 ///
 /// # Errors
 /// A layout that cannot hover: no thrust without torque is attainable at all voltages.
-pub(crate) fn limits(airframe: &Airframe, tables: &MixerTables) -> Result<[f32; 3], Diagnostic> {
+pub(crate) fn limits(airframe: &Airframe, tables: &MixerTables) -> Result<[f32; 3], Vec<Diagnostic>> {
     let set = AttainableSet {
         vertices: &tables.attainable,
     };
@@ -34,13 +34,13 @@ pub(crate) fn limits(airframe: &Airframe, tables: &MixerTables) -> Result<[f32; 
     let tried: Vec<f32> = (1..=STEPS).map(|k| total * k as f32 / STEPS as f32).collect();
     let attained: Vec<f32> = tried.into_iter().filter(|&thrust| works(thrust)).collect();
     let Some((&first, &last)) = attained.first().zip(attained.last()) else {
-        return Err(airframe.diagnostic(
+        return Err(vec![airframe.diagnostic(
             Code::Hover,
             "unit",
             format!("no thrust up to {total:.1} N is attainable without roll, pitch or yaw"),
             "",
             "check positions, spins and thrust axes: the units must balance each other, each with a torque near zero",
-        ));
+        )]);
     };
     let step = total / STEPS as f32;
     let floor = refine(first, first - step, &works);

@@ -187,7 +187,7 @@ impl ForwardMap {
 ///
 /// # Errors
 /// A fold, at `throttle.min` with the least idle that would do, or a torque of the wrong sign.
-pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Diagnostic> {
+pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>> {
     let map = ForwardMap::new(&airframe.pair);
     let throttle = ThrottleBox {
         low: airframe.throttle.min,
@@ -209,7 +209,7 @@ pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Diagnostic> {
             "no idle makes this map invertible: check the order and the signs of the coefficients".to_owned()
         }
     };
-    Err(match fold {
+    Err(vec![match fold {
         Fold::Determinant { at: [u, l], value } => airframe.diagnostic(
             Code::Fold,
             "throttle.min",
@@ -231,7 +231,7 @@ pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Diagnostic> {
             "",
             mend,
         ),
-    })
+    }])
 }
 
 /// Points per side for the worst value in a message.

@@ -69,23 +69,16 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let mut faults = Vec::new();
-    let effectiveness = keep(
-        Effectiveness::new(&airframe).map_err(|fault| vec![fault]),
-        &mut faults,
-    );
-    let invertible = keep(
-        injectivity::prove(&airframe).map_err(|fault| vec![fault]),
-        &mut faults,
-    );
+    let effectiveness = keep(Effectiveness::new(&airframe), &mut faults);
+    let invertible = keep(injectivity::prove(&airframe), &mut faults);
     let voltage = keep(voltage::table(&airframe), &mut faults);
     let (Some(effectiveness), Some((injectivity, least_idle)), Some(voltage)) =
         (effectiveness, invertible, voltage)
     else {
         return Err(faults);
     };
-    let (mut tables, evaluator, residual) =
-        selection::select(&airframe, &effectiveness, voltage).map_err(|fault| vec![fault])?;
-    let limits = hover::limits(&airframe, &tables).map_err(|fault| vec![fault])?;
+    let (mut tables, evaluator, residual) = selection::select(&airframe, &effectiveness, voltage)?;
+    let limits = hover::limits(&airframe, &tables)?;
     tables.desaturation = hover::desaturation(&airframe, limits);
     Ok(Compiled {
         source_name: source.name.clone(),

@@ -22,7 +22,7 @@ pub(crate) fn select(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     voltage: Option<VoltageTable>,
-) -> Result<(MixerTables, Evaluator, Residual), Diagnostic> {
+) -> Result<(MixerTables, Evaluator, Residual), Vec<Diagnostic>> {
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let tolerance = tolerance_at_reference(airframe, &pair);
     let mut inversion = Inversion::new(&pair, tolerance);
@@ -57,7 +57,7 @@ pub(crate) fn select(
             best = Some((evaluator, residual));
         }
     }
-    Err(refusal(airframe, best))
+    Err(vec![refusal(airframe, best)])
 }
 
 /// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage where efforts are

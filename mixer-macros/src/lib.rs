@@ -1,1 +1,117 @@
-//! `airframe!`.
+//! `airframe!`: compiles an airframe file into const tables and an inline mixer.
+//!
+//! A thin shell over `mixer-compiler`: it finds the file, has it compiled and hands on the tokens.
+
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use mixer_compiler::Source;
+use proc_macro::TokenStream;
+use proc_macro2::{Ident, Span};
+use quote::{quote, quote_spanned};
+use syn::LitStr;
+
+/// Compiles the airframe file at the given path into a module that is named after the airframe.
+///
+/// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such file, to the folder
+/// of the calling file. The crate that calls the macro depends on `mixer-rt` too.
+///
+/// ```ignore
+/// mixer_macros::airframe!("airframes/isae-x8.toml");
+///
+/// let setpoint = mixer_rt::Wrench { roll_nm: 0.5, pitch_nm: 0.0, yaw_nm: 0.1, thrust_n: 31.0 };
+/// let mix = isae_x8::mix(&setpoint, 15.2)?;
+/// ```
+///
+/// # Errors
+/// A file that cannot be read or is refused becomes a `compile_error!` at the path, with every fault at its place in
+/// the file. Editing the file rebuilds, whether it was refused or not.
+#[proc_macro]
+pub fn airframe(input: TokenStream) -> TokenStream {
+    match syn::parse::<LitStr>(input) {
+        Ok(path) => expand(&path).into(),
+        Err(error) => error.into_compile_error().into(),
+    }
+}
+
+fn expand(literal: &LitStr) -> proc_macro2::TokenStream {
+    let given = PathBuf::from(literal.value());
+    let path = match find(&given, literal.span()) {
+        Ok(path) => path,
+        Err(message) => return refusal(&given, &message, literal.span()),
+    };
+    let tokens = fs::read(&path)
+        .map_err(|error| format!("{}: {error}", path.display()))
+        .and_then(|bytes| {
+            let source =
+                Source::from_bytes(literal.value(), bytes).map_err(|faults| faults.compile_error())?;
+            mixer_compiler::compile(&source).map_err(|faults| faults.compile_error())
+        })
+        .map_or_else(
+            |message| refusal(&given, &message, literal.span()),
+            |compiled| compiled.tokens(),
+        );
+    // Makes the file an input of the build: rustc compiles again when it changes, from a refusal as well.
+    let tracked = path.to_string_lossy();
+    quote! {
+        #tokens
+        const _: &[u8] = ::core::include_bytes!(#tracked);
+    }
+}
+
+/// The absolute path of the file.
+fn find(given: &Path, span: Span) -> Result<PathBuf, String> {
+    let package = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+    let caller = span
+        .unwrap()
+        .local_file()
+        .and_then(|file| file.parent().map(Path::to_owned));
+    let folders = [package, caller];
+    let candidates = folders.iter().flatten().map(|folder| folder.join(given));
+    for candidate in candidates.clone() {
+        if candidate.is_file() {
+            return candidate
+                .canonicalize()
+                .map_err(|error| format!("{}: {error}", candidate.display()));
+        }
+    }
+    let tried: Vec<String> = candidates
+        .map(|candidate| format!("  {}", candidate.display()))
+        .collect();
+    Err(format!(
+        "no airframe file `{}`; looked for\n{}",
+        given.display(),
+        tried.join("\n")
+    ))
+}
+
+/// The error at the path literal, and a module of the expected name so that no further errors hide it.
+fn refusal(given: &Path, message: &str, span: Span) -> proc_macro2::TokenStream {
+    let stem = given.file_stem().unwrap_or_default().to_string_lossy();
+    let module: String = stem
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    let skeleton = syn::parse_str::<Ident>(&module).map(|module| {
+        quote! {
+            pub mod #module {
+                pub const UNITS: usize = 0;
+                pub const CHANNELS: usize = 0;
+                pub fn mix(
+                    _: &::mixer_rt::Wrench,
+                    _: f32,
+                ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
+                    ::core::unreachable!()
+                }
+            }
+        }
+    });
+    let skeleton = skeleton.unwrap_or_default();
+    quote_spanned! { span => ::core::compile_error!(#message); #skeleton }
+}

@@ -125,7 +125,7 @@ fn bilinear_error(samples: &[Sample], coordinates: &Coordinates) -> f64 {
 fn solve_symmetric(mut rows: [[f64; 6]; 4]) -> Option<[[f64; 4]; 2]> {
     for i in 0..4 {
         let pivot = rows[i][i];
-        if !(pivot > 1e-12) {
+        if pivot.is_nan() || pivot <= 1e-12 {
             return None;
         }
         for k in i + 1..4 {

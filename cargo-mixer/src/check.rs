@@ -1,0 +1,77 @@
+//! `cargo mixer check`.
+
+use std::io::{Write, stdout};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use mixer_compiler::diagnostic::Record;
+use mixer_compiler::report::{Report, Summary};
+use serde::Serialize;
+
+use crate::Refusal;
+
+/// Validates and compiles an airframe file and prints what came of it
+#[derive(clap::Args, Debug)]
+pub struct CheckArgs {
+    /// The airframe file
+    airframe: PathBuf,
+    /// Print JSON; faults are then listed under "errors" on stdout as well as on stderr
+    #[arg(long)]
+    json: bool,
+}
+
+/// The JSON of a good file.
+#[derive(Serialize)]
+struct Success {
+    #[serde(flatten)]
+    summary: Summary,
+    /// Time of the whole compilation, ms.
+    compile_ms: f64,
+}
+
+/// The JSON of a refused file.
+#[derive(Serialize)]
+struct Failure {
+    errors: Vec<Record>,
+}
+
+/// Runs the command.
+pub fn run(args: &CheckArgs) -> ExitCode {
+    let start = Instant::now();
+    let result = crate::compile(&args.airframe);
+    let compile_ms = start.elapsed().as_secs_f64() * 1e3;
+    let mut out = stdout().lock();
+    match result {
+        Ok(compiled) if args.json => crate::finish(json(
+            &mut out,
+            &Success {
+                summary: Summary::new(&compiled),
+                compile_ms,
+            },
+        )),
+        Ok(compiled) => crate::finish(writeln!(
+            out,
+            "{}compiled in     {compile_ms:.0} ms",
+            Report(&compiled)
+        )),
+        Err(refusal) => {
+            if let (true, Refusal::Faulty(diagnostics)) = (args.json, &refusal) {
+                if let Err(error) = json(
+                    &mut out,
+                    &Failure {
+                        errors: diagnostics.records(),
+                    },
+                ) {
+                    eprintln!("error: cannot write to stdout: {error}");
+                }
+            }
+            refusal.report()
+        }
+    }
+}
+
+fn json(out: &mut impl Write, value: &impl Serialize) -> std::io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, value)?;
+    writeln!(out)
+}

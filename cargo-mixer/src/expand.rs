@@ -1,0 +1,20 @@
+//! `cargo mixer expand`.
+
+use std::io::{Write, stdout};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Prints the Rust that the macro and the build-script helper generate from an airframe file
+#[derive(clap::Args, Debug)]
+pub struct ExpandArgs {
+    /// The airframe file
+    airframe: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(args: &ExpandArgs) -> ExitCode {
+    match crate::compile(&args.airframe) {
+        Ok(compiled) => crate::finish(stdout().lock().write_all(compiled.rust().as_bytes())),
+        Err(refusal) => refusal.report(),
+    }
+}

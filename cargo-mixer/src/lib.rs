@@ -1,0 +1,57 @@
+//! `cargo mixer`: the command line of the coaxial mixer compiler.
+//!
+//! Exit status 0, 1 for a bad input, 2 for bad usage; errors go to stderr.
+
+use std::path::Path;
+use std::process::ExitCode;
+use std::{fs, io};
+
+use mixer_compiler::diagnostic::Diagnostics;
+use mixer_compiler::{Compiled, Source};
+
+pub mod check;
+pub mod expand;
+pub mod mix;
+
+/// The exit status for a bad input.
+const BAD_INPUT: u8 = 1;
+
+/// Why an airframe file gave no mixer.
+#[derive(Debug)]
+enum Refusal {
+    /// It cannot be read: a message that names it.
+    Unreadable(String),
+    /// It has faults.
+    Faulty(Diagnostics),
+}
+
+impl Refusal {
+    /// Reports to stderr.
+    fn report(&self) -> ExitCode {
+        match self {
+            Refusal::Unreadable(message) => eprintln!("error: {message}"),
+            Refusal::Faulty(diagnostics) => eprintln!("{diagnostics}"),
+        }
+        ExitCode::from(BAD_INPUT)
+    }
+}
+
+/// Reads and compiles an airframe file.
+fn compile(path: &Path) -> Result<Compiled, Refusal> {
+    let name = path.display().to_string();
+    let bytes = fs::read(path).map_err(|error| Refusal::Unreadable(format!("{name}: {error}")))?;
+    let source = Source::from_bytes(name, bytes).map_err(Refusal::Faulty)?;
+    mixer_compiler::compile(&source).map_err(Refusal::Faulty)
+}
+
+/// The exit status after the last output. A reader that has seen enough (`| head`) is no fault.
+fn finish(written: io::Result<()>) -> ExitCode {
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}
