@@ -56,15 +56,14 @@ pub fn run(args: &CheckArgs) -> ExitCode {
             Report(&compiled)
         )),
         Err(refusal) => {
-            if let (true, Refusal::Faulty(diagnostics)) = (args.json, &refusal) {
-                if let Err(error) = json(
-                    &mut out,
-                    &Failure {
-                        errors: diagnostics.records(),
-                    },
-                ) {
-                    eprintln!("error: cannot write to stdout: {error}");
-                }
+            let records = match &refusal {
+                Refusal::Faulty(diagnostics) => diagnostics.records(),
+                Refusal::Unreadable(_) => Vec::new(),
+            };
+            if args.json
+                && let Err(error) = json(&mut out, &Failure { errors: records })
+            {
+                eprintln!("error: cannot write to stdout: {error}");
             }
             refusal.report()
         }

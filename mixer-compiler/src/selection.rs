@@ -159,8 +159,8 @@ fn refusal(airframe: &Airframe, best: Option<(Evaluator, Residual)>) -> Diagnost
         Code::Tolerance,
         key,
         format!("no evaluator that inverse.method allows meets {missed}"),
-        &format!("{} leaves {reached_f} N, {reached_q} N m", evaluator.description()),
-        &format!(
+        format!("{} leaves {reached_f} N, {reached_q} N m", evaluator.description()),
+        format!(
             "thrust_tolerance_n = {reached_f} and torque_tolerance_nm = {reached_q} would do; method = \"auto\" has the most choice"
         ),
     )

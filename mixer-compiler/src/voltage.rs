@@ -75,13 +75,13 @@ pub fn table(airframe: &Airframe) -> Result<Option<VoltageTable>, Vec<Diagnostic
 pub fn tabulate(airframe: &Airframe, voltage: &Voltage) -> Result<[TabulatedLaw; 2], Vec<Diagnostic>> {
     let law = |key: &str, law: &VoltageLaw| {
         tabulate_law(law, voltage).map_err(|error| {
-            airframe.diagnostic(
+            vec![airframe.diagnostic(
                 Code::VoltageTable,
                 key,
                 format!("no polynomial up to degree {HIGHEST_DEGREE} follows this law within {FIT_TOLERANCE:e}; the best is {error:.1e} off"),
                 "",
                 "narrow voltage.range_v to the voltages of the pack, or give points",
-            )
+            )]
         })
     };
     match (
@@ -89,7 +89,11 @@ pub fn tabulate(airframe: &Airframe, voltage: &Voltage) -> Result<[TabulatedLaw;
         law("voltage.torque_exponent", &voltage.torque),
     ) {
         (Ok(thrust), Ok(torque)) => Ok([thrust, torque]),
-        (thrust, torque) => Err([thrust.err(), torque.err()].into_iter().flatten().collect()),
+        (thrust, torque) => Err([thrust.err(), torque.err()]
+            .into_iter()
+            .flatten()
+            .flatten()
+            .collect()),
     }
 }
 

@@ -94,14 +94,14 @@ fn quadratic_form(samples: &[Sample], value: impl Fn(&Sample) -> f64) -> [f64; 3
 /// The sum of sixth powers of the throttle errors of a bilinear least-squares fit: close to the maximum, yet
 /// smooth.
 fn bilinear_error(samples: &[Sample], coordinates: &Coordinates) -> f64 {
-    let mut normal = [[0.0; 6]; 4]; // with both right-hand sides as columns 4 and 5
+    let mut normal = [[0.0f64; 6]; 4]; // with both right-hand sides as columns 4 and 5
     for sample in samples {
         let [x, y] = coordinates.at(sample.efforts);
         let terms = [1.0, x, y, x * y];
         let row = [1.0, x, y, x * y, sample.throttles[0], sample.throttles[1]];
-        for i in 0..4 {
-            for j in i..6 {
-                normal[i][j] += terms[i] * row[j];
+        for (i, (sums, term)) in normal.iter_mut().zip(terms).enumerate() {
+            for (sum, value) in sums.iter_mut().zip(row).skip(i) {
+                *sum += term * value;
             }
         }
     }
@@ -120,29 +120,28 @@ fn bilinear_error(samples: &[Sample], coordinates: &Coordinates) -> f64 {
     sum
 }
 
-/// Gauss elimination of a symmetric positive definite 4 x 4 system given by its upper triangle, with two
-/// right-hand sides.
+/// Solves a symmetric positive definite 4 x 4 system given by its upper triangle, with two right-hand sides, by
+/// Gauss elimination without pivoting. (Written out, since the search solves it hundreds of times in builds at
+/// opt-level 0.)
 fn solve_symmetric(mut rows: [[f64; 6]; 4]) -> Option<[[f64; 4]; 2]> {
     for i in 0..4 {
-        let pivot = rows[i][i];
+        let pivot_row = rows[i];
+        let pivot = pivot_row[i];
         if pivot.is_nan() || pivot <= 1e-12 {
             return None;
         }
-        for k in i + 1..4 {
-            let factor = rows[i][k] / pivot;
-            for j in k..6 {
-                rows[k][j] -= factor * rows[i][j];
+        for (k, row) in rows.iter_mut().enumerate().skip(i + 1) {
+            let factor = pivot_row[k] / pivot;
+            for (value, above) in row.iter_mut().zip(pivot_row).skip(k) {
+                *value -= factor * above;
             }
         }
     }
     let mut solution = [[0.0; 4]; 2];
     for (column, unknowns) in solution.iter_mut().enumerate() {
-        for i in (0..4).rev() {
-            let mut value = rows[i][4 + column];
-            for j in i + 1..4 {
-                value -= rows[i][j] * unknowns[j];
-            }
-            unknowns[i] = value / rows[i][i];
+        for (i, row) in rows.iter().enumerate().rev() {
+            let known: f64 = row.iter().zip(&*unknowns).skip(i + 1).map(|(a, x)| a * x).sum();
+            unknowns[i] = (row[4 + column] - known) / row[i];
         }
     }
     Some(solution)
