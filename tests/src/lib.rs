@@ -1,7 +1,9 @@
-//! What the tests of the whole way share: building firmware, running it in QEMU, looking into its image.
+//! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU, looking into its image.
 
 pub mod firmware;
+pub mod golden;
 pub mod image;
+pub mod vectors;
 
 use std::path::{Path, PathBuf};
 

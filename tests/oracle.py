@@ -1,0 +1,276 @@
+#!/usr/bin/env python3
+"""An independent judge of mixers: the forward physics of an airframe file, in plain Python.
+
+    oracle.py draw AIRFRAME COUNT SEED          setpoints as CSV on stdout
+    oracle.py judge AIRFRAME SETPOINTS MIXED    judges what a mixer made of them; status 1 and a list if it is wrong
+
+It shares nothing with the compiler but the file: its own reading of the file, its own effectiveness, pseudo-inverse,
+inverse of the pair's map and voltage law, in double precision, standard library only (Python 3.11 or later).
+
+What it asks of every row:
+  * throttles within [min, max]; one row per setpoint
+  * the achieved wrench is the one that these throttles give
+  * a request whose least-norm efforts are attainable is delivered: every unit's thrust and torque within the
+    file's tolerance of them
+  * otherwise no axis reverses or overshoots, (roll, pitch) keeps its direction, and airmode "disabled" does not
+    raise the thrust above the request unless that is below the floor of the controlled flight
+  * saturation flags say on which axes and sides the request was missed
+"""
+
+import csv
+import math
+import random
+import sys
+import tomllib
+
+AXES = ["roll", "pitch", "yaw", "thrust"]
+COLUMNS = ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n"]
+
+TERMS = {
+    "biquadratic": [(2, 2), (2, 1), (2, 0), (1, 2), (1, 1), (1, 0), (0, 2), (0, 1)],
+    "cubic": [(3, 0), (2, 1), (1, 2), (0, 3), (2, 0), (1, 1), (0, 2), (1, 0), (0, 1)],
+    "quartic": [(4, 0), (3, 1), (2, 2), (1, 3), (0, 4), (3, 0), (2, 1), (1, 2), (0, 3), (2, 0), (1, 1), (0, 2), (1, 0), (0, 1)],
+}
+
+
+class Airframe:
+    def __init__(self, path):
+        with open(path, "rb") as file:
+            spec = tomllib.load(file)
+        self.low, self.high = spec["throttle"]["min"], spec["throttle"]["max"]
+        pair = spec["pair"]
+        self.terms = TERMS[pair["basis"]]
+        self.coefficients = [pair["thrust_n"], pair["torque_nm"]]
+        self.voltage = spec.get("voltage")
+        inverse = spec.get("inverse", {})
+        self.tolerance = [inverse.get("thrust_tolerance_n", 0.01), inverse.get("torque_tolerance_nm", 1e-4)]
+        allocation = spec.get("allocation", {})
+        self.airmode = allocation.get("airmode", "disabled")
+        self.axes = [axis in allocation.get("axes", AXES) for axis in AXES]
+        self.channels, columns_f, columns_q = [], [], []
+        for unit in spec["unit"]:
+            (x, y, z), (ax, ay, az) = unit["position_m"], unit.get("axis", [0.0, 0.0, -1.0])
+            length = math.sqrt(ax * ax + ay * ay + az * az)
+            ax, ay, az = ax / length, ay / length, az / length
+            sign = 1.0 if unit["upper_spin"] == pair["upper_spin"] else -1.0
+            # Torque of the force about the centre of gravity, and thrust along -z; reaction about the axis.
+            columns_f.append([y * az - z * ay, z * ax - x * az, x * ay - y * ax, -az])
+            columns_q.append([-sign * ax, -sign * ay, -sign * az, 0.0])
+            self.channels.append(unit["channels"])
+        self.units = len(self.channels)
+        columns = columns_f + columns_q
+        self.m = [[column[row] for column in columns] for row in range(4)]
+        self.m_plus = self.pseudo_inverse()
+
+    def pseudo_inverse(self):
+        """M^T (M M^T)^-1 over the served rows, zero columns elsewhere (eq. (7))."""
+        served = [row for row in range(4) if self.axes[row]]
+        gram = [[sum(a * b for a, b in zip(self.m[i], self.m[j])) for j in served] for i in served]
+        inverse = invert(gram)
+        result = [[0.0] * 4 for _ in range(2 * self.units)]
+        for k in range(2 * self.units):
+            for j, column in enumerate(served):
+                result[k][column] = sum(self.m[i][k] * inverse[a][j] for a, i in enumerate(served))
+        return result
+
+    def efforts(self, u, l):
+        return [sum(c * u**i * l**j for c, (i, j) in zip(cs, self.terms)) for cs in self.coefficients]
+
+    def jacobian(self, u, l):
+        rows = []
+        for cs in self.coefficients:
+            by_u = sum(c * i * u ** (i - 1) * l**j for c, (i, j) in zip(cs, self.terms) if i)
+            by_l = sum(c * j * u**i * l ** (j - 1) for c, (i, j) in zip(cs, self.terms) if j)
+            rows.append((by_u, by_l))
+        return rows
+
+    def factors(self, volts):
+        if self.voltage is None:
+            return [1.0, 1.0]
+        low, high = self.voltage["range_v"]
+        volts = min(max(volts, low), high)
+        return [self.factor(quantity, volts) for quantity in ("thrust", "torque")]
+
+    def factor(self, quantity, volts):
+        ratio = volts / self.voltage["reference_v"]
+        if quantity + "_exponent" in self.voltage:
+            return ratio ** self.voltage[quantity + "_exponent"]
+        if quantity + "_polynomial" in self.voltage:
+            return sum(c * ratio**k for k, c in enumerate(self.voltage[quantity + "_polynomial"]))
+        points = self.voltage[quantity + "_points"]
+        for (v0, k0), (v1, k1) in zip(points, points[1:]):
+            if volts <= v1:
+                break
+        return k0 + (k1 - k0) * (volts - v0) / (v1 - v0)
+
+    def attains(self, efforts):
+        """True if some throttles within range give these efforts at the reference voltage: damped Newton steps,
+        projected on the box, from its middle and its corners."""
+        middle = 0.5 * (self.low + self.high)
+        starts = [(middle, middle)] + [(u, l) for u in (self.low, self.high) for l in (self.low, self.high)]
+        scale = [25.0, 0.2]
+        for u, l in starts:
+            for _ in range(60):
+                given = self.efforts(u, l)
+                missing = [want - got for want, got in zip(efforts, given)]
+                size = max(abs(miss) / s for miss, s in zip(missing, scale))
+                if size < 1e-11:
+                    return True
+                (a, b), (c, d) = self.jacobian(u, l)
+                det = a * d - b * c
+                if det <= 0:
+                    break
+                du, dl = (missing[0] * d - missing[1] * b) / det, (missing[1] * a - missing[0] * c) / det
+                step = min(1.0, 0.3 / max(abs(du), abs(dl), 1e-300))
+                u = min(max(u + step * du, self.low), self.high)
+                l = min(max(l + step * dl, self.low), self.high)
+        return False
+
+    def wrench(self, efforts):
+        return [sum(m * effort for m, effort in zip(row, efforts)) for row in self.m]
+
+
+def invert(matrix):
+    """Gauss-Jordan with partial pivoting."""
+    n = len(matrix)
+    rows = [list(row) + [float(i == j) for j in range(n)] for i, row in enumerate(matrix)]
+    for column in range(n):
+        pivot = max(range(column, n), key=lambda r: abs(rows[r][column]))
+        rows[column], rows[pivot] = rows[pivot], rows[column]
+        rows[column] = [value / rows[column][column] for value in rows[column]]
+        for r in range(n):
+            if r != column:
+                factor = rows[r][column]
+                rows[r] = [value - factor * above for value, above in zip(rows[r], rows[column])]
+    return [row[n:] for row in rows]
+
+
+def draw(airframe, count, seed):
+    """A third wrenches of random throttles, a third ordinary ones about hover, a third far out."""
+    source = random.Random(seed)
+    low, high = airframe.voltage["range_v"] if airframe.voltage else (14.0, 14.0)
+    full = airframe.efforts(airframe.high, airframe.high)[0]
+    span = max(abs(airframe.efforts(airframe.low, airframe.high)[1]), abs(airframe.efforts(airframe.high, airframe.low)[1]))
+    n = airframe.units
+    size = [sum(abs(row[i]) * full + abs(row[n + i]) * span for i in range(n)) for row in airframe.m]
+    yield COLUMNS + ["voltage_v"]
+    for index in range(count):
+        volts = source.uniform(low - 0.5, high + 0.5)
+        k_f, k_q = airframe.factors(volts)
+        if index % 3 == 0:
+            throttles = [[source.uniform(airframe.low, airframe.high) for _ in "ul"] for _ in range(n)]
+            efforts = [airframe.efforts(u, l) for u, l in throttles]
+            wrench = airframe.wrench([k_f * f for f, _ in efforts] + [k_q * q for _, q in efforts])
+        elif index % 3 == 1:
+            wrench = [source.gauss(0.0, 0.08) * s for s in size[:3]] + [source.uniform(0.05, 0.9) * size[3] * k_f]
+        else:
+            wrench = [source.uniform(-1.5, 1.5) * s for s in size[:3]] + [source.uniform(-0.3, 1.6) * size[3]]
+        wrench = [value if served else 0.0 for value, served in zip(wrench, airframe.axes)]
+        yield [repr(value) for value in wrench + [volts]]
+
+
+def rounding(airframe, k):
+    """What f32 arithmetic may add to each axis of the achieved wrench."""
+    full, n = abs(airframe.efforts(airframe.high, airframe.high)[0]) * k[0], airframe.units
+    torque = max(abs(airframe.efforts(airframe.low, airframe.high)[1]), abs(airframe.efforts(airframe.high, airframe.low)[1])) * k[1]
+    return [2e-6 * sum(abs(row[i]) * full + abs(row[n + i]) * torque for i in range(n)) + 1e-9 for row in airframe.m]
+
+
+def judge_row(airframe, request, volts, throttles, achieved, saturation):
+    """Faults of one row, and whether its least-norm efforts are attainable."""
+    n = airframe.units
+    k = airframe.factors(volts)
+    faults = []
+    if any(not airframe.low <= t <= airframe.high for t in throttles):
+        faults.append(f"a throttle leaves [{airframe.low}, {airframe.high}]: {throttles}")
+    given = [airframe.efforts(throttles[u], throttles[l]) for u, l in airframe.channels]
+    efforts = [k[0] * f for f, _ in given] + [k[1] * q for _, q in given]
+    truth = airframe.wrench(efforts)
+    # A fitted voltage law may be a millionth off.
+    noise = [a + 2e-6 * sum(abs(m * e) for m, e in zip(row, efforts)) for a, row in zip(rounding(airframe, k), airframe.m)]
+    for axis, was, said, allowed in zip(AXES, truth, achieved, noise):
+        if abs(was - said) > allowed:
+            faults.append(f"achieved {axis} is {was!r}, the mixer says {said!r}")
+
+    wanted = [sum(m * r for m, r in zip(row, request)) for row in airframe.m_plus]
+    attainable = all(airframe.attains([wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
+    budget = [
+        sum(abs(row[i]) * airframe.tolerance[0] + abs(row[n + i]) * airframe.tolerance[1] for i in range(n)) + 4 * allowed
+        for row, allowed in zip(airframe.m, noise)
+    ]
+    if attainable:
+        for i in range(n):
+            off = [abs(efforts[i] - wanted[i]), abs(efforts[n + i] - wanted[n + i])]
+            if off[0] > airframe.tolerance[0] * 1.001 or off[1] > airframe.tolerance[1] * 1.001:
+                faults.append(f"unit {i} is {off[0]:.3g} N, {off[1]:.3g} N m off its attainable least-norm efforts")
+        if saturation & 0xFF:
+            faults.append(f"saturation {saturation} though the request was delivered")
+    else:
+        for axis in range(3):
+            if not airframe.axes[axis]:
+                continue
+            asked, got = request[axis], truth[axis]
+            if got * math.copysign(1.0, asked) < -budget[axis]:
+                faults.append(f"{AXES[axis]} reverses: {asked!r} asked, {got!r} given")
+            if abs(got) > abs(asked) + budget[axis]:
+                faults.append(f"{AXES[axis]} overshoots: {asked!r} asked, {got!r} given")
+        if airframe.axes[0] and airframe.axes[1]:
+            length = math.hypot(request[0], request[1])
+            if length > 0:
+                turned = abs(truth[0] * request[1] - truth[1] * request[0]) / length
+                if turned > budget[0] + budget[1]:
+                    faults.append(f"(roll, pitch) turns by {turned!r} N m: {request[:2]} asked, {truth[:2]} given")
+        floor = n * k[0] * airframe.efforts(airframe.low, airframe.low)[0]
+        # Room for the torque at idle, which must be balanced before the thrust counts as least.
+        if airframe.airmode == "disabled" and truth[3] > max(request[3], 1.25 * floor) + budget[3]:
+            faults.append(f"thrust is raised from {request[3]!r} to {truth[3]!r}")
+    for axis in range(4):
+        missing = request[axis] - truth[axis]
+        for bit, missed in ((1 << 2 * axis, missing), (2 << 2 * axis, -missing)):
+            if missed > 1.1 * budget[axis] and not saturation & bit:
+                faults.append(f"{AXES[axis]} misses {missed!r} without a flag")
+            if missed < 0.9 * budget[axis] - 8 * noise[axis] and saturation & bit:
+                faults.append(f"{AXES[axis]} misses {missed!r} only and is flagged")
+    if airframe.voltage:
+        low, high = airframe.voltage["range_v"]
+        if abs(volts - low) > 1e-5 and abs(volts - high) > 1e-5 and (not low <= volts <= high) != bool(saturation & 256):
+            faults.append(f"{volts} V and saturation {saturation} do not agree")
+    return faults, attainable
+
+
+def judge(airframe, setpoints_path, mixed_path):
+    with open(setpoints_path, newline="") as file:
+        setpoints = list(csv.DictReader(file))
+    with open(mixed_path, newline="") as file:
+        mixed = list(csv.DictReader(file))
+    faults, delivered = [], 0
+    if len(setpoints) != len(mixed):
+        faults.append(f"{len(setpoints)} setpoints, {len(mixed)} answers")
+    for index, (asked, row) in enumerate(zip(setpoints, mixed)):
+        request = [float(asked[column]) for column in COLUMNS]
+        volts = float(asked["voltage_v"])
+        throttles = [float(row[f"throttle_{channel}"]) for channel in range(2 * airframe.units)]
+        achieved = [float(row["achieved_" + column]) for column in COLUMNS]
+        found, attainable = judge_row(airframe, request, volts, throttles, achieved, int(row["saturation"]))
+        delivered += attainable
+        faults += [f"row {index + 2}: {fault}" for fault in found]
+    print(f"{len(mixed)} rows, {delivered} with attainable least-norm efforts, {len(faults)} faults")
+    for fault in faults[:40]:
+        print(fault)
+    return 1 if faults else 0
+
+
+def main(arguments):
+    match arguments:
+        case ["draw", path, count, seed]:
+            csv.writer(sys.stdout, lineterminator="\n").writerows(draw(Airframe(path), int(count), int(seed)))
+            return 0
+        case ["judge", path, setpoints_path, mixed_path]:
+            return judge(Airframe(path), setpoints_path, mixed_path)
+        case _:
+            print(__doc__, file=sys.stderr)
+            return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
