@@ -6,7 +6,8 @@ use std::fs;
 
 use mixer_tests::{airframes, golden};
 
-const MEND: &str = "if the change is meant, `cargo run -p mixer-tests --bin bless` and look at the difference";
+const MEND: &str =
+    "if the change is meant, `cargo run -p mixer-tests --bin bless` and look at the difference";
 
 #[test]
 fn airframes_compile_to_their_golden_outputs() {
@@ -17,7 +18,10 @@ fn airframes_compile_to_their_golden_outputs() {
             match fs::read_to_string(golden::folder().join(&file)) {
                 Ok(held) if held == content => {}
                 Ok(held) => {
-                    let place = held.lines().zip(content.lines()).position(|(held, now)| held != now);
+                    let place = held
+                        .lines()
+                        .zip(content.lines())
+                        .position(|(held, now)| held != now);
                     let line = place.unwrap_or_else(|| held.lines().count().min(content.lines().count()));
                     faults.push(format!(
                         "{file}:{}: was `{}`, is `{}`",
@@ -32,7 +36,11 @@ fn airframes_compile_to_their_golden_outputs() {
         }
     }
     for entry in fs::read_dir(golden::folder()).expect("tests/golden/") {
-        let file = entry.expect("tests/golden/").file_name().to_string_lossy().into_owned();
+        let file = entry
+            .expect("tests/golden/")
+            .file_name()
+            .to_string_lossy()
+            .into_owned();
         if !expected.contains(&file) {
             faults.push(format!("{file}: an orphan, no airframe of that name"));
         }
@@ -61,6 +69,9 @@ fn golden_vectors_cover_what_they_should() {
             .count();
         assert!(setpoints.len() >= 300, "{name}: {}", setpoints.len());
         let share = saturated as f64 / setpoints.len() as f64;
-        assert!((0.2..0.8).contains(&share), "{name}: {share} of the vectors saturate");
+        assert!(
+            (0.2..0.8).contains(&share),
+            "{name}: {share} of the vectors saturate"
+        );
     }
 }

@@ -93,6 +93,11 @@ impl Airframe {
         2 * self.units.len()
     }
 
+    /// Whether the file itself has a key like `unit[3].channels`.
+    pub fn states(&self, key: &str) -> bool {
+        self.places.get(key).is_some()
+    }
+
     /// Place of a key like `unit[3].channels` in the file, or of the nearest table or array around it that the file
     /// has; else of the name.
     pub fn place(&self, key: &str) -> Option<Range<usize>> {

@@ -38,7 +38,7 @@ impl Effectiveness {
         let served: Vec<usize> = Axis::ALL
             .into_iter()
             .filter(|&axis| airframe.allocation.controls(axis))
-            .map(Axis::row)
+            .map(|axis| axis as usize)
             .collect();
         let rows = matrix.select_rows(&served).transpose();
         let rows = DMatrix::from_columns(&rows.column_iter().collect::<Vec<_>>()).transpose();
@@ -47,7 +47,7 @@ impl Effectiveness {
         let threshold = RANK_TOLERANCE * largest;
         let rank = svd.rank(threshold);
         if rank < served.len() {
-            return Err(vec![deficiency(airframe, &rows, &served, rank, threshold)]);
+            return Err(vec![deficiency(airframe, &matrix, threshold)]);
         }
         let inverse = svd.pseudo_inverse(threshold).map_err(|reason| {
             let message = format!("no pseudo-inverse: {reason}");
@@ -95,62 +95,51 @@ fn clean(x: f64, largest: f64) -> f64 {
     if x.abs() < 1e-14 * largest { 0.0 } else { x }
 }
 
-/// Names the axes that cannot be produced: those whose row can be left out without losing rank.
-fn deficiency(
-    airframe: &Airframe,
-    rows: &DMatrix<f64>,
-    served: &[usize],
-    rank: usize,
-    threshold: f64,
-) -> Diagnostic {
-    let mut names: Vec<&str> = Vec::new();
-    let mut kept: Vec<&str> = Vec::new();
-    for (index, &axis) in served.iter().enumerate() {
-        let without = rows.clone().remove_row(index);
-        let dependent = without.nrows() == 0 || without.rank(threshold) == rank;
-        let name = Axis::ALL[axis].name();
-        // A row of zeros is the culprit itself; otherwise every row of the dependent set is named.
-        if rows.row(index).amax() <= threshold || (dependent && !has_zero_row(rows, threshold)) {
-            names.push(name);
+/// The order in which axes claim the layout: what comes later is what a deficient layout cannot produce.
+const CLAIMS: [Axis; 4] = [Axis::Thrust, Axis::Roll, Axis::Pitch, Axis::Yaw];
+
+/// Names the axes that cannot be produced: those whose row adds nothing to the rows before it.
+fn deficiency(airframe: &Airframe, matrix: &Matrix4xX<f64>, threshold: f64) -> Diagnostic {
+    let (mut kept, mut lost): (Vec<Axis>, Vec<Axis>) = (Vec::new(), Vec::new());
+    for axis in CLAIMS
+        .into_iter()
+        .filter(|&axis| airframe.allocation.controls(axis))
+    {
+        let rows: Vec<usize> = kept.iter().chain([&axis]).map(|&axis| axis as usize).collect();
+        let rank = DMatrix::from_fn(rows.len(), matrix.ncols(), |i, j| matrix[(rows[i], j)]).rank(threshold);
+        if rank == rows.len() {
+            kept.push(axis)
         } else {
-            kept.push(name);
+            lost.push(axis)
         }
     }
-    let units = airframe.units.len();
-    let message = match names.as_slice() {
-        [one] => format!(
-            "rank {rank} of {}: {one} cannot be produced by this layout",
-            served.len()
-        ),
-        many => format!(
-            "rank {rank} of {}: {} cannot be produced independently by this layout",
-            served.len(),
-            many.join(", ")
-        ),
+    kept.sort();
+    lost.sort();
+    let names = |axes: &[Axis]| {
+        axes.iter()
+            .map(|axis| axis.name())
+            .collect::<Vec<_>>()
+            .join(" and ")
     };
-    let mend = match names.as_slice() {
-        [_] => {
-            let list: Vec<String> = kept.iter().map(|name| format!("\"{name}\"")).collect();
-            format!(
-                "give {} a lever arm, or leave it out: [allocation] axes = [{}]",
-                names.join(", "),
-                list.join(", ")
-            )
-        }
-        _ => format!(
-            "leave {} of these out of [allocation] axes, or move the units",
-            served.len() - rank
-        ),
+    let list: Vec<String> = kept.iter().map(|axis| format!("\"{}\"", axis.name())).collect();
+    let (served, lost) = (airframe.allocation.axes.len(), names(&lost));
+    let key = if airframe.states("allocation.axes") {
+        "allocation.axes"
+    } else {
+        "unit[0].position_m"
+    };
+    let label = match airframe.units.len() {
+        1 => "the only unit".to_owned(),
+        units => format!("one of {units} units"),
     };
     airframe.diagnostic(
         Code::RankDeficient,
-        "allocation.axes",
-        message,
-        format!("{units} unit(s)"),
-        mend,
+        key,
+        format!("rank {} of {served}: {lost} cannot be produced by this layout", kept.len()),
+        if key == "allocation.axes" { String::new() } else { label },
+        format!(
+            "move the units so that they have a lever arm for {lost}, or serve what is left: [allocation] axes = [{}]",
+            list.join(", ")
+        ),
     )
-}
-
-fn has_zero_row(rows: &DMatrix<f64>, threshold: f64) -> bool {
-    rows.row_iter().any(|row| row.amax() <= threshold)
 }

@@ -59,7 +59,7 @@ pub(crate) fn limits(airframe: &Airframe, tables: &MixerTables) -> Result<[f32; 
 /// The desaturation entry of the tables.
 pub(crate) fn desaturation(airframe: &Airframe, [floor, anchor, ceiling]: [f32; 3]) -> Desaturation {
     Desaturation {
-        airmode: crate::tables::airmode(airframe.allocation.airmode),
+        airmode: airframe.allocation.airmode,
         thrust_floor_n: floor,
         thrust_anchor_n: anchor,
         thrust_ceiling_n: ceiling,
@@ -114,7 +114,7 @@ fn room(airframe: &Airframe, tables: &MixerTables, set: &AttainableSet<'_>, thru
         .allocation
         .axes
         .iter()
-        .map(|&axis| axis.row())
+        .map(|&axis| axis as usize)
         .filter(|&axis| axis < 3);
     let mut least = f32::INFINITY;
     for axis in served {

@@ -12,7 +12,7 @@
 //! linear change of the outputs changes nothing about injectivity. All signs are proven by [`Bivariate`].
 
 use crate::airframe::{Airframe, Pair};
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::interval::Interval;
 use crate::polynomial::{Bivariate, Sign, ThrottleBox};
 
@@ -205,24 +205,25 @@ pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>>
                 throttle.high
             )
         }
-        None => {
-            "no idle makes this map invertible: check the order and the signs of the coefficients".to_owned()
-        }
+        None => "check the order and the signs of the coefficients: thrust must rise with both throttles"
+            .to_owned(),
     };
     Err(vec![match fold {
-        Fold::Determinant { at: [u, l], value } => airframe.diagnostic(
-            Code::Fold,
-            "throttle.min",
-            format!("the pair's map folds: det J falls to {value:.3e} at (u, l) = ({u:.3}, {l:.3})"),
-            "this idle is too low for the model",
-            mend,
-        ),
+        Fold::Determinant { at: [u, l], value } => {
+            let (key, label) = match least_idle {
+                Some(_) => ("throttle.min", "this idle is too low for the model"),
+                None => ("pair", "this model folds at every idle"),
+            };
+            let message =
+                format!("the pair's map folds: det J falls to {} at (u, l) = ({u:.3}, {l:.3})", rounded(value));
+            airframe.diagnostic(Code::Fold, key, message, label, mend)
+        }
         Fold::Reversed => airframe.diagnostic(
             Code::Fold,
             "pair.torque_nm",
             "det J is negative over the throttle box: this torque falls where the lower rotor speeds up",
             "signed for the other rotor",
-            "negate every coefficient of torque_nm and swap pair.upper_spin, or the thrust and torque rows are exchanged",
+            "torque counts positive where the lower rotor outweighs the upper: negate every coefficient of torque_nm",
         ),
         Fold::NotGlobal => airframe.diagnostic(
             Code::NotInjective,

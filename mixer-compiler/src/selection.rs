@@ -2,9 +2,9 @@
 
 use mixer_rt::{Airmode, Desaturation, Tolerance};
 
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Method};
 use crate::attainable;
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, number};
 use crate::effectiveness::Effectiveness;
 use crate::evaluator::Evaluator;
 use crate::inversion::Inversion;
@@ -26,38 +26,39 @@ pub(crate) fn select(
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let tolerance = tolerance_at_reference(airframe, &pair);
     let mut inversion = Inversion::new(&pair, tolerance);
-    let mut best: Option<(Evaluator, Residual)> = None;
-    let mut tables: Option<MixerTables> = None;
+    let mut best: Option<(Evaluator, MixerTables, f64)> = None;
     for evaluator in Evaluator::candidates(&airframe.inverse.method) {
         let (fitted, fit_error) = inversion.fit(evaluator);
         let inverse = InverseTable::new(&fitted);
-        let tables = match &mut tables {
-            Some(tables) => {
-                tables.inverse = inverse;
-                tables
-            }
-            None => tables.insert(assemble(
+        let tables = match &best {
+            Some((_, tables, _)) => MixerTables {
+                inverse,
+                ..tables.clone()
+            },
+            None => assemble(
                 airframe,
                 effectiveness,
                 &pair,
                 voltage.clone(),
                 inverse,
                 tolerance,
-            )),
+            ),
         };
         // The grid of the fit is part of the set: what fails there, fails.
-        let mut residual = Residual::at_a_glance(&pair, tables);
-        if fit_error <= 1.0 && residual.within(tolerance) {
-            residual = Residual::over_set(&pair, tables);
+        let glance = Residual::at_a_glance(&pair, &tables)
+            .ratio(tolerance)
+            .max(fit_error);
+        if glance <= 1.0 {
+            let residual = Residual::over_set(&pair, &tables);
             if residual.within(tolerance) {
-                return Ok((tables.clone(), evaluator, residual));
+                return Ok((tables, evaluator, residual));
             }
         }
-        if best.is_none_or(|(_, so_far)| residual.ratio(tolerance) < so_far.ratio(tolerance)) {
-            best = Some((evaluator, residual));
+        if best.as_ref().is_none_or(|(_, _, so_far)| glance < *so_far) {
+            best = Some((evaluator, tables, glance));
         }
     }
-    Err(vec![refusal(airframe, best)])
+    Err(vec![refusal(airframe, &pair, best)])
 }
 
 /// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage where efforts are
@@ -73,6 +74,22 @@ fn tolerance_at_reference(airframe: &Airframe, pair: &PairMap) -> [f64; 2] {
     };
     let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
     std::array::from_fn(|k| stated[k] / factors[k] - table * scale[k])
+}
+
+/// The inverse of [`tolerance_at_reference`]: the least tolerance that a file can state for a residual.
+fn stated_tolerance(airframe: &Airframe, pair: &PairMap, residual: &Residual) -> [f64; 2] {
+    let factors = voltage::largest_factors(airframe);
+    let (scale, table) = (pair.scale(), voltage_table_error(airframe));
+    std::array::from_fn(|k| (residual.efforts[k] + table * scale[k]) * factors[k])
+}
+
+/// Relative error that the voltage table may add.
+fn voltage_table_error(airframe: &Airframe) -> f64 {
+    if airframe.voltage.is_some() {
+        voltage::FIT_TOLERANCE
+    } else {
+        0.0
+    }
 }
 
 /// Rounds everything but desaturation's limits.
@@ -129,39 +146,46 @@ fn wrench_tolerance(airframe: &Airframe, effectiveness: &Effectiveness, pair: &P
     })
 }
 
-fn refusal(airframe: &Airframe, best: Option<(Evaluator, Residual)>) -> Diagnostic {
+fn refusal(airframe: &Airframe, pair: &PairMap, best: Option<(Evaluator, MixerTables, f64)>) -> Diagnostic {
     let inverse = &airframe.inverse;
-    let (f, q) = (inverse.thrust_tolerance_n, inverse.torque_tolerance_nm);
-    let Some((evaluator, residual)) = best else {
+    let Some((evaluator, tables, _)) = best else {
+        let message = "no evaluator of this name";
         return airframe.diagnostic(
             Code::Tolerance,
             "inverse.method",
-            "no evaluator to try".to_owned(),
+            message,
             "",
-            "",
+            "use method = \"auto\"",
         );
     };
-    let factors = voltage::largest_factors(airframe);
-    let reached: [f64; 2] = std::array::from_fn(|k| residual.efforts[k] * factors[k]);
-    let (key, missed) = if reached[0] > f {
+    let reached = stated_tolerance(airframe, pair, &Residual::over_set(pair, &tables));
+    let (key, missed) = if reached[0] > inverse.thrust_tolerance_n {
         (
             "inverse.thrust_tolerance_n",
-            format!("thrust_tolerance_n = {f:?} N"),
+            format!("{} N", number(inverse.thrust_tolerance_n)),
         )
     } else {
         (
             "inverse.torque_tolerance_nm",
-            format!("torque_tolerance_nm = {q:?} N m"),
+            format!("{} N m", number(inverse.torque_tolerance_nm)),
         )
     };
     let [reached_f, reached_q] = reached.map(crate::report::rounded_up);
+    let (message, other) = match &inverse.method {
+        Method::Auto => (format!("no evaluator meets a tolerance of {missed}"), ""),
+        _ => (
+            format!("`inverse.method` does not meet a tolerance of {missed}"),
+            ", or method = \"auto\"",
+        ),
+    };
     airframe.diagnostic(
         Code::Tolerance,
         key,
-        format!("no evaluator that inverse.method allows meets {missed}"),
-        format!("{} leaves {reached_f} N, {reached_q} N m", evaluator.description()),
+        message,
         format!(
-            "thrust_tolerance_n = {reached_f} and torque_tolerance_nm = {reached_q} would do; method = \"auto\" has the most choice"
+            "{} leaves {reached_f} N and {reached_q} N m",
+            evaluator.description()
         ),
+        format!("thrust_tolerance_n = {reached_f} with torque_tolerance_nm = {reached_q} would do{other}"),
     )
 }

@@ -4,7 +4,7 @@
 //! holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs `mixer-rt` itself on them.
 
 use mixer_rt::{
-    Airmode, AttainableSet, BilinearSeed, Biquadratic, Cubic, Desaturation, EightTermSeed, Inverse, Pair,
+    AttainableSet, BilinearSeed, Biquadratic, Cubic, Desaturation, EightTermSeed, Inverse, Pair,
     PolynomialInverse, Quantity, Quartic, RootCoordinates, Saturation, Seeded, SetpointError, Tables,
     ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw, Wrench,
 };
@@ -403,13 +403,4 @@ pub fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Un
             channels: [unit.upper_channel as u8, unit.lower_channel as u8],
         })
         .collect()
-}
-
-/// The runtime's airmode.
-pub fn airmode(airmode: crate::airframe::Airmode) -> Airmode {
-    match airmode {
-        crate::airframe::Airmode::Disabled => Airmode::Disabled,
-        crate::airframe::Airmode::RollPitch => Airmode::RollPitch,
-        crate::airframe::Airmode::RollPitchYaw => Airmode::RollPitchYaw,
-    }
 }

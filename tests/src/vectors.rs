@@ -25,9 +25,13 @@ pub fn setpoints(compiled: &Compiled) -> Vec<(Wrench, f32)> {
 
 /// Reference voltage and range; any numbers where the airframe ignores the voltage.
 pub fn voltages(compiled: &Compiled) -> [f32; 3] {
-    compiled.airframe.voltage.as_ref().map_or([14.0, 12.0, 16.0], |voltage| {
-        [voltage.reference_v, voltage.range_v[0], voltage.range_v[1]].map(|v| v as f32)
-    })
+    compiled
+        .airframe
+        .voltage
+        .as_ref()
+        .map_or([14.0, 12.0, 16.0], |voltage| {
+            [voltage.reference_v, voltage.range_v[0], voltage.range_v[1]].map(|v| v as f32)
+        })
 }
 
 /// The largest wrench on each axis: all units at their best, whatever the others lose.
@@ -38,7 +42,9 @@ fn largest(compiled: &Compiled) -> [f32; 4] {
     let matrix = &compiled.effectiveness.matrix;
     std::array::from_fn(|axis| {
         let row = matrix.row(axis);
-        (0..n).map(|i| row[i].abs() * f + row[n + i].abs() * q).sum::<f64>() as f32
+        (0..n)
+            .map(|i| row[i].abs() * f + row[n + i].abs() * q)
+            .sum::<f64>() as f32
     })
 }
 
@@ -49,7 +55,13 @@ fn by_hand(compiled: &Compiled) -> Vec<(Wrench, f32)> {
     let mut list = vec![(Wrench::default(), reference)];
     for share in [0.02, 0.3, 0.6, 0.97, 1.2] {
         for voltage in [reference, low - 1.0, low, high, high + 1.0] {
-            list.push((Wrench { thrust_n: share * size[3], ..Wrench::default() }, voltage));
+            list.push((
+                Wrench {
+                    thrust_n: share * size[3],
+                    ..Wrench::default()
+                },
+                voltage,
+            ));
         }
         for axis in 0..3 {
             for torque in [-1.5, -0.2, 0.2, 1.5] {
@@ -70,7 +82,11 @@ pub fn attainable(compiled: &Compiled) -> impl Iterator<Item = (Wrench, f32)> {
     let matrix = compiled.effectiveness.matrix.clone();
     let voltage = compiled.airframe.voltage.clone();
     let [_, low_v, high_v] = voltages(compiled);
-    let ranges = Ranges { moments_nm: [0.0; 3], thrust_n: [low, high], voltage_v: [low_v, high_v] };
+    let ranges = Ranges {
+        moments_nm: [0.0; 3],
+        thrust_n: [low, high],
+        voltage_v: [low_v, high_v],
+    };
     // The generator's thrust serves as a source of throttles; its special numbers are left out.
     let mut throttles = Setpoints::new(3, ranges)
         .filter(move |s| (low..=high).contains(&s.wrench[3]) && (low_v..=high_v).contains(&s.voltage_v));
@@ -84,8 +100,9 @@ pub fn attainable(compiled: &Compiled) -> impl Iterator<Item = (Wrench, f32)> {
             }
             let volts = f64::from(voltage_v);
             let [f, q] = pair.efforts([upper.wrench[3], lower.wrench[3]].map(f64::from));
-            let (k_f, k_q) =
-                voltage.as_ref().map_or((1.0, 1.0), |v| (v.thrust_factor(volts), v.torque_factor(volts)));
+            let (k_f, k_q) = voltage
+                .as_ref()
+                .map_or((1.0, 1.0), |v| (v.thrust_factor(volts), v.torque_factor(volts)));
             for (axis, sum) in wrench.iter_mut().enumerate() {
                 *sum += matrix[(axis, i)] * k_f * f + matrix[(axis, n + i)] * k_q * q;
             }
@@ -98,7 +115,11 @@ pub fn attainable(compiled: &Compiled) -> impl Iterator<Item = (Wrench, f32)> {
 fn drawn(compiled: &Compiled, share: f32, seed: u64) -> impl Iterator<Item = (Wrench, f32)> {
     let [_, low_v, high_v] = voltages(compiled);
     let [roll, pitch, yaw, thrust] = largest(compiled);
-    let thrust_n = if share < 1.0 { [0.2 * thrust, 0.7 * thrust] } else { [-0.2 * thrust, 1.5 * thrust] };
+    let thrust_n = if share < 1.0 {
+        [0.2 * thrust, 0.7 * thrust]
+    } else {
+        [-0.2 * thrust, 1.5 * thrust]
+    };
     let ranges = Ranges {
         moments_nm: [roll, pitch, yaw].map(|torque| share * torque),
         thrust_n,

@@ -1,71 +1,18 @@
 //! Which axes are controlled, and what gives way when they cannot all be had.
 
+pub use mixer_rt::{Airmode, Axis};
 use toml::Spanned;
 
 use super::{LARGEST_EFFORT, word};
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
-/// Whether the thrust may rise to make room for the attitude, with PX4's meaning.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Airmode {
-    /// Never above the request.
-    Disabled,
-    /// For roll and pitch.
-    RollPitch,
-    /// For roll, pitch and yaw.
-    RollPitchYaw,
-}
-
-impl Airmode {
-    const WORDS: [(&'static str, Airmode); 3] = [
-        ("disabled", Airmode::Disabled),
-        ("roll-pitch", Airmode::RollPitch),
-        ("roll-pitch-yaw", Airmode::RollPitchYaw),
-    ];
-
-    /// The word in the file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Airmode::Disabled => "disabled",
-            Airmode::RollPitch => "roll-pitch",
-            Airmode::RollPitchYaw => "roll-pitch-yaw",
-        }
-    }
-}
-
-/// A component of the wrench, in its order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Axis {
-    /// Moment about x, N m.
-    Roll,
-    /// Moment about y, N m.
-    Pitch,
-    /// Moment about z, N m.
-    Yaw,
-    /// Force along -z, N.
-    Thrust,
-}
-
-impl Axis {
-    /// All axes, in the order of the wrench.
-    pub const ALL: [Axis; 4] = [Axis::Roll, Axis::Pitch, Axis::Yaw, Axis::Thrust];
-
-    /// The word in the file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Axis::Roll => "roll",
-            Axis::Pitch => "pitch",
-            Axis::Yaw => "yaw",
-            Axis::Thrust => "thrust",
-        }
-    }
-
-    /// Row of the axis in the wrench and in the effectiveness matrix, 0 to 3.
-    pub fn row(self) -> usize {
-        self as usize
-    }
-}
+/// The words for airmodes in the file.
+const AIRMODES: [(&str, Airmode); 3] = [
+    ("disabled", Airmode::Disabled),
+    ("roll-pitch", Airmode::RollPitch),
+    ("roll-pitch-yaw", Airmode::RollPitchYaw),
+];
 
 /// `[allocation]` with its defaults.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +46,7 @@ impl Allocation {
 pub(super) fn check(allocation: &spec::Allocation, faults: &mut Vec<Diagnostic>) -> Option<Allocation> {
     let default = Allocation::default();
     let airmode = match &allocation.airmode {
-        Some(field) => word(field, "allocation.airmode", &Airmode::WORDS, faults),
+        Some(field) => word(field, "allocation.airmode", &AIRMODES, faults),
         None => Some(default.airmode),
     };
     let axes = match &allocation.axes {

@@ -27,7 +27,11 @@ fn bless() -> Result<(), String> {
     fs::create_dir_all(golden::folder()).map_err(unwritable)?;
     for entry in fs::read_dir(golden::folder()).map_err(unwritable)? {
         let path = entry.map_err(unwritable)?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
         if !outputs.iter().any(|(file, _)| *file == name) {
             println!("removed {name}");
             fs::remove_file(&path).map_err(unwritable)?;
