@@ -11,7 +11,7 @@ use std::{env, fs};
 /// Relative to this package's folder.
 const AIRFRAMES: &str = "../../airframes";
 /// Relative to this package's folder.
-const GOLDEN: &str = "stand-in/golden";
+const GOLDEN: &str = "../../tests/golden";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
