@@ -203,7 +203,9 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation):
             off = [abs(efforts[i] - wanted[i]), abs(efforts[n + i] - wanted[n + i])]
             if off[0] > airframe.tolerance[0] * 1.001 or off[1] > airframe.tolerance[1] * 1.001:
                 faults.append(f"unit {i} is {off[0]:.3g} N, {off[1]:.3g} N m off its attainable least-norm efforts")
-        if saturation & 0xFF:
+        # A torque asked on an axis that the airframe does not serve is missed and flagged, whatever is delivered.
+        served = sum(3 << 2 * axis for axis in range(4) if airframe.axes[axis])
+        if saturation & served:
             faults.append(f"saturation {saturation} though the request was delivered")
     else:
         for axis in range(3):

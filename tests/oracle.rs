@@ -1,1 +1,186 @@
+//! An independent oracle in Python judges the mixers: thousands of random setpoints and voltages, and every golden
+//! vector, against the forward physics of the airframe file.
+#![allow(missing_docs)]
 
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use mixer_tests::{airframes, golden, root};
+
+/// Random setpoints per airframe.
+const SETPOINTS: usize = 3000;
+
+fn oracle(arguments: &[&str]) -> Output {
+    Command::new("python3")
+        .arg(root().join("tests/oracle.py"))
+        .args(arguments)
+        .current_dir(root())
+        .output()
+        .unwrap_or_else(|error| panic!("the oracle needs python3 (3.11 or later): {error}"))
+}
+
+fn scratch(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+/// Has the oracle judge `mixed`; panics with its list of faults.
+fn judge(airframe: &str, name: &str, setpoints: &str, mixed: &str) -> String {
+    let (asked, answered) = (
+        scratch(&format!("{name}.setpoints.csv")),
+        scratch(&format!("{name}.mixed.csv")),
+    );
+    fs::write(&asked, setpoints).expect("scratch folder");
+    fs::write(&answered, mixed).expect("scratch folder");
+    let verdict = oracle(&[
+        "judge",
+        airframe,
+        &asked.display().to_string(),
+        &answered.display().to_string(),
+    ]);
+    let said = String::from_utf8_lossy(&verdict.stdout).into_owned();
+    assert!(
+        verdict.status.success(),
+        "{name}: {said}{}",
+        String::from_utf8_lossy(&verdict.stderr)
+    );
+    said
+}
+
+/// The answer of the mixer to setpoints in CSV, as `cargo mixer mix` gives it.
+fn mix(path: &str, setpoints: &str) -> String {
+    let text = fs::read_to_string(root().join(path)).expect(path);
+    let compiled = mixer_compiler::compile(&mixer_compiler::Source::new(path, text));
+    let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
+    let (mut mixed, mut errors) = (Vec::new(), Vec::new());
+    let bad = cargo_mixer::mix::mix(&compiled, setpoints.as_bytes(), &mut mixed, &mut errors);
+    assert!(
+        matches!(bad, Ok(0)),
+        "{bad:?}: {}",
+        String::from_utf8_lossy(&errors)
+    );
+    String::from_utf8(mixed).expect("CSV is UTF-8")
+}
+
+/// All airframes of the project and of `tests/fixtures`, as paths from the root.
+fn files() -> Vec<String> {
+    let fixtures = fs::read_dir(root().join("tests/fixtures")).expect("tests/fixtures/");
+    let fixtures = fixtures.map(|entry| entry.expect("tests/fixtures/").file_name());
+    let fixtures = fixtures
+        .map(|name| name.to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".toml"));
+    let mut files: Vec<String> = fixtures.map(|name| format!("tests/fixtures/{name}")).collect();
+    files.extend(
+        airframes()
+            .expect("airframes/")
+            .iter()
+            .map(|name| format!("airframes/{name}.toml")),
+    );
+    files.sort();
+    files
+}
+
+#[test]
+fn random_setpoints_are_mixed_as_the_physics_demand() {
+    for (seed, file) in files().iter().enumerate() {
+        let drawn = oracle(&["draw", file, &SETPOINTS.to_string(), &seed.to_string()]);
+        assert!(
+            drawn.status.success(),
+            "{}",
+            String::from_utf8_lossy(&drawn.stderr)
+        );
+        let setpoints = String::from_utf8(drawn.stdout).expect("CSV is UTF-8");
+        let name = Path::new(file).file_stem().expect("name").to_string_lossy();
+        let said = judge(
+            file,
+            &format!("random.{name}"),
+            &setpoints,
+            &mix(file, &setpoints),
+        );
+        print!("{file}: {said}");
+        let attainable: usize = said
+            .split(", ")
+            .nth(1)
+            .and_then(|part| part.split(' ').next()?.parse().ok())
+            .expect("count");
+        assert!(
+            attainable >= SETPOINTS / 3,
+            "{file}: only {attainable} setpoints tested the inverse map"
+        );
+    }
+}
+
+#[test]
+fn golden_vectors_are_as_the_physics_demand() {
+    for name in airframes().expect("airframes/") {
+        let table = fs::read_to_string(golden::folder().join(format!("{name}.vectors.csv"))).expect("golden");
+        let mut rows = table.lines();
+        let header: Vec<&str> = rows.next().expect("header").split(',').collect();
+        let (mut setpoints, mut mixed) = (String::new(), String::new());
+        let _ = writeln!(setpoints, "{}", header[..5].join(","));
+        let _ = writeln!(mixed, "{}", header[5..].join(","));
+        for row in rows {
+            let cells: Vec<String> = row.split(',').map(decimal).collect();
+            let _ = writeln!(setpoints, "{}", cells[..5].join(","));
+            let _ = writeln!(mixed, "{}", cells[5..].join(","));
+        }
+        judge(
+            &format!("airframes/{name}.toml"),
+            &format!("golden.{name}"),
+            &setpoints,
+            &mixed,
+        );
+    }
+}
+
+/// A cell of a golden table for the oracle: bits become the shortest decimal of the float.
+fn decimal(cell: &str) -> String {
+    match cell.strip_prefix("0x") {
+        Some(digits) => format!(
+            "{:?}",
+            f32::from_bits(u32::from_str_radix(digits, 16).expect("bits"))
+        ),
+        None => cell.to_owned(),
+    }
+}
+
+/// The judge must condemn what is wrong: one fault at a time in an otherwise right answer.
+#[test]
+fn the_oracle_finds_planted_faults() {
+    let file = "airframes/isae-x8.toml";
+    let setpoints =
+        "roll_nm,pitch_nm,yaw_nm,thrust_n,voltage_v\n0.5,-0.3,0.1,31.0,15.0\n0.0,0.0,5.0,60.0,14.8\n";
+    let mixed = mix(file, setpoints);
+    judge(file, "planted.none", setpoints, &mixed);
+    let rows: Vec<Vec<&str>> = mixed.lines().map(|line| line.split(',').collect()).collect();
+    let spoilt = |row: usize, column: usize, value: &str| {
+        let mut rows = rows.clone();
+        rows[row][column] = value;
+        rows.iter().map(|row| row.join(",") + "\n").collect::<String>()
+    };
+    let faults = [
+        ("throttle out of range", spoilt(1, 0, "0.0999")),
+        ("throttle off", spoilt(1, 3, "0.5")),
+        ("untrue thrust", spoilt(1, 11, "31.2")),
+        ("flag without cause", spoilt(1, 12, "16")),
+        ("missing flag", spoilt(2, 12, "0")),
+        ("voltage flag", spoilt(1, 12, "256")),
+        (
+            "missing row",
+            mixed.lines().take(2).map(|line| format!("{line}\n")).collect(),
+        ),
+    ];
+    for (what, answer) in faults {
+        let (asked, answered) = (scratch("planted.setpoints.csv"), scratch("planted.mixed.csv"));
+        fs::write(&asked, setpoints).expect("scratch folder");
+        fs::write(&answered, answer).expect("scratch folder");
+        let verdict = oracle(&[
+            "judge",
+            file,
+            &asked.display().to_string(),
+            &answered.display().to_string(),
+        ]);
+        assert!(!verdict.status.success(), "{what} went unnoticed");
+    }
+}
