@@ -95,7 +95,7 @@ impl Airframe {
 
     /// Whether the file itself has a key like `unit[3].channels`.
     pub fn states(&self, key: &str) -> bool {
-        self.places.get(key).is_some()
+        self.places.contains_key(key)
     }
 
     /// Place of a key like `unit[3].channels` in the file, or of the nearest table or array around it that the file
