@@ -3,6 +3,7 @@
 
     oracle.py draw AIRFRAME COUNT SEED          setpoints as CSV on stdout
     oracle.py judge AIRFRAME SETPOINTS MIXED    judges what a mixer made of them; status 1 and a list if it is wrong
+    oracle.py conventional AIRFRAME SETPOINTS   the wrench that the conventional mixer's throttles really give, as CSV
 
 It shares nothing with the compiler but the file: its own reading of the file, its own effectiveness, pseudo-inverse,
 inverse of the pair's map and voltage law, in double precision, standard library only (Python 3.11 or later).
@@ -125,6 +126,14 @@ class Airframe:
                 u = min(max(u + step * du, self.low), self.high)
                 l = min(max(l + step * dl, self.low), self.high)
         return False
+
+    def isolated_throttle(self, thrust):
+        """d with f(d, 0) = thrust, by bisection, limited to the range."""
+        low, high = self.low, self.high
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.efforts(middle, 0.0)[0] < thrust else (low, middle)
+        return low
 
     def wrench(self, efforts):
         return [sum(m * effort for m, effort in zip(row, efforts)) for row in self.m]
@@ -262,8 +271,40 @@ def judge(airframe, setpoints_path, mixed_path):
     return 1 if faults else 0
 
 
+def conventional(airframe, setpoints_path):
+    """The mixer that the paper compares with (section V): every rotor isolated with the upper one's f(d, 0), torque
+    Q = kappa f of either sign, least norm over the 2n thrusts. Its throttles, put into the pair's map."""
+    n = airframe.units
+    grid = [airframe.low + (airframe.high - airframe.low) * i / 50 for i in range(51)]
+    alone = [airframe.efforts(d, 0.0) for d in grid]
+    kappa = sum(abs(q) * f for f, q in alone) / sum(f * f for f, _ in alone)
+    # Rotor columns: a unit's upper rotor turns against its lower one.
+    columns = []
+    for layer in (-1.0, 1.0):
+        for i in range(n):
+            thrust, torque = [row[i] for row in airframe.m], [row[n + i] for row in airframe.m]
+            columns.append([f + layer * kappa * q for f, q in zip(thrust, torque)])
+    served = [row for row in range(4) if airframe.axes[row]]
+    gram = [[sum(c[i] * c[j] for c in columns) for j in served] for i in served]
+    inverse = invert(gram)
+    yield ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n", "given_roll_nm", "given_pitch_nm", "given_yaw_nm", "given_thrust_n"]
+    with open(setpoints_path, newline="") as file:
+        for asked in csv.DictReader(file):
+            request = [float(asked[column]) for column in COLUMNS]
+            k = airframe.factors(float(asked.get("voltage_v") or (airframe.voltage or {"reference_v": 0.0})["reference_v"]))
+            weights = [sum(inverse[a][b] * request[j] for b, j in enumerate(served)) for a in range(len(served))]
+            thrusts = [sum(c[i] * w for i, w in zip(served, weights)) / k[0] for c in columns]
+            throttles = [airframe.isolated_throttle(f) for f in thrusts]
+            given = [airframe.efforts(throttles[i], throttles[n + i]) for i in range(n)]
+            wrench = airframe.wrench([k[0] * f for f, _ in given] + [k[1] * q for _, q in given])
+            yield [f"{value:.4g}" for value in request] + [f"{value:.4f}" for value in wrench]
+
+
 def main(arguments):
     match arguments:
+        case ["conventional", path, setpoints_path]:
+            csv.writer(sys.stdout, lineterminator="\n").writerows(conventional(Airframe(path), setpoints_path))
+            return 0
         case ["draw", path, count, seed]:
             csv.writer(sys.stdout, lineterminator="\n").writerows(draw(Airframe(path), int(count), int(seed)))
             return 0
