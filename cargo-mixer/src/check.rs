@@ -1,7 +1,7 @@
 //! `cargo mixer check`.
 
 use std::io::{Write, stdout};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -58,15 +58,27 @@ pub fn run(args: &CheckArgs) -> ExitCode {
         Err(refusal) => {
             let records = match &refusal {
                 Refusal::Faulty(diagnostics) => diagnostics.records(),
-                Refusal::Unreadable(_) => Vec::new(),
+                Refusal::Unreadable(message) => vec![unreadable(&args.airframe, message)],
             };
-            if args.json
-                && let Err(error) = json(&mut out, &Failure { errors: records })
-            {
-                eprintln!("error: cannot write to stdout: {error}");
+            if args.json {
+                crate::finish(json(&mut out, &Failure { errors: records }));
             }
             refusal.report()
         }
+    }
+}
+
+/// The record of a file that cannot be read: it has no place and no code.
+fn unreadable(airframe: &Path, message: &str) -> Record {
+    Record {
+        code: String::new(),
+        file: airframe.display().to_string(),
+        line: None,
+        column: None,
+        key: String::new(),
+        message: message.to_owned(),
+        label: String::new(),
+        help: String::new(),
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Exit status 0, 1 for a bad input, 2 for bad usage; errors go to stderr.
 
+use std::fmt::Display;
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::{fs, io};
@@ -12,6 +14,7 @@ use mixer_compiler::{Compiled, Source};
 pub mod check;
 pub mod expand;
 pub mod mix;
+pub mod setpoints;
 
 /// The exit status for a bad input.
 const BAD_INPUT: u8 = 1;
@@ -29,11 +32,21 @@ impl Refusal {
     /// Reports to stderr.
     fn report(&self) -> ExitCode {
         match self {
-            Refusal::Unreadable(message) => eprintln!("error: {message}"),
-            Refusal::Faulty(diagnostics) => eprintln!("{diagnostics}"),
+            Refusal::Unreadable(message) => complain(message),
+            Refusal::Faulty(diagnostics) => {
+                // Each begins with `error[..]` itself.
+                let _ = writeln!(io::stderr().lock(), "{diagnostics}");
+                ExitCode::from(BAD_INPUT)
+            }
         }
-        ExitCode::from(BAD_INPUT)
     }
+}
+
+/// Says on stderr what is wrong; the exit status for a bad input. (`eprintln!` panics where stderr is a pipe that
+/// nobody reads any more, as in `2>&1 | head`.)
+fn complain(message: impl Display) -> ExitCode {
+    let _ = writeln!(io::stderr().lock(), "error: {message}");
+    ExitCode::from(BAD_INPUT)
 }
 
 /// Reads and compiles an airframe file.
@@ -49,9 +62,6 @@ fn finish(written: io::Result<()>) -> ExitCode {
     match written {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(BAD_INPUT)
-        }
+        Err(error) => complain(format_args!("stdout: {error}")),
     }
 }

@@ -7,7 +7,12 @@ use clap::{Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
 #[derive(Parser)]
-#[command(name = "cargo mixer", bin_name = "cargo mixer", version)]
+#[command(
+    name = "cargo mixer",
+    bin_name = "cargo mixer",
+    version,
+    after_help = "Exit status: 0; 1 for a bad input; 2 for bad usage. Errors go to stderr."
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
