@@ -16,11 +16,24 @@ use syn::LitStr;
 /// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such file, to the folder
 /// of the calling file. The crate that calls the macro depends on `mixer-rt` too.
 ///
-/// ```ignore
-/// mixer_macros::airframe!("airframes/isae-x8.toml");
+/// ```
+/// use mixer_rt::{Airframe, SetpointError, Wrench};
 ///
-/// let setpoint = mixer_rt::Wrench { roll_nm: 0.5, pitch_nm: 0.0, yaw_nm: 0.1, thrust_n: 31.0 };
+/// mixer_macros::airframe!("../airframes/isae-x8.toml");
+///
+/// # fn main() -> Result<(), SetpointError> {
+/// let setpoint = Wrench { roll_nm: 0.5, pitch_nm: 0.0, yaw_nm: 0.1, thrust_n: 31.0 };
 /// let mix = isae_x8::mix(&setpoint, 15.2)?;
+/// assert!(!mix.saturation.any_axis());
+/// assert!((mix.achieved.roll_nm - setpoint.roll_nm).abs() < 0.01);
+///
+/// // The same as a type, for code that serves any airframe.
+/// fn mix_all<A: Airframe>(setpoints: &[Wrench], voltage_v: f32) -> Result<Vec<A::Mix>, SetpointError> {
+///     setpoints.iter().map(|setpoint| A::mix(setpoint, voltage_v)).collect()
+/// }
+/// assert_eq!(mix_all::<isae_x8::IsaeX8>(&[setpoint], 15.2)?, [mix]);
+/// # Ok(())
+/// # }
 /// ```
 ///
 /// # Errors
@@ -68,20 +81,17 @@ fn find(given: &Path, span: Span) -> Result<PathBuf, String> {
         .and_then(|file| file.parent().map(Path::to_owned));
     let folders = [package, caller];
     let candidates = folders.iter().flatten().map(|folder| folder.join(given));
-    for candidate in candidates.clone() {
+    for candidate in candidates {
         if candidate.is_file() {
             return candidate
                 .canonicalize()
                 .map_err(|error| format!("{}: {error}", candidate.display()));
         }
     }
-    let tried: Vec<String> = candidates
-        .map(|candidate| format!("  {}", candidate.display()))
-        .collect();
+    // The compiler prints the calling file below; absolute paths would differ from machine to machine.
     Err(format!(
-        "no airframe file `{}`; looked for\n{}",
-        given.display(),
-        tried.join("\n")
+        "no airframe file `{}`: neither in the package's folder nor in the folder of this source file",
+        given.display()
     ))
 }
 

@@ -1,0 +1,3 @@
+mixer_macros::airframe!();
+
+fn main() {}

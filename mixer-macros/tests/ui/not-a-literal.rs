@@ -1,0 +1,5 @@
+const PATH: &str = "one-fault.toml";
+
+mixer_macros::airframe!(PATH);
+
+fn main() {}

@@ -1,0 +1,83 @@
+//! The macro, the build-script function and the library give the same mixer for every airframe of the project.
+
+use std::path::Path;
+use std::{fs, io};
+
+use mixer_compiler::Source;
+use mixer_rt::{Airframe, Wrench};
+
+/// For each airframe: the modules of both ways, and a test that compares them.
+macro_rules! airframes {
+    ($($test:ident: $path:literal, $stem:literal, $module:ident :: $mixer:ident;)+) => {
+        /// Mixers by the macro.
+        pub mod by_macro {
+            $(mixer_macros::airframe!($path);)+
+        }
+
+        /// Mixers by the build script.
+        pub mod by_build_script {
+            $(include!(concat!(env!("OUT_DIR"), "/", $stem, ".rs"));)+
+        }
+
+        /// Paths of all airframes above.
+        const COMPARED: &[&str] = &[$($path),+];
+
+        $(
+            #[test]
+            fn $test() {
+                assert_eq!(by_macro::$module::TABLES, by_build_script::$module::TABLES);
+                assert_same_mixes::<by_macro::$module::$mixer, by_build_script::$module::$mixer>();
+                assert_same_text($path, include_str!(concat!(env!("OUT_DIR"), "/", $stem, ".rs")));
+            }
+        )+
+    };
+}
+
+airframes! {
+    coaxial_bicopter: "../airframes/coaxial-bicopter.toml", "coaxial-bicopter", coaxial_bicopter::CoaxialBicopter;
+    isae_x8: "../airframes/isae-x8.toml", "isae-x8", isae_x8::IsaeX8;
+    px4_x12: "../airframes/px4-x12.toml", "px4-x12", px4_x12::Px4X12;
+    px4_y6: "../airframes/px4-y6.toml", "px4-y6", px4_y6::Px4Y6;
+    single_pair: "../airframes/single-pair.toml", "single-pair", single_pair::SinglePair;
+}
+
+/// The functions that stand beside the tables, on setpoints within and beyond the attainable ones.
+fn assert_same_mixes<A, B>()
+where
+    A: Airframe,
+    B: Airframe<Mix = A::Mix>,
+    A::Mix: PartialEq + std::fmt::Debug,
+{
+    assert_eq!(A::NAME, B::NAME);
+    for thrust_n in [0.0, 12.0, 60.0, f32::NAN] {
+        for torque_nm in [0.0, 0.1, -3.0] {
+            for voltage_v in [11.0, 15.3] {
+                let setpoint = Wrench::from_array([torque_nm, -torque_nm, torque_nm, thrust_n]);
+                assert_eq!(A::mix(&setpoint, voltage_v), B::mix(&setpoint, voltage_v));
+            }
+        }
+    }
+}
+
+/// The file of the build script is what the library generates, byte for byte. `cargo mixer expand` prints the same:
+/// see `cargo-mixer/tests/cli.rs`.
+fn assert_same_text(path: &str, by_build_script: &str) {
+    // The working directory of tests is that of their package, as it is for build scripts.
+    let text = fs::read_to_string(path).unwrap();
+    let compiled = mixer_compiler::compile(&Source::new(path, text)).unwrap();
+    assert_eq!(compiled.rust(), by_build_script);
+}
+
+#[test]
+fn every_airframe_is_compared() -> io::Result<()> {
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../airframes"))? {
+        let name = entry?.file_name().into_string().unwrap();
+        if name.ends_with(".toml") {
+            paths.push(format!("../airframes/{name}"));
+        }
+    }
+    paths.sort();
+    assert_eq!(paths, COMPARED);
+    Ok(())
+}
