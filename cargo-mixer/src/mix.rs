@@ -11,8 +11,8 @@ use crate::setpoints::{BadLine, HeaderError, Setpoints};
 
 /// Mixes setpoints: CSV on stdin to CSV on stdout, row by row
 ///
-/// In:  roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v], in any order, with this header. Without voltage_v the reference
-///      voltage is taken.
+/// In:  a header and rows of roll_nm,pitch_nm,yaw_nm,thrust_n and, if there is one, voltage_v, in any order. Without
+///      voltage_v the reference voltage is taken.
 /// Out: throttle_0.., achieved_roll_nm, achieved_pitch_nm, achieved_yaw_nm, achieved_thrust_n, saturation.
 ///      Numbers read back to the same bits (f32).
 ///      saturation is a sum: 1 roll, 4 pitch, 16 yaw, 64 thrust is achieved below the setpoint; 2, 8, 32, 128 above

@@ -196,7 +196,7 @@ impl<R: Read> Lines<R> {
             if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
                 self.line.drain(..BYTE_ORDER_MARK.len());
             }
-            if !self.line.trim_ascii().is_empty() {
+            if !String::from_utf8_lossy(&self.line).trim().is_empty() {
                 return Ok(true);
             }
         }
@@ -270,7 +270,7 @@ mod tests {
         let expected = [setpoint([1.0, -2.5, 3e-3, 40.0], None); 2];
         for text in [
             "roll_nm,pitch_nm,yaw_nm,thrust_n\n1,-2.5,3e-3,40\n1,-2.5,3e-3,40",
-            "\u{feff}roll_nm,pitch_nm,yaw_nm,thrust_n\r\n1,-2.5,3e-3,40\r\n\r\n1,-2.5,3e-3,40\r\n",
+            "\u{feff}roll_nm,pitch_nm,yaw_nm,thrust_n\r\n1,-2.5,3e-3,40\r\n\u{a0}\r\n1,-2.5,3e-3,40\r\n",
             "\n \"roll_nm\" ,\"pitch_nm\",\"yaw_nm\",thrust_n \n\"1\",\" -2.5 \",3e-3,40\n\t\n+1.0, -2.5,.003,40.\n",
         ] {
             assert_eq!(read(text), (expected.to_vec(), vec![]), "{text:?}");
