@@ -60,17 +60,16 @@ pub fn try_compile(path: &Path) -> Result<PathBuf, Error> {
     let directory = env::var_os("OUT_DIR")
         .map(PathBuf::from)
         .ok_or(Error::Environment("OUT_DIR"))?;
-    let text = fs::read_to_string(path).map_err(|error| Error::File {
+    let file = |path: &Path, error| Error::File {
         path: path.to_owned(),
         error,
-    })?;
-    let compiled = compile_source(&Source::new(path.display().to_string(), text)).map_err(Error::Airframe)?;
-    let output = directory
-        .join(path.file_stem().unwrap_or(path.as_os_str()))
-        .with_extension("rs");
-    fs::write(&output, compiled.rust()).map_err(|error| Error::File {
-        path: output.clone(),
-        error,
-    })?;
+    };
+    let bytes = fs::read(path).map_err(|error| file(path, error))?;
+    let source = Source::from_bytes(path.display().to_string(), bytes).map_err(Error::Airframe)?;
+    let compiled = compile_source(&source).map_err(Error::Airframe)?;
+    let mut name = path.file_stem().unwrap_or(path.as_os_str()).to_owned();
+    name.push(".rs");
+    let output = directory.join(name);
+    fs::write(&output, compiled.rust()).map_err(|error| file(&output, error))?;
     Ok(output)
 }

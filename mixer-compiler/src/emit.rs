@@ -21,6 +21,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let channels = Literal::usize_unsuffixed(2 * compiled.tables.units.len());
     quote! {
         #module_doc
+        #[allow(dead_code, unreachable_pub)]
         pub mod #module {
             /// Number of coaxial units.
             pub const UNITS: usize = #units;

@@ -81,7 +81,10 @@ impl fmt::Display for Report<'_> {
         let compiled = self.0;
         let airframe = &compiled.airframe;
         let summary = Summary::new(compiled);
-        writeln!(f, "{}: {}", airframe.name, airframe.description)?;
+        match airframe.description.as_str() {
+            "" => writeln!(f, "{}", airframe.name)?,
+            description => writeln!(f, "{}: {description}", airframe.name)?,
+        }
         writeln!(
             f,
             "{} coaxial units, {} rotors; FRD, SI units",

@@ -8,6 +8,7 @@
 ///
 /// Inverse map: bilinear seed in root coordinates, one Newton step.
 /// Largest residual of one unit over 5249 points of the attainable set: 0.00264 N, 3.44e-5 N m.
+#[allow(dead_code, unreachable_pub)]
 pub mod coaxial_bicopter {
     /// Number of coaxial units.
     pub const UNITS: usize = 2;
