@@ -170,6 +170,11 @@ fn refusal(airframe: &Airframe, pair: &PairMap, best: Option<(Evaluator, MixerTa
             format!("{} N m", number(inverse.torque_tolerance_nm)),
         )
     };
+    // Fits weigh thrust against torque by the tolerances: with both raised alike the same fit is found, but for the
+    // rounding of the numbers below.
+    let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
+    let share = (reached[0] / stated[0]).max(reached[1] / stated[1]) * 1.01;
+    let [offered_f, offered_q] = stated.map(|tolerance| crate::report::rounded_up(share * tolerance));
     let [reached_f, reached_q] = reached.map(crate::report::rounded_up);
     let (message, other) = match &inverse.method {
         Method::Auto => (format!("no evaluator meets a tolerance of {missed}"), ""),
@@ -186,6 +191,6 @@ fn refusal(airframe: &Airframe, pair: &PairMap, best: Option<(Evaluator, MixerTa
             "{} leaves {reached_f} N and {reached_q} N m",
             evaluator.description()
         ),
-        format!("thrust_tolerance_n = {reached_f} with torque_tolerance_nm = {reached_q} would do{other}"),
+        format!("thrust_tolerance_n = {offered_f} with torque_tolerance_nm = {offered_q} would do{other}"),
     )
 }

@@ -1,0 +1,165 @@
+//! The stages after the file, on the paper's airframe and on variations of it.
+
+use std::fs;
+use std::path::Path;
+
+use mixer_compiler::diagnostic::{Code, Diagnostics};
+use mixer_compiler::evaluator::Evaluator;
+use mixer_compiler::{Compiled, Source};
+
+/// `airframes/isae-x8.toml` with each `(from, to)` replaced.
+fn isae_x8(replacements: &[(&str, &str)]) -> Result<Compiled, Diagnostics> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../airframes/isae-x8.toml");
+    let mut text = fs::read_to_string(path).unwrap();
+    for (from, to) in replacements {
+        assert!(text.contains(from), "{from} is not in the file");
+        text = text.replace(from, to);
+    }
+    mixer_compiler::compile(&Source::new("isae-x8.toml", text))
+}
+
+fn refused(replacements: &[(&str, &str)]) -> Diagnostics {
+    isae_x8(replacements)
+        .map(|compiled| compiled.airframe.name)
+        .unwrap_err()
+}
+
+/// Rows of M as eq. (4) has them.
+#[test]
+fn effectiveness_is_equation_4() {
+    let compiled = isae_x8(&[]).unwrap();
+    let l = 0.3182;
+    let expected = [
+        [-l, l, l, -l, 0.0, 0.0, 0.0, 0.0],
+        [l, l, -l, -l, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1.0, -1.0],
+        [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    ];
+    for (row, expected) in compiled.effectiveness.matrix.row_iter().zip(expected) {
+        assert_eq!(row.iter().copied().collect::<Vec<_>>(), expected);
+    }
+    assert_eq!(compiled.effectiveness.rank, 4);
+}
+
+/// M M+ = 1, and M+ M is symmetric: the two of Penrose's conditions that are not implied by full rank.
+#[test]
+fn pseudo_inverse_is_the_least_norm_inverse() {
+    let tilted = "position_m = [0.3182, 0.3182, 0.0]";
+    let with_axis = format!("{tilted}\naxis = [0.0998, 0.0, -0.9950]");
+    for compiled in [isae_x8(&[]), isae_x8(&[(tilted, &with_axis)])] {
+        let Ok(compiled) = compiled else {
+            panic!("{}", compiled.unwrap_err())
+        };
+        let (m, inverse) = (
+            &compiled.effectiveness.matrix,
+            &compiled.effectiveness.pseudo_inverse,
+        );
+        let (product, projection) = (m * inverse, inverse * m);
+        for i in 0..4 {
+            for j in 0..4 {
+                assert!((product[(i, j)] - f64::from(u8::from(i == j))).abs() < 1e-12);
+            }
+        }
+        assert!((&projection - projection.transpose()).amax() < 1e-12);
+    }
+}
+
+/// The figure of the paper's model: it folds below an idle of 0.08875.
+#[test]
+fn least_idle_is_where_the_model_folds() {
+    assert_eq!(isae_x8(&[]).unwrap().least_idle, 0.08875);
+    assert!(isae_x8(&[("min = 0.10", "min = 0.08875")]).is_ok());
+    let faults = refused(&[("min = 0.10", "min = 0.0887")]);
+    assert_eq!(faults.faults()[0].code, Code::Fold);
+    assert!(faults.faults()[0].help.contains("0.08875"), "{faults}");
+}
+
+/// Looser tolerances get cheaper evaluators, tighter ones more steps; every choice is within its tolerance.
+#[test]
+fn the_tolerance_decides_on_the_evaluator() {
+    let cost = |evaluator: Evaluator| match evaluator {
+        Evaluator::Polynomial { .. } => 0,
+        Evaluator::Seeded { steps, .. } => 1 + i32::from(steps),
+    };
+    let mut last = -1;
+    for (thrust, torque) in [
+        ("3.0", "0.04"),
+        ("0.5", "0.01"),
+        ("0.01", "1e-4"),
+        ("5e-5", "5e-7"),
+    ] {
+        let compiled = isae_x8(&[
+            (
+                "thrust_tolerance_n = 0.01",
+                &format!("thrust_tolerance_n = {thrust}"),
+            ),
+            (
+                "torque_tolerance_nm = 1e-4",
+                &format!("torque_tolerance_nm = {torque}"),
+            ),
+        ]);
+        let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
+        assert!(
+            cost(compiled.evaluator) > last,
+            "{thrust} N: {:?}",
+            compiled.evaluator
+        );
+        last = cost(compiled.evaluator);
+        assert!(compiled.residual.efforts[0] <= thrust.parse().unwrap());
+        assert!(compiled.residual.efforts[1] <= torque.parse().unwrap());
+    }
+}
+
+/// What a refusal offers as a mend must work.
+#[test]
+fn offered_tolerances_would_do() {
+    let method = "torque_tolerance_nm = 1e-4\nmethod = \"bilinear\"";
+    let faults = refused(&[("torque_tolerance_nm = 1e-4", method)]);
+    let help = &faults.faults()[0].help;
+    let offered = |key: &str| {
+        let (_, rest) = help.split_once(&format!("{key} = ")).unwrap();
+        rest.split(' ').next().unwrap().to_owned()
+    };
+    let (thrust, torque) = (offered("thrust_tolerance_n"), offered("torque_tolerance_nm"));
+    let mended = isae_x8(&[
+        (
+            "thrust_tolerance_n = 0.01",
+            &format!("thrust_tolerance_n = {thrust}"),
+        ),
+        (
+            "torque_tolerance_nm = 1e-4",
+            &format!("torque_tolerance_nm = {torque}\nmethod = \"bilinear\""),
+        ),
+    ]);
+    assert!(mended.is_ok(), "{help}: {}", mended.unwrap_err());
+}
+
+/// The tabulated exponent law follows the file's to a few units in the last place of f32 and its tolerance.
+#[test]
+fn voltage_laws_are_followed_over_the_whole_range() {
+    let compiled = isae_x8(&[]).unwrap();
+    let voltage = compiled.airframe.voltage.as_ref().unwrap();
+    let table = compiled.tables.view().voltage.unwrap();
+    for k in 0..=1000 {
+        let volts = 12.8 + 4.0 * f64::from(k) / 1000.0;
+        let error = f64::from(table.thrust.factor(volts as f32)) / voltage.thrust_factor(volts) - 1.0;
+        assert!(error.abs() < 1.3e-6, "{volts} V: {error}");
+    }
+}
+
+/// Points are met exactly and joined by straight lines.
+#[test]
+fn voltage_points_are_joined() {
+    let points = "thrust_points = [[12.8, 0.75], [14.8, 1.0], [16.8, 1.5]]";
+    let compiled = isae_x8(&[("thrust_exponent = 1.75", points)]).unwrap();
+    let table = compiled.tables.view().voltage.unwrap();
+    for (volts, factor) in [
+        (12.8, 0.75),
+        (13.8, 0.875),
+        (14.8, 1.0),
+        (15.8, 1.25),
+        (16.8, 1.5),
+    ] {
+        assert!((table.thrust.factor(volts) - factor).abs() < 1e-6, "{volts} V");
+    }
+}
