@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, expand, mix};
+use cargo_mixer::{check, expand, identify, mix};
 use clap::{Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -23,6 +23,7 @@ enum Command {
     Check(check::CheckArgs),
     Mix(mix::MixArgs),
     Expand(expand::ExpandArgs),
+    Identify(identify::IdentifyArgs),
 }
 
 fn main() -> ExitCode {
@@ -35,5 +36,6 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Mix(args) => mix::run(&args),
         Command::Expand(args) => expand::run(&args),
+        Command::Identify(args) => identify::run(&args),
     }
 }

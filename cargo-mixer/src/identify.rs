@@ -1,0 +1,315 @@
+//! `cargo mixer identify`: from bench sweeps to the `[throttle]`, `[pair]` and `[voltage]` tables of an airframe file.
+//!
+//! files -> [`read`] -> [`bench`] (start and stop rows, plateaus, signs) -> [`voltage`] exponents -> [`pair`]: outliers
+//! ([`robust`]), choice of the basis ([`cross`]), least squares ([`fit`]), [`fold`], [`monotone`] -> [`fragment`],
+//! [`report`].
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Args, ValueEnum};
+
+use self::basis::{Basis, ThrottleBox};
+use self::bench::Preparation;
+use self::header::{ByHand, ROLES};
+use self::identified::{Settings, identify};
+use self::pair::Wishes;
+use self::read::Reading;
+use self::sign::{SignChoice, SignPolicy};
+
+pub mod basis;
+pub mod bench;
+pub mod bernstein;
+pub mod cross;
+pub mod date;
+pub mod fit;
+pub mod fold;
+pub mod fragment;
+pub mod header;
+pub mod identified;
+pub mod monotone;
+pub mod pair;
+pub mod plateau;
+pub mod read;
+pub mod refusal;
+pub mod report;
+pub mod robust;
+pub mod sign;
+pub mod text;
+pub mod units;
+pub mod voltage;
+
+/// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
+///
+/// Reads coaxial maps (newdexterity columns), RCbenchmark 1520/1580/1780, Tyto Flight Stand, and the plain
+/// `upper,lower,thrust_n,torque_nm[,voltage_v]` with throttles in [0, 1]. Several files are joined: repeats of one
+/// pair, the same at other voltages, and single-rotor sweeps at two voltages for the exponents.
+#[derive(Debug, Clone, Args)]
+pub struct IdentifyArgs {
+    /// Bench files (CSV).
+    #[arg(required = true, value_name = "BENCH.csv")]
+    pub files: Vec<PathBuf>,
+    /// Write the tables here, whole or not at all; `-` for standard output (the report then goes to standard error).
+    #[arg(short, long, value_name = "PAIR.toml")]
+    pub output: Option<PathBuf>,
+    /// Print everything as JSON in place of the report.
+    #[arg(long)]
+    pub json: bool,
+    /// Terms of the model; auto chooses by cross-validation.
+    #[arg(long, value_enum, default_value_t = BasisChoice::Auto)]
+    pub basis: BasisChoice,
+    /// Leave out the rows that stand out (they are named with or without this).
+    #[arg(long)]
+    pub robust: bool,
+    /// Keep det J positive over the box, so that the map has no fold there; shows the cost.
+    #[arg(long)]
+    pub monotone: bool,
+    /// The throttles to command [default: those measured].
+    #[arg(long, value_name = "MIN,MAX", value_parser = throttle_box)]
+    pub throttle: Option<ThrottleBox>,
+    /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
+    #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
+    pub pwm_range: Option<PulseRange>,
+    /// A rotor at or below this throttle stands still: a start or stop row; a negative value keeps all rows.
+    #[arg(long, value_name = "THROTTLE", default_value_t = 0.005, value_parser = finite, allow_negative_numbers = true)]
+    pub stop_throttle: f64,
+    /// Part of each plateau of a streaming log that is dropped at its beginning, in [0, 1).
+    #[arg(long, value_name = "PART", default_value_t = 0.33, value_parser = part)]
+    pub settle: f64,
+    /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust, torque,
+    /// upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, time.
+    #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
+    pub columns: Vec<(String, String)>,
+    /// A unit by hand, as thrust=gf, for a header without one.
+    #[arg(long = "unit", value_name = "ROLE=UNIT", value_parser = role)]
+    pub units: Vec<(String, String)>,
+    /// Exchange upper and lower rotor.
+    #[arg(long)]
+    pub swap: bool,
+    /// Sign of thrust: auto, + or -; +,- and the like for a column per rotor (upper, lower).
+    #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
+    pub thrust_sign: SignChoice,
+    /// Sign of torque, likewise; torque is positive where the lower rotor outweighs the upper.
+    #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
+    pub torque_sign: SignChoice,
+    /// Reference voltage, V [default: mean of the rows].
+    #[arg(long, value_name = "VOLT", value_parser = positive)]
+    pub reference_voltage: Option<f64>,
+    /// Date of the measurement, YYYY-MM-DD [default: from the file names].
+    #[arg(long, value_name = "DATE", value_parser = date_given)]
+    pub date: Option<String>,
+}
+
+/// `--basis`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BasisChoice {
+    /// 8 terms, eq. (1) of the paper.
+    Biquadratic,
+    /// 9 terms.
+    Cubic,
+    /// 14 terms.
+    Quartic,
+    /// By cross-validation.
+    Auto,
+}
+
+/// `--pwm-range`, microseconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PulseRange(pub [f64; 2]);
+
+impl IdentifyArgs {
+    /// The settings that the arguments ask for.
+    pub fn settings(&self) -> Settings {
+        let by_hand = ByHand {
+            columns: self.columns.clone(),
+            units: self.units.clone(),
+            swap: self.swap,
+        };
+        Settings {
+            reading: Reading {
+                by_hand,
+                pwm_range: self.pwm_range.map(|r| r.0),
+            },
+            preparation: Preparation {
+                stop_throttle: self.stop_throttle,
+                settle: self.settle,
+                signs: SignPolicy {
+                    thrust: self.thrust_sign,
+                    torque: self.torque_sign,
+                },
+                date: self.date.clone(),
+            },
+            wishes: Wishes {
+                basis: match self.basis {
+                    BasisChoice::Biquadratic => Some(Basis::Biquadratic),
+                    BasisChoice::Cubic => Some(Basis::Cubic),
+                    BasisChoice::Quartic => Some(Basis::Quartic),
+                    BasisChoice::Auto => None,
+                },
+                robust: self.robust,
+                monotone: self.monotone,
+                throttle: self.throttle,
+                reference_v: self.reference_voltage,
+            },
+        }
+    }
+}
+
+/// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
+pub fn run(args: &IdentifyArgs) -> ExitCode {
+    let to_stdout = args.output.as_deref() == Some(Path::new("-"));
+    if let Some(output) = args.output.as_deref().filter(|_| !to_stdout) {
+        let same = |input: &PathBuf| match (input.canonicalize(), output.canonicalize()) {
+            (Ok(a), Ok(b)) => a == b,
+            _ => input == output,
+        };
+        if args.files.iter().any(same) {
+            eprintln!(
+                "error: {} is one of the bench files and would be overwritten",
+                output.display()
+            );
+            return ExitCode::from(2);
+        }
+    }
+    if to_stdout && args.json {
+        eprintln!("error: --json and -o - would both write to standard output");
+        return ExitCode::from(2);
+    }
+    let identified = match identify(&args.files, &args.settings()) {
+        Ok(identified) => identified,
+        Err(refusals) => {
+            refusals.iter().for_each(|r| eprintln!("error: {r}"));
+            return ExitCode::FAILURE;
+        }
+    };
+    for row in identified.files.iter().flat_map(|f| &f.refused_rows) {
+        eprintln!("refused: {}:{}: {}", row.file, row.line, row.reason);
+    }
+    let fragment = fragment::text(&identified);
+    let report = if args.json {
+        match serde_json::to_string_pretty(&identified) {
+            Ok(json) => json + "\n",
+            Err(error) => {
+                eprintln!("error: {error}");
+                return ExitCode::FAILURE;
+            }
+        }
+    } else {
+        report::text(&identified)
+    };
+    let (out, err) = if to_stdout {
+        (fragment.as_str(), report.as_str())
+    } else {
+        (report.as_str(), "")
+    };
+    eprint!("{err}");
+    if let Err(error) = print(out) {
+        eprintln!("error: standard output: {error}");
+        return ExitCode::FAILURE;
+    }
+    match args.output.as_deref().filter(|_| !to_stdout) {
+        None if !to_stdout && !args.json => eprintln!("\n(nothing written: -o PAIR.toml writes the tables)"),
+        None => {}
+        Some(path) => match fragment::write_atomically(path, &fragment) {
+            Ok(()) => eprintln!("wrote {}", path.display()),
+            Err(error) => {
+                eprintln!("error: {}: {error}", path.display());
+                return ExitCode::FAILURE;
+            }
+        },
+    }
+    ExitCode::SUCCESS
+}
+
+/// Writes to standard output; a reader that closes the pipe early is no error.
+fn print(text: &str) -> std::io::Result<()> {
+    use std::io::Write as _;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        other => other,
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse::<f64>()
+        .ok()
+        .filter(|x| x.is_finite())
+        .ok_or_else(|| format!("{text:?} is not a number"))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text).and_then(|x| {
+        if x > 0.0 {
+            Ok(x)
+        } else {
+            Err(format!("{x} is not positive"))
+        }
+    })
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    let within = |x: &f64| (0.0..1.0).contains(x);
+    finite(text).and_then(|x| {
+        Some(x)
+            .filter(within)
+            .ok_or_else(|| format!("{x} is not in [0, 1)"))
+    })
+}
+
+fn two(text: &str) -> Result<[f64; 2], String> {
+    let (a, b) = text
+        .split_once(',')
+        .ok_or_else(|| format!("{text:?} is not two numbers with a comma"))?;
+    Ok([finite(a)?, finite(b)?])
+}
+
+fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
+    let [min, max] = two(text)?;
+    if 0.0 <= min && min < max && max <= 1.0 {
+        Ok(ThrottleBox { min, max })
+    } else {
+        Err(format!("{min},{max} is not 0 <= MIN < MAX <= 1"))
+    }
+}
+
+fn pwm_range(text: &str) -> Result<PulseRange, String> {
+    let [low, high] = two(text)?;
+    if low < high {
+        Ok(PulseRange([low, high]))
+    } else {
+        Err(format!("{low} is not below {high}"))
+    }
+}
+
+fn role(text: &str) -> Result<(String, String), String> {
+    let (role, value) = text
+        .split_once('=')
+        .ok_or_else(|| format!("{text:?} is not ROLE=VALUE"))?;
+    match ROLES.iter().any(|(known, _)| *known == role) {
+        true => Ok((role.to_string(), value.trim().to_string())),
+        false => Err(header::unknown_role(role).to_string()),
+    }
+}
+
+fn sign_choice(text: &str) -> Result<SignChoice, String> {
+    let one = |t: &str| match t.trim() {
+        "+" | "1" | "+1" | "plus" => Ok(1.0),
+        "-" | "-1" | "minus" => Ok(-1.0),
+        other => Err(format!("{other:?} is neither auto, + nor -")),
+    };
+    if text.trim() == "auto" {
+        return Ok(SignChoice::Auto);
+    }
+    match text.split_once(',') {
+        Some((upper, lower)) => Ok(SignChoice::Given([one(upper)?, one(lower)?])),
+        None => one(text).map(|s| SignChoice::Given([s, s])),
+    }
+}
+
+fn date_given(text: &str) -> Result<String, String> {
+    date::date_in(text)
+        .filter(|d| d == text)
+        .ok_or_else(|| format!("{text:?} is not a date YYYY-MM-DD"))
+}

@@ -1,0 +1,203 @@
+//! From the samples of a log to the bench points that are fitted.
+//!
+//! In this order: find out whether both rotors turned; drop start and stop rows (a rotor at or below
+//! `stop_throttle`); reduce a streaming log to one mean per plateau of constant command; make signs and sums;
+//! refuse rows with a missing value.
+
+use serde::Serialize;
+
+use super::date::date_in;
+use super::plateau;
+use super::read::{Log, RefusedRow, Sample};
+use super::refusal::Refusal;
+use super::sign::{self, SignPolicy, Signs};
+
+/// What a file can be used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Both throttles vary: the pair's map.
+    Pair,
+    /// One rotor: only the dependence on voltage can be taken from it.
+    SingleRotor,
+}
+
+/// One measured point in the sign convention of the airframe file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Line of the row, or of the first row of the plateau.
+    pub line: u64,
+    /// Throttle of the upper rotor (or of the only one).
+    pub u: f64,
+    /// Throttle of the lower rotor; 0 for a single rotor.
+    pub l: f64,
+    /// Thrust, N, upward positive.
+    pub thrust: f64,
+    /// Torque, N m, positive where the lower rotor outweighs the upper; NaN where not measured.
+    pub torque: f64,
+    /// Supply voltage, V; NaN where not measured.
+    pub voltage: f64,
+}
+
+/// A bench file made ready.
+#[derive(Debug, Clone, Serialize)]
+pub struct Bench {
+    /// File name without folders.
+    pub file: String,
+    /// Format of the header.
+    pub format: String,
+    /// Date of the measurement, `YYYY-MM-DD`, from `--date` or the file's name.
+    pub date: Option<String>,
+    /// Pair or single rotor.
+    pub kind: Kind,
+    /// Rows of measurements in the file.
+    pub rows: usize,
+    /// Start and stop rows dropped.
+    pub start_stop_rows: usize,
+    /// Whether it is a streaming log, reduced to plateau means.
+    pub streaming: bool,
+    /// Rows of a streaming log dropped because the command had just changed.
+    pub settling_rows: usize,
+    /// Points that remain.
+    pub points_used: usize,
+    /// Rows refused, with the reason.
+    pub refused_rows: Vec<RefusedRow>,
+    /// Signs applied.
+    pub signs: Signs,
+    /// Remarks for the report.
+    pub notes: Vec<String>,
+    /// The points.
+    #[serde(skip)]
+    pub points: Vec<Point>,
+}
+
+/// What decides how a log becomes points.
+#[derive(Debug, Clone)]
+pub struct Preparation {
+    /// Throttle at or below which a rotor stands still.
+    pub stop_throttle: f64,
+    /// Part of each plateau of a streaming log that is left to settle.
+    pub settle: f64,
+    /// Signs of thrust and torque.
+    pub signs: SignPolicy,
+    /// Date given by hand.
+    pub date: Option<String>,
+}
+
+/// Makes a log ready.
+pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
+    let Log {
+        name,
+        columns,
+        samples,
+        mut refused,
+    } = log;
+    let rows = samples.len() + refused.len();
+    no_empty_throttle(
+        &name,
+        &columns.upper.as_ref().map_or("", |c| c.name.as_str()),
+        &samples,
+        0,
+    )?;
+    let mut notes = Vec::new();
+    let turning = |s: &Sample, rotor: usize| s.throttle[rotor] > how.stop_throttle;
+    let both =
+        columns.lower.is_some() && [0, 1].map(|r| samples.iter().any(|s| turning(s, r))) == [true, true];
+    let kind = if both { Kind::Pair } else { Kind::SingleRotor };
+    let rotor = usize::from(columns.lower.is_some() && !samples.iter().any(|s| turning(s, 0)));
+    if kind == Kind::SingleRotor && columns.lower.is_some() {
+        notes.push(format!(
+            "the {} rotor stands still throughout: a single rotor",
+            ["lower", "upper"][rotor]
+        ));
+    }
+    if kind == Kind::Pair && !columns.sides_named {
+        notes.push(
+            "the header does not say which rotor is above: the first is taken (--swap exchanges)".into(),
+        );
+    }
+
+    let mut kept = samples;
+    let before = kept.len();
+    // An empty throttle is no start or stop row: it stays and is refused below, with its line.
+    kept.retain(|s| match kind {
+        Kind::Pair => !s.throttle.iter().any(|&t| t <= how.stop_throttle),
+        Kind::SingleRotor => s.throttle[rotor].is_nan() || s.throttle[rotor] > how.stop_throttle,
+    });
+    let start_stop_rows = before - kept.len();
+    let streaming = plateau::is_streaming(&kept);
+    let mut settling_rows = 0;
+    if streaming {
+        (kept, settling_rows) = plateau::means(&kept, how.settle);
+    }
+
+    let (signs, sums) = match kind {
+        Kind::Pair => sign::pair(&name, &columns, &kept, &how.signs, &mut notes)?,
+        Kind::SingleRotor => sign::single(&columns, rotor, &kept, &how.signs),
+    };
+    let mut points = Vec::new();
+    for (sample, (thrust, torque)) in kept.iter().zip(sums) {
+        let missing = if sample.throttle[rotor].is_nan() || (both && sample.throttle[1].is_nan()) {
+            Some("the throttle is empty")
+        } else if thrust.is_nan() {
+            Some("the thrust is empty")
+        } else if both && torque.is_nan() {
+            Some("the torque is empty")
+        } else {
+            None
+        };
+        if let Some(reason) = missing {
+            refused.push(RefusedRow {
+                file: name.clone(),
+                line: sample.line,
+                reason: reason.into(),
+            });
+            continue;
+        }
+        let [u, l] = match kind {
+            Kind::Pair => sample.throttle,
+            Kind::SingleRotor => [sample.throttle[rotor], 0.0],
+        };
+        points.push(Point {
+            line: sample.line,
+            u,
+            l,
+            thrust,
+            torque,
+            voltage: sample.voltage,
+        });
+    }
+    refused.sort_by_key(|r| r.line);
+    let date = how.date.clone().or_else(|| date_in(&name));
+    Ok(Bench {
+        file: name,
+        format: columns.format,
+        date,
+        kind,
+        rows,
+        start_stop_rows,
+        streaming,
+        settling_rows,
+        points_used: points.len(),
+        refused_rows: refused,
+        signs,
+        notes,
+        points,
+    })
+}
+
+/// Refuses a file whose command was not recorded.
+fn no_empty_throttle(name: &str, column: &str, samples: &[Sample], rotor: usize) -> Result<(), Refusal> {
+    if samples.iter().any(|s| !s.throttle[rotor].is_nan()) {
+        return Ok(());
+    }
+    let reason = match samples.len() {
+        0 => "no row could be read".to_string(),
+        n => format!("the throttle column {column:?} is empty in all {n} rows"),
+    };
+    Err(Refusal::of(
+        name,
+        reason,
+        "a log in which the command of each rotor was recorded with the measurements",
+    ))
+}

@@ -1,0 +1,94 @@
+//! Bernstein coefficients of a polynomial on a rectangle.
+//!
+//! On [0, 1] the power s^i is the sum over k >= i of C(k, i) / C(n, i) B_k(s). A polynomial lies between its least and
+//! its greatest Bernstein coefficient, and the corner coefficients are its corner values; halving the rectangle makes
+//! the enclosure converge quadratically.
+
+use super::basis::{Polynomial, ThrottleBox};
+
+/// A rectangle of throttles: [least, greatest] of u and of l.
+pub type Cell = [[f64; 2]; 2];
+
+/// The box as a cell.
+pub fn cell(throttle_box: ThrottleBox) -> Cell {
+    [[throttle_box.min, throttle_box.max]; 2]
+}
+
+/// Coefficients `b[i][j]` on the cell, of as many rows and columns as the polynomial has.
+pub fn coefficients(p: &Polynomial, cell: Cell) -> Vec<Vec<f64>> {
+    let rows: Vec<Vec<f64>> = p.c.iter().map(|row| one_variable(row, cell[1])).collect();
+    let columns = rows[0].len();
+    let mut out = vec![vec![0.0; columns]; rows.len()];
+    for j in 0..columns {
+        let column: Vec<f64> = rows.iter().map(|row| row[j]).collect();
+        for (i, b) in one_variable(&column, cell[0]).into_iter().enumerate() {
+            out[i][j] = b;
+        }
+    }
+    out
+}
+
+/// Power coefficients in t to Bernstein coefficients on [a, b].
+fn one_variable(power: &[f64], [a, b]: [f64; 2]) -> Vec<f64> {
+    let n = power.len() - 1;
+    // t = a + (b - a) s: Taylor shift by synthetic division, then scaling.
+    let mut c = power.to_vec();
+    for i in 0..n {
+        for k in (i..n).rev() {
+            c[k] += a * c[k + 1];
+        }
+    }
+    let mut scale = 1.0;
+    for x in &mut c {
+        *x *= scale;
+        scale *= b - a;
+    }
+    (0..=n)
+        .map(|k| (0..=k).map(|i| binomial(k, i) / binomial(n, i) * c[i]).sum())
+        .collect()
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)
+}
+
+/// The cell in four.
+pub fn quarters([[ua, ub], [la, lb]]: Cell) -> [Cell; 4] {
+    let (um, lm) = (0.5 * (ua + ub), 0.5 * (la + lb));
+    [
+        [[ua, um], [la, lm]],
+        [[ua, um], [lm, lb]],
+        [[um, ub], [la, lm]],
+        [[um, ub], [lm, lb]],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::basis::Basis;
+
+    #[test]
+    fn corners_are_values_and_coefficients_enclose() {
+        let p = Basis::Quartic.polynomial(&(0..14).map(|k| ((k * 37) % 11) as f64 - 5.0).collect::<Vec<_>>());
+        let cell = [[0.1, 0.7], [0.3, 0.95]];
+        let b = coefficients(&p, cell);
+        let n = b.len() - 1;
+        for (i, j, u, l) in [
+            (0, 0, 0.1, 0.3),
+            (n, 0, 0.7, 0.3),
+            (0, n, 0.1, 0.95),
+            (n, n, 0.7, 0.95),
+        ] {
+            assert!((b[i][j] - p.at(u, l)).abs() < 1e-12);
+        }
+        let all = b.iter().flatten();
+        let (low, high) = all.fold((f64::MAX, f64::MIN), |(x, y), &c| (x.min(c), y.max(c)));
+        for k in 0..=20 {
+            for m in 0..=20 {
+                let value = p.at(0.1 + 0.03 * k as f64, 0.3 + 0.0325 * m as f64);
+                assert!((low - 1e-12..=high + 1e-12).contains(&value));
+            }
+        }
+    }
+}

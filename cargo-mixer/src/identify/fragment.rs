@@ -1,0 +1,274 @@
+//! The tables of an airframe file as TOML, with where they come from in comments.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::Path;
+
+use super::bench::{Bench, Kind};
+use super::fit::Fit;
+use super::identified::Identified;
+use super::pair::Pair;
+use super::voltage::{Estimate, Exponent, Voltage};
+
+/// The fragment: `[throttle]` and `[pair]` where a pair was identified, `[voltage]` where its exponents are sound.
+pub fn text(identified: &Identified) -> String {
+    let mut out = String::new();
+    // Writing to a String cannot fail; the results are dropped.
+    let _ = write_fragment(&mut out, identified);
+    out
+}
+
+fn write_fragment(out: &mut String, id: &Identified) -> std::fmt::Result {
+    writeln!(
+        out,
+        "# Identified by {}. To make an airframe of it, add at the top",
+        id.generator
+    )?;
+    writeln!(out, "#   name = \"my-airframe\"")?;
+    writeln!(out, "# and, for each pair of rotors, at the end")?;
+    writeln!(out, "#   [[unit]]")?;
+    writeln!(out, "#   position_m = [x, y, 0.0]    # forward, right, down")?;
+    writeln!(out, "#   upper_spin = \"cw\"           # seen from above")?;
+    writeln!(out, "#   channels = [upper, lower]   # outputs")?;
+    writeln!(out, "#\n# Data:")?;
+    for file in &id.files {
+        writeln!(out, "#   {}", file.file)?;
+        writeln!(out, "#     {}", provenance(file))?;
+    }
+    for warning in &id.warnings {
+        for (k, line) in wrapped(warning, 104).iter().enumerate() {
+            writeln!(out, "# {} {line}", if k == 0 { "!" } else { " " })?;
+        }
+    }
+    if let Some(pair) = &id.pair {
+        write_pair(out, pair)?;
+    }
+    if let Some(voltage) = &id.voltage {
+        write_voltage(out, voltage, id.reference_v)?;
+    } else {
+        writeln!(
+            out,
+            "\n# No [voltage]: no file has a voltage column. The mixer takes k = 1 at any voltage."
+        )?;
+    }
+    Ok(())
+}
+
+/// One line on a file: format, date, rows.
+pub fn provenance(file: &Bench) -> String {
+    let date = file.date.as_deref().unwrap_or("date unknown");
+    let kind = if file.kind == Kind::Pair {
+        ""
+    } else {
+        ", single rotor"
+    };
+    let mut line = format!(
+        "{}{kind}, {date}: {} of {} rows used",
+        file.format,
+        used_rows(file),
+        file.rows
+    );
+    if file.start_stop_rows > 0 {
+        let _ = write!(line, ", {} start and stop rows dropped", file.start_stop_rows);
+    }
+    if file.streaming {
+        let _ = write!(
+            line,
+            ", {} settling, {} plateaus",
+            file.settling_rows, file.points_used
+        );
+    }
+    if !file.refused_rows.is_empty() {
+        let _ = write!(line, ", {} refused", file.refused_rows.len());
+    }
+    line
+}
+
+fn used_rows(file: &Bench) -> usize {
+    file.rows
+        .saturating_sub(file.start_stop_rows + file.settling_rows + file.refused_rows.len())
+}
+
+fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
+    writeln!(out, "\n[throttle]")?;
+    let fold = &pair.fold;
+    match (fold.folds, &pair.monotone, fold.least_idle) {
+        (true, None, Some(idle)) => writeln!(out, "# The map folds below an idle of {idle:.4}.")?,
+        (true, Some(_), _) => writeln!(out, "# Fitted under det J > 0: the free fit folds in this box.")?,
+        _ => {}
+    }
+    writeln!(out, "min = {:?}", pair.throttle.min)?;
+    writeln!(out, "max = {:?}", pair.throttle.max)?;
+
+    writeln!(out)?;
+    if pair.outliers_left_out {
+        for o in &pair.outliers {
+            writeln!(out, "# left out, as it stands out: {}:{}", o.file, o.line)?;
+        }
+    }
+    for (name, unit, fit) in [("thrust", "N", &pair.thrust), ("torque", "N m", &pair.torque)] {
+        let percent = |x: f64| 100.0 * x / fit.full_scale;
+        writeln!(
+            out,
+            "# {name}: R2 {:.2} %, residual {:.3e} {unit} rms, {:.3e} at most; leave-one-out {:.3e} {unit} rms \
+             ({:.2} % of the greatest)",
+            100.0 * fit.r2,
+            fit.residual_rms,
+            fit.residual_max,
+            fit.leave_one_out_rms,
+            percent(fit.leave_one_out_rms)
+        )?;
+    }
+    writeln!(
+        out,
+        "# {} points, condition number {:.0}; behind each coefficient its 95 % interval",
+        pair.thrust.points, pair.thrust.condition_number
+    )?;
+    if let Some(cost) = &pair.monotone {
+        writeln!(
+            out,
+            "# without the constraint det J > 0: {:.3e} N rms and {:.3e} N m rms",
+            cost.free_thrust_rms, cost.free_torque_rms
+        )?;
+    }
+    writeln!(
+        out,
+        "# Torque is positive where the lower rotor outweighs the upper, which is clockwise on the"
+    )?;
+    writeln!(
+        out,
+        "# airframe for an upper rotor that turns clockwise, and the mirror image for the other."
+    )?;
+    writeln!(out, "[pair]\nbasis = \"{}\"", pair.basis.name())?;
+    coefficients(out, "thrust_n", &pair.terms, &pair.thrust)?;
+    coefficients(out, "torque_nm", &pair.terms, &pair.torque)?;
+    writeln!(out, "upper_spin = \"{}\"", pair.upper_spin)
+}
+
+fn coefficients(out: &mut String, key: &str, terms: &[String], fit: &Fit) -> std::fmt::Result {
+    writeln!(out, "{key} = [")?;
+    for ((c, ci), term) in fit.coefficients.iter().zip(&fit.ci95).zip(terms) {
+        writeln!(out, "    {:<18}  # {term:<4} +- {ci:.3e}", format!("{c:?},"))?;
+    }
+    writeln!(out, "]")
+}
+
+fn write_voltage(out: &mut String, voltage: &Voltage, reference: Option<f64>) -> std::fmt::Result {
+    let reference = reference.unwrap_or(voltage.mean_v);
+    // Outwards to hundredths, and around the reference.
+    let low = ((voltage.range_v[0].min(reference)) * 100.0).floor() / 100.0;
+    let high = ((voltage.range_v[1].max(reference)) * 100.0).ceil() / 100.0;
+    writeln!(out)?;
+    let Some(thrust) = voltage.thrust.estimate() else {
+        writeln!(
+            out,
+            "# No [voltage]: the exponents cannot be identified from these files, so k = 1 at any voltage."
+        )?;
+        writeln!(
+            out,
+            "# The map holds at about {reference:.2} V (rows from {low:.2} to {high:.2} V)."
+        )?;
+        for (name, exponent) in [("thrust", &voltage.thrust), ("torque", &voltage.torque)] {
+            if let Exponent::Refused { reason, .. } = exponent {
+                for (k, line) in wrapped(&format!("{name}: {reason}"), 100).iter().enumerate() {
+                    writeln!(out, "#   {}{line}", if k == 0 { "" } else { "  " })?;
+                }
+            }
+        }
+        return Ok(());
+    };
+    writeln!(out, "# thrust: {}", exponent_line(thrust))?;
+    if let Some(torque) = voltage.torque.estimate() {
+        writeln!(out, "# torque: {}", exponent_line(torque))?;
+    }
+    writeln!(
+        out,
+        "[voltage]\nreference_v = {reference:?}\nrange_v = [{low:?}, {high:?}]"
+    )?;
+    writeln!(out, "thrust_exponent = {:?}", thousandths(thrust.exponent))?;
+    match &voltage.torque {
+        Exponent::Identified(torque) => writeln!(out, "torque_exponent = {:?}", thousandths(torque.exponent)),
+        Exponent::NotMeasured => {
+            writeln!(
+                out,
+                "# torque_exponent = ?   not measured: no file has a torque column. Thrust and torque both"
+            )?;
+            writeln!(
+                out,
+                "#                       follow the square of rotor speed, so that the thrust's exponent is"
+            )?;
+            writeln!(
+                out,
+                "#                       the usual stand-in; it is for you to decide."
+            )
+        }
+        Exponent::Refused { reason, .. } => {
+            for (k, line) in wrapped(reason, 90).iter().enumerate() {
+                let head = if k == 0 {
+                    "torque_exponent = ?   "
+                } else {
+                    "                      "
+                };
+                writeln!(out, "# {head}{line}")?;
+            }
+            Ok(())
+        }
+    }
+}
+
+fn thousandths(x: f64) -> f64 {
+    (1000.0 * x).round() / 1000.0
+}
+
+/// One line on an exponent.
+pub fn exponent_line(e: &Estimate) -> String {
+    let mut line = format!(
+        "exponent {:.3} +- {:.3} (95 %), by {}",
+        e.exponent, e.ci95, e.method
+    );
+    if e.levels > 0 {
+        let _ = write!(line, ", {} levels", e.levels);
+    }
+    if let Some([low, median, high]) = e.quartiles {
+        let _ = write!(
+            line,
+            "; levels' median {median:.2}, quartiles {low:.2} and {high:.2}"
+        );
+    }
+    line
+}
+
+/// Breaks text at blanks into lines of at most `width` characters.
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.len() - 1;
+        if !lines[line].is_empty() && lines[line].chars().count() + 1 + word.chars().count() > width {
+            lines.push(word.to_string());
+        } else {
+            if !lines[line].is_empty() {
+                lines[line].push(' ');
+            }
+            lines[line].push_str(word);
+        }
+    }
+    lines
+}
+
+/// Writes the whole file or none of it: a temporary file beside it, flushed to the disk, takes its name.
+pub fn write_atomically(path: &Path, text: &str) -> io::Result<()> {
+    let name = path
+        .file_name()
+        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "no file name"))?;
+    let temporary = path.with_file_name(format!(".{}.{}", name.to_string_lossy(), std::process::id()));
+    let written = fs::File::create(&temporary).and_then(|mut file| {
+        file.write_all(text.as_bytes())?;
+        file.sync_all()
+    });
+    let done = written.and_then(|()| fs::rename(&temporary, path));
+    if done.is_err() {
+        let _ = fs::remove_file(&temporary);
+    }
+    done
+}

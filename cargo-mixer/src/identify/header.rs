@@ -1,0 +1,406 @@
+//! Which column holds what: from the header line, or by hand.
+//!
+//! A name is normalised first ([`units::spelled`]); its unit is the last group in brackets, or a suffix of the plain
+//! format (`thrust_n`). Then a column is known by a word of its name (`ESC` or `PWM`, `thrust`, `torque`, `voltage`)
+//! and its rotor by another (`Left`, `A`, `upper`, or a prefix such as `Powertrain 1 - `, which users edit, so that
+//! the first prefix to appear is the first rotor). The first rotor is taken as the upper one unless names say otherwise.
+
+use super::refusal::Refusal;
+use super::units::{self, Quantity, Scale};
+
+/// A column that is read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Position in the row, from 0.
+    pub index: usize,
+    /// Name as in the file.
+    pub name: String,
+    /// How to reach SI.
+    pub scale: Scale,
+}
+
+/// The roles that columns can play; `--column ROLE=HEADER` names them in snake case.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Columns {
+    /// Command of the upper rotor, or of the only one.
+    pub upper: Option<Column>,
+    /// Command of the lower rotor.
+    pub lower: Option<Column>,
+    /// Thrust of the whole.
+    pub thrust: Option<Column>,
+    /// Torque of the whole.
+    pub torque: Option<Column>,
+    /// Thrust of the upper and of the lower rotor.
+    pub rotor_thrust: [Option<Column>; 2],
+    /// Torque of the upper and of the lower rotor.
+    pub rotor_torque: [Option<Column>; 2],
+    /// Supply voltage (of the upper rotor where each has its own sensor: two sensors differ by their calibration).
+    pub voltage: Option<Column>,
+    /// Time.
+    pub time: Option<Column>,
+    /// The format that the header was recognised as, for the report.
+    pub format: String,
+    /// Whether names, rather than an assumption, say which rotor is the upper one.
+    pub sides_named: bool,
+}
+
+/// Columns and units given by hand.
+#[derive(Debug, Clone, Default)]
+pub struct ByHand {
+    /// (role, header name or `#` and the column's number from 1).
+    pub columns: Vec<(String, String)>,
+    /// (role, unit), for headers without one.
+    pub units: Vec<(String, String)>,
+    /// Exchange the two rotors that the header suggests.
+    pub swap: bool,
+}
+
+/// Roles for `--column`, with what they measure.
+pub const ROLES: [(&str, Quantity); 10] = [
+    ("upper", Quantity::Throttle),
+    ("lower", Quantity::Throttle),
+    ("thrust", Quantity::Thrust),
+    ("torque", Quantity::Torque),
+    ("upper_thrust", Quantity::Thrust),
+    ("lower_thrust", Quantity::Thrust),
+    ("upper_torque", Quantity::Torque),
+    ("lower_torque", Quantity::Torque),
+    ("voltage", Quantity::Voltage),
+    ("time", Quantity::Time),
+];
+
+impl Columns {
+    /// The place of a role.
+    fn slot(&mut self, role: &str) -> Option<&mut Option<Column>> {
+        Some(match role {
+            "upper" => &mut self.upper,
+            "lower" => &mut self.lower,
+            "thrust" => &mut self.thrust,
+            "torque" => &mut self.torque,
+            "upper_thrust" => &mut self.rotor_thrust[0],
+            "lower_thrust" => &mut self.rotor_thrust[1],
+            "upper_torque" => &mut self.rotor_torque[0],
+            "lower_torque" => &mut self.rotor_torque[1],
+            "voltage" => &mut self.voltage,
+            "time" => &mut self.time,
+            _ => return None,
+        })
+    }
+
+    /// Reads the header line of `file`. `headers` are the decoded names.
+    pub fn find(file: &str, headers: &[String], by_hand: &ByHand) -> Result<Self, Refusal> {
+        let names: Vec<Name> = headers.iter().map(|h| Name::new(h)).collect();
+        let mut columns = Columns {
+            format: format_name(headers, &names),
+            ..Columns::default()
+        };
+        columns.by_name(file, &names, by_hand)?;
+        if by_hand.swap {
+            std::mem::swap(&mut columns.upper, &mut columns.lower);
+            columns.rotor_thrust.swap(0, 1);
+            columns.rotor_torque.swap(0, 1);
+        }
+        for (role, wanted) in &by_hand.columns {
+            let Some(&(_, quantity)) = ROLES.iter().find(|(r, _)| r == role) else {
+                return Err(unknown_role(role));
+            };
+            let index = position(headers, wanted).ok_or_else(|| {
+                Refusal::of(
+                    file,
+                    format!("no column {wanted:?} for the role {role}"),
+                    format!("one of: {}", headers.join(", ")),
+                )
+            })?;
+            let column = scaled(file, index, &names[index], quantity, role, by_hand)?;
+            // A total given by hand stands above the rotors' own columns, and the other way round.
+            match role.as_str() {
+                "upper_thrust" | "lower_thrust" => columns.thrust = None,
+                "upper_torque" | "lower_torque" => columns.torque = None,
+                _ => {}
+            }
+            if let Some(slot) = columns.slot(role) {
+                *slot = Some(column);
+            }
+            columns.sides_named |= matches!(role.as_str(), "upper" | "lower");
+        }
+        columns.sides_named |= by_hand.swap;
+        Ok(columns)
+    }
+
+    fn by_name(&mut self, file: &str, names: &[Name], by_hand: &ByHand) -> Result<(), Refusal> {
+        let prefixes = distinct_prefixes(names);
+        for (index, name) in names.iter().enumerate() {
+            let Some(quantity) = name.quantity() else { continue };
+            let side = name.side(&prefixes);
+            let role = match (quantity, side) {
+                (Quantity::Throttle, None | Some(0)) => "upper",
+                (Quantity::Throttle, _) => "lower",
+                (Quantity::Thrust, None) => "thrust",
+                (Quantity::Thrust, Some(0)) => "upper_thrust",
+                (Quantity::Thrust, _) => "lower_thrust",
+                (Quantity::Torque, None) => "torque",
+                (Quantity::Torque, Some(0)) => "upper_torque",
+                (Quantity::Torque, _) => "lower_torque",
+                (Quantity::Voltage, None | Some(0)) => "voltage",
+                (Quantity::Voltage, _) => continue,
+                (Quantity::Time, _) => "time",
+            };
+            if by_hand.columns.iter().any(|(r, _)| r == role) {
+                continue;
+            }
+            let Some(slot) = self.slot(role) else { continue };
+            if let Some(first) = slot {
+                // Two columns for one role: guessing would be silent. Time is only used to keep rows in order.
+                if quantity == Quantity::Time {
+                    continue;
+                }
+                return Err(Refusal::of(
+                    file,
+                    format!(
+                        "the columns {:?} and {:?} both look like the {role}",
+                        first.name, name.raw
+                    ),
+                    format!("the right one by hand: --column {role}={:?}", name.raw),
+                ));
+            }
+            *slot = Some(scaled(file, index, name, quantity, role, by_hand)?);
+            self.sides_named |= quantity == Quantity::Throttle && name.says_upper_or_lower();
+        }
+        if self.format == NEWDEXTERITY {
+            self.sides_named = true; // on this platform the left rotor is the upper one
+        }
+        Ok(())
+    }
+}
+
+/// The refusal of a role that does not exist.
+pub fn unknown_role(role: &str) -> Refusal {
+    let roles: Vec<&str> = ROLES.iter().map(|(r, _)| *r).collect();
+    Refusal::general(
+        format!("unknown role {role:?}"),
+        format!("one of: {}", roles.join(", ")),
+    )
+}
+
+const NEWDEXTERITY: &str = "coaxial map (newdexterity)";
+
+fn format_name(headers: &[String], names: &[Name]) -> String {
+    let has = |text: &str| names.iter().any(|n| n.text == text);
+    let any = |text: &str| headers.iter().any(|h| units::spelled(h).contains(text));
+    if has("pwm left") && has("pwm right") {
+        NEWDEXTERITY
+    } else if any("torque mz") || any("force fz") {
+        "Tyto Flight Stand"
+    } else if has("esc a") && has("esc b") {
+        "RCbenchmark 1780"
+    } else if any("esc signal") {
+        "RCbenchmark 1520/1580"
+    } else if has("upper") && has("lower") {
+        "plain"
+    } else {
+        "columns by name"
+    }
+    .to_string()
+}
+
+/// A header name taken apart.
+struct Name {
+    raw: String,
+    /// Text before " - ", spelled.
+    prefix: Option<String>,
+    /// The rest without its unit, spelled.
+    text: String,
+    unit: Option<String>,
+}
+
+/// Words that make a column something other than what its `thrust` or `torque` suggests.
+const OTHERS: [&str; 12] = [
+    "efficiency",
+    "power ",
+    "current",
+    "speed",
+    "rpm",
+    "servo",
+    "centre",
+    "center",
+    "temp",
+    "vibration",
+    "offset",
+    "std",
+];
+
+impl Name {
+    fn new(raw: &str) -> Self {
+        let raw = raw.trim().to_string();
+        let spelled = units::spelled(&raw);
+        let (prefix, rest) = match spelled.rsplit_once(" - ") {
+            Some((prefix, rest)) => (Some(prefix.to_string()), rest.to_string()),
+            None => (None, spelled),
+        };
+        let (text, unit) = split_unit(&rest);
+        Self {
+            raw,
+            prefix,
+            text,
+            unit,
+        }
+    }
+
+    fn words(&self) -> impl Iterator<Item = &str> {
+        self.text.split([' ', '(', ')']).filter(|w| !w.is_empty())
+    }
+
+    fn quantity(&self) -> Option<Quantity> {
+        let padded = format!("{} ", self.text);
+        if OTHERS.iter().any(|other| padded.contains(other)) {
+            return None;
+        }
+        let word = |w: &str| self.words().any(|x| x == w);
+        if word("esc") || word("pwm") || word("throttle") || matches!(self.text.as_str(), "upper" | "lower") {
+            Some(Quantity::Throttle)
+        } else if word("thrust") {
+            Some(Quantity::Thrust)
+        } else if word("torque") {
+            Some(Quantity::Torque)
+        } else if word("voltage") {
+            Some(Quantity::Voltage)
+        } else if word("time") {
+            Some(Quantity::Time)
+        } else {
+            None
+        }
+    }
+
+    fn says_upper_or_lower(&self) -> bool {
+        let both = self.prefix.iter().flat_map(|p| p.split(' ')).chain(self.words());
+        both.into_iter()
+            .any(|w| matches!(w, "upper" | "lower" | "top" | "bottom"))
+    }
+
+    /// 0 or 1 for a column of one rotor, nothing for the whole.
+    fn side(&self, prefixes: &[&str]) -> Option<usize> {
+        let of_word = |w: &str| match w {
+            "upper" | "top" | "left" | "a" => Some(0),
+            "lower" | "bottom" | "right" | "b" => Some(1),
+            _ => None,
+        };
+        if let Some(side) = self
+            .words()
+            .chain(self.prefix.iter().flat_map(|p| p.split(' ')))
+            .find_map(of_word)
+        {
+            return Some(side);
+        }
+        let numbered = self.words().find_map(|w| match w {
+            "1" => Some(0),
+            "2" => Some(1),
+            _ => None,
+        });
+        let prefixed = || match prefixes {
+            [_] => None,
+            _ => prefixes.iter().position(|p| Some(*p) == self.prefix.as_deref()),
+        };
+        numbered.or_else(prefixed)
+    }
+}
+
+/// Prefixes of the columns that matter, in order of appearance.
+fn distinct_prefixes(names: &[Name]) -> Vec<&str> {
+    let mut prefixes: Vec<&str> = Vec::new();
+    for name in names
+        .iter()
+        .filter(|n| n.quantity().is_some_and(|q| q != Quantity::Time))
+    {
+        if let Some(prefix) = name.prefix.as_deref().filter(|p| !prefixes.contains(p)) {
+            prefixes.push(prefix);
+        }
+    }
+    prefixes
+}
+
+/// Splits `force fz (thrust) (n)` into its text and the unit in its last brackets, `thrust n` (from `thrust_n`) into
+/// text and suffix.
+fn split_unit(text: &str) -> (String, Option<String>) {
+    for (open, close) in [('(', ')'), ('[', ']')] {
+        if let (Some(inner), Some(start)) = (text.strip_suffix(close), text.rfind(open)) {
+            return (
+                text[..start].trim().to_string(),
+                Some(inner[start + 1..].trim().to_string()),
+            );
+        }
+    }
+    if let Some((rest, last)) = text.rsplit_once(' ') {
+        let known = [
+            Quantity::Thrust,
+            Quantity::Torque,
+            Quantity::Voltage,
+            Quantity::Time,
+            Quantity::Throttle,
+        ];
+        if rest.contains(|c: char| c.is_alphabetic()) && known.iter().any(|&q| suffix_of(q, last)) {
+            return (rest.to_string(), Some(last.to_string()));
+        }
+    }
+    (text.to_string(), None)
+}
+
+fn suffix_of(quantity: Quantity, suffix: &str) -> bool {
+    !suffix.chars().any(|c| c.is_ascii_digit()) && suffix != "pwm" && units::scale(quantity, suffix).is_some()
+}
+
+fn position(headers: &[String], wanted: &str) -> Option<usize> {
+    if let Some(number) = wanted.strip_prefix('#').and_then(|n| n.parse::<usize>().ok()) {
+        return number.checked_sub(1).filter(|&i| i < headers.len());
+    }
+    let exact = headers.iter().position(|h| h.trim() == wanted.trim());
+    let spelled = units::spelled(wanted);
+    exact
+        .or_else(|| headers.iter().position(|h| units::spelled(h) == spelled))
+        .or_else(|| headers.iter().position(|h| Name::new(h).text == spelled))
+}
+
+fn scaled(
+    file: &str,
+    index: usize,
+    name: &Name,
+    quantity: Quantity,
+    role: &str,
+    by_hand: &ByHand,
+) -> Result<Column, Refusal> {
+    let given = by_hand
+        .units
+        .iter()
+        .find(|(r, _)| r == role)
+        .map(|(_, u)| u.clone());
+    let unit = given.or_else(|| name.unit.clone());
+    let scale = match (&unit, quantity) {
+        (Some(unit), _) => units::scale(quantity, unit),
+        (None, Quantity::Throttle) if name.words().any(|w| w == "pwm" || w == "esc") => {
+            Some(Scale::Pulse(1.0))
+        }
+        (None, Quantity::Throttle | Quantity::Time) => Some(Scale::Factor(1.0)),
+        (None, _) => None,
+    };
+    let scale = scale.ok_or_else(|| {
+        let reason = match &unit {
+            Some(unit) => format!(
+                "the unit {unit:?} of the column {:?} is unknown for the {role}",
+                name.raw
+            ),
+            None => format!("the column {:?} has no unit", name.raw),
+        };
+        let needed = format!(
+            "a unit in the header, or --unit {role}=UNIT with one of: {}",
+            units::known(quantity)
+        );
+        Refusal::of(format!("{file}:1"), reason, needed)
+    })?;
+    Ok(Column {
+        index,
+        name: name.raw.clone(),
+        scale,
+    })
+}
+
+#[cfg(test)]
+mod tests;

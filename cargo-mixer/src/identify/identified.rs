@@ -1,0 +1,182 @@
+//! From files to what was identified.
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
+
+use super::bench::{self, Bench, Kind, Preparation};
+use super::pair::{self, Pair, Wishes};
+use super::read::{self, Reading};
+use super::refusal::Refusal;
+use super::voltage::{self, Exponent, Voltage};
+
+/// Everything that decides an identification, besides the files.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// How files are read.
+    pub reading: Reading,
+    /// How rows become points.
+    pub preparation: Preparation,
+    /// How points are fitted.
+    pub wishes: Wishes,
+}
+
+/// All that `--json` prints.
+#[derive(Debug, Clone, Serialize)]
+pub struct Identified {
+    /// Program and version.
+    pub generator: String,
+    /// The map; none where all files are of single rotors.
+    pub pair: Option<Pair>,
+    /// The dependence on voltage; none where no file has a voltage.
+    pub voltage: Option<Voltage>,
+    /// What was read.
+    pub files: Vec<Bench>,
+    /// Reference voltage of the fragment, V.
+    pub reference_v: Option<f64>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the files and identifies what they hold. All refusals are collected.
+pub fn identify(paths: &[PathBuf], settings: &Settings) -> Result<Identified, Vec<Refusal>> {
+    let benches = read_all(paths, settings)?;
+    distinct_names(&benches).map_err(|r| vec![r])?;
+    let has = |kind| benches.iter().any(|b| b.kind == kind);
+    let voltage = dependence(&benches);
+    let pair = if has(Kind::Pair) {
+        Some(pair::identify(&benches, voltage.as_ref(), &settings.wishes).map_err(|r| vec![r])?)
+    } else {
+        only_single(&benches, voltage.as_ref()).map_err(|r| vec![r])?;
+        None
+    };
+    let mut warnings: Vec<String> = pair.iter().flat_map(|p| p.warnings.clone()).collect();
+    if let Some(v) = &voltage {
+        warnings.extend(voltage_warnings(v));
+    }
+    if has(Kind::Pair) && has(Kind::SingleRotor) {
+        warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
+    }
+    let mean = pair
+        .as_ref()
+        .and_then(|p| p.normalised_to_v.or(p.mean_v))
+        .or(voltage.as_ref().map(|v| v.mean_v));
+    let reference_v = settings.wishes.reference_v.or(mean.map(pair::hundredths));
+    if let (Some(reference), Some(v)) = (settings.wishes.reference_v, &voltage) {
+        if !(v.range_v[0]..=v.range_v[1]).contains(&reference) {
+            warnings.push(format!(
+                "--reference-voltage {reference} is outside the measured {:.2}..{:.2} V",
+                v.range_v[0], v.range_v[1]
+            ));
+        }
+    }
+    Ok(Identified {
+        generator: format!("cargo mixer identify {}", env!("CARGO_PKG_VERSION")),
+        pair,
+        voltage,
+        files: benches,
+        reference_v,
+        warnings,
+    })
+}
+
+fn read_all(paths: &[PathBuf], settings: &Settings) -> Result<Vec<Bench>, Vec<Refusal>> {
+    let bar = progress(paths);
+    let mut benches = Vec::new();
+    let mut refusals = Vec::new();
+    for path in paths {
+        let log = read::read_file(path, &settings.reading, |file| bar.wrap_read(file));
+        match log.and_then(|log| bench::prepare(log, &settings.preparation)) {
+            Ok(bench) => benches.push(bench),
+            Err(refusal) => refusals.push(refusal),
+        }
+    }
+    bar.finish_and_clear();
+    if refusals.is_empty() {
+        Ok(benches)
+    } else {
+        Err(refusals)
+    }
+}
+
+/// A bar over the bytes of all files, on a terminal and for long inputs only.
+fn progress(paths: &[PathBuf]) -> ProgressBar {
+    const LONG: u64 = 20 << 20; // about a third of a second
+    let bytes = paths
+        .iter()
+        .filter_map(|p| p.metadata().ok())
+        .map(|m| m.len())
+        .sum();
+    if bytes < LONG || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("reading {bytes} of {total_bytes} {wide_bar} {eta}");
+    let bar = ProgressBar::with_draw_target(Some(bytes), ProgressDrawTarget::stderr());
+    style.map_or(bar.clone(), |style| bar.with_style(style))
+}
+
+/// Rows are named by file name and line, so names must differ.
+fn distinct_names(benches: &[Bench]) -> Result<(), Refusal> {
+    let twice = benches
+        .iter()
+        .enumerate()
+        .find(|(i, b)| benches[..*i].iter().any(|a| a.file == b.file));
+    match twice {
+        None => Ok(()),
+        Some((_, b)) => Err(Refusal::of(
+            &b.file,
+            "the name is given twice",
+            "each file once, under its own name",
+        )),
+    }
+}
+
+/// The exponents from the pair's own maps if these tell any, else from single rotors.
+fn dependence(benches: &[Bench]) -> Option<Voltage> {
+    let pair = voltage::examine(benches, Kind::Pair);
+    let single = voltage::examine(benches, Kind::SingleRotor);
+    match (pair, single) {
+        (Some(p), Some(s)) if p.thrust.estimate().is_none() && s.thrust.estimate().is_some() => Some(s),
+        (p, s) => p.or(s),
+    }
+}
+
+/// Without a pair the files must at least give an exponent.
+fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refusal> {
+    let files = benches
+        .iter()
+        .map(|b| b.file.as_str())
+        .collect::<Vec<_>>()
+        .join(", ");
+    let for_pair = "for [pair]: a sweep of both throttles independently, with thrust and torque of the pair";
+    match voltage.map(|v| &v.thrust) {
+        Some(Exponent::Identified(_)) => Ok(()),
+        Some(Exponent::Refused { reason, needed }) => Err(Refusal::of(
+            files,
+            format!("one throttle only, so there is no map of a pair; and no voltage exponent: {reason}"),
+            format!("{for_pair}; for [voltage]: {needed}"),
+        )),
+        Some(Exponent::NotMeasured) | None => Err(Refusal::of(
+            files,
+            "one throttle only, so there is no map of a pair; and no voltage was measured",
+            format!(
+                "{for_pair}; for [voltage]: the same sweep at two supply voltages, with a voltage column"
+            ),
+        )),
+    }
+}
+
+fn voltage_warnings(voltage: &Voltage) -> Vec<String> {
+    let channels = [("thrust", &voltage.thrust), ("torque", &voltage.torque)];
+    let refused = channels
+        .into_iter()
+        .filter_map(|(name, exponent)| match exponent {
+            Exponent::Refused { reason, needed } => Some(format!(
+                "no {name} exponent of voltage: {reason}; needed: {needed}"
+            )),
+            _ => None,
+        });
+    refused.collect()
+}

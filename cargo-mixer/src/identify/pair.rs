@@ -1,0 +1,402 @@
+//! The map of a pair from bench points: choice of the basis, fit, outliers, fold, shape constraint.
+
+use serde::Serialize;
+
+use super::basis::{Basis, ThrottleBox};
+use super::bench::{Bench, Kind, Point};
+use super::cross::{self, Candidate};
+use super::fit::{Design, Fit, fit, judge, range};
+use super::fold::{self, Fold};
+use super::monotone;
+use super::refusal::Refusal;
+use super::robust::{self, Outlier};
+use super::voltage::{Estimate, Voltage};
+
+/// What the user decides about the fit.
+#[derive(Debug, Clone)]
+pub struct Wishes {
+    /// The basis, or nothing to choose by cross-validation.
+    pub basis: Option<Basis>,
+    /// Leave out the rows that stand out.
+    pub robust: bool,
+    /// Keep det J positive over the box.
+    pub monotone: bool,
+    /// The box to command, or nothing for the measured one.
+    pub throttle: Option<ThrottleBox>,
+    /// Reference voltage, V, or nothing for the mean of the rows.
+    pub reference_v: Option<f64>,
+}
+
+/// The identified map, as in `[throttle]` and `[pair]`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Pair {
+    /// Basis of both channels.
+    pub basis: Basis,
+    /// Terms in the order of the coefficients.
+    pub terms: Vec<String>,
+    /// Coefficients of thrust, N.
+    pub thrust_n: Vec<f64>,
+    /// Coefficients of torque, N m, positive where the lower rotor outweighs the upper.
+    pub torque_nm: Vec<f64>,
+    /// `cw`: the spin of the upper rotor for which that sign of torque is clockwise on the airframe.
+    pub upper_spin: &'static str,
+    /// Statistics of thrust.
+    pub thrust: Fit,
+    /// Statistics of torque.
+    pub torque: Fit,
+    /// The box that the file commands.
+    pub throttle: ThrottleBox,
+    /// Measured range of throttle, of the upper and of the lower rotor.
+    pub measured: [[f64; 2]; 2],
+    /// Cross-validation, one entry per basis; one basis only if it was given.
+    pub cross_validation: Vec<Candidate>,
+    /// Rows that stand out.
+    pub outliers: Vec<Outlier>,
+    /// Whether they were left out.
+    pub outliers_left_out: bool,
+    /// The fold of the map before `throttle.min` was raised or the shape constrained.
+    pub fold: Fold,
+    /// The cost of the shape constraint, where it was applied.
+    pub monotone: Option<MonotoneCost>,
+    /// Reference voltage, V, to which the points were brought by the exponents.
+    pub normalised_to_v: Option<f64>,
+    /// Mean and range of the voltage of the rows, V.
+    pub mean_v: Option<f64>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Residuals with and without the constraint that det J > 0.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct MonotoneCost {
+    /// Residual rms of thrust without it, N.
+    pub free_thrust_rms: f64,
+    /// Residual rms of torque without it, N m.
+    pub free_torque_rms: f64,
+}
+
+/// A point and the file it comes from.
+struct Placed<'a> {
+    point: &'a Point,
+    file: &'a str,
+    thrust: f64,
+    torque: f64,
+}
+
+fn places(points: &[Placed]) -> Vec<[f64; 2]> {
+    points.iter().map(|p| [p.point.u, p.point.l]).collect()
+}
+
+fn channels(points: &[Placed]) -> [Vec<f64>; 2] {
+    [
+        points.iter().map(|p| p.thrust).collect(),
+        points.iter().map(|p| p.torque).collect(),
+    ]
+}
+
+/// Identifies the pair that the benches of [`Kind::Pair`] describe.
+pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -> Result<Pair, Refusal> {
+    let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == Kind::Pair).collect();
+    let label = || {
+        benches
+            .iter()
+            .map(|b| b.file.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let mut warnings = Vec::new();
+    let (mut points, normalised_to_v) = at_reference(&benches, voltage, wishes)?;
+    let measured = range(&places(&points));
+    let throttle_box = match wishes.throttle {
+        Some(wished) => beyond(wished, measured, &mut warnings),
+        None => inside(measured),
+    };
+    if throttle_box.min >= throttle_box.max {
+        return Err(Refusal::of(
+            label(),
+            format!("the measured throttles {measured:.3?} of both rotors share no range"),
+            "a sweep of both rotors over one range of throttle, each from idle to full",
+        ));
+    }
+
+    let judged_in = wishes.basis.unwrap_or(robust::JUDGING);
+    let outliers = stand_out(judged_in, &points, throttle_box);
+    if wishes.robust {
+        points.retain(|p| {
+            !outliers
+                .iter()
+                .any(|o| o.file == p.file && o.line == p.point.line)
+        });
+    } else if !outliers.is_empty() {
+        warnings.push(format!(
+            "{} rows stand out: --robust fits without them",
+            outliers.len()
+        ));
+    }
+    let [thrust, torque] = channels(&points);
+    let deficient = |reason: super::fit::Deficient| {
+        Refusal::of(
+            label(),
+            reason.to_string(),
+            "a sweep of both throttles independently, best a grid of at least 6 x 6 levels from idle to full",
+        )
+    };
+    let mut table = cross::choose(&places(&points), &thrust, &torque, throttle_box).map_err(deficient)?;
+    if let Some(basis) = wishes.basis {
+        table.retain(|c| c.basis == basis);
+        table.iter_mut().for_each(|c| c.chosen = true);
+    }
+    let basis = table
+        .iter()
+        .find(|c| c.chosen)
+        .map_or(Basis::Biquadratic, |c| c.basis);
+    let design = Design::new(basis, &places(&points), throttle_box).map_err(deficient)?;
+    let mut fits = [
+        fit(&design, &thrust, throttle_box),
+        fit(&design, &torque, throttle_box),
+    ];
+    one_pair(basis, &points, throttle_box, &fits)?;
+
+    let of =
+        |fits: &[Fit; 2]| fold::examine(basis, &fits[0].coefficients, &fits[1].coefficients, throttle_box);
+    let fold = of(&fits);
+    let mut cost = None;
+    let mut throttle = throttle_box;
+    if fold.folds && wishes.monotone {
+        let free = [&fits[0], &fits[1]];
+        let coordinates = [design.coordinates(&thrust), design.coordinates(&torque)];
+        let found = monotone::constrain(&design, free, coordinates, throttle_box).ok_or_else(|| {
+            Refusal::of(
+                label(),
+                "no monotone map was found near the measured one",
+                "a higher idle (--throttle MIN,MAX), another basis, or data without outliers (--robust)",
+            )
+        })?;
+        cost = Some(MonotoneCost {
+            free_thrust_rms: fits[0].residual_rms,
+            free_torque_rms: fits[1].residual_rms,
+        });
+        fits = [
+            judge(&design, &thrust, &found.thrust, throttle_box),
+            judge(&design, &torque, &found.torque, throttle_box),
+        ];
+    }
+    let after = if cost.is_some() { of(&fits) } else { fold.clone() };
+    if after.folds {
+        throttle.min = raised(&after, &label, &mut warnings)?;
+    }
+    let [thrust_fit, torque_fit] = fits;
+    judge_quality(&thrust_fit, &torque_fit, &mut warnings);
+    let volts = || points.iter().map(|p| p.point.voltage).filter(|v| v.is_finite());
+    let mean_v = (volts().count() > 0).then(|| volts().sum::<f64>() / volts().count() as f64);
+    Ok(Pair {
+        basis,
+        terms: basis.term_names(),
+        thrust_n: thrust_fit.coefficients.clone(),
+        torque_nm: torque_fit.coefficients.clone(),
+        upper_spin: "cw",
+        thrust: thrust_fit,
+        torque: torque_fit,
+        throttle,
+        measured,
+        cross_validation: table,
+        outliers_left_out: wishes.robust,
+        outliers,
+        fold,
+        monotone: cost,
+        normalised_to_v,
+        mean_v,
+        warnings,
+    })
+}
+
+/// The points of all benches, brought to the reference voltage where sound exponents allow it.
+fn at_reference<'a>(
+    benches: &[&'a Bench],
+    voltage: Option<&Voltage>,
+    wishes: &Wishes,
+) -> Result<(Vec<Placed<'a>>, Option<f64>), Refusal> {
+    let sound = voltage.and_then(|v| Some((v.thrust.estimate()?, v.torque.estimate()?)));
+    let volts = |b: &Bench| {
+        let measured = b.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());
+        let (sum, n) = measured.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
+        (n == b.points.len() && n > 0).then(|| sum / n as f64)
+    };
+    let means: Vec<f64> = benches.iter().filter_map(|b| volts(b)).collect();
+    let all = means.len() == benches.len();
+    let (low, high) = means
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
+    if sound.is_none() && high > 1.03 * low {
+        return Err(Refusal::general(
+            format!(
+                "the files were measured at different voltages ({low:.2} and {high:.2} V), but the exponents that \
+                 would bring them together cannot be identified"
+            ),
+            "files at one voltage, or the same throttles at voltages at least 8 % apart",
+        ));
+    }
+    let reference = wishes
+        .reference_v
+        .unwrap_or_else(|| hundredths(means.iter().sum::<f64>() / means.len() as f64));
+    let exponents = sound.filter(|_| all);
+    let bring = |y: f64, v: f64, e: &Estimate| y / libm::pow(v / reference, e.exponent);
+    let mut points = Vec::new();
+    for bench in benches {
+        for point in &bench.points {
+            let (thrust, torque) = match exponents {
+                Some((f, q)) => (
+                    bring(point.thrust, point.voltage, f),
+                    bring(point.torque, point.voltage, q),
+                ),
+                None => (point.thrust, point.torque),
+            };
+            points.push(Placed {
+                point,
+                file: &bench.file,
+                thrust,
+                torque,
+            });
+        }
+    }
+    Ok((points, exponents.map(|_| reference)))
+}
+
+/// Rounds to a hundredth.
+pub fn hundredths(x: f64) -> f64 {
+    (100.0 * x).round() / 100.0
+}
+
+/// The square that both rotors were measured over, rounded inwards to a ten-thousandth.
+fn inside([upper, lower]: [[f64; 2]; 2]) -> ThrottleBox {
+    let min = upper[0].max(lower[0]).max(0.0);
+    let max = upper[1].min(lower[1]).min(1.0);
+    ThrottleBox {
+        min: (1e4 * min - 1e-6).ceil() / 1e4,
+        max: (1e4 * max + 1e-6).floor() / 1e4,
+    }
+}
+
+/// Takes the user's box, and warns where it leaves the measured one.
+fn beyond(wished: ThrottleBox, measured: [[f64; 2]; 2], warnings: &mut Vec<String>) -> ThrottleBox {
+    let known = inside(measured);
+    if wished.min < known.min - 1e-9 || wished.max > known.max + 1e-9 {
+        warnings.push(format!(
+            "throttle {}..{} goes beyond the measured {}..{}: the map is extrapolated there",
+            wished.min, wished.max, known.min, known.max
+        ));
+    }
+    wished
+}
+
+/// Rows that stand out of a robust fit of either channel. None if the basis is not determined: the reason follows
+/// when the basis is chosen.
+fn stand_out(basis: Basis, points: &[Placed], throttle_box: ThrottleBox) -> Vec<Outlier> {
+    let Ok(design) = Design::new(basis, &places(points), throttle_box) else {
+        return Vec::new();
+    };
+    let [thrust, torque] = channels(points).map(|y| robust::judge(&design, &y));
+    let outlier = |(i, p): (usize, &Placed)| Outlier {
+        file: p.file.to_string(),
+        line: p.point.line,
+        u: p.point.u,
+        l: p.point.l,
+        thrust_residual: thrust.residuals[i],
+        thrust_deviations: thrust.deviations(i),
+        torque_residual: torque.residuals[i],
+        torque_deviations: torque.deviations(i),
+    };
+    let named = points
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| thrust.stands_out(*i) || torque.stands_out(*i));
+    named.map(outlier).collect()
+}
+
+/// Refuses files that each fit well but not together.
+fn one_pair(
+    basis: Basis,
+    points: &[Placed],
+    throttle_box: ThrottleBox,
+    fits: &[Fit; 2],
+) -> Result<(), Refusal> {
+    let mut files: Vec<&str> = points.iter().map(|p| p.file).collect();
+    files.dedup();
+    if files.len() < 2 {
+        return Ok(());
+    }
+    let (mut sse, mut n) = (0.0, 0);
+    for file in &files {
+        let own: Vec<usize> = (0..points.len()).filter(|&i| points[i].file == *file).collect();
+        let at: Vec<[f64; 2]> = own
+            .iter()
+            .map(|&i| [points[i].point.u, points[i].point.l])
+            .collect();
+        let Ok(design) = Design::new(basis, &at, inside(range(&at))) else {
+            continue;
+        };
+        let alone = fit(
+            &design,
+            &own.iter().map(|&i| points[i].thrust).collect::<Vec<_>>(),
+            throttle_box,
+        );
+        sse += alone.residuals.iter().map(|e| e * e).sum::<f64>();
+        n += own.len();
+    }
+    let apart = (sse / n.max(1) as f64).sqrt();
+    let together = fits[0].residual_rms;
+    if n == points.len() && together > 2.0 * apart && together > 0.02 * fits[0].full_scale {
+        return Err(Refusal::general(
+            format!(
+                "the files do not describe one pair: together their thrust leaves a residual of {together:.3} N \
+                 rms, each by itself {apart:.3} N ({})",
+                files.join(", ")
+            ),
+            "files of one pair at one spacing; run each pair by itself",
+        ));
+    }
+    Ok(())
+}
+
+/// The idle of a map that folds: the least one, rounded up to 0.005.
+fn raised(fold: &Fold, label: &dyn Fn() -> String, warnings: &mut Vec<String>) -> Result<f64, Refusal> {
+    let [u, l] = fold.least_det_at;
+    let Some(least) = fold.least_idle else {
+        return Err(Refusal::of(
+            label(),
+            format!(
+                "the map folds whatever the idle: det J = {:.3} at ({u:.2}, {l:.2})",
+                fold.least_det
+            ),
+            "--monotone, another basis, or data without outliers (--robust)",
+        ));
+    };
+    let min = (least * 200.0 - 1e-9).ceil() / 200.0;
+    warnings.push(format!(
+        "throttle.min is raised from {} to {min}: det J falls to {:.3} at (u, l) = ({u:.3}, {l:.3}), the least idle \
+         without fold is {least:.4}; --monotone would keep the idle",
+        fold.commanded.min, fold.least_det
+    ));
+    Ok(min)
+}
+
+fn judge_quality(thrust: &Fit, torque: &Fit, warnings: &mut Vec<String>) {
+    for (name, fit) in [("thrust", thrust), ("torque", torque)] {
+        if fit.r2 < 0.98 {
+            warnings.push(format!("{name} is poorly described: R2 = {:.4}", fit.r2));
+        }
+        let weak = fit
+            .coefficients
+            .iter()
+            .zip(&fit.ci95)
+            .filter(|(c, ci)| c.abs() < **ci)
+            .count();
+        if weak > 0 {
+            warnings.push(format!(
+                "{weak} of {} {name} coefficients are smaller than their interval: trust the map inside the \
+                 measured range, not its single terms",
+                fit.coefficients.len()
+            ));
+        }
+    }
+}

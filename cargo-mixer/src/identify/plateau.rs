@@ -1,0 +1,107 @@
+//! Streaming logs: many rows per command, most of them alike.
+//!
+//! Successive rows of a streaming log share their noise, and the first ones after a change of command show a rotor
+//! still speeding up. Fitted row by row they would give intervals several times too narrow around a biased map. So
+//! each plateau of constant command becomes one point, the mean of its rows after a settling time; rows of ramps
+//! between plateaus are dropped. Each channel's mean is over the rows where it is not blank.
+
+use super::read::Sample;
+
+/// Fewer rows than this make no plateau.
+const PLATEAU_ROWS: usize = 5;
+/// Two commands closer than this are the same (1 us of 1000).
+const SAME_COMMAND: f64 = 1e-3;
+
+/// Whether most rows stand in plateaus.
+pub fn is_streaming(samples: &[Sample]) -> bool {
+    let in_plateaus: usize = runs(samples)
+        .map(<[Sample]>::len)
+        .filter(|&n| n >= PLATEAU_ROWS)
+        .sum();
+    2 * in_plateaus > samples.len()
+}
+
+/// One mean per plateau, and the number of rows dropped. `settle` is the part of a plateau that is left out at its
+/// beginning, in [0, 1).
+pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
+    let mut points = Vec::new();
+    let mut dropped = 0;
+    for run in runs(samples) {
+        let skip = match run.len() {
+            n if n < PLATEAU_ROWS => n,
+            n => ((n as f64 * settle).ceil() as usize).min(n - 1),
+        };
+        dropped += skip;
+        let rows = &run[skip..];
+        if rows.is_empty() {
+            continue;
+        }
+        let mean = |of: &dyn Fn(&Sample) -> f64| {
+            let measured = rows.iter().map(of).filter(|x| !x.is_nan());
+            let (sum, count) = measured.fold((0.0, 0), |(sum, count), x| (sum + x, count + 1));
+            if count == 0 { f64::NAN } else { sum / count as f64 }
+        };
+        points.push(Sample {
+            line: rows[0].line,
+            throttle: [0, 1].map(|r| mean(&|s| s.throttle[r])),
+            thrust: mean(&|s| s.thrust),
+            torque: mean(&|s| s.torque),
+            rotor_thrust: [0, 1].map(|r| mean(&|s| s.rotor_thrust[r])),
+            rotor_torque: [0, 1].map(|r| mean(&|s| s.rotor_torque[r])),
+            voltage: mean(&|s| s.voltage),
+        });
+    }
+    (points, dropped)
+}
+
+/// Stretches of rows with one command, compared with the stretch's first row.
+fn runs(samples: &[Sample]) -> impl Iterator<Item = &[Sample]> {
+    let same = |a: f64, b: f64| (a.is_nan() && b.is_nan()) || (a - b).abs() < SAME_COMMAND;
+    let mut rest = samples;
+    std::iter::from_fn(move || {
+        let first = rest.first()?;
+        let alike = |s: &&Sample| (0..2).all(|r| same(s.throttle[r], first.throttle[r]));
+        let (run, after) = rest.split_at(rest.iter().take_while(alike).count().max(1));
+        rest = after;
+        Some(run)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(line: u64, u: f64, thrust: f64) -> Sample {
+        Sample {
+            line,
+            throttle: [u, 0.5],
+            thrust,
+            torque: f64::NAN,
+            rotor_thrust: [f64::NAN; 2],
+            rotor_torque: [f64::NAN; 2],
+            voltage: f64::NAN,
+        }
+    }
+
+    #[test]
+    fn plateaus_become_means_without_their_settling_rows() {
+        let mut rows: Vec<Sample> = (0..10)
+            .map(|k| sample(k, 0.2, if k < 4 { 99.0 } else { 1.0 }))
+            .collect();
+        rows[6].thrust = f64::NAN; // a blank
+        rows.extend((10..13).map(|k| sample(k, 0.2 + 0.01 * k as f64, 50.0))); // a ramp
+        rows.extend((13..23).map(|k| sample(k, 0.5, 2.0)));
+        assert!(is_streaming(&rows));
+        let (points, dropped) = means(&rows, 0.4);
+        let seen: Vec<(u64, f64, f64)> = points.iter().map(|p| (p.line, p.throttle[0], p.thrust)).collect();
+        assert_eq!(seen, [(4, 0.2, 1.0), (17, 0.5, 2.0)]);
+        assert_eq!(dropped, 4 + 3 + 4);
+        assert!(points[0].torque.is_nan());
+    }
+
+    #[test]
+    fn a_map_of_single_rows_is_no_streaming_log() {
+        let rows: Vec<Sample> = (0..100).map(|k| sample(k, 0.01 * (k / 2) as f64, 1.0)).collect();
+        assert!(!is_streaming(&rows));
+    }
+}

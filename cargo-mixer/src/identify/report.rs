@@ -1,0 +1,237 @@
+//! The report on standard output, at most 100 columns wide.
+
+use std::fmt::Write as _;
+
+use super::cross::Candidate;
+use super::fit::Fit;
+use super::fragment::{exponent_line, provenance, wrapped};
+use super::identified::Identified;
+use super::pair::Pair;
+use super::voltage::Exponent;
+
+/// The whole report.
+pub fn text(identified: &Identified) -> String {
+    let mut out = String::new();
+    // Writing to a String cannot fail; the results are dropped.
+    let _ = write_report(&mut out, identified);
+    out
+}
+
+fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
+    writeln!(out, "Data")?;
+    for file in &id.files {
+        paragraph(out, "  ", &file.file)?;
+        paragraph(out, "    ", &provenance(file))?;
+        let signs = |signs: &[f64]| {
+            signs
+                .iter()
+                .map(|s| if *s < 0.0 { "-" } else { "+" })
+                .collect::<Vec<_>>()
+                .join(",")
+        };
+        let s = &file.signs;
+        let mut line = format!("signs applied: thrust {} ({})", signs(&s.thrust), s.thrust_policy);
+        if !s.torque.is_empty() {
+            let _ = write!(line, ", torque {} ({})", signs(&s.torque), s.torque_policy);
+        }
+        paragraph(out, "    ", &line)?;
+        for note in &file.notes {
+            paragraph(out, "    ", note)?;
+        }
+    }
+    if let Some(pair) = &id.pair {
+        write_pair(out, pair)?;
+    }
+    if let Some(v) = &id.voltage {
+        writeln!(
+            out,
+            "\nVoltage  {:.2} to {:.2} V, mean {:.2} V",
+            v.range_v[0], v.range_v[1], v.mean_v
+        )?;
+        for (name, exponent) in [("thrust", &v.thrust), ("torque", &v.torque)] {
+            match exponent {
+                Exponent::Identified(e) => {
+                    paragraph(out, "  ", &format!("{name}: {}", exponent_line(e)))?;
+                    if let Some([low, high]) = e.low_and_high_throttle {
+                        paragraph(
+                            out,
+                            "    ",
+                            &format!(
+                                "median {low:.2} in the lower half of the throttle range, {high:.2} above"
+                            ),
+                        )?;
+                    }
+                }
+                Exponent::Refused { reason, needed } => {
+                    paragraph(out, "  ", &format!("{name}: no exponent: {reason}"))?;
+                    paragraph(out, "    ", &format!("needed: {needed}"))?;
+                }
+                Exponent::NotMeasured => writeln!(out, "  {name}: not measured")?,
+            }
+        }
+    }
+    if !id.warnings.is_empty() {
+        writeln!(out, "\nTo know")?;
+        for warning in &id.warnings {
+            paragraph(out, "  * ", warning)?;
+        }
+    }
+    Ok(())
+}
+
+/// Wraps text to 100 columns behind an indentation.
+fn paragraph(out: &mut String, indent: &str, text: &str) -> std::fmt::Result {
+    let blank = " ".repeat(indent.len());
+    for (k, line) in wrapped(text, 100 - indent.len()).iter().enumerate() {
+        writeln!(out, "{}{line}", if k == 0 { indent } else { &blank })?;
+    }
+    Ok(())
+}
+
+fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
+    writeln!(out, "\nBasis: error in cross-validation, % of full scale")?;
+    writeln!(
+        out,
+        "                        leave one point out    leave one throttle level out"
+    )?;
+    writeln!(
+        out,
+        "               terms    thrust    torque       thrust    torque"
+    )?;
+    for candidate in &pair.cross_validation {
+        write_candidate(out, candidate)?;
+    }
+    writeln!(out, "\nModel: {}", pair.basis.name())?;
+    writeln!(out, "           thrust, N                            torque, N m")?;
+    writeln!(
+        out,
+        "           estimate      +- 95 %                estimate      +- 95 %"
+    )?;
+    for (k, term) in pair.terms.iter().enumerate() {
+        let cell = |f: &Fit| format!("{:>12.5} {:>12.5}", f.coefficients[k], f.ci95[k]);
+        writeln!(
+            out,
+            "  {term:<6} {}            {}",
+            cell(&pair.thrust),
+            cell(&pair.torque)
+        )?;
+    }
+    writeln!(out)?;
+    let both = |of: fn(&Fit) -> f64| (of(&pair.thrust), of(&pair.torque));
+    let rows: [(&str, (f64, f64)); 8] = [
+        ("R2", both(|f| f.r2)),
+        ("residual rms", both(|f| f.residual_rms)),
+        ("residual maximum", both(|f| f.residual_max)),
+        ("leave-one-out rms", both(|f| f.leave_one_out_rms)),
+        (
+            "  % of full scale",
+            both(|f| 100.0 * f.leave_one_out_rms / f.full_scale),
+        ),
+        ("full scale", both(|f| f.full_scale)),
+        ("prediction +- least", both(|f| f.prediction.least)),
+        ("prediction +- greatest", both(|f| f.prediction.greatest)),
+    ];
+    for (name, (thrust, torque)) in rows {
+        writeln!(
+            out,
+            "  {name:<24}{thrust:>12.5} N  {torque:>16.5} {}",
+            if name == "R2" { "" } else { "N m" }
+        )?;
+    }
+    let [u, l] = pair.thrust.prediction.greatest_at;
+    writeln!(
+        out,
+        "  {} points, {} degrees of freedom, condition number {:.1}; prediction widest at ({u:.2}, {l:.2})",
+        pair.thrust.points, pair.thrust.degrees_of_freedom, pair.thrust.condition_number
+    )?;
+    if let Some(v) = pair.normalised_to_v {
+        writeln!(out, "  all points brought to {v} V by the exponents below")?;
+    }
+
+    writeln!(
+        out,
+        "\nRows that stand out: {}",
+        if pair.outliers.is_empty() { "none" } else { "" }
+    )?;
+    for o in &pair.outliers {
+        paragraph(out, "  ", &format!("{}:{}", o.file, o.line))?;
+        writeln!(
+            out,
+            "    at ({:.3}, {:.3}): thrust {:+.3} N ({:+.0} sigma), torque {:+.4} N m ({:+.0} sigma){}",
+            o.u,
+            o.l,
+            o.thrust_residual,
+            o.thrust_deviations,
+            o.torque_residual,
+            o.torque_deviations,
+            if pair.outliers_left_out { ", left out" } else { "" }
+        )?;
+    }
+
+    let fold = &pair.fold;
+    let [u, l] = fold.least_det_at;
+    writeln!(
+        out,
+        "\nFold in the box {} .. {}",
+        fold.commanded.min, fold.commanded.max
+    )?;
+    if !fold.folds {
+        writeln!(
+            out,
+            "  none: det J > 0 is proven; least {:.4} at ({u:.3}, {l:.3})",
+            fold.least_det
+        )?;
+    } else {
+        writeln!(out, "  det J falls to {:.4} at ({u:.3}, {l:.3})", fold.least_det)?;
+        if let Some([u, l]) = fold.region {
+            writeln!(
+                out,
+                "  det J <= 0 within u {:.3} .. {:.3}, l {:.3} .. {:.3}",
+                u[0], u[1], l[0], l[1]
+            )?;
+        }
+        match fold.least_idle {
+            Some(idle) => writeln!(out, "  least idle without fold: {idle:.4}")?,
+            None => writeln!(out, "  no idle up to 0.9 of the range is without fold")?,
+        }
+    }
+    if let Some(cost) = &pair.monotone {
+        let change = |free: f64, now: f64| 100.0 * (now / free - 1.0);
+        writeln!(
+            out,
+            "  kept positive (--monotone): residual rms {:.4} -> {:.4} N ({:+.1} %), {:.5} -> {:.5} N m ({:+.1} %)",
+            cost.free_thrust_rms,
+            pair.thrust.residual_rms,
+            change(cost.free_thrust_rms, pair.thrust.residual_rms),
+            cost.free_torque_rms,
+            pair.torque.residual_rms,
+            change(cost.free_torque_rms, pair.torque.residual_rms)
+        )?;
+    }
+    writeln!(out, "  throttle {} .. {}", pair.throttle.min, pair.throttle.max)
+}
+
+fn write_candidate(out: &mut String, c: &Candidate) -> std::fmt::Result {
+    let name = c.basis.name();
+    match (&c.errors, &c.refused) {
+        (Some(e), _) => writeln!(
+            out,
+            "  {name:<12} {:>4}    {:>7.2}   {:>7.2}      {:>7.2}   {:>7.2}{}",
+            c.terms,
+            e.thrust_leave_one_out,
+            e.torque_leave_one_out,
+            e.thrust_leave_level_out,
+            e.torque_leave_level_out,
+            if c.chosen { "   <- chosen" } else { "" }
+        ),
+        (None, reason) => {
+            let chosen = if c.chosen { " <- chosen" } else { "" };
+            let reason = reason.as_deref().unwrap_or_default();
+            paragraph(
+                out,
+                &format!("  {name:<12} {:>4}    ", c.terms),
+                &format!("{reason}{chosen}"),
+            )
+        }
+    }
+}

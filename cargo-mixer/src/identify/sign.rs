@@ -1,0 +1,363 @@
+//! Signs of thrust and torque, and the sum over both rotors.
+//!
+//! The file's thrust is positive upward and its torque positive where the lower rotor outweighs the upper: the upper
+//! rotor then turns clockwise seen from above and drags the airframe counter-clockwise, so torque falls with u and
+//! rises with l. A bench says neither: signs depend on the mounting of its sensors.
+//!
+//! * auto (reported): thrust is made positive; a torque column per rotor is made negative above and positive below; a
+//!   column of total torque is turned so that it rises with l and falls with u.
+//! * given (`--thrust-sign`, `--torque-sign`): the columns are multiplied by the signs given. Should torque then rise
+//!   with u, the bench had the upper rotor turning counter-clockwise; the map is written mirrored, for an upper rotor
+//!   that turns clockwise, which is the same pair seen in a mirror.
+//!
+//! A torque that rises with both throttles is a sum of magnitudes and no torque on the airframe: it is refused.
+
+use serde::Serialize;
+
+use super::header::Columns;
+use super::read::Sample;
+use super::refusal::Refusal;
+
+/// How to find a sign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SignChoice {
+    /// From the data, reported.
+    Auto,
+    /// These factors, for the upper and the lower rotor's column; the first for a total.
+    Given([f64; 2]),
+}
+
+/// Signs of both channels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SignPolicy {
+    /// Of thrust.
+    pub thrust: SignChoice,
+    /// Of torque.
+    pub torque: SignChoice,
+}
+
+/// The signs that were applied.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Signs {
+    /// Factor of the thrust column(s).
+    pub thrust: Vec<f64>,
+    /// Factor of the torque column(s); empty where torque is not measured.
+    pub torque: Vec<f64>,
+    /// `auto` or `given`.
+    pub thrust_policy: &'static str,
+    /// `auto` or `given`.
+    pub torque_policy: &'static str,
+}
+
+fn policy_word(choice: SignChoice) -> &'static str {
+    if choice == SignChoice::Auto {
+        "auto"
+    } else {
+        "given"
+    }
+}
+
+/// +1 or -1, the sign of the sum of what is not NaN.
+fn sign_of_sum(values: impl Iterator<Item = f64>) -> f64 {
+    if values.filter(|x| !x.is_nan()).sum::<f64>() < 0.0 {
+        -1.0
+    } else {
+        1.0
+    }
+}
+
+/// Values of a channel, one column or one per rotor, times signs.
+fn signed(
+    samples: &[Sample],
+    of: impl Fn(&Sample) -> (f64, [f64; 2]),
+    total: bool,
+    signs: &[f64],
+) -> Vec<f64> {
+    let value = |s: &Sample| match of(s) {
+        (whole, _) if total => signs[0] * whole,
+        (_, [upper, lower]) => signs[0] * upper + signs[1] * lower,
+    };
+    samples.iter().map(value).collect()
+}
+
+/// Sums of a pair, (thrust, torque) per sample.
+pub fn pair(
+    file: &str,
+    columns: &Columns,
+    samples: &[Sample],
+    policy: &SignPolicy,
+    notes: &mut Vec<String>,
+) -> Result<(Signs, Vec<(f64, f64)>), Refusal> {
+    let total_thrust = columns.thrust.is_some();
+    if !total_thrust && columns.rotor_thrust.iter().any(Option::is_none) {
+        return Err(Refusal::of(
+            file,
+            "thrust of one rotor only, though both turn",
+            "a column of total thrust, or one per rotor",
+        ));
+    }
+    let thrust_signs = match policy.thrust {
+        SignChoice::Given(signs) => signs,
+        SignChoice::Auto if total_thrust => [sign_of_sum(samples.iter().map(|s| s.thrust)); 2],
+        SignChoice::Auto => [0, 1].map(|r| sign_of_sum(samples.iter().map(|s| s.rotor_thrust[r]))),
+    };
+    let total_torque = columns.torque.is_some();
+    if !total_torque && columns.rotor_torque.iter().any(Option::is_none) {
+        return Err(Refusal::of(
+            format!("{file}:1"),
+            match columns.rotor_torque.iter().flatten().next() {
+                Some(column) => format!("torque of one rotor only ({:?})", column.name),
+                None => "no torque column".to_string(),
+            },
+            "the torque of the whole pair, or of each rotor (--column torque=HEADER)",
+        ));
+    }
+    let mut torque_signs = match policy.torque {
+        SignChoice::Given(signs) => signs,
+        SignChoice::Auto if total_torque => [1.0; 2],
+        SignChoice::Auto => {
+            let signs = [0, 1].map(|r| sign_of_sum(samples.iter().map(|s| s.rotor_torque[r])));
+            [-signs[0], signs[1]]
+        }
+    };
+    let mut torque = signed(
+        samples,
+        |s| (s.torque, s.rotor_torque),
+        total_torque,
+        &torque_signs,
+    );
+    constant(file, &torque)?;
+    let [by_upper, by_lower] = slopes(samples, &torque);
+    if by_upper * by_lower > 0.0
+        && by_upper.abs().min(by_lower.abs()) > 0.2 * by_upper.abs().max(by_lower.abs())
+    {
+        return Err(Refusal::of(
+            file,
+            format!(
+                "torque grows with both throttles ({by_upper:+.3} N m u2, {by_lower:+.3} N m l2): \
+                 a sum of magnitudes, not the torque that a contra-rotating pair puts on the airframe"
+            ),
+            "the net torque, or one column per rotor with --torque-sign=-,+",
+        ));
+    }
+    if by_lower < by_upper {
+        torque.iter_mut().for_each(|q| *q = -*q);
+        torque_signs = torque_signs.map(|s| -s);
+        if policy.torque != SignChoice::Auto {
+            notes.push(
+                "by the signs given the upper rotor turned counter-clockwise on the bench; the map is written \
+                 mirrored, for one that turns clockwise"
+                    .into(),
+            );
+        }
+    }
+    let thrust = signed(
+        samples,
+        |s| (s.thrust, s.rotor_thrust),
+        total_thrust,
+        &thrust_signs,
+    );
+    if !total_thrust && !columns.sides_named {
+        compare_sides(samples, thrust_signs, notes);
+    }
+    let signs = Signs {
+        thrust: thrust_signs[..if total_thrust { 1 } else { 2 }].to_vec(),
+        torque: torque_signs[..if total_torque { 1 } else { 2 }].to_vec(),
+        thrust_policy: policy_word(policy.thrust),
+        torque_policy: policy_word(policy.torque),
+    };
+    Ok((signs, thrust.into_iter().zip(torque).collect()))
+}
+
+/// (thrust, torque) of a single rotor, torque as a magnitude.
+pub fn single(
+    columns: &Columns,
+    rotor: usize,
+    samples: &[Sample],
+    policy: &SignPolicy,
+) -> (Signs, Vec<(f64, f64)>) {
+    let own_thrust = columns.rotor_thrust[rotor].is_some();
+    let own_torque = columns.rotor_torque[rotor].is_some();
+    let thrust = |s: &Sample| {
+        if own_thrust {
+            s.rotor_thrust[rotor]
+        } else {
+            s.thrust
+        }
+    };
+    let torque = |s: &Sample| {
+        if own_torque {
+            s.rotor_torque[rotor]
+        } else {
+            s.torque
+        }
+    };
+    let sign = |choice: SignChoice, automatic: f64| match choice {
+        SignChoice::Auto => automatic,
+        SignChoice::Given(signs) => signs[rotor],
+    };
+    let thrust_sign = sign(policy.thrust, sign_of_sum(samples.iter().map(thrust)));
+    let torque_sign = sign_of_sum(samples.iter().map(torque));
+    let has_torque = own_torque || columns.torque.is_some();
+    let signs = Signs {
+        thrust: vec![thrust_sign],
+        torque: if has_torque { vec![torque_sign] } else { Vec::new() },
+        thrust_policy: policy_word(policy.thrust),
+        torque_policy: "auto",
+    };
+    (
+        signs,
+        samples
+            .iter()
+            .map(|s| (thrust_sign * thrust(s), torque_sign * torque(s)))
+            .collect(),
+    )
+}
+
+fn constant(file: &str, torque: &[f64]) -> Result<(), Refusal> {
+    let measured = || torque.iter().copied().filter(|q| !q.is_nan());
+    let (low, high) = measured().fold((f64::MAX, f64::MIN), |(a, b), q| (a.min(q), b.max(q)));
+    let needed = "torque measured at every point: without it yaw cannot be modelled";
+    if low > high {
+        return Err(Refusal::of(file, "the torque is empty in every row", needed));
+    }
+    if high - low <= 1e-6 * high.abs().max(low.abs()) {
+        return Err(Refusal::of(
+            file,
+            format!("the torque is constant at {low} N m in every row"),
+            needed,
+        ));
+    }
+    Ok(())
+}
+
+/// [a, b] of the least-squares fit Q = a u2 + b l2.
+fn slopes(samples: &[Sample], torque: &[f64]) -> [f64; 2] {
+    let (mut uu, mut ul, mut ll, mut uq, mut lq) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (s, &q) in samples.iter().zip(torque) {
+        let [u, l] = s.throttle.map(|t| t * t);
+        if (q + u + l).is_finite() {
+            uu += u * u;
+            ul += u * l;
+            ll += l * l;
+            uq += u * q;
+            lq += l * q;
+        }
+    }
+    let det = uu * ll - ul * ul;
+    if det <= 1e-12 * uu * ll {
+        return [-1.0, 1.0]; // proportional throttles: the design is refused later, with its own reason
+    }
+    [(uq * ll - lq * ul) / det, (lq * uu - uq * ul) / det]
+}
+
+/// The rotor in the wake gives clearly less at equal commands: says so when that is the first one.
+fn compare_sides(samples: &[Sample], signs: [f64; 2], notes: &mut Vec<String>) {
+    let level = samples
+        .iter()
+        .filter(|s| (s.throttle[0] - s.throttle[1]).abs() < 0.05);
+    let (upper, lower) = level.fold((0.0, 0.0), |(a, b), s| {
+        (a + signs[0] * s.rotor_thrust[0], b + signs[1] * s.rotor_thrust[1])
+    });
+    if upper < 0.9 * lower {
+        notes.push(format!(
+            "at equal commands the rotor taken as upper gives {:.2} of the other's thrust: \
+             it is probably the one in the wake (--swap exchanges them)",
+            upper / lower
+        ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::header::{ByHand, Columns};
+
+    fn columns(line: &str) -> Columns {
+        let headers: Vec<String> = line.split(',').map(str::to_string).collect();
+        Columns::find("b.csv", &headers, &ByHand::default()).expect("a header")
+    }
+
+    /// Rotor torques `a` u2 and `b` l2, total their sum.
+    fn samples(a: f64, b: f64) -> Vec<Sample> {
+        let at = |u: f64, l: f64| Sample {
+            line: 1,
+            throttle: [u, l],
+            thrust: -(u + l),
+            torque: a * u * u + b * l * l,
+            rotor_thrust: [u, -0.5 * l],
+            rotor_torque: [a * u * u, b * l * l],
+            voltage: f64::NAN,
+        };
+        [(0.2, 0.8), (0.8, 0.2), (0.5, 0.5), (0.9, 0.9), (0.2, 0.3)]
+            .map(|(u, l)| at(u, l))
+            .to_vec()
+    }
+
+    const AUTO: SignPolicy = SignPolicy {
+        thrust: SignChoice::Auto,
+        torque: SignChoice::Auto,
+    };
+
+    #[test]
+    fn totals_are_turned_to_the_convention() {
+        let c = columns("upper,lower,thrust_n,torque_nm");
+        for (a, b, sign) in [(-1.0, 0.8, 1.0), (1.0, -0.8, -1.0)] {
+            let s = samples(a, b);
+            let (signs, sums) = pair("b.csv", &c, &s, &AUTO, &mut Vec::new()).expect("signs");
+            assert_eq!((signs.thrust, signs.torque), (vec![-1.0], vec![sign]));
+            assert!(sums[0].1 > 0.0 && sums[1].1 < 0.0 && sums[0].0 > 0.0);
+        }
+    }
+
+    #[test]
+    fn rotor_columns_each_get_their_sign() {
+        let c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
+        for (a, b) in [(1.0, 0.8), (-1.0, 0.8), (-1.0, -0.8)] {
+            let mut notes = Vec::new();
+            let (_, sums) = pair("b.csv", &c, &samples(a, b), &AUTO, &mut notes).expect("signs");
+            assert!((sums[0].1 - (-0.04 + 0.8 * 0.64)).abs() < 1e-12, "{a} {b}");
+            assert!((sums[0].0 - (0.2 + 0.4)).abs() < 1e-12);
+            assert!(notes.is_empty(), "{notes:?}");
+        }
+    }
+
+    #[test]
+    fn magnitudes_are_refused_and_given_signs_help() {
+        let c = columns("upper,lower,thrust_n,torque_nm");
+        let error = pair("b.csv", &c, &samples(1.0, 0.8), &AUTO, &mut Vec::new()).unwrap_err();
+        assert!(error.reason.contains("sum of magnitudes"), "{error}");
+        let c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
+        let given = SignPolicy {
+            torque: SignChoice::Given([1.0, -1.0]),
+            ..AUTO
+        };
+        let mut notes = Vec::new();
+        let (signs, sums) = pair("b.csv", &c, &samples(1.0, 0.8), &given, &mut notes).expect("signs");
+        assert!(notes[0].contains("mirrored"), "{notes:?}");
+        assert_eq!(signs.torque, [-1.0, 1.0]);
+        assert!(sums[0].1 > 0.0);
+    }
+
+    #[test]
+    fn constant_and_missing_torque_are_refused() {
+        let c = columns("upper,lower,thrust_n,torque_nm");
+        let mut s = samples(-1.0, 0.8);
+        s.iter_mut().for_each(|s| s.torque = 0.25);
+        let error = pair("b.csv", &c, &s, &AUTO, &mut Vec::new()).unwrap_err();
+        assert!(error.reason.contains("constant at 0.25"), "{error}");
+        let c = columns("upper,lower,thrust_n");
+        let error = pair("b.csv", &c, &s, &AUTO, &mut Vec::new()).unwrap_err();
+        assert!(error.reason.contains("no torque column"), "{error}");
+    }
+
+    #[test]
+    fn the_rotor_in_the_wake_is_noticed() {
+        let c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
+        let mut s = samples(-1.0, 0.8);
+        s.iter_mut().for_each(|s| s.rotor_thrust[1] *= 4.0);
+        let mut notes = Vec::new();
+        pair("b.csv", &c, &s, &AUTO, &mut notes).expect("signs");
+        assert!(notes[0].contains("--swap"), "{notes:?}");
+    }
+}

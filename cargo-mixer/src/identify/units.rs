@@ -1,0 +1,150 @@
+//! Units as bench tools write them, and their factor to SI.
+//!
+//! The factors are exact by definition (standard gravity 9.80665 m/s2, pound 0.45359237 kg, inch 25.4 mm).
+
+/// Standard gravity, m/s2.
+const G: f64 = 9.80665;
+const POUND: f64 = 0.453_592_37 * G;
+const OUNCE: f64 = POUND / 16.0;
+const INCH: f64 = 0.0254;
+
+/// What a column measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// A rotor's command.
+    Throttle,
+    /// Thrust, to N.
+    Thrust,
+    /// Torque, to N m.
+    Torque,
+    /// Supply voltage, to V.
+    Voltage,
+    /// Time since the log's start, to s.
+    Time,
+}
+
+/// How a throttle column is to be read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scale {
+    /// Multiply by this to reach the SI unit (or throttle in [0, 1]).
+    Factor(f64),
+    /// A pulse width; multiply to reach microseconds, then apply the PWM range.
+    Pulse(f64),
+}
+
+/// Spells a name or a unit one way: micro and dot signs, blanks and case.
+pub fn spelled(text: &str) -> String {
+    let folded: String = text
+        .chars()
+        .map(|c| match c {
+            '\u{b5}' | '\u{3bc}' => 'u',
+            '\u{b7}' | '\u{22c5}' | '\u{2219}' | '\u{2022}' | '\u{fffd}' => '·',
+            '\u{a0}' | '_' => ' ',
+            c => c,
+        })
+        .collect();
+    folded
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+        .to_lowercase()
+}
+
+/// The scale of `unit` for this quantity, or nothing if the unit does not measure it.
+pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
+    let unit: String = spelled(unit)
+        .chars()
+        .filter(|c| !matches!(c, '·' | '*' | '-' | '.' | ' '))
+        .collect();
+    let factor = match quantity {
+        Quantity::Throttle => match unit.as_str() {
+            "us" | "pwm" => return Some(Scale::Pulse(1.0)),
+            "ms" => return Some(Scale::Pulse(1000.0)),
+            "%" | "percent" => 0.01,
+            "1" | "" => 1.0,
+            _ => return None,
+        },
+        Quantity::Thrust => match unit.as_str() {
+            "n" => 1.0,
+            "mn" => 1e-3,
+            "kn" => 1e3,
+            "g" | "gf" => 1e-3 * G,
+            "kg" | "kgf" => G,
+            "lb" | "lbf" | "lbs" => POUND,
+            "oz" | "ozf" => OUNCE,
+            _ => return None,
+        },
+        Quantity::Torque => match unit.as_str() {
+            "nm" => 1.0,
+            "mnm" => 1e-3,
+            "ncm" => 1e-2,
+            "nmm" => 1e-3,
+            "kgfm" | "kgm" => G,
+            "kgfcm" | "kgcm" => 1e-2 * G,
+            "gfcm" | "gcm" => 1e-5 * G,
+            "lbfin" | "lbin" | "inlb" | "inlbf" => POUND * INCH,
+            "lbfft" | "lbft" | "ftlb" | "ftlbf" => POUND * 12.0 * INCH,
+            "ozfin" | "ozin" | "inoz" | "inozf" => OUNCE * INCH,
+            _ => return None,
+        },
+        Quantity::Voltage => match unit.as_str() {
+            "v" => 1.0,
+            "mv" => 1e-3,
+            _ => return None,
+        },
+        Quantity::Time => match unit.as_str() {
+            "s" | "sec" => 1.0,
+            "ms" => 1e-3,
+            _ => return None,
+        },
+    };
+    Some(Scale::Factor(factor))
+}
+
+/// The units that `scale` knows, for messages.
+pub fn known(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Throttle => "us, %, or none for a throttle in [0, 1]",
+        Quantity::Thrust => "N, mN, gf, kgf, lbf, ozf",
+        Quantity::Torque => "N·m, mN·m, N·cm, N·mm, kgf·m, kgf·cm, gf·cm, lbf·in, lbf·ft, ozf·in",
+        Quantity::Voltage => "V, mV",
+        Quantity::Time => "s, ms",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn factor(quantity: Quantity, unit: &str) -> f64 {
+        match scale(quantity, unit) {
+            Some(Scale::Factor(f)) => f,
+            other => panic!("{unit}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn spellings_of_the_newton_metre_agree() {
+        for unit in ["N·m", "N⋅m", "N-m", "Nm", "N*m", "n m", "N.m"] {
+            assert_eq!(factor(Quantity::Torque, unit), 1.0, "{unit}");
+        }
+    }
+
+    #[test]
+    fn factors_against_published_conversions() {
+        assert!((factor(Quantity::Thrust, "lbf") - 4.448_221_615_260_5).abs() < 1e-12);
+        assert!((factor(Quantity::Thrust, "ozf") - 0.278_013_850_953_781).abs() < 1e-12);
+        assert!((factor(Quantity::Torque, "lbf·in") - 0.112_984_829_027_616_7).abs() < 1e-12);
+        assert!((factor(Quantity::Torque, "ozf·in") - 0.007_061_551_814_226).abs() < 1e-12);
+        assert!((factor(Quantity::Thrust, "gf") - 0.009_806_65).abs() < 1e-15);
+    }
+
+    #[test]
+    fn pulse_widths_and_strangers() {
+        for unit in ["us", "µs", "μs"] {
+            assert_eq!(scale(Quantity::Throttle, unit), Some(Scale::Pulse(1.0)));
+        }
+        assert_eq!(scale(Quantity::Thrust, "gf/W"), None);
+        assert_eq!(scale(Quantity::Torque, "N"), None);
+    }
+}
