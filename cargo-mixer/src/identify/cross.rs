@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::basis::{Basis, ThrottleBox};
 use super::fit::{Deficient, Design, leave_one_out};
+use super::fold;
 
 /// One line of the table.
 #[derive(Debug, Clone, Serialize)]
@@ -21,6 +22,8 @@ pub struct Candidate {
     pub terms: usize,
     /// Errors, or nothing if the points do not determine the basis.
     pub errors: Option<Errors>,
+    /// The least idle without fold in the box, where there is one.
+    pub least_idle: Option<f64>,
     /// Why there are no errors.
     pub refused: Option<String>,
     /// Whether this one was chosen.
@@ -59,9 +62,14 @@ pub fn choose(
     let mut table = Vec::new();
     let mut first_reason = None;
     for basis in Basis::ALL {
+        let mut least_idle = None;
         let (errors, refused) = match Design::new(basis, points, throttle_box) {
             Ok(design) => match errors(&design, points, [thrust, torque], &folds) {
-                Some(errors) => (Some(errors), None),
+                Some(errors) => {
+                    let [f, q] = [thrust, torque].map(|y| design.coefficients(&design.coordinates(y)));
+                    least_idle = fold::least_idle(basis, &f, &q, throttle_box);
+                    (Some(errors), None)
+                }
                 None => (
                     None,
                     Some("not determined without one throttle level".to_string()),
@@ -76,6 +84,7 @@ pub fn choose(
             basis,
             terms: basis.terms(),
             errors,
+            least_idle,
             refused,
             chosen: false,
         });

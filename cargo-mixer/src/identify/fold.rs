@@ -32,10 +32,23 @@ pub struct Fold {
     pub least_det: f64,
     /// Where, (u, l).
     pub least_det_at: [f64; 2],
-    /// The part of the box where det J <= 0: [least, greatest] of u and of l.
-    pub region: Option<[[f64; 2]; 2]>,
+    /// The connected parts of the box where det J <= 0, worst first; none narrower than half a percent of the box.
+    pub regions: Vec<Region>,
     /// The least idle of both rotors, at or above the box's, without fold; none if there is none below 0.9 of full.
     pub least_idle: Option<f64>,
+}
+
+/// A part of the box where the map folds.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Region {
+    /// Least and greatest u in it.
+    pub u: [f64; 2],
+    /// Least and greatest l in it.
+    pub l: [f64; 2],
+    /// Least det J in it.
+    pub least_det: f64,
+    /// Where, (u, l).
+    pub least_det_at: [f64; 2],
 }
 
 /// det J as a polynomial.
@@ -118,33 +131,75 @@ pub fn least_idle(basis: Basis, thrust: &[f64], torque: &[f64], throttle_box: Th
     Some(fine)
 }
 
+/// Steps of the grid on which regions are sought.
+const STEPS: usize = 200;
+
+/// Connected regions of values <= 0 on a square grid (u by rows), by flood fill.
+fn regions(grid: &[f64], mut values: Vec<f64>) -> Vec<Region> {
+    let n = grid.len();
+    let mut found = Vec::new();
+    for seed in 0..values.len() {
+        if values[seed] > 0.0 {
+            continue;
+        }
+        let [u, l] = [grid[seed / n], grid[seed % n]];
+        let mut region = Region {
+            u: [u, u],
+            l: [l, l],
+            least_det: values[seed],
+            least_det_at: [u, l],
+        };
+        let mut open = vec![seed];
+        while let Some(k) = open.pop() {
+            let value = std::mem::replace(&mut values[k], f64::INFINITY);
+            if value > 0.0 {
+                continue;
+            }
+            let (i, j) = (k / n, k % n);
+            let [u, l] = [grid[i], grid[j]];
+            region.u = [region.u[0].min(u), region.u[1].max(u)];
+            region.l = [region.l[0].min(l), region.l[1].max(l)];
+            if value < region.least_det {
+                (region.least_det, region.least_det_at) = (value, [u, l]);
+            }
+            let beside = [
+                (i > 0, k.wrapping_sub(n)),
+                (i + 1 < n, k + n),
+                (j > 0, k.wrapping_sub(1)),
+                (j + 1 < n, k + 1),
+            ];
+            open.extend(
+                beside
+                    .into_iter()
+                    .filter(|(inside, _)| *inside)
+                    .map(|(_, next)| next),
+            );
+        }
+        found.push(region);
+    }
+    found.sort_by(|a, b| a.least_det.total_cmp(&b.least_det));
+    found
+}
+
 /// The report for a map on a box.
 pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: ThrottleBox) -> Fold {
     let det = determinant(&basis.polynomial(thrust), &basis.polynomial(torque));
-    let mut least = (f64::MAX, [commanded.min; 2]);
-    let mut region: Option<[[f64; 2]; 2]> = None;
-    let grid = commanded.grid(200);
-    for u in grid.clone() {
-        for l in grid.clone() {
-            let value = det.at(u, l);
-            if value < least.0 {
-                least = (value, [u, l]);
-            }
-            if value <= 0.0 {
-                let seen = region.unwrap_or([[u, u], [l, l]]);
-                region = Some([
-                    [seen[0][0].min(u), seen[0][1].max(u)],
-                    [seen[1][0].min(l), seen[1][1].max(l)],
-                ]);
-            }
-        }
-    }
+    let grid: Vec<f64> = commanded.grid(STEPS).collect();
+    let values: Vec<f64> = grid
+        .iter()
+        .flat_map(|&u| grid.iter().map(move |&l| (u, l)))
+        .map(|(u, l)| det.at(u, l))
+        .collect();
+    let least = (0..values.len())
+        .min_by(|&a, &b| values[a].total_cmp(&values[b]))
+        .unwrap_or(0);
+    let place = |k: usize| [grid[k / grid.len()], grid[k % grid.len()]];
     Fold {
         commanded,
         folds: det_sign(basis, thrust, torque, commanded) != DetSign::Positive,
-        least_det: least.0,
-        least_det_at: least.1,
-        region,
+        least_det: values[least],
+        least_det_at: place(least),
+        regions: regions(&grid, values),
         least_idle: least_idle(basis, thrust, torque, commanded),
     }
 }
@@ -170,7 +225,8 @@ mod tests {
             "{:?}",
             fold.least_idle
         );
-        let [u, l] = fold.region.expect("a region");
+        assert_eq!(fold.regions.len(), 1);
+        let Region { u, l, .. } = fold.regions[0];
         assert!(
             (u[1] - 0.089).abs() < 0.006 && (l[0] - 0.79).abs() < 0.01 && l[1] == 1.0,
             "{u:?} {l:?}"

@@ -169,7 +169,7 @@ fn write_voltage(out: &mut String, voltage: &Voltage, reference: Option<f64>) ->
             out,
             "# The map holds at about {reference:.2} V (rows from {low:.2} to {high:.2} V)."
         )?;
-        for (name, exponent) in [("thrust", &voltage.thrust), ("torque", &voltage.torque)] {
+        for (name, exponent) in voltage.channels() {
             if let Exponent::Refused { reason, .. } = exponent {
                 for (k, line) in wrapped(&format!("{name}: {reason}"), 100).iter().enumerate() {
                     writeln!(out, "#   {}{line}", if k == 0 { "" } else { "  " })?;

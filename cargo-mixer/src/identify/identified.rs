@@ -169,8 +169,15 @@ fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refus
 }
 
 fn voltage_warnings(voltage: &Voltage) -> Vec<String> {
-    let channels = [("thrust", &voltage.thrust), ("torque", &voltage.torque)];
-    let refused = channels
+    let [low, high] = voltage.range_v;
+    if !voltage.varies() {
+        let sag = 100.0 * (1.0 - low / high);
+        let told =
+            format!("the supply varied by {sag:.1} % ({high:.2} to {low:.2} V), which the map includes");
+        return if sag > 2.0 { vec![told] } else { Vec::new() };
+    }
+    let refused = voltage
+        .channels()
         .into_iter()
         .filter_map(|(name, exponent)| match exponent {
             Exponent::Refused { reason, needed } => Some(format!(

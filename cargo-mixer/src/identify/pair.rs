@@ -76,6 +76,7 @@ pub struct MonotoneCost {
 }
 
 /// A point and the file it comes from.
+#[derive(Clone, Copy)]
 struct Placed<'a> {
     point: &'a Point,
     file: &'a str,
@@ -119,21 +120,16 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         ));
     }
 
-    let judged_in = wishes.basis.unwrap_or(robust::JUDGING);
-    let outliers = stand_out(judged_in, &points, throttle_box);
-    if wishes.robust {
-        points.retain(|p| {
-            !outliers
-                .iter()
-                .any(|o| o.file == p.file && o.line == p.point.line)
-        });
-    } else if !outliers.is_empty() {
-        warnings.push(format!(
-            "{} rows stand out: --robust fits without them",
-            outliers.len()
-        ));
-    }
-    let [thrust, torque] = channels(&points);
+    let suspects = suspects(wishes.basis.unwrap_or(robust::JUDGING), &points, throttle_box);
+    let without = |points: &[Placed], out: &[bool]| -> Vec<Placed> {
+        points
+            .iter()
+            .zip(out)
+            .filter(|(_, out)| !**out)
+            .map(|(p, _)| *p)
+            .collect()
+    };
+    let clean = without(&points, &suspects);
     let deficient = |reason: super::fit::Deficient| {
         Refusal::of(
             label(),
@@ -141,7 +137,9 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
             "a sweep of both throttles independently, best a grid of at least 6 x 6 levels from idle to full",
         )
     };
-    let mut table = cross::choose(&places(&points), &thrust, &torque, throttle_box).map_err(deficient)?;
+    let chosen_on = if wishes.robust { &clean } else { &points };
+    let [thrust, torque] = channels(chosen_on);
+    let mut table = cross::choose(&places(chosen_on), &thrust, &torque, throttle_box).map_err(deficient)?;
     if let Some(basis) = wishes.basis {
         table.retain(|c| c.basis == basis);
         table.iter_mut().for_each(|c| c.chosen = true);
@@ -150,6 +148,20 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         .iter()
         .find(|c| c.chosen)
         .map_or(Basis::Biquadratic, |c| c.basis);
+    let outliers = confirmed(basis, &points, &suspects, &clean, throttle_box);
+    if wishes.robust {
+        let out: Vec<bool> = points
+            .iter()
+            .map(|p| outliers.iter().any(|o| o.is(p.file, p.point.line)))
+            .collect();
+        points = without(&points, &out);
+    } else if !outliers.is_empty() {
+        warnings.push(format!(
+            "{} rows stand out: --robust fits without them",
+            outliers.len()
+        ));
+    }
+    let [thrust, torque] = channels(&points);
     let design = Design::new(basis, &places(&points), throttle_box).map_err(deficient)?;
     let mut fits = [
         fit(&design, &thrust, throttle_box),
@@ -289,28 +301,57 @@ fn beyond(wished: ThrottleBox, measured: [[f64; 2]; 2], warnings: &mut Vec<Strin
     wished
 }
 
-/// Rows that stand out of a robust fit of either channel. None if the basis is not determined: the reason follows
-/// when the basis is chosen.
-fn stand_out(basis: Basis, points: &[Placed], throttle_box: ThrottleBox) -> Vec<Outlier> {
+/// Which rows stand out of a robust fit of either channel. None if the points do not determine the basis: the reason
+/// follows when one is chosen.
+fn suspects(basis: Basis, points: &[Placed], throttle_box: ThrottleBox) -> Vec<bool> {
     let Ok(design) = Design::new(basis, &places(points), throttle_box) else {
+        return vec![false; points.len()];
+    };
+    let judged = channels(points).map(|y| robust::judge(&design, &y));
+    (0..points.len())
+        .map(|i| judged.iter().any(|j| j.stands_out(i)))
+        .collect()
+}
+
+/// The suspects that also stand out of the fit of `basis` to the other rows, `clean`.
+fn confirmed(
+    basis: Basis,
+    points: &[Placed],
+    suspects: &[bool],
+    clean: &[Placed],
+    throttle_box: ThrottleBox,
+) -> Vec<Outlier> {
+    let accused: Vec<&Placed> = points
+        .iter()
+        .zip(suspects)
+        .filter(|(_, s)| **s)
+        .map(|(p, _)| p)
+        .collect();
+    let Ok(design) = Design::new(basis, &places(clean), throttle_box) else {
         return Vec::new();
     };
-    let [thrust, torque] = channels(points).map(|y| robust::judge(&design, &y));
-    let outlier = |(i, p): (usize, &Placed)| Outlier {
-        file: p.file.to_string(),
-        line: p.point.line,
-        u: p.point.u,
-        l: p.point.l,
-        thrust_residual: thrust.residuals[i],
-        thrust_deviations: thrust.deviations(i),
-        torque_residual: torque.residuals[i],
-        torque_deviations: torque.deviations(i),
+    let [thrust, torque] = channels(clean);
+    let against = |y: &[f64], of: fn(&Placed) -> f64| {
+        let rows: Vec<_> = accused.iter().map(|p| ([p.point.u, p.point.l], of(p))).collect();
+        robust::against_the_others(&design, y, &rows)
     };
-    let named = points
+    let (of_thrust, of_torque) = (against(&thrust, |p| p.thrust), against(&torque, |p| p.torque));
+    let outliers = accused
         .iter()
-        .enumerate()
-        .filter(|(i, _)| thrust.stands_out(*i) || torque.stands_out(*i));
-    named.map(outlier).collect()
+        .zip(of_thrust.into_iter().zip(of_torque))
+        .map(|(p, (f, q))| Outlier {
+            file: p.file.to_string(),
+            line: p.point.line,
+            u: p.point.u,
+            l: p.point.l,
+            thrust_residual: f.0,
+            thrust_deviations: f.1,
+            torque_residual: q.0,
+            torque_deviations: q.1,
+        });
+    let stands_out =
+        |o: &Outlier| o.thrust_deviations.abs().max(o.torque_deviations.abs()) > robust::STANDS_OUT;
+    outliers.filter(stands_out).collect()
 }
 
 /// Refuses files that each fit well but not together.

@@ -93,7 +93,10 @@ mod tests {
         rows.extend((13..23).map(|k| sample(k, 0.5, 2.0)));
         assert!(is_streaming(&rows));
         let (points, dropped) = means(&rows, 0.4);
-        let seen: Vec<(u64, f64, f64)> = points.iter().map(|p| (p.line, p.throttle[0], p.thrust)).collect();
+        let seen: Vec<(u64, f64, f64)> = points
+            .iter()
+            .map(|p| (p.line, (1e6 * p.throttle[0]).round() / 1e6, p.thrust))
+            .collect();
         assert_eq!(seen, [(4, 0.2, 1.0), (17, 0.5, 2.0)]);
         assert_eq!(dropped, 4 + 3 + 4);
         assert!(points[0].torque.is_nan());

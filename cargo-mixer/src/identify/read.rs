@@ -136,14 +136,16 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
         decimal_comma: separator == b';',
     };
     loop {
-        // The position is that of the row's first cell: a quoted cell may span lines.
         let more = rows
             .read_byte_record(&mut record)
             .map_err(|e| unreadable(name, &e.to_string()))?;
         if !more {
             return Ok(log);
         }
-        let line = header_line + record.position().map_or(0, csv::Position::line);
+        // The reader stands behind the row's line end (where the row begins it does not know: it skips blank lines
+        // silently). A quoted cell may span lines.
+        let inner = record.iter().flatten().filter(|b| **b == b'\n').count() as u64;
+        let line = header_line + rows.position().line() - 1 - inner;
         if record.iter().all(|cell| cell.trim_ascii().is_empty()) {
             continue;
         }

@@ -48,7 +48,7 @@ fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
             "\nVoltage  {:.2} to {:.2} V, mean {:.2} V",
             v.range_v[0], v.range_v[1], v.mean_v
         )?;
-        for (name, exponent) in [("thrust", &v.thrust), ("torque", &v.torque)] {
+        for (name, exponent) in v.channels() {
             match exponent {
                 Exponent::Identified(e) => {
                     paragraph(out, "  ", &format!("{name}: {}", exponent_line(e)))?;
@@ -118,25 +118,24 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
     }
     writeln!(out)?;
     let both = |of: fn(&Fit) -> f64| (of(&pair.thrust), of(&pair.torque));
-    let rows: [(&str, (f64, f64)); 8] = [
-        ("R2", both(|f| f.r2)),
-        ("residual rms", both(|f| f.residual_rms)),
-        ("residual maximum", both(|f| f.residual_max)),
-        ("leave-one-out rms", both(|f| f.leave_one_out_rms)),
+    let si = ["N", "N m"];
+    let rows = [
+        ("R2", both(|f| f.r2), ["", ""]),
+        ("residual rms", both(|f| f.residual_rms), si),
+        ("residual maximum", both(|f| f.residual_max), si),
+        ("leave-one-out rms", both(|f| f.leave_one_out_rms), si),
         (
-            "  % of full scale",
+            "  of full scale",
             both(|f| 100.0 * f.leave_one_out_rms / f.full_scale),
+            ["%", "%"],
         ),
-        ("full scale", both(|f| f.full_scale)),
-        ("prediction +- least", both(|f| f.prediction.least)),
-        ("prediction +- greatest", both(|f| f.prediction.greatest)),
+        ("full scale", both(|f| f.full_scale), si),
+        ("prediction +- least", both(|f| f.prediction.least), si),
+        ("prediction +- greatest", both(|f| f.prediction.greatest), si),
     ];
-    for (name, (thrust, torque)) in rows {
-        writeln!(
-            out,
-            "  {name:<24}{thrust:>12.5} N  {torque:>16.5} {}",
-            if name == "R2" { "" } else { "N m" }
-        )?;
+    for (name, (thrust, torque), [of_thrust, of_torque]) in rows {
+        let line = format!("  {name:<24}{thrust:>12.5} {of_thrust:<3}{torque:>16.5} {of_torque}");
+        writeln!(out, "{}", line.trim_end())?;
     }
     let [u, l] = pair.thrust.prediction.greatest_at;
     writeln!(
@@ -182,12 +181,12 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
             fold.least_det
         )?;
     } else {
-        writeln!(out, "  det J falls to {:.4} at ({u:.3}, {l:.3})", fold.least_det)?;
-        if let Some([u, l]) = fold.region {
+        for region in &fold.regions {
+            let ([ua, ub], [la, lb], [u, l]) = (region.u, region.l, region.least_det_at);
             writeln!(
                 out,
-                "  det J <= 0 within u {:.3} .. {:.3}, l {:.3} .. {:.3}",
-                u[0], u[1], l[0], l[1]
+                "  det J <= 0 within u {ua:.3} .. {ub:.3}, l {la:.3} .. {lb:.3}; least {:.4} at ({u:.3}, {l:.3})",
+                region.least_det
             )?;
         }
         match fold.least_idle {
@@ -216,12 +215,13 @@ fn write_candidate(out: &mut String, c: &Candidate) -> std::fmt::Result {
     match (&c.errors, &c.refused) {
         (Some(e), _) => writeln!(
             out,
-            "  {name:<12} {:>4}    {:>7.2}   {:>7.2}      {:>7.2}   {:>7.2}{}",
+            "  {name:<12} {:>4}    {:>7.2}   {:>7.2}      {:>7.2}   {:>7.2}    {:>7}{}",
             c.terms,
             e.thrust_leave_one_out,
             e.torque_leave_one_out,
             e.thrust_leave_level_out,
             e.torque_leave_level_out,
+            c.least_idle.map_or("none".into(), |idle| format!("{idle:.3}")),
             if c.chosen { "   <- chosen" } else { "" }
         ),
         (None, reason) => {

@@ -5,6 +5,9 @@
 //! neighbourhood, then with Tukey's (1 - (z/4.685)2)2, which forget the outliers (constants for 95 % efficiency at
 //! normal errors). z is the residual over the scale 1.4826 median |e|.
 //!
+//! A row suspected by the stiff cubic may only show that the map is richer than a cubic. So suspects are judged once
+//! more in the basis that is finally used, against its fit to all other rows.
+//!
 //! `--robust` leaves the named rows out and fits the rest by least squares, so that every statistic keeps its meaning.
 
 use serde::Serialize;
@@ -30,14 +33,37 @@ pub struct Outlier {
     pub u: f64,
     /// Throttles.
     pub l: f64,
-    /// Measured less robust fit, N.
+    /// Measured less the fit to the other rows, N.
     pub thrust_residual: f64,
-    /// The same in robust standard deviations.
+    /// The same in standard deviations of a prediction there.
     pub thrust_deviations: f64,
     /// Measured less robust fit, N m.
     pub torque_residual: f64,
-    /// The same in robust standard deviations.
+    /// The same in standard deviations of a prediction there.
     pub torque_deviations: f64,
+}
+
+impl Outlier {
+    /// Whether it is this row.
+    pub fn is(&self, file: &str, line: u64) -> bool {
+        self.file == file && self.line == line
+    }
+}
+
+/// Residuals of suspects against a fit without them, in standard deviations of a prediction there:
+/// (y - fitted) / (sigma sqrt(1 + h)). `clean` is the design of the other rows, `y_clean` their values.
+pub fn against_the_others(clean: &Design, y_clean: &[f64], suspects: &[([f64; 2], f64)]) -> Vec<(f64, f64)> {
+    let z = clean.coordinates(y_clean);
+    let terms = clean.centred.basis.terms();
+    let full_scale = y_clean.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
+    let scale = robust_scale(&clean.residuals(y_clean, &z), terms, full_scale);
+    let polynomial = clean.centred.basis.polynomial(&clean.coefficients(&z));
+    let miss = |&([u, l], y): &([f64; 2], f64)| {
+        let residual = y - polynomial.at(u, l);
+        let factor = clean.factor(u, l);
+        (residual, residual / (scale * (1.0 + factor * factor).sqrt()))
+    };
+    suspects.iter().map(miss).collect()
 }
 
 /// Residuals of a robust fit of one channel, and their scale.

@@ -7,11 +7,13 @@
 
 use std::io::{self, BufRead, Read};
 
-/// A reader with LF line ends and no byte-order mark.
+/// A reader with LF line ends, also behind the last line, and no byte-order mark.
 pub struct Normalised<R> {
     inner: R,
     at_start: bool,
     after_cr: bool,
+    /// Whether the text so far ends in a line end (or is empty).
+    line_ended: bool,
 }
 
 impl<R: BufRead> Normalised<R> {
@@ -21,6 +23,7 @@ impl<R: BufRead> Normalised<R> {
             inner,
             at_start: true,
             after_cr: false,
+            line_ended: true,
         }
     }
 }
@@ -45,7 +48,12 @@ impl<R: BufRead> Read for Normalised<R> {
         loop {
             let source = self.inner.fill_buf()?;
             if source.is_empty() {
-                return Ok(0);
+                // The last line gets its end, so that rows can be counted by their ends.
+                if std::mem::replace(&mut self.line_ended, true) {
+                    return Ok(0);
+                }
+                out[0] = b'\n';
+                return Ok(1);
             }
             let taken = source.len().min(out.len());
             let mut written = 0;
@@ -59,6 +67,7 @@ impl<R: BufRead> Read for Normalised<R> {
             }
             self.inner.consume(taken);
             if written > 0 {
+                self.line_ended = out[written - 1] == b'\n';
                 return Ok(written);
             }
         }
@@ -110,7 +119,7 @@ mod tests {
         for capacity in [4, 5, 6, 7, 64] {
             assert_eq!(
                 normalised(b"\xef\xbb\xbfa,b\r\n1,2\r3,4\n\r\n5", capacity),
-                "a,b\n1,2\n3,4\n\n5"
+                "a,b\n1,2\n3,4\n\n5\n"
             );
         }
     }

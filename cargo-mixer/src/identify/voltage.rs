@@ -93,6 +93,23 @@ pub struct Voltage {
     pub mean_v: f64,
 }
 
+impl Voltage {
+    /// Both channels by name; one entry for both where they are refused for one reason.
+    pub fn channels(&self) -> Vec<(&'static str, &Exponent)> {
+        match (&self.thrust, &self.torque) {
+            (Exponent::Refused { reason: a, .. }, Exponent::Refused { reason: b, .. }) if a == b => {
+                vec![("thrust and torque", &self.thrust)]
+            }
+            (thrust, torque) => vec![("thrust", thrust), ("torque", torque)],
+        }
+    }
+
+    /// Whether voltages differ enough that exponents could be expected of the files.
+    pub fn varies(&self) -> bool {
+        self.range_v[1] >= LEAST_RATIO * self.range_v[0]
+    }
+}
+
 /// A channel's rows at voltage.
 struct Row {
     throttle: [f64; 2],
