@@ -121,14 +121,6 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     }
 
     let suspects = suspects(wishes.basis.unwrap_or(robust::JUDGING), &points, throttle_box);
-    let without = |points: &[Placed], out: &[bool]| -> Vec<Placed> {
-        points
-            .iter()
-            .zip(out)
-            .filter(|(_, out)| !**out)
-            .map(|(p, _)| *p)
-            .collect()
-    };
     let clean = without(&points, &suspects);
     let deficient = |reason: super::fit::Deficient| {
         Refusal::of(
@@ -299,6 +291,16 @@ fn beyond(wished: ThrottleBox, measured: [[f64; 2]; 2], warnings: &mut Vec<Strin
         ));
     }
     wished
+}
+
+/// The points that are not marked.
+fn without<'a>(points: &[Placed<'a>], out: &[bool]) -> Vec<Placed<'a>> {
+    points
+        .iter()
+        .zip(out)
+        .filter(|(_, out)| !**out)
+        .map(|(p, _)| *p)
+        .collect()
 }
 
 /// Which rows stand out of a robust fit of either channel. None if the points do not determine the basis: the reason
