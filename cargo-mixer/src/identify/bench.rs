@@ -168,6 +168,20 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         });
     }
     refused.sort_by_key(|r| r.line);
+    if points.is_empty() {
+        let first = refused.first().map_or(String::new(), |r| {
+            format!(", the first: line {}: {}", r.line, r.reason)
+        });
+        return Err(Refusal::of(
+            name,
+            format!(
+                "none of {rows} rows can be used: {start_stop_rows} start and stop rows, {settling_rows} settling, \
+                 {} refused{first}",
+                refused.len()
+            ),
+            "rows with both rotors turning (see --stop-throttle) and thrust and torque measured",
+        ));
+    }
     let date = how.date.clone().or_else(|| date_in(&name));
     Ok(Bench {
         file: name,

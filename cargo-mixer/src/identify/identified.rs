@@ -42,14 +42,18 @@ pub struct Identified {
 
 /// Reads the files and identifies what they hold. All refusals are collected.
 pub fn identify(paths: &[PathBuf], settings: &Settings) -> Result<Identified, Vec<Refusal>> {
-    let benches = read_all(paths, settings)?;
-    distinct_names(&benches).map_err(|r| vec![r])?;
+    from_benches(read_all(paths, settings)?, &settings.wishes).map_err(|r| vec![r])
+}
+
+/// Identifies what benches hold that have been read.
+pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, Refusal> {
+    distinct_names(&benches)?;
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let voltage = dependence(&benches);
     let pair = if has(Kind::Pair) {
-        Some(pair::identify(&benches, voltage.as_ref(), &settings.wishes).map_err(|r| vec![r])?)
+        Some(pair::identify(&benches, voltage.as_ref(), wishes)?)
     } else {
-        only_single(&benches, voltage.as_ref()).map_err(|r| vec![r])?;
+        only_single(&benches, voltage.as_ref())?;
         None
     };
     let mut warnings: Vec<String> = pair.iter().flat_map(|p| p.warnings.clone()).collect();
@@ -63,8 +67,8 @@ pub fn identify(paths: &[PathBuf], settings: &Settings) -> Result<Identified, Ve
         .as_ref()
         .and_then(|p| p.normalised_to_v.or(p.mean_v))
         .or(voltage.as_ref().map(|v| v.mean_v));
-    let reference_v = settings.wishes.reference_v.or(mean.map(pair::hundredths));
-    if let (Some(reference), Some(v)) = (settings.wishes.reference_v, &voltage) {
+    let reference_v = wishes.reference_v.or(mean.map(pair::hundredths));
+    if let (Some(reference), Some(v)) = (wishes.reference_v, &voltage) {
         if !(v.range_v[0]..=v.range_v[1]).contains(&reference) {
             warnings.push(format!(
                 "--reference-voltage {reference} is outside the measured {:.2}..{:.2} V",

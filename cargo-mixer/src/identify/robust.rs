@@ -97,20 +97,23 @@ pub fn judge(design: &Design, y: &[f64]) -> Judged {
         let w = 1.0 - (z / 4.685) * (z / 4.685);
         if z.abs() < 4.685 { w * w } else { 0.0 }
     };
-    for step in 0..100 {
-        let scale = robust_scale(&residuals, terms, full_scale);
-        let weight = |e: &f64| {
-            if step < 50 {
-                huber(e / scale)
-            } else {
-                tukey(e / scale)
+    for weight_of in [&huber as &dyn Fn(f64) -> f64, &tukey] {
+        for _ in 0..50 {
+            let scale = robust_scale(&residuals, terms, full_scale);
+            let weights: Vec<f64> = residuals.iter().map(|e| weight_of(e / scale)).collect();
+            let Some(z) = weighted(design, y, &weights) else {
+                break;
+            };
+            let next = design.residuals(y, &z);
+            let moved = next
+                .iter()
+                .zip(&residuals)
+                .fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+            residuals = next;
+            if moved < 1e-3 * scale {
+                break;
             }
-        };
-        let weights: Vec<f64> = residuals.iter().map(weight).collect();
-        let Some(z) = weighted(design, y, &weights) else {
-            break;
-        };
-        residuals = design.residuals(y, &z);
+        }
     }
     Judged {
         scale: robust_scale(&residuals, terms, full_scale),

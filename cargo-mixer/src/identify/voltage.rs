@@ -10,6 +10,8 @@
 //! that span a good part of the range; the rows follow one power; the interval is narrow; the value is one that a
 //! propeller can have. Otherwise the reason is given instead.
 
+use std::collections::BTreeMap;
+
 use faer::Mat;
 use serde::Serialize;
 
@@ -151,13 +153,25 @@ pub fn examine(benches: &[Bench], kind: Kind) -> Option<Voltage> {
     })
 }
 
-/// Numbers the distinct throttle pairs.
+/// Numbers the distinct throttle pairs, in order of appearance. A grid of cells as wide as a level keeps the search
+/// to a pair's neighbours.
 fn levels(points: &[&Point]) -> Vec<usize> {
     let mut known: Vec<[f64; 2]> = Vec::new();
+    let mut cells: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     let number = |p: &&Point| {
-        let same = |k: &[f64; 2]| (k[0] - p.u).abs() < LEVEL && (k[1] - p.l).abs() < LEVEL;
-        known.iter().position(same).unwrap_or_else(|| {
-            known.push([p.u, p.l]);
+        let place = [p.u, p.l];
+        let [i, j] = place.map(|t| (t / LEVEL).floor() as i64);
+        let near = (-1..=1).flat_map(|a| (-1..=1).map(move |b| [i + a, j + b]));
+        let same = |k: &usize| (0..2).all(|r| (known[*k][r] - place[r]).abs() < LEVEL);
+        let found = near
+            .filter_map(|cell| cells.get(&cell))
+            .flatten()
+            .copied()
+            .filter(same)
+            .min();
+        found.unwrap_or_else(|| {
+            known.push(place);
+            cells.entry([i, j]).or_default().push(known.len() - 1);
             known.len() - 1
         })
     };
@@ -198,8 +212,7 @@ fn exponent(rows: Vec<Row>, kind: Kind, reference: f64) -> Exponent {
         b - a
     };
     let estimate = if varied_levels >= LEAST_LEVELS && spread(&varied_rows) >= LEAST_SPREAD {
-        let basis = |rows: &[&Row]| indicators(rows);
-        profile(&varied_rows, basis(&varied_rows), reference).map(|mut e| {
+        profile(&varied_rows, &Regressors::Levels, reference).map(|mut e| {
             e.method = "equal throttles";
             e.levels = varied_levels;
             add_levels(&mut e, &varied_rows, count);
@@ -246,14 +259,54 @@ fn sound(e: Estimate) -> Exponent {
     Exponent::Identified(e)
 }
 
-/// One column per level.
-fn indicators(rows: &[&Row]) -> Vec<Vec<f64>> {
-    let mut used: Vec<usize> = rows.iter().map(|r| r.level).collect();
-    used.sort_unstable();
-    used.dedup();
-    rows.iter()
-        .map(|r| used.iter().map(|&l| f64::from(u8::from(l == r.level))).collect())
-        .collect()
+/// The form of g.
+enum Regressors {
+    /// One free value per level.
+    Levels,
+    /// A linear combination of these columns (given by rows).
+    Columns(Vec<Vec<f64>>),
+}
+
+impl Regressors {
+    /// Number of unknowns in g.
+    fn unknowns(&self, rows: &[&Row]) -> usize {
+        match self {
+            Regressors::Columns(columns) => columns.first().map_or(0, Vec::len),
+            Regressors::Levels => {
+                let mut used: Vec<usize> = rows.iter().map(|r| r.level).collect();
+                used.sort_unstable();
+                used.dedup();
+                used.len()
+            }
+        }
+    }
+
+    /// The part of `y` that no g times `factor` explains; nothing if g is not determined.
+    fn off_span(&self, rows: &[&Row], factor: &[f64], y: &[f64]) -> Option<Vec<f64>> {
+        match self {
+            Regressors::Columns(columns) => {
+                let scaled: Vec<Vec<f64>> = columns
+                    .iter()
+                    .zip(factor)
+                    .map(|(c, f)| c.iter().map(|x| f * x).collect())
+                    .collect();
+                off_span(&scaled, y)
+            }
+            Regressors::Levels => {
+                let mut sums: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+                for ((r, f), y) in rows.iter().zip(factor).zip(y) {
+                    let [fy, ff] = sums.entry(r.level).or_default();
+                    *fy += f * y;
+                    *ff += f * f;
+                }
+                let rest = rows.iter().zip(factor).zip(y).map(|((r, f), y)| {
+                    let [fy, ff] = sums.get(&r.level)?;
+                    Some(y - f * fy / ff)
+                });
+                rest.collect()
+            }
+        }
+    }
 }
 
 /// A polynomial through all rows, where files do not share their levels: refused unless voltage varies on its own.
@@ -267,9 +320,10 @@ fn joint(rows: &[Row], kind: Kind, reference: f64) -> Result<Option<Estimate>, E
         ));
     }
     let throttles: Vec<[f64; 2]> = rows.iter().map(|r| r.throttle).collect();
+    let centred = Centred::new(Basis::Cubic, range(&throttles));
     let terms = |t: &[f64; 2]| -> Vec<f64> {
         match kind {
-            Kind::Pair => Centred::new(Basis::Cubic, range(&throttles)).values(t[0], t[1]),
+            Kind::Pair => centred.values(t[0], t[1]),
             Kind::SingleRotor => {
                 let u = t[0];
                 vec![u, u * u, u * u * u, u * u * u * u]
@@ -303,17 +357,16 @@ fn joint(rows: &[Row], kind: Kind, reference: f64) -> Result<Option<Estimate>, E
         ));
     }
     let all: Vec<&Row> = rows.iter().collect();
-    let estimate = profile(&all, columns, reference).map(|e| Estimate {
+    let estimate = profile(&all, &Regressors::Columns(columns), reference);
+    Ok(estimate.map(|e| Estimate {
         method: "joint map",
         ..e
-    });
-    // The projected derivative decides: the interval is wide where the polynomial can stand in for voltage.
-    Ok(estimate)
+    }))
 }
 
-/// Gauss-Newton on k with g profiled out. `columns` are the rows of g's regressors.
-fn profile(rows: &[&Row], columns: Vec<Vec<f64>>, reference: f64) -> Option<Estimate> {
-    let unknowns = columns.first()?.len() + 1;
+/// Gauss-Newton on k with g profiled out.
+fn profile(rows: &[&Row], g: &Regressors, reference: f64) -> Option<Estimate> {
+    let unknowns = g.unknowns(rows) + 1;
     let degrees = rows.len().checked_sub(unknowns).filter(|&d| d > 0)?;
     let full = rows.iter().fold(0.0_f64, |m, r| m.max(r.y.abs()));
     let count = rows.iter().map(|r| r.level + 1).max()?;
@@ -332,17 +385,19 @@ fn profile(rows: &[&Row], columns: Vec<Vec<f64>>, reference: f64) -> Option<Esti
     let y: Vec<f64> = rows.iter().zip(&weights).map(|(r, w)| w * r.y).collect();
     let mut k = 1.75; // the field's median; the problem is nearly linear in k
     for _ in 0..50 {
-        let scaled: Vec<Vec<f64>> = (columns.iter().zip(&ratio).zip(&weights))
-            .map(|((c, r), w)| c.iter().map(|x| w * libm::pow(*r, k) * x).collect())
+        let factor: Vec<f64> = ratio
+            .iter()
+            .zip(&weights)
+            .map(|(r, w)| w * libm::pow(*r, k))
             .collect();
-        let residual = off_span(&scaled, &y)?;
+        let residual = g.off_span(rows, &factor, &y)?;
         let derivative: Vec<f64> = y
             .iter()
             .zip(&residual)
             .zip(&ratio)
             .map(|((y, e), r)| (y - e) * libm::log(*r))
             .collect();
-        let own = off_span(&scaled, &derivative)?;
+        let own = g.off_span(rows, &factor, &derivative)?;
         let norm: f64 = own.iter().map(|d| d * d).sum();
         if norm <= 1e-12 {
             return None;
