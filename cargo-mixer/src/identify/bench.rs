@@ -95,7 +95,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     let rows = samples.len() + refused.len();
     no_empty_throttle(
         &name,
-        &columns.upper.as_ref().map_or("", |c| c.name.as_str()),
+        columns.upper.as_ref().map_or("", |c| c.name.as_str()),
         &samples,
         0,
     )?;

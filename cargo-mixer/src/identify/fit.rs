@@ -109,7 +109,11 @@ impl Design {
         if degenerate {
             return Err(Deficient::Dependent);
         }
-        let r_inverse = upper_inverse(terms, |i, j| r[(i, j)]);
+        let mut inverse = Mat::<f64>::identity(terms, terms);
+        r.solve_upper_triangular_in_place(&mut inverse);
+        let r_inverse: Vec<Vec<f64>> = (0..terms)
+            .map(|i| (0..terms).map(|j| inverse[(i, j)]).collect())
+            .collect();
         Ok(Self {
             to_monomials: product(&centred.to_monomials(), &r_inverse),
             q: (0..rows.len())
@@ -336,19 +340,6 @@ pub fn distinct_pairs(points: &[[f64; 2]]) -> usize {
     keys.len()
 }
 
-/// Inverse of an upper triangular matrix, by back substitution.
-fn upper_inverse(n: usize, r: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
-    let mut inverse = vec![vec![0.0; n]; n];
-    for column in 0..n {
-        inverse[column][column] = 1.0 / r(column, column);
-        for row in (0..column).rev() {
-            let sum: f64 = (row + 1..=column).map(|k| r(row, k) * inverse[k][column]).sum();
-            inverse[row][column] = -sum / r(row, row);
-        }
-    }
-    inverse
-}
-
 fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let columns = b.first().map_or(0, Vec::len);
     let entry = |row: &Vec<f64>, j: usize| row.iter().zip(b).map(|(x, r)| x * r[j]).sum();
@@ -358,110 +349,4 @@ fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn student_t_agrees_with_the_table() {
-        // Two-sided 95 %, standard tables and R's qt(0.975, df).
-        let table = [
-            (1, 12.706_204_736_174_7),
-            (2, 4.302_652_729_749_46),
-            (5, 2.570_581_835_636_31),
-            (10, 2.228_138_851_986_27),
-            (30, 2.042_272_456_301_24),
-            (92, 1.986_086_316_951_13),
-            (1000, 1.962_339_080_825_08),
-        ];
-        for (degrees, quantile) in table {
-            let ours = student_t_975(degrees);
-            assert!(
-                (ours - quantile).abs() < 1e-9 * quantile,
-                "{degrees}: {ours} {quantile}"
-            );
-        }
-    }
-
-    fn grid(levels: usize) -> Vec<[f64; 2]> {
-        let at = |k: usize| 0.07 + 0.88 * k as f64 / (levels - 1) as f64;
-        (0..levels)
-            .flat_map(|i| (0..levels).map(move |j| [at(i), at(j)]))
-            .collect()
-    }
-
-    const BOX: ThrottleBox = ThrottleBox { min: 0.07, max: 0.95 };
-
-    #[test]
-    fn leave_one_out_by_leverage_is_leave_one_out() {
-        let points = grid(5);
-        let y: Vec<f64> = points
-            .iter()
-            .enumerate()
-            .map(|(i, p)| p[0] + ((i * 7919) % 13) as f64 * 0.1)
-            .collect();
-        let design = Design::new(Basis::Biquadratic, &points, BOX).expect("a design");
-        let all = fit(&design, &y, BOX);
-        let mut squares = 0.0;
-        for left_out in 0..points.len() {
-            let keep = |i: &usize| *i != left_out;
-            let p: Vec<_> = (0..points.len()).filter(keep).map(|i| points[i]).collect();
-            let v: Vec<_> = (0..points.len()).filter(keep).map(|i| y[i]).collect();
-            let without = fit(
-                &Design::new(Basis::Biquadratic, &p, BOX).expect("a design"),
-                &v,
-                BOX,
-            );
-            let [u, l] = points[left_out];
-            let miss = y[left_out] - without.polynomial(Basis::Biquadratic).at(u, l);
-            squares += miss * miss;
-        }
-        let direct = (squares / points.len() as f64).sqrt();
-        assert!(
-            (direct - all.leave_one_out_rms).abs() < 1e-7 * direct,
-            "{direct} {}",
-            all.leave_one_out_rms
-        );
-    }
-
-    #[test]
-    fn designs_that_do_not_determine_the_map_are_refused() {
-        let line: Vec<[f64; 2]> = (1..=30)
-            .map(|k| [k as f64 / 30.0, k as f64 / 30.0 * 0.98])
-            .collect();
-        let error = Design::new(Basis::Cubic, &line, BOX).err().expect("refused");
-        assert_eq!(error, Deficient::Dependent);
-        // Near a line: rank enough, but a guess away from it.
-        let bent: Vec<[f64; 2]> = (1..=30)
-            .map(|k| [k as f64 / 30.0, k as f64 / 30.0 + 0.01 * ((k * 7) % 5) as f64])
-            .collect();
-        let error = Design::new(Basis::Biquadratic, &bent, BOX)
-            .err()
-            .expect("refused");
-        assert!(matches!(error, Deficient::Undetermined { .. }), "{error:?}");
-        let error = Design::new(Basis::Quartic, &grid(4), BOX).err().expect("refused");
-        assert_eq!(
-            error,
-            Deficient::TooFew {
-                distinct: 16,
-                needed: 18
-            }
-        );
-        // Repeats of a few pairs are no new pairs.
-        let few: Vec<[f64; 2]> = grid(3).into_iter().cycle().take(90).collect();
-        let error = Design::new(Basis::Biquadratic, &few, BOX).err().expect("refused");
-        assert_eq!(
-            error,
-            Deficient::TooFew {
-                distinct: 9,
-                needed: 12
-            }
-        );
-    }
-
-    #[test]
-    fn ten_digits_round() {
-        assert_eq!(ten_digits(1.234_567_890_123), 1.234_567_890);
-        assert_eq!(ten_digits(-9.876_543_210_987e-7), -9.876_543_211e-7);
-        assert_eq!(ten_digits(0.0), 0.0);
-    }
-}
+mod tests;

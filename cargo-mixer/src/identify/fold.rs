@@ -92,8 +92,10 @@ fn positive(p: &Polynomial, at: Cell, floor: f64, depth: usize) -> DetSign {
         (b[0][m], ua, lb),
         (b[n][m], ub, lb),
     ];
-    // `<=` would let a NaN pass as positive.
-    if let Some(&(_, u, l)) = corners.iter().find(|(value, ..)| !(*value > floor)) {
+    if let Some(&(_, u, l)) = corners
+        .iter()
+        .find(|(value, ..)| value.is_nan() || *value <= floor)
+    {
         return DetSign::Folds { at: [u, l] };
     }
     if depth == 0 {

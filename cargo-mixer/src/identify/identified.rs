@@ -68,13 +68,12 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
         .and_then(|p| p.normalised_to_v.or(p.mean_v))
         .or(voltage.as_ref().map(|v| v.mean_v));
     let reference_v = wishes.reference_v.or(mean.map(pair::hundredths));
-    if let (Some(reference), Some(v)) = (wishes.reference_v, &voltage) {
-        if !(v.range_v[0]..=v.range_v[1]).contains(&reference) {
-            warnings.push(format!(
-                "--reference-voltage {reference} is outside the measured {:.2}..{:.2} V",
-                v.range_v[0], v.range_v[1]
-            ));
-        }
+    if let (Some(reference), Some(v)) = (wishes.reference_v, &voltage)
+        && !(v.range_v[0]..=v.range_v[1]).contains(&reference)
+    {
+        let [low, high] = v.range_v;
+        let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
+        warnings.push(told);
     }
     Ok(Identified {
         generator: format!("cargo mixer identify {}", env!("CARGO_PKG_VERSION")),
