@@ -45,7 +45,7 @@ fn write_fragment(out: &mut String, id: &Identified) -> std::fmt::Result {
         write_pair(out, pair)?;
     }
     if let Some(voltage) = &id.voltage {
-        write_voltage(out, voltage, id.reference_v)?;
+        write_voltage(out, voltage, id.reference_v, id.pair.is_some())?;
     } else {
         writeln!(
             out,
@@ -111,8 +111,8 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
         let percent = |x: f64| 100.0 * x / fit.full_scale;
         writeln!(
             out,
-            "# {name}: R2 {:.2} %, residual {:.3e} {unit} rms, {:.3e} at most; leave-one-out {:.3e} {unit} rms \
-             ({:.2} % of the greatest)",
+            "# {name}: R2 {:.2} %, residual {:.3e} {unit} rms, {:.3e} at most\n\
+             #   leave-one-out {:.3e} {unit} rms, {:.2} % of the greatest value",
             100.0 * fit.r2,
             fit.residual_rms,
             fit.residual_max,
@@ -154,67 +154,60 @@ fn coefficients(out: &mut String, key: &str, terms: &[String], fit: &Fit) -> std
     writeln!(out, "]")
 }
 
-fn write_voltage(out: &mut String, voltage: &Voltage, reference: Option<f64>) -> std::fmt::Result {
+/// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one exponent only it is
+/// written as a comment, for the user to complete.
+fn write_voltage(
+    out: &mut String,
+    voltage: &Voltage,
+    reference: Option<f64>,
+    beside_pair: bool,
+) -> std::fmt::Result {
     let reference = reference.unwrap_or(voltage.mean_v);
     // Outwards to hundredths, and around the reference.
     let low = ((voltage.range_v[0].min(reference)) * 100.0).floor() / 100.0;
     let high = ((voltage.range_v[1].max(reference)) * 100.0).ceil() / 100.0;
     writeln!(out)?;
-    let Some(thrust) = voltage.thrust.estimate() else {
+    let (thrust, torque) = (voltage.thrust.estimate(), voltage.torque.estimate());
+    if thrust.is_none() && torque.is_none() {
         writeln!(
             out,
-            "# No [voltage]: the exponents cannot be identified from these files, so k = 1 at any voltage."
+            "# No [voltage]: these files give no exponents, so that the mixer takes k = 1 at any voltage."
         )?;
         writeln!(
             out,
             "# The map holds at about {reference:.2} V (rows from {low:.2} to {high:.2} V)."
         )?;
-        for (name, exponent) in voltage.channels() {
-            if let Exponent::Refused { reason, .. } = exponent {
-                for (k, line) in wrapped(&format!("{name}: {reason}"), 100).iter().enumerate() {
-                    writeln!(out, "#   {}{line}", if k == 0 { "" } else { "  " })?;
-                }
-            }
-        }
-        return Ok(());
-    };
-    writeln!(out, "# thrust: {}", exponent_line(thrust))?;
-    if let Some(torque) = voltage.torque.estimate() {
-        writeln!(out, "# torque: {}", exponent_line(torque))?;
     }
+    for (name, exponent) in voltage.channels() {
+        let told = match exponent {
+            Exponent::Identified(e) => exponent_line(e),
+            Exponent::Refused { reason, .. } => format!("no exponent: {reason}"),
+            Exponent::NotMeasured => {
+                "not measured, no file has its column. Thrust and torque both follow the square of rotor speed, so \
+                 that the other's exponent is the usual stand-in; it is for you to decide."
+                    .to_string()
+            }
+        };
+        for (k, line) in wrapped(&format!("{name}: {told}"), 104).iter().enumerate() {
+            writeln!(out, "# {}{line}", if k == 0 { "" } else { "  " })?;
+        }
+    }
+    if thrust.is_none() && torque.is_none() {
+        return Ok(());
+    }
+    let complete = thrust.is_some() && torque.is_some();
+    let mark = if beside_pair && !complete { "# " } else { "" };
     writeln!(
         out,
-        "[voltage]\nreference_v = {reference:?}\nrange_v = [{low:?}, {high:?}]"
+        "{mark}[voltage]\n{mark}reference_v = {reference:?}\n{mark}range_v = [{low:?}, {high:?}]"
     )?;
-    writeln!(out, "thrust_exponent = {:?}", thousandths(thrust.exponent))?;
-    match &voltage.torque {
-        Exponent::Identified(torque) => writeln!(out, "torque_exponent = {:?}", thousandths(torque.exponent)),
-        Exponent::NotMeasured => {
-            writeln!(
-                out,
-                "# torque_exponent = ?   not measured: no file has a torque column. Thrust and torque both"
-            )?;
-            writeln!(
-                out,
-                "#                       follow the square of rotor speed, so that the thrust's exponent is"
-            )?;
-            writeln!(
-                out,
-                "#                       the usual stand-in; it is for you to decide."
-            )
-        }
-        Exponent::Refused { reason, .. } => {
-            for (k, line) in wrapped(reason, 90).iter().enumerate() {
-                let head = if k == 0 {
-                    "torque_exponent = ?   "
-                } else {
-                    "                      "
-                };
-                writeln!(out, "# {head}{line}")?;
-            }
-            Ok(())
+    for (name, estimate) in [("thrust", thrust), ("torque", torque)] {
+        match estimate {
+            Some(e) => writeln!(out, "{mark}{name}_exponent = {:?}", thousandths(e.exponent))?,
+            None => writeln!(out, "# {name}_exponent = ?")?,
         }
     }
+    Ok(())
 }
 
 fn thousandths(x: f64) -> f64 {
