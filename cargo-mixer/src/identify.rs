@@ -1,6 +1,6 @@
 //! `cargo mixer identify`: from bench sweeps to the `[throttle]`, `[pair]` and `[voltage]` tables of an airframe file.
 //!
-//! files -> [`read`] -> [`bench`] (start and stop rows, plateaus, signs) -> [`voltage`] exponents -> [`pair`]: outliers
+//! files -> [`read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) -> [`voltage`] exponents -> [`pair`]: outliers
 //! ([`robust`]), choice of the basis ([`cross`]), least squares ([`fit`]), [`fold`], [`monotone`] -> [`fragment`],
 //! [`report`].
 

@@ -60,6 +60,15 @@ impl Basis {
         self.exponents().len()
     }
 
+    /// Greatest power of u, and of l, in det J = f_u Q_l - f_l Q_u.
+    pub fn determinant_degree(self) -> usize {
+        match self {
+            Basis::Biquadratic => 3, // (1, 2) and (2, 1) multiplied
+            Basis::Cubic => 4,       // twice the total degree of a derivative
+            Basis::Quartic => 6,
+        }
+    }
+
     /// The airframe file's word for the basis.
     pub fn name(self) -> &'static str {
         match self {
@@ -169,6 +178,13 @@ impl Polynomial {
                 .map(|row| row.iter().map(|x| x.abs()).collect())
                 .collect(),
         }
+    }
+
+    /// The same polynomial with room up to u^`degree` l^`degree`, beyond which it must have no terms.
+    pub fn resized(mut self, degree: usize) -> Polynomial {
+        self.c.resize(degree + 1, Vec::new());
+        self.c.iter_mut().for_each(|row| row.resize(degree + 1, 0.0));
+        self
     }
 
     /// Product.

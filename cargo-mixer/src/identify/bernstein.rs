@@ -44,13 +44,21 @@ fn one_variable(power: &[f64], [a, b]: [f64; 2]) -> Vec<f64> {
         scale *= b - a;
     }
     (0..=n)
-        .map(|k| (0..=k).map(|i| binomial(k, i) / binomial(n, i) * c[i]).sum())
+        .map(|k| (0..=k).map(|i| BINOMIAL[k][i] / BINOMIAL[n][i] * c[i]).sum())
         .collect()
 }
 
-fn binomial(n: usize, k: usize) -> f64 {
-    (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)
-}
+/// C(n, k) up to n = 7, more than any determinant's degree.
+const BINOMIAL: [[f64; 8]; 8] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0, 0.0, 0.0, 0.0],
+    [1.0, 5.0, 10.0, 10.0, 5.0, 1.0, 0.0, 0.0],
+    [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0, 0.0],
+    [1.0, 7.0, 21.0, 35.0, 35.0, 21.0, 7.0, 1.0],
+];
 
 /// The cell in four.
 pub fn quarters([[ua, ub], [la, lb]]: Cell) -> [Cell; 4] {

@@ -51,8 +51,9 @@ impl Errors {
     }
 }
 
-/// The table of all bases, with the choice marked. Without any that the points determine: the least basis' reason.
+/// The table of these bases, with the choice marked. Without any that the points determine: the first one's reason.
 pub fn choose(
+    bases: &[Basis],
     points: &[[f64; 2]],
     thrust: &[f64],
     torque: &[f64],
@@ -61,7 +62,7 @@ pub fn choose(
     let folds = folds(points);
     let mut table = Vec::new();
     let mut first_reason = None;
-    for basis in Basis::ALL {
+    for &basis in bases {
         let mut least_idle = None;
         let (errors, refused) = match Design::new(basis, points, throttle_box) {
             Ok(design) => match errors(&design, points, [thrust, torque], &folds) {
@@ -207,7 +208,7 @@ mod tests {
     }
 
     fn chosen(thrust: &[f64], torque: &[f64]) -> Basis {
-        let table = choose(&grid(), thrust, torque, BOX).expect("a table");
+        let table = choose(&Basis::ALL, &grid(), thrust, torque, BOX).expect("a table");
         assert_eq!(table.iter().filter(|c| c.chosen).count(), 1);
         table
             .iter()

@@ -183,6 +183,14 @@ impl Design {
         }
     }
 
+    /// Standard errors of the coefficients in units of the residual's standard deviation.
+    pub fn standard_errors(&self) -> Vec<f64> {
+        self.to_monomials
+            .iter()
+            .map(|row| row.iter().map(|x| x * x).sum::<f64>().sqrt())
+            .collect()
+    }
+
     /// Leverages h_i.
     pub fn leverages(&self) -> Vec<f64> {
         self.q.iter().map(|row| row.iter().map(|x| x * x).sum()).collect()
@@ -274,11 +282,7 @@ pub fn judge(design: &Design, y: &[f64], z: &[f64], throttle_box: ThrottleBox) -
     let (worst, greatest_at) = design.worst_factor(throttle_box);
     Fit {
         coefficients: design.coefficients(z).into_iter().map(ten_digits).collect(),
-        ci95: design
-            .to_monomials
-            .iter()
-            .map(|row| t * sigma * squares(&mut row.iter().copied()).sqrt())
-            .collect(),
+        ci95: design.standard_errors().iter().map(|e| t * sigma * e).collect(),
         r2: if sst > 0.0 { 1.0 - sse / sst } else { 0.0 },
         residual_rms: (sse / n as f64).sqrt(),
         residual_max: greatest(&residuals),

@@ -51,12 +51,13 @@ pub struct Region {
     pub least_det_at: [f64; 2],
 }
 
-/// det J as a polynomial.
-pub fn determinant(thrust: &Polynomial, torque: &Polynomial) -> Polynomial {
-    thrust
+/// det J as a polynomial, of a thrust and a torque in this basis.
+pub fn determinant(basis: Basis, thrust: &Polynomial, torque: &Polynomial) -> Polynomial {
+    let det = thrust
         .du()
         .times(&torque.dl())
-        .plus(-1.0, &thrust.dl().times(&torque.du()))
+        .plus(-1.0, &thrust.dl().times(&torque.du()));
+    det.resized(basis.determinant_degree())
 }
 
 /// The sign of det J over a box.
@@ -69,7 +70,7 @@ pub fn det_sign(basis: Basis, thrust: &[f64], torque: &[f64], throttle_box: Thro
         .times(&q.dl().sizes())
         .plus(1.0, &f.dl().sizes().times(&q.du().sizes()));
     positive(
-        &determinant(&f, &q),
+        &determinant(basis, &f, &q),
         cell(throttle_box),
         ROUNDING * sizes.at(1.0, 1.0),
         12,
@@ -185,7 +186,7 @@ fn regions(grid: &[f64], mut values: Vec<f64>) -> Vec<Region> {
 
 /// The report for a map on a box.
 pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: ThrottleBox) -> Fold {
-    let det = determinant(&basis.polynomial(thrust), &basis.polynomial(torque));
+    let det = determinant(basis, &basis.polynomial(thrust), &basis.polynomial(torque));
     let grid: Vec<f64> = commanded.grid(STEPS).collect();
     let values: Vec<f64> = grid
         .iter()

@@ -179,14 +179,15 @@ fn voltage_warnings(voltage: &Voltage) -> Vec<String> {
             format!("the supply varied by {sag:.1} % ({high:.2} to {low:.2} V), which the map includes");
         return if sag > 2.0 { vec![told] } else { Vec::new() };
     }
-    let refused = voltage
+    let told = voltage
         .channels()
         .into_iter()
         .filter_map(|(name, exponent)| match exponent {
             Exponent::Refused { reason, needed } => Some(format!(
                 "no {name} exponent of voltage: {reason}; needed: {needed}"
             )),
-            _ => None,
+            Exponent::NotMeasured => Some(format!("no {name} exponent of voltage: no file has its column")),
+            Exponent::Identified(_) => None,
         });
-    refused.collect()
+    told.collect()
 }

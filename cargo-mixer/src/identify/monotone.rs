@@ -122,7 +122,7 @@ impl Problem {
     }
 
     fn mean_det(&self, x: &[f64]) -> Option<f64> {
-        let det = determinant(&self.polynomial(x, 0), &self.polynomial(x, 1));
+        let det = determinant(self.basis, &self.polynomial(x, 0), &self.polynomial(x, 1));
         let grid = self.throttle_box.grid(20);
         let values = grid
             .clone()
@@ -141,14 +141,18 @@ impl Problem {
 
     /// c_k at x.
     fn values(&self, x: &[f64]) -> Vec<f64> {
-        self.on_cells(&determinant(&self.polynomial(x, 0), &self.polynomial(x, 1)))
+        self.on_cells(&determinant(
+            self.basis,
+            &self.polynomial(x, 0),
+            &self.polynomial(x, 1),
+        ))
     }
 
     /// The step d and the sum of the multipliers.
     fn step(&self, x: &[f64], x0: &[f64], values: &[f64], margin: f64) -> Option<(Vec<f64>, f64)> {
         let (thrust, torque) = (self.polynomial(x, 0), self.polynomial(x, 1));
-        let by_thrust = |m: &Polynomial| (determinant(m, &torque), self.sigma[0]);
-        let by_torque = |m: &Polynomial| (determinant(&thrust, m), self.sigma[1]);
+        let by_thrust = |m: &Polynomial| (determinant(self.basis, m, &torque), self.sigma[0]);
+        let by_torque = |m: &Polynomial| (determinant(self.basis, &thrust, m), self.sigma[1]);
         let gradients = self
             .modes
             .iter()

@@ -114,11 +114,10 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     };
     let chosen_on = if wishes.robust { &clean } else { &points };
     let [thrust, torque] = channels(chosen_on);
-    let mut table = cross::choose(&places(chosen_on), &thrust, &torque, throttle_box).map_err(deficient)?;
-    if let Some(basis) = wishes.basis {
-        table.retain(|c| c.basis == basis);
-        table.iter_mut().for_each(|c| c.chosen = true);
-    }
+    let bases = wishes.basis.map_or(Basis::ALL.to_vec(), |basis| vec![basis]);
+    let places_chosen_on = places(chosen_on);
+    let table =
+        cross::choose(&bases, &places_chosen_on, &thrust, &torque, throttle_box).map_err(deficient)?;
     let basis = table
         .iter()
         .find(|c| c.chosen)

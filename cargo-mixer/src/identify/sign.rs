@@ -245,8 +245,8 @@ fn slopes(samples: &[Sample], torque: &[f64]) -> [f64; 2] {
         }
     }
     let det = uu * ll - ul * ul;
-    if det <= 1e-12 * uu * ll {
-        return [-1.0, 1.0]; // proportional throttles: the design is refused later, with its own reason
+    if det <= 0.02 * uu * ll {
+        return [-1.0, 1.0]; // nearly proportional throttles: the design is refused later, with its own reason
     }
     [(uq * ll - lq * ul) / det, (lq * uu - uq * ul) / det]
 }

@@ -1,0 +1,349 @@
+//! Real bench files, where `MIXER_BENCH_DATA` names their folder. None of them is part of the project.
+
+use std::path::{Path, PathBuf};
+
+use cargo_mixer::identify::basis::{Basis, ThrottleBox};
+use cargo_mixer::identify::fold::{DetSign, det_sign};
+use cargo_mixer::identify::fragment;
+use cargo_mixer::identify::identified::{Identified, identify};
+use cargo_mixer::identify::pair::Pair;
+
+use crate::sweep::settings;
+
+/// The folder, or a clear word that the test does not run.
+fn data(test: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from);
+    if folder.is_none() {
+        eprintln!("NOT RUN: {test} needs MIXER_BENCH_DATA, the folder of real bench files");
+    }
+    folder
+}
+
+/// The files of a folder whose name holds `part`, in order.
+fn files(folder: &Path, part: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let mut found: Vec<PathBuf> = entries.flatten().map(|e| e.path()).collect();
+    let name = |p: &PathBuf| {
+        p.file_name()
+            .map(|n| n.to_string_lossy().into_owned())
+            .unwrap_or_default()
+    };
+    found.retain(|p| name(p).contains(part) && name(p).ends_with(".csv"));
+    found.sort();
+    assert!(!found.is_empty(), "no file like {part} in {}", folder.display());
+    found
+}
+
+fn coaxial(data: &Path, part: &str) -> PathBuf {
+    files(&data.join("newdexterity"), part).remove(0)
+}
+
+fn fitted(path: &Path, basis: Option<Basis>, robust: bool) -> Identified {
+    let mut settings = settings(basis);
+    settings.wishes.robust = robust;
+    let found = identify(&[path.to_path_buf()], &settings);
+    found.unwrap_or_else(|e| panic!("{}: {}", path.display(), e[0]))
+}
+
+fn pair(path: &Path, basis: Option<Basis>, robust: bool) -> Pair {
+    fitted(path, basis, robust).pair.expect("a pair")
+}
+
+const CORRUPT: &str = "data2021_08_17_10_13_04";
+const REPEAT: &str = "data2021_08_17_11_11_55";
+
+#[test]
+fn eight_terms_agree_with_the_independent_fit() {
+    let Some(data) = data("eight_terms_agree_with_the_independent_fit") else {
+        return;
+    };
+    let text = std::fs::read_to_string(data.join("newdexterity/reference_fit.json")).expect("the reference");
+    let reference: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let (name, reference) = reference
+        .as_object()
+        .and_then(|o| o.iter().next())
+        .expect("one map");
+    let pair = pair(
+        &data.join("newdexterity").join(name),
+        Some(Basis::Biquadratic),
+        false,
+    );
+    let within = |what: &str, ours: f64, theirs: &serde_json::Value, relative: f64| {
+        let theirs = theirs.as_f64().unwrap_or_else(|| panic!("{what} is no number"));
+        assert!(
+            (ours - theirs).abs() <= relative * theirs.abs(),
+            "{what}: {ours} {theirs}"
+        );
+    };
+    let close = |what: &str, ours: f64, theirs: &serde_json::Value| within(what, ours, theirs, 1e-6);
+    // x is the upper, y the lower throttle.
+    let terms = ["x2y2", "x2y", "x2", "xy2", "xy", "x", "y2", "y"];
+    for (key, fit) in [("thrust_N", &pair.thrust), ("torque_Nm", &pair.torque)] {
+        let theirs = &reference[key];
+        for (k, term) in terms.iter().enumerate() {
+            close(term, fit.coefficients[k], &theirs["coef"][term]);
+            // The reference took t(0.975, 92) as 1.9860830, 1.7e-6 below the quantile.
+            within(
+                &format!("interval of {term}"),
+                fit.ci95[k],
+                &theirs["ci95"][term],
+                2e-6,
+            );
+        }
+        close("R2", fit.r2, &theirs["r2"]);
+        close("rms", fit.residual_rms, &theirs["rms"]);
+        close("maximum", fit.residual_max, &theirs["max_abs"]);
+        close("condition", fit.condition_number, &theirs["cond"]);
+        assert_eq!(Some(fit.points as u64), theirs["n"].as_u64());
+    }
+}
+
+#[test]
+fn every_map_is_identified() {
+    let Some(data) = data("every_map_is_identified") else {
+        return;
+    };
+    for path in files(&data.join("newdexterity"), "map10x10") {
+        let robust = path.to_string_lossy().contains(CORRUPT);
+        let found = fitted(&path, None, robust);
+        let file = &found.files[0];
+        assert_eq!(
+            (file.rows, file.start_stop_rows, file.points_used),
+            (103, 3, 100),
+            "{}",
+            path.display()
+        );
+        assert!(
+            file.date.as_deref().is_some_and(|d| d.starts_with("2021-0")),
+            "{:?}",
+            file.date
+        );
+        let pair = found.pair.as_ref().expect("a pair");
+        for (fit, least) in [(&pair.thrust, 0.995), (&pair.torque, 0.994)] {
+            assert!(fit.r2 > least, "{}: R2 {}", path.display(), fit.r2);
+        }
+        assert!(pair.thrust.leave_one_out_rms < 0.01 * pair.thrust.full_scale);
+        if !robust {
+            assert!(
+                pair.outliers.is_empty(),
+                "{}: {:?}",
+                path.display(),
+                pair.outliers
+            );
+        }
+        let sign = det_sign(pair.basis, &pair.thrust_n, &pair.torque_nm, pair.throttle);
+        assert_eq!(sign, DetSign::Positive, "{}", path.display());
+        assert!(
+            pair.throttle.min <= pair.measured[0][0].max(0.235),
+            "{:?}",
+            pair.throttle
+        );
+        let table: toml::Table = fragment::text(&found).parse().expect("TOML");
+        assert_eq!(table["pair"]["basis"].as_str(), Some(pair.basis.name()));
+        println!(
+            "{:<60.60} {:<11} leave-one-out {:.2} % {:.2} %, throttle {} .. {}",
+            file.file,
+            pair.basis.name(),
+            100.0 * pair.thrust.leave_one_out_rms / pair.thrust.full_scale,
+            100.0 * pair.torque.leave_one_out_rms / pair.torque.full_scale,
+            pair.throttle.min,
+            pair.throttle.max
+        );
+    }
+}
+
+#[test]
+fn nine_terms_more_than_halve_the_error_of_large_full_range_maps() {
+    let Some(data) = data("nine_terms_more_than_halve_the_error_of_large_full_range_maps") else {
+        return;
+    };
+    for path in files(&data.join("newdexterity"), "full_range") {
+        if path.to_string_lossy().contains(CORRUPT) {
+            continue;
+        }
+        let percent = |basis| {
+            let pair = pair(&path, Some(basis), false);
+            100.0 * pair.thrust.leave_one_out_rms / pair.thrust.full_scale
+        };
+        let (eight, nine) = (percent(Basis::Biquadratic), percent(Basis::Cubic));
+        println!("{}: {eight:.2} % -> {nine:.2} %", path.display());
+        assert!((0.55..0.95).contains(&nine), "{}: {nine}", path.display());
+        if path.to_string_lossy().contains("_11in_") {
+            // The 11 inch pair is described by either: 0.87 and 0.93 %.
+            assert!((eight - nine).abs() < 0.05, "{}: {eight} {nine}", path.display());
+        } else {
+            assert!(
+                (1.3..2.3).contains(&eight) && nine < 0.6 * eight,
+                "{}: {eight} {nine}",
+                path.display()
+            );
+            let chosen = pair(&path, None, false).basis;
+            assert_ne!(chosen, Basis::Biquadratic, "{}", path.display());
+        }
+    }
+}
+
+#[test]
+fn the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats() {
+    let Some(data) = data("the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats") else {
+        return;
+    };
+    let path = coaxial(&data, CORRUPT);
+    for basis in [None, Some(Basis::Biquadratic), Some(Basis::Cubic)] {
+        let plain = pair(&path, basis, false);
+        let mut worst: Vec<_> = plain.outliers.iter().collect();
+        worst.sort_by(|a, b| b.thrust_residual.abs().total_cmp(&a.thrust_residual.abs()));
+        let lines: Vec<u64> = worst.iter().map(|o| o.line).collect();
+        // Rows 83, 93 and 103 miss by 3.4 to 6.1 of 18 N; row 73 by 1.3 N, ten standard deviations.
+        assert_eq!(lines[..3], [103, 93, 83], "{lines:?}");
+        assert!(
+            lines.len() <= 4 && worst[2].thrust_residual.abs() > 3.0,
+            "{worst:?}"
+        );
+        assert!(plain.warnings.iter().any(|w| w.contains("--robust")));
+    }
+    let clean = pair(&coaxial(&data, REPEAT), Some(Basis::Biquadratic), false);
+    let difference = |robust: bool| {
+        let ours = pair(&path, Some(Basis::Biquadratic), robust);
+        let grid = ThrottleBox { min: 0.07, max: 0.95 }.grid(20);
+        let worst = |a: &[f64], b: &[f64]| {
+            let [a, b] = [a, b].map(|c| Basis::Biquadratic.polynomial(c));
+            let places = grid.clone().flat_map(|u| grid.clone().map(move |l| (u, l)));
+            places
+                .map(|(u, l)| (a.at(u, l) - b.at(u, l)).abs())
+                .fold(0.0, f64::max)
+        };
+        let thrust = worst(&ours.thrust_n, &clean.thrust_n) / clean.thrust.full_scale;
+        let torque = worst(&ours.torque_nm, &clean.torque_nm) / clean.torque.full_scale;
+        (ours.thrust.r2, 100.0 * thrust, 100.0 * torque)
+    };
+    let ((r2, f, q), (robust_r2, robust_f, robust_q)) = (difference(false), difference(true));
+    println!("R2 {r2:.4} -> {robust_r2:.4} (repeat {:.4})", clean.thrust.r2);
+    println!(
+        "greatest difference to the repeat {f:.1} % -> {robust_f:.1} %, torque {q:.1} % -> {robust_q:.1} %"
+    );
+    assert!((r2 - 0.959).abs() < 0.001 && (robust_r2 - clean.thrust.r2).abs() < 0.001);
+    // What remains is no outlier: the recorded command of the upper rotor drifts by up to 50 us in the second half of
+    // the run, while its speed stays that of the repeat.
+    assert!(f > 7.0 && robust_f < 4.5, "{f} {robust_f}");
+    assert!(q > 15.0 && robust_q < 8.5, "{q} {robust_q}");
+}
+
+#[test]
+fn monotone_fits_have_no_fold_down_to_the_lowest_bench_throttle() {
+    let Some(data) = data("monotone_fits_have_no_fold_down_to_the_lowest_bench_throttle") else {
+        return;
+    };
+    for path in files(&data.join("newdexterity"), "full_range") {
+        let mut settings = settings(None);
+        (settings.wishes.monotone, settings.wishes.robust) = (true, true);
+        let pair = identify(std::slice::from_ref(&path), &settings)
+            .expect("a pair")
+            .pair
+            .expect("a pair");
+        assert_eq!(pair.throttle.min, 0.07, "{}", path.display());
+        let sign = det_sign(pair.basis, &pair.thrust_n, &pair.torque_nm, pair.throttle);
+        assert_eq!(sign, DetSign::Positive, "{}", path.display());
+        assert_eq!(pair.fold.folds, pair.monotone.is_some());
+        if let Some(cost) = pair.monotone {
+            let ratio = pair.thrust.residual_rms / cost.free_thrust_rms;
+            println!("{}: thrust residual x {ratio:.2}", path.display());
+            assert!((1.0..1.7).contains(&ratio));
+        }
+    }
+}
+
+#[test]
+fn exponents_of_the_pairs_at_two_voltages() {
+    let Some(data) = data("exponents_of_the_pairs_at_two_voltages") else {
+        return;
+    };
+    let folder = data.join("strawson");
+    let mut medians = Vec::new();
+    for name in ["a1", "h6"] {
+        let paths = [format!("{name}_7.csv"), format!("{name}_11.csv")].map(|n| folder.join(n));
+        let found = identify(&paths, &settings(None)).expect("an exponent");
+        assert!(found.pair.is_none());
+        let voltage = found.voltage.expect("voltages");
+        let e = voltage.thrust.estimate().expect("sound").clone();
+        println!(
+            "{name}: {:.3} +- {:.3}, levels {:.2?}",
+            e.exponent, e.ci95, e.quartiles
+        );
+        assert_eq!((e.method, e.levels), ("equal throttles", 11));
+        assert!(
+            (1.55..1.86).contains(&e.exponent) && e.ci95 < 0.12,
+            "{name}: {e:?}"
+        );
+        let [low, high] = e.low_and_high_throttle.expect("both halves");
+        assert!(
+            low > high,
+            "{name}: the exponent falls with throttle: {low} {high}"
+        );
+        medians.push(e.quartiles.expect("quartiles")[1]);
+        medians.push(e.exponent);
+    }
+    // 1.75 is the median over 104 pairs, 1.67 to 1.86 its quartiles; these two lie on either side.
+    let mean = medians.iter().sum::<f64>() / medians.len() as f64;
+    assert!((1.67..1.86).contains(&mean), "{medians:?}");
+    // Latin-1 with CR line ends: the same pair, retyped.
+    let retyped = [folder.join("a1_7.csv"), folder.join("modifieddata_a1_11.csv")];
+    let again = identify(&retyped, &settings(None))
+        .expect("an exponent")
+        .voltage
+        .expect("voltages");
+    assert!((again.thrust.estimate().expect("sound").exponent - 1.82).abs() < 0.2);
+    // Two rotors under one command are noticed.
+    let mixed = ["a1_7.csv", "a1_11.csv", "h6_7.csv", "h6_11.csv"].map(|n| folder.join(n));
+    let error = identify(&mixed, &settings(None)).unwrap_err()[0].to_string();
+    assert!(error.contains("do not follow one power of voltage"), "{error}");
+}
+
+#[test]
+fn files_that_cannot_serve_are_refused() {
+    let Some(data) = data("files_that_cannot_serve_are_refused") else {
+        return;
+    };
+    let cases = [
+        ("aerostack2", "steps", "confounded with throttle"),
+        ("esc_test", "Log_", "is empty in all 4814 rows"),
+        ("pybemt", "coaxial_data", "no throttle column"),
+        ("pybemt", "tmotor28_data", "no throttle column"),
+        ("newdexterity", "optimal_fit_cmd", "do not determine the map"),
+        ("newdexterity", "U5_T_motor_single_rotor", "one throttle only"),
+        ("newdexterity", "single_rotor_good", "one throttle only"),
+        ("strawson", "a1_7", "one voltage only"),
+    ];
+    for (folder, part, reason) in cases {
+        let path = files(&data.join(folder), part).remove(0);
+        let error = identify(&[path], &settings(None)).unwrap_err()[0].to_string();
+        assert!(
+            error.contains(reason) && error.contains("needed: "),
+            "{part}: {error}"
+        );
+    }
+}
+
+#[test]
+fn rotor_speeds_mapped_by_hand_are_still_one_line() {
+    let Some(data) = data("rotor_speeds_mapped_by_hand_are_still_one_line") else {
+        return;
+    };
+    let mut settings = settings(None);
+    let roles = [
+        ("upper", "RPM"),
+        ("lower", "RPM_B"),
+        ("upper_thrust", "T_A(N)"),
+        ("lower_thrust", "T_B(N)"),
+        ("upper_torque", "Q_A(Nm)"),
+        ("lower_torque", "Q_B(Nm)"),
+    ];
+    settings.reading.by_hand.columns = roles.map(|(r, h)| (r.to_string(), h.to_string())).to_vec();
+    settings.reading.pwm_range = Some([0.0, 3000.0]);
+    let path = files(&data.join("pybemt"), "coaxial_data").remove(0);
+    let error = identify(&[path], &settings).unwrap_err()[0].to_string();
+    assert!(
+        error.contains("do not determine the map") || error.contains("distinct throttle pairs"),
+        "{error}"
+    );
+}

@@ -1,0 +1,8 @@
+//! `cargo mixer identify`: synthetic sweeps with known truth in every format, refusals, the command, real bench data.
+
+mod bench_data;
+mod command;
+mod formats;
+mod refusals;
+mod sweep;
+mod voltage;

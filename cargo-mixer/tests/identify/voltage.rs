@@ -1,0 +1,123 @@
+//! Maps at several voltages: exponents and the map at the reference voltage.
+
+use cargo_mixer::identify::basis::Basis;
+use cargo_mixer::identify::bench::Bench;
+use cargo_mixer::identify::fragment;
+use cargo_mixer::identify::identified::from_benches;
+
+use crate::sweep::{THRUST, TORQUE, bench, plain, rows, settings};
+
+/// The sweep at `volts`, sagging by `sag` V times the mean square of throttle, thrust following 1.7 and torque 1.9.
+fn map(name: &str, volts: f64, sag: f64, seed: u64) -> Bench {
+    let mut rows = rows(seed);
+    for r in &mut rows {
+        r.voltage = volts - sag * 0.5 * (r.u * r.u + r.l * r.l);
+        r.thrust = r.thrust.map(|f| f * libm::pow(r.voltage / 14.8, 1.7));
+        r.torque = r.torque.map(|q| q * libm::pow(r.voltage / 14.8, 1.9));
+    }
+    bench(name, &plain(&rows), &settings(None)).expect("a bench")
+}
+
+#[test]
+fn two_voltages_give_exponents_and_one_map() {
+    let mut settings = settings(Some(Basis::Biquadratic));
+    settings.wishes.reference_v = Some(14.8);
+    let found = from_benches(
+        vec![map("a.csv", 16.4, 0.6, 1), map("b.csv", 12.9, 0.6, 2)],
+        &settings.wishes,
+    );
+    let found = found.expect("a pair");
+    let voltage = found.voltage.as_ref().expect("voltages");
+    let (f, q) = (
+        voltage.thrust.estimate().expect("thrust"),
+        voltage.torque.estimate().expect("torque"),
+    );
+    assert!((f.exponent - 1.7).abs() < 2.0 * f.ci95 && f.ci95 < 0.05, "{f:?}");
+    assert!((q.exponent - 1.9).abs() < 2.0 * q.ci95 && q.ci95 < 0.2, "{q:?}");
+    let pair = found.pair.as_ref().expect("a pair");
+    assert_eq!((pair.normalised_to_v, pair.thrust.points), (Some(14.8), 200));
+    for (c, ci, truth) in [
+        (&pair.thrust_n, &pair.thrust.ci95, THRUST),
+        (&pair.torque_nm, &pair.torque.ci95, TORQUE),
+    ]
+    .into_iter()
+    .flat_map(|(c, ci, t)| (0..8).map(move |k| (c[k], ci[k], t[k])))
+    {
+        assert!((c - truth).abs() < 2.0 * ci, "{c} {truth} {ci}");
+    }
+    let text = fragment::text(&found);
+    let table: toml::Table = text.parse().expect("TOML");
+    let v = &table["voltage"];
+    assert_eq!(v["reference_v"].as_float(), Some(14.8));
+    assert!((v["thrust_exponent"].as_float().expect("a number") - f.exponent).abs() < 5e-4 + 1e-12);
+    let range = v["range_v"].as_array().expect("an array");
+    assert!(
+        range[0].as_float() < Some(12.31) && range[1].as_float() > Some(16.39),
+        "{range:?}"
+    );
+}
+
+#[test]
+fn sag_in_one_map_gives_no_exponent_and_is_told() {
+    let found = from_benches(vec![map("a.csv", 16.4, 3.0, 1)], &settings(None).wishes).expect("a pair");
+    let voltage = found.voltage.as_ref().expect("voltages");
+    assert!(voltage.thrust.estimate().is_none() && voltage.torque.estimate().is_none());
+    assert!(
+        found
+            .warnings
+            .iter()
+            .any(|w| w.contains("confounded with throttle")),
+        "{:?}",
+        found.warnings
+    );
+    let text = fragment::text(&found);
+    assert!(
+        !text.parse::<toml::Table>().expect("TOML").contains_key("voltage"),
+        "{text}"
+    );
+}
+
+#[test]
+fn voltages_too_near_for_an_exponent_and_too_far_to_join_are_refused() {
+    let benches = vec![map("a.csv", 14.8, 0.0, 1), map("b.csv", 14.1, 0.0, 2)];
+    let error = from_benches(benches, &settings(None).wishes).unwrap_err();
+    assert!(error.reason.contains("different voltages"), "{error}");
+}
+
+#[test]
+fn thrust_alone_leaves_the_table_to_be_completed() {
+    let file = |name: &str, volts: f64| {
+        let row = |k: i32| {
+            let u = 0.1 * f64::from(k);
+            format!("{u},{},{volts}\n", 9.0 * u * u * libm::pow(volts / 14.8, 1.7))
+        };
+        let text: String = (1..=10).map(row).collect();
+        bench(
+            name,
+            format!("upper,thrust_n,voltage_v\n{text}").as_bytes(),
+            &settings(None),
+        )
+        .expect("a bench")
+    };
+    let single = vec![file("s1.csv", 12.0), file("s2.csv", 16.0)];
+    let alone = from_benches(single.clone(), &settings(None).wishes).expect("an exponent");
+    let table: toml::Table = fragment::text(&alone).parse().expect("TOML");
+    assert_eq!(table["voltage"]["thrust_exponent"].as_float(), Some(1.7));
+    assert!(table["voltage"].get("torque_exponent").is_none() && table.get("pair").is_none());
+
+    // Beside a pair an incomplete table would make the airframe invalid.
+    let files = [vec![map("a.csv", 14.8, 0.0, 1)], single].concat();
+    let found = from_benches(files, &settings(None).wishes).expect("a pair");
+    assert!(
+        found.warnings.iter().any(|w| w.contains("no torque exponent")),
+        "{:?}",
+        found.warnings
+    );
+    let text = fragment::text(&found);
+    let table: toml::Table = text.parse().expect("TOML");
+    assert!(
+        table.contains_key("pair") && !table.contains_key("voltage"),
+        "{text}"
+    );
+    assert!(text.contains("# thrust_exponent = 1.7"), "{text}");
+}
