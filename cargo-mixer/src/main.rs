@@ -23,7 +23,7 @@ enum Command {
     Check(check::CheckArgs),
     Mix(mix::MixArgs),
     Expand(expand::ExpandArgs),
-    Identify(identify::IdentifyArgs),
+    Identify(Box<identify::IdentifyArgs>),
 }
 
 fn main() -> ExitCode {
