@@ -131,6 +131,10 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         (kept, settling_rows) = plateau::means(&kept, how.settle);
     }
 
+    if kind == Kind::Pair {
+        notes.extend(uneven_levels(&kept));
+    }
+
     let (signs, sums) = match kind {
         Kind::Pair => sign::pair(&name, &columns, &kept, &how.signs, &mut notes)?,
         Kind::SingleRotor => sign::single(&columns, rotor, &kept, &how.signs),
@@ -197,6 +201,28 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         signs,
         notes,
         points,
+    })
+}
+
+/// A grid whose one rotor repeats its commands and the other does not: its record may have drifted, which no fit sees.
+fn uneven_levels(samples: &[Sample]) -> Option<String> {
+    let levels = [0, 1].map(|rotor| {
+        let mut us: Vec<i64> = samples
+            .iter()
+            .map(|s| (s.throttle[rotor] * 1000.0).round() as i64)
+            .collect();
+        us.sort_unstable();
+        us.dedup();
+        us.len()
+    });
+    let (few, many) = (levels[0].min(levels[1]), levels[0].max(levels[1]));
+    (few * few <= 4 * samples.len() && many > 3 * few).then(|| {
+        let rotor = if levels[0] > levels[1] { ["upper", "lower"] } else { ["lower", "upper"] };
+        format!(
+            "the {} rotor's command takes {many} values, the {}'s {few}: if a grid was commanded, the record of the \
+             former drifts, and the map with it",
+            rotor[0], rotor[1]
+        )
     })
 }
 

@@ -19,9 +19,11 @@ use super::fit::{Design, Fit};
 use super::fold::determinant;
 
 /// Cells per side.
-const CELLS: usize = 6;
-/// det J is kept above this part of its mean over the box: a map that is nearly singular cannot be inverted accurately.
-const MARGIN: f64 = 0.02;
+const CELLS: usize = 8;
+/// det J is kept above this part of its mean over the box. A map that is nearly singular along a line is invertible on
+/// paper only: with 0.02 no evaluator of the compiler meets its usual tolerance on two of three large bench maps; the
+/// step to 0.1 costs two to eight percent more residual.
+const MARGIN: f64 = 0.1;
 const STEPS: usize = 60;
 
 /// The constrained coordinates of both channels.
@@ -162,7 +164,7 @@ impl Problem {
             .map(|(p, s)| self.on_cells(&p).into_iter().map(|c| c * s).collect())
             .collect();
         // Far from their bound constraints cannot bind within a step; leaving them out keeps the programme small.
-        let near = 30.0 * margin - values.iter().fold(0.0_f64, |m, c| m.min(*c));
+        let near = 6.0 * margin - values.iter().fold(0.0_f64, |m, c| m.min(*c));
         let active: Vec<usize> = (0..values.len()).filter(|&k| values[k] < near).collect();
         let n = columns.len();
         if active.is_empty() {
@@ -243,7 +245,7 @@ mod tests {
                 torque.residual_rms / free[1].residual_rms,
             ];
             assert!(
-                cost.iter().all(|c| (1.0 - 1e-9..1.4).contains(c)),
+                cost.iter().all(|c| (1.0 - 1e-9..1.7).contains(c)),
                 "{basis:?} {cost:?}"
             );
         }

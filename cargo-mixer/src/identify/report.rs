@@ -92,11 +92,11 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
     writeln!(out, "\nBasis: error in cross-validation, % of full scale")?;
     writeln!(
         out,
-        "                        leave one point out    leave one throttle level out"
+        "                        leave one point out    leave one throttle level out   least"
     )?;
     writeln!(
         out,
-        "               terms    thrust    torque       thrust    torque"
+        "               terms    thrust    torque       thrust    torque     idle"
     )?;
     for candidate in &pair.cross_validation {
         write_candidate(out, candidate)?;

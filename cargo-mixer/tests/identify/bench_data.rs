@@ -118,6 +118,12 @@ fn every_map_is_identified() {
             "{:?}",
             file.date
         );
+        assert_eq!(
+            file.notes.iter().any(|n| n.contains("drifts")),
+            robust,
+            "{:?}",
+            file.notes
+        );
         let pair = found.pair.as_ref().expect("a pair");
         for (fit, least) in [(&pair.thrust, 0.995), (&pair.torque, 0.994)] {
             assert!(fit.r2 > least, "{}: R2 {}", path.display(), fit.r2);
