@@ -154,18 +154,19 @@ fn coefficients(out: &mut String, key: &str, terms: &[String], fit: &Fit) -> std
     writeln!(out, "]")
 }
 
-/// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one exponent only it is
-/// written as a comment, for the user to complete.
+/// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one exponent only, or
+/// without the voltage of the map, it is written as a comment, for the user to complete.
 fn write_voltage(
     out: &mut String,
     voltage: &Voltage,
     reference: Option<f64>,
     beside_pair: bool,
 ) -> std::fmt::Result {
-    let reference = reference.unwrap_or(voltage.mean_v);
     // Outwards to hundredths, and around the reference.
-    let low = ((voltage.range_v[0].min(reference)) * 100.0).floor() / 100.0;
-    let high = ((voltage.range_v[1].max(reference)) * 100.0).ceil() / 100.0;
+    let [low, high] = voltage.range_v;
+    let low = (100.0 * reference.map_or(low, |v| v.min(low))).floor() / 100.0;
+    let high = (100.0 * reference.map_or(high, |v| v.max(high))).ceil() / 100.0;
+    let at = reference.map_or("?".to_string(), |v| format!("{v:?}"));
     writeln!(out)?;
     let (thrust, torque) = (voltage.thrust.estimate(), voltage.torque.estimate());
     if thrust.is_none() && torque.is_none() {
@@ -175,7 +176,7 @@ fn write_voltage(
         )?;
         writeln!(
             out,
-            "# The map holds at about {reference:.2} V (rows from {low:.2} to {high:.2} V)."
+            "# The map holds at about {at} V (rows from {low:.2} to {high:.2} V)."
         )?;
     }
     for (name, exponent) in voltage.channels() {
@@ -195,11 +196,11 @@ fn write_voltage(
     if thrust.is_none() && torque.is_none() {
         return Ok(());
     }
-    let complete = thrust.is_some() && torque.is_some();
+    let complete = thrust.is_some() && torque.is_some() && reference.is_some();
     let mark = if beside_pair && !complete { "# " } else { "" };
     writeln!(
         out,
-        "{mark}[voltage]\n{mark}reference_v = {reference:?}\n{mark}range_v = [{low:?}, {high:?}]"
+        "{mark}[voltage]\n{mark}reference_v = {at}\n{mark}range_v = [{low:?}, {high:?}]"
     )?;
     for (name, estimate) in [("thrust", thrust), ("torque", torque)] {
         match estimate {

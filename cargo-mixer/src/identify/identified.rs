@@ -34,7 +34,7 @@ pub struct Identified {
     pub voltage: Option<Voltage>,
     /// What was read.
     pub files: Vec<Bench>,
-    /// Reference voltage of the fragment, V.
+    /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was given.
     pub reference_v: Option<f64>,
     /// What the user should know.
     pub warnings: Vec<String>,
@@ -63,11 +63,14 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
     if has(Kind::Pair) && has(Kind::SingleRotor) {
         warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
     }
-    let mean = pair
-        .as_ref()
-        .and_then(|p| p.normalised_to_v.or(p.mean_v))
-        .or(voltage.as_ref().map(|v| v.mean_v));
+    let mean = match &pair {
+        Some(pair) => pair.normalised_to_v.or(pair.mean_v),
+        None => voltage.as_ref().map(|v| v.mean_v),
+    };
     let reference_v = wishes.reference_v.or(mean.map(pair::hundredths));
+    if pair.is_some() && reference_v.is_none() && voltage.is_some() {
+        warnings.push("the map's own voltage is not known: give --reference-voltage for [voltage]".into());
+    }
     if let (Some(reference), Some(v)) = (wishes.reference_v, &voltage)
         && !(v.range_v[0]..=v.range_v[1]).contains(&reference)
     {

@@ -121,3 +121,38 @@ fn thrust_alone_leaves_the_table_to_be_completed() {
     );
     assert!(text.contains("# thrust_exponent = 1.7"), "{text}");
 }
+
+#[test]
+fn a_map_without_voltage_asks_for_its_reference() {
+    let single = |name: &str, volts: f64| {
+        let row = |k: i32| {
+            let u = 0.1 * f64::from(k);
+            let scale = u * u * libm::pow(volts / 14.8, 1.7);
+            format!("{u},{},{},{volts}\n", 9.0 * scale, 0.1 * scale)
+        };
+        let text: String = (1..=10).map(row).collect();
+        let text = format!("upper,thrust_n,torque_nm,voltage_v\n{text}");
+        bench(name, text.as_bytes(), &settings(None)).expect("a bench")
+    };
+    let map = String::from_utf8(plain(&rows(1))).expect("text");
+    let without: String = map
+        .lines()
+        .map(|l| format!("{}\n", l.rsplit_once(',').expect("a column").0))
+        .collect();
+    let map = bench("map.csv", without.as_bytes(), &settings(None)).expect("a bench");
+    let files = vec![map, single("s1.csv", 12.0), single("s2.csv", 16.0)];
+    let mut wishes = settings(None).wishes;
+    let found = from_benches(files.clone(), &wishes).expect("a pair");
+    assert!(
+        found.warnings.iter().any(|w| w.contains("--reference-voltage")),
+        "{:?}",
+        found.warnings
+    );
+    let table: toml::Table = fragment::text(&found).parse().expect("TOML");
+    assert!(!table.contains_key("voltage"));
+    wishes.reference_v = Some(14.8);
+    let found = from_benches(files, &wishes).expect("a pair");
+    let table: toml::Table = fragment::text(&found).parse().expect("TOML");
+    assert_eq!(table["voltage"]["reference_v"].as_float(), Some(14.8));
+    assert_eq!(table["voltage"]["torque_exponent"].as_float(), Some(1.7));
+}
