@@ -63,7 +63,7 @@ pub struct Pair {
     pub monotone: Option<MonotoneCost>,
     /// Reference voltage, V, to which the points were brought by the exponents.
     pub normalised_to_v: Option<f64>,
-    /// Mean and range of the voltage of the rows, V.
+    /// Mean voltage of the rows, V.
     pub mean_v: Option<f64>,
     /// What the user should know.
     pub warnings: Vec<String>,
