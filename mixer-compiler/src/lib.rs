@@ -71,13 +71,13 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     let mut faults = Vec::new();
     let effectiveness = keep(Effectiveness::new(&airframe), &mut faults);
     let invertible = keep(injectivity::prove(&airframe), &mut faults);
-    let voltage = keep(voltage::table(&airframe), &mut faults);
+    let voltage = keep(voltage::tabulate(&airframe), &mut faults);
     let (Some(effectiveness), Some((injectivity, least_idle)), Some(voltage)) =
         (effectiveness, invertible, voltage)
     else {
         return Err(faults);
     };
-    let (mut tables, evaluator, residual) = selection::select(&airframe, &effectiveness, voltage)?;
+    let (mut tables, evaluator, residual) = selection::select(&airframe, &effectiveness, voltage.as_ref())?;
     let limits = hover::limits(&airframe, &tables)?;
     tables.desaturation = hover::desaturation(&airframe, limits);
     Ok(Compiled {

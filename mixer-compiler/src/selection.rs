@@ -11,7 +11,7 @@ use crate::inversion::Inversion;
 use crate::model::PairMap;
 use crate::residual::Residual;
 use crate::tables::{self, InverseTable, MixerTables, VoltageTable};
-use crate::voltage;
+use crate::voltage::{self, TabulatedLaw};
 
 /// The tables with the cheapest evaluator that meets the file's tolerance at every voltage. Desaturation's limits
 /// are left open.
@@ -21,7 +21,7 @@ use crate::voltage;
 pub(crate) fn select(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
-    voltage: Option<VoltageTable>,
+    voltage: Option<&[TabulatedLaw; 2]>,
 ) -> Result<(MixerTables, Evaluator, Residual), Vec<Diagnostic>> {
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let tolerance = tolerance_at_reference(airframe, &pair);
@@ -97,7 +97,7 @@ fn assemble(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,
-    voltage: Option<VoltageTable>,
+    voltage: Option<&[TabulatedLaw; 2]>,
     inverse: InverseTable,
     tolerance: [f64; 2],
 ) -> MixerTables {
@@ -111,7 +111,7 @@ fn assemble(
         pair: tables::pair_table(airframe),
         inverse,
         throttle: tables::throttle_table(airframe),
-        voltage,
+        voltage: VoltageTable::new(airframe, voltage),
         attainable,
         desaturation: Desaturation {
             airmode: Airmode::Disabled,

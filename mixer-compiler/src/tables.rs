@@ -310,9 +310,10 @@ impl<P: Quantity> Inverse<P> for &InverseTable {
 }
 
 impl VoltageTable {
-    /// Rounds tabulated laws over the range `[low, high]` V.
-    pub fn new(range_v: [f64; 2], laws: &[TabulatedLaw; 2]) -> Self {
-        let [low, high] = range_v;
+    /// Rounds tabulated laws over the airframe's range; `None` without a correction.
+    pub fn new(airframe: &Airframe, laws: Option<&[TabulatedLaw; 2]>) -> Option<Self> {
+        let [low, high] = airframe.voltage.as_ref()?.range_v;
+        let laws = laws?;
         let variable = [2.0 / (high - low), -(high + low) / (high - low)].map(|x| x as f32);
         let law = |law: &TabulatedLaw| match law {
             TabulatedLaw::Polynomial(coefficients) => LawTable::Polynomial {
@@ -323,10 +324,10 @@ impl VoltageTable {
                 LawTable::Points(points.iter().map(|point| point.map(|x| x as f32)).collect())
             }
         };
-        VoltageTable {
-            range_v: range_v.map(|v| v as f32),
+        Some(VoltageTable {
+            range_v: [low as f32, high as f32],
             laws: [law(&laws[0]), law(&laws[1])],
-        }
+        })
     }
 
     fn view(&self) -> Voltage<'_> {

@@ -5,7 +5,6 @@
 
 use crate::airframe::{Airframe, Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::tables::VoltageTable;
 
 /// A law as the runtime evaluates it, in f64.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,25 +53,14 @@ pub fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The airframe's correction, rounded; `None` where it has none.
-///
-/// # Errors
-/// As [`tabulate`].
-pub fn table(airframe: &Airframe) -> Result<Option<VoltageTable>, Vec<Diagnostic>> {
-    let Some(voltage) = &airframe.voltage else {
-        return Ok(None);
-    };
-    Ok(Some(VoltageTable::new(
-        voltage.range_v,
-        &tabulate(airframe, voltage)?,
-    )))
-}
-
-/// The laws of thrust and torque, tabulated.
+/// The laws of thrust and torque, tabulated; `None` without a correction.
 ///
 /// # Errors
 /// A range over which a law is no polynomial of moderate degree.
-pub fn tabulate(airframe: &Airframe, voltage: &Voltage) -> Result<[TabulatedLaw; 2], Vec<Diagnostic>> {
+pub fn tabulate(airframe: &Airframe) -> Result<Option<[TabulatedLaw; 2]>, Vec<Diagnostic>> {
+    let Some(voltage) = &airframe.voltage else {
+        return Ok(None);
+    };
     let law = |key: &str, law: &VoltageLaw| {
         tabulate_law(law, voltage).map_err(|error| {
             vec![airframe.diagnostic(
@@ -88,7 +76,7 @@ pub fn tabulate(airframe: &Airframe, voltage: &Voltage) -> Result<[TabulatedLaw;
         law("voltage.thrust_exponent", &voltage.thrust),
         law("voltage.torque_exponent", &voltage.torque),
     ) {
-        (Ok(thrust), Ok(torque)) => Ok([thrust, torque]),
+        (Ok(thrust), Ok(torque)) => Ok(Some([thrust, torque])),
         (thrust, torque) => Err([thrust.err(), torque.err()]
             .into_iter()
             .flatten()
