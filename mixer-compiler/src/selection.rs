@@ -39,7 +39,7 @@ pub(crate) fn select(
                 airframe,
                 effectiveness,
                 &pair,
-                voltage.clone(),
+                voltage,
                 inverse,
                 tolerance,
             ),
