@@ -4,7 +4,7 @@
 //! commands of that point, and what the bench measured there is what the pair would really have given. The difference
 //! from what was asked is the error of the whole way: of the model, of the tables and of the inverse map.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use cargo_mixer::identify::identified::{Identified, identify};
 use cargo_mixer::identify::{IdentifyArgs, fragment};
@@ -19,10 +19,10 @@ struct Arguments {
     identify: IdentifyArgs,
 }
 
-fn identified(file: &PathBuf, basis: &str) -> Identified {
+fn identified(file: &Path, basis: &str) -> Identified {
     let words = [
         "identify".into(),
-        file.clone().into_os_string(),
+        file.as_os_str().to_owned(),
         "--basis".into(),
         basis.into(),
     ];
@@ -69,7 +69,7 @@ fn every_map_flies_as_it_was_measured() {
 }
 
 /// One map in one basis.
-fn fly(map: &PathBuf, basis: &str) {
+fn fly(map: &Path, basis: &str) {
     let name = map.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let identified = identified(map, basis);
     let compiled = compiled(&identified);

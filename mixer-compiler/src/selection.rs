@@ -35,14 +35,7 @@ pub(crate) fn select(
                 inverse,
                 ..tables.clone()
             },
-            None => assemble(
-                airframe,
-                effectiveness,
-                &pair,
-                voltage,
-                inverse,
-                tolerance,
-            ),
+            None => assemble(airframe, effectiveness, &pair, voltage, inverse, tolerance),
         };
         // The grid of the fit is part of the set: what fails there, fails.
         let glance = Residual::at_a_glance(&pair, &tables)
