@@ -5,7 +5,7 @@
 
 use mixer_rt::{
     AttainableSet, BilinearSeed, Biquadratic, Cubic, Desaturation, EightTermSeed, Inverse, Pair,
-    PolynomialInverse, Quantity, Quartic, RootCoordinates, Saturation, Seeded, SetpointError, Tables,
+    PolynomialInverse, Quantity, Quartic, RootCoordinates, Saturation, Scalar, Seeded, SetpointError, Tables,
     ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw, Wrench,
 };
 
@@ -179,7 +179,7 @@ impl QuantityTable {
 }
 
 impl Quantity for QuantityTable {
-    fn value(&self, u: f32, l: f32) -> f32 {
+    fn value<S: Scalar>(&self, u: S, l: S) -> S {
         match self {
             QuantityTable::Biquadratic(quantity) => quantity.value(u, l),
             QuantityTable::Cubic(quantity) => quantity.value(u, l),
@@ -187,7 +187,7 @@ impl Quantity for QuantityTable {
         }
     }
 
-    fn value_and_gradient(&self, u: f32, l: f32) -> [f32; 3] {
+    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
         match self {
             QuantityTable::Biquadratic(quantity) => quantity.value_and_gradient(u, l),
             QuantityTable::Cubic(quantity) => quantity.value_and_gradient(u, l),

@@ -3,14 +3,16 @@
 //! Each basis is evaluated by Horner's rule as a polynomial in u whose coefficients are polynomials in l; neither
 //! has a constant term, since a stopped pair gives nothing. The order of the terms is that of the airframe file.
 
+use crate::Scalar;
+
 /// A quantity of one unit, thrust in N or torque in N m, as a polynomial of the upper throttle `u` and the lower
 /// throttle `l`, both in `[0, 1]`.
 pub trait Quantity {
     /// The value at `(u, l)`.
-    fn value(&self, u: f32, l: f32) -> f32;
+    fn value<S: Scalar>(&self, u: S, l: S) -> S;
 
-    /// The value at `(u, l)` and its derivatives by `u` and by `l`.
-    fn value_and_gradient(&self, u: f32, l: f32) -> [f32; 3];
+    /// The value at `(u, l)` and its derivatives by `u` and by `l`. The value has the bits of [`Quantity::value`].
+    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3];
 }
 
 /// Terms u2l2, u2l, u2, ul2, ul, u, l2, l: eq. (1) of the paper.
@@ -37,107 +39,116 @@ pub struct Pair<P> {
 impl<P: Quantity> Pair<P> {
     /// The efforts `[f, Q]` at `(u, l)`, in N and N m at the reference voltage.
     #[inline(always)]
-    pub fn efforts(&self, [u, l]: [f32; 2]) -> [f32; 2] {
+    pub fn efforts<S: Scalar>(&self, [u, l]: [S; 2]) -> [S; 2] {
         [self.thrust.value(u, l), self.torque.value(u, l)]
     }
+
+    /// The efforts `[f, Q]` at `(u, l)` and their Jacobian `[[f_u, f_l], [Q_u, Q_l]]`.
+    #[inline(always)]
+    pub fn efforts_and_jacobian<S: Scalar>(&self, [u, l]: [S; 2]) -> ([S; 2], [[S; 2]; 2]) {
+        let [f, f_u, f_l] = self.thrust.value_and_gradient(u, l);
+        let [q, q_u, q_l] = self.torque.value_and_gradient(u, l);
+        ([f, q], [[f_u, f_l], [q_u, q_l]])
+    }
 }
 
-/// A polynomial's value and slope by Horner's rule, from its coefficients in descending order.
+/// Value and slope of `a x + b`.
 #[inline(always)]
-fn horner<const TERMS: usize>(coefficients: [f32; TERMS], x: f32) -> (f32, f32) {
-    let (mut value, mut slope) = (0.0, 0.0);
-    let mut rest = coefficients.into_iter();
-    if let Some(leading) = rest.next() {
-        value = leading;
-    }
-    if let Some(second) = rest.next() {
-        slope = value;
-        value = value * x + second;
-    }
-    for coefficient in rest {
-        slope = slope * x + value;
-        value = value * x + coefficient;
-    }
-    (value, slope)
+fn line<S: Scalar>([a, b]: [f32; 2], x: S) -> (S, f32) {
+    (x * a + b, a)
 }
 
-/// Combines the coefficients of powers of u, each as (value, slope by l) in descending order.
+/// Value and slope of `a x2 + b x + c` by Horner's rule.
 #[inline(always)]
-fn with_gradient<const TERMS: usize>(powers: [(f32, f32); TERMS], u: f32) -> [f32; 3] {
-    let (value, by_u) = horner(powers.map(|(value, _)| value), u);
-    let (by_l, _) = horner(powers.map(|(_, slope)| slope), u);
-    [value, by_u, by_l]
+fn parabola<S: Scalar>([a, b, c]: [f32; 3], x: S) -> (S, S) {
+    let leading = x * a;
+    let value = leading + b;
+    (value * x + c, leading + value)
+}
+
+/// Value and slope of `a x3 + b x2 + c x + d` by Horner's rule.
+#[inline(always)]
+fn cubic<S: Scalar>([a, b, c, d]: [f32; 4], x: S) -> (S, S) {
+    let (value, slope) = parabola([a, b, c], x);
+    (value * x + d, slope * x + value)
 }
 
 impl Quantity for Biquadratic {
     #[inline(always)]
-    fn value(&self, u: f32, l: f32) -> f32 {
+    fn value<S: Scalar>(&self, u: S, l: S) -> S {
         let [c0, c1, c2, c3, c4, c5, c6, c7] = self.0;
-        let p2 = (c0 * l + c1) * l + c2;
-        let p1 = (c3 * l + c4) * l + c5;
-        let p0 = (c6 * l + c7) * l;
+        let p2 = (l * c0 + c1) * l + c2;
+        let p1 = (l * c3 + c4) * l + c5;
+        let p0 = (l * c6 + c7) * l;
         (p2 * u + p1) * u + p0
     }
 
     #[inline(always)]
-    fn value_and_gradient(&self, u: f32, l: f32) -> [f32; 3] {
+    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
         let [c0, c1, c2, c3, c4, c5, c6, c7] = self.0;
-        let p2 = horner([c0, c1, c2], l);
-        let p1 = horner([c3, c4, c5], l);
-        let p0 = without_constant([c6, c7], l);
-        with_gradient([p2, p1, p0], u)
+        let (p2, p2_l) = parabola([c0, c1, c2], l);
+        let (p1, p1_l) = parabola([c3, c4, c5], l);
+        let (q0, q0_l) = line([c6, c7], l);
+        let (p0, p0_l) = (q0 * l, l * q0_l + q0);
+        let leading = p2 * u;
+        let value = leading + p1;
+        [value * u + p0, leading + value, (p2_l * u + p1_l) * u + p0_l]
     }
 }
 
 impl Quantity for Cubic {
     #[inline(always)]
-    fn value(&self, u: f32, l: f32) -> f32 {
+    fn value<S: Scalar>(&self, u: S, l: S) -> S {
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = self.0;
-        let p2 = c1 * l + c4;
-        let p1 = (c2 * l + c5) * l + c7;
-        let p0 = ((c3 * l + c6) * l + c8) * l;
-        ((c0 * u + p2) * u + p1) * u + p0
+        let p2 = l * c1 + c4;
+        let p1 = (l * c2 + c5) * l + c7;
+        let p0 = ((l * c3 + c6) * l + c8) * l;
+        ((u * c0 + p2) * u + p1) * u + p0
     }
 
     #[inline(always)]
-    fn value_and_gradient(&self, u: f32, l: f32) -> [f32; 3] {
+    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = self.0;
-        let p3 = (c0, 0.0);
-        let p2 = horner([c1, c4], l);
-        let p1 = horner([c2, c5, c7], l);
-        let p0 = without_constant([c3, c6, c8], l);
-        with_gradient([p3, p2, p1, p0], u)
+        let (p2, p2_l) = line([c1, c4], l);
+        let (p1, p1_l) = parabola([c2, c5, c7], l);
+        let (q0, q0_l) = parabola([c3, c6, c8], l);
+        let (p0, p0_l) = (q0 * l, q0_l * l + q0);
+        let leading = u * c0;
+        let inner = leading + p2;
+        let (value, slope) = (inner * u + p1, leading + inner);
+        [value * u + p0, slope * u + value, (u * p2_l + p1_l) * u + p0_l]
     }
 }
 
 impl Quantity for Quartic {
     #[inline(always)]
-    fn value(&self, u: f32, l: f32) -> f32 {
+    fn value<S: Scalar>(&self, u: S, l: S) -> S {
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11, c12, c13] = self.0;
-        let p3 = c1 * l + c5;
-        let p2 = (c2 * l + c6) * l + c9;
-        let p1 = ((c3 * l + c7) * l + c10) * l + c12;
-        let p0 = (((c4 * l + c8) * l + c11) * l + c13) * l;
-        (((c0 * u + p3) * u + p2) * u + p1) * u + p0
+        let p3 = l * c1 + c5;
+        let p2 = (l * c2 + c6) * l + c9;
+        let p1 = ((l * c3 + c7) * l + c10) * l + c12;
+        let p0 = (((l * c4 + c8) * l + c11) * l + c13) * l;
+        (((u * c0 + p3) * u + p2) * u + p1) * u + p0
     }
 
     #[inline(always)]
-    fn value_and_gradient(&self, u: f32, l: f32) -> [f32; 3] {
+    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11, c12, c13] = self.0;
-        let p4 = (c0, 0.0);
-        let p3 = horner([c1, c5], l);
-        let p2 = horner([c2, c6, c9], l);
-        let p1 = horner([c3, c7, c10, c12], l);
-        let p0 = without_constant([c4, c8, c11, c13], l);
-        with_gradient([p4, p3, p2, p1, p0], u)
+        let (p3, p3_l) = line([c1, c5], l);
+        let (p2, p2_l) = parabola([c2, c6, c9], l);
+        let (p1, p1_l) = cubic([c3, c7, c10, c12], l);
+        let (q0, q0_l) = cubic([c4, c8, c11, c13], l);
+        let (p0, p0_l) = (q0 * l, q0_l * l + q0);
+        let leading = u * c0;
+        let inner = leading + p3;
+        let (outer, outer_u) = (inner * u + p2, leading + inner);
+        let (value, slope) = (outer * u + p1, outer_u * u + outer);
+        [
+            value * u + p0,
+            slope * u + value,
+            ((u * p3_l + p2_l) * u + p1_l) * u + p0_l,
+        ]
     }
-}
-
-/// [`horner`] of `x` times the polynomial: value and slope of a polynomial that has no constant term.
-#[inline(always)]
-fn without_constant<const TERMS: usize>(coefficients: [f32; TERMS], x: f32) -> (f32, f32) {
-    let (value, slope) = horner(coefficients, x);
-    (value * x, slope * x + value)
 }
 
 #[cfg(test)]

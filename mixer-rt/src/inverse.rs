@@ -10,7 +10,7 @@
 //! attainable set the radicands, the seed and every iterate are clamped, so the result is continuous and always a
 //! pair of throttles within the range.
 
-use crate::{Pair, Quantity, clamp, sqrt};
+use crate::{Pair, Quantity, Scalar};
 
 /// The allowed throttles of every rotor, `0 <= min < max <= 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +24,8 @@ pub struct ThrottleRange {
 impl ThrottleRange {
     /// `throttle` limited to the range; idle where it is NaN.
     #[inline(always)]
-    pub fn clamp(&self, throttle: f32) -> f32 {
-        clamp(throttle, self.min, self.max)
+    pub fn clamp<S: Scalar>(&self, throttle: S) -> S {
+        throttle.within(self.min, self.max)
     }
 }
 
@@ -53,16 +53,24 @@ pub struct PolynomialInverse<'a> {
 }
 
 impl PolynomialInverse<'_> {
+    /// `[u, l]`, not clamped.
+    #[inline(always)]
+    pub fn guess<S: Scalar>(&self, [f, q]: [S; 2]) -> [S; 2] {
+        let s = (f * self.thrust[0] + self.thrust[1]).within(-1.0, 1.0);
+        let t = (q * self.torque[0] + self.torque[1]).within(-1.0, 1.0);
+        [self.evaluate(self.upper, s, t), self.evaluate(self.lower, s, t)]
+    }
+
     /// Horner's rule in both variables; terms beyond the coefficients count as zero.
     #[inline]
-    fn evaluate(&self, coefficients: &[f32], s: f32, t: f32) -> f32 {
+    fn evaluate<S: Scalar>(&self, coefficients: &[f32], s: S, t: S) -> S {
         let mut rest = coefficients.iter();
-        let mut value = 0.0;
+        let mut value = S::constant(0.0);
         for i in 0..=self.degree {
-            let mut row = 0.0;
+            let mut row = S::constant(0.0);
             for _ in 0..=i {
                 if let Some(coefficient) = rest.next() {
-                    row = row * t + coefficient;
+                    row = row * t + *coefficient;
                 }
             }
             value = value * s + row;
@@ -73,13 +81,8 @@ impl PolynomialInverse<'_> {
 
 impl<P> Inverse<P> for PolynomialInverse<'_> {
     #[inline(always)]
-    fn throttles(&self, _: &Pair<P>, range: &ThrottleRange, [f, q]: [f32; 2]) -> [f32; 2] {
-        let s = clamp(self.thrust[0] * f + self.thrust[1], -1.0, 1.0);
-        let t = clamp(self.torque[0] * q + self.torque[1], -1.0, 1.0);
-        [
-            range.clamp(self.evaluate(self.upper, s, t)),
-            range.clamp(self.evaluate(self.lower, s, t)),
-        ]
+    fn throttles(&self, _: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
+        self.guess(efforts).map(|throttle| range.clamp(throttle))
     }
 }
 
@@ -93,12 +96,10 @@ pub struct RootCoordinates {
 }
 
 impl RootCoordinates {
+    /// `[x, y]` at the efforts `[f, Q]`; negative radicands count as zero.
     #[inline(always)]
-    fn at(&self, [f, q]: [f32; 2]) -> [f32; 2] {
-        let root = |[by_f, by_q, offset]: [f32; 3]| {
-            let radicand = by_f * f + by_q * q + offset;
-            sqrt(if radicand > 0.0 { radicand } else { 0.0 })
-        };
+    pub fn at<S: Scalar>(&self, [f, q]: [S; 2]) -> [S; 2] {
+        let root = |[by_f, by_q, offset]: [f32; 3]| (f * by_f + q * by_q + offset).root();
         [root(self.x), root(self.y)]
     }
 }
@@ -106,7 +107,7 @@ impl RootCoordinates {
 /// A first guess of the throttles from the coordinates (x, y).
 pub trait Seed {
     /// `[u, l]`, not clamped.
-    fn guess(&self, x: f32, y: f32) -> [f32; 2];
+    fn guess<S: Scalar>(&self, x: S, y: S) -> [S; 2];
 }
 
 /// Terms 1, x, y, xy.
@@ -120,8 +121,8 @@ pub struct BilinearSeed {
 
 impl Seed for BilinearSeed {
     #[inline(always)]
-    fn guess(&self, x: f32, y: f32) -> [f32; 2] {
-        let evaluate = |[c, cx, cy, cxy]: [f32; 4]| (cxy * y + cx) * x + (cy * y + c);
+    fn guess<S: Scalar>(&self, x: S, y: S) -> [S; 2] {
+        let evaluate = |[c, cx, cy, cxy]: [f32; 4]| (y * cxy + cx) * x + (y * cy + c);
         [evaluate(self.upper), evaluate(self.lower)]
     }
 }
@@ -137,9 +138,9 @@ pub struct EightTermSeed {
 
 impl Seed for EightTermSeed {
     #[inline(always)]
-    fn guess(&self, x: f32, y: f32) -> [f32; 2] {
+    fn guess<S: Scalar>(&self, x: S, y: S) -> [S; 2] {
         let evaluate = |[c, cx, cy, cxy, cx2, cy2, cx2y, cxy2]: [f32; 8]| {
-            ((cx2y * y + cx2) * x + ((cxy2 * y + cxy) * y + cx)) * x + ((cy2 * y + cy) * y + c)
+            ((y * cx2y + cx2) * x + ((y * cxy2 + cxy) * y + cx)) * x + ((y * cy2 + cy) * y + c)
         };
         [evaluate(self.upper), evaluate(self.lower)]
     }
@@ -158,26 +159,20 @@ impl<P: Quantity, S: Seed, const STEPS: usize> Inverse<P> for Seeded<S, STEPS> {
     #[inline(always)]
     fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
         let [x, y] = self.coordinates.at(efforts);
-        let [mut u, mut l] = self.seed.guess(x, y).map(|throttle| range.clamp(throttle));
+        let mut throttles = self.seed.guess(x, y).map(|throttle| range.clamp(throttle));
         for _ in 0..STEPS {
-            let [step_u, step_l] = newton_step(pair, u, l, efforts);
-            u = range.clamp(u + step_u);
-            l = range.clamp(l + step_l);
+            let (given, jacobian) = pair.efforts_and_jacobian(throttles);
+            let step = solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
+            throttles = [0, 1].map(|k| range.clamp(throttles[k] + step[k]));
         }
-        [u, l]
+        throttles
     }
 }
 
-/// The Newton step from (u, l) towards the efforts (f, Q). The compiler has proven det J > 0 over the range, so
-/// the quotient is finite.
+/// The step (du, dl) with J (du, dl) = `missing`, by Cramer's rule. The compiler has proven det J > 0 over the
+/// range, so the quotient is finite.
 #[inline(always)]
-fn newton_step<P: Quantity>(pair: &Pair<P>, u: f32, l: f32, [f, q]: [f32; 2]) -> [f32; 2] {
-    let [thrust, thrust_u, thrust_l] = pair.thrust.value_and_gradient(u, l);
-    let [torque, torque_u, torque_l] = pair.torque.value_and_gradient(u, l);
-    let (missing_f, missing_q) = (f - thrust, q - torque);
-    let per_det = 1.0 / (thrust_u * torque_l - thrust_l * torque_u);
-    [
-        (missing_f * torque_l - missing_q * thrust_l) * per_det,
-        (missing_q * thrust_u - missing_f * torque_u) * per_det,
-    ]
+pub fn solve<S: Scalar>([[f_u, f_l], [q_u, q_l]]: [[S; 2]; 2], [f, q]: [S; 2]) -> [S; 2] {
+    let per_det = (f_u * q_l - f_l * q_u).reciprocal();
+    [(f * q_l - q * f_l) * per_det, (q * f_u - f * q_u) * per_det]
 }

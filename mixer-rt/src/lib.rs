@@ -27,6 +27,7 @@ mod forward;
 mod inverse;
 mod mix;
 mod saturation;
+mod scalar;
 mod sqrt;
 mod tables;
 mod voltage;
@@ -37,9 +38,11 @@ pub use desaturation::{Airmode, Desaturation};
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
 pub use inverse::{
     BilinearSeed, EightTermSeed, Inverse, PolynomialInverse, RootCoordinates, Seed, Seeded, ThrottleRange,
+    solve,
 };
 pub use mix::{Airframe, Mix, mix, mix_into};
 pub use saturation::{Direction, Saturation};
+pub use scalar::Scalar;
 pub use sqrt::sqrt;
 pub use tables::{Tables, Tolerance, Unit};
 pub use voltage::{Voltage, VoltageLaw};

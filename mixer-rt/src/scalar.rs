@@ -1,0 +1,53 @@
+//! The arithmetic of the forward and the inverse map.
+//!
+//! At run time a [`Scalar`] is an `f32` and every method is one or two instructions. The compiler runs the same
+//! functions over numbers that carry bounds, so what it proves is about these very operations, in this order.
+
+use core::ops::{Add, Mul, Sub};
+
+use crate::{clamp, sqrt};
+
+/// A number that tables in `f32` are applied to. Every operation stands for one operation in `f32`, rounded to
+/// nearest.
+pub trait Scalar:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Add<f32, Output = Self>
+    + Mul<f32, Output = Self>
+{
+    /// The number of a table.
+    fn constant(value: f32) -> Self;
+
+    /// 1 / self.
+    fn reciprocal(self) -> Self;
+
+    /// The square root of the larger of self and zero.
+    fn root(self) -> Self;
+
+    /// Self limited to `[low, high]`; `low` where it is NaN.
+    fn within(self, low: f32, high: f32) -> Self;
+}
+
+impl Scalar for f32 {
+    #[inline(always)]
+    fn constant(value: f32) -> f32 {
+        value
+    }
+
+    #[inline(always)]
+    fn reciprocal(self) -> f32 {
+        1.0 / self
+    }
+
+    #[inline(always)]
+    fn root(self) -> f32 {
+        sqrt(if self > 0.0 { self } else { 0.0 })
+    }
+
+    #[inline(always)]
+    fn within(self, low: f32, high: f32) -> f32 {
+        clamp(self, low, high)
+    }
+}
