@@ -90,12 +90,18 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
     }
     lines.push(String::new());
     lines.push(format!(" Inverse map: {}.", compiled.evaluator.description()));
-    let [f, q] = compiled.residual.efforts;
+    let [f, q] = compiled.certificate.stated.map(crate::report::rounded_up);
     lines.push(format!(
-        " Largest residual of one unit over {} points of the attainable set: {} N, {} N m.",
-        compiled.residual.points,
-        crate::report::rounded_up(f),
-        crate::report::rounded_up(q)
+        " Proven: each unit's thrust and torque are within {f} N and {q} N m of what is asked, at every"
+    ));
+    lines.push(format!(
+        " voltage and everywhere in the attainable set, rounding in f32 included ({} cells).",
+        compiled.certificate.cells
+    ));
+    let [f, q] = compiled.residual.efforts.map(crate::report::rounded_up);
+    lines.push(format!(
+        " Largest residual observed over {} efforts at the reference voltage: {f} N, {q} N m.",
+        compiled.residual.points
     ));
     lines
 }
@@ -148,15 +154,23 @@ fn tables_type(tables: &MixerTables) -> TokenStream {
     let basis = basis(&tables.pair.thrust);
     let inverse = match &tables.inverse {
         InverseTable::Polynomial { .. } => quote!(::mixer_rt::PolynomialInverse<'static>),
-        InverseTable::Bilinear { steps, .. } => seeded_type("BilinearSeed", *steps),
-        InverseTable::EightTerm { steps, .. } => seeded_type("EightTermSeed", *steps),
+        InverseTable::Seeded {
+            seed,
+            steps,
+            residuals,
+            ..
+        } => seeded_type(seed.type_name(), *steps, *residuals),
     };
     quote!(::mixer_rt::Tables<'static, #basis, #inverse>)
 }
 
-fn seeded_type(seed: &str, steps: u8) -> TokenStream {
+fn seeded_type(seed: &str, steps: u8, residuals: u8) -> TokenStream {
     let (seed, steps) = (identifier(seed), Literal::u8_unsuffixed(steps));
-    quote!(::mixer_rt::Seeded<::mixer_rt::#seed, #steps>)
+    if residuals == 1 {
+        return quote!(::mixer_rt::Seeded<::mixer_rt::#seed, #steps>);
+    }
+    let residuals = Literal::u8_unsuffixed(residuals);
+    quote!(::mixer_rt::Seeded<::mixer_rt::#seed, #steps, #residuals>)
 }
 
 fn basis(quantity: &QuantityTable) -> TokenStream {
@@ -173,16 +187,6 @@ fn quantity(quantity: &QuantityTable) -> TokenStream {
 }
 
 fn inverse(inverse: &InverseTable) -> TokenStream {
-    let seeded = |coordinates: &mixer_rt::RootCoordinates, seed: &str, upper: &[f32], lower: &[f32]| {
-        let (x, y, seed) = (vector(&coordinates.x), vector(&coordinates.y), identifier(seed));
-        let (upper, lower) = (vector(upper), vector(lower));
-        quote! {
-            ::mixer_rt::Seeded {
-                coordinates: ::mixer_rt::RootCoordinates { x: #x, y: #y },
-                seed: ::mixer_rt::#seed { upper: #upper, lower: #lower },
-            }
-        }
-    };
     match inverse {
         InverseTable::Polynomial {
             thrust,
@@ -203,12 +207,18 @@ fn inverse(inverse: &InverseTable) -> TokenStream {
                 }
             }
         }
-        InverseTable::Bilinear {
+        InverseTable::Seeded {
             coordinates, seed, ..
-        } => seeded(coordinates, "BilinearSeed", &seed.upper, &seed.lower),
-        InverseTable::EightTerm {
-            coordinates, seed, ..
-        } => seeded(coordinates, "EightTermSeed", &seed.upper, &seed.lower),
+        } => {
+            let (x, y) = (vector(&coordinates.x), vector(&coordinates.y));
+            let (name, [upper, lower]) = (identifier(seed.type_name()), seed.coefficients().map(vector));
+            quote! {
+                ::mixer_rt::Seeded {
+                    coordinates: ::mixer_rt::RootCoordinates { x: #x, y: #y },
+                    seed: ::mixer_rt::#name { upper: #upper, lower: #lower },
+                }
+            }
+        }
     }
 }
 

@@ -14,8 +14,8 @@ pub enum Evaluator {
     Seeded {
         /// Form of the seed.
         seed: SeedForm,
-        /// Newton steps, 0 to 2.
-        steps: u8,
+        /// Steps on the forward map.
+        refinement: Refinement,
     },
 }
 
@@ -24,26 +24,65 @@ pub enum Evaluator {
 pub enum SeedForm {
     /// 1, x, y, xy.
     Bilinear,
+    /// 1, x, y, xy, x2, y2.
+    Quadratic,
     /// 1, x, y, xy, x2, y2, x2y, xy2.
     EightTerm,
+    /// 1, x, y, xy, x2, y2, x2y, xy2, x3, y3.
+    Cubic,
 }
 
-const fn seeded(seed: SeedForm, steps: u8) -> Evaluator {
-    Evaluator::Seeded { seed, steps }
+/// What follows a seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refinement {
+    /// Nothing.
+    None,
+    /// One Newton step.
+    Newton,
+    /// One Jacobian, two residuals (Shamanskii 1967).
+    Shamanskii,
+    /// Two Newton steps.
+    Newton2,
+}
+
+impl Refinement {
+    /// Jacobians, and residuals of each.
+    pub fn steps(self) -> (u8, u8) {
+        match self {
+            Refinement::None => (0, 1),
+            Refinement::Newton => (1, 1),
+            Refinement::Shamanskii => (1, 2),
+            Refinement::Newton2 => (2, 1),
+        }
+    }
+}
+
+const fn seeded(seed: SeedForm, refinement: Refinement) -> Evaluator {
+    Evaluator::Seeded { seed, refinement }
 }
 
 /// What `method = "auto"` tries, by instructions per unit on a Cortex-M4F (counted in QEMU, `tests/firmware.rs`).
 /// Polynomials above degree 5 cost more than a seed and a Newton step and are worse by an order of magnitude.
-const CANDIDATES: [Evaluator; 9] = [
+const CANDIDATES: [Evaluator; 19] = [
     Evaluator::Polynomial { degree: 2 },
     Evaluator::Polynomial { degree: 3 },
-    seeded(SeedForm::Bilinear, 0),
-    seeded(SeedForm::EightTerm, 0),
+    seeded(SeedForm::Bilinear, Refinement::None),
+    seeded(SeedForm::Quadratic, Refinement::None),
+    seeded(SeedForm::EightTerm, Refinement::None),
+    seeded(SeedForm::Cubic, Refinement::None),
     Evaluator::Polynomial { degree: 5 },
-    seeded(SeedForm::Bilinear, 1),
-    seeded(SeedForm::EightTerm, 1),
-    seeded(SeedForm::Bilinear, 2),
-    seeded(SeedForm::EightTerm, 2),
+    seeded(SeedForm::Bilinear, Refinement::Newton),
+    seeded(SeedForm::Quadratic, Refinement::Newton),
+    seeded(SeedForm::EightTerm, Refinement::Newton),
+    seeded(SeedForm::Cubic, Refinement::Newton),
+    seeded(SeedForm::Bilinear, Refinement::Shamanskii),
+    seeded(SeedForm::Quadratic, Refinement::Shamanskii),
+    seeded(SeedForm::EightTerm, Refinement::Shamanskii),
+    seeded(SeedForm::Cubic, Refinement::Shamanskii),
+    seeded(SeedForm::Bilinear, Refinement::Newton2),
+    seeded(SeedForm::Quadratic, Refinement::Newton2),
+    seeded(SeedForm::EightTerm, Refinement::Newton2),
+    seeded(SeedForm::Cubic, Refinement::Newton2),
 ];
 
 impl Evaluator {
@@ -62,33 +101,24 @@ impl Evaluator {
     }
 
     /// The name in airframe files (`inverse.method`), reports and JSON.
-    pub fn name(self) -> &'static str {
+    pub fn name(self) -> String {
         match self {
-            Evaluator::Polynomial { .. } => "polynomial",
-            Evaluator::Seeded {
-                seed: SeedForm::Bilinear,
-                steps: 0,
-            } => "bilinear",
-            Evaluator::Seeded {
-                seed: SeedForm::Bilinear,
-                steps: 1,
-            } => "bilinear-newton",
-            Evaluator::Seeded {
-                seed: SeedForm::Bilinear,
-                ..
-            } => "bilinear-newton2",
-            Evaluator::Seeded {
-                seed: SeedForm::EightTerm,
-                steps: 0,
-            } => "eight-term",
-            Evaluator::Seeded {
-                seed: SeedForm::EightTerm,
-                steps: 1,
-            } => "eight-term-newton",
-            Evaluator::Seeded {
-                seed: SeedForm::EightTerm,
-                ..
-            } => "eight-term-newton2",
+            Evaluator::Polynomial { .. } => "polynomial".to_owned(),
+            Evaluator::Seeded { seed, refinement } => {
+                let seed = match seed {
+                    SeedForm::Bilinear => "bilinear",
+                    SeedForm::Quadratic => "quadratic",
+                    SeedForm::EightTerm => "eight-term",
+                    SeedForm::Cubic => "cubic",
+                };
+                let refinement = match refinement {
+                    Refinement::None => "",
+                    Refinement::Newton => "-newton",
+                    Refinement::Shamanskii => "-shamanskii",
+                    Refinement::Newton2 => "-newton2",
+                };
+                format!("{seed}{refinement}")
+            }
         }
     }
 
@@ -96,16 +126,20 @@ impl Evaluator {
     pub fn description(self) -> String {
         match self {
             Evaluator::Polynomial { degree } => format!("polynomial in (f, Q) of degree {degree}"),
-            Evaluator::Seeded { seed, steps } => {
+            Evaluator::Seeded { seed, refinement } => {
                 let seed = match seed {
-                    SeedForm::Bilinear => "bilinear seed",
-                    SeedForm::EightTerm => "8-term seed",
+                    SeedForm::Bilinear => "bilinear",
+                    SeedForm::Quadratic => "quadratic",
+                    SeedForm::EightTerm => "8-term",
+                    SeedForm::Cubic => "cubic",
                 };
-                match steps {
-                    0 => format!("{seed} in root coordinates"),
-                    1 => format!("{seed} in root coordinates, one Newton step"),
-                    _ => format!("{seed} in root coordinates, {steps} Newton steps"),
-                }
+                let refinement = match refinement {
+                    Refinement::None => "",
+                    Refinement::Newton => ", one Newton step",
+                    Refinement::Shamanskii => ", one Jacobian with two residuals",
+                    Refinement::Newton2 => ", 2 Newton steps",
+                };
+                format!("{seed} seed in root coordinates{refinement}")
             }
         }
     }
@@ -116,12 +150,34 @@ impl SeedForm {
     pub fn terms(self) -> usize {
         match self {
             SeedForm::Bilinear => 4,
+            SeedForm::Quadratic => 6,
             SeedForm::EightTerm => 8,
+            SeedForm::Cubic => 10,
         }
     }
 
     /// The terms at (x, y), in the order of `mixer-rt`'s seeds; those beyond [`SeedForm::terms`] are not used.
-    pub fn monomials(self, x: f64, y: f64) -> [f64; 8] {
-        [1.0, x, y, x * y, x * x, y * y, x * x * y, x * y * y]
+    pub fn monomials(self, x: f64, y: f64) -> [f64; 10] {
+        let (x2, y2) = (x * x, y * y);
+        [1.0, x, y, x * y, x2, y2, x2 * y, x * y2, x2 * x, y2 * y]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::airframe::EVALUATORS;
+
+    #[test]
+    fn every_name_of_the_file_is_an_evaluator() {
+        let names: Vec<String> = CANDIDATES
+            .iter()
+            .map(|evaluator| evaluator.name())
+            .filter(|name| name != "polynomial")
+            .collect();
+        for name in &names {
+            assert!(EVALUATORS.contains(&name.as_str()), "{name}");
+        }
+        assert_eq!(names.len(), EVALUATORS.len());
     }
 }

@@ -23,6 +23,11 @@ impl Interval {
         Interval { low: x, high: x }
     }
 
+    /// The largest absolute value.
+    pub fn magnitude(self) -> f64 {
+        self.high.max(-self.low)
+    }
+
     /// True where every number of the interval is positive.
     pub fn is_positive(self) -> bool {
         self.low > 0.0

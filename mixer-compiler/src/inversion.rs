@@ -10,7 +10,7 @@ mod lawson;
 
 pub use coordinates::Coordinates;
 
-use crate::evaluator::{Evaluator, SeedForm};
+use crate::evaluator::{Evaluator, Refinement, SeedForm};
 use crate::model::PairMap;
 use lawson::Lawson;
 
@@ -37,6 +37,8 @@ pub enum FittedInverse {
         seed: SeedForm,
         /// Newton steps.
         steps: u8,
+        /// Residuals per step.
+        residuals: u8,
         /// The root coordinates.
         coordinates: Coordinates,
         /// Coefficients of u and of l.
@@ -76,11 +78,11 @@ impl<'a> Inversion<'a> {
     pub fn fit(&mut self, evaluator: Evaluator) -> (FittedInverse, f64) {
         match evaluator {
             Evaluator::Polynomial { degree } => self.fit_polynomial(degree),
-            Evaluator::Seeded { seed, steps } => self.fit_seed(seed, steps),
+            Evaluator::Seeded { seed, refinement } => self.fit_seed(seed, refinement),
         }
     }
 
-    fn fit_seed(&mut self, seed: SeedForm, steps: u8) -> (FittedInverse, f64) {
+    fn fit_seed(&mut self, seed: SeedForm, refinement: Refinement) -> (FittedInverse, f64) {
         let pair = self.pair;
         let coordinates = *self.coordinates.get_or_insert_with(|| Coordinates::search(pair));
         let rows: Vec<Vec<f64>> = self
@@ -91,11 +93,13 @@ impl<'a> Inversion<'a> {
                 seed.monomials(x, y)[..seed.terms()].to_vec()
             })
             .collect();
-        let (coefficients, error) = self.lawson(&rows, steps);
+        let (coefficients, error) = self.lawson(&rows, refinement);
+        let (steps, residuals) = refinement.steps();
         (
             FittedInverse::Seeded {
                 seed,
                 steps,
+                residuals,
                 coordinates,
                 coefficients,
             },
@@ -118,7 +122,7 @@ impl<'a> Inversion<'a> {
                 monomials(degree, thrust[0] * f + thrust[1], torque[0] * q + torque[1])
             })
             .collect();
-        let (coefficients, error) = self.lawson(&rows, 0);
+        let (coefficients, error) = self.lawson(&rows, Refinement::None);
         (
             FittedInverse::Polynomial {
                 degree,
@@ -130,14 +134,15 @@ impl<'a> Inversion<'a> {
         )
     }
 
-    /// The minimax fit of both throttles in the given terms, and its error after `steps` Newton steps.
-    fn lawson(&self, rows: &[Vec<f64>], steps: u8) -> ([Vec<f64>; 2], f64) {
+    /// The minimax fit of both throttles in the given terms, and its error after the refinement.
+    fn lawson(&self, rows: &[Vec<f64>], refinement: Refinement) -> ([Vec<f64>; 2], f64) {
         let targets: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.throttles).collect();
         let error = |index: usize, guess: [f64; 2]| {
             let efforts = self.samples[index].efforts;
             let mut throttles = guess.map(|throttle| self.pair.clamp(throttle));
+            let (steps, residuals) = refinement.steps();
             for _ in 0..steps {
-                throttles = self.pair.newton(throttles, efforts);
+                throttles = self.pair.newton(throttles, efforts, residuals);
             }
             let given = self.pair.efforts(throttles);
             let miss = |k: usize| (given[k] - efforts[k]).abs() / self.tolerance[k];

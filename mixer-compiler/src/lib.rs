@@ -18,6 +18,7 @@ pub mod inversion;
 mod layout;
 pub mod model;
 pub mod polynomial;
+pub mod proof;
 pub mod report;
 pub mod residual;
 mod selection;
@@ -32,8 +33,10 @@ use effectiveness::Effectiveness;
 use evaluator::Evaluator;
 use injectivity::Injectivity;
 use proc_macro2::TokenStream;
+use proof::Certificate;
 use residual::Residual;
-use tables::MixerTables;
+use selection::Selected;
+use tables::{MixerTables, VoltageTable};
 
 pub use source::Source;
 
@@ -52,13 +55,15 @@ pub struct Compiled {
     pub least_idle: f64,
     /// The chosen evaluator.
     pub evaluator: Evaluator,
-    /// What it misses.
+    /// What it was observed to miss.
     pub residual: Residual,
+    /// What it is proven to miss at most.
+    pub certificate: Certificate,
     /// What is emitted.
     pub tables: MixerTables,
 }
 
-/// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> tables.
+/// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> proof -> tables.
 ///
 /// # Errors
 /// All faults that were found. Faults of the file itself end the compilation; later stages report together.
@@ -77,7 +82,13 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     else {
         return Err(faults);
     };
-    let (mut tables, evaluator, residual) = selection::select(&airframe, &effectiveness, voltage.as_ref())?;
+    let voltage = VoltageTable::new(&airframe, voltage.as_ref());
+    let Selected {
+        evaluator,
+        mut tables,
+        residual,
+        certificate,
+    } = selection::select(&airframe, &effectiveness, voltage)?;
     let limits = hover::limits(&airframe, &tables)?;
     tables.desaturation = hover::desaturation(&airframe, limits);
     Ok(Compiled {
@@ -88,6 +99,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         least_idle,
         evaluator,
         residual,
+        certificate,
         tables,
     })
 }

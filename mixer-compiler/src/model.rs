@@ -83,16 +83,19 @@ impl PairMap {
         jacobian
     }
 
-    /// One Newton step from `throttles` towards `efforts`, clamped to the range as `mixer-rt` does.
-    pub fn newton(&self, [u, l]: [f64; 2], [f, q]: [f64; 2]) -> [f64; 2] {
-        let [thrust, torque] = self.efforts([u, l]);
-        let [[f_u, f_l], [q_u, q_l]] = self.jacobian([u, l]);
-        let (missing_f, missing_q) = (f - thrust, q - torque);
+    /// One Newton step from `throttles` towards `efforts` with `residuals` residuals to its Jacobian, each clamped
+    /// to the range as `mixer-rt` does.
+    pub fn newton(&self, throttles: [f64; 2], [f, q]: [f64; 2], residuals: u8) -> [f64; 2] {
+        let [[f_u, f_l], [q_u, q_l]] = self.jacobian(throttles);
         let determinant = f_u * q_l - f_l * q_u;
-        [
-            self.clamp(u + (missing_f * q_l - missing_q * f_l) / determinant),
-            self.clamp(l + (missing_q * f_u - missing_f * q_u) / determinant),
-        ]
+        let [mut u, mut l] = throttles;
+        for _ in 0..residuals {
+            let [thrust, torque] = self.efforts([u, l]);
+            let (missing_f, missing_q) = (f - thrust, q - torque);
+            u = self.clamp(u + (missing_f * q_l - missing_q * f_l) / determinant);
+            l = self.clamp(l + (missing_q * f_u - missing_f * q_u) / determinant);
+        }
+        [u, l]
     }
 
     /// A throttle limited to the range.

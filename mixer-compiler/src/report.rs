@@ -16,13 +16,15 @@ pub struct Summary {
     /// Number of rotors.
     pub rotors: usize,
     /// Name of the evaluator as in `inverse.method`.
-    pub evaluator: &'static str,
+    pub evaluator: String,
     /// The evaluator with its parameters.
     pub evaluator_description: String,
-    /// Proven bound of one unit's thrust residual, N; null as long as nothing is proven.
-    pub proven_thrust_n: Option<f64>,
-    /// Proven bound of one unit's torque residual, N m; null as long as nothing is proven.
-    pub proven_torque_nm: Option<f64>,
+    /// Proven bound of one unit's thrust residual at every voltage, N.
+    pub proven_thrust_n: f64,
+    /// Proven bound of one unit's torque residual at every voltage, N m.
+    pub proven_torque_nm: f64,
+    /// What else there is to say of the proof.
+    pub certificate: CertificateSummary,
     /// Largest thrust residual of one unit that was observed at the reference voltage, N.
     pub observed_thrust_n: f64,
     /// Largest torque residual of one unit that was observed at the reference voltage, N m.
@@ -45,6 +47,34 @@ pub struct Summary {
     pub thrust_range_n: [f32; 2],
 }
 
+/// The certificate in `cargo mixer check --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct CertificateSummary {
+    /// Proven bounds at every voltage, `[N, N m]`.
+    pub bound: [f64; 2],
+    /// Proven bounds at the reference voltage, `[N, N m]`, comparable with the observed residuals.
+    pub bound_at_reference: [f64; 2],
+    /// Bounds at the reference voltage over observed residuals, of thrust and of torque.
+    pub over_observed: [f64; 2],
+    /// Share of the tolerance that the bounds leave, the lesser of thrust and torque.
+    pub margin: f64,
+    /// Cells of the throttle box that the proof took.
+    pub cells: usize,
+}
+
+impl CertificateSummary {
+    fn new(compiled: &Compiled) -> Self {
+        let certificate = &compiled.certificate;
+        CertificateSummary {
+            bound: certificate.stated,
+            bound_at_reference: certificate.reference,
+            over_observed: certificate.over_observed(&compiled.residual),
+            margin: certificate.margin(),
+            cells: certificate.cells,
+        }
+    }
+}
+
 impl Summary {
     /// The summary of a compiled airframe.
     pub fn new(compiled: &Compiled) -> Self {
@@ -56,8 +86,9 @@ impl Summary {
             rotors: airframe.rotors(),
             evaluator: compiled.evaluator.name(),
             evaluator_description: compiled.evaluator.description(),
-            proven_thrust_n: None,
-            proven_torque_nm: None,
+            proven_thrust_n: compiled.certificate.stated[0],
+            proven_torque_nm: compiled.certificate.stated[1],
+            certificate: CertificateSummary::new(compiled),
             observed_thrust_n: compiled.residual.efforts[0],
             observed_torque_nm: compiled.residual.efforts[1],
             observed_points: compiled.residual.points,
@@ -113,6 +144,13 @@ impl fmt::Display for Report<'_> {
             f,
             "tolerance       {:?} N, {:?} N m per unit, at every voltage",
             airframe.inverse.thrust_tolerance_n, airframe.inverse.torque_tolerance_nm
+        )?;
+        let [proven_f, proven_q] = compiled.certificate.stated.map(rounded_up);
+        writeln!(
+            f,
+            "proven          {proven_f} N, {proven_q} N m at every voltage; {:.1} % of the tolerance left, {} cells",
+            100.0 * compiled.certificate.margin(),
+            compiled.certificate.cells
         )?;
         writeln!(
             f,

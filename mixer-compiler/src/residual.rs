@@ -1,8 +1,8 @@
 //! What the emitted inverse misses, over a dense grid of the whole attainable set.
 //!
 //! The tables are run through `mixer-rt` itself in f32; the forward map that judges them is the file's, in f64.
-//! This observes; the proof over all efforts takes this stage's place in the pipeline when it exists, with the
-//! same inputs and outputs.
+//! This observes: it rejects evaluators at little cost, and it tells the proof how sharp a bound can be. A proof
+//! that contradicted it would be wrong.
 
 use mixer_rt::Inverse;
 
@@ -46,26 +46,28 @@ impl Residual {
         let mut residual = Residual {
             efforts: [0.0; 2],
             at: [[0.0; 2]; 2],
-            points: points.len(),
+            points: 0,
         };
         for &throttles in points {
-            let efforts = pair.efforts(throttles);
-            let asked = efforts.map(|effort| effort as f32);
-            let found = (&tables.inverse).throttles(&tables.pair, &tables.throttle, asked);
-            let given = pair.efforts(found.map(f64::from));
-            // The runtime judges by its own forward map: its rounding counts too.
-            let seen = tables.pair.efforts(found);
-            for k in 0..2 {
-                let missed = (given[k] - efforts[k])
-                    .abs()
-                    .max(f64::from(seen[k] - asked[k]).abs());
-                if missed > residual.efforts[k] {
-                    residual.efforts[k] = missed;
-                    residual.at[k] = throttles;
-                }
-            }
+            residual.look(pair, tables, throttles);
         }
         residual
+    }
+
+    /// Looks at the efforts of one more pair of throttles.
+    pub fn look(&mut self, pair: &PairMap, tables: &MixerTables, throttles: [f64; 2]) {
+        let efforts = pair.efforts(throttles);
+        let asked = efforts.map(|effort| effort as f32);
+        let found = (&tables.inverse).throttles(&tables.pair, &tables.throttle, asked);
+        let given = pair.efforts(found.map(f64::from));
+        self.points += 1;
+        for k in 0..2 {
+            let missed = (given[k] - efforts[k]).abs();
+            if missed > self.efforts[k] {
+                self.efforts[k] = missed;
+                self.at[k] = throttles;
+            }
+        }
     }
 
     /// True where no residual is above `tolerance` (`[N, N m]`).

@@ -1,4 +1,4 @@
-//! Choice of the evaluator: the cheapest whose emitted tables meet the tolerance.
+//! Choice of the evaluator: the cheapest whose emitted tables are proven to meet the tolerance.
 
 use mixer_rt::{Airmode, Desaturation, Tolerance};
 
@@ -9,22 +9,36 @@ use crate::effectiveness::Effectiveness;
 use crate::evaluator::Evaluator;
 use crate::inversion::Inversion;
 use crate::model::PairMap;
+use crate::proof::{self, Certificate, Correction};
 use crate::residual::Residual;
 use crate::tables::{self, InverseTable, MixerTables, VoltageTable};
-use crate::voltage::{self, TabulatedLaw};
+use crate::voltage;
 
-/// The tables with the cheapest evaluator that meets the file's tolerance at every voltage. Desaturation's limits
-/// are left open.
+/// An evaluator with its tables and what is known about them.
+#[derive(Clone, Debug)]
+pub(crate) struct Selected {
+    /// The evaluator.
+    pub(crate) evaluator: Evaluator,
+    /// The tables; desaturation's limits are left open.
+    pub(crate) tables: MixerTables,
+    /// What was observed.
+    pub(crate) residual: Residual,
+    /// What is proven.
+    pub(crate) certificate: Certificate,
+}
+
+/// The cheapest evaluator that is proven to meet the file's tolerance at every voltage.
 ///
 /// # Errors
-/// No evaluator meets the tolerance; the best residual reached.
+/// No evaluator meets the tolerance; the best bound that could be proven.
 pub(crate) fn select(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
-    voltage: Option<&[TabulatedLaw; 2]>,
-) -> Result<(MixerTables, Evaluator, Residual), Vec<Diagnostic>> {
+    voltage: Option<VoltageTable>,
+) -> Result<Selected, Vec<Diagnostic>> {
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-    let tolerance = tolerance_at_reference(airframe, &pair);
+    let correction = Correction::new(airframe, voltage.as_ref());
+    let tolerance = tolerance_at_reference(airframe, &correction);
     let mut inversion = Inversion::new(&pair, tolerance);
     let mut best: Option<(Evaluator, MixerTables, f64)> = None;
     for evaluator in Evaluator::candidates(&airframe.inverse.method) {
@@ -35,54 +49,46 @@ pub(crate) fn select(
                 inverse,
                 ..tables.clone()
             },
-            None => assemble(airframe, effectiveness, &pair, voltage, inverse, tolerance),
+            None => assemble(
+                airframe,
+                effectiveness,
+                &pair,
+                voltage.clone(),
+                inverse,
+                tolerance,
+            ),
         };
         // The grid of the fit is part of the set: what fails there, fails.
         let glance = Residual::at_a_glance(&pair, &tables)
             .ratio(tolerance)
             .max(fit_error);
         if glance <= 1.0 {
-            let residual = Residual::over_set(&pair, &tables);
+            let mut residual = Residual::over_set(&pair, &tables);
             if residual.within(tolerance) {
-                return Ok((tables, evaluator, residual));
+                let certificate = proof::prove(airframe, &pair, &tables, &correction, &mut residual);
+                if certificate.holds() && certificate.agrees(&residual) {
+                    return Ok(Selected {
+                        evaluator,
+                        tables,
+                        residual,
+                        certificate,
+                    });
+                }
             }
         }
         if best.as_ref().is_none_or(|(_, _, so_far)| glance < *so_far) {
             best = Some((evaluator, tables, glance));
         }
     }
-    Err(vec![refusal(airframe, &pair, best)])
+    Err(vec![refusal(airframe, &pair, &correction, best)])
 }
 
 /// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage where efforts are
-/// largest, after the error of the voltage table.
-fn tolerance_at_reference(airframe: &Airframe, pair: &PairMap) -> [f64; 2] {
-    let factors = voltage::largest_factors(airframe);
-    let scale = pair.scale();
+/// largest.
+fn tolerance_at_reference(airframe: &Airframe, correction: &Correction) -> [f64; 2] {
     let inverse = &airframe.inverse;
-    let table = if airframe.voltage.is_some() {
-        voltage::FIT_TOLERANCE
-    } else {
-        0.0
-    };
     let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
-    std::array::from_fn(|k| stated[k] / factors[k] - table * scale[k])
-}
-
-/// The inverse of [`tolerance_at_reference`]: the least tolerance that a file can state for a residual.
-fn stated_tolerance(airframe: &Airframe, pair: &PairMap, residual: &Residual) -> [f64; 2] {
-    let factors = voltage::largest_factors(airframe);
-    let (scale, table) = (pair.scale(), voltage_table_error(airframe));
-    std::array::from_fn(|k| (residual.efforts[k] + table * scale[k]) * factors[k])
-}
-
-/// Relative error that the voltage table may add.
-fn voltage_table_error(airframe: &Airframe) -> f64 {
-    if airframe.voltage.is_some() {
-        voltage::FIT_TOLERANCE
-    } else {
-        0.0
-    }
+    std::array::from_fn(|k| stated[k] / correction.largest[k])
 }
 
 /// Rounds everything but desaturation's limits.
@@ -90,7 +96,7 @@ fn assemble(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,
-    voltage: Option<&[TabulatedLaw; 2]>,
+    voltage: Option<VoltageTable>,
     inverse: InverseTable,
     tolerance: [f64; 2],
 ) -> MixerTables {
@@ -104,7 +110,7 @@ fn assemble(
         pair: tables::pair_table(airframe),
         inverse,
         throttle: tables::throttle_table(airframe),
-        voltage: VoltageTable::new(airframe, voltage),
+        voltage,
         attainable,
         desaturation: Desaturation {
             airmode: Airmode::Disabled,
@@ -139,7 +145,12 @@ fn wrench_tolerance(airframe: &Airframe, effectiveness: &Effectiveness, pair: &P
     })
 }
 
-fn refusal(airframe: &Airframe, pair: &PairMap, best: Option<(Evaluator, MixerTables, f64)>) -> Diagnostic {
+fn refusal(
+    airframe: &Airframe,
+    pair: &PairMap,
+    correction: &Correction,
+    best: Option<(Evaluator, MixerTables, f64)>,
+) -> Diagnostic {
     let inverse = &airframe.inverse;
     let Some((evaluator, tables, _)) = best else {
         let message = "no evaluator of this name";
@@ -151,7 +162,8 @@ fn refusal(airframe: &Airframe, pair: &PairMap, best: Option<(Evaluator, MixerTa
             "use method = \"auto\"",
         );
     };
-    let reached = stated_tolerance(airframe, pair, &Residual::over_set(pair, &tables));
+    let mut residual = Residual::over_set(pair, &tables);
+    let reached = proof::prove(airframe, pair, &tables, correction, &mut residual).stated;
     let (key, missed) = if reached[0] > inverse.thrust_tolerance_n {
         (
             "inverse.thrust_tolerance_n",
@@ -181,7 +193,7 @@ fn refusal(airframe: &Airframe, pair: &PairMap, best: Option<(Evaluator, MixerTa
         key,
         message,
         format!(
-            "{} leaves {reached_f} N and {reached_q} N m",
+            "{} is proven within {reached_f} N and {reached_q} N m",
             evaluator.description()
         ),
         format!("thrust_tolerance_n = {offered_f} with torque_tolerance_nm = {offered_q} would do{other}"),

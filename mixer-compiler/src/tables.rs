@@ -3,17 +3,18 @@
 //! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the generated Rust
 //! holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs `mixer-rt` itself on them.
 
+mod inverse;
+
 use mixer_rt::{
-    AttainableSet, BilinearSeed, Biquadratic, Cubic, Desaturation, EightTermSeed, Inverse, Pair,
-    PolynomialInverse, Quantity, Quartic, RootCoordinates, Saturation, Scalar, Seeded, SetpointError, Tables,
-    ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw, Wrench,
+    AttainableSet, Biquadratic, Cubic, Desaturation, Pair, Quantity, Quartic, Saturation, Scalar,
+    SetpointError, Tables, ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw, Wrench,
 };
 
 use crate::airframe::{Airframe, Basis};
 use crate::effectiveness::Effectiveness;
-use crate::evaluator::SeedForm;
-use crate::inversion::FittedInverse;
 use crate::voltage::TabulatedLaw;
+
+pub use inverse::{InverseTable, SeedTable};
 
 /// The tables of one airframe.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,40 +46,6 @@ pub enum QuantityTable {
     Cubic(Cubic),
     /// Fourteen terms.
     Quartic(Quartic),
-}
-
-/// An inverse in any form.
-#[derive(Clone, Debug, PartialEq)]
-pub enum InverseTable {
-    /// [`PolynomialInverse`].
-    Polynomial {
-        /// Scale and offset of f.
-        thrust: [f32; 2],
-        /// Scale and offset of Q.
-        torque: [f32; 2],
-        /// Total degree.
-        degree: u8,
-        /// Coefficients of u and of l.
-        coefficients: [Vec<f32>; 2],
-    },
-    /// [`Seeded`] with a [`BilinearSeed`].
-    Bilinear {
-        /// The coordinates.
-        coordinates: RootCoordinates,
-        /// The seed.
-        seed: BilinearSeed,
-        /// Newton steps.
-        steps: u8,
-    },
-    /// [`Seeded`] with an [`EightTermSeed`].
-    EightTerm {
-        /// The coordinates.
-        coordinates: RootCoordinates,
-        /// The seed.
-        seed: EightTermSeed,
-        /// Newton steps.
-        steps: u8,
-    },
 }
 
 /// The voltage correction.
@@ -192,119 +159,6 @@ impl Quantity for QuantityTable {
             QuantityTable::Biquadratic(quantity) => quantity.value_and_gradient(u, l),
             QuantityTable::Cubic(quantity) => quantity.value_and_gradient(u, l),
             QuantityTable::Quartic(quantity) => quantity.value_and_gradient(u, l),
-        }
-    }
-}
-
-impl InverseTable {
-    /// Rounds a fitted inverse.
-    pub fn new(fitted: &FittedInverse) -> Self {
-        match fitted {
-            FittedInverse::Polynomial {
-                degree,
-                thrust,
-                torque,
-                coefficients,
-            } => InverseTable::Polynomial {
-                thrust: thrust.map(|x| x as f32),
-                torque: torque.map(|x| x as f32),
-                degree: *degree,
-                coefficients: coefficients
-                    .clone()
-                    .map(|c| c.iter().map(|&x| x as f32).collect()),
-            },
-            FittedInverse::Seeded {
-                seed,
-                steps,
-                coordinates,
-                coefficients: [upper, lower],
-            } => {
-                fn rounded<const TERMS: usize>(coefficients: &[f64]) -> [f32; TERMS] {
-                    std::array::from_fn(|index| coefficients.get(index).map_or(0.0, |&c| c as f32))
-                }
-                let coordinates = RootCoordinates {
-                    x: coordinates.x.map(|x| x as f32),
-                    y: coordinates.y.map(|x| x as f32),
-                };
-                let steps = *steps;
-                match seed {
-                    SeedForm::Bilinear => {
-                        let seed = BilinearSeed {
-                            upper: rounded(upper),
-                            lower: rounded(lower),
-                        };
-                        InverseTable::Bilinear {
-                            coordinates,
-                            seed,
-                            steps,
-                        }
-                    }
-                    SeedForm::EightTerm => {
-                        let seed = EightTermSeed {
-                            upper: rounded(upper),
-                            lower: rounded(lower),
-                        };
-                        InverseTable::EightTerm {
-                            coordinates,
-                            seed,
-                            steps,
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    fn floats(&self) -> usize {
-        match self {
-            InverseTable::Polynomial { coefficients, .. } => 4 + 2 * coefficients[0].len(),
-            InverseTable::Bilinear { .. } => 6 + 8,
-            InverseTable::EightTerm { .. } => 6 + 16,
-        }
-    }
-}
-
-impl<P: Quantity> Inverse<P> for &InverseTable {
-    fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
-        fn seeded<P: Quantity, S: mixer_rt::Seed>(
-            (coordinates, seed, steps): (RootCoordinates, S, u8),
-            pair: &Pair<P>,
-            range: &ThrottleRange,
-            efforts: [f32; 2],
-        ) -> [f32; 2] {
-            match steps {
-                0 => Seeded::<S, 0> { coordinates, seed }.throttles(pair, range, efforts),
-                1 => Seeded::<S, 1> { coordinates, seed }.throttles(pair, range, efforts),
-                _ => Seeded::<S, 2> { coordinates, seed }.throttles(pair, range, efforts),
-            }
-        }
-        match self {
-            InverseTable::Polynomial {
-                thrust,
-                torque,
-                degree,
-                coefficients: [upper, lower],
-            } => {
-                let (thrust, torque, degree) = (*thrust, *torque, *degree);
-                PolynomialInverse {
-                    thrust,
-                    torque,
-                    degree,
-                    upper,
-                    lower,
-                }
-                .throttles(pair, range, efforts)
-            }
-            InverseTable::Bilinear {
-                coordinates,
-                seed,
-                steps,
-            } => seeded((*coordinates, *seed, *steps), pair, range, efforts),
-            InverseTable::EightTerm {
-                coordinates,
-                seed,
-                steps,
-            } => seeded((*coordinates, *seed, *steps), pair, range, efforts),
         }
     }
 }

@@ -146,24 +146,70 @@ impl Seed for EightTermSeed {
     }
 }
 
-/// A seed in root coordinates and `STEPS` Newton steps on the forward map.
+/// Terms 1, x, y, xy, x2, y2.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seeded<S, const STEPS: usize> {
+pub struct QuadraticSeed {
+    /// Coefficients of the upper throttle.
+    pub upper: [f32; 6],
+    /// Coefficients of the lower throttle.
+    pub lower: [f32; 6],
+}
+
+impl Seed for QuadraticSeed {
+    #[inline(always)]
+    fn guess<S: Scalar>(&self, x: S, y: S) -> [S; 2] {
+        let evaluate =
+            |[c, cx, cy, cxy, cx2, cy2]: [f32; 6]| (x * cx2 + (y * cxy + cx)) * x + ((y * cy2 + cy) * y + c);
+        [evaluate(self.upper), evaluate(self.lower)]
+    }
+}
+
+/// Terms 1, x, y, xy, x2, y2, x2y, xy2, x3, y3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CubicSeed {
+    /// Coefficients of the upper throttle.
+    pub upper: [f32; 10],
+    /// Coefficients of the lower throttle.
+    pub lower: [f32; 10],
+}
+
+impl Seed for CubicSeed {
+    #[inline(always)]
+    fn guess<S: Scalar>(&self, x: S, y: S) -> [S; 2] {
+        let evaluate = |[c, cx, cy, cxy, cx2, cy2, cx2y, cxy2, cx3, cy3]: [f32; 10]| {
+            ((x * cx3 + (y * cx2y + cx2)) * x + ((y * cxy2 + cxy) * y + cx)) * x
+                + (((y * cy3 + cy2) * y + cy) * y + c)
+        };
+        [evaluate(self.upper), evaluate(self.lower)]
+    }
+}
+
+/// A seed in root coordinates and `STEPS` Newton steps on the forward map, each with `RESIDUALS` residuals to one
+/// Jacobian: 1 is Newton's method, 2 is Shamanskii's (1967), of third order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seeded<S, const STEPS: usize, const RESIDUALS: usize = 1> {
     /// The coordinates of the seed.
     pub coordinates: RootCoordinates,
     /// The seed.
     pub seed: S,
 }
 
-impl<P: Quantity, S: Seed, const STEPS: usize> Inverse<P> for Seeded<S, STEPS> {
+impl<P: Quantity, S: Seed, const STEPS: usize, const RESIDUALS: usize> Inverse<P>
+    for Seeded<S, STEPS, RESIDUALS>
+{
     #[inline(always)]
     fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
         let [x, y] = self.coordinates.at(efforts);
         let mut throttles = self.seed.guess(x, y).map(|throttle| range.clamp(throttle));
         for _ in 0..STEPS {
-            let (given, jacobian) = pair.efforts_and_jacobian(throttles);
-            let step = solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
-            throttles = [0, 1].map(|k| range.clamp(throttles[k] + step[k]));
+            let (mut given, jacobian) = pair.efforts_and_jacobian(throttles);
+            for residual in 0..RESIDUALS {
+                if residual > 0 {
+                    given = pair.efforts(throttles);
+                }
+                let step = solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
+                throttles = [0, 1].map(|k| range.clamp(throttles[k] + step[k]));
+            }
         }
         throttles
     }

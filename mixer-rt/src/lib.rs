@@ -37,8 +37,8 @@ pub use attainable::AttainableSet;
 pub use desaturation::{Airmode, Desaturation};
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
 pub use inverse::{
-    BilinearSeed, EightTermSeed, Inverse, PolynomialInverse, RootCoordinates, Seed, Seeded, ThrottleRange,
-    solve,
+    BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,
+    Seeded, ThrottleRange, solve,
 };
 pub use mix::{Airframe, Mix, mix, mix_into};
 pub use saturation::{Direction, Saturation};

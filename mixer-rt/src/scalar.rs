@@ -3,7 +3,7 @@
 //! At run time a [`Scalar`] is an `f32` and every method is one or two instructions. The compiler runs the same
 //! functions over numbers that carry bounds, so what it proves is about these very operations, in this order.
 
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Div, Mul, Sub};
 
 use crate::{clamp, sqrt};
 
@@ -16,6 +16,7 @@ pub trait Scalar:
     + Mul<Output = Self>
     + Add<f32, Output = Self>
     + Mul<f32, Output = Self>
+    + Div<f32, Output = Self>
 {
     /// The number of a table.
     fn constant(value: f32) -> Self;

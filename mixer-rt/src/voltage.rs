@@ -1,7 +1,7 @@
 //! The voltage correction: f(V) = k_f(V) f(u, l) and Q(V) = k_Q(V) Q(u, l), k = 1 at the reference voltage.
 //! (The paper multiplies its maps by such a coefficient, section IV-B2.)
 
-use crate::{SetpointError, clamp};
+use crate::{Scalar, SetpointError, clamp};
 
 /// How a correction factor depends on voltage. `powf` has no place in a mixer: the compiler fits an exponent law
 /// by a polynomial.
@@ -26,17 +26,11 @@ impl VoltageLaw<'_> {
             VoltageLaw::Polynomial {
                 variable,
                 coefficients,
-            } => {
-                let x = variable[0] * voltage_v + variable[1];
-                coefficients
-                    .iter()
-                    .fold(0.0, |value, coefficient| value * x + coefficient)
-            }
+            } => VoltageLaw::polynomial(*variable, coefficients, voltage_v),
             VoltageLaw::Points(points) => {
                 let mut factor = 1.0;
                 for (left, right) in points.iter().zip(points.iter().skip(1)) {
-                    let share = (voltage_v - left[0]) / (right[0] - left[0]);
-                    factor = left[1] + share * (right[1] - left[1]);
+                    factor = VoltageLaw::line(*left, *right, voltage_v);
                     if voltage_v <= right[0] {
                         break;
                     }
@@ -44,6 +38,22 @@ impl VoltageLaw<'_> {
                 factor
             }
         }
+    }
+
+    /// [`VoltageLaw::Polynomial`] at `voltage_v`.
+    #[inline]
+    pub fn polynomial<S: Scalar>([scale, offset]: [f32; 2], coefficients: &[f32], voltage_v: S) -> S {
+        let x = voltage_v * scale + offset;
+        coefficients
+            .iter()
+            .fold(S::constant(0.0), |value, coefficient| value * x + *coefficient)
+    }
+
+    /// The straight line through two points of [`VoltageLaw::Points`] at `voltage_v`.
+    #[inline]
+    pub fn line<S: Scalar>(left: [f32; 2], right: [f32; 2], voltage_v: S) -> S {
+        let share = (voltage_v + -left[0]) / (right[0] - left[0]);
+        share * (right[1] - left[1]) + left[1]
     }
 }
 

@@ -8,11 +8,21 @@ use crate::spec;
 /// Names of the evaluators that a file can ask for.
 pub const EVALUATORS: &[&str] = &[
     "bilinear",
-    "bilinear-newton",
-    "bilinear-newton2",
+    "quadratic",
     "eight-term",
+    "cubic",
+    "bilinear-newton",
+    "quadratic-newton",
     "eight-term-newton",
+    "cubic-newton",
+    "bilinear-shamanskii",
+    "quadratic-shamanskii",
+    "eight-term-shamanskii",
+    "cubic-shamanskii",
+    "bilinear-newton2",
+    "quadratic-newton2",
     "eight-term-newton2",
+    "cubic-newton2",
 ];
 
 /// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.

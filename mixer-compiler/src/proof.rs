@@ -1,0 +1,268 @@
+//! Proof that the emitted inverse keeps its tolerance.
+//!
+//! The claim: for every voltage in the range and every pair of throttles in the throttle box, let E = k F(u, l) be
+//! the efforts that they give. Where the mixer asks for E, rounded to f32, the throttles that the emitted tables
+//! give by the operations of `mixer-rt` lie within the throttle range, and their efforts are within
+//! `stated` of E. F and k are the airframe file's, in exact arithmetic.
+//!
+//! The box is cut into cells. On each, [`cell`] bounds the residual; the worst cell is halved until the largest
+//! bound is close to the largest residual that was observed, or the work allowed is done.
+
+mod cell;
+mod correction;
+mod expansion;
+mod taylor;
+
+use std::collections::BinaryHeap;
+
+use crate::airframe::Airframe;
+use crate::model::PairMap;
+use crate::residual::Residual;
+use crate::tables::MixerTables;
+use cell::{Cell, Subject};
+use expansion::Monomials;
+
+pub use correction::Correction;
+pub use taylor::Taylor;
+
+/// What has been proven of one unit's inverse map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certificate {
+    /// Bound of the residual at the reference voltage, `[N, N m]`, the voltage table's error included.
+    pub reference: [f64; 2],
+    /// Bound of the residual at every voltage in the range, `[N, N m]`.
+    pub stated: [f64; 2],
+    /// The file's tolerance, `[N, N m]`.
+    pub tolerance: [f64; 2],
+    /// Number of cells.
+    pub cells: usize,
+    /// Throttles `[u, l]` at the centres of the cells with the largest bounds of f and of Q.
+    pub at: [[f64; 2]; 2],
+}
+
+impl Certificate {
+    /// True where the bound is within the tolerance.
+    pub fn holds(&self) -> bool {
+        (0..2).all(|k| self.stated[k] <= self.tolerance[k])
+    }
+
+    /// False where something was observed that is said to be impossible: then the proof is wrong.
+    pub fn agrees(&self, observed: &Residual) -> bool {
+        (0..2).all(|k| observed.efforts[k] <= self.reference[k])
+    }
+
+    /// Share of the tolerance that is left: the lesser of thrust and torque; negative where it does not hold.
+    pub fn margin(&self) -> f64 {
+        let left = |k: usize| 1.0 - self.stated[k] / self.tolerance[k];
+        left(0).min(left(1))
+    }
+
+    /// Bound at the reference voltage over observed residual, of thrust and of torque.
+    pub fn over_observed(&self, observed: &Residual) -> [f64; 2] {
+        [0, 1].map(|k| self.reference[k] / observed.efforts[k])
+    }
+}
+
+/// Cells per side at the start.
+const START: usize = 8;
+
+/// Largest number of cells: some 50 ms in a build without optimisation.
+const MOST_CELLS: usize = 1600;
+
+/// Bounds within this factor of the largest observed residual are sharp enough.
+const SHARP: f64 = 1.15;
+
+/// Halvings in a row that improve a bound by less than 1 %, after which rounding is all that is left.
+const STALE: u8 = 6;
+
+/// Proves what it can of the emitted tables. `observed` says where to stop; it gains the points that the proof
+/// finds worth a look.
+pub fn prove(
+    airframe: &Airframe,
+    pair: &PairMap,
+    tables: &MixerTables,
+    correction: &Correction,
+    observed: &mut Residual,
+) -> Certificate {
+    let inverse = &airframe.inverse;
+    let tolerance = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
+    let subject = Subject::new(airframe, tables, correction);
+    let aim = |observed: &Residual| {
+        [0, 1].map(|k| (SHARP * observed.efforts[k]).min(tolerance[k] / correction.largest[k]))
+    };
+    let mut goal = aim(observed);
+    let whole = Cell::grid([airframe.throttle.min, airframe.throttle.max], START);
+    let mut cells = whole.len();
+    let mut open: BinaryHeap<Open> = whole
+        .into_iter()
+        .map(|cell| Open::new(&subject, cell, goal))
+        .collect();
+    while let Some(worst) = open.peek() {
+        if worst.excess <= 1.0 || worst.stale >= STALE || cells >= MOST_CELLS {
+            break;
+        }
+        let Some(worst) = open.pop() else { break };
+        observed.look(
+            pair,
+            tables,
+            worst.cell.centre.map(|throttle| pair.clamp(throttle)),
+        );
+        let new_goal = aim(observed);
+        if (0..2).any(|k| new_goal[k] > 1.02 * goal[k]) {
+            goal = new_goal;
+            open = open.into_iter().map(|cell| cell.towards(goal)).collect();
+            open.push(worst.towards(goal));
+            continue;
+        }
+        for half in worst.cell.halves() {
+            let mut part = Open::new(&subject, half, goal);
+            if part.excess > 0.99 * worst.excess && worst.excess.is_finite() {
+                part.stale = worst.stale + 1;
+            }
+            open.push(part);
+        }
+        cells += 1;
+    }
+    let mut certificate = Certificate {
+        reference: [0.0; 2],
+        stated: [0.0; 2],
+        tolerance,
+        cells,
+        at: [[0.0; 2]; 2],
+    };
+    for Open { cell, bound, .. } in open {
+        for (k, bound) in bound.into_iter().enumerate() {
+            if bound > certificate.reference[k] {
+                certificate.reference[k] = bound;
+                certificate.at[k] = cell.centre;
+            }
+        }
+    }
+    certificate.stated = [0, 1].map(|k| (certificate.reference[k] * correction.largest[k]).next_up());
+    certificate
+}
+
+/// A cell with its bound.
+struct Open {
+    cell: Cell,
+    bound: [f64; 2],
+    /// The larger bound in units of its goal.
+    excess: f64,
+    stale: u8,
+}
+
+impl Open {
+    fn new(subject: &Subject<'_>, cell: Cell, goal: [f64; 2]) -> Self {
+        let open = Open {
+            cell,
+            bound: subject.residual(&cell),
+            excess: f64::INFINITY,
+            stale: 0,
+        };
+        open.towards(goal)
+    }
+
+    /// With its excess over other goals.
+    fn towards(self, goal: [f64; 2]) -> Self {
+        let excess = (self.bound[0] / goal[0]).max(self.bound[1] / goal[1]);
+        Open { excess, ..self }
+    }
+
+    /// The worst bound first, then by place: the same order on every machine.
+    fn key(&self) -> (f64, [f64; 2]) {
+        (self.excess, self.cell.centre)
+    }
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let ((one, [u1, l1]), (two, [u2, l2])) = (self.key(), other.key());
+        one.total_cmp(&two)
+            .then(u1.total_cmp(&u2))
+            .then(l1.total_cmp(&l2))
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Open {}
+
+impl<'a> Subject<'a> {
+    fn new(airframe: &Airframe, tables: &'a MixerTables, correction: &Correction) -> Self {
+        let (pair, basis) = (&airframe.pair, airframe.pair.basis);
+        let gap = |terms: &[f64], rounded: &[f32]| {
+            let (mut value, mut derivative) = (0.0, 0.0);
+            for ((&(i, j), &term), &rounded) in basis.exponents().iter().zip(terms).zip(rounded) {
+                let gap = (term - f64::from(rounded)).abs();
+                value += gap;
+                derivative += gap * f64::from(i.max(j));
+            }
+            // Throttles near the box stay below 1 + 2^-8; the factor covers the powers of that and rounding.
+            [value, derivative].map(|gap: f64| 1.02 * gap)
+        };
+        Subject {
+            monomials: [
+                Monomials::new(basis, &pair.thrust_n),
+                Monomials::new(basis, &pair.torque_nm),
+            ],
+            pair: &tables.pair,
+            inverse: &tables.inverse,
+            throttle: tables.throttle,
+            input: correction.input,
+            coefficients: [
+                gap(&pair.thrust_n, tables.pair.thrust.coefficients()),
+                gap(&pair.torque_nm, tables.pair.torque.coefficients()),
+            ],
+        }
+    }
+}
+
+impl Cell {
+    /// `side` x `side` cells that cover the box.
+    fn grid([low, high]: [f64; 2], side: usize) -> Vec<Cell> {
+        let edge = |k: usize| {
+            if k == side {
+                high
+            } else {
+                low + (high - low) * k as f64 / side as f64
+            }
+        };
+        let span = |k: usize| {
+            let (from, to) = (edge(k), edge(k + 1));
+            let centre = 0.5 * (from + to);
+            (centre, (to - centre).max(centre - from).next_up())
+        };
+        (0..side * side)
+            .map(|index| {
+                let ((u, half_u), (l, half_l)) = (span(index / side), span(index % side));
+                Cell {
+                    centre: [u, l],
+                    half: [half_u, half_l],
+                }
+            })
+            .collect()
+    }
+
+    /// Two cells that cover this one, cut across the longer side.
+    fn halves(&self) -> [Cell; 2] {
+        let axis = usize::from(self.half[1] > self.half[0]);
+        let half = (0.5 * self.half[axis]).next_up();
+        [-half, half].map(|offset| {
+            let mut part = *self;
+            part.centre[axis] += offset;
+            // What rounding of the centre may leave uncovered.
+            part.half[axis] = half + f64::EPSILON;
+            part
+        })
+    }
+}

@@ -1,0 +1,222 @@
+//! The numbers of an inverse map, whatever its form.
+
+use mixer_rt::{
+    BilinearSeed, CubicSeed, EightTermSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity,
+    RootCoordinates, Scalar, Seed, Seeded, ThrottleRange,
+};
+
+use crate::evaluator::SeedForm;
+use crate::inversion::FittedInverse;
+
+/// An inverse in any form.
+#[derive(Clone, Debug, PartialEq)]
+pub enum InverseTable {
+    /// [`PolynomialInverse`].
+    Polynomial {
+        /// Scale and offset of f.
+        thrust: [f32; 2],
+        /// Scale and offset of Q.
+        torque: [f32; 2],
+        /// Total degree.
+        degree: u8,
+        /// Coefficients of u and of l.
+        coefficients: [Vec<f32>; 2],
+    },
+    /// [`Seeded`].
+    Seeded {
+        /// The coordinates.
+        coordinates: RootCoordinates,
+        /// The seed.
+        seed: SeedTable,
+        /// Newton steps.
+        steps: u8,
+        /// Residuals per step.
+        residuals: u8,
+    },
+}
+
+/// A seed in any form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SeedTable {
+    /// Four terms per throttle.
+    Bilinear(BilinearSeed),
+    /// Six terms per throttle.
+    Quadratic(QuadraticSeed),
+    /// Eight terms per throttle.
+    EightTerm(EightTermSeed),
+    /// Ten terms per throttle.
+    Cubic(CubicSeed),
+}
+
+impl SeedTable {
+    /// Rounds the coefficients of u and of l.
+    fn new(form: SeedForm, [upper, lower]: [&[f64]; 2]) -> Self {
+        fn rounded<const TERMS: usize>(coefficients: &[f64]) -> [f32; TERMS] {
+            std::array::from_fn(|index| coefficients.get(index).map_or(0.0, |&c| c as f32))
+        }
+        match form {
+            SeedForm::Bilinear => SeedTable::Bilinear(BilinearSeed {
+                upper: rounded(upper),
+                lower: rounded(lower),
+            }),
+            SeedForm::Quadratic => SeedTable::Quadratic(QuadraticSeed {
+                upper: rounded(upper),
+                lower: rounded(lower),
+            }),
+            SeedForm::EightTerm => SeedTable::EightTerm(EightTermSeed {
+                upper: rounded(upper),
+                lower: rounded(lower),
+            }),
+            SeedForm::Cubic => SeedTable::Cubic(CubicSeed {
+                upper: rounded(upper),
+                lower: rounded(lower),
+            }),
+        }
+    }
+
+    /// Name of the type in `mixer-rt`.
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            SeedTable::Bilinear(_) => "BilinearSeed",
+            SeedTable::Quadratic(_) => "QuadraticSeed",
+            SeedTable::EightTerm(_) => "EightTermSeed",
+            SeedTable::Cubic(_) => "CubicSeed",
+        }
+    }
+
+    /// Coefficients of u and of l.
+    pub fn coefficients(&self) -> [&[f32]; 2] {
+        match self {
+            SeedTable::Bilinear(seed) => [&seed.upper, &seed.lower],
+            SeedTable::Quadratic(seed) => [&seed.upper, &seed.lower],
+            SeedTable::EightTerm(seed) => [&seed.upper, &seed.lower],
+            SeedTable::Cubic(seed) => [&seed.upper, &seed.lower],
+        }
+    }
+}
+
+impl Seed for SeedTable {
+    fn guess<S: Scalar>(&self, x: S, y: S) -> [S; 2] {
+        match self {
+            SeedTable::Bilinear(seed) => seed.guess(x, y),
+            SeedTable::Quadratic(seed) => seed.guess(x, y),
+            SeedTable::EightTerm(seed) => seed.guess(x, y),
+            SeedTable::Cubic(seed) => seed.guess(x, y),
+        }
+    }
+}
+
+impl InverseTable {
+    /// Rounds a fitted inverse.
+    pub fn new(fitted: &FittedInverse) -> Self {
+        match fitted {
+            FittedInverse::Polynomial {
+                degree,
+                thrust,
+                torque,
+                coefficients,
+            } => InverseTable::Polynomial {
+                thrust: thrust.map(|x| x as f32),
+                torque: torque.map(|x| x as f32),
+                degree: *degree,
+                coefficients: coefficients
+                    .clone()
+                    .map(|c| c.iter().map(|&x| x as f32).collect()),
+            },
+            FittedInverse::Seeded {
+                seed,
+                steps,
+                residuals,
+                coordinates,
+                coefficients: [upper, lower],
+            } => InverseTable::Seeded {
+                coordinates: RootCoordinates {
+                    x: coordinates.x.map(|x| x as f32),
+                    y: coordinates.y.map(|x| x as f32),
+                },
+                seed: SeedTable::new(*seed, [upper, lower]),
+                steps: *steps,
+                residuals: *residuals,
+            },
+        }
+    }
+
+    /// Number of f32 in the table.
+    pub fn floats(&self) -> usize {
+        match self {
+            InverseTable::Polynomial { coefficients, .. } => 4 + 2 * coefficients[0].len(),
+            InverseTable::Seeded { seed, .. } => 6 + 2 * seed.coefficients()[0].len(),
+        }
+    }
+
+    /// Newton steps, and residuals of each.
+    pub fn steps(&self) -> (u8, u8) {
+        match self {
+            InverseTable::Polynomial { .. } => (0, 1),
+            InverseTable::Seeded { steps, residuals, .. } => (*steps, *residuals),
+        }
+    }
+
+    /// The throttles `[u, l]` before any step, not limited to the range.
+    pub fn guess<S: Scalar>(&self, efforts: [S; 2]) -> [S; 2] {
+        match self {
+            InverseTable::Polynomial { .. } => self.polynomial().map_or(efforts, |p| p.guess(efforts)),
+            InverseTable::Seeded {
+                coordinates, seed, ..
+            } => {
+                let [x, y] = coordinates.at(efforts);
+                seed.guess(x, y)
+            }
+        }
+    }
+
+    fn polynomial(&self) -> Option<PolynomialInverse<'_>> {
+        match self {
+            InverseTable::Polynomial {
+                thrust,
+                torque,
+                degree,
+                coefficients: [upper, lower],
+            } => Some(PolynomialInverse {
+                thrust: *thrust,
+                torque: *torque,
+                degree: *degree,
+                upper,
+                lower,
+            }),
+            InverseTable::Seeded { .. } => None,
+        }
+    }
+}
+
+impl<P: Quantity> Inverse<P> for &InverseTable {
+    fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
+        let InverseTable::Seeded {
+            coordinates,
+            seed,
+            steps,
+            residuals,
+        } = self
+        else {
+            return self
+                .polynomial()
+                .map_or(efforts, |polynomial| polynomial.throttles(pair, range, efforts));
+        };
+        fn seeded<P: Quantity, const STEPS: usize, const RESIDUALS: usize>(
+            coordinates: RootCoordinates,
+            seed: SeedTable,
+            pair: &Pair<P>,
+            range: &ThrottleRange,
+            efforts: [f32; 2],
+        ) -> [f32; 2] {
+            Seeded::<SeedTable, STEPS, RESIDUALS> { coordinates, seed }.throttles(pair, range, efforts)
+        }
+        let evaluate = match (steps, residuals) {
+            (0, _) => seeded::<P, 0, 1>,
+            (1, 1) => seeded::<P, 1, 1>,
+            (1, _) => seeded::<P, 1, 2>,
+            _ => seeded::<P, 2, 1>,
+        };
+        evaluate(*coordinates, *seed, pair, range, efforts)
+    }
+}
