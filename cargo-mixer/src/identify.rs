@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
+use mixer_compiler::airframe::Basis;
 
-use self::basis::{Basis, ThrottleBox};
+use self::basis::ThrottleBox;
 use self::bench::Preparation;
 use self::header::{ByHand, ROLES};
 use self::identified::{Settings, identify};
@@ -30,6 +31,7 @@ pub mod identified;
 pub mod monotone;
 pub mod pair;
 pub mod plateau;
+pub mod polynomial;
 pub mod read;
 pub mod refusal;
 pub mod report;

@@ -11,7 +11,7 @@
 //! are, for some a and b, when dg/du > 0 and dh/dl > 0; and det d(g, h) = (1 + a b) det J / (F T). An invertible
 //! linear change of the outputs changes nothing about injectivity. All signs are proven by [`Bivariate`].
 
-use crate::airframe::{Airframe, Pair};
+use crate::airframe::{Airframe, Basis, Pair};
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::interval::Interval;
 use crate::polynomial::{Bivariate, Sign, ThrottleBox};
@@ -57,11 +57,16 @@ const COMBINATIONS: [f64; 6] = [0.0, 0.5, 1.0, 2.0, 4.0, 0.25];
 impl ForwardMap {
     /// The map of a pair model.
     pub fn new(pair: &Pair) -> Self {
-        let exponents = pair.basis.exponents();
+        Self::of(pair.basis, &pair.thrust_n, &pair.torque_nm)
+    }
+
+    /// The map of these coefficients, N and N m, one per term of the basis.
+    pub fn of(basis: Basis, thrust_n: &[f64], torque_nm: &[f64]) -> Self {
+        let exponents = basis.exponents();
         let quantity = |coefficients: &[f64]| Bivariate::from_terms(exponents, coefficients);
         let gradient = |p: &Bivariate| [p.by_u(), p.by_l()];
-        let thrust = gradient(&quantity(&pair.thrust_n));
-        let torque = gradient(&quantity(&pair.torque_nm));
+        let thrust = gradient(&quantity(thrust_n));
+        let torque = gradient(&quantity(torque_nm));
         let minus = Interval::exact(-1.0);
         let determinant = thrust[0]
             .times(&torque[1])
@@ -73,7 +78,7 @@ impl ForwardMap {
                 .max(corner(c, 0.0, 1.0))
                 .max(corner(c, 1.0, 0.0))
         };
-        let scale = [size(&pair.thrust_n), size(&pair.torque_nm)];
+        let scale = [size(thrust_n), size(torque_nm)];
         ForwardMap {
             thrust,
             torque,

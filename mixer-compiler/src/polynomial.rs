@@ -45,13 +45,21 @@ pub enum Sign {
 const MOST_BOXES: usize = 4096;
 
 impl Bivariate {
-    /// From terms `(exponent of u, exponent of l)` and their coefficients, taken as exact.
+    /// From terms `(exponent of u, exponent of l)` and their coefficients, taken as exact; one that is not finite may
+    /// be any number, so that nothing is proven of it.
     pub fn from_terms(exponents: &[(u8, u8)], coefficients: &[f64]) -> Self {
         let most = |pick: fn(&(u8, u8)) -> u8| exponents.iter().map(pick).max().map_or(0, usize::from);
         let mut rows = vec![vec![Interval::ZERO; most(|e| e.1) + 1]; most(|e| e.0) + 1];
         for (&(i, j), &coefficient) in exponents.iter().zip(coefficients) {
             let slot = &mut rows[usize::from(i)][usize::from(j)];
-            *slot = *slot + Interval::exact(coefficient);
+            *slot = *slot
+                + match coefficient.is_finite() {
+                    true => Interval::exact(coefficient),
+                    false => Interval {
+                        low: f64::NEG_INFINITY,
+                        high: f64::INFINITY,
+                    },
+                };
         }
         Bivariate { coefficients: rows }
     }
@@ -322,6 +330,16 @@ mod tests {
         assert!(
             matches!(thirds.prove_positive(BOX), Sign::Undecided { near: [u, _] } if (u - 1.0 / 3.0).abs() < 0.01)
         );
+    }
+
+    #[test]
+    fn a_coefficient_that_is_no_number_proves_nothing() {
+        let line = |c: f64| Bivariate::from_terms(&[(1, 0), (0, 0)], &[c, 1.0]);
+        let positive = |p: Bivariate| matches!(p.prove_positive(BOX), Sign::Positive { .. });
+        for c in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(!positive(line(c)) && !positive(line(c).times(&line(c))), "{c}");
+        }
+        assert!(positive(line(1e200).times(&line(1e200))), "overflow is no loss");
     }
 
     #[test]

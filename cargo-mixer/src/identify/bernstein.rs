@@ -1,18 +1,14 @@
 //! Bernstein coefficients of a polynomial on a rectangle.
 //!
 //! On [0, 1] the power s^i is the sum over k >= i of C(k, i) / C(n, i) B_k(s). A polynomial lies between its least and
-//! its greatest Bernstein coefficient, and the corner coefficients are its corner values; halving the rectangle makes
-//! the enclosure converge quadratically.
+//! its greatest Bernstein coefficient, and the corner coefficients are its corner values. The compiler's
+//! [`Bivariate`](mixer_compiler::polynomial::Bivariate) proves a sign by them; here they are what a programme constrains,
+//! so that they are linear in the polynomial and in floating point.
 
-use super::basis::{Polynomial, ThrottleBox};
+use super::polynomial::Polynomial;
 
 /// A rectangle of throttles: [least, greatest] of u and of l.
 pub type Cell = [[f64; 2]; 2];
-
-/// The box as a cell.
-pub fn cell(throttle_box: ThrottleBox) -> Cell {
-    [[throttle_box.min, throttle_box.max]; 2]
-}
 
 /// Coefficients `b[i][j]` on the cell, of as many rows and columns as the polynomial has.
 pub fn coefficients(p: &Polynomial, cell: Cell) -> Vec<Vec<f64>> {
@@ -60,25 +56,17 @@ const BINOMIAL: [[f64; 8]; 8] = [
     [1.0, 7.0, 21.0, 35.0, 35.0, 21.0, 7.0, 1.0],
 ];
 
-/// The cell in four.
-pub fn quarters([[ua, ub], [la, lb]]: Cell) -> [Cell; 4] {
-    let (um, lm) = (0.5 * (ua + ub), 0.5 * (la + lb));
-    [
-        [[ua, um], [la, lm]],
-        [[ua, um], [lm, lb]],
-        [[um, ub], [la, lm]],
-        [[um, ub], [lm, lb]],
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::basis::Basis;
+    use mixer_compiler::airframe::Basis;
 
     #[test]
     fn corners_are_values_and_coefficients_enclose() {
-        let p = Basis::Quartic.polynomial(&(0..14).map(|k| ((k * 37) % 11) as f64 - 5.0).collect::<Vec<_>>());
+        let p = Polynomial::of(
+            Basis::Quartic,
+            &(0..14).map(|k| ((k * 37) % 11) as f64 - 5.0).collect::<Vec<_>>(),
+        );
         let cell = [[0.1, 0.7], [0.3, 0.95]];
         let b = coefficients(&p, cell);
         let n = b.len() - 1;

@@ -7,11 +7,14 @@
 //! the fewest terms whose level error, thrust and torque added, is within one standard error of the least
 //! (Breiman's rule) or within a tenth of it.
 
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::injectivity::ForwardMap;
 use serde::Serialize;
 
-use super::basis::{Basis, ThrottleBox};
+use super::basis::ThrottleBox;
 use super::fit::{Deficient, Design, leave_one_out};
 use super::fold;
+use super::polynomial::Polynomial;
 
 /// One line of the table.
 #[derive(Debug, Clone, Serialize)]
@@ -68,7 +71,7 @@ pub fn choose(
             Ok(design) => match errors(&design, points, [thrust, torque], &folds) {
                 Some(errors) => {
                     let [f, q] = [thrust, torque].map(|y| design.coefficients(&design.coordinates(y)));
-                    least_idle = fold::least_idle(basis, &f, &q, throttle_box);
+                    least_idle = fold::least_idle(&ForwardMap::of(basis, &f, &q), throttle_box);
                     (Some(errors), None)
                 }
                 None => (
@@ -83,7 +86,7 @@ pub fn choose(
         };
         table.push(Candidate {
             basis,
-            terms: basis.terms(),
+            terms: basis.exponents().len(),
             errors,
             least_idle,
             refused,
@@ -125,7 +128,7 @@ fn errors(
         let mut squares = [0.0; 2];
         for (channel, y) in channels.iter().enumerate() {
             let values: Vec<f64> = (0..points.len()).filter(kept).map(|i| y[i]).collect();
-            let polynomial = basis.polynomial(&inner.coefficients(&inner.coordinates(&values)));
+            let polynomial = Polynomial::of(basis, &inner.coefficients(&inner.coordinates(&values)));
             for i in (0..points.len()).filter(|&i| left_out[i]) {
                 let miss = (y[i] - polynomial.at(points[i][0], points[i][1])) / full[channel];
                 squares[channel] += miss * miss;
@@ -195,7 +198,7 @@ mod tests {
     /// Noise of 1 part in 200 of full scale, from a linear congruential generator.
     fn noisy(basis: Basis, coefficients: &[f64], seed: u64) -> Vec<f64> {
         let mut state = seed;
-        let polynomial = basis.polynomial(coefficients);
+        let polynomial = Polynomial::of(basis, coefficients);
         let clean: Vec<f64> = grid().iter().map(|p| polynomial.at(p[0], p[1])).collect();
         let full = clean.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
         let mut noise = || {

@@ -8,10 +8,11 @@
 
 use faer::Mat;
 use faer::linalg::solvers::Qr;
+use mixer_compiler::airframe::Basis;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::basis::{Basis, Centred, Polynomial, ThrottleBox};
+use super::basis::{Centred, ThrottleBox, monomials};
 
 /// A design: where the points lie, in one basis. Both channels share it.
 pub struct Design {
@@ -93,7 +94,7 @@ impl Design {
 
     /// The design of `basis` at these throttles, to be used near them: only its rank is asked for.
     pub fn within_its_points(basis: Basis, points: &[[f64; 2]]) -> Result<Self, Deficient> {
-        let terms = basis.terms();
+        let terms = basis.exponents().len();
         let needed = terms + SPARE_PAIRS;
         let distinct = distinct_pairs(points);
         if distinct < needed {
@@ -147,7 +148,7 @@ impl Design {
 
     /// Q'y: the coordinates of the fit in the orthonormal columns.
     pub fn coordinates(&self, y: &[f64]) -> Vec<f64> {
-        let terms = self.centred.basis.terms();
+        let terms = self.centred.basis.exponents().len();
         (0..terms)
             .map(|k| self.q.iter().zip(y).map(|(row, y)| row[k] * y).sum())
             .collect()
@@ -170,8 +171,8 @@ impl Design {
     /// 2-norm condition number of the matrix of raw monomials.
     pub fn condition_number(&self) -> f64 {
         let basis = self.centred.basis;
-        let rows: Vec<Vec<f64>> = self.points.iter().map(|&[u, l]| basis.monomials(u, l)).collect();
-        let matrix = Mat::from_fn(rows.len(), basis.terms(), |i, j| rows[i][j]);
+        let rows: Vec<Vec<f64>> = self.points.iter().map(|&[u, l]| monomials(basis, u, l)).collect();
+        let matrix = Mat::from_fn(rows.len(), basis.exponents().len(), |i, j| rows[i][j]);
         match matrix.singular_values() {
             Ok(s) => {
                 let (low, high) = s
@@ -264,7 +265,7 @@ pub fn fit(design: &Design, y: &[f64], throttle_box: ThrottleBox) -> Fit {
 /// errors are those of the unconstrained design; constraints can only narrow them.
 pub fn judge(design: &Design, y: &[f64], z: &[f64], throttle_box: ThrottleBox) -> Fit {
     let n = y.len();
-    let terms = design.centred.basis.terms();
+    let terms = design.centred.basis.exponents().len();
     let degrees_of_freedom = n - terms;
     let residuals = design.residuals(y, z);
     let squares = |values: &mut dyn Iterator<Item = f64>| values.map(|e| e * e).sum::<f64>();
@@ -298,13 +299,6 @@ pub fn judge(design: &Design, y: &[f64], z: &[f64], throttle_box: ThrottleBox) -
             greatest_at,
         },
         residuals,
-    }
-}
-
-impl Fit {
-    /// The fitted polynomial.
-    pub fn polynomial(&self, basis: Basis) -> Polynomial {
-        basis.polynomial(&self.coefficients)
     }
 }
 

@@ -1,40 +1,33 @@
 //! Where the fitted map folds, and the least idle that avoids it.
 //!
 //! The mixer inverts (u, l) -> (f, Q). Where det J = f_u Q_l - f_l Q_u <= 0 two commands give one effort: the map
-//! folds. det J is a polynomial, so that its sign over a box is proven by Bernstein coefficients with bisection.
-//! A smaller box inside a box without fold has none, so the least idle is found by bisection too.
+//! folds. Whether it does over a box, and from which idle on it does not, is the compiler's proof of
+//! [`injectivity`], so that `check` accepts what is identified here. The regions of the report are drawn on a grid.
 
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::injectivity::{self, ForwardMap};
 use serde::Serialize;
 
-use super::basis::{Basis, Polynomial, ThrottleBox};
-use super::bernstein::{Cell, cell, coefficients, quarters};
-
-/// What is known about det J over a box.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum DetSign {
-    /// Proven positive.
-    Positive,
-    /// Not positive, or not proven, here.
-    Folds {
-        /// Throttles (u, l).
-        at: [f64; 2],
-    },
-}
+use super::basis::ThrottleBox;
+use super::polynomial::Polynomial;
 
 /// The report on a map's fold.
 #[derive(Debug, Clone, Serialize)]
 pub struct Fold {
     /// The box that was examined.
     pub commanded: ThrottleBox,
-    /// Whether the map folds inside it.
+    /// Whether the map folds inside it: det J is not proven positive there.
     pub folds: bool,
+    /// Whether the map is proven injective on it, which takes more than det J > 0: `check` refuses a map that is not.
+    pub injective: bool,
     /// Least det J on a grid of the box, N * N m per throttle squared.
     pub least_det: f64,
     /// Where, (u, l).
     pub least_det_at: [f64; 2],
     /// The connected parts of the box where det J <= 0, worst first; none narrower than half a percent of the box.
     pub regions: Vec<Region>,
-    /// The least idle of both rotors, at or above the box's, without fold; none if there is none below 0.9 of full.
+    /// The least idle of both rotors, at or above the box's, from which on the map is proven injective; none if there is
+    /// none below 0.9 of the box.
     pub least_idle: Option<f64>,
 }
 
@@ -51,87 +44,38 @@ pub struct Region {
     pub least_det_at: [f64; 2],
 }
 
-/// det J as a polynomial, of a thrust and a torque in this basis.
+/// det J as a polynomial, of a thrust and a torque in this basis, with as many rows and columns as it can fill.
 pub fn determinant(basis: Basis, thrust: &Polynomial, torque: &Polynomial) -> Polynomial {
     let det = thrust
         .du()
         .times(&torque.dl())
         .plus(-1.0, &thrust.dl().times(&torque.du()));
-    det.resized(basis.determinant_degree())
+    det.resized(match basis {
+        Basis::Biquadratic => 3, // (1, 2) and (2, 1) multiplied
+        Basis::Cubic => 4,       // twice the total degree of a derivative
+        Basis::Quartic => 6,
+    })
 }
 
-/// The sign of det J over a box.
-pub fn det_sign(basis: Basis, thrust: &[f64], torque: &[f64], throttle_box: ThrottleBox) -> DetSign {
-    let (f, q) = (basis.polynomial(thrust), basis.polynomial(torque));
-    // On [0, 1] all terms of the products add up to no more than this.
-    let sizes = f
-        .du()
-        .sizes()
-        .times(&q.dl().sizes())
-        .plus(1.0, &f.dl().sizes().times(&q.du().sizes()));
-    positive(
-        &determinant(basis, &f, &q),
-        cell(throttle_box),
-        ROUNDING * sizes.at(1.0, 1.0),
-        12,
-    )
+/// The least idle of both rotors from the box's on, rounded up to 1e-5, from which on the map is proven injective; none
+/// if there is none below 0.9 of the box.
+pub fn least_idle(map: &ForwardMap, throttle_box: ThrottleBox) -> Option<f64> {
+    let ThrottleBox { min, max } = throttle_box;
+    if map.prove_injective(throttle_box.into()).is_ok() {
+        return Some(min);
+    }
+    let idle = map.least_idle(max)?.max(min);
+    (idle <= min + 0.9 * (max - min)).then_some(idle)
 }
 
-/// Rounding of a Bernstein coefficient in parts of the sum of its terms' sizes: what is below is no proof.
-const ROUNDING: f64 = 1e-13;
-
-fn positive(p: &Polynomial, at: Cell, floor: f64, depth: usize) -> DetSign {
-    let b = coefficients(p, at);
-    if b.iter().flatten().all(|&x| x > floor) {
-        return DetSign::Positive;
-    }
-    let (n, m) = (b.len() - 1, b[0].len() - 1);
-    let [[ua, ub], [la, lb]] = at;
-    let corners = [
-        (b[0][0], ua, la),
-        (b[n][0], ub, la),
-        (b[0][m], ua, lb),
-        (b[n][m], ub, lb),
-    ];
-    if let Some(&(_, u, l)) = corners
-        .iter()
-        .find(|(value, ..)| value.is_nan() || *value <= floor)
-    {
-        return DetSign::Folds { at: [u, l] };
-    }
-    if depth == 0 {
-        return DetSign::Folds {
-            at: [0.5 * (ua + ub), 0.5 * (la + lb)],
-        };
-    }
-    let folded = quarters(at)
-        .into_iter()
-        .map(|q| positive(p, q, floor, depth - 1))
-        .find(|s| *s != DetSign::Positive);
-    folded.unwrap_or(DetSign::Positive)
-}
-
-/// The least idle of both rotors from the box's on, to a millionth, from which on the map has no fold.
-pub fn least_idle(basis: Basis, thrust: &[f64], torque: &[f64], throttle_box: ThrottleBox) -> Option<f64> {
-    let works =
-        |min: f64| det_sign(basis, thrust, torque, ThrottleBox { min, ..throttle_box }) == DetSign::Positive;
-    let mut folds = throttle_box.min;
-    if works(folds) {
-        return Some(folds);
-    }
-    let mut fine = throttle_box.min + 0.9 * (throttle_box.max - throttle_box.min);
-    if !works(fine) {
-        return None;
-    }
-    while fine - folds > 1e-6 {
-        let middle = 0.5 * (folds + fine);
-        if works(middle) {
-            fine = middle;
-        } else {
-            folds = middle;
-        }
-    }
-    Some(fine)
+/// An idle to command, in steps of 0.005: the first from `least` on that is itself proven to do up to `max`.
+pub fn round_idle(map: &ForwardMap, least: f64, max: f64) -> Option<f64> {
+    const PER_UNIT: f64 = 200.0;
+    let first = (least * PER_UNIT - 1e-9).ceil();
+    (0..)
+        .map(|k| (first + f64::from(k)) / PER_UNIT)
+        .take_while(|min| *min < max)
+        .find(|&min| map.prove_injective(ThrottleBox { min, max }.into()).is_ok())
 }
 
 /// Steps of the grid on which regions are sought.
@@ -186,7 +130,10 @@ fn regions(grid: &[f64], mut values: Vec<f64>) -> Vec<Region> {
 
 /// The report for a map on a box.
 pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: ThrottleBox) -> Fold {
-    let det = determinant(basis, &basis.polynomial(thrust), &basis.polynomial(torque));
+    let map = ForwardMap::of(basis, thrust, torque);
+    let proof = map.prove_injective(commanded.into());
+    let [thrust, torque] = [thrust, torque].map(|c| Polynomial::of(basis, c));
+    let det = determinant(basis, &thrust, &torque);
     let grid: Vec<f64> = commanded.grid(STEPS).collect();
     let values: Vec<f64> = grid
         .iter()
@@ -199,11 +146,12 @@ pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: Throttle
     let place = |k: usize| [grid[k / grid.len()], grid[k % grid.len()]];
     Fold {
         commanded,
-        folds: det_sign(basis, thrust, torque, commanded) != DetSign::Positive,
+        folds: !matches!(proof, Ok(_) | Err(injectivity::Fold::NotGlobal)),
+        injective: proof.is_ok(),
         least_det: values[least],
         least_det_at: place(least),
         regions: regions(&grid, values),
-        least_idle: least_idle(basis, thrust, torque, commanded),
+        least_idle: least_idle(&map, commanded),
     }
 }
 
@@ -234,37 +182,42 @@ mod tests {
             (u[1] - 0.089).abs() < 0.006 && (l[0] - 0.79).abs() < 0.01 && l[1] == 1.0,
             "{u:?} {l:?}"
         );
+        let map = ForwardMap::of(b, &THRUST, &TORQUE);
+        let proven = |min: f64| map.prove_injective(ThrottleBox { min, max: 1.0 }.into()).is_ok();
+        assert!(proven(0.0888) && !proven(0.0887));
+        let idle = round_idle(&map, fold.least_idle.expect("an idle"), 1.0);
+        assert_eq!(idle, Some(0.09));
         assert_eq!(
-            det_sign(
-                b,
-                &THRUST,
-                &TORQUE,
-                ThrottleBox {
-                    min: 0.0888,
-                    max: 1.0
-                }
-            ),
-            DetSign::Positive
+            round_idle(&map, 0.05, 1.0),
+            Some(0.09),
+            "the idle itself is proven"
         );
-        assert!(
-            det_sign(
-                b,
-                &THRUST,
-                &TORQUE,
-                ThrottleBox {
-                    min: 0.0887,
-                    max: 1.0
-                }
-            ) != DetSign::Positive
-        );
+    }
+
+    #[test]
+    fn a_positive_determinant_is_not_enough() {
+        // f = -u, Q = -l: det J = 1, but a thrust that falls with the throttle is no map that the compiler takes.
+        let minus = |term: &str| {
+            let names = Basis::Biquadratic.term_names();
+            names
+                .iter()
+                .map(|n| -f64::from(u8::from(n == term)))
+                .collect::<Vec<_>>()
+        };
+        let whole = ThrottleBox { min: 0.0, max: 1.0 };
+        let fold = examine(Basis::Biquadratic, &minus("u"), &minus("l"), whole);
+        assert!(!fold.folds && !fold.injective && fold.regions.is_empty());
+        assert_eq!((fold.least_det, fold.least_idle), (1.0, None));
     }
 
     #[test]
     fn a_constant_map_and_nan_are_no_proof() {
         let b = Basis::Biquadratic;
         let whole = ThrottleBox { min: 0.1, max: 1.0 };
-        assert!(det_sign(b, &[0.0; 8], &[0.0; 8], whole) != DetSign::Positive);
-        assert!(det_sign(b, &[f64::NAN; 8], &TORQUE, whole) != DetSign::Positive);
-        assert_eq!(least_idle(b, &THRUST, &THRUST, whole), None);
+        for (thrust, torque) in [([0.0; 8], [0.0; 8]), ([f64::NAN; 8], TORQUE), (THRUST, THRUST)] {
+            let fold = examine(b, &thrust, &torque, whole);
+            assert!(fold.folds && !fold.injective, "{thrust:?}");
+            assert_eq!(fold.least_idle, None);
+        }
     }
 }

@@ -93,9 +93,14 @@ fn used_rows(file: &Bench) -> usize {
 fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
     writeln!(out, "\n[throttle]")?;
     let fold = &pair.fold;
-    match (fold.folds, &pair.monotone, fold.least_idle) {
-        (true, None, Some(idle)) => writeln!(out, "# The map folds below an idle of {idle:.4}.")?,
-        (true, Some(_), _) => writeln!(out, "# Fitted under det J > 0: the free fit folds in this box.")?,
+    let what = if fold.folds {
+        "folds"
+    } else {
+        "is not proven injective"
+    };
+    match (fold.injective, &pair.monotone, fold.least_idle) {
+        (false, None, Some(idle)) => writeln!(out, "# The map {what} below an idle of {idle:.4}.")?,
+        (false, Some(_), _) => writeln!(out, "# Fitted under det J > 0: the free fit {what} in this box.")?,
         _ => {}
     }
     writeln!(out, "min = {:?}", pair.throttle.min)?;

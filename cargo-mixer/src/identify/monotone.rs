@@ -12,11 +12,13 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use mixer_compiler::airframe::Basis;
 
-use super::basis::{Basis, Polynomial, ThrottleBox};
+use super::basis::ThrottleBox;
 use super::bernstein::{Cell, coefficients};
 use super::fit::{Design, Fit};
 use super::fold::determinant;
+use super::polynomial::Polynomial;
 
 /// Cells per side.
 const CELLS: usize = 8;
@@ -98,9 +100,12 @@ struct Problem {
 impl Problem {
     fn new(design: &Design, free: [&Fit; 2], throttle_box: ThrottleBox) -> Self {
         let basis = design.centred.basis;
-        let terms = basis.terms();
+        let terms = basis.exponents().len();
         let mode = |k: usize| -> Polynomial {
-            basis.polynomial(&design.to_monomials.iter().map(|row| row[k]).collect::<Vec<_>>())
+            Polynomial::of(
+                basis,
+                &design.to_monomials.iter().map(|row| row[k]).collect::<Vec<_>>(),
+            )
         };
         let edges: Vec<f64> = throttle_box.grid(CELLS).collect();
         let sides = || edges.windows(2).map(|e| [e[0], e[1]]);
@@ -119,8 +124,10 @@ impl Problem {
     fn polynomial(&self, x: &[f64], channel: usize) -> Polynomial {
         let z = &x[channel * self.terms..(channel + 1) * self.terms];
         let value = |row: &Vec<f64>| row.iter().zip(z).map(|(c, z)| c * z * self.sigma[channel]).sum();
-        self.basis
-            .polynomial(&self.to_monomials.iter().map(value).collect::<Vec<f64>>())
+        Polynomial::of(
+            self.basis,
+            &self.to_monomials.iter().map(value).collect::<Vec<f64>>(),
+        )
     }
 
     fn mean_det(&self, x: &[f64]) -> Option<f64> {
@@ -196,9 +203,10 @@ impl Problem {
 
 #[cfg(test)]
 mod tests {
+    use mixer_compiler::injectivity::ForwardMap;
+
     use super::*;
     use crate::identify::fit::{fit, judge};
-    use crate::identify::fold::{DetSign, det_sign};
 
     fn levels() -> Vec<[f64; 2]> {
         let at = |k: usize| 0.02 + 0.98 * k as f64 / 9.0;
@@ -216,7 +224,7 @@ mod tests {
         let points = levels();
         let noise = |k: usize| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5;
         let sampled = |c: &[f64], amount: f64| -> Vec<f64> {
-            let p = Basis::Biquadratic.polynomial(c);
+            let p = Polynomial::of(Basis::Biquadratic, c);
             points
                 .iter()
                 .enumerate()
@@ -228,18 +236,15 @@ mod tests {
             let design = Design::new(basis, &points, BOX).expect("a design");
             let free = [fit(&design, &f, BOX), fit(&design, &q, BOX)];
             let z = [design.coordinates(&f), design.coordinates(&q)];
-            assert_ne!(
-                det_sign(basis, &free[0].coefficients, &free[1].coefficients, BOX),
-                DetSign::Positive,
-                "the test needs a fold to remove"
-            );
+            let proven = |f: &Fit, q: &Fit| {
+                let map = ForwardMap::of(basis, &f.coefficients, &q.coefficients);
+                map.prove_injective(BOX.into()).is_ok()
+            };
+            assert!(!proven(&free[0], &free[1]), "the test needs a fold to remove");
             let found = constrain(&design, [&free[0], &free[1]], z, BOX).expect("a monotone fit");
             let thrust = judge(&design, &f, &found.thrust, BOX);
             let torque = judge(&design, &q, &found.torque, BOX);
-            assert_eq!(
-                det_sign(basis, &thrust.coefficients, &torque.coefficients, BOX),
-                DetSign::Positive
-            );
+            assert!(proven(&thrust, &torque), "{basis:?}");
             let cost = [
                 thrust.residual_rms / free[0].residual_rms,
                 torque.residual_rms / free[1].residual_rms,
@@ -255,7 +260,7 @@ mod tests {
     fn a_map_without_fold_stays_as_it_is() {
         let points: Vec<[f64; 2]> = levels().iter().map(|p| p.map(|t| 0.2 + 0.8 * t)).collect();
         let inner = ThrottleBox { min: 0.216, max: 1.0 };
-        let at = |c: &[f64], k: usize| Basis::Biquadratic.polynomial(c).at(points[k][0], points[k][1]);
+        let at = |c: &[f64], k: usize| Polynomial::of(Basis::Biquadratic, c).at(points[k][0], points[k][1]);
         let noise = |k: usize| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5;
         let f: Vec<f64> = (0..100).map(|k| at(&THRUST, k) + 0.1 * noise(k)).collect();
         let q: Vec<f64> = (0..100).map(|k| at(&TORQUE, k) + 0.001 * noise(k + 50)).collect();

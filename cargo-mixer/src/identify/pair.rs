@@ -1,9 +1,11 @@
 //! The map of a pair from bench points: choice of the basis, fit, outliers, fold, shape constraint.
 
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::injectivity::ForwardMap;
 use serde::Serialize;
 
 use self::placed::{Placed, at_reference, channels, confirmed, places, suspects, without};
-use super::basis::{Basis, ThrottleBox};
+use super::basis::ThrottleBox;
 use super::bench::{Bench, Kind};
 use super::cross::{self, Candidate};
 use super::fit::{Design, Fit, fit, judge, range};
@@ -148,7 +150,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     let fold = of(&fits);
     let mut cost = None;
     let mut throttle = throttle_box;
-    if fold.folds && wishes.monotone {
+    if !fold.injective && wishes.monotone {
         let free = [&fits[0], &fits[1]];
         let coordinates = [design.coordinates(&thrust), design.coordinates(&torque)];
         let found = monotone::constrain(&design, free, coordinates, throttle_box).ok_or_else(|| {
@@ -168,8 +170,9 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         ];
     }
     let after = if cost.is_some() { of(&fits) } else { fold.clone() };
-    if after.folds {
-        throttle.min = raised(&after, &label, &mut warnings)?;
+    if !after.injective {
+        let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
+        throttle.min = raised(&after, &map, &label, &mut warnings)?;
     }
     let [thrust_fit, torque_fit] = fits;
     judge_quality(&thrust_fit, &torque_fit, &mut warnings);
@@ -268,24 +271,39 @@ fn one_pair(
     Ok(())
 }
 
-/// The idle of a map that folds: the least one, rounded up to 0.005.
-fn raised(fold: &Fold, label: &dyn Fn() -> String, warnings: &mut Vec<String>) -> Result<f64, Refusal> {
+/// The idle of a map that is not proven injective over its box: the least one, rounded up to 0.005.
+fn raised(
+    fold: &Fold,
+    map: &ForwardMap,
+    label: &dyn Fn() -> String,
+    warnings: &mut Vec<String>,
+) -> Result<f64, Refusal> {
     let [u, l] = fold.least_det_at;
-    let Some(least) = fold.least_idle else {
+    let least_det = fold.least_det;
+    let rounded = |least: f64| fold::round_idle(map, least, fold.commanded.max);
+    let Some((least, min)) = fold.least_idle.and_then(|least| Some((least, rounded(least)?))) else {
         return Err(Refusal::of(
             label(),
-            format!(
-                "the map folds whatever the idle: det J = {:.3} at ({u:.2}, {l:.2})",
-                fold.least_det
-            ),
+            if fold.folds {
+                format!("the map folds whatever the idle: det J = {least_det:.3} at ({u:.2}, {l:.2})")
+            } else {
+                "the map could not be proven injective, whatever the idle".into()
+            },
             "--monotone, another basis, or data without outliers (--robust)",
         ));
     };
-    let min = (least * 200.0 - 1e-9).ceil() / 200.0;
+    let (why, without) = if fold.folds {
+        (
+            format!("det J falls to {least_det:.3} at (u, l) = ({u:.3}, {l:.3})"),
+            "fold",
+        )
+    } else {
+        ("the map could not be proven injective below".into(), "this doubt")
+    };
     warnings.push(format!(
-        "throttle.min is raised from {} to {min}: det J falls to {:.3} at (u, l) = ({u:.3}, {l:.3}), the least idle \
-         without fold is {least:.4}; --monotone would keep the idle",
-        fold.commanded.min, fold.least_det
+        "throttle.min is raised from {} to {min}: {why}, the least idle without {without} is {least:.4}; --monotone \
+         would keep the idle",
+        fold.commanded.min
     ));
     Ok(min)
 }

@@ -180,7 +180,14 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
             "  none: det J > 0 is proven; least {:.4} at ({u:.3}, {l:.3})",
             fold.least_det
         )?;
-    } else {
+    }
+    if !fold.injective {
+        if !fold.folds {
+            writeln!(
+                out,
+                "  but the map could not be proven injective: two commands may give one effort"
+            )?;
+        }
         for region in &fold.regions {
             let ([ua, ub], [la, lb], [u, l]) = (region.u, region.l, region.least_det_at);
             writeln!(

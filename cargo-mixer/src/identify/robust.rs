@@ -10,10 +10,11 @@
 //!
 //! `--robust` leaves the named rows out and fits the rest by least squares, so that every statistic keeps its meaning.
 
+use mixer_compiler::airframe::Basis;
 use serde::Serialize;
 
-use super::basis::Basis;
 use super::fit::Design;
+use super::polynomial::Polynomial;
 
 /// Rows stand out from this many robust standard deviations on. A polynomial's lack of fit alone reaches five on clean
 /// bench maps; rows of a faulty run have ten to fifty.
@@ -54,10 +55,10 @@ impl Outlier {
 /// (y - fitted) / (sigma sqrt(1 + h)). `clean` is the design of the other rows, `y_clean` their values.
 pub fn against_the_others(clean: &Design, y_clean: &[f64], suspects: &[([f64; 2], f64)]) -> Vec<(f64, f64)> {
     let z = clean.coordinates(y_clean);
-    let terms = clean.centred.basis.terms();
+    let terms = clean.centred.basis.exponents().len();
     let full_scale = y_clean.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
     let scale = robust_scale(&clean.residuals(y_clean, &z), terms, full_scale);
-    let polynomial = clean.centred.basis.polynomial(&clean.coefficients(&z));
+    let polynomial = Polynomial::of(clean.centred.basis, &clean.coefficients(&z));
     let miss = |&([u, l], y): &([f64; 2], f64)| {
         let residual = y - polynomial.at(u, l);
         let factor = clean.factor(u, l);
@@ -90,7 +91,7 @@ impl Judged {
 /// Fits `y` robustly on the design's orthonormal columns.
 pub fn judge(design: &Design, y: &[f64]) -> Judged {
     let full_scale = y.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
-    let terms = design.centred.basis.terms();
+    let terms = design.centred.basis.exponents().len();
     let mut residuals = design.residuals(y, &design.coordinates(y));
     let huber = |z: f64| if z.abs() <= 1.345 { 1.0 } else { 1.345 / z.abs() };
     let tukey = |z: f64| {
@@ -135,7 +136,7 @@ fn robust_scale(residuals: &[f64], terms: usize, full_scale: f64) -> f64 {
 /// Weighted least squares in orthonormal coordinates; nothing if the weights leave the system singular.
 fn weighted(design: &Design, y: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
     use faer::linalg::solvers::SolveLstsq;
-    let terms = design.centred.basis.terms();
+    let terms = design.centred.basis.exponents().len();
     let root: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
     let a = faer::Mat::from_fn(y.len(), terms, |i, j| root[i] * design.q[i][j]);
     let b = faer::Mat::from_fn(y.len(), 1, |i, _| root[i] * y[i]);

@@ -12,10 +12,11 @@
 
 use std::collections::BTreeMap;
 
+use mixer_compiler::airframe::Basis;
 use serde::Serialize;
 
 use self::profile::{Regressors, off_span, profile};
-use super::basis::{Basis, Centred};
+use super::basis::Centred;
 use super::bench::{Bench, Kind, Point};
 use super::fit::range;
 

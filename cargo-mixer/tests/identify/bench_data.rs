@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use cargo_mixer::identify::basis::{Basis, ThrottleBox};
-use cargo_mixer::identify::fold::{DetSign, det_sign};
+use cargo_mixer::identify::basis::ThrottleBox;
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::injectivity::ForwardMap;
+
 use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::{Identified, identify};
 use cargo_mixer::identify::pair::Pair;
+use cargo_mixer::identify::polynomial::Polynomial;
 
 use crate::sweep::settings;
 
@@ -137,8 +140,9 @@ fn every_map_is_identified() {
                 pair.outliers
             );
         }
-        let sign = det_sign(pair.basis, &pair.thrust_n, &pair.torque_nm, pair.throttle);
-        assert_eq!(sign, DetSign::Positive, "{}", path.display());
+        let map = ForwardMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm);
+        let proof = map.prove_injective(pair.throttle.into());
+        assert!(proof.is_ok(), "{}: {proof:?}", path.display());
         assert!(
             pair.throttle.min <= pair.measured[0][0].max(0.235),
             "{:?}",
@@ -213,7 +217,7 @@ fn the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats() {
         let ours = pair(&path, Some(Basis::Biquadratic), robust);
         let grid = ThrottleBox { min: 0.07, max: 0.95 }.grid(20);
         let worst = |a: &[f64], b: &[f64]| {
-            let [a, b] = [a, b].map(|c| Basis::Biquadratic.polynomial(c));
+            let [a, b] = [a, b].map(|c| Polynomial::of(Basis::Biquadratic, c));
             let places = grid.clone().flat_map(|u| grid.clone().map(move |l| (u, l)));
             places
                 .map(|(u, l)| (a.at(u, l) - b.at(u, l)).abs())
@@ -248,9 +252,10 @@ fn monotone_fits_have_no_fold_down_to_the_lowest_bench_throttle() {
             .pair
             .expect("a pair");
         assert_eq!(pair.throttle.min, 0.07, "{}", path.display());
-        let sign = det_sign(pair.basis, &pair.thrust_n, &pair.torque_nm, pair.throttle);
-        assert_eq!(sign, DetSign::Positive, "{}", path.display());
-        assert_eq!(pair.fold.folds, pair.monotone.is_some());
+        let map = ForwardMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm);
+        let proof = map.prove_injective(pair.throttle.into());
+        assert!(proof.is_ok(), "{}: {proof:?}", path.display());
+        assert_eq!(pair.fold.injective, pair.monotone.is_none());
         if let Some(cost) = pair.monotone {
             let ratio = pair.thrust.residual_rms / cost.free_thrust_rms;
             println!("{}: thrust residual x {ratio:.2}", path.display());

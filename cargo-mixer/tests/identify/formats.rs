@@ -1,9 +1,11 @@
 //! Known truth comes back, in every format.
 
-use cargo_mixer::identify::basis::{Basis, ThrottleBox};
+use cargo_mixer::identify::basis::ThrottleBox;
 use cargo_mixer::identify::fit::{Design, fit, student_t_975};
-use cargo_mixer::identify::fold::{DetSign, det_sign};
 use cargo_mixer::identify::identified::from_benches;
+use cargo_mixer::identify::polynomial::Polynomial;
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::injectivity::ForwardMap;
 
 use crate::sweep::{FORMATS, Normal, THRUST, TORQUE, bench, rows, settings};
 
@@ -70,18 +72,20 @@ fn every_coefficient_of_every_basis_holds_at_its_rate() {
         .map(|k| [k / 7, k % 7].map(|j| 0.1 + 0.15 * j as f64))
         .collect();
     for basis in Basis::ALL {
-        let truth: Vec<f64> = (0..basis.terms()).map(|k| 3.0 - ((k * 5) % 7) as f64).collect();
-        let polynomial = basis.polynomial(&truth);
+        let truth: Vec<f64> = (0..basis.exponents().len())
+            .map(|k| 3.0 - ((k * 5) % 7) as f64)
+            .collect();
+        let polynomial = Polynomial::of(basis, &truth);
         let clean: Vec<f64> = points.iter().map(|p| polynomial.at(p[0], p[1])).collect();
         let design = Design::new(basis, &points, throttle_box).expect("a design");
         let errors = design.standard_errors();
-        let mut held = vec![0; basis.terms()];
+        let mut held = vec![0; basis.exponents().len()];
         for seed in 0..SEEDS {
             let mut normal = Normal::new(seed);
             let y: Vec<f64> = clean.iter().map(|y| y + 0.2 * normal.next()).collect();
             let z = design.coordinates(&y);
             let sse: f64 = design.residuals(&y, &z).iter().map(|e| e * e).sum();
-            let degrees = points.len() - basis.terms();
+            let degrees = points.len() - basis.exponents().len();
             let wide = student_t_975(degrees) * (sse / degrees as f64).sqrt();
             for (k, c) in design.coefficients(&z).into_iter().enumerate() {
                 held[k] += u64::from((c - truth[k]).abs() <= wide * errors[k]);
@@ -101,7 +105,7 @@ fn without_noise_the_truth_comes_back_to_ten_digits() {
     let points: Vec<[f64; 2]> = (0..100)
         .map(|k| [k / 10, k % 10].map(|j| 0.4 + 0.55 / 9.0 * j as f64))
         .collect();
-    let polynomial = Basis::Biquadratic.polynomial(&THRUST);
+    let polynomial = Polynomial::of(Basis::Biquadratic, &THRUST);
     let y: Vec<f64> = points.iter().map(|p| polynomial.at(p[0], p[1])).collect();
     let fit = fit(
         &Design::new(Basis::Biquadratic, &points, throttle_box).expect("a design"),
@@ -174,13 +178,8 @@ fn the_idle_is_raised_above_the_fold_or_the_map_unfolded() {
         .pair
         .expect("a pair");
     assert_eq!(monotone.throttle.min, 0.02);
-    let sign = det_sign(
-        monotone.basis,
-        &monotone.thrust_n,
-        &monotone.torque_nm,
-        monotone.throttle,
-    );
-    assert_eq!(sign, DetSign::Positive);
+    let map = ForwardMap::of(monotone.basis, &monotone.thrust_n, &monotone.torque_nm);
+    assert!(map.prove_injective(monotone.throttle.into()).is_ok());
     let cost = monotone.monotone.expect("a cost");
     assert!(cost.free_thrust_rms <= monotone.thrust.residual_rms + 1e-12);
     assert!(cost.free_torque_rms <= monotone.torque.residual_rms + 1e-12);

@@ -2,14 +2,15 @@
 
 use std::fmt::Write as _;
 
-use cargo_mixer::identify::basis::Basis;
 use cargo_mixer::identify::bench::{self, Bench, Preparation};
 use cargo_mixer::identify::header::ByHand;
 use cargo_mixer::identify::identified::Settings;
 use cargo_mixer::identify::pair::Wishes;
+use cargo_mixer::identify::polynomial::Polynomial;
 use cargo_mixer::identify::read::{self, Reading};
 use cargo_mixer::identify::refusal::Refusal;
 use cargo_mixer::identify::sign::{SignChoice, SignPolicy};
+use mixer_compiler::airframe::Basis;
 
 /// Table I of the paper.
 pub(crate) const THRUST: [f64; 8] = [
@@ -60,7 +61,7 @@ pub(crate) fn rows(seed: u64) -> Vec<Row> {
 
 pub(crate) fn rows_of(basis: Basis, coefficients: [&[f64]; 2], seed: u64) -> Vec<Row> {
     let mut normal = Normal::new(seed);
-    let [f, q] = coefficients.map(|c| basis.polynomial(c));
+    let [f, q] = coefficients.map(|c| Polynomial::of(basis, c));
     let level = |k: usize| 0.1 + 0.1 * k as f64;
     let row = |k: usize| {
         let (u, l) = (level(k / 10), level(k % 10));

@@ -1,9 +1,9 @@
 //! Maps at several voltages: exponents and the map at the reference voltage.
 
-use cargo_mixer::identify::basis::Basis;
 use cargo_mixer::identify::bench::Bench;
 use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::from_benches;
+use mixer_compiler::airframe::Basis;
 
 use crate::sweep::{THRUST, TORQUE, bench, plain, rows, settings};
 

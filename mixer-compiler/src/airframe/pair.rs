@@ -1,5 +1,6 @@
 //! The model of one pair: total thrust and torque as polynomials of the two throttles.
 
+use serde::Serialize;
 use toml::Spanned;
 
 use super::{LARGEST_EFFORT, word};
@@ -7,7 +8,8 @@ use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
 /// The monomials u^a l^b of the pair's polynomials, u the upper and l the lower throttle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Basis {
     /// Degree 2 in each throttle without the constant, 8 terms: eq. (1) of Chebbi et al. 2020.
     Biquadratic,
@@ -68,19 +70,20 @@ impl Basis {
         }
     }
 
-    /// The terms in words, like `u2l2, u2l, ..`.
-    pub fn terms(self) -> String {
+    /// Each term's name, like `u2l`, in the order of the file's coefficients.
+    pub fn term_names(self) -> Vec<String> {
         let power = |letter: &str, exponent: u8| match exponent {
             0 => String::new(),
             1 => letter.to_string(),
             _ => format!("{letter}{exponent}"),
         };
-        let terms: Vec<_> = self
-            .exponents()
-            .iter()
-            .map(|&(u, l)| power("u", u) + &power("l", l))
-            .collect();
-        terms.join(", ")
+        let exponents = self.exponents().iter();
+        exponents.map(|&(u, l)| power("u", u) + &power("l", l)).collect()
+    }
+
+    /// The terms in words, like `u2l2, u2l, ..`.
+    pub fn terms(self) -> String {
+        self.term_names().join(", ")
     }
 }
 

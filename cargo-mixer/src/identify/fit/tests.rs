@@ -1,4 +1,5 @@
 use super::*;
+use crate::identify::polynomial::Polynomial;
 
 #[test]
 fn student_t_agrees_with_the_table() {
@@ -51,7 +52,7 @@ fn leave_one_out_by_leverage_is_leave_one_out() {
             BOX,
         );
         let [u, l] = points[left_out];
-        let miss = y[left_out] - without.polynomial(Basis::Biquadratic).at(u, l);
+        let miss = y[left_out] - Polynomial::of(Basis::Biquadratic, &without.coefficients).at(u, l);
         squares += miss * miss;
     }
     let direct = (squares / points.len() as f64).sqrt();

@@ -1,7 +1,9 @@
 //! The points of all files together: brought to one voltage, with those that stand out.
 
+use mixer_compiler::airframe::Basis;
+
 use super::{Wishes, hundredths};
-use crate::identify::basis::{Basis, ThrottleBox};
+use crate::identify::basis::ThrottleBox;
 use crate::identify::bench::{Bench, Point};
 use crate::identify::fit::Design;
 use crate::identify::refusal::Refusal;
