@@ -4,6 +4,7 @@
 //! ([`robust`]), choice of the basis ([`cross`]), least squares ([`fit`]), [`fold`], [`monotone`] -> [`fragment`],
 //! [`report`].
 
+use std::io::{Write as _, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -17,6 +18,7 @@ use self::identified::{Settings, identify};
 use self::pair::Wishes;
 use self::read::Reading;
 use self::sign::{SignChoice, SignPolicy};
+use crate::{complain, output, remark};
 
 pub mod basis;
 pub mod bench;
@@ -157,80 +159,72 @@ impl IdentifyArgs {
     }
 }
 
+/// The exit status for bad usage that clap cannot see.
+const BAD_USAGE: u8 = 2;
+
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
 pub fn run(args: &IdentifyArgs) -> ExitCode {
+    attempt(args).err().unwrap_or(ExitCode::SUCCESS)
+}
+
+fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     let to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    if let Some(output) = args.output.as_deref().filter(|_| !to_stdout) {
-        let same = |input: &PathBuf| match (input.canonicalize(), output.canonicalize()) {
-            (Ok(a), Ok(b)) => a == b,
-            _ => input == output,
-        };
-        if args.files.iter().any(same) {
-            eprintln!(
-                "error: {} is one of the bench files and would be overwritten",
-                output.display()
-            );
-            return ExitCode::from(2);
-        }
+    let file = args.output.as_deref().filter(|_| !to_stdout);
+    if let Some(message) = contradiction(args, file) {
+        complain(message);
+        return Err(ExitCode::from(BAD_USAGE));
     }
-    if to_stdout && args.json {
-        eprintln!("error: --json and -o - would both write to standard output");
-        return ExitCode::from(2);
-    }
-    let identified = match identify(&args.files, &args.settings()) {
-        Ok(identified) => identified,
-        Err(refusals) => {
-            refusals.iter().for_each(|r| eprintln!("error: {r}"));
-            return ExitCode::FAILURE;
+    let identified = identify(&args.files, &args.settings()).map_err(|refusals| {
+        for refusal in refusals {
+            complain(refusal);
         }
-    };
+        ExitCode::FAILURE
+    })?;
     for row in identified.files.iter().flat_map(|f| &f.refused_rows) {
-        eprintln!("refused: {}:{}: {}", row.file, row.line, row.reason);
+        remark(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
     }
     let fragment = fragment::text(&identified);
     let report = if args.json {
-        match serde_json::to_string_pretty(&identified) {
-            Ok(json) => json + "\n",
-            Err(error) => {
-                eprintln!("error: {error}");
-                return ExitCode::FAILURE;
-            }
+        serde_json::to_string_pretty(&identified).map_err(complain)?
+    } else {
+        report::text(&identified).trim_end().to_string()
+    };
+    let out = if to_stdout {
+        remark(&report);
+        fragment.trim_end()
+    } else {
+        &report
+    };
+    output(writeln!(stdout().lock(), "{out}"))?;
+    match file {
+        Some(path) => {
+            fragment::write_atomically(path, &fragment)
+                .map_err(|error| complain(format_args!("{}: {error}", path.display())))?;
+            remark(format_args!("wrote {}", path.display()));
         }
-    } else {
-        report::text(&identified)
-    };
-    let (out, err) = if to_stdout {
-        (fragment.as_str(), report.as_str())
-    } else {
-        (report.as_str(), "")
-    };
-    eprint!("{err}");
-    if let Err(error) = print(out) {
-        eprintln!("error: standard output: {error}");
-        return ExitCode::FAILURE;
-    }
-    match args.output.as_deref().filter(|_| !to_stdout) {
-        None if !to_stdout && !args.json => eprintln!("\n(nothing written: -o PAIR.toml writes the tables)"),
+        None if !to_stdout && !args.json => remark("\n(nothing written: -o PAIR.toml writes the tables)"),
         None => {}
-        Some(path) => match fragment::write_atomically(path, &fragment) {
-            Ok(()) => eprintln!("wrote {}", path.display()),
-            Err(error) => {
-                eprintln!("error: {}: {error}", path.display());
-                return ExitCode::FAILURE;
-            }
-        },
     }
-    ExitCode::SUCCESS
+    Ok(())
 }
 
-/// Writes to standard output; a reader that closes the pipe early is no error.
-fn print(text: &str) -> std::io::Result<()> {
-    use std::io::Write as _;
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        other => other,
-    }
+/// What is wrong with the arguments taken together; `file` is the output unless that is standard output.
+fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
+    let Some(output) = file else {
+        return (args.json && args.output.is_some())
+            .then(|| "--json and -o - would both write to standard output".into());
+    };
+    let same = |input: &PathBuf| match (input.canonicalize(), output.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => input == output,
+    };
+    let overwritten = args.files.iter().any(same);
+    overwritten.then(|| {
+        format!(
+            "{} is one of the bench files and would be overwritten",
+            output.display()
+        )
+    })
 }
 
 fn finite(text: &str) -> Result<f64, String> {

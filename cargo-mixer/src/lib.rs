@@ -36,18 +36,22 @@ impl Refusal {
             Refusal::Unreadable(message) => complain(message),
             Refusal::Faulty(diagnostics) => {
                 // Each begins with `error[..]` itself.
-                let _ = writeln!(io::stderr().lock(), "{diagnostics}");
+                remark(diagnostics);
                 ExitCode::from(BAD_INPUT)
             }
         }
     }
 }
 
-/// Says on stderr what is wrong; the exit status for a bad input. (`eprintln!` panics where stderr is a pipe that
-/// nobody reads any more, as in `2>&1 | head`.)
+/// Says on stderr what is wrong; the exit status for a bad input.
 fn complain(message: impl Display) -> ExitCode {
-    let _ = writeln!(io::stderr().lock(), "error: {message}");
+    remark(format_args!("error: {message}"));
     ExitCode::from(BAD_INPUT)
+}
+
+/// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as in `2>&1 | head`.)
+fn remark(message: impl Display) {
+    let _ = writeln!(io::stderr().lock(), "{message}");
 }
 
 /// Reads and compiles an airframe file.
@@ -58,11 +62,17 @@ fn compile(path: &Path) -> Result<Compiled, Refusal> {
     mixer_compiler::compile(&source).map_err(Refusal::Faulty)
 }
 
-/// The exit status after the last output. A reader that has seen enough (`| head`) is no fault.
+/// The exit status after the last output.
 fn finish(written: io::Result<()>) -> ExitCode {
+    output(written).err().unwrap_or(ExitCode::SUCCESS)
+}
+
+/// What became of an output; the exit status where it failed. A reader that has seen enough (`| head`) is no fault.
+fn output(written: io::Result<()>) -> Result<(), ExitCode> {
     match written {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(error) => complain(format_args!("stdout: {error}")),
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(complain(format_args!("stdout: {error}")))
+        }
+        _ => Ok(()),
     }
 }

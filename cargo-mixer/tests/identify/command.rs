@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::sweep::{bench, plain, rows, settings};
@@ -155,6 +155,30 @@ fn statuses_and_streams() {
             .contains_key("pair")
     );
     assert!(text(&output.stderr).contains("Model:"));
+}
+
+#[test]
+fn streams_that_nobody_reads_change_no_status() {
+    let folder = folder("unread");
+    fs::write(folder.join("map.csv"), plain(&rows(3))).expect("written");
+    fs::write(folder.join("bad.csv"), "a,b\n1,2\n").expect("written");
+    for (args, status) in [
+        (&["map.csv"][..], 0),
+        (&["map.csv", "-o", "out.toml"], 0),
+        (&["bad.csv"], 1),
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_cargo-mixer"));
+        command
+            .current_dir(&folder)
+            .args(["mixer", "identify"])
+            .args(args);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("the program runs");
+        drop((child.stdout.take(), child.stderr.take()));
+        let found = child.wait().expect("it ends");
+        assert_eq!(found.code(), Some(status), "{args:?}");
+    }
+    assert!(folder.join("out.toml").exists());
 }
 
 #[test]
