@@ -266,3 +266,6 @@ impl Cell {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -164,6 +164,15 @@ fn refusal(
     };
     let mut residual = Residual::over_set(pair, &tables);
     let reached = proof::prove(airframe, pair, &tables, correction, &mut residual).stated;
+    if !reached.iter().all(|bound| bound.is_finite()) {
+        return airframe.diagnostic(
+            Code::Tolerance,
+            "inverse",
+            format!("nothing can be proven of the {}", evaluator.description()),
+            "",
+            "the map almost folds at the edge of the throttle range: raise throttle.min a little",
+        );
+    }
     let (key, missed) = if reached[0] > inverse.thrust_tolerance_n {
         (
             "inverse.thrust_tolerance_n",

@@ -110,6 +110,16 @@ impl Taylor {
         }
     }
 
+    /// Coefficients of 1, a, b, a2, ab, b2.
+    pub fn coefficients(&self) -> [f64; 6] {
+        [self.c, self.a, self.b, self.aa, self.ab, self.bb]
+    }
+
+    /// Bound of what the coefficients leave out.
+    pub fn remainder(&self) -> f64 {
+        self.remainder
+    }
+
     /// Bound of the runtime's rounding error so far.
     pub fn error(self) -> f64 {
         self.error
