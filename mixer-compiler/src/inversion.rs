@@ -17,6 +17,18 @@ use lawson::Lawson;
 /// Points per side of the sample grid.
 const GRID: usize = 21;
 
+/// Points per side of the grid on which coordinates are judged for one form.
+const COARSE_GRID: usize = 9;
+
+/// Evaluations of the search for one form.
+const EVALUATIONS: usize = 140;
+
+/// Largest error, in units of the tolerance, for which coordinates are searched for one form.
+const WORTH_A_SEARCH: f64 = 3.0;
+
+/// Emphasis on small det J of both starts.
+const EMPHASES: [f64; 2] = [0.0, 0.75];
+
 /// A fitted inverse, in f64.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FittedInverse {
@@ -60,7 +72,8 @@ pub struct Inversion<'a> {
     /// `[N, N m]`: errors are counted in these units.
     tolerance: [f64; 2],
     samples: Vec<Sample>,
-    coordinates: Option<Coordinates>,
+    /// For ordinary pairs, and for pairs next to a fold.
+    coordinates: [Option<Coordinates>; 2],
 }
 
 impl<'a> Inversion<'a> {
@@ -70,7 +83,7 @@ impl<'a> Inversion<'a> {
             pair,
             tolerance,
             samples: samples(pair, GRID),
-            coordinates: None,
+            coordinates: [None; 2],
         }
     }
 
@@ -82,18 +95,50 @@ impl<'a> Inversion<'a> {
         }
     }
 
+    /// Fits in the coordinates for ordinary pairs. Where that is not enough, those for pairs next to a fold are
+    /// tried, and where not much is missing, coordinates are searched for this very form.
     fn fit_seed(&mut self, seed: SeedForm, refinement: Refinement) -> (FittedInverse, f64) {
+        let start = self.start(0);
+        let mut best = self.fit_seed_in(start, seed, refinement);
+        if best.1 > 1.0 && refinement != Refinement::None {
+            let start = self.start(1);
+            let other = self.fit_seed_in(start, seed, refinement);
+            if other.1 < best.1 {
+                best = other;
+            }
+        }
+        if best.1 > 1.0
+            && best.1 < WORTH_A_SEARCH
+            && let FittedInverse::Seeded { coordinates, .. } = best.0
+        {
+            let coarse = samples(self.pair, COARSE_GRID);
+            let error = |coordinates: &Coordinates| {
+                let rows = rows(&coarse, coordinates, seed);
+                self.lawson(&coarse, &rows, refinement, 3).1
+            };
+            let searched = coordinates.improved(self.pair, EVALUATIONS, error);
+            let other = self.fit_seed_in(searched, seed, refinement);
+            if other.1 < best.1 {
+                best = other;
+            }
+        }
+        best
+    }
+
+    /// The coordinates of a start, searched once.
+    fn start(&mut self, index: usize) -> Coordinates {
         let pair = self.pair;
-        let coordinates = *self.coordinates.get_or_insert_with(|| Coordinates::search(pair));
-        let rows: Vec<Vec<f64>> = self
-            .samples
-            .iter()
-            .map(|sample| {
-                let [x, y] = coordinates.at(sample.efforts);
-                seed.monomials(x, y)[..seed.terms()].to_vec()
-            })
-            .collect();
-        let (coefficients, error) = self.lawson(&rows, refinement);
+        *self.coordinates[index].get_or_insert_with(|| Coordinates::search(pair, EMPHASES[index]))
+    }
+
+    fn fit_seed_in(
+        &self,
+        coordinates: Coordinates,
+        seed: SeedForm,
+        refinement: Refinement,
+    ) -> (FittedInverse, f64) {
+        let rows = rows(&self.samples, &coordinates, seed);
+        let (coefficients, error) = self.lawson(&self.samples, &rows, refinement, lawson::ROUNDS);
         let (steps, residuals) = refinement.steps();
         (
             FittedInverse::Seeded {
@@ -122,7 +167,7 @@ impl<'a> Inversion<'a> {
                 monomials(degree, thrust[0] * f + thrust[1], torque[0] * q + torque[1])
             })
             .collect();
-        let (coefficients, error) = self.lawson(&rows, Refinement::None);
+        let (coefficients, error) = self.lawson(&self.samples, &rows, Refinement::None, lawson::ROUNDS);
         (
             FittedInverse::Polynomial {
                 degree,
@@ -135,10 +180,16 @@ impl<'a> Inversion<'a> {
     }
 
     /// The minimax fit of both throttles in the given terms, and its error after the refinement.
-    fn lawson(&self, rows: &[Vec<f64>], refinement: Refinement) -> ([Vec<f64>; 2], f64) {
-        let targets: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.throttles).collect();
+    fn lawson(
+        &self,
+        samples: &[Sample],
+        rows: &[Vec<f64>],
+        refinement: Refinement,
+        rounds: usize,
+    ) -> ([Vec<f64>; 2], f64) {
+        let targets: Vec<[f64; 2]> = samples.iter().map(|sample| sample.throttles).collect();
         let error = |index: usize, guess: [f64; 2]| {
-            let efforts = self.samples[index].efforts;
+            let efforts = samples[index].efforts;
             let mut throttles = guess.map(|throttle| self.pair.clamp(throttle));
             let (steps, residuals) = refinement.steps();
             for _ in 0..steps {
@@ -151,8 +202,9 @@ impl<'a> Inversion<'a> {
         Lawson {
             rows,
             targets: &targets,
+            direct: refinement == Refinement::None,
         }
-        .fit(&error)
+        .fit(rounds, &error)
     }
 }
 
@@ -163,6 +215,17 @@ fn samples(pair: &PairMap, points: usize) -> Vec<Sample> {
         efforts: pair.efforts(throttles),
     })
     .collect()
+}
+
+/// The terms of a seed at every sample.
+fn rows(samples: &[Sample], coordinates: &Coordinates, seed: SeedForm) -> Vec<Vec<f64>> {
+    samples
+        .iter()
+        .map(|sample| {
+            let [x, y] = coordinates.at(sample.efforts);
+            seed.monomials(x, y)[..seed.terms()].to_vec()
+        })
+        .collect()
 }
 
 /// The terms s^(d-i) t^(i-j) in the order of `mixer_rt::PolynomialInverse`.

@@ -76,13 +76,15 @@ const SHARP: f64 = 1.15;
 const STALE: u8 = 6;
 
 /// Proves what it can of the emitted tables. `observed` says where to stop; it gains the points that the proof
-/// finds worth a look.
+/// finds worth a look. A tolerance that an observation refutes ends the proof, unless it is to be taken `to_the_end`
+/// for the sake of its bound.
 pub fn prove(
     airframe: &Airframe,
     pair: &PairMap,
     tables: &MixerTables,
     correction: &Correction,
     observed: &mut Residual,
+    to_the_end: bool,
 ) -> Certificate {
     let inverse = &airframe.inverse;
     let tolerance = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
@@ -107,6 +109,11 @@ pub fn prove(
             tables,
             worst.cell.centre.map(|throttle| pair.clamp(throttle)),
         );
+        let refuted = (0..2).any(|k| observed.efforts[k] * correction.largest[k] > tolerance[k]);
+        if refuted && !to_the_end {
+            open.push(worst);
+            break;
+        }
         let new_goal = aim(observed);
         if (0..2).any(|k| new_goal[k] > 1.02 * goal[k]) {
             goal = new_goal;

@@ -65,7 +65,7 @@ pub(crate) fn select(
         if glance <= 1.0 {
             let mut residual = Residual::over_set(&pair, &tables);
             if residual.within(tolerance) {
-                let certificate = proof::prove(airframe, &pair, &tables, &correction, &mut residual);
+                let certificate = proof::prove(airframe, &pair, &tables, &correction, &mut residual, false);
                 if certificate.holds() && certificate.agrees(&residual) {
                     return Ok(Selected {
                         evaluator,
@@ -163,7 +163,7 @@ fn refusal(
         );
     };
     let mut residual = Residual::over_set(pair, &tables);
-    let reached = proof::prove(airframe, pair, &tables, correction, &mut residual).stated;
+    let reached = proof::prove(airframe, pair, &tables, correction, &mut residual, true).stated;
     if !reached.iter().all(|bound| bound.is_finite()) {
         return airframe.diagnostic(
             Code::Tolerance,

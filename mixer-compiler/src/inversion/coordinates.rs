@@ -21,6 +21,9 @@ pub struct Coordinates {
 /// Points per side of the grid on which coordinates are judged.
 const GRID: usize = 11;
 
+/// Edge of the simplex at the start.
+const EDGE: f64 = 0.1;
+
 /// Evaluations of the simplex search.
 const EVALUATIONS: usize = 220;
 
@@ -31,14 +34,12 @@ impl Coordinates {
         [root(self.x), root(self.y)]
     }
 
-    /// Searches the coordinates of a pair.
-    pub fn search(pair: &PairMap) -> Self {
+    /// Searches the coordinates of a pair in which a bilinear fit of the throttles is best. Errors count for more
+    /// where det J is small, by its power `-emphasis`: 0 suits ordinary pairs, but next to a fold a Newton step
+    /// bears smaller errors of its seed than elsewhere.
+    pub fn search(pair: &PairMap, emphasis: f64) -> Self {
         let scale = pair.scale();
         let samples = samples(pair, GRID);
-        let build = |p: &[f64; 4]| Coordinates {
-            x: [1.0 / scale[0], -p[0] / scale[1], p[2]],
-            y: [1.0 / scale[0], p[1] / scale[1], p[3]],
-        };
         let [p, r] = eigenvalues(&samples, scale);
         // Offsets just large enough to keep both radicands positive over the set.
         let least = |by_q: f64| {
@@ -48,9 +49,42 @@ impl Coordinates {
             0.01 - radicands.fold(f64::INFINITY, f64::min)
         };
         let start = [p, r, least(-p), least(r)];
-        let best = minimise(start, |parameters| bilinear_error(&samples, &build(parameters)));
-        build(&best)
+        let weights = weights(pair, &samples, emphasis);
+        let objective =
+            |parameters: &[f64; 4]| bilinear_error(&samples, &weights, &Coordinates::new(scale, parameters));
+        Coordinates::new(scale, &minimise(start, EDGE, EVALUATIONS, objective))
     }
+
+    /// Searches on from here for the least `error`.
+    pub fn improved(&self, pair: &PairMap, evaluations: usize, error: impl Fn(&Coordinates) -> f64) -> Self {
+        let scale = pair.scale();
+        let start = [-self.x[1] * scale[1], self.y[1] * scale[1], self.x[2], self.y[2]];
+        let objective = |parameters: &[f64; 4]| error(&Coordinates::new(scale, parameters));
+        Coordinates::new(scale, &minimise(start, 0.3 * EDGE, evaluations, objective))
+    }
+
+    /// From (p, r, c1, c2).
+    fn new(scale: [f64; 2], [p, r, c1, c2]: &[f64; 4]) -> Self {
+        Coordinates {
+            x: [1.0 / scale[0], -p / scale[1], *c1],
+            y: [1.0 / scale[0], r / scale[1], *c2],
+        }
+    }
+}
+
+/// Weights of errors: a power of det J over its mean, bounded where det J vanishes.
+fn weights(pair: &PairMap, samples: &[Sample], emphasis: f64) -> Vec<f64> {
+    const FLOOR: f64 = 0.003;
+    let determinant = |sample: &Sample| {
+        let [[f_u, f_l], [q_u, q_l]] = pair.jacobian(sample.throttles);
+        (f_u * q_l - f_l * q_u).max(0.0)
+    };
+    let determinants: Vec<f64> = samples.iter().map(determinant).collect();
+    let mean = determinants.iter().sum::<f64>() / determinants.len() as f64;
+    determinants
+        .iter()
+        .map(|determinant| libm::pow(mean / (determinant + FLOOR * mean), emphasis))
+        .collect()
 }
 
 /// p and r from pure quadratic forms fitted to thrust and torque: det(A - p B) = 0 for the positive root p and the
@@ -91,17 +125,17 @@ fn quadratic_form(samples: &[Sample], value: impl Fn(&Sample) -> f64) -> [f64; 3
         .map_or([1.0, 0.0, 1.0], |factors| factors.solve(&right).into())
 }
 
-/// The sum of sixth powers of the throttle errors of a bilinear least-squares fit: close to the maximum, yet
+/// The sum of sixth powers of the weighted throttle errors of a bilinear least-squares fit: close to the maximum, yet
 /// smooth.
-fn bilinear_error(samples: &[Sample], coordinates: &Coordinates) -> f64 {
+fn bilinear_error(samples: &[Sample], weights: &[f64], coordinates: &Coordinates) -> f64 {
     let mut normal = [[0.0f64; 6]; 4]; // with both right-hand sides as columns 4 and 5
-    for sample in samples {
+    for (sample, weight) in samples.iter().zip(weights) {
         let [x, y] = coordinates.at(sample.efforts);
         let terms = [1.0, x, y, x * y];
         let row = [1.0, x, y, x * y, sample.throttles[0], sample.throttles[1]];
         for (i, (sums, term)) in normal.iter_mut().zip(terms).enumerate() {
             for (sum, value) in sums.iter_mut().zip(row).skip(i) {
-                *sum += term * value;
+                *sum += weight * weight * term * value;
             }
         }
     }
@@ -109,10 +143,11 @@ fn bilinear_error(samples: &[Sample], coordinates: &Coordinates) -> f64 {
         return f64::INFINITY;
     };
     let mut sum = 0.0;
-    for sample in samples {
+    for (sample, weight) in samples.iter().zip(weights) {
         let [x, y] = coordinates.at(sample.efforts);
         for (c, throttle) in solution.iter().zip(sample.throttles) {
             let error = c[0] + c[1] * x + c[2] * y + c[3] * x * y - throttle;
+            let error = error * weight;
             let square = error * error;
             sum += square * square * square;
         }
@@ -147,16 +182,21 @@ fn solve_symmetric(mut rows: [[f64; 6]; 4]) -> Option<[[f64; 4]; 2]> {
     Some(solution)
 }
 
-/// Nelder and Mead's simplex search with their coefficients 1, 2, 1/2, 1/2, from a simplex of edge 0.1.
-fn minimise(start: [f64; 4], objective: impl Fn(&[f64; 4]) -> f64) -> [f64; 4] {
+/// Nelder and Mead's simplex search with their coefficients 1, 2, 1/2, 1/2.
+fn minimise(
+    start: [f64; 4],
+    edge: f64,
+    most_evaluations: usize,
+    objective: impl Fn(&[f64; 4]) -> f64,
+) -> [f64; 4] {
     let mut simplex: Vec<([f64; 4], f64)> = vec![(start, objective(&start))];
     for k in 0..4 {
         let mut vertex = start;
-        vertex[k] += 0.1;
+        vertex[k] += edge;
         simplex.push((vertex, objective(&vertex)));
     }
     let mut evaluations = 5;
-    while evaluations < EVALUATIONS {
+    while evaluations < most_evaluations {
         simplex.sort_by(|a, b| a.1.total_cmp(&b.1));
         let worst = simplex[4];
         let mut centre = [0.0; 4];

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Rounds of reweighting.
-const ROUNDS: usize = 12;
+pub(super) const ROUNDS: usize = 12;
 
 /// Relative size below which a column adds nothing that f64 could tell from rounding.
 const SINGULAR: f64 = 1e-13;
@@ -14,14 +14,17 @@ pub(super) struct Lawson<'a> {
     pub(super) rows: &'a [Vec<f64>],
     /// What is to be met, per sample.
     pub(super) targets: &'a [[f64; 2]],
+    /// True where errors are linear in the coefficients, false where they are quadratic.
+    pub(super) direct: bool,
 }
 
 impl Lawson<'_> {
     /// The best coefficients found, per target, and their largest `error(sample, fitted targets)`.
-    pub(super) fn fit(&self, error: &dyn Fn(usize, [f64; 2]) -> f64) -> ([Vec<f64>; 2], f64) {
+    pub(super) fn fit(&self, rounds: usize, error: &dyn Fn(usize, [f64; 2]) -> f64) -> ([Vec<f64>; 2], f64) {
+        let direct = self.direct;
         let mut weights = vec![1.0; self.rows.len()];
         let mut best = ([Vec::new(), Vec::new()], f64::INFINITY);
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             let coefficients = self.solve(&weights);
             let evaluate = |row: &[f64]| {
                 let value = |c: &Vec<f64>| row.iter().zip(c).map(|(term, c)| term * c).sum::<f64>();
@@ -37,11 +40,11 @@ impl Lawson<'_> {
             if largest < best.1 {
                 best = (coefficients, largest);
             }
-            // Newton steps square the seed's error, so its root would be the classic factor; the power one half is
-            // stable for both.
+            // Lawson's factor is the error itself. Newton steps square the seed's error: its root then.
             let mut sum = 0.0;
             for (weight, error) in weights.iter_mut().zip(&errors) {
-                *weight *= (error / largest).sqrt() + 1e-3;
+                let share = error / largest;
+                *weight *= if direct { share } else { share.sqrt() } + 1e-3;
                 sum += *weight;
             }
             let scale = weights.len() as f64 / sum;

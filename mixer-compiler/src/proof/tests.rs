@@ -242,7 +242,14 @@ fn prove_again(compiled: &crate::Compiled, tables: &MixerTables) -> Certificate 
     let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
     let correction = Correction::new(&compiled.airframe, tables.voltage.as_ref());
     let mut observed = compiled.residual;
-    prove(&compiled.airframe, &pair, tables, &correction, &mut observed)
+    prove(
+        &compiled.airframe,
+        &pair,
+        tables,
+        &correction,
+        &mut observed,
+        true,
+    )
 }
 
 /// Every basis and every kind of evaluator: no residual at any of 40,000 throttles and voltages, as the mixer
