@@ -11,6 +11,7 @@ pub mod diagnostic;
 pub mod effectiveness;
 mod emit;
 pub mod evaluator;
+pub mod front;
 mod hover;
 pub mod injectivity;
 pub mod interval;

@@ -171,3 +171,28 @@ fn voltage_points_are_joined() {
         assert!((table.thrust.factor(volts) - factor).abs() < 1e-6, "{volts} V");
     }
 }
+
+/// The choice is the first on the front that holds, and refinement pays.
+#[test]
+fn the_choice_is_the_first_of_the_front_that_holds() {
+    let compiled = isae_x8(&[]).unwrap();
+    let front = compiled.front();
+    let first = front.iter().find(|alternative| alternative.holds).unwrap();
+    assert!(first.chosen, "{front:#?}");
+    assert_eq!(first.proven, compiled.certificate.stated);
+    assert_eq!(front.iter().filter(|alternative| alternative.chosen).count(), 1);
+    for alternative in &front {
+        assert!(
+            (0..2).all(|k| alternative.observed[k] <= alternative.proven[k]),
+            "{alternative:?}"
+        );
+    }
+    let named = |name: &str| front.iter().find(|a| a.evaluator == name).unwrap();
+    for seed in ["bilinear", "eight-term", "cubic"] {
+        let refined = ["-shamanskii", "-newton", ""].map(|step| named(&format!("{seed}{step}")).proven[0]);
+        assert!(
+            refined[0] < 0.2 * refined[1] && refined[1] < 0.2 * refined[2],
+            "{seed}: {refined:?}"
+        );
+    }
+}
