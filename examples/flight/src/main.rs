@@ -1,0 +1,91 @@
+//! Flies the paper's manoeuvre with both mixers, prints Table II and writes its figures.
+
+use std::error::Error;
+use std::fs::{self, File};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use flight::figures;
+use flight::flight::Scenario;
+use flight::log;
+use flight::mixer::Method;
+use flight::table::{Comparison, NOTES};
+use flight::vehicle;
+
+/// Flies the ISAE X8 through the paper's manoeuvre with the coaxial and with the conventional mixer.
+#[derive(Parser)]
+struct Arguments {
+    /// Number of seeds: rotor mismatch and air differ from seed to seed
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    seeds: u64,
+    /// Write Fig. 8, 9 and 10 of the first seed as SVG into this folder
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
+    /// Write the flights of the first seed and the errors of all flights as CSV into this folder
+    #[arg(long, value_name = "DIR")]
+    csv: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let airframe = vehicle::airframe()?;
+    let mut comparisons = Vec::new();
+    for scenario in Scenario::ALL {
+        if std::io::stderr().is_terminal() {
+            eprintln!("flying {} seeds in {scenario} ..", arguments.seeds);
+        }
+        let flights = (1..=arguments.seeds)
+            .map(|seed| scenario.fly(&airframe, seed))
+            .collect::<Result<_, _>>()?;
+        let comparison = Comparison { scenario, flights };
+        println!("{comparison}");
+        comparisons.push(comparison);
+    }
+    print!("{NOTES}");
+    if let Some(folder) = &arguments.plots {
+        fs::create_dir_all(folder)?;
+        write_figures(&comparisons, folder)?;
+    }
+    if let Some(folder) = &arguments.csv {
+        fs::create_dir_all(folder)?;
+        write_logs(&comparisons, folder)?;
+    }
+    Ok(())
+}
+
+/// The figures of the first seed of every scenario.
+fn write_figures(comparisons: &[Comparison], folder: &Path) -> Result<(), Box<dyn Error>> {
+    for Comparison { scenario, flights } in comparisons {
+        if let Some(pair) = flights.first() {
+            for (name, svg) in figures::draw(scenario, pair)? {
+                fs::write(folder.join(name), svg)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The flights of the first seed of every scenario, and the figures of Table II of all.
+fn write_logs(comparisons: &[Comparison], folder: &Path) -> Result<(), Box<dyn Error>> {
+    for Comparison { scenario, flights } in comparisons {
+        if let Some(pair) = flights.first() {
+            for method in [Method::Coaxial, Method::Simple] {
+                let path = folder.join(format!("{}-{method}.csv", scenario.slug()));
+                log::write_flight(pair.with(method), File::create(path)?)?;
+            }
+        }
+    }
+    log::write_tracking(comparisons, File::create(folder.join("tracking.csv"))?)?;
+    Ok(())
+}

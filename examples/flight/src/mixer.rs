@@ -1,0 +1,74 @@
+//! The two mixers behind one face.
+
+use std::fmt;
+
+use mixer_compiler::airframe::Airframe;
+use mixer_compiler::effectiveness::Effectiveness;
+use mixer_rt::{SetpointError, Wrench};
+use nalgebra::{SVector, Vector4};
+
+use crate::conventional::{ConventionalMixer, Unsuited};
+use crate::vehicle::{ROTORS, isae_x8};
+
+/// Name of a mixer, as Table II has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The airframe's mixer from the macro.
+    Coaxial,
+    /// The conventional mixer, isolated rotors.
+    Simple,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Method::Coaxial => "coaxial",
+            Method::Simple => "simple",
+        })
+    }
+}
+
+/// A mixer that is ready to run.
+#[derive(Clone, Debug)]
+pub enum Mixer {
+    /// The airframe's mixer from the macro.
+    Coaxial,
+    /// The conventional mixer.
+    Simple(ConventionalMixer),
+}
+
+impl Mixer {
+    /// The mixer of `airframe` by name.
+    ///
+    /// # Errors
+    /// A conventional mixer that does not exist: see [`Unsuited`].
+    pub fn new(method: Method, airframe: &Airframe) -> Result<Self, Unsuited> {
+        Ok(match method {
+            Method::Coaxial => Mixer::Coaxial,
+            Method::Simple => {
+                let effectiveness = Effectiveness::new(airframe).map_err(|_| Unsuited::Rank)?;
+                Mixer::Simple(ConventionalMixer::new(airframe, &effectiveness)?)
+            }
+        })
+    }
+
+    /// Throttle per channel for `[roll, pitch, yaw (N m), thrust (N)]`, and whether anything was saturated.
+    ///
+    /// # Errors
+    /// A wrench or voltage that is not finite.
+    pub fn mix(
+        &self,
+        wrench: &Vector4<f64>,
+        voltage_v: f64,
+    ) -> Result<(SVector<f64, ROTORS>, bool), SetpointError> {
+        match self {
+            Mixer::Coaxial => {
+                let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
+                let mix = isae_x8::mix(&setpoint, voltage_v as f32)?;
+                let throttle = SVector::from(mix.throttle).map(f64::from);
+                Ok((throttle, mix.saturation.any_axis()))
+            }
+            Mixer::Simple(mixer) => Ok(mixer.mix(wrench, voltage_v)),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The plant: six degrees of freedom under the coaxial map of the airframe file.
+//!
+//! With R the rotation from body to world, m the mass, J the inertia, r_i and a_i position and thrust axis of unit i:
+//!
+//! ```text
+//! m dv/dt     = m g e_z + R sum_i a_i f_i + F
+//! J dw/dt     = sum_i (r_i x a_i f_i - s_i Q_i a_i) - w x J w
+//! dq/dt       = q (0, w) / 2
+//! tau de_k/dt = (1 + mismatch_k) throttle_k - e_k
+//! f_i = (1 + flutter_i) k_f(V) f(e_upper, e_lower),   Q_i = k_Q(V) Q(e_upper, e_lower)
+//! ```
+//!
+//! f and Q are eq. (1) with the f64 coefficients of the file: what the coaxial mixer inverts, without its f32 tables,
+//! its lag-free rotors and its equal rotors. Left out, since the paper gives nothing to model them by: drag, ground
+//! effect, wake between units, the rotors' own angular momentum (it cancels in a contra-rotating pair).
+
+use mixer_compiler::airframe::{Airframe, Voltage};
+use mixer_compiler::model::PairMap;
+use nalgebra::{Quaternion, SVector, Vector3};
+
+use crate::battery;
+use crate::integrator::runge_kutta;
+use crate::state::State;
+use crate::vehicle::{GRAVITY_M_S2, INERTIA_KG_M2, MASS_KG, ROTOR_LAG_S, ROTORS};
+
+/// Units of two rotors.
+pub const UNITS: usize = ROTORS / 2;
+
+/// One unit as the plant sees it.
+#[derive(Clone, Debug)]
+struct Unit {
+    position_m: Vector3<f64>,
+    axis: Vector3<f64>,
+    spin_sign: f64,
+    channels: [usize; 2],
+}
+
+/// What the air does beyond the bench: held over one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Disturbance {
+    /// Force on the vehicle in the world, N.
+    pub force_n: Vector3<f64>,
+    /// Relative change of each unit's thrust.
+    pub flutter: SVector<f64, UNITS>,
+}
+
+/// The vehicle.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    units: Vec<Unit>,
+    map: PairMap,
+    voltage: Option<Voltage>,
+    mismatch: SVector<f64, ROTORS>,
+}
+
+impl Plant {
+    /// The plant of `airframe`, whose channels must be 0 to 7 (those beyond stand still). `mismatch` is each rotor's
+    /// relative deviation in effective throttle, 0.01 being a rotor that turns one per cent faster than commanded.
+    pub fn new(airframe: &Airframe, mismatch: SVector<f64, ROTORS>) -> Self {
+        let units = airframe.units.iter().map(|unit| Unit {
+            position_m: Vector3::from(unit.position_m),
+            axis: Vector3::from(unit.axis),
+            spin_sign: unit.spin_sign(airframe.pair.upper_spin),
+            channels: [unit.upper_channel, unit.lower_channel],
+        });
+        Plant {
+            units: units.collect(),
+            map: PairMap::new(&airframe.pair, &airframe.throttle),
+            voltage: airframe.voltage.clone(),
+            mismatch,
+        }
+    }
+
+    /// Voltage of the battery under the present load, V.
+    pub fn voltage_v(&self, state: &State) -> f64 {
+        battery::voltage_v(state.charge_ah, &state.throttle)
+    }
+
+    /// Force (N) and torque (N m) of the rotors in the body.
+    pub fn rotor_wrench(&self, state: &State, flutter: &SVector<f64, UNITS>) -> (Vector3<f64>, Vector3<f64>) {
+        let volts = self.voltage_v(state);
+        let [k_f, k_q] = match &self.voltage {
+            Some(voltage) => [voltage.thrust_factor(volts), voltage.torque_factor(volts)],
+            None => [1.0, 1.0],
+        };
+        let effective = |channel: usize| state.throttle.get(channel).copied().unwrap_or(0.0);
+        let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
+        for (unit, flutter) in self.units.iter().zip(flutter) {
+            let [f, q] = self.map.efforts(unit.channels.map(effective));
+            let thrust = unit.axis * ((1.0 + flutter) * k_f * f);
+            force += thrust;
+            torque += unit.position_m.cross(&thrust) - unit.axis * (unit.spin_sign * k_q * q);
+        }
+        (force, torque)
+    }
+
+    /// The state `step` seconds later, `command` (throttle per channel) and `disturbance` held.
+    pub fn step(
+        &self,
+        state: &State,
+        command: &SVector<f64, ROTORS>,
+        disturbance: &Disturbance,
+        step: f64,
+    ) -> State {
+        let target = command + command.component_mul(&self.mismatch);
+        let mut next = runge_kutta(*state, step, |state| self.derivative(state, &target, disturbance));
+        next.attitude = next.rotation().into_inner();
+        next
+    }
+
+    fn derivative(&self, state: &State, target: &SVector<f64, ROTORS>, disturbance: &Disturbance) -> State {
+        let (force, torque) = self.rotor_wrench(state, &disturbance.flutter);
+        let gravity = Vector3::z() * GRAVITY_M_S2;
+        let momentum = INERTIA_KG_M2.component_mul(&state.rate);
+        State {
+            position: state.velocity,
+            velocity: gravity + (state.rotation() * force + disturbance.force_n) / MASS_KG,
+            attitude: state.attitude * Quaternion::from_imag(state.rate) * 0.5,
+            rate: (torque - state.rate.cross(&momentum)).component_div(&INERTIA_KG_M2),
+            throttle: (target - state.throttle) / ROTOR_LAG_S,
+            charge_ah: battery::current_a(&state.throttle) / 3600.0,
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! State of the vehicle, and its derivative: the same fields.
+
+use std::ops::{Add, Mul};
+
+use nalgebra::{Quaternion, SVector, UnitQuaternion, Vector3};
+
+use crate::vehicle::ROTORS;
+
+/// State of the vehicle. World axes north, east, down; body axes forward, right, down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Position in the world, m; z is minus the altitude.
+    pub position: Vector3<f64>,
+    /// Velocity in the world, m/s.
+    pub velocity: Vector3<f64>,
+    /// Rotation from body to world. Of unit length after every step, not within one.
+    pub attitude: Quaternion<f64>,
+    /// Angular rate in the body, rad/s.
+    pub rate: Vector3<f64>,
+    /// Effective throttle per channel: the commanded one behind the rotor's lag.
+    pub throttle: SVector<f64, ROTORS>,
+    /// Charge drawn from the battery, A h.
+    pub charge_ah: f64,
+}
+
+impl State {
+    /// At rest and level at `position` with all rotors at `throttle` and a full battery.
+    pub fn level(position: Vector3<f64>, throttle: f64) -> Self {
+        State {
+            position,
+            velocity: Vector3::zeros(),
+            attitude: Quaternion::identity(),
+            rate: Vector3::zeros(),
+            throttle: SVector::repeat(throttle),
+            charge_ah: 0.0,
+        }
+    }
+
+    /// The attitude as a rotation from body to world.
+    pub fn rotation(&self) -> UnitQuaternion<f64> {
+        UnitQuaternion::new_normalize(self.attitude)
+    }
+
+    /// Yaw, rad, in (-pi, pi]: clockwise from north, seen from above.
+    pub fn yaw(&self) -> f64 {
+        let forward = self.rotation() * Vector3::x();
+        libm::atan2(forward.y, forward.x)
+    }
+}
+
+impl Add for State {
+    type Output = State;
+
+    fn add(self, other: State) -> State {
+        State {
+            position: self.position + other.position,
+            velocity: self.velocity + other.velocity,
+            attitude: self.attitude + other.attitude,
+            rate: self.rate + other.rate,
+            throttle: self.throttle + other.throttle,
+            charge_ah: self.charge_ah + other.charge_ah,
+        }
+    }
+}
+
+impl Mul<f64> for State {
+    type Output = State;
+
+    fn mul(self, factor: f64) -> State {
+        State {
+            position: self.position * factor,
+            velocity: self.velocity * factor,
+            attitude: self.attitude * factor,
+            rate: self.rate * factor,
+            throttle: self.throttle * factor,
+            charge_ah: self.charge_ah * factor,
+        }
+    }
+}
