@@ -75,8 +75,8 @@ impl ConventionalMixer {
         for (i, unit) in airframe.units.iter().enumerate() {
             let by_thrust = effectiveness.matrix.column(i);
             let by_torque = effectiveness.matrix.column(airframe.units.len() + i) * kappa;
-            rotors.set_column(unit.upper_channel, &(by_thrust - &by_torque));
-            rotors.set_column(unit.lower_channel, &(by_thrust + &by_torque));
+            rotors.set_column(unit.upper_channel, &(by_thrust - by_torque));
+            rotors.set_column(unit.lower_channel, &(by_thrust + by_torque));
         }
         let gram = &rotors * rotors.transpose();
         let inverse = gram.try_inverse().ok_or(Unsuited::Rank)?;
@@ -87,6 +87,16 @@ impl ConventionalMixer {
             throttle: airframe.throttle,
             voltage: airframe.voltage.clone(),
         })
+    }
+
+    /// The same mixer, its thrust commands multiplied by `factor`: what a controller does that knows, from an estimator
+    /// or from a test flight, how much more than the weight it must command in hover.
+    #[must_use]
+    pub fn with_thrust_factor(mut self, factor: f64) -> Self {
+        for rotor in 0..ROTORS {
+            self.allocation[(rotor, 3)] *= factor;
+        }
+        self
     }
 
     /// Throttles for the wrench `[roll, pitch, yaw (N m), thrust (N)]` at `voltage_v`, limited to the range, and

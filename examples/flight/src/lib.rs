@@ -25,6 +25,7 @@ pub mod integrator;
 pub mod log;
 pub mod manoeuvre;
 pub mod mixer;
+pub mod pair;
 pub mod plant;
 pub mod state;
 pub mod table;

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::fs::{self, File};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -40,6 +40,10 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let airframe = vehicle::airframe()?;
+    for folder in arguments.plots.iter().chain(&arguments.csv) {
+        fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    let mut out = std::io::stdout().lock();
     let mut comparisons = Vec::new();
     for scenario in Scenario::ALL {
         if std::io::stderr().is_terminal() {
@@ -49,16 +53,14 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             .map(|seed| scenario.fly(&airframe, seed))
             .collect::<Result<_, _>>()?;
         let comparison = Comparison { scenario, flights };
-        println!("{comparison}");
+        writeln!(out, "{comparison}")?;
         comparisons.push(comparison);
     }
-    print!("{NOTES}");
+    write!(out, "{NOTES}")?;
     if let Some(folder) = &arguments.plots {
-        fs::create_dir_all(folder)?;
         write_figures(&comparisons, folder)?;
     }
     if let Some(folder) = &arguments.csv {
-        fs::create_dir_all(folder)?;
         write_logs(&comparisons, folder)?;
     }
     Ok(())

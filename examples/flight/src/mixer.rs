@@ -34,7 +34,7 @@ pub enum Mixer {
     /// The airframe's mixer from the macro.
     Coaxial,
     /// The conventional mixer.
-    Simple(ConventionalMixer),
+    Simple(Box<ConventionalMixer>),
 }
 
 impl Mixer {
@@ -47,7 +47,7 @@ impl Mixer {
             Method::Coaxial => Mixer::Coaxial,
             Method::Simple => {
                 let effectiveness = Effectiveness::new(airframe).map_err(|_| Unsuited::Rank)?;
-                Mixer::Simple(ConventionalMixer::new(airframe, &effectiveness)?)
+                Mixer::Simple(Box::new(ConventionalMixer::new(airframe, &effectiveness)?))
             }
         })
     }

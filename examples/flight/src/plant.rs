@@ -10,16 +10,16 @@
 //! f_i = (1 + flutter_i) k_f(V) f(e_upper, e_lower),   Q_i = k_Q(V) Q(e_upper, e_lower)
 //! ```
 //!
-//! f and Q are eq. (1) with the f64 coefficients of the file: what the coaxial mixer inverts, without its f32 tables,
-//! its lag-free rotors and its equal rotors. Left out, since the paper gives nothing to model them by: drag, ground
+//! f and Q are eq. (1) with the f64 coefficients of the file: the map that the coaxial mixer inverts. Unlike the mixer
+//! it has no f32 tables, and its rotors lag and differ. Left out, since the paper gives nothing to model them by: drag, ground
 //! effect, wake between units, the rotors' own angular momentum (it cancels in a contra-rotating pair).
 
 use mixer_compiler::airframe::{Airframe, Voltage};
-use mixer_compiler::model::PairMap;
 use nalgebra::{Quaternion, SVector, Vector3};
 
 use crate::battery;
 use crate::integrator::runge_kutta;
+use crate::pair::Pair;
 use crate::state::State;
 use crate::vehicle::{GRAVITY_M_S2, INERTIA_KG_M2, MASS_KG, ROTOR_LAG_S, ROTORS};
 
@@ -48,7 +48,7 @@ pub struct Disturbance {
 #[derive(Clone, Debug)]
 pub struct Plant {
     units: Vec<Unit>,
-    map: PairMap,
+    pair: Pair,
     voltage: Option<Voltage>,
     mismatch: SVector<f64, ROTORS>,
 }
@@ -65,7 +65,7 @@ impl Plant {
         });
         Plant {
             units: units.collect(),
-            map: PairMap::new(&airframe.pair, &airframe.throttle),
+            pair: Pair::new(&airframe.pair),
             voltage: airframe.voltage.clone(),
             mismatch,
         }
@@ -86,7 +86,7 @@ impl Plant {
         let effective = |channel: usize| state.throttle.get(channel).copied().unwrap_or(0.0);
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         for (unit, flutter) in self.units.iter().zip(flutter) {
-            let [f, q] = self.map.efforts(unit.channels.map(effective));
+            let [f, q] = self.pair.efforts(unit.channels.map(effective));
             let thrust = unit.axis * ((1.0 + flutter) * k_f * f);
             force += thrust;
             torque += unit.position_m.cross(&thrust) - unit.axis * (unit.spin_sign * k_q * q);

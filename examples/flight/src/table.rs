@@ -22,9 +22,10 @@ sagging battery, under the same controller with the same gains, placed on a mixe
 What it does not: the plant is the map that the coaxial mixer inverts, so that mixer's model error is left out (the
 paper's flight shows some 2 N of it); ground effect, drag, sensor noise and the paper's own gains, yaw angles and
 times are not known; unsteady air has an assumed size. Compare ratios, not metres.
-Still air leaves the mixers' own coupling alone: fractions of a millimetre in x and y. With a decoupled tilt (PX4's
-default) x and y feel the conventional mixer by its torque alone; with a coupled tilt its missing thrust also
-weakens the tilt. The paper does not say which its controller had.
+Still air leaves the mixers' own coupling alone: a fifth of a millimetre in x and y. In unsteady air with a decoupled
+tilt (PX4's default) the mixers differ in z alone; with a coupled tilt the thrust that the conventional mixer misses
+also weakens the tilt, and x and y differ as z does. The paper does not say which its controller had. A controller
+that knows its hover thrust, estimated or measured, takes away nearly all of the difference in z.
 ";
 
 impl fmt::Display for Comparison {
