@@ -157,7 +157,7 @@ fn the_conventional_mixer_agrees_with_the_oracle() {
         let torques = efforts.iter().map(|e| voltage.torque_factor(volts) * e[1]);
         let efforts = DVector::from_vec(thrusts.chain(torques).collect());
         let wrench = &effectiveness.matrix * efforts;
-        let difference = (&wrench - Vector4::from(given)).amax();
+        let difference = (wrench - Vector4::from(given)).amax();
         assert!(difference < 1e-4, "{asked:?} {wrench} {given:?}");
     }
 }
