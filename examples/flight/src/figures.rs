@@ -86,7 +86,7 @@ pub fn draw(scenario: &Scenario, pair: &FlightPair) -> Result<[(String, String);
         altitude(),
         Row {
             label: "thrust, N",
-            range: 20.0..55.0,
+            range: 15.0..55.0,
             lines: vec![
                 Line {
                     label: "command",
