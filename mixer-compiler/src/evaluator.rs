@@ -61,8 +61,9 @@ const fn seeded(seed: SeedForm, refinement: Refinement) -> Evaluator {
     Evaluator::Seeded { seed, refinement }
 }
 
-/// What `method = "auto"` tries, by instructions per unit on a Cortex-M4F (counted in QEMU, `tests/firmware.rs`).
-/// Polynomials above degree 5 cost more than a seed and a Newton step and are worse by an order of magnitude.
+/// What `method = "auto"` tries, by instructions per unit on a Cortex-M4F: a residual costs more than any seed's
+/// further terms, a Jacobian more than a residual. Polynomials above degree 5 cost more than a seed and a Newton
+/// step and are worse by an order of magnitude.
 const CANDIDATES: [Evaluator; 19] = [
     Evaluator::Polynomial { degree: 2 },
     Evaluator::Polynomial { degree: 3 },

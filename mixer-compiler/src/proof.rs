@@ -5,7 +5,7 @@
 //! give by the operations of `mixer-rt` lie within the throttle range, and their efforts are within
 //! `stated` of E. F and k are the airframe file's, in exact arithmetic.
 //!
-//! The box is cut into cells. On each, [`cell`] bounds the residual; the worst cell is halved until the largest
+//! The box is cut into cells. On each, `cell.rs` bounds the residual; the worst cell is halved until the largest
 //! bound is close to the largest residual that was observed, or the work allowed is done.
 
 mod cell;
