@@ -4,7 +4,8 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
 use crate::Compiled;
-use crate::tables::{InverseTable, LawTable, MixerTables, QuantityTable};
+use crate::tables::{AttainableTable, InverseTable, LawTable, MixerTables, QuantityTable, VerticalTable};
+use mixer_rt::Side;
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -53,7 +54,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
                 setpoint: &::mixer_rt::Wrench,
                 voltage_v: f32,
             ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-                ::mixer_rt::mix::<UNITS, CHANNELS, _, _>(&TABLES, setpoint, voltage_v)
+                ::mixer_rt::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
             }
 
             /// The tables; see `mixer_rt::Tables` for their meaning and units.
@@ -120,12 +121,10 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let inverse = inverse(&tables.inverse);
     let (min, max) = (float(tables.throttle.min), float(tables.throttle.max));
     let voltage = voltage(tables);
-    let vertices = matrix(&tables.attainable);
+    let attainable = attainable(&tables.attainable);
+    let shortcut = shortcut(tables.shortcut.as_ref());
     let limits = &tables.desaturation;
     let airmode = identifier(&format!("{:?}", limits.airmode));
-    let floor = float(limits.thrust_floor_n);
-    let anchor = float(limits.thrust_anchor_n);
-    let ceiling = float(limits.thrust_ceiling_n);
     let reserve = float(limits.yaw_reserve_nm);
     let efforts = vector(&tables.tolerance.efforts);
     let wrench = vector(&tables.tolerance.wrench);
@@ -136,17 +135,57 @@ fn tables(tables: &MixerTables) -> TokenStream {
             inverse: #inverse,
             throttle: ::mixer_rt::ThrottleRange { min: #min, max: #max },
             voltage: #voltage,
-            attainable: ::mixer_rt::AttainableSet { vertices: &#vertices },
+            attainable: #attainable,
             desaturation: ::mixer_rt::Desaturation {
                 airmode: ::mixer_rt::Airmode::#airmode,
-                thrust_floor_n: #floor,
-                thrust_anchor_n: #anchor,
-                thrust_ceiling_n: #ceiling,
                 yaw_reserve_nm: #reserve,
             },
+            shortcut: #shortcut,
             tolerance: ::mixer_rt::Tolerance { efforts: #efforts, wrench: #wrench },
         }
     }
+}
+
+fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
+    let Some(table) = table else {
+        return quote!(::mixer_rt::NoShortcut);
+    };
+    let side = |side: &Side| {
+        let corner = float(side.corner_n);
+        let arcs = side.arcs.iter().map(|arc| {
+            let [offset, slope, bend, shift] = [arc.offset, arc.slope, arc.bend, arc.shift].map(float);
+            quote!(::mixer_rt::Arc { offset: #offset, slope: #slope, bend: #bend, shift: #shift })
+        });
+        quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*] })
+    };
+    let facets = table.facets.iter().map(|facets| {
+        let (normal, bounds) = (vector(&facets.normal), vector(&facets.bounds));
+        quote!(::mixer_rt::Facets { normal: #normal, bounds: #bounds })
+    });
+    let thrust = vector(&table.thrust_n);
+    let (least, largest) = (side(&table.least_torque), side(&table.largest_torque));
+    let null = vector(&table.null);
+    let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
+    quote! {
+        ::mixer_rt::Vertical {
+            thrust_n: #thrust,
+            least_torque: #least,
+            largest_torque: #largest,
+            facets: &[#(#facets),*],
+            null: &#null,
+            thrust_floor_n: #floor,
+            thrust_middle_n: #middle,
+        }
+    }
+}
+
+fn attainable(set: &AttainableTable) -> TokenStream {
+    let (scale, centre) = (vector(&set.scale), vector(&set.centre));
+    let edges = set.edges.iter().map(|edge| {
+        let (start, along, length) = (vector(&edge.start), vector(&edge.along), float(edge.length));
+        quote!(::mixer_rt::Edge { start: #start, along: #along, length: #length })
+    });
+    quote!(::mixer_rt::AttainableSet { scale: #scale, centre: #centre, edges: &[#(#edges),*] })
 }
 
 /// The static type of the tables.
@@ -161,7 +200,10 @@ fn tables_type(tables: &MixerTables) -> TokenStream {
             ..
         } => seeded_type(seed.type_name(), *steps, *residuals),
     };
-    quote!(::mixer_rt::Tables<'static, #basis, #inverse>)
+    match tables.shortcut {
+        Some(_) => quote!(::mixer_rt::Tables<'static, #basis, #inverse, ::mixer_rt::Vertical<'static>>),
+        None => quote!(::mixer_rt::Tables<'static, #basis, #inverse>),
+    }
 }
 
 fn seeded_type(seed: &str, steps: u8, residuals: u8) -> TokenStream {

@@ -26,6 +26,7 @@ mod selection;
 pub mod source;
 pub mod spec;
 pub mod tables;
+mod vertical;
 pub mod voltage;
 
 use airframe::Airframe;
@@ -58,6 +59,8 @@ pub struct Compiled {
     pub evaluator: Evaluator,
     /// What it was observed to miss.
     pub residual: Residual,
+    /// Least and largest thrust without torque at the reference voltage, N.
+    pub thrust_range_n: [f32; 2],
     /// What it is proven to miss at most.
     pub certificate: Certificate,
     /// What is emitted.
@@ -90,8 +93,8 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual,
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
-    let limits = hover::limits(&airframe, &tables)?;
-    tables.desaturation = hover::desaturation(&airframe, limits);
+    let thrust_range_n = hover::thrust_range(&airframe, &tables)?;
+    tables.shortcut = vertical::table(&airframe, &effectiveness, thrust_range_n);
     Ok(Compiled {
         source_name: source.name.clone(),
         airframe,
@@ -100,6 +103,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         least_idle,
         evaluator,
         residual,
+        thrust_range_n,
         certificate,
         tables,
     })

@@ -43,7 +43,7 @@ pub struct Summary {
     pub condition: f64,
     /// Served axes.
     pub axes: Vec<&'static str>,
-    /// Bare thrust `[least, largest]` that is attainable at the reference voltage with least-norm efforts, N.
+    /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque, N.
     pub thrust_range_n: [f32; 2],
 }
 
@@ -79,7 +79,6 @@ impl Summary {
     /// The summary of a compiled airframe.
     pub fn new(compiled: &Compiled) -> Self {
         let airframe = &compiled.airframe;
-        let limits = &compiled.tables.desaturation;
         Summary {
             name: airframe.name.clone(),
             units: airframe.units.len(),
@@ -98,7 +97,7 @@ impl Summary {
             rank: compiled.effectiveness.rank,
             condition: compiled.effectiveness.condition,
             axes: airframe.allocation.axes.iter().map(|axis| axis.name()).collect(),
-            thrust_range_n: [limits.thrust_floor_n, limits.thrust_ceiling_n],
+            thrust_range_n: compiled.thrust_range_n,
         }
     }
 }
@@ -208,8 +207,9 @@ impl Report<'_> {
     fn domain(&self, f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
         let airframe = &self.0.airframe;
         let tables = &self.0.tables;
+        let corners = tables.attainable.corners();
         let extent = |index: usize| {
-            let values = tables.attainable.iter().map(|vertex| vertex[index]);
+            let values = corners.iter().map(|corner| corner[index]);
             (
                 values.clone().fold(f32::INFINITY, f32::min),
                 values.fold(f32::NEG_INFINITY, f32::max),
@@ -228,14 +228,11 @@ impl Report<'_> {
         )?;
         writeln!(
             f,
-            "attainable set  f {f_low:.3} to {f_high:.3} N, Q {q_low:.4} to {q_high:.4} N m per unit, {} vertices",
-            tables.attainable.len()
+            "attainable set  f {f_low:.3} to {f_high:.3} N, Q {q_low:.4} to {q_high:.4} N m per unit, {} corners",
+            corners.len()
         )?;
         let [floor, ceiling] = summary.thrust_range_n;
-        writeln!(
-            f,
-            "bare thrust     {floor:.3} to {ceiling:.3} N (no torque, least norm)"
-        )?;
+        writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;
         match &airframe.voltage {
             None => writeln!(f, "voltage         no correction"),
             Some(voltage) => {

@@ -1,9 +1,9 @@
 //! Choice of the evaluator: the cheapest whose emitted tables are proven to meet the tolerance.
 
-use mixer_rt::{Airmode, Desaturation, Tolerance};
+use mixer_rt::{Desaturation, Tolerance};
 
 use crate::airframe::{Airframe, Method};
-use crate::attainable;
+use crate::attainable::ConvexPart;
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::effectiveness::Effectiveness;
 use crate::evaluator::Evaluator;
@@ -19,7 +19,7 @@ use crate::voltage;
 pub(crate) struct Selected {
     /// The evaluator.
     pub(crate) evaluator: Evaluator,
-    /// The tables; desaturation's limits are left open.
+    /// The tables; a shortcut of desaturation is left open.
     pub(crate) tables: MixerTables,
     /// What was observed.
     pub(crate) residual: Residual,
@@ -91,7 +91,7 @@ fn tolerance_at_reference(airframe: &Airframe, correction: &Correction) -> [f64;
     std::array::from_fn(|k| stated[k] / correction.largest[k])
 }
 
-/// Rounds everything but desaturation's limits.
+/// Rounds everything.
 fn assemble(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
@@ -101,24 +101,18 @@ fn assemble(
     tolerance: [f64; 2],
 ) -> MixerTables {
     let units = tables::unit_tables(airframe, effectiveness);
-    let attainable = attainable::polygon(pair)
-        .into_iter()
-        .map(|vertex| vertex.map(|x| x as f32))
-        .collect();
     MixerTables {
         units,
         pair: tables::pair_table(airframe),
         inverse,
         throttle: tables::throttle_table(airframe),
         voltage,
-        attainable,
+        attainable: ConvexPart::new(pair).table(),
         desaturation: Desaturation {
-            airmode: Airmode::Disabled,
-            thrust_floor_n: 0.0,
-            thrust_anchor_n: 0.0,
-            thrust_ceiling_n: 0.0,
-            yaw_reserve_nm: 0.0,
+            airmode: airframe.allocation.airmode,
+            yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,
         },
+        shortcut: None,
         tolerance: Tolerance {
             efforts: tolerance.map(|x| x as f32),
             wrench: wrench_tolerance(airframe, effectiveness, pair),

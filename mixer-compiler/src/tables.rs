@@ -6,8 +6,9 @@
 mod inverse;
 
 use mixer_rt::{
-    AttainableSet, Biquadratic, Cubic, Desaturation, Pair, Quantity, Quartic, Saturation, Scalar,
-    SetpointError, Tables, ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw, Wrench,
+    AttainableSet, Biquadratic, Cubic, Desaturation, Edge, Facets, Health, Pair, Quantity, Quartic,
+    Saturation, Scalar, Scratch, SetpointError, Side, Tables, ThrottleRange, Tolerance, Unit, Vertical,
+    Voltage, VoltageLaw, Wrench,
 };
 
 use crate::airframe::{Airframe, Basis};
@@ -29,12 +30,97 @@ pub struct MixerTables {
     pub throttle: ThrottleRange,
     /// The voltage correction.
     pub voltage: Option<VoltageTable>,
-    /// Polygon inside the attainable set.
-    pub attainable: Vec<[f32; 2]>,
-    /// Limits and priorities of desaturation.
+    /// Convex polygon inside the attainable set.
+    pub attainable: AttainableTable,
+    /// Priorities of desaturation.
     pub desaturation: Desaturation,
+    /// A shorter way to desaturate, where the layout allows one.
+    pub shortcut: Option<VerticalTable>,
     /// What the mixer may miss.
     pub tolerance: Tolerance,
+}
+
+/// The attainable set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AttainableTable {
+    /// Newtons and newton metres per unit of the coordinates below.
+    pub scale: [f32; 2],
+    /// A point well inside, scaled.
+    pub centre: [f32; 2],
+    /// The edges, anticlockwise, scaled.
+    pub edges: Vec<Edge>,
+}
+
+impl AttainableTable {
+    /// Rounds a convex polygon `[f, Q]` (N, N m), anticlockwise.
+    pub fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
+        let scaled = |[f, q]: [f64; 2]| [f / scale[0], q / scale[1]];
+        let ends = vertices.iter().cycle().skip(1);
+        let edges = vertices.iter().zip(ends).map(|(&start, &end)| {
+            let (start, end) = (scaled(start), scaled(end));
+            let vector = [end[0] - start[0], end[1] - start[1]];
+            let length = (vector[0] * vector[0] + vector[1] * vector[1]).sqrt();
+            Edge {
+                start: start.map(|x| x as f32),
+                along: vector.map(|x| (x / length) as f32),
+                length: length as f32,
+            }
+        });
+        AttainableTable {
+            scale: scale.map(|x| x as f32),
+            centre: scaled(centre).map(|x| x as f32),
+            edges: edges.collect(),
+        }
+    }
+
+    /// The set as `mixer-rt` reads it.
+    pub fn view(&self) -> AttainableSet<'_> {
+        AttainableSet {
+            scale: self.scale,
+            centre: self.centre,
+            edges: &self.edges,
+        }
+    }
+
+    /// The corners `[f, Q]`, N and N m.
+    pub fn corners(&self) -> Vec<[f32; 2]> {
+        let corner = |edge: &Edge| [edge.start[0] * self.scale[0], edge.start[1] * self.scale[1]];
+        self.edges.iter().map(corner).collect()
+    }
+}
+
+/// The shorter way to desaturate with vertical axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VerticalTable {
+    /// Least and largest thrust of a unit, N.
+    pub thrust_n: [f32; 2],
+    /// Q_min(f).
+    pub least_torque: Side,
+    /// Q_max(f).
+    pub largest_torque: Side,
+    /// The attainable (roll, pitch, thrust).
+    pub facets: Vec<Facets>,
+    /// The null space of the thrusts.
+    pub null: Vec<f32>,
+    /// Least thrust without torque, N.
+    pub thrust_floor_n: f32,
+    /// A thrust well inside, N.
+    pub thrust_middle_n: f32,
+}
+
+impl VerticalTable {
+    /// The table as `mixer-rt` reads it.
+    pub fn view(&self) -> Vertical<'_> {
+        Vertical {
+            thrust_n: self.thrust_n,
+            least_torque: self.least_torque,
+            largest_torque: self.largest_torque,
+            facets: &self.facets,
+            null: &self.null,
+            thrust_floor_n: self.thrust_floor_n,
+            thrust_middle_n: self.thrust_middle_n,
+        }
+    }
 }
 
 /// A quantity in any basis.
@@ -76,17 +162,16 @@ pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
     /// The tables as `mixer-rt` reads them.
-    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable> {
+    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<Vertical<'_>>> {
         Tables {
             units: &self.units,
             pair: self.pair,
             inverse: &self.inverse,
             throttle: self.throttle,
             voltage: self.voltage.as_ref().map(VoltageTable::view),
-            attainable: AttainableSet {
-                vertices: &self.attainable,
-            },
+            attainable: self.attainable.view(),
             desaturation: self.desaturation,
+            shortcut: self.shortcut.as_ref().map(VerticalTable::view),
             tolerance: self.tolerance,
         }
     }
@@ -96,10 +181,29 @@ impl MixerTables {
     /// # Errors
     /// As [`mixer_rt::mix`].
     pub fn mix(&self, setpoint: &Wrench, voltage_v: f32) -> Result<AnyMix, SetpointError> {
-        let mut efforts = vec![[0.0; 2]; self.units.len()];
+        self.mix_with_health(setpoint, voltage_v, Health::GOOD)
+    }
+
+    /// [`MixerTables::mix`] with some rotors out.
+    ///
+    /// # Errors
+    /// As [`mixer_rt::mix`].
+    pub fn mix_with_health(
+        &self,
+        setpoint: &Wrench,
+        voltage_v: f32,
+        health: Health,
+    ) -> Result<AnyMix, SetpointError> {
+        let mut scratch = vec![Scratch::default(); self.units.len()];
         let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
-        let (achieved, saturation) =
-            mixer_rt::mix_into(&self.view(), setpoint, voltage_v, &mut efforts, &mut throttle)?;
+        let (achieved, saturation) = mixer_rt::mix_into(
+            &self.view(),
+            setpoint,
+            voltage_v,
+            health,
+            &mut scratch,
+            &mut throttle,
+        )?;
         Ok((throttle, achieved, saturation))
     }
 
@@ -110,8 +214,9 @@ impl MixerTables {
             + self.inverse.floats()
             + 2 // throttle range
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
-            + 2 * self.attainable.len()
-            + 4 // desaturation
+            + 4 + 5 * self.attainable.edges.len()
+            + self.shortcut.as_ref().map_or(0, |table| 22 + 5 * table.facets.len() + table.null.len())
+            + 2 // desaturation
             + 6; // tolerance
         4 * floats + 2 * self.units.len()
     }

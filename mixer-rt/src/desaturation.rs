@@ -1,19 +1,21 @@
-//! Desaturation: what is given up when the least-norm efforts are not attainable.
-//!
-//! Start from a bare thrust at which every unit has room on all sides (the anchor), then walk along the least-norm
-//! directions of roll and pitch, of the missing thrust and of yaw, in the order of priority, each as far as every
-//! unit's attainable set allows:
+//! Desaturation: what is given up when the least-norm efforts are not attainable, in this order.
 //!
 //! ```text
-//! eta = M+ (0, 0, 0, anchor)
-//! eta += s M+ (roll, pitch, 0, 0)           the largest s in [0, 1]: the direction of (roll, pitch) stays
-//! eta += s M+ (0, 0, 0, thrust - anchor)    \ yaw first with airmode roll-pitch-yaw
-//! eta += s M+ (0, 0, yaw, 0)                /
+//! 1. roll and pitch      the largest rho in [0, 1] such that rho (roll, pitch) is attainable
+//! 2. thrust, then yaw    each the attainable value nearest the request
+//!    (airmode roll-pitch-yaw: yaw, then thrust)
 //! ```
 //!
-//! Every step is a share of what was asked, so no axis reverses; each is a bounded number of operations.
+//! Throughout, yaw stays between the reserve and the request, so it is never reversed or exceeded, and with
+//! airmode disabled the thrust stays below the request, or below the least thrust that the rotors at idle and
+//! the yaw allow.
+//!
+//! Each step is a straight path in the space of wrenches that [`Homotopy`] follows to its exact end. The result
+//! is a continuous function of the request: the attainable wrenches are a polytope, on which the nearest points
+//! above move continuously, and the efforts are the unique least-norm ones of the wrench reached.
 
-use crate::{Tables, Unit, clamp};
+use crate::homotopy::{Bounds, Homotopy, Rotors, Scratch, Sets};
+use crate::{Quantity, Tables, Unit, clamp};
 
 /// What desaturation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,71 +28,30 @@ pub enum Airmode {
     RollPitchYaw,
 }
 
-/// Limits and priorities of desaturation. Thrusts are in N at the reference voltage, with no torque asked; at
-/// another voltage they are scaled by k_f.
+/// Priorities of desaturation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Desaturation {
     /// What may happen to the thrust.
     pub airmode: Airmode,
-    /// The least bare thrust that all units attain with least-norm efforts, N.
-    pub thrust_floor_n: f32,
-    /// The bare thrust about which roll and pitch have the most room, N.
-    pub thrust_anchor_n: f32,
-    /// The largest bare thrust that all units attain with least-norm efforts, N.
-    pub thrust_ceiling_n: f32,
     /// The yaw torque that is kept available before roll and pitch, N m, >= 0.
     pub yaw_reserve_nm: f32,
 }
 
-/// The efforts of all units, at the reference voltage, on their way to the request.
-struct Walk<'w, 'a, P, I> {
-    tables: &'w Tables<'a, P, I>,
-    /// `[1/k_f, 1/k_Q]`.
-    per_factor: [f32; 2],
-    efforts: &'w mut [[f32; 2]],
-}
-
-impl<P, I> Walk<'_, '_, P, I> {
-    /// This unit's step for a part of the wrench, at the reference voltage.
-    #[inline(always)]
-    fn step(unit: &Unit, wrench: &[f32; 4], per_factor: [f32; 2]) -> [f32; 2] {
-        let [f, q] = unit.efforts(wrench);
-        [f * per_factor[0], q * per_factor[1]]
-    }
-
-    /// Goes to the least-norm efforts of `wrench`, attainable or not.
-    fn start(&mut self, wrench: &[f32; 4]) {
-        for (unit, efforts) in self.tables.units.iter().zip(self.efforts.iter_mut()) {
-            *efforts = Self::step(unit, wrench, self.per_factor);
-        }
-    }
-
-    /// Adds the largest attainable share of `wrench`; returns that share.
-    fn advance(&mut self, wrench: &[f32; 4]) -> f32 {
-        if *wrench == [0.0; 4] {
-            return 1.0;
-        }
-        let mut share = 1.0;
-        for (unit, efforts) in self.tables.units.iter().zip(self.efforts.iter()) {
-            let step = Self::step(unit, wrench, self.per_factor);
-            let clipped = self.tables.attainable.clip(*efforts, step);
-            share = if clipped < share { clipped } else { share };
-        }
-        for (unit, efforts) in self.tables.units.iter().zip(self.efforts.iter_mut()) {
-            let [f, q] = Self::step(unit, wrench, self.per_factor);
-            efforts[0] += share * f;
-            efforts[1] += share * q;
-        }
-        share
-    }
-}
-
 /// Largest torque (N m) and thrust (N) that is looked at: far beyond any rotor, and small enough that no product
 /// overflows.
-const REQUEST_LIMIT: f32 = 1e6;
+const REQUEST_LIMIT: f32 = 1e5;
+
+/// Rounds of correction for the chords that stand for the curves of units with one rotor.
+const CHORD_ROUNDS: u32 = 4;
+
+/// Share of the largest attainable (roll, pitch) that is taken.
+const STRAIGHT: f32 = 0.9995;
+
+const YAW: usize = 2;
+const THRUST: usize = 3;
 
 /// `request` within [`REQUEST_LIMIT`], with the direction of (roll, pitch) kept.
-fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
+pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
     let largest = if roll.abs() > pitch.abs() {
         roll.abs()
     } else {
@@ -105,43 +66,151 @@ fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
     [roll * share, pitch * share, limit(yaw), limit(thrust)]
 }
 
-/// Replaces `efforts` (`[f, Q]` of each unit at the reference voltage) by attainable ones that serve `request`
-/// (`[roll, pitch, yaw, thrust]`) in the order of priority. `factors` is `[k_f, k_Q]`.
-pub(crate) fn desaturate<P, I>(
-    tables: &Tables<'_, P, I>,
+/// Finds attainable efforts (`[f, Q]` at the reference voltage, in the scratch) that serve `request` (`[roll,
+/// pitch, yaw, thrust]`) in the order of priority. `factors` is `[k_f, k_Q]`.
+pub(crate) fn desaturate<P: Quantity, I, S>(
+    tables: &Tables<'_, P, I, S>,
     request: [f32; 4],
     factors: [f32; 2],
-    per_factor: [f32; 2],
-    efforts: &mut [[f32; 2]],
+    scratch: &mut [Scratch],
 ) {
-    let [roll, pitch, yaw, thrust] = limited(request);
-    let limits = &tables.desaturation;
-    let thrust = clamp(
-        thrust,
-        limits.thrust_floor_n * factors[0],
-        limits.thrust_ceiling_n * factors[0],
-    );
-    let mut anchor = limits.thrust_anchor_n * factors[0];
-    if limits.airmode == Airmode::Disabled && thrust < anchor {
-        anchor = thrust;
+    let request = limited(request);
+    let sets = Sets::new(tables.attainable, &tables.pair, &tables.throttle);
+    let mut bulge = [0.0; 4];
+    prioritise(tables, &sets, request, bulge, factors, scratch);
+    if scratch.iter().any(|scratch| scratch.rotors != Rotors::Both) {
+        for _ in 0..CHORD_ROUNDS {
+            bulge = [0.0; 4];
+            for (unit, scratch) in tables.units.iter().zip(scratch.iter()) {
+                let [f, q] = scratch.efforts;
+                if let Some(throttles) = single_rotor(tables, scratch.rotors, f) {
+                    let missed = factors[1] * (tables.pair.torque.value(throttles[0], throttles[1]) - q);
+                    for (bulge, effect) in bulge.iter_mut().zip(unit.effectiveness[1]) {
+                        *bulge += effect * missed;
+                    }
+                }
+            }
+            prioritise(tables, &sets, request, bulge, factors, scratch);
+        }
     }
-    let reserved = clamp(yaw, -limits.yaw_reserve_nm, limits.yaw_reserve_nm);
+}
 
-    let mut walk = Walk {
-        tables,
-        per_factor,
-        efforts,
-    };
-    walk.start(&[0.0, 0.0, 0.0, anchor]);
-    let kept = reserved * walk.advance(&[0.0, 0.0, reserved, 0.0]);
-    walk.advance(&[roll, pitch, 0.0, 0.0]);
-    let rest_of_thrust = [0.0, 0.0, 0.0, thrust - anchor];
-    let rest_of_yaw = [0.0, 0.0, yaw - kept, 0.0];
-    if limits.airmode == Airmode::RollPitchYaw {
-        walk.advance(&rest_of_yaw);
-        walk.advance(&rest_of_thrust);
-    } else {
-        walk.advance(&rest_of_thrust);
-        walk.advance(&rest_of_yaw);
+/// The steps of the module's head. `offset` is a wrench that the units give beside the efforts.
+fn prioritise<P, I, S>(
+    tables: &Tables<'_, P, I, S>,
+    sets: &Sets<'_>,
+    request: [f32; 4],
+    offset: [f32; 4],
+    factors: [f32; 2],
+    scratch: &mut [Scratch],
+) {
+    let Desaturation {
+        airmode,
+        yaw_reserve_nm,
+    } = tables.desaturation;
+    let impaired = scratch.iter().any(|scratch| scratch.rotors != Rotors::Both);
+    let mut request = request;
+    let reserved = clamp(request[YAW], -yaw_reserve_nm, yaw_reserve_nm) - offset[YAW];
+    for (request, offset) in request.iter_mut().zip(offset) {
+        *request -= offset;
     }
+    let [roll, pitch, yaw, thrust] = request;
+    let yaw_range = Bounds::at(reserved).including(yaw);
+    let thrust_range = Bounds {
+        low: -REQUEST_LIMIT,
+        high: if airmode == Airmode::Disabled {
+            thrust
+        } else {
+            REQUEST_LIMIT
+        },
+    };
+
+    let mut homotopy = Homotopy::from_centres(tables, sets, factors, scratch);
+    let start = homotopy.wrench();
+    let wide = [
+        Bounds::at(0.0),
+        Bounds::at(0.0),
+        yaw_range.including(start[YAW]),
+        thrust_range.including(start[THRUST]),
+    ];
+    homotopy.bound(wide);
+    // To where only yaw or thrust is asked; first let roll and pitch vanish, then bring the slack rows' bounds in.
+    let level = [Bounds::at(-offset[0]), Bounds::at(-offset[1])];
+    let [.., wide_yaw, wide_thrust] = wide;
+    homotopy.follow([level[0], level[1], wide_yaw, wide_thrust]);
+    homotopy.follow([level[0], level[1], yaw_range, wide_thrust]);
+    let [yaw_range, _] = homotopy.slack_bounds();
+    homotopy.follow([level[0], level[1], yaw_range, thrust_range]);
+    let [yaw_range, thrust_range] = homotopy.slack_bounds();
+
+    let share = homotopy.follow([Bounds::at(roll), Bounds::at(pitch), yaw_range, thrust_range]);
+    if share < 1.0 {
+        // The last multipliers before the end are large, and rounding may have turned the wrench: straighten it.
+        let share = share * STRAIGHT;
+        let part = |from: f32, to: f32| Bounds::at(from + share * (to - from));
+        homotopy.follow([
+            part(-offset[0], roll),
+            part(-offset[1], pitch),
+            yaw_range,
+            thrust_range,
+        ]);
+    }
+    let [at_roll, at_pitch, ..] = homotopy.wrench().map(Bounds::at);
+    let reached = if airmode == Airmode::RollPitchYaw {
+        homotopy.hold(YAW);
+        let reached = homotopy.follow([at_roll, at_pitch, Bounds::at(yaw), thrust_range]);
+        let [.., at_yaw, _] = homotopy.wrench().map(Bounds::at);
+        homotopy.hold(THRUST);
+        reached * homotopy.follow([at_roll, at_pitch, at_yaw, Bounds::at(thrust)])
+    } else {
+        homotopy.hold(THRUST);
+        let reached = homotopy.follow([at_roll, at_pitch, yaw_range, Bounds::at(thrust)]);
+        let [.., at_thrust] = homotopy.wrench().map(Bounds::at);
+        homotopy.hold(YAW);
+        reached * homotopy.follow([at_roll, at_pitch, Bounds::at(yaw), at_thrust])
+    };
+    if reached < 1.0 {
+        // Likewise: to the same (roll, pitch) a little nearer to the centres' wrench, where there is room.
+        let [.., at_yaw, at_thrust] = homotopy.wrench();
+        let inwards = |at: f32, start: f32| Bounds::at(start + STRAIGHT * (at - start));
+        homotopy.follow([
+            Bounds::at(STRAIGHT * at_roll.low),
+            Bounds::at(STRAIGHT * at_pitch.low),
+            inwards(at_yaw, start[YAW]),
+            inwards(at_thrust, start[THRUST]),
+        ]);
+    }
+    homotopy.write_efforts();
+    // With vertical axes and all rotors the centres and the least-norm efforts differ by what holds the wrench.
+    if !tables.units.iter().all(Unit::is_vertical) || impaired {
+        homotopy.settle();
+    }
+}
+
+/// Halvings of the throttle range that find a single rotor's throttle: to the last bit of a float.
+const HALVINGS: u32 = 24;
+
+/// The throttles at which a unit with one rotor gives the thrust `f` (N at the reference voltage); `None` with
+/// both or no rotor.
+pub(crate) fn single_rotor<P: Quantity, I, S>(
+    tables: &Tables<'_, P, I, S>,
+    rotors: Rotors,
+    f: f32,
+) -> Option<[f32; 2]> {
+    let throttles = |throttle| match rotors {
+        Rotors::Upper => Some([throttle, 0.0]),
+        Rotors::Lower => Some([0.0, throttle]),
+        Rotors::Both | Rotors::None => None,
+    };
+    let (mut low, mut high) = (tables.throttle.min, tables.throttle.max);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let [u, l] = throttles(middle)?;
+        if tables.pair.thrust.value(u, l) < f {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    throttles(0.5 * (low + high))
 }

@@ -9,7 +9,9 @@
 //!   -> efforts eta = M+ u            eq. (8), least norm                      tables.rs
 //!   -> divided by k_f(V), k_Q(V)     to the reference voltage                 voltage.rs
 //!   -> throttles of every unit       inverse of (f, Q)(u, l)                  inverse.rs, forward.rs
-//!   -> if a unit cannot: desaturate  within the attainable set, by priority   desaturation.rs, attainable.rs
+//!   -> if a unit cannot: desaturate  within the attainable set, by priority   desaturation.rs
+//!        three or four vertical units  in closed form                         vertical.rs
+//!        any frame, dead rotors        along paths of wrenches                homotopy.rs, attainable.rs, linear.rs
 //!   -> achieved wrench               M (k_f f(u, l), k_Q Q(u, l))             mix.rs
 //! ```
 //!
@@ -24,27 +26,34 @@
 mod attainable;
 mod desaturation;
 mod forward;
+mod health;
+mod homotopy;
 mod inverse;
+mod linear;
 mod mix;
 mod saturation;
 mod scalar;
 mod sqrt;
 mod tables;
+mod vertical;
 mod voltage;
 mod wrench;
 
-pub use attainable::AttainableSet;
+pub use attainable::{AttainableSet, Edge};
 pub use desaturation::{Airmode, Desaturation};
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
+pub use health::Health;
+pub use homotopy::Scratch;
 pub use inverse::{
     BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,
     Seeded, ThrottleRange, solve,
 };
-pub use mix::{Airframe, Mix, mix, mix_into};
+pub use mix::{Airframe, Mix, mix, mix_into, mix_with_health};
 pub use saturation::{Direction, Saturation};
 pub use scalar::Scalar;
 pub use sqrt::sqrt;
 pub use tables::{Tables, Tolerance, Unit};
+pub use vertical::{Arc, Facets, NoShortcut, Shortcut, Side, Vertical};
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
 

@@ -1,13 +1,15 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
-use crate::desaturation::desaturate;
+use crate::desaturation::{desaturate, limited, single_rotor};
+use crate::homotopy::{Rotors, Scratch};
+use crate::vertical::{Request, Shortcut};
 use crate::voltage::Correction;
-use crate::{Axis, Inverse, Quantity, Saturation, SetpointError, Tables, Wrench};
+use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Wrench};
 
 /// What a mix gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mix<const CHANNELS: usize> {
-    /// Throttle per output channel, each within the airframe's range.
+    /// Throttle per output channel, each within the airframe's range; 0 for a failed rotor.
     pub throttle: [f32; CHANNELS],
     /// The wrench that these throttles give by the airframe's model, at the given voltage.
     pub achieved: Wrench,
@@ -21,14 +23,28 @@ pub struct Mix<const CHANNELS: usize> {
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
 #[inline(always)]
-pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>>(
-    tables: &Tables<'_, P, I>,
+pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>, S: Shortcut>(
+    tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
-    let mut efforts = [[0.0; 2]; UNITS];
+    mix_with_health::<UNITS, CHANNELS, P, I, S>(tables, setpoint, voltage_v, Health::GOOD)
+}
+
+/// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells how much.
+///
+/// # Errors
+/// As [`mix`].
+#[inline(always)]
+pub fn mix_with_health<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>, S: Shortcut>(
+    tables: &Tables<'_, P, I, S>,
+    setpoint: &Wrench,
+    voltage_v: f32,
+    health: Health,
+) -> Result<Mix<CHANNELS>, SetpointError> {
+    let mut scratch = [Scratch::default(); UNITS];
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let (achieved, saturation) = mix_into(tables, setpoint, voltage_v, &mut efforts, &mut throttle)?;
+    let (achieved, saturation) = mix_into(tables, setpoint, voltage_v, health, &mut scratch, &mut throttle)?;
     Ok(Mix {
         throttle,
         achieved,
@@ -36,18 +52,18 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>
     })
 }
 
-/// [`mix`] into buffers, for layouts whose size is known only at run time: `efforts` takes one `[f, Q]` per unit
-/// (at the reference voltage), `throttle` one value per channel. Units or channels beyond a buffer's end are left
-/// out.
+/// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `scratch` takes one
+/// element per unit, `throttle` one value per channel. Units or channels beyond a buffer's end are left out.
 ///
 /// # Errors
 /// As [`mix`]; the buffers are then as they were.
 #[inline(always)]
-pub fn mix_into<P: Quantity, I: Inverse<P>>(
-    tables: &Tables<'_, P, I>,
+pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
+    tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
-    efforts: &mut [[f32; 2]],
+    health: Health,
+    scratch: &mut [Scratch],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
     let request = setpoint.to_array();
@@ -59,15 +75,27 @@ pub fn mix_into<P: Quantity, I: Inverse<P>>(
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let per_factor = factors.map(|factor| 1.0 / factor);
 
-    for (unit, efforts) in tables.units.iter().zip(efforts.iter_mut()) {
+    for (unit, scratch) in tables.units.iter().zip(scratch.iter_mut()) {
         let [f, q] = unit.efforts(&request);
-        *efforts = [f * per_factor[0], q * per_factor[1]];
+        scratch.efforts = [f * per_factor[0], q * per_factor[1]];
+        scratch.rotors = rotors(unit.channels, health);
     }
-    let (mut achieved, delivered) = invert(tables, factors, efforts, throttle);
-    if !delivered {
-        desaturate(tables, request, factors, per_factor, efforts);
-        (achieved, _) = invert(tables, factors, efforts, throttle);
-    }
+    let achieved = match tables.shortcut.vertical() {
+        Some(vertical) if health.is_good() => {
+            let request = at_reference(limited(request), per_factor);
+            vertical.desaturate(tables.units, &tables.desaturation, request, scratch);
+            invert(tables, factors, scratch, throttle).0
+        }
+        _ => {
+            let (achieved, delivered) = invert(tables, factors, scratch, throttle);
+            if delivered {
+                achieved
+            } else {
+                desaturate(tables, request, factors, scratch);
+                invert(tables, factors, scratch, throttle).0
+            }
+        }
+    };
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
     Ok((
         Wrench::from_array(achieved),
@@ -75,19 +103,44 @@ pub fn mix_into<P: Quantity, I: Inverse<P>>(
     ))
 }
 
-/// Writes the throttles of all units for `efforts`; returns the wrench `[roll, pitch, yaw, thrust]` that they give
-/// and whether every unit gives its efforts within the tolerance.
+/// `request` over `[k_f, k_Q]`: with vertical axes all but yaw is thrust.
 #[inline(always)]
-fn invert<P: Quantity, I: Inverse<P>>(
-    tables: &Tables<'_, P, I>,
+fn at_reference([roll, pitch, yaw, thrust]: [f32; 4], [per_thrust, per_torque]: [f32; 2]) -> Request {
+    Request {
+        roll: roll * per_thrust,
+        pitch: pitch * per_thrust,
+        yaw: yaw * per_torque,
+        thrust: thrust * per_thrust,
+    }
+}
+
+#[inline(always)]
+fn rotors([upper, lower]: [u8; 2], health: Health) -> Rotors {
+    match (health.has_failed(upper), health.has_failed(lower)) {
+        (false, false) => Rotors::Both,
+        (false, true) => Rotors::Upper,
+        (true, false) => Rotors::Lower,
+        (true, true) => Rotors::None,
+    }
+}
+
+/// Writes the throttles of all units for their efforts; returns the wrench `[roll, pitch, yaw, thrust]` that they
+/// give and whether every unit gives its efforts within the tolerance.
+#[inline(always)]
+fn invert<P: Quantity, I: Inverse<P>, S: Shortcut>(
+    tables: &Tables<'_, P, I, S>,
     factors: [f32; 2],
-    efforts: &[[f32; 2]],
+    scratch: &[Scratch],
     throttle: &mut [f32],
 ) -> ([f32; 4], bool) {
     let mut achieved = [0.0; 4];
     let mut delivered = true;
-    for (unit, efforts) in tables.units.iter().zip(efforts) {
-        let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, *efforts);
+    for (unit, scratch) in tables.units.iter().zip(scratch) {
+        let efforts = scratch.efforts;
+        let throttles = match scratch.rotors {
+            Rotors::Both => tables.inverse.throttles(&tables.pair, &tables.throttle, efforts),
+            rotors => single_rotor(tables, rotors, efforts[0]).unwrap_or([0.0, 0.0]),
+        };
         for (channel, value) in unit.channels.iter().zip(throttles) {
             if let Some(slot) = throttle.get_mut(usize::from(*channel)) {
                 *slot = value;

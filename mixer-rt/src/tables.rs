@@ -1,6 +1,6 @@
 //! What the compiler emits for one airframe.
 
-use crate::{AttainableSet, Desaturation, Pair, ThrottleRange, Voltage};
+use crate::{AttainableSet, Desaturation, NoShortcut, Pair, ThrottleRange, Voltage};
 
 /// One coaxial unit's share of M and M+.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,13 @@ impl Unit {
             (roll * wrench[0] + pitch * wrench[1]) + (yaw * wrench[2] + thrust * wrench[3])
         })
     }
+
+    /// True where thrust gives no yaw and torque nothing but yaw.
+    #[inline(always)]
+    pub(crate) fn is_vertical(&self) -> bool {
+        let [[.., thrust_yaw, _], [torque_roll, torque_pitch, _, torque_thrust]] = self.effectiveness;
+        [thrust_yaw, torque_roll, torque_pitch, torque_thrust] == [0.0; 4]
+    }
 }
 
 /// What the inverse map may miss; beyond it something has been given up.
@@ -34,9 +41,10 @@ pub struct Tolerance {
     pub wrench: [f32; 4],
 }
 
-/// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator of its inverse.
+/// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator of its inverse, `S`
+/// the shorter way to desaturate where there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tables<'a, P, I> {
+pub struct Tables<'a, P, I, S = NoShortcut> {
     /// The units, in the order of the airframe file.
     pub units: &'a [Unit],
     /// The forward map of every unit.
@@ -47,10 +55,12 @@ pub struct Tables<'a, P, I> {
     pub throttle: ThrottleRange,
     /// The voltage correction; without one k = 1.
     pub voltage: Option<Voltage<'a>>,
-    /// A polygon inside the attainable set.
+    /// A convex polygon inside the attainable set.
     pub attainable: AttainableSet<'a>,
     /// What is given up when a unit cannot follow.
     pub desaturation: Desaturation,
+    /// A shorter way to desaturate while all rotors work.
+    pub shortcut: S,
     /// What the mixer may miss.
     pub tolerance: Tolerance,
 }

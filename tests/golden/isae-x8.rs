@@ -41,13 +41,14 @@ pub mod isae_x8 {
         setpoint: &::mixer_rt::Wrench,
         voltage_v: f32,
     ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-        ::mixer_rt::mix::<UNITS, CHANNELS, _, _>(&TABLES, setpoint, voltage_v)
+        ::mixer_rt::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Biquadratic,
         ::mixer_rt::Seeded<::mixer_rt::BilinearSeed, 1>,
+        ::mixer_rt::Vertical<'static>,
     > = ::mixer_rt::Tables {
         units: &[
             ::mixer_rt::Unit {
@@ -134,43 +135,170 @@ pub mod isae_x8 {
             },
         }),
         attainable: ::mixer_rt::AttainableSet {
-            vertices: &[
-                [0.57824135, -0.00134903],
-                [0.9287034, -0.0081807235],
-                [1.3563278, -0.015885275],
-                [2.4430635, -0.03391295],
-                [3.8384488, -0.05543205],
-                [5.5424833, -0.080442585],
-                [7.555167, -0.10894454],
-                [9.8765, -0.14093794],
-                [12.506483, -0.17642274],
-                [15.445115, -0.215399],
-                [16.691286, -0.18818694],
-                [18.663774, -0.14354976],
-                [21.36258, -0.08148744],
-                [24.783108, -0.002002194],
-                [19.323832, 0.09222991],
-                [15.418932, 0.16023487],
-                [13.074401, 0.20202129],
-                [12.484082, 0.21307272],
-                [12.294042, 0.21736565],
-                [9.835439, 0.17668821],
-                [7.6596756, 0.13963915],
-                [5.7683477, 0.10646181],
-                [4.1614556, 0.07715619],
-                [2.838999, 0.0517223],
-                [1.8009777, 0.030160133],
-                [1.3886304, 0.020830946],
-                [1.0473918, 0.012469689],
-                [0.77726215, 0.005076364],
+            scale: [24.7877, 0.217609],
+            centre: [0.5184011, 0.0],
+            edges: &[
+                ::mixer_rt::Edge {
+                    start: [0.023342606, -0.006199144],
+                    along: [0.44515643, -0.8954528],
+                    length: 0.14839947,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.089403585, -0.13908388],
+                    along: [0.49402526, -0.8694475],
+                    length: 0.1485192,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.16277583, -0.26821354],
+                    along: [0.51843804, -0.8551152],
+                    length: 0.20247534,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.26774675, -0.44135326],
+                    along: [0.53271586, -0.84629416],
+                    length: 0.15453106,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.35006788, -0.572132],
+                    along: [0.5417884, -0.8405149],
+                    length: 0.19662075,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.45659474, -0.7373947],
+                    along: [0.5506141, -0.8347599],
+                    length: 0.3023861,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.6230928, -0.98981446],
+                    along: [0.37301257, 0.9278263],
+                    length: 0.13477363,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.67336506, -0.86476797],
+                    along: [0.3610431, 0.9325491],
+                    length: 0.27075654,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.77111983, -0.61227417],
+                    along: [0.35585225, 0.93454224],
+                    length: 0.35574186,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.89771134, -0.2798184],
+                    along: [0.35352755, 0.9354241],
+                    length: 0.28293082,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.9977352, -0.015158079],
+                    along: [-0.44676444, 0.89465165],
+                    length: 1.1289988,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.49333867, 0.9949025],
+                    along: [-0.46667647, -0.8844281],
+                    length: 0.20688418,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.3967907, 0.81192833],
+                    along: [-0.45642132, -0.8897638],
+                    length: 0.25794148,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.27906072, 0.58242136],
+                    along: [-0.4419545, -0.89703745],
+                    length: 0.18144062,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.19887222, 0.4196623],
+                    along: [-0.42463425, -0.905365],
+                    length: 0.14694749,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.1364733, 0.2866212],
+                    along: [-0.4026495, -0.91535425],
+                    length: 0.110022545,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.09217277, 0.1859116],
+                    along: [-0.36440763, -0.93123955],
+                    length: 0.12823938,
+                },
+                ::mixer_rt::Edge {
+                    start: [0.045441356, 0.06649002],
+                    along: [-0.29087204, -0.95676196],
+                    length: 0.07597413,
+                },
             ],
         },
         desaturation: ::mixer_rt::Desaturation {
             airmode: ::mixer_rt::Airmode::Disabled,
-            thrust_floor_n: 2.4801054,
-            thrust_anchor_n: 54.48411,
-            thrust_ceiling_n: 98.66844,
             yaw_reserve_nm: 0.0,
+        },
+        shortcut: ::mixer_rt::Vertical {
+            thrust_n: [0.5782414, 24.787699],
+            least_torque: ::mixer_rt::Side {
+                corner_n: 15.445115,
+                arcs: [
+                    ::mixer_rt::Arc {
+                        offset: 0.016781667,
+                        slope: -0.011311959,
+                        bend: -0.014597644,
+                        shift: 0.052052163,
+                    },
+                    ::mixer_rt::Arc {
+                        offset: -0.5826794,
+                        slope: 0.023991078,
+                        bend: -0.00445537,
+                        shift: -14.908358,
+                    },
+                ],
+            },
+            largest_torque: ::mixer_rt::Side {
+                corner_n: 12.295637,
+                arcs: [
+                    ::mixer_rt::Arc {
+                        offset: -0.017763613,
+                        slope: 0.013611965,
+                        bend: 0.019709112,
+                        shift: -0.39035276,
+                    },
+                    ::mixer_rt::Arc {
+                        offset: 0.42444146,
+                        slope: -0.016825354,
+                        bend: -0.0026954114,
+                        shift: -12.283145,
+                    },
+                ],
+            },
+            facets: &[
+                ::mixer_rt::Facets {
+                    normal: [0.0, -3.1426775, 1.0],
+                    bounds: [2.3129656, 99.150795],
+                },
+                ::mixer_rt::Facets {
+                    normal: [0.70710677, 0.70710677, 0.0],
+                    bounds: [-10.894322, 10.894322],
+                },
+                ::mixer_rt::Facets {
+                    normal: [3.1426775, 0.0, 1.0],
+                    bounds: [2.3129656, 99.150795],
+                },
+                ::mixer_rt::Facets {
+                    normal: [-3.1426775, 0.0, 1.0],
+                    bounds: [2.3129656, 99.150795],
+                },
+                ::mixer_rt::Facets {
+                    normal: [0.70710677, -0.70710677, 0.0],
+                    bounds: [-10.894322, 10.894322],
+                },
+                ::mixer_rt::Facets {
+                    normal: [0.0, 3.1426775, 1.0],
+                    bounds: [2.3129656, 99.150795],
+                },
+            ],
+            null: &[-1.0, 1.0, -1.0, 1.0],
+            thrust_floor_n: 2.3483777,
+            thrust_middle_n: 50.62896,
         },
         tolerance: ::mixer_rt::Tolerance {
             efforts: [0.008010632, 0.00008010632],

@@ -1,0 +1,38 @@
+//! Which rotors are out.
+
+/// The rotors that have failed, by output channel. A failed rotor is commanded to stop (throttle 0, below idle)
+/// and is taken to give nothing; its partner is modelled by the same polynomial with the failed one's throttle at
+/// zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Health {
+    failed: u64,
+}
+
+impl Health {
+    /// All rotors work.
+    pub const GOOD: Health = Health { failed: 0 };
+
+    /// This health with the rotor at output `channel` (0..=63) failed as well; others are ignored.
+    #[inline]
+    pub const fn with_failed(self, channel: u8) -> Self {
+        let bit = match 1u64.checked_shl(channel as u32) {
+            Some(bit) => bit,
+            None => 0,
+        };
+        Health {
+            failed: self.failed | bit,
+        }
+    }
+
+    /// True where the rotor at output `channel` has failed.
+    #[inline]
+    pub const fn has_failed(self, channel: u8) -> bool {
+        channel < 64 && (self.failed >> channel) & 1 != 0
+    }
+
+    /// True where no rotor has failed.
+    #[inline]
+    pub const fn is_good(self) -> bool {
+        self.failed == 0
+    }
+}
