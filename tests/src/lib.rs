@@ -1,8 +1,13 @@
-//! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU, looking into its image.
+//! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU, looking into its image;
+//! frames, random requests, the optimum of a request and other allocators to measure the mixer against.
 
+pub mod baselines;
 pub mod firmware;
+pub mod frames;
 pub mod golden;
 pub mod image;
+pub mod optimum;
+pub mod random;
 pub mod vectors;
 
 use std::path::{Path, PathBuf};

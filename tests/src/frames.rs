@@ -1,0 +1,150 @@
+//! Frames to test on: regular ones and random ones, as airframe files with the paper's pair.
+
+use std::fmt::Write as _;
+
+use mixer_compiler::{Compiled, Source};
+
+use crate::random::Random;
+
+/// The `[throttle]`, `[pair]` and `[voltage]` of `airframes/isae-x8.toml`.
+const PAPER: &str = r#"
+[throttle]
+min = 0.1
+max = 1.0
+[pair]
+basis = "biquadratic"
+thrust_n  = [5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363]
+torque_nm = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720]
+upper_spin = "cw"
+[voltage]
+reference_v = 14.8
+range_v = [12.8, 16.8]
+thrust_exponent = 1.75
+torque_exponent = 1.6
+"#;
+
+/// The allocation options of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// As in the airframe file.
+    pub airmode: &'static str,
+    /// As in the airframe file, N m.
+    pub yaw_reserve_nm: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            airmode: "disabled",
+            yaw_reserve_nm: 0.0,
+        }
+    }
+}
+
+/// The three airmodes.
+pub const AIRMODES: [&str; 3] = ["disabled", "roll-pitch", "roll-pitch-yaw"];
+
+/// One unit of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// x, y, z, m.
+    pub position: [f64; 3],
+    /// Thrust axis.
+    pub axis: [f64; 3],
+    /// Upper rotor clockwise.
+    pub clockwise: bool,
+}
+
+/// Units at equal angles on a circle of 0.45 m radius, spins alternating, the first at `first_deg` from the nose.
+pub fn regular(units: usize, first_deg: f64) -> Vec<Place> {
+    (0..units)
+        .map(|k| {
+            let angle = (first_deg + 360.0 * k as f64 / units as f64).to_radians();
+            Place {
+                position: [0.45 * cos(angle), 0.45 * sin(angle), 0.0],
+                axis: [0.0, 0.0, -1.0],
+                clockwise: k % 2 == 0,
+            }
+        })
+        .collect()
+}
+
+#[allow(
+    clippy::disallowed_methods,
+    reason = "positions of test frames need not have the same bits everywhere"
+)]
+fn cos(x: f64) -> f64 {
+    x.cos()
+}
+
+#[allow(clippy::disallowed_methods, reason = "as above")]
+fn sin(x: f64) -> f64 {
+    x.sin()
+}
+
+/// An irregular frame: units in about even directions around the centre with arms of 0.2 m to 0.7 m, random
+/// spins, axes tilted by up to `tilt` (about radians).
+pub fn irregular(random: &mut Random, units: usize, tilt: f64) -> Vec<Place> {
+    let start = random.between(0.0, 360.0);
+    (0..units)
+        .map(|k| {
+            let angle = start + (k as f64 + random.between(-0.3, 0.3)) * 360.0 / units as f64;
+            let arm = random.between(0.2, 0.7);
+            Place {
+                position: [
+                    arm * cos(angle.to_radians()),
+                    arm * sin(angle.to_radians()),
+                    random.between(-0.05, 0.05),
+                ],
+                axis: [random.between(-tilt, tilt), random.between(-tilt, tilt), -1.0],
+                clockwise: if k < 2 { k == 0 } else { random.index(2) == 0 },
+            }
+        })
+        .collect()
+}
+
+/// The airframe file of a frame; unit k has channels `channels[2 k]` and `channels[2 k + 1]`.
+pub fn toml(places: &[Place], channels: &[usize], options: Options) -> String {
+    let mut text = format!("name = \"frame\"\n{PAPER}");
+    let Options {
+        airmode,
+        yaw_reserve_nm,
+    } = options;
+    let _ = write!(
+        text,
+        "[allocation]\nairmode = \"{airmode}\"\nyaw_reserve_nm = {yaw_reserve_nm:?}\n"
+    );
+    match places.len() {
+        1 => text.push_str("axes = [\"yaw\", \"thrust\"]\n"),
+        2 => text.push_str("axes = [\"roll\", \"yaw\", \"thrust\"]\n"),
+        _ => {}
+    }
+    for (place, channels) in places.iter().zip(channels.chunks(2)) {
+        let length = place.axis.iter().map(|a| a * a).sum::<f64>().sqrt();
+        let axis = place.axis.map(|a| a / length);
+        let spin = if place.clockwise { "cw" } else { "ccw" };
+        let _ = write!(
+            text,
+            "[[unit]]\nposition_m = {:?}\naxis = {axis:?}\nupper_spin = \"{spin}\"\nchannels = {channels:?}\n",
+            place.position
+        );
+    }
+    text
+}
+
+/// Compiles a frame with channels in order.
+///
+/// # Errors
+/// The diagnostics, as text.
+pub fn compile(places: &[Place], options: Options) -> Result<Compiled, String> {
+    let channels: Vec<usize> = (0..2 * places.len()).collect();
+    compile_text(&toml(places, &channels, options))
+}
+
+/// Compiles the text of an airframe file.
+///
+/// # Errors
+/// The diagnostics, as text.
+pub fn compile_text(text: &str) -> Result<Compiled, String> {
+    mixer_compiler::compile(&Source::new("frame.toml", text)).map_err(|faults| faults.to_string())
+}
