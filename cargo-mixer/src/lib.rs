@@ -15,6 +15,7 @@ pub mod check;
 pub mod expand;
 pub mod identify;
 pub mod mix;
+pub mod report;
 pub mod setpoints;
 
 /// The exit status for a bad input.

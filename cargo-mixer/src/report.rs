@@ -1,0 +1,71 @@
+//! `cargo mixer report`: an airframe in pictures, one self-contained page.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use crate::identify::fragment::write_atomically;
+
+pub mod authority;
+pub mod bench;
+pub mod colour;
+pub mod comparison;
+pub mod conventional;
+pub mod field;
+pub mod figure;
+pub mod layout;
+pub mod maps;
+pub mod number;
+pub mod page;
+pub mod plots;
+pub mod study;
+pub mod table;
+
+use self::bench::BenchPoints;
+use self::study::Study;
+
+/// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and tables
+///
+/// The page needs no network, follows the reader's light or dark scheme, and prints.
+#[derive(clap::Args, Debug)]
+pub struct ReportArgs {
+    /// The airframe file
+    airframe: PathBuf,
+    /// The page to write, whole or not at all
+    #[arg(short, long, value_name = "REPORT.html")]
+    output: PathBuf,
+    /// Bench files of the pair, to be shown beside the model
+    #[arg(long, value_name = "BENCH.csv")]
+    bench: Vec<PathBuf>,
+    /// Total thrust of the comparison at constant thrust, N [default: about 40 % of the largest bare thrust]
+    #[arg(long, value_name = "NEWTON", value_parser = thrust)]
+    thrust: Option<f64>,
+}
+
+/// Runs the command.
+pub fn run(args: &ReportArgs) -> ExitCode {
+    let compiled = match crate::compile(&args.airframe) {
+        Ok(compiled) => compiled,
+        Err(refusal) => return refusal.report(),
+    };
+    let bench = match args.bench.as_slice() {
+        [] => None,
+        files => match BenchPoints::read(&compiled, files) {
+            Ok(bench) => Some(bench),
+            Err(refusal) => return crate::complain(refusal),
+        },
+    };
+    let study = Study::new(&compiled, args.thrust);
+    let page = page::page(&study, bench.as_ref());
+    match write_atomically(&args.output, &page) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => crate::complain(format_args!("{}: {error}", args.output.display())),
+    }
+}
+
+/// A thrust on the command line, N.
+pub(crate) fn thrust(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(thrust) if thrust > 0.0 && thrust.is_finite() => Ok(thrust),
+        _ => Err(format!("{text:?} is not a positive number of newtons")),
+    }
+}

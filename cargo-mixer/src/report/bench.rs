@@ -1,0 +1,148 @@
+//! Bench points beside the model: read as `identify` reads them, compared at the voltage at which they were measured.
+
+use std::path::{Path, PathBuf};
+
+use mixer_compiler::Compiled;
+use mixer_compiler::model::PairMap;
+
+use crate::identify::bench::{Kind, Preparation, prepare};
+use crate::identify::header::ByHand;
+use crate::identify::read::{Reading, read_file};
+use crate::identify::refusal::Refusal;
+use crate::identify::sign::{SignChoice, SignPolicy};
+
+/// One bench point with what the model says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BenchPoint {
+    /// Line of the file.
+    pub line: u64,
+    /// Throttles `[u, l]`.
+    pub throttles: [f64; 2],
+    /// Thrust (N) and torque (N m) brought to the reference voltage.
+    pub measured: [f64; 2],
+    /// The model's.
+    pub model: [f64; 2],
+}
+
+/// Bench points of one pair.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BenchPoints {
+    /// Names of the files.
+    pub files: Vec<String>,
+    /// The points within the airframe's throttle range.
+    pub points: Vec<BenchPoint>,
+    /// Points outside of it, where the model is not used.
+    pub outside: usize,
+    /// Rows that were refused, as `file:line: reason`.
+    pub refused: Vec<String>,
+    /// Whether the points were brought to the reference voltage.
+    pub corrected: bool,
+}
+
+/// What remains between model and points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    /// Root of the mean square of model less measured.
+    pub rms: f64,
+    /// Largest absolute difference.
+    pub largest: f64,
+    /// Share of the variance that the model explains.
+    pub r_squared: f64,
+}
+
+impl BenchPoints {
+    /// Reads bench files of the airframe's pair.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or that holds a single rotor.
+    pub fn read(compiled: &Compiled, files: &[PathBuf]) -> Result<Self, Refusal> {
+        let airframe = &compiled.airframe;
+        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+        let mut bench = BenchPoints::default();
+        for file in files {
+            bench.add(compiled, &pair, file)?;
+        }
+        Ok(bench)
+    }
+
+    fn add(&mut self, compiled: &Compiled, pair: &PairMap, file: &Path) -> Result<(), Refusal> {
+        let reading = Reading {
+            by_hand: ByHand::default(),
+            pwm_range: None,
+        };
+        let how = Preparation {
+            stop_throttle: 0.005,
+            settle: 0.33,
+            signs: SignPolicy {
+                thrust: SignChoice::Auto,
+                torque: SignChoice::Auto,
+            },
+            date: None,
+        };
+        let bench = prepare(read_file(file, &reading, |file| file)?, &how)?;
+        if bench.kind != Kind::Pair {
+            return Err(Refusal::of(
+                bench.file,
+                "one rotor alone says nothing about the pair",
+                "a sweep of both throttles",
+            ));
+        }
+        let voltage = compiled.airframe.voltage.as_ref();
+        let [low, high] = pair.range();
+        for point in &bench.points {
+            let throttles = [point.u, point.l];
+            if throttles.iter().any(|t| !(low - 1e-9..=high + 1e-9).contains(t)) {
+                self.outside += 1;
+                continue;
+            }
+            let k = match voltage {
+                Some(voltage) if point.voltage.is_finite() => {
+                    self.corrected = true;
+                    [
+                        voltage.thrust_factor(point.voltage),
+                        voltage.torque_factor(point.voltage),
+                    ]
+                }
+                _ => [1.0, 1.0],
+            };
+            self.points.push(BenchPoint {
+                line: point.line,
+                throttles,
+                measured: [point.thrust / k[0], point.torque / k[1]],
+                model: pair.efforts(throttles),
+            });
+        }
+        let refused = bench.refused_rows.iter();
+        self.refused
+            .extend(refused.map(|row| format!("{}:{}: {}", row.file, row.line, row.reason)));
+        self.files.push(bench.file);
+        Ok(())
+    }
+
+    /// What remains in thrust (0) or in torque (1); `None` without points.
+    pub fn misfit(&self, effort: usize) -> Option<Misfit> {
+        let count = self.points.len() as f64;
+        if self.points.is_empty() {
+            return None;
+        }
+        let mean = self
+            .points
+            .iter()
+            .map(|point| point.measured[effort])
+            .sum::<f64>()
+            / count;
+        let (mut squares, mut largest, mut variance) = (0.0, 0.0f64, 0.0);
+        for point in &self.points {
+            let miss = point.model[effort] - point.measured[effort];
+            let spread = point.measured[effort] - mean;
+            squares += miss * miss;
+            largest = largest.max(miss.abs());
+            variance += spread * spread;
+        }
+        Some(Misfit {
+            rms: (squares / count).sqrt(),
+            largest,
+            r_squared: 1.0 - squares / variance,
+        })
+    }
+}

@@ -1,0 +1,92 @@
+//! The static comparison of the paper's section V-A: yaw commands over the available range at constant total thrust,
+//! through the compiled mixer and through the conventional one, and what each coaxial unit then really gives.
+
+use mixer_compiler::airframe::Axis;
+
+use super::authority;
+use super::conventional::Conventional;
+use super::study::Study;
+
+/// What one mixer makes of one yaw command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// Throttles `[u, l]` of every unit.
+    pub throttles: Vec<[f64; 2]>,
+    /// Thrust and torque `[f (N), Q (N m)]` that these throttles give by the pair's map, per unit.
+    pub efforts: Vec<[f64; 2]>,
+    /// The wrench of all units: roll, pitch, yaw (N m), thrust (N).
+    pub wrench: [f64; 4],
+    /// False where a throttle was limited or the request was cut.
+    pub within: bool,
+}
+
+/// One yaw command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Yaw asked, N m.
+    pub yaw_nm: f64,
+    /// The compiled mixer.
+    pub coaxial: Answer,
+    /// The conventional mixer.
+    pub conventional: Answer,
+}
+
+/// The whole sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Total thrust asked, N.
+    pub thrust_n: f64,
+    /// Torque per thrust that the conventional mixer assumes, m.
+    pub kappa_m: f64,
+    /// By ascending yaw.
+    pub rows: Vec<Row>,
+}
+
+impl Comparison {
+    /// `count` yaw commands from the least to the largest that the compiled mixer delivers at the study's thrust;
+    /// `None` where the airframe does not serve yaw, or the thrust leaves no room for any.
+    pub fn sweep(study: &Study<'_>, count: usize) -> Option<Self> {
+        if !study.serves(Axis::Yaw) {
+            return None;
+        }
+        let [low, high] = authority::at(study, study.thrust_n).torque_nm[Axis::Yaw as usize];
+        if low.is_nan() || low >= high || count < 2 {
+            return None;
+        }
+        let conventional = Conventional::new(study.compiled);
+        let rows = (0..count)
+            .map(|k| {
+                // From both ends, so that a symmetric range has its zero exactly.
+                let share = k as f64 / (count - 1) as f64;
+                let yaw_nm = low * (1.0 - share) + high * share;
+                let wrench = [0.0, 0.0, yaw_nm, study.thrust_n];
+                Row {
+                    yaw_nm,
+                    coaxial: answer(study, study.mix(wrench)),
+                    conventional: answer(study, conventional.throttles(wrench)),
+                }
+            })
+            .collect();
+        Some(Comparison {
+            thrust_n: study.thrust_n,
+            kappa_m: conventional.kappa_m(),
+            rows,
+        })
+    }
+
+    /// Thrust asked of each unit by the least norm with no yaw, N: where the coaxial mixer keeps it.
+    pub fn thrust_per_unit(&self) -> f64 {
+        let units = self.rows.first().map_or(1, |row| row.coaxial.efforts.len());
+        self.thrust_n / units as f64
+    }
+}
+
+fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> Answer {
+    let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
+    Answer {
+        wrench: study.wrench(&efforts),
+        throttles,
+        efforts,
+        within,
+    }
+}

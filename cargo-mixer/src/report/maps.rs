@@ -1,0 +1,183 @@
+//! Colour maps: forward (Fig. 3 and 4 of the paper), inverse over the attainable set (Fig. 5), error of the inverse.
+
+use mixer_compiler::report::Summary;
+
+use super::bench::BenchPoints;
+use super::colour::Scale;
+use super::field::{Field, Painting, paint};
+use super::figure::Figure;
+use super::number::{range, significant, widened};
+use super::study::Study;
+
+/// Points per side of the grid from which smooth maps are traced.
+const SIDE: usize = 41;
+
+/// Points per side of the grid of the error, which oscillates.
+pub const ERROR_SIDE: usize = 97;
+
+const UPPER: &str = "upper throttle u";
+const LOWER: &str = "lower throttle l";
+pub(super) const THRUST: &str = "thrust f (N)";
+pub(super) const TORQUE: &str = "torque Q (N m)";
+
+/// Thrust and torque of one unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// f, N.
+    Thrust,
+    /// Q, N m.
+    Torque,
+}
+
+impl Effort {
+    /// Both.
+    pub const BOTH: [Effort; 2] = [Effort::Thrust, Effort::Torque];
+
+    pub(super) fn label(self) -> &'static str {
+        [THRUST, TORQUE][self as usize]
+    }
+
+    pub(super) fn unit(self) -> &'static str {
+        ["N", "N m"][self as usize]
+    }
+}
+
+/// Thrust or torque over both throttles, with the bench points on it.
+pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -> Figure {
+    let field = Field::new(SIDE, |square| study.efforts(square)[effort as usize]);
+    let values = range(field.values().iter().copied());
+    let points = bench.map_or(&[][..], |bench| &bench.points);
+    let throttles = |k: usize| {
+        let measured = points.iter().map(|point| point.throttles[k]);
+        range(measured.chain(study.pair.range()))
+    };
+    let title = [
+        "Thrust of one unit over both throttles",
+        "Torque of one unit over both throttles",
+    ];
+    let mut figure = Figure::new(
+        title[effort as usize],
+        (UPPER, throttles(0)),
+        (LOWER, throttles(1)),
+    )
+    .sized(300.0, 300.0)
+    .hovering("forward");
+    let painting = Painting {
+        scale: match effort {
+            Effort::Thrust => Scale::sequential(values),
+            Effort::Torque => Scale::signed(values),
+        },
+        range: values,
+        levels: 8,
+        bands: 4,
+        iso_curves: true,
+        label: effort.label(),
+    };
+    paint(&mut figure, &field, &painting, |square| study.throttles(square));
+    for point in points {
+        let (measured, model) = (point.measured[effort as usize], point.model[effort as usize]);
+        figure.dot(
+            "bench-dot",
+            3.0,
+            point.throttles,
+            &format!(
+                "line {}: u {}, l {}: measured {} {unit}, model {} {unit}, model \u{2212} measured {} {unit}",
+                point.line,
+                significant(point.throttles[0], 3),
+                significant(point.throttles[1], 3),
+                significant(measured, 4),
+                significant(model, 4),
+                significant(model - measured, 2),
+                unit = effort.unit()
+            ),
+        );
+    }
+    figure
+}
+
+/// A plot over thrust and torque that has the whole attainable set in view.
+pub(super) fn over_efforts(study: &Study<'_>, title: &str, k: [f64; 2]) -> Figure {
+    let border = study.border();
+    let extent = |index: usize| {
+        let values = border
+            .iter()
+            .map(|&throttles| study.pair.efforts(throttles)[index] * k[index]);
+        widened(range(values), 0.04)
+    };
+    Figure::new(title, (THRUST, extent(0)), (TORQUE, extent(1)))
+}
+
+/// The throttle of one rotor (0 upper, 1 lower) over the attainable set.
+pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
+    let field = Field::new(SIDE, |square| study.throttles(square)[rotor]);
+    let title = [
+        "Upper throttle over the attainable set",
+        "Lower throttle over the attainable set",
+    ];
+    let mut figure = over_efforts(study, title[rotor], [1.0, 1.0])
+        .sized(300.0, 260.0)
+        .hovering("inverse");
+    let painting = Painting {
+        scale: Scale::sequential(study.pair.range()),
+        range: study.pair.range(),
+        levels: 9,
+        bands: 4,
+        iso_curves: true,
+        label: [UPPER, LOWER][rotor],
+    };
+    paint(&mut figure, &field, &painting, |square| study.efforts(square));
+    figure
+}
+
+/// The error of the emitted inverse in thrust or in torque over the throttle box, absolute.
+pub fn error_field(study: &Study<'_>, effort: Effort) -> Field {
+    Field::new(ERROR_SIDE, |square| {
+        study.error(study.throttles(square))[effort as usize].abs()
+    })
+}
+
+/// The error of the emitted inverse over the attainable set, up to its bound.
+pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
+    let title = ["Thrust that the inverse misses", "Torque that the inverse misses"];
+    let mut figure = over_efforts(study, title[effort as usize], [1.0, 1.0])
+        .sized(300.0, 260.0)
+        .hovering(["error-thrust", "error-torque"][effort as usize]);
+    let (scale, prefix) = prefixed(error_bound(study, effort).0);
+    let scaled = Field::new(field.side(), {
+        let mut values = field.values().iter();
+        move |_| values.next().map_or(0.0, |x| x * scale)
+    });
+    let range = [0.0, error_bound(study, effort).0 * scale];
+    let label = match effort {
+        Effort::Thrust => format!("|error of thrust| ({prefix}N)"),
+        Effort::Torque => format!("|error of torque| ({prefix}N m)"),
+    };
+    let painting = Painting {
+        scale: Scale::sequential(range),
+        range,
+        levels: 6,
+        bands: 2,
+        iso_curves: false,
+        label: &label,
+    };
+    paint(&mut figure, &scaled, &painting, |square| study.efforts(square));
+    figure
+}
+
+/// The bound of the error in N or N m, and whether it is proven rather than observed.
+pub fn error_bound(study: &Study<'_>, effort: Effort) -> (f64, bool) {
+    let summary = Summary::new(study.compiled);
+    let (proven, observed) = match effort {
+        Effort::Thrust => (summary.proven_thrust_n, summary.observed_thrust_n),
+        Effort::Torque => (summary.proven_torque_nm, summary.observed_torque_nm),
+    };
+    proven.map_or((observed, false), |bound| (bound, true))
+}
+
+/// The factor and the prefix with which `x` is a number of one to three digits.
+fn prefixed(x: f64) -> (f64, &'static str) {
+    [(1.0, ""), (1e3, "m"), (1e6, "\u{b5}")]
+        .into_iter()
+        .find(|(scale, _)| x * scale >= 1.0)
+        .unwrap_or((1e9, "n"))
+}

@@ -1,0 +1,268 @@
+//! The page: one self-contained file that needs no network, no script to be read, and prints.
+//!
+//! It is written as XML that is also HTML (every element closed, every attribute quoted), so that it can be checked
+//! by machine.
+
+use std::fmt::Write as _;
+
+use mixer_compiler::airframe::Axis;
+
+use super::authority;
+use super::bench::BenchPoints;
+use super::comparison::Comparison;
+use super::figure::Figure;
+use super::layout;
+use super::maps::{self, Effort};
+use super::number::{escaped, significant};
+use super::plots;
+use super::study::Study;
+use super::table;
+
+/// The style of figures, in the page and in files of their own.
+pub const FIGURE_STYLE: &str = include_str!("style.css");
+const PAGE_STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// Yaw commands of the comparison; the table shows every third.
+pub const YAW_COMMANDS: usize = 25;
+
+/// Thrusts at which authority is found.
+pub const THRUSTS: usize = 61;
+
+/// Sections of the page in their order: anchor and title.
+pub const SECTIONS: [(&str, &str); 8] = [
+    ("layout", "Layout"),
+    ("comparison", "Yaw at constant thrust"),
+    ("authority", "Authority"),
+    ("attainable", "Attainable set"),
+    ("forward", "Forward maps"),
+    ("inverse", "Inverse maps"),
+    ("error", "Error of the inverse"),
+    ("matrices", "Allocation"),
+];
+
+/// The whole page.
+pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
+    let compiled = study.compiled;
+    let airframe = &compiled.airframe;
+    let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
+    let mut html = String::new();
+    let name = escaped(&airframe.name);
+    let _ = writeln!(
+        html,
+        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+         <title>{name}: coaxial mixer</title>\n<style>\n{FIGURE_STYLE}{PAGE_STYLE}</style>\n</head>\n<body>\n\
+         <h1>{name}</h1>\n<p class=\"lead\">{}</p>",
+        escaped(&airframe.description)
+    );
+    html.push_str("<nav>");
+    for (anchor, title) in SECTIONS {
+        let _ = write!(html, "<a href=\"#{anchor}\">{title}</a> ");
+    }
+    html.push_str("</nav>\n");
+    html.push_str(&table::summary(study));
+
+    for (anchor, title) in SECTIONS {
+        let _ = writeln!(html, "<section id=\"{anchor}\">\n<h2>{title}</h2>");
+        html.push_str(&match anchor {
+            "layout" => layout_section(study),
+            "comparison" => comparison_section(study),
+            "authority" => authority_section(study),
+            "attainable" => attainable_section(study),
+            "forward" => forward_section(study, bench),
+            "inverse" => inverse_section(study),
+            "error" => error_section(study, &errors),
+            _ => table::matrices(study),
+        });
+        html.push_str("</section>\n");
+    }
+    let _ = writeln!(
+        html,
+        "<footer>Made by <code>cargo mixer report</code> {} from <code>{}</code>. Body frame FRD, SI units; clockwise \
+         yaw seen from above is positive, thrust is positive upwards; the torque of a unit is positive where its lower \
+         rotor outweighs the upper one.</footer>",
+        env!("CARGO_PKG_VERSION"),
+        escaped(&compiled.source_name)
+    );
+    let _ = writeln!(
+        html,
+        "<script type=\"application/json\" id=\"model\">{}</script>\n<script>//<![CDATA[\n{SCRIPT}//]]></script>\n</body>\n</html>",
+        model(study, &errors)
+    );
+    html
+}
+
+/// A figure with its caption (markup) and a place for the values under the pointer.
+fn shown(figure: &Figure, caption: &str) -> String {
+    format!(
+        "<figure>\n{}<div class=\"readout\" aria-live=\"polite\"></div>\n<figcaption>{caption}</figcaption>\n</figure>\n",
+        figure.svg()
+    )
+}
+
+fn figures(figures: &[String]) -> String {
+    format!("<div class=\"figures\">\n{}</div>\n", figures.concat())
+}
+
+fn layout_section(study: &Study<'_>) -> String {
+    let figure = layout::layout(&study.compiled.airframe);
+    figures(&[shown(
+        &figure,
+        "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.",
+    )])
+}
+
+fn comparison_section(study: &Study<'_>) -> String {
+    let Some(comparison) = Comparison::sweep(study, YAW_COMMANDS) else {
+        return if study.serves(Axis::Yaw) {
+            format!(
+                "<p>At {} N no yaw is available.</p>\n",
+                significant(study.thrust_n, 4)
+            )
+        } else {
+            "<p>Yaw is not a served axis of this airframe.</p>\n".to_owned()
+        };
+    };
+    let text = format!(
+        "<p>A total thrust of {} N and yaw over the whole range that the coaxial mixer delivers there. The conventional \
+         mixer takes every rotor for isolated, with a torque proportional to its thrust. Both mixers\u{2019} throttles \
+         are put through the pair\u{2019}s map, at the reference voltage: what is shown is what the rotors give by that \
+         map, not what the mixers believe.</p>\n",
+        significant(comparison.thrust_n, 4)
+    );
+    let figures = figures(&[
+        shown(
+            &plots::yaw_plane(study, &comparison),
+            "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
+        ),
+        shown(&plots::yaw_thrust(&comparison), "Thrust of every unit."),
+        shown(&plots::yaw_total(&comparison), "Total thrust given."),
+        shown(&plots::yaw_given(&comparison), "Yaw given."),
+    ]);
+    text + &figures + &table::comparison(&comparison)
+}
+
+fn authority_section(study: &Study<'_>) -> String {
+    let all = authority::against_thrust(study, THRUSTS);
+    let plots: Vec<String> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
+        .into_iter()
+        .filter_map(|axis| plots::authority(study, &all, axis))
+        .map(|figure| shown(&figure, ""))
+        .collect();
+    let text = "<p>The largest torque about one axis that the compiled mixer delivers in full while it holds the thrust and no \
+         other torque is asked, found by asking the mixer itself, at the reference voltage.</p>\n";
+    text.to_owned() + &figures(&plots)
+}
+
+fn attainable_section(study: &Study<'_>) -> String {
+    let caption = if study.compiled.airframe.voltage.is_some() {
+        "What one unit can give at the lowest, the reference and the highest voltage."
+    } else {
+        "What one unit can give. The airframe has no voltage correction."
+    };
+    figures(&[shown(&plots::attainable(study), caption)])
+}
+
+fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
+    let mut text = String::new();
+    if let Some(bench) = bench {
+        let files: Vec<String> = bench
+            .files
+            .iter()
+            .map(|file| format!("<code>{}</code>", escaped(file)))
+            .collect();
+        let voltage = if bench.corrected {
+            "brought to the reference voltage"
+        } else {
+            "as measured"
+        };
+        let _ = writeln!(
+            text,
+            "<p>{} bench points of {}, {voltage}.",
+            bench.points.len(),
+            files.join(", ")
+        );
+        if bench.outside > 0 {
+            let _ = writeln!(
+                text,
+                " {} more lie outside the throttle range and are left out.",
+                bench.outside
+            );
+        }
+        text.push_str("</p>\n");
+        for row in &bench.refused {
+            let _ = writeln!(text, "<p>Refused: {}</p>", escaped(row));
+        }
+        text.push_str(&table::bench(bench));
+    }
+    let maps = Effort::BOTH.map(|effort| {
+        let caption = match effort {
+            Effort::Thrust => "Thrust of one unit.",
+            Effort::Torque => "Torque of one unit.",
+        };
+        shown(&maps::forward(study, effort, bench), caption)
+    });
+    text + &figures(&maps)
+}
+
+fn inverse_section(study: &Study<'_>) -> String {
+    figures(&[0, 1].map(|rotor| {
+        let caption = [
+            "The upper rotor\u{2019}s throttle.",
+            "The lower rotor\u{2019}s throttle.",
+        ][rotor];
+        shown(&maps::inverse(study, rotor), caption)
+    }))
+}
+
+fn error_section(study: &Study<'_>, fields: &[super::field::Field; 2]) -> String {
+    let plots: Vec<String> = Effort::BOTH
+        .into_iter()
+        .zip(fields)
+        .map(|(effort, field)| {
+            let (bound, proven) = maps::error_bound(study, effort);
+            let caption = format!(
+                "Largest value {}: {} {}.",
+                if proven {
+                    "proven for every point of the set"
+                } else {
+                    "observed"
+                },
+                mixer_compiler::report::rounded_up(bound),
+                effort.unit()
+            );
+            shown(&maps::error(study, effort, field), &caption)
+        })
+        .collect();
+    let text = "<p>What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
+         precision as on the target, the map in double precision.</p>\n";
+    text.to_owned() + &figures(&plots)
+}
+
+/// What the script needs: the forward map and the error on its grid.
+fn model(study: &Study<'_>, errors: &[super::field::Field; 2]) -> serde_json::Value {
+    let pair = &study.compiled.airframe.pair;
+    let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
+    let terms: Vec<_> = pair
+        .basis
+        .exponents()
+        .iter()
+        .zip(coefficients)
+        .map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]))
+        .collect();
+    let grids = errors.each_ref().map(|field| {
+        let largest = field.values().iter().fold(0.0f64, |largest, &x| largest.max(x));
+        let share = |x: &f64| {
+            if largest > 0.0 {
+                (1e3 * x / largest).round() as u16
+            } else {
+                0
+            }
+        };
+        let thousandths: Vec<u16> = field.values().iter().map(share).collect();
+        serde_json::json!({ "side": field.side(), "largest": largest, "thousandths": thousandths })
+    });
+    serde_json::json!({ "throttle": study.pair.range(), "scale": study.pair.scale(), "terms": terms, "errors": grids })
+}

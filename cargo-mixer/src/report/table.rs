@@ -1,0 +1,260 @@
+//! Tables of the page: summary, units, M and M+, the static comparison, the bench.
+
+use std::fmt::Write as _;
+
+use mixer_compiler::report::{Summary, rounded_up};
+
+use super::bench::BenchPoints;
+use super::comparison::{Answer, Comparison};
+use super::maps::Effort;
+use super::number::{escaped, fixed, significant};
+use super::study::Study;
+
+/// Rows of the comparison that the page and the command show of the whole sweep.
+const SHOWN_ROWS: usize = 9;
+
+/// A table: the caption, one header row, rows whose first cell is their name. Cells are markup already.
+pub fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> String {
+    let mut html = String::from("<div class=\"wide\"><table>");
+    let _ = write!(html, "<caption>{caption}</caption><thead><tr>");
+    for cell in header {
+        let _ = write!(html, "<th scope=\"col\">{cell}</th>");
+    }
+    html.push_str("</tr></thead>\n<tbody>\n");
+    for row in rows {
+        html.push_str("<tr>");
+        for (index, cell) in row.iter().enumerate() {
+            let _ = match index {
+                0 => write!(html, "<th scope=\"row\">{cell}</th>"),
+                _ => write!(html, "<td>{cell}</td>"),
+            };
+        }
+        html.push_str("</tr>\n");
+    }
+    html.push_str("</tbody></table></div>\n");
+    html
+}
+
+/// Names with values: what `check` prints.
+pub fn summary(study: &Study<'_>) -> String {
+    let compiled = study.compiled;
+    let airframe = &compiled.airframe;
+    let summary = Summary::new(compiled);
+    let bound = |proven: Option<f64>, observed: f64, unit: &str| match proven {
+        Some(bound) => format!("{} {unit} proven", rounded_up(bound)),
+        None => format!("{} {unit} observed", rounded_up(observed)),
+    };
+    let inverse = &airframe.inverse;
+    let facts = [
+        (
+            "Rotors",
+            format!("{} in {} coaxial units", summary.rotors, summary.units),
+        ),
+        (
+            "Served axes",
+            format!(
+                "{} (rank {}, condition of M {})",
+                summary.axes.join(", "),
+                summary.rank,
+                fixed(summary.condition, 2)
+            ),
+        ),
+        (
+            "Throttle",
+            format!(
+                "{:?} to {:?}; the map is proven invertible from an idle of {}",
+                airframe.throttle.min, airframe.throttle.max, summary.min_idle
+            ),
+        ),
+        (
+            "Inverse map",
+            format!(
+                "{}, {} bytes of tables",
+                escaped(&summary.evaluator_description),
+                summary.table_bytes
+            ),
+        ),
+        (
+            "Largest error of one unit",
+            format!(
+                "{}, {} at the reference voltage; allowed are {:?} N, {:?} N m at every voltage",
+                bound(summary.proven_thrust_n, summary.observed_thrust_n, "N"),
+                bound(summary.proven_torque_nm, summary.observed_torque_nm, "N m"),
+                inverse.thrust_tolerance_n,
+                inverse.torque_tolerance_nm
+            ),
+        ),
+        (
+            "Bare thrust",
+            format!(
+                "{} to {} N in all without torque, at the reference voltage",
+                fixed(f64::from(summary.thrust_range_n[0]), 1),
+                fixed(f64::from(summary.thrust_range_n[1]), 1)
+            ),
+        ),
+        (
+            "Voltage",
+            airframe
+                .voltage
+                .as_ref()
+                .map_or("no correction".to_owned(), |voltage| {
+                    format!(
+                        "{} to {} V, reference {} V",
+                        voltage.range_v[0], voltage.range_v[1], voltage.reference_v
+                    )
+                }),
+        ),
+    ];
+    let mut html = String::from("<table class=\"facts\"><tbody>\n");
+    for (name, value) in facts {
+        let _ = writeln!(html, "<tr><th scope=\"row\">{name}</th><td>{value}</td></tr>");
+    }
+    html.push_str("</tbody></table>\n");
+    html
+}
+
+/// M and M+.
+pub fn matrices(study: &Study<'_>) -> String {
+    let effectiveness = &study.compiled.effectiveness;
+    let n = study.compiled.airframe.units.len();
+    let efforts: Vec<String> = ["f", "Q"]
+        .into_iter()
+        .flat_map(|letter| (0..n).map(move |i| format!("{letter}<sub>{i}</sub>")))
+        .collect();
+    let axes = ["roll", "pitch", "yaw", "thrust"].map(str::to_owned);
+    let header = |columns: &[String]| {
+        let mut header = vec![String::new()];
+        header.extend_from_slice(columns);
+        header
+    };
+    let rows = |names: &[String], value: &dyn Fn(usize, usize) -> f64, columns: usize| -> Vec<Vec<String>> {
+        let row = |(index, name): (usize, &String)| {
+            let values = (0..columns).map(|column| fixed(value(index, column), 4));
+            [name.clone()].into_iter().chain(values).collect()
+        };
+        names.iter().enumerate().map(row).collect()
+    };
+    let m = rows(&axes, &|row, column| effectiveness.matrix[(row, column)], 2 * n);
+    let m_plus = rows(
+        &efforts,
+        &|row, column| effectiveness.pseudo_inverse[(row, column)],
+        4,
+    );
+    let caption = "M: wrench (N m, N m, N m, N) = M &#183; efforts (f in N, Q in N m)";
+    table(caption, &header(&efforts), &m)
+        + &table(
+            "M<sup>+</sup>: least-norm efforts = M<sup>+</sup> &#183; wrench",
+            &header(&axes),
+            &m_plus,
+        )
+}
+
+/// One line of the comparison: columns of both mixers.
+struct Line {
+    cells: Vec<String>,
+    limited: bool,
+}
+
+/// Columns of the comparison beside yaw and mixer.
+fn columns(comparison: &Comparison) -> Vec<String> {
+    let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
+    let efforts = (0..units).flat_map(|i| [format!("f{i} N"), format!("Q{i} N m")]);
+    let mut columns = vec!["yaw asked N m".to_owned(), "mixer".to_owned()];
+    columns.extend(efforts);
+    columns.extend(["yaw given N m", "thrust given N"].map(str::to_owned));
+    columns
+}
+
+fn lines(comparison: &Comparison) -> Vec<Line> {
+    let count = comparison.rows.len();
+    let mut lines = Vec::new();
+    let shown = SHOWN_ROWS.min(count).max(2);
+    for k in 0..shown {
+        let Some(row) = comparison.rows.get(k * count.saturating_sub(1) / (shown - 1)) else {
+            continue;
+        };
+        for (name, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
+            let Answer { efforts, wrench, .. } = answer;
+            let mut cells = vec![fixed(row.yaw_nm, 3), name.to_owned()];
+            cells.extend(efforts.iter().flat_map(|[f, q]| [fixed(*f, 3), fixed(*q, 4)]));
+            cells.extend([fixed(wrench[2], 4), fixed(wrench[3], 3)]);
+            lines.push(Line {
+                cells,
+                limited: !answer.within,
+            });
+        }
+    }
+    lines
+}
+
+/// The static comparison as HTML.
+pub fn comparison(comparison: &Comparison) -> String {
+    let caption = format!(
+        "{} N asked in all; conventional: \u{3ba} = {} m. * a throttle is at its limit",
+        significant(comparison.thrust_n, 4),
+        significant(comparison.kappa_m, 4)
+    );
+    let rows: Vec<Vec<String>> = lines(comparison)
+        .into_iter()
+        .map(|mut line| {
+            if line.limited {
+                line.cells[1].push('*');
+            }
+            line.cells
+        })
+        .collect();
+    table(&caption, &columns(comparison), &rows)
+}
+
+/// The static comparison as text in columns.
+pub fn comparison_text(comparison: &Comparison) -> String {
+    let mut rows = vec![columns(comparison)];
+    rows.extend(lines(comparison).into_iter().map(|mut line| {
+        if line.limited {
+            line.cells[1].push('*');
+        }
+        line.cells
+    }));
+    let widths: Vec<usize> = (0..rows[0].len())
+        .map(|column| {
+            rows.iter()
+                .map(|row| row[column].chars().count())
+                .max()
+                .unwrap_or(0)
+        })
+        .collect();
+    let mut text = format!(
+        "{} N asked in all, reference voltage; conventional: kappa = {} m; * a throttle is at its limit\n",
+        significant(comparison.thrust_n, 4),
+        significant(comparison.kappa_m, 4)
+    );
+    for row in rows {
+        let cells: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, width)| format!("{cell:>width$}"))
+            .collect();
+        let _ = writeln!(text, "{}", cells.join("  "));
+    }
+    // A terminal and its tools know the hyphen.
+    text.replace('\u{2212}', "-")
+}
+
+/// Model against bench.
+pub fn bench(bench: &BenchPoints) -> String {
+    let header = ["", "rms", "largest", "R\u{b2}"].map(str::to_owned);
+    let rows: Vec<Vec<String>> = Effort::BOTH
+        .into_iter()
+        .filter_map(|effort| {
+            let misfit = bench.misfit(effort as usize)?;
+            let unit = effort.unit();
+            Some(vec![
+                effort.label().to_owned(),
+                format!("{} {unit}", significant(misfit.rms, 3)),
+                format!("{} {unit}", significant(misfit.largest, 3)),
+                fixed(misfit.r_squared, 5),
+            ])
+        })
+        .collect();
+    table("Model less measurement", &header, &rows)
+}
