@@ -17,6 +17,7 @@ pub mod identify;
 pub mod mix;
 pub mod report;
 pub mod setpoints;
+pub mod sweep;
 
 /// The exit status for a bad input.
 const BAD_INPUT: u8 = 1;

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, expand, identify, mix, report};
+use cargo_mixer::{check, expand, identify, mix, report, sweep};
 use clap::{Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -25,6 +25,7 @@ enum Command {
     Expand(expand::ExpandArgs),
     Identify(Box<identify::IdentifyArgs>),
     Report(report::ReportArgs),
+    Sweep(sweep::SweepArgs),
 }
 
 fn main() -> ExitCode {
@@ -39,5 +40,6 @@ fn main() -> ExitCode {
         Command::Expand(args) => expand::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
     }
 }

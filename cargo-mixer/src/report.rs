@@ -12,12 +12,14 @@ pub mod comparison;
 pub mod conventional;
 pub mod field;
 pub mod figure;
+pub mod gallery;
 pub mod layout;
 pub mod maps;
 pub mod number;
 pub mod page;
 pub mod plots;
 pub mod study;
+pub mod surface;
 pub mod table;
 
 use self::bench::BenchPoints;
@@ -37,7 +39,7 @@ pub struct ReportArgs {
     #[arg(long, value_name = "BENCH.csv")]
     bench: Vec<PathBuf>,
     /// Total thrust of the comparison at constant thrust, N [default: about 40 % of the largest bare thrust]
-    #[arg(long, value_name = "NEWTON", value_parser = thrust)]
+    #[arg(long, value_name = "NEWTON", value_parser = thrust, allow_negative_numbers = true)]
     thrust: Option<f64>,
 }
 

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use mixer_compiler::Compiled;
 use mixer_compiler::model::PairMap;
 
+use super::maps::Effort;
+use super::number::significant;
 use crate::identify::bench::{Kind, Preparation, prepare};
 use crate::identify::header::ByHand;
 use crate::identify::read::{Reading, read_file};
@@ -22,6 +24,24 @@ pub struct BenchPoint {
     pub measured: [f64; 2],
     /// The model's.
     pub model: [f64; 2],
+}
+
+impl BenchPoint {
+    /// The point in words with its numbers.
+    pub fn text(&self, effort: Effort) -> String {
+        let (measured, model) = (self.measured[effort as usize], self.model[effort as usize]);
+        let [u, l] = self.throttles;
+        let unit = effort.unit();
+        format!(
+            "line {}: u {}, l {}: measured {} {unit}, model {} {unit}, model less measured {} {unit}",
+            self.line,
+            significant(u, 3),
+            significant(l, 3),
+            significant(measured, 4),
+            significant(model, 4),
+            significant(model - measured, 2)
+        )
+    }
 }
 
 /// Bench points of one pair.
@@ -119,8 +139,8 @@ impl BenchPoints {
         Ok(())
     }
 
-    /// What remains in thrust (0) or in torque (1); `None` without points.
-    pub fn misfit(&self, effort: usize) -> Option<Misfit> {
+    /// What remains in thrust or in torque; `None` without points.
+    pub fn misfit(&self, effort: Effort) -> Option<Misfit> {
         let count = self.points.len() as f64;
         if self.points.is_empty() {
             return None;
@@ -128,13 +148,13 @@ impl BenchPoints {
         let mean = self
             .points
             .iter()
-            .map(|point| point.measured[effort])
+            .map(|point| point.measured[effort as usize])
             .sum::<f64>()
             / count;
         let (mut squares, mut largest, mut variance) = (0.0, 0.0f64, 0.0);
         for point in &self.points {
-            let miss = point.model[effort] - point.measured[effort];
-            let spread = point.measured[effort] - mean;
+            let miss = point.model[effort as usize] - point.measured[effort as usize];
+            let spread = point.measured[effort as usize] - mean;
             squares += miss * miss;
             largest = largest.max(miss.abs());
             variance += spread * spread;

@@ -35,6 +35,14 @@ impl Field {
         &self.values
     }
 
+    /// Every `stride`-th row, of each every `stride`-th value.
+    pub fn rows(&self, stride: usize) -> impl Iterator<Item = impl Iterator<Item = &f64>> {
+        self.values
+            .chunks(self.side)
+            .step_by(stride)
+            .map(move |row| row.iter().step_by(stride))
+    }
+
     /// Points per side.
     pub fn side(&self) -> usize {
         self.side
@@ -112,6 +120,8 @@ pub struct Painting<'a> {
     pub bands: usize,
     /// Whether levels are drawn as iso-curves with their values.
     pub iso_curves: bool,
+    /// Ticks of the bar, `(value, text)`; `None` for the levels.
+    pub ticks: Option<Vec<(f64, String)>>,
     /// Quantity and unit beside the bar.
     pub label: &'a str,
 }
@@ -145,7 +155,15 @@ pub fn paint(
         }
         bands.push((pair[0], pair[1], colour));
     }
-    figure.colour_bar(painting.label, bands);
+    let ticks = match &painting.ticks {
+        Some(ticks) => ticks.clone(),
+        None => levels
+            .values
+            .iter()
+            .map(|&value| (value, levels.text(value)))
+            .collect(),
+    };
+    figure.colour_bar(painting.label, bands, ticks);
     let curves = levels.values.iter().filter(|_| painting.iso_curves);
     for &level in curves {
         let curves = project_all(&field.iso_curves(level), &project);

@@ -4,15 +4,21 @@
 //! paper; those of colour maps are part of the data and written out. `data-` attributes tell the page's script how
 //! pixels become quantities.
 
+mod path;
+
 use std::fmt::Write as _;
 
+use self::path::Label;
 use super::number::{Ticks, escaped, pixel};
 
 /// Room around the plot for labels, px: left, top, right, bottom.
-const MARGIN: [f64; 4] = [62.0, 14.0, 16.0, 46.0];
+const MARGIN: [f64; 4] = [68.0, 14.0, 16.0, 46.0];
 
 /// Room for a colour bar at the right, px.
-const BAR_ROOM: f64 = 74.0;
+const BAR_ROOM: f64 = 86.0;
+
+/// Values of iso-curves keep this distance, px.
+const LABEL_ROOM: f64 = 15.0;
 
 /// Height of a row of the legend, px.
 const LEGEND_ROW: f64 = 18.0;
@@ -38,12 +44,15 @@ pub struct Figure {
     legend: Vec<(String, String)>,
     bar: Option<Bar>,
     hover: String,
+    /// Where values stand on iso-curves.
+    labels: Vec<[f64; 2]>,
 }
 
 #[derive(Clone, Debug)]
 struct Bar {
     label: String,
-    ticks: Ticks,
+    /// (value, text).
+    ticks: Vec<(f64, String)>,
     range: [f64; 2],
     /// (lower end, upper end, colour).
     bands: Vec<(f64, f64, String)>,
@@ -66,6 +75,7 @@ impl Figure {
             legend: Vec::new(),
             bar: None,
             hover: String::new(),
+            labels: Vec::new(),
         }
     }
 
@@ -107,44 +117,48 @@ impl Figure {
 
     /// SVG path data through points; closed for an area. Points that are not finite break it.
     pub fn path(&self, points: &[[f64; 2]], closed: bool) -> String {
+        let pixels: Vec<[f64; 2]> = points.iter().map(|&point| self.at(point)).collect();
         let mut data = String::new();
-        let mut pen_down = false;
-        for &point in points {
-            let [x, y] = self.at(point);
-            if !(x.is_finite() && y.is_finite()) {
-                pen_down = false;
-                continue;
+        for part in pixels.split(|pixel| !pixel.iter().all(|x| x.is_finite())) {
+            for (index, [x, y]) in path::simplified(part).into_iter().enumerate() {
+                data.push(if index == 0 { 'M' } else { 'L' });
+                pixel(&mut data, x);
+                data.push(' ');
+                pixel(&mut data, y);
             }
-            data.push(if pen_down { 'L' } else { 'M' });
-            pen_down = true;
-            pixel(&mut data, x);
-            data.push(' ');
-            pixel(&mut data, y);
-        }
-        if closed && pen_down {
-            data.push('Z');
+            if closed && !part.is_empty() {
+                data.push('Z');
+            }
         }
         data
     }
 
     /// A curve of a series, with its name in the legend where it has one.
     pub fn curve(&mut self, class: &str, name: &str, points: &[[f64; 2]]) {
+        self.unlisted_curve(class, name, points);
+        self.entry(class, name);
+    }
+
+    /// A curve whose name is shown under the pointer only.
+    pub fn unlisted_curve(&mut self, class: &str, name: &str, points: &[[f64; 2]]) {
         let data = self.path(points, false);
         let _ = writeln!(
             self.layers,
             "<path class=\"line {class}\" data-name=\"{}\" d=\"{data}\"/>",
             escaped(name)
         );
-        self.entry(class, name);
     }
 
     /// A closed line without filling.
     pub fn outline(&mut self, class: &str, name: &str, points: &[[f64; 2]]) {
         let data = self.path(points, true);
+        let title = match name {
+            "" => String::new(),
+            name => format!("<title>{}</title>", escaped(name)),
+        };
         let _ = writeln!(
             self.layers,
-            "<path class=\"line {class}\" d=\"{data}\"><title>{}</title></path>",
-            escaped(name)
+            "<path class=\"line {class}\" d=\"{data}\">{title}</path>"
         );
         self.entry(class, name);
     }
@@ -179,6 +193,12 @@ impl Figure {
         let Some(label) = Label::along(&pixels) else {
             return;
         };
+        let near =
+            |other: &[f64; 2]| libm::hypot(other[0] - label.at[0], other[1] - label.at[1]) < LABEL_ROOM;
+        if self.labels.iter().any(near) {
+            return;
+        }
+        self.labels.push(label.at);
         let halo = if ink == "#000" { "#fff" } else { "#000" };
         let _ = writeln!(
             self.above,
@@ -227,13 +247,13 @@ impl Figure {
         }
     }
 
-    /// The colour bar of a map: bands `(low, high, colour)` in ascending order.
-    pub fn colour_bar(&mut self, label: &str, bands: Vec<(f64, f64, String)>) {
+    /// The colour bar of a map: bands `(low, high, colour)` in ascending order, ticks `(value, text)`.
+    pub fn colour_bar(&mut self, label: &str, bands: Vec<(f64, f64, String)>, ticks: Vec<(f64, String)>) {
         if let (Some(first), Some(last)) = (bands.first(), bands.last()) {
             let range = [first.0, last.1];
             self.bar = Some(Bar {
                 label: label.to_owned(),
-                ticks: Ticks::within(range, 6),
+                ticks,
                 range,
                 bands,
             });
@@ -242,15 +262,6 @@ impl Figure {
 
     /// The picture for a page that has the classes.
     pub fn svg(&self) -> String {
-        self.with_style("")
-    }
-
-    /// The picture as a file of its own, with its style.
-    pub fn file(&self, style: &str) -> String {
-        self.with_style(&format!("<style>{style}</style>\n"))
-    }
-
-    fn with_style(&self, style: &str) -> String {
         let [width, height] = self.size;
         let rows = self.legend_rows();
         let full_width = MARGIN[0] + width + if self.bar.is_some() { BAR_ROOM } else { MARGIN[2] };
@@ -261,7 +272,7 @@ impl Figure {
             svg,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 {full_width} {full_height}\" \
              role=\"img\" aria-label=\"{}\" data-hover=\"{}\" data-x=\"{:?} {:?}\" data-y=\"{:?} {:?}\" \
-             data-box=\"{} {} {width} {height}\" data-labels=\"{}|{}\">\n{style}",
+             data-box=\"{} {} {width} {height}\" data-labels=\"{}|{}\">",
             escaped(&self.title),
             self.hover,
             x.range[0],
@@ -365,19 +376,19 @@ impl Figure {
                 y(*low) - y(*high)
             );
         }
-        for &value in &bar.ticks.values {
+        for (value, text) in &bar.ticks {
             let _ = writeln!(
                 svg,
                 "<text class=\"tick\" x=\"{}\" y=\"{:.1}\" dy=\".35em\">{}</text>",
                 left + 17.0,
-                y(value),
-                bar.ticks.text(value)
+                y(*value),
+                text
             );
         }
         let _ = writeln!(
             svg,
             "<text class=\"label\" transform=\"translate({} {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-            left + 56.0,
+            left + 66.0,
             MARGIN[1] + self.size[1] / 2.0,
             escaped(&bar.label)
         );
@@ -400,43 +411,5 @@ impl Figure {
             left += width;
         }
         rows
-    }
-}
-
-/// Where the value of an iso-curve stands.
-struct Label {
-    at: [f64; 2],
-    degrees: f64,
-}
-
-impl Label {
-    /// In the middle of a line that is long enough, turned along it and never upside down.
-    fn along(pixels: &[[f64; 2]]) -> Option<Self> {
-        let length = |a: [f64; 2], b: [f64; 2]| libm::hypot(b[0] - a[0], b[1] - a[1]);
-        let total: f64 = pixels.windows(2).map(|w| length(w[0], w[1])).sum();
-        if total < 46.0 {
-            return None;
-        }
-        let mut walked = 0.0;
-        for (index, pair) in pixels.windows(2).enumerate() {
-            walked += length(pair[0], pair[1]);
-            if walked >= 0.5 * total {
-                let from = pixels[index.saturating_sub(2)];
-                let to = pixels[(index + 3).min(pixels.len() - 1)];
-                let degrees = libm::atan2(to[1] - from[1], to[0] - from[0]).to_degrees();
-                let upright = if degrees > 90.0 {
-                    degrees - 180.0
-                } else if degrees <= -90.0 {
-                    degrees + 180.0
-                } else {
-                    degrees
-                };
-                return Some(Label {
-                    at: pair[1],
-                    degrees: upright,
-                });
-            }
-        }
-        None
     }
 }

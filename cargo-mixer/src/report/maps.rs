@@ -6,7 +6,7 @@ use super::bench::BenchPoints;
 use super::colour::Scale;
 use super::field::{Field, Painting, paint};
 use super::figure::Figure;
-use super::number::{range, significant, widened};
+use super::number::{range, shortest, significant, widened};
 use super::study::Study;
 
 /// Points per side of the grid from which smooth maps are traced.
@@ -71,26 +71,12 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
         levels: 8,
         bands: 4,
         iso_curves: true,
+        ticks: None,
         label: effort.label(),
     };
     paint(&mut figure, &field, &painting, |square| study.throttles(square));
     for point in points {
-        let (measured, model) = (point.measured[effort as usize], point.model[effort as usize]);
-        figure.dot(
-            "bench-dot",
-            3.0,
-            point.throttles,
-            &format!(
-                "line {}: u {}, l {}: measured {} {unit}, model {} {unit}, model \u{2212} measured {} {unit}",
-                point.line,
-                significant(point.throttles[0], 3),
-                significant(point.throttles[1], 3),
-                significant(measured, 4),
-                significant(model, 4),
-                significant(model - measured, 2),
-                unit = effort.unit()
-            ),
-        );
+        figure.dot("bench-dot", 3.0, point.throttles, &point.text(effort));
     }
     figure
 }
@@ -123,9 +109,11 @@ pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
         levels: 9,
         bands: 4,
         iso_curves: true,
+        ticks: None,
         label: [UPPER, LOWER][rotor],
     };
     paint(&mut figure, &field, &painting, |square| study.efforts(square));
+    outline(study, &mut figure);
     figure
 }
 
@@ -142,26 +130,55 @@ pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
     let mut figure = over_efforts(study, title[effort as usize], [1.0, 1.0])
         .sized(300.0, 260.0)
         .hovering(["error-thrust", "error-torque"][effort as usize]);
-    let (scale, prefix) = prefixed(error_bound(study, effort).0);
-    let scaled = Field::new(field.side(), {
-        let mut values = field.values().iter();
-        move |_| values.next().map_or(0.0, |x| x * scale)
-    });
-    let range = [0.0, error_bound(study, effort).0 * scale];
-    let label = match effort {
-        Effort::Thrust => format!("|error of thrust| ({prefix}N)"),
-        Effort::Torque => format!("|error of torque| ({prefix}N m)"),
-    };
+    let (bound, _) = error_bound(study, effort);
+    let (factor, prefix) = prefixed(bound);
+    let decades = |x: f64| libm::log10(x / bound).max(-DECADES);
+    let mut values = field.values().iter();
+    let logarithms = Field::new(field.side(), |_| values.next().map_or(-DECADES, |&x| decades(x)));
+    let range = [-DECADES, 0.0];
     let painting = Painting {
         scale: Scale::sequential(range),
         range,
-        levels: 6,
-        bands: 2,
+        levels: 4,
+        bands: 3,
         iso_curves: false,
-        label: &label,
+        ticks: Some(log_ticks(bound * factor)),
+        label: &format!(
+            "|error of {}| ({prefix}{})",
+            ["thrust", "torque"][effort as usize],
+            effort.unit()
+        ),
     };
-    paint(&mut figure, &scaled, &painting, |square| study.efforts(square));
+    paint(&mut figure, &logarithms, &painting, |square| {
+        study.efforts(square)
+    });
+    outline(study, &mut figure);
     figure
+}
+
+/// Decades of the error that are told apart below its bound.
+const DECADES: f64 = 2.0;
+
+/// Ticks at 1, 2 and 5 times powers of ten and at the bound itself, placed by their logarithm in units of `bound`.
+fn log_ticks(bound: f64) -> Vec<(f64, String)> {
+    let lowest = libm::floor(libm::log10(bound) - DECADES) as i32;
+    let round = (lowest..lowest + 4).flat_map(|exponent| {
+        let power = libm::pow(10.0, f64::from(exponent));
+        [1.0, 2.0, 5.0].map(|digit| digit * power)
+    });
+    let mut ticks: Vec<(f64, String)> = round
+        .map(|value| (libm::log10(value / bound), shortest(value)))
+        // Not on top of the bound's own tick.
+        .filter(|(place, _)| (-DECADES - 1e-9..-0.08).contains(place))
+        .collect();
+    ticks.push((0.0, significant(bound, 3)));
+    ticks
+}
+
+/// The border of the attainable set around a map over it.
+fn outline(study: &Study<'_>, figure: &mut Figure) {
+    let border: Vec<[f64; 2]> = study.border().iter().map(|&t| study.pair.efforts(t)).collect();
+    figure.outline("border", "", &border);
 }
 
 /// The bound of the error in N or N m, and whether it is proven rather than observed.

@@ -16,6 +16,12 @@ pub fn significant(x: f64, digits: usize) -> String {
     }
 }
 
+/// `x` with six significant digits at most and no zeros at the end.
+pub fn shortest(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    signed(rounded.to_string())
+}
+
 /// `x` with `decimals` digits after the point.
 pub fn fixed(x: f64, decimals: usize) -> String {
     signed(format!("{x:.decimals$}"))

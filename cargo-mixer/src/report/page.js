@@ -78,14 +78,18 @@
       points: path.getAttribute("d").split(/[ML]/).slice(1).map((pair) => pair.split(" ").map(Number)),
     })).filter((curve) => curve.name);
 
+    // Curves are drawn to a tenth of a pixel: no more digits than that.
+    const decimals = (range, size) => Math.max(0, -Math.floor(Math.log10((range[1] - range[0]) / size / 10)) - 1);
+    const [decimalsX, decimalsY] = [decimals(axes[0], width), decimals(axes[1], height)];
+
     function valuesAt(px) {
-      const texts = [`${labels[0]} ${digits(toX(px), 4)}`];
+      const texts = [`${labels[0]} ${fixed(toX(px), decimalsX)}`];
       for (const { name, points } of curves) {
         for (let k = 1; k < points.length; k += 1) {
           const [a, b] = [points[k - 1], points[k]];
           if (a[0] <= px && px <= b[0] && b[0] > a[0]) {
             const y = a[1] + (b[1] - a[1]) * (px - a[0]) / (b[0] - a[0]);
-            texts.push(`${name} ${digits(toY(y), 4)}`);
+            texts.push(`${name} ${fixed(toY(y), decimalsY)}`);
             break;
           }
         }

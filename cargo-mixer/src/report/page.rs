@@ -13,9 +13,10 @@ use super::comparison::Comparison;
 use super::figure::Figure;
 use super::layout;
 use super::maps::{self, Effort};
-use super::number::{escaped, significant};
+use super::number::{escaped, shortest};
 use super::plots;
 use super::study::Study;
+use super::surface;
 use super::table;
 
 /// The style of figures, in the page and in files of their own.
@@ -28,6 +29,9 @@ pub const YAW_COMMANDS: usize = 25;
 
 /// Thrusts at which authority is found.
 pub const THRUSTS: usize = 61;
+
+/// Every so many nodes of the error's grid are there for the pointer.
+const HOVER_STRIDE: usize = 2;
 
 /// Sections of the page in their order: anchor and title.
 pub const SECTIONS: [(&str, &str); 8] = [
@@ -102,25 +106,25 @@ fn shown(figure: &Figure, caption: &str) -> String {
     )
 }
 
+/// A picture without values under the pointer.
+fn still(svg: &str, caption: &str) -> String {
+    format!("<figure>\n{svg}<figcaption>{caption}</figcaption>\n</figure>\n")
+}
+
 fn figures(figures: &[String]) -> String {
     format!("<div class=\"figures\">\n{}</div>\n", figures.concat())
 }
 
 fn layout_section(study: &Study<'_>) -> String {
     let figure = layout::layout(&study.compiled.airframe);
-    figures(&[shown(
-        &figure,
-        "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.",
-    )])
+    let caption = "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.";
+    figures(&[still(&figure.svg(), caption), table::units(study)])
 }
 
 fn comparison_section(study: &Study<'_>) -> String {
     let Some(comparison) = Comparison::sweep(study, YAW_COMMANDS) else {
         return if study.serves(Axis::Yaw) {
-            format!(
-                "<p>At {} N no yaw is available.</p>\n",
-                significant(study.thrust_n, 4)
-            )
+            format!("<p>At {} N no yaw is available.</p>\n", shortest(study.thrust_n))
         } else {
             "<p>Yaw is not a served axis of this airframe.</p>\n".to_owned()
         };
@@ -129,8 +133,9 @@ fn comparison_section(study: &Study<'_>) -> String {
         "<p>A total thrust of {} N and yaw over the whole range that the coaxial mixer delivers there. The conventional \
          mixer takes every rotor for isolated, with a torque proportional to its thrust. Both mixers\u{2019} throttles \
          are put through the pair\u{2019}s map, at the reference voltage: what is shown is what the rotors give by that \
-         map, not what the mixers believe.</p>\n",
-        significant(comparison.thrust_n, 4)
+         map, not what the mixers believe. An isolated rotor is the map\u{2019}s upper one with the lower at rest, f(d, 0): \
+         an extrapolation where the bench kept both turning.</p>\n",
+        shortest(comparison.thrust_n)
     );
     let figures = figures(&[
         shown(
@@ -139,7 +144,7 @@ fn comparison_section(study: &Study<'_>) -> String {
         ),
         shown(&plots::yaw_thrust(&comparison), "Thrust of every unit."),
         shown(&plots::yaw_total(&comparison), "Total thrust given."),
-        shown(&plots::yaw_given(&comparison), "Yaw given."),
+        shown(&plots::yaw_error(&comparison), "Yaw given less yaw asked."),
     ]);
     text + &figures + &table::comparison(&comparison)
 }
@@ -153,7 +158,7 @@ fn authority_section(study: &Study<'_>) -> String {
         .collect();
     let text = "<p>The largest torque about one axis that the compiled mixer delivers in full while it holds the thrust and no \
          other torque is asked, found by asking the mixer itself, at the reference voltage.</p>\n";
-    text.to_owned() + &figures(&plots)
+    text.to_owned() + &figures(&plots).replacen("figures", "figures three", 1)
 }
 
 fn attainable_section(study: &Study<'_>) -> String {
@@ -197,12 +202,20 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
         }
         text.push_str(&table::bench(bench));
     }
+    let points = if bench.is_some() {
+        " Bench points with their distance from it."
+    } else {
+        ""
+    };
     let maps = Effort::BOTH.map(|effort| {
-        let caption = match effort {
-            Effort::Thrust => "Thrust of one unit.",
-            Effort::Torque => "Torque of one unit.",
-        };
-        shown(&maps::forward(study, effort, bench), caption)
+        let quantity = ["Thrust", "Torque"][effort as usize];
+        still(
+            &surface::surface(study, effort, bench),
+            &format!("{quantity} of one unit by the model.{points} (Fig. 3 of the paper)"),
+        ) + &shown(
+            &maps::forward(study, effort, bench),
+            &format!("{quantity} with iso-curves. (Fig. 4)"),
+        )
     });
     text + &figures(&maps)
 }
@@ -210,7 +223,7 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
 fn inverse_section(study: &Study<'_>) -> String {
     figures(&[0, 1].map(|rotor| {
         let caption = [
-            "The upper rotor\u{2019}s throttle.",
+            "The upper rotor\u{2019}s throttle. (Fig. 5 of the paper)",
             "The lower rotor\u{2019}s throttle.",
         ][rotor];
         shown(&maps::inverse(study, rotor), caption)
@@ -261,8 +274,9 @@ fn model(study: &Study<'_>, errors: &[super::field::Field; 2]) -> serde_json::Va
                 0
             }
         };
-        let thousandths: Vec<u16> = field.values().iter().map(share).collect();
-        serde_json::json!({ "side": field.side(), "largest": largest, "thousandths": thousandths })
+        let thousandths: Vec<u16> = field.rows(HOVER_STRIDE).flatten().map(share).collect();
+        let side = (field.side() - 1) / HOVER_STRIDE + 1;
+        serde_json::json!({ "side": side, "largest": largest, "thousandths": thousandths })
     });
     serde_json::json!({ "throttle": study.pair.range(), "scale": study.pair.scale(), "terms": terms, "errors": grids })
 }

@@ -3,10 +3,10 @@
 use mixer_compiler::airframe::Axis;
 
 use super::authority::Authority;
-use super::comparison::{Answer, Comparison};
+use super::comparison::{Answer, Comparison, Row};
 use super::figure::Figure;
 use super::maps::over_efforts;
-use super::number::{fixed, range, significant, widened};
+use super::number::{fixed, range, shortest, widened};
 use super::study::Study;
 
 /// The attainable set of one unit at the lowest, the reference and the highest voltage.
@@ -25,13 +25,17 @@ pub fn attainable(study: &Study<'_>) -> Figure {
             .map(|[f, q]| [f * k[0], q * k[1]])
             .collect();
         let name = volts.map_or("attainable set".to_owned(), |volts| format!("{volts} V"));
-        figure.outline(["series-3", "series-1", "series-2"][index % 3], &name, &points);
+        let class = match volts {
+            Some(_) => ["series-3", "series-1", "series-2"][index % 3],
+            None => "series-1",
+        };
+        figure.outline(class, &name, &points);
     }
     figure
 }
 
 /// Names and classes of the two mixers, with how to get at their answers.
-type Mixer = (&'static str, &'static str, fn(&super::comparison::Row) -> &Answer);
+type Mixer = (&'static str, &'static str, fn(&Row) -> &Answer);
 const MIXERS: [Mixer; 2] = [
     ("coaxial mixer", "series-1", |row| &row.coaxial),
     ("conventional mixer", "series-2", |row| &row.conventional),
@@ -95,11 +99,7 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
         ),
     )
     .hovering("curves");
-    figure.level(
-        "reference",
-        &format!("asked: {} N each", significant(asked, 4)),
-        asked,
-    );
+    figure.level("reference", &format!("asked: {} N each", shortest(asked)), asked);
     for (name, class, answer) in MIXERS {
         let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
         for (count, (curve, of)) in distinct(comparison, units, answer).into_iter().enumerate() {
@@ -115,7 +115,7 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
 fn distinct(
     comparison: &Comparison,
     units: usize,
-    answer: fn(&super::comparison::Row) -> &Answer,
+    answer: fn(&Row) -> &Answer,
 ) -> Vec<(Vec<[f64; 2]>, Vec<usize>)> {
     let mut curves: Vec<(Vec<[f64; 2]>, Vec<usize>)> = Vec::new();
     for unit in 0..units {
@@ -163,7 +163,7 @@ pub fn yaw_total(comparison: &Comparison) -> Figure {
     .hovering("curves");
     figure.level(
         "reference",
-        &format!("asked: {} N", significant(comparison.thrust_n, 4)),
+        &format!("asked: {} N", shortest(comparison.thrust_n)),
         comparison.thrust_n,
     );
     for (name, class, answer) in MIXERS {
@@ -177,25 +177,26 @@ pub fn yaw_total(comparison: &Comparison) -> Figure {
     figure
 }
 
-/// The yaw that is really given over the yaw asked.
-pub fn yaw_given(comparison: &Comparison) -> Figure {
-    let yaws = comparison
+/// How far the yaw that is really given is off the yaw asked.
+pub fn yaw_error(comparison: &Comparison) -> Figure {
+    let off = |row: &Row, answer: fn(&Row) -> &Answer| answer(row).wrench[2] - row.yaw_nm;
+    let errors = comparison
         .rows
         .iter()
-        .flat_map(|row| [row.coaxial.wrench[2], row.conventional.wrench[2], row.yaw_nm]);
+        .flat_map(|row| MIXERS.map(|(_, _, answer)| off(row, answer)))
+        .chain([0.0]);
     let mut figure = Figure::new(
-        "Yaw given over the yaw asked",
+        "Yaw given less yaw asked",
         ("yaw asked (N m)", yaw_range(comparison)),
-        ("yaw given (N m)", widened(range(yaws), 0.04)),
+        ("yaw given \u{2212} asked (N m)", widened(range(errors), 0.08)),
     )
     .hovering("curves");
-    let asked: Vec<[f64; 2]> = comparison.rows.iter().map(|row| [row.yaw_nm; 2]).collect();
-    figure.curve("reference", "asked", &asked);
+    figure.level("reference", "", 0.0);
     for (name, class, answer) in MIXERS {
         let curve: Vec<[f64; 2]> = comparison
             .rows
             .iter()
-            .map(|row| [row.yaw_nm, answer(row).wrench[2]])
+            .map(|row| [row.yaw_nm, off(row, answer)])
             .collect();
         figure.curve(class, name, &curve);
     }
@@ -234,7 +235,7 @@ pub fn authority(study: &Study<'_>, all: &[Authority], axis: Axis) -> Option<Fig
     let data = figure.path(&ring, true);
     figure.raw(&format!("<path class=\"fill-1\" d=\"{data}\"/>"));
     figure.level("axis-line", "", 0.0);
-    figure.curve("series-1", "largest", &largest);
-    figure.curve("series-1", "least", &least);
+    figure.unlisted_curve("series-1", "largest", &largest);
+    figure.unlisted_curve("series-1", "least", &least);
     Some(figure)
 }

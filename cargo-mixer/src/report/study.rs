@@ -45,6 +45,20 @@ impl<'a> Study<'a> {
         self.pair.efforts(self.throttles(square))
     }
 
+    /// Throttles `[u, l]` that the emitted inverse gives for attainable `[f (N), Q (N m)]`; `None` where they are not.
+    pub fn inverse(&self, efforts: [f64; 2]) -> Option<[f64; 2]> {
+        let tables = &self.compiled.tables;
+        let asked = efforts.map(|effort| effort as f32);
+        let found = (&tables.inverse)
+            .throttles(&tables.pair, &tables.throttle, asked)
+            .map(f64::from);
+        // Newton's method from there converges in the set; elsewhere it is stopped by the edge of the box.
+        let exact = (0..8).fold(found, |throttles, _| self.pair.newton(throttles, efforts));
+        let (given, scale) = (self.pair.efforts(exact), self.pair.scale());
+        let close = (0..2).all(|k| (given[k] - efforts[k]).abs() < 1e-9 * scale[k]);
+        close.then_some(found)
+    }
+
     /// What the emitted inverse, run in f32 by `mixer-rt`, misses of the efforts at `throttles`, signed, N and N m.
     pub fn error(&self, throttles: [f64; 2]) -> [f64; 2] {
         let tables = &self.compiled.tables;

@@ -7,7 +7,7 @@ use mixer_compiler::report::{Summary, rounded_up};
 use super::bench::BenchPoints;
 use super::comparison::{Answer, Comparison};
 use super::maps::Effort;
-use super::number::{escaped, fixed, significant};
+use super::number::{escaped, fixed, shortest, significant};
 use super::study::Study;
 
 /// Rows of the comparison that the page and the command show of the whole sweep.
@@ -113,6 +113,29 @@ pub fn summary(study: &Study<'_>) -> String {
     html
 }
 
+/// Places, spins and outputs of the units.
+pub fn units(study: &Study<'_>) -> String {
+    let header = ["unit", "x (m)", "y (m)", "z (m)", "upper rotor", "lower rotor"];
+    let units = study.compiled.airframe.units.iter().enumerate();
+    let rows: Vec<Vec<String>> = units
+        .map(|(index, unit)| {
+            let [x, y, z] = unit.position_m.map(|x| fixed(x, 4));
+            let upper = format!("{}, output {}", unit.upper_spin.name(), unit.upper_channel);
+            let lower = format!(
+                "{}, output {}",
+                unit.upper_spin.reversed().name(),
+                unit.lower_channel
+            );
+            vec![index.to_string(), x, y, z, upper, lower]
+        })
+        .collect();
+    table(
+        "From the centre of gravity: x forward, y right, z down",
+        &header.map(str::to_owned),
+        &rows,
+    )
+}
+
 /// M and M+.
 pub fn matrices(study: &Study<'_>) -> String {
     let effectiveness = &study.compiled.effectiveness;
@@ -191,7 +214,7 @@ fn lines(comparison: &Comparison) -> Vec<Line> {
 pub fn comparison(comparison: &Comparison) -> String {
     let caption = format!(
         "{} N asked in all; conventional: \u{3ba} = {} m. * a throttle is at its limit",
-        significant(comparison.thrust_n, 4),
+        shortest(comparison.thrust_n),
         significant(comparison.kappa_m, 4)
     );
     let rows: Vec<Vec<String>> = lines(comparison)
@@ -225,7 +248,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
         .collect();
     let mut text = format!(
         "{} N asked in all, reference voltage; conventional: kappa = {} m; * a throttle is at its limit\n",
-        significant(comparison.thrust_n, 4),
+        shortest(comparison.thrust_n),
         significant(comparison.kappa_m, 4)
     );
     for row in rows {
@@ -246,7 +269,7 @@ pub fn bench(bench: &BenchPoints) -> String {
     let rows: Vec<Vec<String>> = Effort::BOTH
         .into_iter()
         .filter_map(|effort| {
-            let misfit = bench.misfit(effort as usize)?;
+            let misfit = bench.misfit(effort)?;
             let unit = effort.unit();
             Some(vec![
                 effort.label().to_owned(),

@@ -1,0 +1,434 @@
+//! The report page and the data of its figures: well-formed, complete, self-contained, true, and without an error in a
+//! browser.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::{env, fs};
+
+use cargo_mixer::report::comparison::Comparison;
+use cargo_mixer::report::conventional::Conventional;
+use cargo_mixer::report::page::{SECTIONS, page};
+use cargo_mixer::report::study::Study;
+use cargo_mixer::sweep::{Data, sweep};
+use mixer_compiler::{Compiled, Source, compile};
+use roxmltree::{Document, Node, ParsingOptions};
+
+#[path = "report/browser.rs"]
+mod browser;
+#[path = "report/pictures.rs"]
+mod pictures;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn scratch(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}"))
+}
+
+/// Every file of `airframes/`, compiled, in order.
+fn airframes() -> Vec<Compiled> {
+    let mut paths: Vec<PathBuf> = fs::read_dir(root().join("airframes"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    paths.sort();
+    assert!(paths.len() >= 5, "{paths:?}");
+    paths.iter().map(|path| compiled(path)).collect()
+}
+
+fn compiled(path: &Path) -> Compiled {
+    compile_text(&fs::read_to_string(path).unwrap())
+}
+
+fn compile_text(text: &str) -> Compiled {
+    compile(&Source::new("test.toml", text)).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn x8() -> Compiled {
+    compiled(&root().join("airframes/isae-x8.toml"))
+}
+
+fn parsed(page: &str) -> Document<'_> {
+    let options = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(page, options).unwrap()
+}
+
+fn named<'a, 'd>(node: Node<'a, 'd>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'd>> {
+    node.descendants()
+        .filter(move |node| node.tag_name().name() == tag)
+}
+
+#[test]
+fn pages_are_well_formed_and_complete() {
+    for compiled in airframes() {
+        let name = &compiled.airframe.name;
+        let study = Study::new(&compiled, None);
+        let page = page(&study, None);
+        let document = parsed(&page);
+        let sections: Vec<(&str, Node)> = named(document.root(), "section")
+            .map(|section| (section.attribute("id").unwrap(), section))
+            .collect();
+        let anchors: Vec<&str> = sections.iter().map(|(id, _)| *id).collect();
+        assert_eq!(anchors, SECTIONS.map(|(anchor, _)| anchor), "{name}");
+        for (id, section) in &sections {
+            let pictures = named(*section, "svg").count();
+            assert!(pictures > 0 || *id == "matrices", "{name}: no picture in {id}");
+            assert_eq!(named(*section, "h2").count(), 1, "{name}: {id}");
+        }
+        let tables = named(document.root(), "table").count();
+        assert!(tables >= 5, "{name}: {tables} tables");
+        for svg in named(document.root(), "svg") {
+            assert!(!svg.attribute("aria-label").unwrap().is_empty(), "{name}");
+            assert!(
+                named(svg, "text").count() > 4,
+                "{name}: a picture without ticks and labels"
+            );
+            assert!(named(svg, "path").count() > 1, "{name}: an empty picture");
+        }
+        for node in document.descendants() {
+            for attribute in node.attributes() {
+                let value = attribute.value();
+                assert!(
+                    !value.contains("NaN") && !value.contains("inf"),
+                    "{name}: {attribute:?}"
+                );
+            }
+        }
+        // As many roll, pitch and yaw plots as there are served axes.
+        let authority = sections.iter().find(|(id, _)| *id == "authority").unwrap().1;
+        let served = compiled.airframe.allocation.axes.len() - 1;
+        assert_eq!(named(authority, "svg").count(), served, "{name}");
+    }
+}
+
+#[test]
+fn pages_refer_to_nothing_outside() {
+    for compiled in airframes() {
+        let page = page(&Study::new(&compiled, None), None);
+        let document = parsed(&page);
+        let anchors: BTreeSet<&str> = document.descendants().filter_map(|n| n.attribute("id")).collect();
+        for node in document.descendants() {
+            let tag = node.tag_name().name();
+            assert!(
+                !matches!(
+                    tag,
+                    "link" | "img" | "iframe" | "object" | "embed" | "image" | "use" | "base"
+                ),
+                "{tag}"
+            );
+            for attribute in node.attributes() {
+                let (name, value) = (attribute.name(), attribute.value());
+                assert!(
+                    !matches!(name, "src" | "srcset" | "action" | "data" | "style"),
+                    "{name}"
+                );
+                assert!(!name.starts_with("on"), "{name}");
+                if name == "href" {
+                    assert!(anchors.contains(value.strip_prefix('#').unwrap()), "{value}");
+                }
+            }
+        }
+        for forbidden in [
+            "url(",
+            "@import",
+            "fetch(",
+            "XMLHttpRequest",
+            "WebSocket",
+            "import(",
+        ] {
+            assert!(!page.contains(forbidden), "{forbidden}");
+        }
+        for (place, _) in page.match_indices("http") {
+            let rest = &page[place..];
+            assert!(
+                rest.starts_with("http://www.w3.org/") || rest.starts_with("http-equiv"),
+                "{}",
+                rest.chars().take(60).collect::<String>()
+            );
+        }
+    }
+}
+
+#[test]
+fn text_of_the_airframe_is_no_markup() {
+    let text = fs::read_to_string(root().join("airframes/single-pair.toml")).unwrap();
+    let text = text.replace("One coaxial pair", "<script>alert(1)</script> & <b>\\u0007");
+    let compiled = compile_text(&text);
+    let page = page(&Study::new(&compiled, None), None);
+    let document = parsed(&page);
+    let lead = document
+        .descendants()
+        .find(|n| n.attribute("class") == Some("lead"))
+        .unwrap();
+    assert!(
+        lead.text()
+            .unwrap()
+            .starts_with("<script>alert(1)</script> & <b>"),
+        "{lead:?}"
+    );
+    assert_eq!(named(document.root(), "script").count(), 2);
+}
+
+#[test]
+fn the_coaxial_mixer_keeps_every_unit_s_thrust_and_the_conventional_one_does_not() {
+    let compiled = x8();
+    let study = Study::new(&compiled, None);
+    assert_eq!(study.thrust_n, 40.0);
+    let comparison = Comparison::sweep(&study, 41).unwrap();
+    let tolerance = compiled.airframe.inverse.thrust_tolerance_n;
+    let (first, last) = (&comparison.rows[0], &comparison.rows[40]);
+    assert!(
+        first.yaw_nm < -0.5 && last.yaw_nm > 0.5,
+        "{} {}",
+        first.yaw_nm,
+        last.yaw_nm
+    );
+    let mut spread = 0.0f64;
+    for row in &comparison.rows {
+        assert!(row.coaxial.within);
+        for [f, _] in &row.coaxial.efforts {
+            assert!((f - 10.0).abs() <= tolerance, "{f} N at {} N m", row.yaw_nm);
+        }
+        assert!((row.coaxial.wrench[2] - row.yaw_nm).abs() <= 4.0 * 1e-4);
+        let thrusts = row.conventional.efforts.iter().map(|[f, _]| *f);
+        let [low, high] = cargo_mixer::report::number::range(thrusts);
+        spread = spread.max(high - low);
+        // The lower rotor works in the wake of the upper one, which this mixer does not know.
+        assert!(row.conventional.wrench[3] < 36.0, "{:?}", row.conventional.wrench);
+    }
+    assert!(spread > 1.5, "{spread}");
+}
+
+#[test]
+fn the_conventional_mixer_is_the_oracle_s() {
+    let asked = [
+        [0.0, 0.0, 0.0, 31.4],
+        [0.0, 0.0, 0.3, 31.4],
+        [0.5, 0.0, 0.0, 31.4],
+        [1.0, -0.5, 0.2, 40.0],
+        [0.2, 0.1, -0.4, 55.0],
+    ];
+    let mut rows = String::from("roll_nm,pitch_nm,yaw_nm,thrust_n\n");
+    for [roll, pitch, yaw, thrust] in asked {
+        rows.push_str(&format!("{roll},{pitch},{yaw},{thrust}\n"));
+    }
+    let setpoints = scratch("setpoints.csv");
+    fs::write(&setpoints, rows).unwrap();
+    for name in ["isae-x8", "px4-y6", "px4-x12", "coaxial-bicopter"] {
+        let airframe = root().join(format!("airframes/{name}.toml"));
+        let output = Command::new("python3")
+            .arg(root().join("tests/oracle.py"))
+            .arg("conventional")
+            .args([&airframe, &setpoints])
+            .output()
+            .unwrap_or_else(|error| panic!("the oracle needs python3 (3.11 or later): {error}"));
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let compiled = compiled(&airframe);
+        let study = Study::new(&compiled, None);
+        let conventional = Conventional::new(&compiled);
+        let text = String::from_utf8(output.stdout).unwrap();
+        let lines: Vec<&str> = text.lines().skip(1).collect();
+        assert_eq!(lines.len(), asked.len());
+        for (line, asked) in lines.iter().zip(asked) {
+            let expected: Vec<f64> = line
+                .split(',')
+                .skip(4)
+                .map(|cell| cell.parse().unwrap())
+                .collect();
+            let (throttles, _) = conventional.throttles(asked);
+            let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
+            for (given, expected) in study.wrench(&efforts).iter().zip(expected) {
+                // The oracle prints four decimals.
+                assert!(
+                    (given - expected).abs() < 6e-5,
+                    "{name}, {asked:?}: {given} is not {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn sweeps_are_rectangular_with_units_in_the_header() {
+    for compiled in airframes() {
+        let study = Study::new(&compiled, None);
+        for figure in [
+            Data::Yaw,
+            Data::Attainable,
+            Data::Authority,
+            Data::Forward,
+            Data::Inverse,
+            Data::Error,
+        ] {
+            let data = sweep(&study, figure).unwrap();
+            let mut reader = csv::Reader::from_reader(data.csv.as_bytes());
+            let header = reader.headers().unwrap().clone();
+            for column in &header {
+                let known = ["_nm", "_n", "_v", "_throttle", "mixer", "throttle_limited"];
+                assert!(known.iter().any(|end| column.ends_with(end)), "{column}");
+            }
+            let mut rows = 0;
+            for record in reader.records() {
+                let record = record.unwrap_or_else(|error| panic!("{figure:?}: {error}"));
+                for (column, cell) in header.iter().zip(&record) {
+                    let free = column == "mixer" || (column == "voltage_v" && cell.is_empty());
+                    assert!(
+                        free || cell.parse::<f64>().is_ok_and(f64::is_finite),
+                        "{column}: {cell}"
+                    );
+                }
+                rows += 1;
+            }
+            assert!(rows >= 50, "{figure:?}: {rows} rows");
+        }
+    }
+}
+
+#[test]
+fn the_error_stays_below_its_bound() {
+    for compiled in airframes() {
+        let study = Study::new(&compiled, None);
+        let summary = mixer_compiler::report::Summary::new(&compiled);
+        let inverse = &compiled.airframe.inverse;
+        let allowed = [
+            summary.proven_thrust_n.unwrap_or(inverse.thrust_tolerance_n),
+            summary.proven_torque_nm.unwrap_or(inverse.torque_tolerance_nm),
+        ];
+        let data = sweep(&study, Data::Error).unwrap();
+        let mut largest = [0.0f64; 2];
+        for line in data.csv.lines().skip(1) {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            largest = [largest[0].max(cells[4].abs()), largest[1].max(cells[5].abs())];
+        }
+        assert!(
+            largest[0] > 0.0 && largest[1] > 0.0,
+            "an inverse without any error"
+        );
+        assert!(
+            largest[0] <= allowed[0] && largest[1] <= allowed[1],
+            "{largest:?} {allowed:?}"
+        );
+    }
+}
+
+fn cargo_mixer(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cargo-mixer"));
+    command.args(arguments).current_dir(root()).output().unwrap()
+}
+
+#[track_caller]
+fn assert_status(output: &Output, status: i32, words: &str) {
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(status), "{text}");
+    assert!(text.contains(words) && !text.contains("panicked"), "{text}");
+}
+
+/// A bench file that is off the model by a known amount: the page shows its points and finds the amount.
+#[test]
+fn bench_points_stand_beside_the_model() {
+    let compiled = x8();
+    let study = Study::new(&compiled, None);
+    let mut bench = String::from("upper,lower,thrust_n,torque_nm\n");
+    for i in 1..=10 {
+        for j in 1..=10 {
+            let (u, l) = (f64::from(i) / 10.0, f64::from(j) / 10.0);
+            let [f, q] = study.pair.efforts([u, l]);
+            let off = if (i + j) % 2 == 0 { 0.1 } else { -0.1 };
+            bench.push_str(&format!("{u},{l},{},{}\n", f + off, q + 0.01 * off));
+        }
+    }
+    // Below the airframe's idle, where the model is not used.
+    bench.push_str("0.05,0.5,3.0,0.02\n");
+    let file = scratch("bench.csv");
+    fs::write(&file, bench).unwrap();
+    let output = scratch("bench.html");
+    let (file, output) = (file.display().to_string(), output.display().to_string());
+    let run = cargo_mixer(&[
+        "report",
+        "airframes/isae-x8.toml",
+        "-o",
+        &output,
+        "--bench",
+        &file,
+    ]);
+    assert_status(&run, 0, "");
+    let page = fs::read_to_string(&output).unwrap();
+    let document = parsed(&page);
+    let dots = document
+        .descendants()
+        .filter(|n| n.attribute("class") == Some("bench-dot"));
+    // Thrust and torque, each as a surface and as a map.
+    assert_eq!(dots.count(), 4 * 100);
+    assert!(page.contains("1 more lie outside the throttle range"));
+    let cells: Vec<&str> = named(document.root(), "td")
+        .filter_map(|cell| cell.text())
+        .collect();
+    for (rms, largest) in [("0.100 N", "0.100 N"), ("0.00100 N m", "0.00100 N m")] {
+        assert!(
+            cells.windows(2).any(|pair| pair == [rms, largest]),
+            "{rms}: {cells:?}"
+        );
+    }
+}
+
+#[test]
+fn bad_input_is_named_and_writes_nothing() {
+    let run = cargo_mixer(&["report", "airframes/isae-x8.toml"]);
+    assert_status(&run, 2, "--output");
+    let run = cargo_mixer(&["report", "airframes/none.toml", "-o", "x.html"]);
+    assert_status(&run, 1, "none.toml");
+    let run = cargo_mixer(&["report", "airframes/isae-x8.toml", "-o", "no/such/folder/x.html"]);
+    assert_status(&run, 1, "no/such/folder/x.html");
+    let output = scratch("unwritten.html").display().to_string();
+    let x8 = "airframes/isae-x8.toml";
+    let run = cargo_mixer(&["report", x8, "-o", &output, "--bench", "airframes/isae-x8.toml"]);
+    assert_status(&run, 1, "isae-x8.toml");
+    assert!(!Path::new(&output).exists());
+    let run = cargo_mixer(&["sweep", x8, "--figure", "yaw", "--thrust", "-3"]);
+    assert_status(&run, 2, "--thrust");
+    let run = cargo_mixer(&["sweep", x8, "--figure", "yaw", "--thrust", "500"]);
+    assert_status(&run, 1, "no yaw to sweep");
+    let run = cargo_mixer(&["sweep", x8, "--figure", "nothing"]);
+    assert_status(&run, 2, "attainable");
+}
+
+#[test]
+fn an_airframe_without_yaw_says_so() {
+    let text = fs::read_to_string(root().join("airframes/coaxial-bicopter.toml")).unwrap();
+    let text = text.replace("[\"roll\", \"yaw\", \"thrust\"]", "[\"roll\", \"thrust\"]");
+    let compiled = compile_text(&text);
+    let study = Study::new(&compiled, None);
+    assert!(page(&study, None).contains("Yaw is not a served axis"));
+    assert!(
+        sweep(&study, Data::Yaw)
+            .unwrap_err()
+            .contains("does not serve yaw")
+    );
+}
+
+/// The static comparison goes beside the CSV: to stdout when the CSV is a file, else to stderr.
+#[test]
+fn the_yaw_sweep_prints_its_table() {
+    let output = scratch("yaw.csv").display().to_string();
+    let x8 = "airframes/isae-x8.toml";
+    let run = cargo_mixer(&["sweep", x8, "--figure", "yaw", "-o", &output]);
+    assert_status(&run, 0, "");
+    let table = String::from_utf8(run.stdout).unwrap();
+    assert!(
+        table.starts_with("40 N asked in all") && table.is_ascii(),
+        "{table}"
+    );
+    assert_eq!(table.lines().count(), 2 + 2 * 9, "{table}");
+    let run = cargo_mixer(&["sweep", x8, "--figure", "yaw"]);
+    assert_status(&run, 0, &table);
+    assert_eq!(run.stdout, fs::read(&output).unwrap());
+}

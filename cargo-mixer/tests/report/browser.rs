@@ -1,0 +1,119 @@
+//! The page in headless Chromium: no console message, and values under the pointer.
+//!
+//! Without a browser this prints that it did not run; it fails where `MIXER_BROWSER=1` or `CI=true` asks for it.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+use cargo_mixer::report::page::page;
+use cargo_mixer::report::study::Study;
+
+use super::{airframes, scratch};
+
+/// Moves the pointer over every picture that answers, and lists what it says in the page's own text.
+const POINTER: &str = r#"<script>
+for (const svg of document.querySelectorAll('svg[data-hover]:not([data-hover=""])')) {
+  const [left, top, width, height] = svg.dataset.box.split(" ").map(Number);
+  const at = new DOMPoint(left + 0.42 * width, top + 0.48 * height).matrixTransform(svg.getScreenCTM());
+  svg.dispatchEvent(new PointerEvent("pointermove", { clientX: at.x, clientY: at.y }));
+}
+</script></body>"#;
+
+fn browser() -> Option<PathBuf> {
+    let named = env::var_os("MIXER_CHROMIUM").map(PathBuf::from);
+    let folders = env::var_os("PATH").unwrap_or_default();
+    let installed = env::split_paths(&folders)
+        .flat_map(|folder| ["chromium", "chromium-browser", "google-chrome"].map(|name| folder.join(name)))
+        .find(|path| path.is_file());
+    named.or(installed)
+}
+
+/// Opens a page; its DOM after the scripts ran, and the messages on its console.
+fn open(browser: &Path, page: &Path) -> (String, Vec<String>) {
+    let profile = page.with_extension("profile");
+    let mut command = Command::new(browser);
+    command.args([
+        "--headless=new",
+        "--disable-gpu",
+        "--no-first-run",
+        "--window-size=1300,900",
+    ]);
+    // A container has neither the privileges of the sandbox nor the shared memory.
+    command.args(["--no-sandbox", "--disable-dev-shm-usage"]);
+    command.args([
+        "--enable-logging=stderr",
+        "--virtual-time-budget=4000",
+        "--dump-dom",
+    ]);
+    command.arg(format!("--user-data-dir={}", profile.display()));
+    let address = format!("file://{}", page.canonicalize().unwrap().display());
+    let output = command.arg(address).output().unwrap();
+    let _ = fs::remove_dir_all(&profile);
+    let messages = String::from_utf8_lossy(&output.stderr)
+        .lines()
+        .filter(|line| line.contains("CONSOLE"))
+        .map(str::to_owned)
+        .collect();
+    (String::from_utf8_lossy(&output.stdout).into_owned(), messages)
+}
+
+#[test]
+fn pages_open_without_errors_and_show_values() {
+    let Some(browser) = browser() else {
+        let asked =
+            env::var("MIXER_BROWSER").is_ok_and(|x| x == "1") || env::var("CI").is_ok_and(|x| x == "true");
+        let hint = "no chromium in PATH or MIXER_CHROMIUM: apt-get install chromium";
+        assert!(!asked, "{hint}");
+        println!("NOT RUN: {hint}");
+        return;
+    };
+    for compiled in airframes() {
+        let name = compiled.airframe.name.clone();
+        let html = page(&Study::new(&compiled, None), None);
+        let path = scratch(&format!("{name}.html"));
+        fs::write(&path, html.replace("</body>", POINTER)).unwrap();
+        let (dom, messages) = open(&browser, &path);
+        assert!(messages.is_empty(), "{name}: {messages:#?}");
+        let answers: Vec<&str> = dom
+            .split("<div class=\"readout\" aria-live=\"polite\">")
+            .skip(1)
+            .map(|rest| rest.split("</div>").next().unwrap_or_default())
+            .collect();
+        assert!(answers.len() >= 10, "{name}: {answers:?}");
+        for answer in &answers {
+            assert!(
+                answer.contains(" N") || answer.contains("(N"),
+                "{name}: {answers:#?}"
+            );
+            assert!(!answer.contains("NaN"), "{name}: {answers:#?}");
+        }
+        assert!(
+            answers.iter().any(|text| text.contains("misses about")),
+            "{name}: {answers:#?}"
+        );
+    }
+
+    // The test can fail: a broken script and a reference to outside are both told.
+    let broken = scratch("broken.html");
+    let html = page(&Study::new(&airframes()[0], None), None);
+    fs::write(
+        &broken,
+        html.replace("document.getElementById(\"model\")", "document.nothing.there"),
+    )
+    .unwrap();
+    let (_, messages) = open(&browser, &broken);
+    assert!(
+        messages.iter().any(|text| text.contains("TypeError")),
+        "{messages:#?}"
+    );
+    let outside = "<script src=\"https://example.org/x.js\"></script></body>";
+    fs::write(&broken, html.replace("</body>", outside)).unwrap();
+    let (_, messages) = open(&browser, &broken);
+    assert!(
+        messages
+            .iter()
+            .any(|text| text.contains("Content Security Policy")),
+        "{messages:#?}"
+    );
+}
