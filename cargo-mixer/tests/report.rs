@@ -6,8 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::{env, fs};
 
-use cargo_mixer::report::comparison::Comparison;
-use cargo_mixer::report::conventional::Conventional;
 use cargo_mixer::report::page::{SECTIONS, page};
 use cargo_mixer::report::study::Study;
 use cargo_mixer::sweep::{Data, sweep};
@@ -16,6 +14,8 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 #[path = "report/browser.rs"]
 mod browser;
+#[path = "report/mixers.rs"]
+mod mixers;
 #[path = "report/pictures.rs"]
 mod pictures;
 
@@ -172,89 +172,6 @@ fn text_of_the_airframe_is_no_markup() {
         "{lead:?}"
     );
     assert_eq!(named(document.root(), "script").count(), 2);
-}
-
-#[test]
-fn the_coaxial_mixer_keeps_every_unit_s_thrust_and_the_conventional_one_does_not() {
-    let compiled = x8();
-    let study = Study::new(&compiled, None);
-    assert_eq!(study.thrust_n, 40.0);
-    let comparison = Comparison::sweep(&study, 41).unwrap();
-    let tolerance = compiled.airframe.inverse.thrust_tolerance_n;
-    let (first, last) = (&comparison.rows[0], &comparison.rows[40]);
-    assert!(
-        first.yaw_nm < -0.5 && last.yaw_nm > 0.5,
-        "{} {}",
-        first.yaw_nm,
-        last.yaw_nm
-    );
-    let mut spread = 0.0f64;
-    for row in &comparison.rows {
-        assert!(row.coaxial.within);
-        for [f, _] in &row.coaxial.efforts {
-            assert!((f - 10.0).abs() <= tolerance, "{f} N at {} N m", row.yaw_nm);
-        }
-        assert!((row.coaxial.wrench[2] - row.yaw_nm).abs() <= 4.0 * 1e-4);
-        let thrusts = row.conventional.efforts.iter().map(|[f, _]| *f);
-        let [low, high] = cargo_mixer::report::number::range(thrusts);
-        spread = spread.max(high - low);
-        // The lower rotor works in the wake of the upper one, which this mixer does not know.
-        assert!(row.conventional.wrench[3] < 36.0, "{:?}", row.conventional.wrench);
-    }
-    assert!(spread > 1.5, "{spread}");
-}
-
-#[test]
-fn the_conventional_mixer_is_the_oracle_s() {
-    let asked = [
-        [0.0, 0.0, 0.0, 31.4],
-        [0.0, 0.0, 0.3, 31.4],
-        [0.5, 0.0, 0.0, 31.4],
-        [1.0, -0.5, 0.2, 40.0],
-        [0.2, 0.1, -0.4, 55.0],
-    ];
-    let mut rows = String::from("roll_nm,pitch_nm,yaw_nm,thrust_n\n");
-    for [roll, pitch, yaw, thrust] in asked {
-        rows.push_str(&format!("{roll},{pitch},{yaw},{thrust}\n"));
-    }
-    let setpoints = scratch("setpoints.csv");
-    fs::write(&setpoints, rows).unwrap();
-    for name in ["isae-x8", "px4-y6", "px4-x12", "coaxial-bicopter"] {
-        let airframe = root().join(format!("airframes/{name}.toml"));
-        let output = Command::new("python3")
-            .arg(root().join("tests/oracle.py"))
-            .arg("conventional")
-            .args([&airframe, &setpoints])
-            .output()
-            .unwrap_or_else(|error| panic!("the oracle needs python3 (3.11 or later): {error}"));
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        let compiled = compiled(&airframe);
-        let study = Study::new(&compiled, None);
-        let conventional = Conventional::new(&compiled);
-        let text = String::from_utf8(output.stdout).unwrap();
-        let lines: Vec<&str> = text.lines().skip(1).collect();
-        assert_eq!(lines.len(), asked.len());
-        for (line, asked) in lines.iter().zip(asked) {
-            let expected: Vec<f64> = line
-                .split(',')
-                .skip(4)
-                .map(|cell| cell.parse().unwrap())
-                .collect();
-            let (throttles, _) = conventional.throttles(asked);
-            let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
-            for (given, expected) in study.wrench(&efforts).iter().zip(expected) {
-                // The oracle prints four decimals.
-                assert!(
-                    (given - expected).abs() < 6e-5,
-                    "{name}, {asked:?}: {given} is not {expected}"
-                );
-            }
-        }
-    }
 }
 
 #[test]

@@ -4,15 +4,17 @@
 //! paper; those of colour maps are part of the data and written out. `data-` attributes tell the page's script how
 //! pixels become quantities.
 
+mod bar;
 mod path;
 
 use std::fmt::Write as _;
 
+use self::bar::Bar;
 use self::path::Label;
 use super::number::{Ticks, escaped, pixel};
 
 /// Room around the plot for labels, px: left, top, right, bottom.
-const MARGIN: [f64; 4] = [68.0, 14.0, 16.0, 46.0];
+const MARGIN: [f64; 4] = [74.0, 14.0, 16.0, 46.0];
 
 /// Room for a colour bar at the right, px.
 const BAR_ROOM: f64 = 86.0;
@@ -46,16 +48,6 @@ pub struct Figure {
     hover: String,
     /// Where values stand on iso-curves.
     labels: Vec<[f64; 2]>,
-}
-
-#[derive(Clone, Debug)]
-struct Bar {
-    label: String,
-    /// (value, text).
-    ticks: Vec<(f64, String)>,
-    range: [f64; 2],
-    /// (lower end, upper end, colour).
-    bands: Vec<(f64, f64, String)>,
 }
 
 impl Figure {
@@ -249,15 +241,7 @@ impl Figure {
 
     /// The colour bar of a map: bands `(low, high, colour)` in ascending order, ticks `(value, text)`.
     pub fn colour_bar(&mut self, label: &str, bands: Vec<(f64, f64, String)>, ticks: Vec<(f64, String)>) {
-        if let (Some(first), Some(last)) = (bands.first(), bands.last()) {
-            let range = [first.0, last.1];
-            self.bar = Some(Bar {
-                label: label.to_owned(),
-                ticks,
-                range,
-                bands,
-            });
-        }
+        self.bar = Bar::new(label, bands, ticks);
     }
 
     /// The picture for a page that has the classes.
@@ -288,7 +272,10 @@ impl Figure {
         self.frame(&mut svg);
         svg.push_str(&self.layers);
         svg.push_str(&self.above);
-        self.bar(&mut svg);
+        if let Some(bar) = &self.bar {
+            let left = MARGIN[0] + self.size[0] + 14.0;
+            bar.draw(&mut svg, [left, MARGIN[1]], self.size[1]);
+        }
         for (row, entries) in rows.iter().enumerate() {
             let y = MARGIN[1] + height + MARGIN[3] + LEGEND_ROW * (row as f64 + 0.4);
             for (left, (class, name)) in entries {
@@ -363,45 +350,14 @@ impl Figure {
         );
     }
 
-    fn bar(&self, svg: &mut String) {
-        let Some(bar) = &self.bar else { return };
-        let left = MARGIN[0] + self.size[0] + 14.0;
-        let span = bar.range[1] - bar.range[0];
-        let y = |value: f64| MARGIN[1] + self.size[1] * (1.0 - (value - bar.range[0]) / span);
-        for (low, high, colour) in &bar.bands {
-            let _ = writeln!(
-                svg,
-                "<rect x=\"{left}\" y=\"{:.1}\" width=\"12\" height=\"{:.1}\" fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\".5\"/>",
-                y(*high),
-                y(*low) - y(*high)
-            );
-        }
-        for (value, text) in &bar.ticks {
-            let _ = writeln!(
-                svg,
-                "<text class=\"tick\" x=\"{}\" y=\"{:.1}\" dy=\".35em\">{}</text>",
-                left + 17.0,
-                y(*value),
-                text
-            );
-        }
-        let _ = writeln!(
-            svg,
-            "<text class=\"label\" transform=\"translate({} {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-            left + 66.0,
-            MARGIN[1] + self.size[1] / 2.0,
-            escaped(&bar.label)
-        );
-    }
-
     /// Legend entries by rows, each with its distance from the left edge of the plot.
     fn legend_rows(&self) -> Vec<Vec<(f64, &(String, String))>> {
         let mut rows: Vec<Vec<(f64, &(String, String))>> = Vec::new();
         let mut left = f64::INFINITY;
         for entry in &self.legend {
-            // A letter of 12 px type is about 6.4 px wide.
-            let width = 28.0 + 6.4 * entry.1.chars().count() as f64 + 18.0;
-            if left + width > self.size[0] + 40.0 {
+            // A letter of 12 px type is at most 6.8 px wide on average.
+            let width = 28.0 + 6.8 * entry.1.chars().count() as f64 + 18.0;
+            if left + width > self.size[0] + MARGIN[2] + 18.0 {
                 rows.push(Vec::new());
                 left = 0.0;
             }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use mixer_compiler::airframe::{Airframe, Spin, Unit};
 
 use super::figure::Figure;
-use super::number::{fixed, range};
+use super::number::fixed;
 
 /// The airframe seen from above, forward up.
 pub fn layout(airframe: &Airframe) -> Figure {
@@ -17,7 +17,10 @@ pub fn layout(airframe: &Airframe) -> Figure {
         .collect();
     let radius = disk_radius(&places);
     let extent = |k: usize| {
-        let [low, high] = range(places.iter().map(|place| place[k]).chain([0.0]));
+        // The centre of gravity is always in view.
+        let [low, high] = places.iter().fold([0.0f64; 2], |[low, high], place| {
+            [low.min(place[k]), high.max(place[k])]
+        });
         [low - 1.45 * radius, high + 1.45 * radius]
     };
     let mut figure = Figure::new(
@@ -36,15 +39,16 @@ pub fn layout(airframe: &Airframe) -> Figure {
     let per_metre = figure.at([1.0, 0.0])[0] - cx;
     for (index, (unit, &place)) in airframe.units.iter().zip(&places).enumerate() {
         let [x, y] = figure.at(place);
-        figure.raw(&drawn(unit, index, [x, y], radius * per_metre));
+        let covers_centre = libm::hypot(place[0], place[1]) < radius;
+        figure.raw(&drawn(unit, index, [x, y], radius * per_metre, covers_centre));
     }
-    // A vehicle of one unit has its centre under the rotors: the arrow then stands above them.
-    let start = if places.iter().any(|p| libm::hypot(p[0], p[1]) < radius) {
-        1.12 * radius * per_metre
+    // Where rotors cover the centre, as on a vehicle of one unit, the arrow stands in front of them.
+    let covered = places.iter().any(|p| libm::hypot(p[0], p[1]) < radius);
+    let (start, length) = if covered {
+        (1.06 * radius * per_metre, 0.3 * radius * per_metre)
     } else {
-        0.0
+        (0.0, (0.55 * radius * per_metre).max(22.0))
     };
-    let length = (0.55 * radius * per_metre).max(22.0);
     figure.raw(&format!(
         "<circle class=\"centre\" cx=\"{cx:.1}\" cy=\"{cy:.1}\" r=\"3\"><title>centre of gravity</title></circle>\
          <path class=\"forward\" d=\"M{cx:.1} {:.1}v{:.1}m-6 9l6 -11l6 11\"/>",
@@ -73,8 +77,9 @@ fn disk_radius(places: &[[f64; 2]]) -> f64 {
     }
 }
 
-/// One unit as SVG: two rings with arrows, its number and channels.
-fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64) -> String {
+/// One unit as SVG: two rings with arrows, its number and channels, apart where the centre of gravity is between them.
+fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, covers_centre: bool) -> String {
+    let gap = if covers_centre { 7.0 } else { 0.0 };
     let mut svg = String::new();
     let [px, py, pz] = unit.position_m;
     let _ = write!(
@@ -113,8 +118,8 @@ fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64) -> String {
         svg,
         "<text class=\"unit\" x=\"{x:.1}\" y=\"{:.1}\">unit {index}</text>\
          <text class=\"channel\" x=\"{x:.1}\" y=\"{:.1}\">\u{2191}{}  \u{2193}{}</text></g>",
-        y - 3.0,
-        y + 13.0,
+        y - 3.0 - gap,
+        y + 13.0 + gap,
         unit.upper_channel,
         unit.lower_channel
     );

@@ -1,12 +1,12 @@
 //! Colour maps: forward (Fig. 3 and 4 of the paper), inverse over the attainable set (Fig. 5), error of the inverse.
 
-use mixer_compiler::report::Summary;
+use mixer_compiler::report::{Summary, rounded_up};
 
 use super::bench::BenchPoints;
 use super::colour::Scale;
 use super::field::{Field, Painting, paint};
 use super::figure::Figure;
-use super::number::{range, shortest, significant, widened};
+use super::number::{range, shortest, widened};
 use super::study::Study;
 
 /// Points per side of the grid from which smooth maps are traced.
@@ -171,7 +171,7 @@ fn log_ticks(bound: f64) -> Vec<(f64, String)> {
         // Not on top of the bound's own tick.
         .filter(|(place, _)| (-DECADES - 1e-9..-0.08).contains(place))
         .collect();
-    ticks.push((0.0, significant(bound, 3)));
+    ticks.push((0.0, rounded_up(bound)));
     ticks
 }
 

@@ -11,6 +11,7 @@ use super::authority;
 use super::bench::BenchPoints;
 use super::comparison::Comparison;
 use super::figure::Figure;
+use super::front;
 use super::layout;
 use super::maps::{self, Effort};
 use super::number::{escaped, shortest};
@@ -250,8 +251,9 @@ fn error_section(study: &Study<'_>, fields: &[super::field::Field; 2]) -> String
         })
         .collect();
     let text = "<p>What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
-         precision as on the target, the map in double precision.</p>\n";
-    text.to_owned() + &figures(&plots)
+         precision as on the target, the map in double precision. \
+         Colours are logarithmic over two decades up to the bound.</p>\n";
+    text.to_owned() + &figures(&plots) + &table::front(&front::front(study))
 }
 
 /// What the script needs: the forward map and the error on its grid.

@@ -6,6 +6,7 @@ use mixer_compiler::report::{Summary, rounded_up};
 
 use super::bench::BenchPoints;
 use super::comparison::{Answer, Comparison};
+use super::front::Candidate;
 use super::maps::Effort;
 use super::number::{escaped, fixed, shortest, significant};
 use super::study::Study;
@@ -213,7 +214,7 @@ fn lines(comparison: &Comparison) -> Vec<Line> {
 /// The static comparison as HTML.
 pub fn comparison(comparison: &Comparison) -> String {
     let caption = format!(
-        "{} N asked in all; conventional: \u{3ba} = {} m. * a throttle is at its limit",
+        "{} N asked in all; conventional: \u{3ba} = {} m. An asterisk: a throttle is at its limit",
         shortest(comparison.thrust_n),
         significant(comparison.kappa_m, 4)
     );
@@ -247,7 +248,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
         })
         .collect();
     let mut text = format!(
-        "{} N asked in all, reference voltage; conventional: kappa = {} m; * a throttle is at its limit\n",
+        "{} N asked in all, reference voltage; conventional: kappa = {} m; *: a throttle is at its limit\n",
         shortest(comparison.thrust_n),
         significant(comparison.kappa_m, 4)
     );
@@ -261,6 +262,40 @@ pub fn comparison_text(comparison: &Comparison) -> String {
     }
     // A terminal and its tools know the hyphen.
     text.replace('\u{2212}', "-")
+}
+
+/// The evaluators to choose from.
+pub fn front(candidates: &[Candidate]) -> String {
+    let header = [
+        "evaluator",
+        "thrust missed (N)",
+        "torque missed (N m)",
+        "tables (bytes)",
+        "",
+    ]
+    .map(str::to_owned);
+    let rows: Vec<Vec<String>> = candidates
+        .iter()
+        .map(|candidate| {
+            let verdict = match (candidate.chosen, candidate.within) {
+                (true, _) => "chosen",
+                (false, true) => "within tolerance",
+                (false, false) => "",
+            };
+            vec![
+                escaped(&candidate.description),
+                rounded_up(candidate.error[0]),
+                rounded_up(candidate.error[1]),
+                candidate.table_bytes.to_string(),
+                verdict.to_owned(),
+            ]
+        })
+        .collect();
+    table(
+        "Evaluators by ascending cost on a Cortex-M4F, with the largest error observed over the attainable set",
+        &header,
+        &rows,
+    )
 }
 
 /// Model against bench.
