@@ -23,6 +23,7 @@ fn pictures(root: &Path) -> Result<gallery::Files, Box<dyn Error>> {
     for entry in fs::read_dir(root.join("airframes"))? {
         paths.push(entry?.path());
     }
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     paths.sort();
     let airframes = paths
         .iter()

@@ -36,6 +36,8 @@ pub struct Row {
 pub struct Comparison {
     /// Total thrust asked, N.
     pub thrust_n: f64,
+    /// Thrust of each unit in the least-norm efforts for that thrust alone, N: T / n on vertical axes alike.
+    pub share_n: Vec<f64>,
     /// Torque per thrust that the conventional mixer assumes, m.
     pub kappa_m: f64,
     /// By ascending yaw.
@@ -69,15 +71,15 @@ impl Comparison {
             .collect();
         Some(Comparison {
             thrust_n: study.thrust_n,
+            share_n: (0..study.compiled.airframe.units.len())
+                .map(|unit| {
+                    study.compiled.effectiveness.pseudo_inverse[(unit, Axis::Thrust as usize)]
+                        * study.thrust_n
+                })
+                .collect(),
             kappa_m: conventional.kappa_m(),
             rows,
         })
-    }
-
-    /// Thrust asked of each unit by the least norm with no yaw, N: where the coaxial mixer keeps it.
-    pub fn thrust_per_unit(&self) -> f64 {
-        let units = self.rows.first().map_or(1, |row| row.coaxial.efforts.len());
-        self.thrust_n / units as f64
     }
 }
 

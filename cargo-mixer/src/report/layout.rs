@@ -40,7 +40,8 @@ pub fn layout(airframe: &Airframe) -> Figure {
     for (index, (unit, &place)) in airframe.units.iter().zip(&places).enumerate() {
         let [x, y] = figure.at(place);
         let covers_centre = libm::hypot(place[0], place[1]) < radius;
-        figure.raw(&drawn(unit, index, [x, y], radius * per_metre, covers_centre));
+        let crowded = covers_centre || tilted(unit);
+        figure.raw(&drawn(unit, index, [x, y], radius * per_metre, crowded));
     }
     // Where rotors cover the centre, as on a vehicle of one unit, the arrow stands in front of them.
     let covered = places.iter().any(|p| libm::hypot(p[0], p[1]) < radius);
@@ -77,9 +78,10 @@ fn disk_radius(places: &[[f64; 2]]) -> f64 {
     }
 }
 
-/// One unit as SVG: two rings with arrows, its number and channels, apart where the centre of gravity is between them.
-fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, covers_centre: bool) -> String {
-    let gap = if covers_centre { 7.0 } else { 0.0 };
+/// One unit as SVG: two rings with arrows, its number and channels, apart where something else is drawn
+/// between them.
+fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool) -> String {
+    let gap = if crowded { 7.0 } else { 0.0 };
     let mut svg = String::new();
     let [px, py, pz] = unit.position_m;
     let _ = write!(
@@ -102,7 +104,7 @@ fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, covers_centre
         0.78 * radius,
     ));
     let [ax, ay, _] = unit.axis;
-    if libm::hypot(ax, ay) > 1e-6 {
+    if tilted(unit) {
         // The horizontal part of a unit thrust, at the drawing's scale of one radius.
         let _ = write!(
             svg,
@@ -126,7 +128,12 @@ fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, covers_centre
     svg
 }
 
-/// Three quarters of a circle with an arrow head.
+/// Whether the thrust axis has a horizontal part.
+fn tilted(unit: &Unit) -> bool {
+    libm::hypot(unit.axis[0], unit.axis[1]) > 1e-6
+}
+
+/// Two thirds of a circle with an arrow head.
 fn spin_arc(class: &str, spin: Spin, [x, y]: [f64; 2], radius: f64) -> String {
     // Degrees clockwise on the screen from the right.
     let (start, end, sweep) = match spin {

@@ -16,9 +16,9 @@ pub fn significant(x: f64, digits: usize) -> String {
     }
 }
 
-/// `x` with six significant digits at most and no zeros at the end.
+/// `x` with four significant digits at most and no zeros at the end.
 pub fn shortest(x: f64) -> String {
-    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
     signed(rounded.to_string())
 }
 

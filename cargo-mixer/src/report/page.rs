@@ -157,7 +157,8 @@ fn authority_section(study: &Study<'_>) -> String {
         .filter_map(|axis| plots::authority(study, &all, axis))
         .map(|figure| shown(&figure, ""))
         .collect();
-    let text = "<p>The largest torque about one axis that the compiled mixer delivers in full while it holds the thrust and no \
+    let text = "<p>The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
+         holds the thrust and no \
          other torque is asked, found by asking the mixer itself, at the reference voltage.</p>\n";
     text.to_owned() + &figures(&plots).replacen("figures", "figures three", 1)
 }

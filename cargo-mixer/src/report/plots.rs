@@ -88,18 +88,28 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
         .iter()
         .flat_map(|row| row.coaxial.efforts.iter().chain(&row.conventional.efforts))
         .map(|efforts| efforts[0]);
-    let asked = comparison.thrust_per_unit();
+    // Units that share the thrust alike have one line.
+    let mut shares = comparison.share_n.clone();
+    shares.sort_by(f64::total_cmp);
+    shares.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * comparison.thrust_n);
     let [low, high] = yaw_range(comparison);
     let mut figure = Figure::new(
         "Thrust of every unit over the yaw asked",
         ("yaw asked (N m)", [low, high]),
         (
             "thrust of a unit (N)",
-            widened(range(thrusts.chain([asked])), 0.08),
+            widened(range(thrusts.chain(shares.iter().copied())), 0.08),
         ),
     )
     .hovering("curves");
-    figure.level("reference", &format!("asked: {} N each", shortest(asked)), asked);
+    for &share in &shares {
+        let each = if shares.len() == 1 { " each" } else { "" };
+        figure.level(
+            "reference",
+            &format!("share of the thrust: {} N{each}", shortest(share)),
+            share,
+        );
+    }
     for (name, class, answer) in MIXERS {
         let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
         for (count, (curve, of)) in distinct(comparison, units, answer).into_iter().enumerate() {
@@ -128,7 +138,7 @@ fn distinct(
             other
                 .iter()
                 .zip(&curve)
-                .all(|(a, b)| (a[1] - b[1]).abs() < 2e-3 * comparison.thrust_per_unit())
+                .all(|(a, b)| (a[1] - b[1]).abs() < 5e-4 * comparison.thrust_n)
         };
         match curves.iter_mut().find(|(other, _)| same(other)) {
             Some((_, of)) => of.push(unit),
