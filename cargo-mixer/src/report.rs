@@ -1,6 +1,6 @@
 //! `cargo mixer report`: an airframe in pictures, one self-contained page.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use crate::identify::fragment::write_atomically;
@@ -46,6 +46,9 @@ pub struct ReportArgs {
 
 /// Runs the command.
 pub fn run(args: &ReportArgs) -> ExitCode {
+    if let Some(status) = overwriting(&args.output, args.bench.iter().chain([&args.airframe])) {
+        return status;
+    }
     let compiled = match crate::compile(&args.airframe) {
         Ok(compiled) => compiled,
         Err(refusal) => return refusal.report(),
@@ -63,6 +66,24 @@ pub fn run(args: &ReportArgs) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => crate::complain(format_args!("{}: {error}", args.output.display())),
     }
+}
+
+/// Complains where the output is one of the inputs; the exit status for bad usage.
+pub(crate) fn overwriting<'a>(
+    output: &Path,
+    inputs: impl IntoIterator<Item = &'a PathBuf>,
+) -> Option<ExitCode> {
+    let same = |input: &PathBuf| match (input.canonicalize(), output.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => input == output,
+    };
+    inputs.into_iter().any(same).then(|| {
+        crate::complain(format_args!(
+            "{} is an input and would be overwritten",
+            output.display()
+        ));
+        ExitCode::from(2)
+    })
 }
 
 /// A thrust on the command line, N.

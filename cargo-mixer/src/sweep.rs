@@ -14,7 +14,7 @@ use crate::report::maps::ERROR_SIDE;
 use crate::report::page::{THRUSTS, YAW_COMMANDS};
 use crate::report::study::Study;
 use crate::report::table::comparison_text;
-use crate::report::thrust;
+use crate::report::{overwriting, thrust};
 
 /// Writes the data of a figure as CSV, with units in the header
 ///
@@ -63,6 +63,10 @@ const SIDE: usize = 41;
 
 /// Runs the command.
 pub fn run(args: &SweepArgs) -> ExitCode {
+    let overwriting = |output: &PathBuf| overwriting(output, [&args.airframe]);
+    if let Some(status) = args.output.as_ref().and_then(overwriting) {
+        return status;
+    }
     let compiled = match crate::compile(&args.airframe) {
         Ok(compiled) => compiled,
         Err(refusal) => return refusal.report(),

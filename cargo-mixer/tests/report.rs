@@ -318,6 +318,13 @@ fn bad_input_is_named_and_writes_nothing() {
     let run = cargo_mixer(&["report", x8, "-o", &output, "--bench", "airframes/isae-x8.toml"]);
     assert_status(&run, 1, "isae-x8.toml");
     assert!(!Path::new(&output).exists());
+    let copy = scratch("copy.toml").display().to_string();
+    fs::copy(root().join(x8), &copy).unwrap();
+    for command in [&["report"][..], &["sweep", "--figure", "yaw"]] {
+        let run = cargo_mixer(&[command, &[&copy, "-o", &copy]].concat());
+        assert_status(&run, 2, "would be overwritten");
+        assert_eq!(fs::read(&copy).unwrap(), fs::read(root().join(x8)).unwrap());
+    }
     let run = cargo_mixer(&["sweep", x8, "--figure", "yaw", "--thrust", "-3"]);
     assert_status(&run, 2, "--thrust");
     let run = cargo_mixer(&["sweep", x8, "--figure", "yaw", "--thrust", "500"]);
