@@ -12,7 +12,6 @@ pub mod comparison;
 pub mod conventional;
 pub mod field;
 pub mod figure;
-pub mod front;
 pub mod gallery;
 pub mod layout;
 pub mod maps;

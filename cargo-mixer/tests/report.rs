@@ -223,11 +223,7 @@ fn the_error_stays_below_its_bound() {
     for compiled in airframes() {
         let study = Study::new(&compiled, None);
         let summary = mixer_compiler::report::Summary::new(&compiled);
-        let inverse = &compiled.airframe.inverse;
-        let allowed = [
-            summary.proven_thrust_n.unwrap_or(inverse.thrust_tolerance_n),
-            summary.proven_torque_nm.unwrap_or(inverse.torque_tolerance_nm),
-        ];
+        let allowed = summary.certificate.bound_at_reference;
         let data = sweep(&study, Data::Error).unwrap();
         let mut largest = [0.0f64; 2];
         for line in data.csv.lines().skip(1) {

@@ -130,7 +130,7 @@ pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
     let mut figure = over_efforts(study, title[effort as usize], [1.0, 1.0])
         .sized(300.0, 260.0)
         .hovering(["error-thrust", "error-torque"][effort as usize]);
-    let (bound, _) = error_bound(study, effort);
+    let bound = error_bound(study, effort);
     let (factor, prefix) = prefixed(bound);
     let decades = |x: f64| libm::log10(x / bound).max(-DECADES);
     let mut values = field.values().iter();
@@ -181,14 +181,9 @@ fn outline(study: &Study<'_>, figure: &mut Figure) {
     figure.outline("border", "", &border);
 }
 
-/// The bound of the error in N or N m, and whether it is proven rather than observed.
-pub fn error_bound(study: &Study<'_>, effort: Effort) -> (f64, bool) {
-    let summary = Summary::new(study.compiled);
-    let (proven, observed) = match effort {
-        Effort::Thrust => (summary.proven_thrust_n, summary.observed_thrust_n),
-        Effort::Torque => (summary.proven_torque_nm, summary.observed_torque_nm),
-    };
-    proven.map_or((observed, false), |bound| (bound, true))
+/// The proven bound of the error at the reference voltage, N or N m.
+pub fn error_bound(study: &Study<'_>, effort: Effort) -> f64 {
+    Summary::new(study.compiled).certificate.bound_at_reference[effort as usize]
 }
 
 /// The factor and the prefix with which `x` is a number of one to three digits.

@@ -6,12 +6,12 @@
 use std::fmt::Write as _;
 
 use mixer_compiler::airframe::Axis;
+use mixer_compiler::report::{Summary, rounded_up};
 
 use super::authority;
 use super::bench::BenchPoints;
 use super::comparison::Comparison;
 use super::figure::Figure;
-use super::front;
 use super::layout;
 use super::maps::{self, Effort};
 use super::number::{escaped, shortest};
@@ -237,24 +237,22 @@ fn error_section(study: &Study<'_>, fields: &[super::field::Field; 2]) -> String
         .into_iter()
         .zip(fields)
         .map(|(effort, field)| {
-            let (bound, proven) = maps::error_bound(study, effort);
+            let summary = Summary::new(study.compiled);
+            let observed = [summary.observed_thrust_n, summary.observed_torque_nm][effort as usize];
             let caption = format!(
-                "Largest value {}: {} {}.",
-                if proven {
-                    "proven for every point of the set"
-                } else {
-                    "observed"
-                },
-                mixer_compiler::report::rounded_up(bound),
-                effort.unit()
+                "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}.",
+                rounded_up(maps::error_bound(study, effort)),
+                summary.observed_points,
+                rounded_up(observed),
+                unit = effort.unit()
             );
             shown(&maps::error(study, effort, field), &caption)
         })
         .collect();
     let text = "<p>What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
          precision as on the target, the map in double precision. \
-         Colours are logarithmic over two decades up to the bound.</p>\n";
-    text.to_owned() + &figures(&plots) + &table::front(&front::front(study))
+         Colours are logarithmic over two decades up to the proven bound.</p>\n";
+    text.to_owned() + &figures(&plots) + &table::front(&study.compiled.front())
 }
 
 /// What the script needs: the forward map and the error on its grid.

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
+use mixer_compiler::front::Alternative;
 use mixer_compiler::report::{Summary, rounded_up};
 
 use super::bench::BenchPoints;
 use super::comparison::{Answer, Comparison};
-use super::front::Candidate;
 use super::maps::Effort;
 use super::number::{escaped, fixed, shortest, significant};
 use super::study::Study;
@@ -41,10 +41,6 @@ pub fn summary(study: &Study<'_>) -> String {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let summary = Summary::new(compiled);
-    let bound = |proven: Option<f64>, observed: f64, unit: &str| match proven {
-        Some(bound) => format!("{} {unit} proven", rounded_up(bound)),
-        None => format!("{} {unit} observed", rounded_up(observed)),
-    };
     let inverse = &airframe.inverse;
     let facts = [
         (
@@ -78,9 +74,9 @@ pub fn summary(study: &Study<'_>) -> String {
         (
             "Largest error of one unit",
             format!(
-                "{}, {} at the reference voltage; allowed are {:?} N, {:?} N m at every voltage",
-                bound(summary.proven_thrust_n, summary.observed_thrust_n, "N"),
-                bound(summary.proven_torque_nm, summary.observed_torque_nm, "N m"),
+                "{} N, {} N m at every voltage, proven; allowed are {:?} N, {:?} N m",
+                rounded_up(summary.proven_thrust_n),
+                rounded_up(summary.proven_torque_nm),
                 inverse.thrust_tolerance_n,
                 inverse.torque_tolerance_nm
             ),
@@ -265,37 +261,47 @@ pub fn comparison_text(comparison: &Comparison) -> String {
 }
 
 /// The evaluators to choose from.
-pub fn front(candidates: &[Candidate]) -> String {
+pub fn front(alternatives: &[Alternative]) -> String {
     let header = [
         "evaluator",
-        "thrust missed (N)",
-        "torque missed (N m)",
-        "tables (bytes)",
         "",
-    ]
-    .map(str::to_owned);
-    let rows: Vec<Vec<String>> = candidates
+        "f proven (N)",
+        "observed",
+        "Q proven (N m)",
+        "observed",
+        "bytes",
+    ];
+    let rows: Vec<Vec<String>> = alternatives
         .iter()
-        .map(|candidate| {
-            let verdict = match (candidate.chosen, candidate.within) {
+        .map(|alternative| {
+            let verdict = match (alternative.chosen, alternative.holds) {
                 (true, _) => "chosen",
-                (false, true) => "within tolerance",
+                (false, true) => "would do",
                 (false, false) => "",
             };
+            let proven = alternative.proven.map(|bound| {
+                if bound.is_finite() {
+                    rounded_up(bound)
+                } else {
+                    "none".to_owned()
+                }
+            });
+            let observed = alternative.observed.map(rounded_up);
+            let [[proven_f, proven_q], [observed_f, observed_q]] = [proven, observed];
             vec![
-                escaped(&candidate.description),
-                rounded_up(candidate.error[0]),
-                rounded_up(candidate.error[1]),
-                candidate.table_bytes.to_string(),
+                escaped(&alternative.description),
                 verdict.to_owned(),
+                proven_f,
+                observed_f,
+                proven_q,
+                observed_q,
+                alternative.bytes.to_string(),
             ]
         })
         .collect();
-    table(
-        "Evaluators by ascending cost on a Cortex-M4F, with the largest error observed over the attainable set",
-        &header,
-        &rows,
-    )
+    let caption = "Evaluators by ascending cost on a Cortex-M4F, with what one unit misses over the attainable set: proven at \
+                   every voltage, observed at the reference voltage";
+    table(caption, &header.map(str::to_owned), &rows)
 }
 
 /// Model against bench.
