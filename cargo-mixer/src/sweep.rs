@@ -123,10 +123,10 @@ pub fn sweep(study: &Study<'_>, figure: Data) -> Result<Sweep, String> {
 fn no_yaw(study: &Study<'_>) -> String {
     let name = &study.compiled.airframe.name;
     if study.serves(Axis::Yaw) {
-        let limits = &study.compiled.tables.desaturation;
+        let [floor, ceiling] = study.compiled.thrust_range_n;
         format!(
             "at {} N {name} has no yaw to sweep; its bare thrust is {:.1} to {:.1} N",
-            study.thrust_n, limits.thrust_floor_n, limits.thrust_ceiling_n
+            study.thrust_n, floor, ceiling
         )
     } else {
         format!("{name} does not serve yaw (allocation.axes)")

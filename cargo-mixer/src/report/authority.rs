@@ -22,11 +22,7 @@ const STEPS: usize = 12;
 
 /// Authority at `count` thrusts from the floor to the ceiling.
 pub fn against_thrust(study: &Study<'_>, count: usize) -> Vec<Authority> {
-    let limits = &study.compiled.tables.desaturation;
-    let (low, high) = (
-        f64::from(limits.thrust_floor_n),
-        f64::from(limits.thrust_ceiling_n),
-    );
+    let [low, high] = study.compiled.thrust_range_n.map(f64::from);
     (0..count)
         .map(|k| low + (high - low) * k as f64 / (count - 1) as f64)
         .map(|thrust_n| at(study, thrust_n))

@@ -28,9 +28,8 @@ impl<'a> Study<'a> {
         Study {
             compiled,
             pair: PairMap::new(&airframe.pair, &airframe.throttle),
-            thrust_n: thrust_n.unwrap_or_else(|| {
-                round_half_digit(HOVER_SHARE * f64::from(compiled.tables.desaturation.thrust_ceiling_n))
-            }),
+            thrust_n: thrust_n
+                .unwrap_or_else(|| round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1]))),
         }
     }
 
