@@ -58,7 +58,7 @@ fn toolchain() -> Toolchain {
 #[test]
 fn golden_vectors_have_the_same_bits_as_on_the_host() {
     let toolchain = toolchain();
-    let text = toolchain.run("golden").unwrap_or_else(|e| panic!("{e}"));
+    let text = toolchain.run("golden", &[]).unwrap_or_else(|e| panic!("{e}"));
     println!("{text}");
 
     let lines = table(&text);
@@ -75,7 +75,7 @@ fn golden_vectors_have_the_same_bits_as_on_the_host() {
         };
         assert!(line.stack <= limit, "stack is over {limit} bytes: {line:?}");
     }
-    let again = toolchain.run("golden").unwrap_or_else(|e| panic!("{e}"));
+    let again = toolchain.run("golden", &[]).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(text, again, "a second run counts the same instructions");
 }
 
@@ -129,7 +129,7 @@ fn panic_symbols_are_found_where_there_are_some() {
 /// after which the rotors stop.
 #[test]
 fn control_loop_holds_and_then_disarms() {
-    let text = toolchain().run("firmware").unwrap_or_else(|e| panic!("{e}"));
+    let text = toolchain().run("firmware", &[]).unwrap_or_else(|e| panic!("{e}"));
     println!("{text}");
     assert!(text.contains("mixed 1197, held 43, disarmed 60\n"), "{text}");
     assert!(

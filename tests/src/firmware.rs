@@ -1,6 +1,7 @@
 //! Builds `examples/firmware` and runs it in QEMU.
 
 use std::ffi::OsString;
+use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -69,12 +70,19 @@ impl Toolchain {
         ))
     }
 
-    /// Builds one image in release mode, its own crate with `cfgs`, and returns the path of its ELF file.
+    /// Builds one image in release mode, its own crate with `cfgs`, and returns the path of its ELF file, which is its
+    /// own for these `cfgs`.
     ///
     /// # Errors
     ///
     /// What the compiler said.
     pub fn build(&self, image: &str, cfgs: &[String]) -> Result<PathBuf, String> {
+        let images = self.target_dir.join("images");
+        let fault = |e: std::io::Error| format!("{}: {e}", images.display());
+        fs::create_dir_all(&images).map_err(fault)?;
+        // Cargo puts an image in the same place whatever its `cfgs`, and tests run side by side.
+        let lock = File::create(images.join(".lock")).map_err(fault)?;
+        lock.lock().map_err(fault)?;
         let mut command = self.command("rustc", image);
         command.arg("--");
         for cfg in cfgs {
@@ -84,22 +92,33 @@ impl Toolchain {
         if !output.status.success() {
             return Err(String::from_utf8_lossy(&output.stderr).into_owned());
         }
-        Ok(self.target_dir.join(TARGET).join("release").join(image))
+        let built = self.target_dir.join(TARGET).join("release").join(image);
+        let name: String = std::iter::once(image)
+            .chain(cfgs.iter().map(String::as_str))
+            .collect::<Vec<_>>()
+            .join(",")
+            .replace('"', "");
+        let kept = images.join(name);
+        fs::copy(&built, &kept).map_err(fault)?;
+        Ok(kept)
     }
 
-    /// Builds one image, runs it in QEMU and returns what it printed.
+    /// Builds one image with `cfgs`, runs it in QEMU and returns what it printed.
     ///
     /// # Errors
     ///
     /// What the compiler said, or what the image printed before it failed or was stopped for taking too long.
-    pub fn run(&self, image: &str) -> Result<String, String> {
-        self.build(image, &[])?;
-        // The runner in `.cargo/config.toml` is QEMU, and cargo replaces itself by it.
-        let mut child = self
-            .command("run", image)
+    pub fn run(&self, image: &str, cfgs: &[String]) -> Result<String, String> {
+        let elf = self.build(image, cfgs)?;
+        let runner = runner()?;
+        let (qemu, arguments) = runner.split_first().ok_or("the runner is empty")?;
+        let mut child = Command::new(qemu)
+            .args(arguments)
+            .arg(elf)
+            .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .spawn()
-            .map_err(|e| format!("cannot start cargo: {e}"))?;
+            .map_err(|e| format!("cannot start {qemu}: {e}"))?;
         let mut stdout = child.stdout.take().ok_or("no standard output")?;
         let printed = thread::spawn(move || {
             let mut text = String::new();
@@ -159,6 +178,22 @@ impl Toolchain {
 
 fn folder() -> PathBuf {
     root().join("examples/firmware")
+}
+
+/// QEMU and its arguments, as `cargo run` in the firmware's folder starts it.
+fn runner() -> Result<Vec<String>, String> {
+    let path = folder().join(".cargo/config.toml");
+    let fault = |what: String| format!("{}: {what}", path.display());
+    let text = fs::read_to_string(&path).map_err(|e| fault(e.to_string()))?;
+    let config: toml::Table = text.parse().map_err(|e: toml::de::Error| fault(e.to_string()))?;
+    let runner = config
+        .get("target")
+        .and_then(|target| target.get(TARGET)?.get("runner")?.as_array());
+    let words = runner.ok_or_else(|| fault(format!("no runner for {TARGET}")))?;
+    Ok(words
+        .iter()
+        .filter_map(|word| word.as_str().map(str::to_owned))
+        .collect())
 }
 
 /// Answer of `rustc --print`, a path.

@@ -2,6 +2,7 @@
 //! frames, random requests, the optimum of a request and other allocators to measure the mixer against.
 
 pub mod baselines;
+pub mod counts;
 pub mod firmware;
 pub mod frames;
 pub mod golden;

@@ -8,9 +8,6 @@
 #![no_std]
 #![no_main]
 
-mod instructions;
-mod stack;
-
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 
@@ -18,7 +15,7 @@ use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprintln};
 use mixer_rt::{Mix, SetpointError, Wrench};
 
-use instructions::{Counter, Mixer, NOPS};
+use probe::{Counter, Mixer, NOPS};
 
 /// One row of the golden vectors; floats as their f32 bits.
 struct Vector<const CHANNELS: usize> {
@@ -83,7 +80,7 @@ impl Check {
             // SAFETY: the output is of the type that `mix` writes, which it does in every call; no interrupt is
             // enabled.
             let (instructions, bytes, mixed) = unsafe {
-                let bytes = stack::high_water(mix, &setpoint, pointer, voltage_v);
+                let bytes = probe::high_water(mix, &setpoint, pointer, voltage_v);
                 (
                     self.counter.count(mix, &setpoint, pointer, voltage_v),
                     bytes,
@@ -197,18 +194,17 @@ unsafe fn accepted_non_finite<const CHANNELS: usize>(vectors: &[Vector<CHANNELS>
 
 #[entry]
 fn main() -> ! {
-    let passed =
-        cortex_m::Peripherals::take().is_some_and(|peripherals| match Counter::new(peripherals.SYST) {
-            Ok(counter) => run(counter),
-            Err(inexact) => {
-                hprintln!(
-                    "{} instructions were counted as {}: is -icount shift=10 set?",
-                    NOPS,
-                    inexact.counted
-                );
-                false
-            }
-        });
+    let passed = match Counter::new() {
+        Ok(counter) => run(counter),
+        Err(inexact) => {
+            hprintln!(
+                "{} instructions were counted as {}: is -icount shift=10 set?",
+                NOPS,
+                inexact.counted
+            );
+            false
+        }
+    };
     debug::exit(if passed {
         debug::EXIT_SUCCESS
     } else {

@@ -4,7 +4,7 @@ use core::arch::naked_asm;
 
 use mixer_rt::Wrench;
 
-use crate::instructions::Mixer;
+use crate::Mixer;
 
 /// Depth that is painted, bytes. Far deeper than any mixer may go.
 const PAINTED: usize = 4096;
@@ -17,7 +17,7 @@ const PAINT: u32 = 0x7fc0_5ac4;
 /// # Safety
 ///
 /// `output` must be what `mix` writes its result to, and no interrupt may be enabled.
-pub(crate) unsafe fn high_water(mix: Mixer, setpoint: &Wrench, output: *mut (), voltage_v: f32) -> usize {
+pub unsafe fn high_water(mix: Mixer, setpoint: &Wrench, output: *mut (), voltage_v: f32) -> usize {
     // SAFETY: paints free memory, far above the lower end of the 4 MiB of RAM; the caller answers for the rest.
     let top = unsafe { painted_call(mix, setpoint, output, voltage_v) };
     let mut at = top - PAINTED;

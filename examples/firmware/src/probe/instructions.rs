@@ -1,9 +1,10 @@
-//! Instructions counted with SysTick under QEMU's instruction counter.
+//! Instructions counted with a timer of the board under QEMU's instruction counter.
 //!
-//! With `-icount shift=10` every instruction takes 2^10 = 1024 ns of virtual time, and SysTick of the MPS2 board
-//! counts down at 25 MHz, one tick per 40 ns. A stretch of n instructions therefore lasts n * 25.6 ticks, and
-//! n = ticks * 40 / 1024 rounded to the nearest whole number. A reading is less than one tick off at either end, far
-//! below the 12.8 ticks that would round wrongly, so the count is exact to the instruction.
+//! With `-icount shift=10` every instruction takes 2^10 = 1024 ns of virtual time, and timer 0 of the MPS2 board (Arm
+//! CMSDK APB timer) counts down at 25 MHz, one tick per 40 ns. A stretch of n instructions therefore lasts n * 25.6
+//! ticks, and n = ticks * 40 / 1024 rounded to the nearest whole number. A reading is less than one tick off at
+//! either end, far below the 12.8 ticks that would round wrongly, so the count is exact to the instruction. The timer
+//! has 32 bits: 167 million instructions. (SysTick's 24 bits come round after 655,360.)
 //!
 //! Both readings and what lies between them stand in one piece of assembly: the compiler can schedule nothing of its own
 //! into the stretch. Two readings that follow one another directly are one instruction apart, the second reading
@@ -12,29 +13,28 @@
 
 use core::arch::{asm, naked_asm};
 
-use cortex_m::peripheral::{SYST, syst::SystClkSource};
 use mixer_rt::Wrench;
 
-const TICK_NS: u32 = 40;
-const INSTRUCTION_NS: u32 = 1024;
-/// SysTick is 24 bits wide: 655,360 instructions until it comes round.
-const TICK_MASK: u32 = 0x00ff_ffff;
+const TICK_NS: u64 = 40;
+const INSTRUCTION_NS: u64 = 1024;
+/// Registers of timer 0: CTRL, VALUE, RELOAD, INTSTATUS.
+const TIMER: *mut u32 = 0x4000_0000 as *mut u32;
 /// Length of the stretch that [`Counter::new`] checks itself with.
-pub(crate) const NOPS: u32 = 100;
+pub const NOPS: u32 = 100;
 
 /// A mixer behind the C calling convention, so that assembly can call it: setpoint, where to write the result, voltage.
-pub(crate) type Mixer = unsafe extern "C" fn(*const Wrench, *mut (), f32);
+pub type Mixer = unsafe extern "C" fn(*const Wrench, *mut (), f32);
 
-/// SysTick, running, with the cost of a measurement known.
-pub(crate) struct Counter {
+/// The timer, running, with the cost of a measurement known.
+pub struct Counter {
     current: *const u32,
     overhead: u32,
 }
 
 /// The counter does not count instructions: not in QEMU, or without `-icount shift=10`.
-pub(crate) struct Inexact {
+pub struct Inexact {
     /// Instructions counted over [`NOPS`] of them.
-    pub(crate) counted: u32,
+    pub counted: u32,
 }
 
 /// Ticks over `$work`, between two readings in one `asm!` block.
@@ -50,23 +50,27 @@ macro_rules! ticks {
             current = in(reg) $current,
             options(nostack, preserves_flags),
         );
-        start.wrapping_sub(end) & TICK_MASK
+        start.wrapping_sub(end)
     }};
 }
 
 impl Counter {
-    /// Starts SysTick, measures an empty stretch, and checks the count of one hundred `nop`s.
-    pub(crate) fn new(mut systick: SYST) -> Result<Counter, Inexact> {
-        systick.set_clock_source(SystClkSource::Core);
-        systick.set_reload(TICK_MASK);
-        systick.clear_current();
-        systick.enable_counter();
-        // It reads zero until the first tick has loaded it.
-        while SYST::get_current() == 0 {}
-
-        let current = &raw const systick.cvr as *const u32;
-        // SAFETY: two loads of a register that may be read at any time; `nop` touches nothing.
-        let (empty, nops) = unsafe { (ticks!(current, ""), ticks!(current, ".rept 100\nnop\n.endr")) };
+    /// Starts the timer, measures an empty stretch, and checks the count of one hundred `nop`s.
+    pub fn new() -> Result<Counter, Inexact> {
+        // SAFETY: device registers that nothing else in these images uses; two loads of one that may be read at any
+        // time; `nop` touches nothing.
+        let (current, empty, nops) = unsafe {
+            let [control, value, reload] = [TIMER, TIMER.add(1), TIMER.add(2)];
+            reload.write_volatile(u32::MAX);
+            value.write_volatile(u32::MAX);
+            control.write_volatile(1);
+            let current = value.cast_const();
+            (
+                current,
+                ticks!(current, ""),
+                ticks!(current, ".rept 100\nnop\n.endr"),
+            )
+        };
         let overhead = instructions(empty);
         let counted = instructions(nops).saturating_sub(overhead);
         if counted == NOPS {
@@ -81,19 +85,19 @@ impl Counter {
     /// # Safety
     ///
     /// `output` must be what `mix` writes its result to.
-    pub(crate) unsafe fn count(&self, mix: Mixer, setpoint: &Wrench, output: *mut (), voltage_v: f32) -> u32 {
-        // SAFETY: SysTick may be read at any time; the caller answers for `output`.
+    pub unsafe fn count(&self, mix: Mixer, setpoint: &Wrench, output: *mut (), voltage_v: f32) -> u32 {
+        // SAFETY: the timer may be read at any time; the caller answers for `output`.
         let ticks = unsafe { ticks_of_call(mix, setpoint, output, self.current, voltage_v) };
-        instructions(ticks & TICK_MASK).saturating_sub(self.overhead)
+        instructions(ticks).saturating_sub(self.overhead)
     }
 
     /// Instructions of an empty measurement, already subtracted from every count.
-    pub(crate) fn overhead(&self) -> u32 {
+    pub fn overhead(&self) -> u32 {
         self.overhead
     }
 }
 
-/// Reads SysTick at `current`, mixes, reads again; returns the difference, of which 24 bits count.
+/// Reads the timer at `current`, mixes, reads again; returns the difference.
 #[unsafe(naked)]
 unsafe extern "C" fn ticks_of_call(
     mix: Mixer,
@@ -118,5 +122,5 @@ unsafe extern "C" fn ticks_of_call(
 }
 
 fn instructions(ticks: u32) -> u32 {
-    (ticks * TICK_NS + INSTRUCTION_NS / 2) / INSTRUCTION_NS
+    ((u64::from(ticks) * TICK_NS + INSTRUCTION_NS / 2) / INSTRUCTION_NS) as u32
 }

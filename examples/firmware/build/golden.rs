@@ -1,76 +1,16 @@
-//! Lays out the image's memory and turns the golden vectors of every airframe into const arrays.
-//!
-//! `airframes/*.toml` decides which airframes there are; each needs `tests/golden/<airframe>.vectors.csv`.
-//! Written to OUT_DIR: `memory.x`, `golden.rs` (airframes and vectors of the `golden` image), `size.rs` (the
-//! airframe that `--cfg airframe="<name>"` selects for the `size` image).
+//! The golden vectors of every airframe as const arrays.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-use std::{env, fs};
+use std::fs;
+use std::path::Path;
 
-/// Relative to this package's folder.
-const AIRFRAMES: &str = "../../airframes";
-/// Relative to this package's folder.
+use crate::{AIRFRAMES, module};
+
+/// Relative to this package's folder; each airframe needs `<airframe>.vectors.csv` there.
 const GOLDEN: &str = "../../tests/golden";
 
-fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
-    if let Err(message) = generate() {
-        println!("cargo::error={message}");
-    }
-}
-
-fn generate() -> Result<(), String> {
-    let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
-    let write = |file: &str, text: &str| {
-        fs::write(out.join(file), text).map_err(|e| format!("cannot write {file} to OUT_DIR: {e}"))
-    };
-
-    println!("cargo::rerun-if-changed=memory.x");
-    let memory = fs::read_to_string("memory.x").map_err(|e| format!("cannot read memory.x: {e}"))?;
-    write("memory.x", &memory)?;
-    println!("cargo::rustc-link-search={}", out.display());
-    println!("cargo::rustc-link-arg-bins=-Tlink.x");
-
-    let airframes = airframes()?;
-    let names: Vec<String> = airframes.iter().map(|a| format!("{a:?}")).collect();
-    println!(
-        "cargo::rustc-check-cfg=cfg(airframe, values(none(), {}))",
-        names.join(", ")
-    );
-    println!("cargo::rustc-check-cfg=cfg(panic_path)");
-    write("golden.rs", &golden(&airframes)?)?;
-    write("size.rs", &size(&airframes))
-}
-
-/// Names of the files `airframes/<name>.toml`, sorted.
-fn airframes() -> Result<Vec<String>, String> {
-    println!("cargo::rerun-if-changed={AIRFRAMES}");
-    let mut names = Vec::new();
-    let unreadable = |e| format!("cannot list {AIRFRAMES}: {e}");
-    for entry in fs::read_dir(AIRFRAMES).map_err(unreadable)? {
-        let path = entry.map_err(unreadable)?.path();
-        if path.extension().is_some_and(|e| e == "toml") {
-            let stem = path.file_stem().and_then(|s| s.to_str());
-            names.push(
-                stem.ok_or(format!("{}: name is not UTF-8", path.display()))?
-                    .to_owned(),
-            );
-        }
-    }
-    if names.is_empty() {
-        return Err(format!("no airframe file in {AIRFRAMES}"));
-    }
-    names.sort();
-    Ok(names)
-}
-
-/// Name of the module that `airframe!` generates.
-fn module(airframe: &str) -> String {
-    airframe.replace('-', "_")
-}
-
-fn golden(airframes: &[String]) -> Result<String, String> {
+/// Airframes and vectors of the `golden` image.
+pub(crate) fn image(airframes: &[String]) -> Result<String, String> {
     let (mut items, mut calls) = (String::new(), String::new());
     for airframe in airframes {
         let module = module(airframe);
@@ -91,19 +31,6 @@ fn golden(airframes: &[String]) -> Result<String, String> {
     Ok(format!(
         "{items}fn for_each_airframe(check: &mut Check) {{\n{calls}}}\n"
     ))
-}
-
-fn size(airframes: &[String]) -> String {
-    airframes
-        .iter()
-        .map(|airframe| {
-            let module = module(airframe);
-            format!(
-                "#[cfg(airframe = \"{airframe}\")]\nmixer_macros::airframe!(\"{AIRFRAMES}/{airframe}.toml\");\n\
-                 #[cfg(airframe = \"{airframe}\")]\nuse {module}::mix;\n"
-            )
-        })
-        .collect()
 }
 
 /// The rows of one CSV as Rust expressions.

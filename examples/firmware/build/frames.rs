@@ -1,0 +1,61 @@
+//! Airframes that are measured and nothing else: how cost grows with units and with tolerance.
+
+use std::fmt::Write as _;
+
+/// Name of all of them, hence of their modules.
+pub(crate) const NAME: &str = "measured";
+
+/// The paper's pair and voltage, as in `airframes/isae-x8.toml`.
+const PAIR: &str = r#"
+[throttle]
+min = 0.1
+max = 1.0
+[pair]
+basis = "biquadratic"
+thrust_n  = [5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363]
+torque_nm = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720]
+upper_spin = "cw"
+[voltage]
+reference_v = 14.8
+range_v = [12.8, 16.8]
+thrust_exponent = 1.75
+torque_exponent = 1.75
+"#;
+
+/// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N.
+pub(crate) fn all() -> Vec<(String, String)> {
+    let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(units, "")));
+    let tolerances = [
+        ("0.1", "9e-4"),
+        ("0.01", "1e-4"),
+        ("0.004", "5e-5"),
+        ("2e-4", "2.5e-6"),
+        ("3e-5", "4e-7"),
+    ];
+    let tolerances = tolerances.into_iter().map(|(thrust_n, torque_nm)| {
+        let inverse =
+            format!("[inverse]\nthrust_tolerance_n = {thrust_n}\ntorque_tolerance_nm = {torque_nm}\n");
+        (format!("tolerance-{thrust_n}"), regular(4, &inverse))
+    });
+    sizes.chain(tolerances).collect()
+}
+
+/// One unit lies ahead, two lie abreast.
+fn regular(units: u32, inverse: &str) -> String {
+    let first_angle_deg = match units {
+        1 => 0.0,
+        2 => 90.0,
+        _ => 180.0 / f64::from(units),
+    };
+    let mut text = format!("name = {NAME:?}\n{PAIR}{inverse}");
+    let _ = write!(
+        text,
+        "[layout]\narm_m = 0.45\nunits = {units}\nfirst_angle_deg = {first_angle_deg:?}\n"
+    );
+    match units {
+        1 => text.push_str("[allocation]\naxes = [\"yaw\", \"thrust\"]\n"),
+        2 => text.push_str("[allocation]\naxes = [\"roll\", \"yaw\", \"thrust\"]\n"),
+        _ => {}
+    }
+    text
+}

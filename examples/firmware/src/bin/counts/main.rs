@@ -1,0 +1,49 @@
+//! Counts the instructions of one airframe's mixer, request by request.
+//!
+//! Built with `--cfg airframe --cfg airframe="<name>"`. Prints a line per set of requests: how many, the sum and the worst of their
+//! instructions, the deepest stack, and the request that cost most (roll, pitch, yaw, thrust, voltage as f32 bits).
+//! The sets are `attainable` and `saturated`, drawn by the host (`mixer_setpoints::Requests`), and `searched`:
+//! what a random search for the dearest requests tries. Only one airframe is linked, as in a user's image: what is
+//! inlined depends on who else calls it.
+#![no_std]
+#![no_main]
+
+#[cfg(airframe)]
+mod measurement;
+#[cfg(airframe)]
+mod search;
+
+use core::panic::PanicInfo;
+
+use cortex_m_rt::entry;
+use cortex_m_semihosting::{debug, hprintln};
+
+include!(concat!(env!("OUT_DIR"), "/counts.rs"));
+
+#[entry]
+fn main() -> ! {
+    #[cfg(airframe)]
+    let passed = measurement::run();
+    #[cfg(not(airframe))]
+    let passed = {
+        hprintln!("no airframe: build with --cfg airframe --cfg 'airframe=\"isae-x8\"'");
+        false
+    };
+    debug::exit(if passed {
+        debug::EXIT_SUCCESS
+    } else {
+        debug::EXIT_FAILURE
+    });
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo) -> ! {
+    hprintln!("{}", info);
+    debug::exit(debug::EXIT_FAILURE);
+    loop {
+        cortex_m::asm::wfi();
+    }
+}

@@ -1,0 +1,145 @@
+//! One mixer, measured request by request.
+
+use core::mem::MaybeUninit;
+
+use cortex_m_semihosting::hprintln;
+use mixer_rt::{Mix, SetpointError, Wrench};
+use probe::{Counter, NOPS};
+
+use crate::{ATTAINABLE, SATURATED, airframe, search};
+
+/// A wrench and the battery's voltage.
+#[derive(Clone, Copy)]
+pub(crate) struct Request {
+    /// Roll, pitch, yaw (N m), thrust (N).
+    pub(crate) wrench: [f32; 4],
+    /// V.
+    pub(crate) voltage_v: f32,
+}
+
+/// Requests as the build script has written them.
+pub(crate) fn requests(bytes: &'static [u8]) -> impl Iterator<Item = Request> {
+    bytes.chunks_exact(20).map(|row| {
+        let mut values = [0.0; 5];
+        for (value, bytes) in values.iter_mut().zip(row.chunks_exact(4)) {
+            let mut word = [0; 4];
+            word.copy_from_slice(bytes);
+            *value = f32::from_le_bytes(word);
+        }
+        let [roll, pitch, yaw, thrust, voltage_v] = values;
+        Request {
+            wrench: [roll, pitch, yaw, thrust],
+            voltage_v,
+        }
+    })
+}
+
+type Mixed = Result<Mix<{ airframe::CHANNELS }>, SetpointError>;
+
+/// # Safety
+///
+/// `setpoint` is valid to read, `output` to write a [`Mixed`].
+unsafe extern "C" fn mix(setpoint: *const Wrench, output: *mut (), voltage_v: f32) {
+    // SAFETY: the caller's promise.
+    unsafe { output.cast::<Mixed>().write(airframe::mix(&*setpoint, voltage_v)) }
+}
+
+/// What the requests of one set cost.
+pub(crate) struct Tally {
+    requests: u32,
+    sum: u64,
+    worst: u32,
+    stack: usize,
+    dearest: Request,
+    /// Requests that were refused, though all are finite.
+    refused: u32,
+}
+
+impl Tally {
+    pub(crate) fn new() -> Self {
+        Tally {
+            requests: 0,
+            sum: 0,
+            worst: 0,
+            stack: 0,
+            dearest: Request {
+                wrench: [0.0; 4],
+                voltage_v: 0.0,
+            },
+            refused: 0,
+        }
+    }
+
+    /// Mixes `request`, once for the stack and once for the instructions; returns these.
+    pub(crate) fn measure(&mut self, counter: &Counter, request: &Request) -> u32 {
+        let [roll_nm, pitch_nm, yaw_nm, thrust_n] = request.wrench;
+        let setpoint = Wrench {
+            roll_nm,
+            pitch_nm,
+            yaw_nm,
+            thrust_n,
+        };
+        let mut output = MaybeUninit::<Mixed>::uninit();
+        let pointer = output.as_mut_ptr().cast();
+        // SAFETY: the output is of the type that `mix` writes, which it does in every call; no interrupt is enabled.
+        let (stack, instructions, mixed) = unsafe {
+            (
+                probe::high_water(mix, &setpoint, pointer, request.voltage_v),
+                counter.count(mix, &setpoint, pointer, request.voltage_v),
+                output.assume_init(),
+            )
+        };
+        self.refused += u32::from(mixed.is_err());
+        self.requests += 1;
+        self.sum += u64::from(instructions);
+        self.stack = self.stack.max(stack);
+        if instructions > self.worst {
+            self.worst = instructions;
+            self.dearest = *request;
+        }
+        instructions
+    }
+
+    /// Prints a line; false if a request was refused.
+    pub(crate) fn print(&self, set: &str) -> bool {
+        let [roll, pitch, yaw, thrust] = self.dearest.wrench.map(f32::to_bits);
+        hprintln!(
+            "{} {} {} {} {} {:08x},{:08x},{:08x},{:08x},{:08x}",
+            set,
+            self.requests,
+            self.sum,
+            self.worst,
+            self.stack,
+            roll,
+            pitch,
+            yaw,
+            thrust,
+            self.dearest.voltage_v.to_bits()
+        );
+        self.refused == 0
+    }
+}
+
+/// Measures and prints all sets; false if something is wrong with the measurement.
+pub(crate) fn run() -> bool {
+    let counter = match Counter::new() {
+        Ok(counter) => counter,
+        Err(inexact) => {
+            hprintln!(
+                "{} instructions were counted as {}: is -icount shift=10 set?",
+                NOPS,
+                inexact.counted
+            );
+            return false;
+        }
+    };
+    let mut passed = true;
+    for (name, bytes) in [("attainable", ATTAINABLE), ("saturated", SATURATED)] {
+        let mut tally = Tally::new();
+        for request in requests(bytes) {
+            tally.measure(&counter, &request);
+        }
+        passed &= tally.print(name);
+    }
+    passed & search::dearest(&counter, SATURATED).print("searched")
+}

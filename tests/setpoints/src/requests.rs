@@ -1,0 +1,201 @@
+//! Requests to one airframe's mixer, drawn around what it can deliver.
+
+use mixer_rt::{Pair, Quantity, Tables, ThrottleRange, Unit, Voltage};
+
+use crate::{Random, Setpoint};
+
+/// Which requests to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// What random throttles give by the airframe's own forward map, so that every one can be delivered (to
+    /// rounding). The voltage lies in its range.
+    Attainable,
+    /// Anything a controller may ask, most of it out of reach: up to four times the authority on all axes or on one
+    /// alone, zeros, wrenches on and just beyond the border of the attainable ones, absurd numbers. All finite. One
+    /// voltage in eight lies outside its range.
+    Saturated,
+}
+
+/// Endless sequence of requests to the mixer of `tables`.
+#[derive(Clone, Debug)]
+pub struct Requests<'a, P> {
+    random: Random,
+    kind: Kind,
+    pair: &'a Pair<P>,
+    units: &'a [Unit],
+    throttle: ThrottleRange,
+    voltage: Option<&'a Voltage<'a>>,
+    /// The largest wrench on each axis at the reference voltage: all units at their best, whatever the others lose.
+    authority: [f32; 4],
+}
+
+impl<'a, P: Quantity> Requests<'a, P> {
+    /// The sequence of one seed.
+    pub fn new<I, S>(tables: &'a Tables<'a, P, I, S>, kind: Kind, seed: u64) -> Self {
+        let ThrottleRange { min, max } = tables.throttle;
+        let [f, _] = tables.pair.efforts([max, max]);
+        let [_, low] = tables.pair.efforts([max, min]);
+        let [_, high] = tables.pair.efforts([min, max]);
+        let q = if high > -low { high } else { -low };
+        let mut authority = [0.0; 4];
+        for unit in tables.units {
+            let [by_thrust, by_torque] = unit.effectiveness;
+            for ((sum, by_f), by_q) in authority.iter_mut().zip(by_thrust).zip(by_torque) {
+                *sum += by_f.abs() * f + by_q.abs() * q;
+            }
+        }
+        Requests {
+            random: Random::new(seed),
+            kind,
+            pair: &tables.pair,
+            units: tables.units,
+            throttle: tables.throttle,
+            voltage: tables.voltage.as_ref(),
+            authority,
+        }
+    }
+
+    /// The largest wrench on each axis at the reference voltage, whatever the others lose.
+    pub fn authority(&self) -> [f32; 4] {
+        self.authority
+    }
+
+    /// V; any number where the airframe ignores the voltage.
+    fn voltage_v(&mut self, outside: f32) -> f32 {
+        let [low, high] = self.voltage.map_or([12.0, 16.0], |voltage| voltage.range_v);
+        self.random.between([low - outside, high + outside])
+    }
+
+    /// The wrench of throttles that `draw` gives for each rotor.
+    fn wrench_of(
+        &mut self,
+        voltage_v: f32,
+        mut draw: impl FnMut(&mut Random, ThrottleRange) -> f32,
+    ) -> [f32; 4] {
+        let factors = self.voltage.map_or([1.0, 1.0], |voltage| {
+            let [low, high] = voltage.range_v;
+            let within = if voltage_v < low {
+                low
+            } else if voltage_v > high {
+                high
+            } else {
+                voltage_v
+            };
+            [voltage.thrust.factor(within), voltage.torque.factor(within)]
+        });
+        let mut wrench = [0.0; 4];
+        for unit in self.units {
+            let throttles = [
+                draw(&mut self.random, self.throttle),
+                draw(&mut self.random, self.throttle),
+            ];
+            let efforts = self.pair.efforts(throttles);
+            for ((effect, effort), factor) in unit.effectiveness.iter().zip(efforts).zip(factors) {
+                for (sum, effect) in wrench.iter_mut().zip(effect) {
+                    *sum += effect * (factor * effort);
+                }
+            }
+        }
+        wrench
+    }
+
+    fn attainable(&mut self, voltage_v: f32) -> [f32; 4] {
+        self.wrench_of(voltage_v, |random, range| random.between([range.min, range.max]))
+    }
+
+    /// Every rotor at idle, at the ceiling or, one in three, between.
+    fn corner(&mut self, voltage_v: f32) -> [f32; 4] {
+        self.wrench_of(voltage_v, |random, range| match random.index(3) {
+            0 => range.min,
+            1 => range.max,
+            _ => random.between([range.min, range.max]),
+        })
+    }
+
+    /// Uniform within `share` times the authority; thrust from a little below zero.
+    fn within(&mut self, share: f32) -> [f32; 4] {
+        let [roll, pitch, yaw, thrust] = self.authority;
+        let mut torque = |size: f32| self.random.between([-share * size, share * size]);
+        let [roll, pitch, yaw] = [torque(roll), torque(pitch), torque(yaw)];
+        let thrust = self.random.between([-0.2 * thrust, (0.6 + 0.4 * share) * thrust]);
+        [roll, pitch, yaw, thrust]
+    }
+
+    fn saturated(&mut self, voltage_v: f32) -> [f32; 4] {
+        let choice = self.random.bits();
+        let axis = (choice >> 32) as usize % 4;
+        match choice % 10 {
+            0 => self.within(0.3),
+            1 => self.within(1.0),
+            2 => self.within(4.0),
+            // Each axis zero with even odds.
+            3 => {
+                let mut wrench = self.within(1.5);
+                for (bit, value) in wrench.iter_mut().enumerate() {
+                    if choice >> (16 + bit) & 1 == 0 {
+                        *value = 0.0;
+                    }
+                }
+                wrench
+            }
+            // One axis alone.
+            4 => {
+                let drawn = self.within(4.0);
+                let mut wrench = [0.0; 4];
+                wrench[axis] = drawn[axis];
+                wrench
+            }
+            // A wrench that can be delivered, one of its axes stretched or replaced.
+            5 => {
+                let mut wrench = self.attainable(voltage_v);
+                wrench[axis] *= self.random.between([-1.0, 4.0]);
+                wrench
+            }
+            6 => {
+                let mut wrench = self.attainable(voltage_v);
+                wrench[axis] = self.within(1.2)[axis];
+                wrench
+            }
+            // On the border, just within and just beyond it.
+            7 => {
+                let by = [1.0, 0.9999, 1.0001, 1.01, 1.2, 1.5][self.random.index(6) as usize];
+                self.corner(voltage_v).map(|value| by * value)
+            }
+            // All axes of an attainable wrench stretched.
+            8 => {
+                let by = self.random.between([1.0, 3.0]);
+                self.attainable(voltage_v).map(|value| by * value)
+            }
+            // Absurd: far beyond, on one axis or on all, or almost nothing.
+            _ => {
+                let by = [1e-38, 1e-6, 1e2, 1e6, 1e30][self.random.index(5) as usize];
+                let mut wrench = self.within(1.0);
+                if choice >> 16 & 1 == 0 {
+                    wrench[axis] *= by;
+                    wrench
+                } else {
+                    wrench.map(|value| by * value)
+                }
+            }
+        }
+    }
+}
+
+impl<P: Quantity> Iterator for Requests<'_, P> {
+    type Item = Setpoint;
+
+    fn next(&mut self) -> Option<Setpoint> {
+        let (voltage_v, wrench) = match self.kind {
+            Kind::Attainable => {
+                let voltage_v = self.voltage_v(0.0);
+                (voltage_v, self.attainable(voltage_v))
+            }
+            Kind::Saturated => {
+                let outside = if self.random.index(8) == 0 { 2.0 } else { 0.0 };
+                let voltage_v = self.voltage_v(outside);
+                (voltage_v, self.saturated(voltage_v))
+            }
+        };
+        Some(Setpoint { wrench, voltage_v })
+    }
+}
