@@ -4,6 +4,9 @@
     oracle.py draw AIRFRAME COUNT SEED          setpoints as CSV on stdout
     oracle.py judge AIRFRAME SETPOINTS MIXED    judges what a mixer made of them; status 1 and a list if it is wrong
     oracle.py conventional AIRFRAME SETPOINTS   the wrench that the conventional mixer's throttles really give, as CSV
+    oracle.py isolated AIRFRAME METHOD SETPOINTS
+                                                throttles of isolated rotors as CSV; METHOD is `conventional` or an
+                                                airmode, then desaturated after PX4
 
 It shares nothing with the compiler but the file: its own reading of the file, its own effectiveness, pseudo-inverse,
 inverse of the pair's map and voltage law, in double precision, standard library only (Python 3.11 or later).
@@ -271,39 +274,127 @@ def judge(airframe, setpoints_path, mixed_path):
     return 1 if faults else 0
 
 
-def conventional(airframe, setpoints_path):
-    """The mixer that the paper compares with (section V): every rotor isolated with the upper one's f(d, 0), torque
-    Q = kappa f of either sign, least norm over the 2n thrusts. Its throttles, put into the pair's map."""
-    n = airframe.units
-    grid = [airframe.low + (airframe.high - airframe.low) * i / 50 for i in range(51)]
-    alone = [airframe.efforts(d, 0.0) for d in grid]
-    kappa = sum(abs(q) * f for f, q in alone) / sum(f * f for f, _ in alone)
-    # Rotor columns: a unit's upper rotor turns against its lower one.
-    columns = []
-    for layer in (-1.0, 1.0):
-        for i in range(n):
-            thrust, torque = [row[i] for row in airframe.m], [row[n + i] for row in airframe.m]
-            columns.append([f + layer * kappa * q for f, q in zip(thrust, torque)])
-    served = [row for row in range(4) if airframe.axes[row]]
-    gram = [[sum(c[i] * c[j] for c in columns) for j in served] for i in served]
-    inverse = invert(gram)
-    yield ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n", "given_roll_nm", "given_pitch_nm", "given_yaw_nm", "given_thrust_n"]
-    with open(setpoints_path, newline="") as file:
+class Isolated:
+    """A frame of isolated rotors, all upper ones first: each with the upper one's f(d, 0), torque Q = kappa f of
+    either sign, least norm over the 2n thrusts."""
+
+    def __init__(self, airframe):
+        self.airframe = airframe
+        n = airframe.units
+        grid = [airframe.low + (airframe.high - airframe.low) * i / 50 for i in range(51)]
+        alone = [airframe.efforts(d, 0.0) for d in grid]
+        kappa = sum(abs(q) * f for f, q in alone) / sum(f * f for f, _ in alone)
+        # Rotor columns: a unit's upper rotor turns against its lower one.
+        self.columns = []
+        for layer in (-1.0, 1.0):
+            for i in range(n):
+                thrust, torque = [row[i] for row in airframe.m], [row[n + i] for row in airframe.m]
+                self.columns.append([f + layer * kappa * q for f, q in zip(thrust, torque)])
+        served = [row for row in range(4) if airframe.axes[row]]
+        gram = [[sum(c[i] * c[j] for c in self.columns) for j in served] for i in served]
+        inverse = invert(gram)
+        self.rows = [[0.0] * 4 for _ in self.columns]
+        for row, column in zip(self.rows, self.columns):
+            for a, axis in enumerate(served):
+                row[axis] = sum(column[i] * inverse[b][a] for b, i in enumerate(served))
+        self.bounds = [airframe.efforts(airframe.low, 0.0)[0], airframe.efforts(airframe.high, 0.0)[0]]
+
+    def thrusts(self, request):
+        return [sum(share * value for share, value in zip(row, request)) for row in self.rows]
+
+    def vector(self, axis):
+        """PX4's normalised column of the mix matrix (ControlAllocationPseudoInverse)."""
+
+        def column(index):
+            return [row[index] for row in self.rows]
+
+        def rms(values):
+            shares = [v for v in values if abs(v) > 1e-9]
+            return math.sqrt(sum(v * v for v in shares) / (len(shares) / 2)) if shares else 0.0
+
+        if axis < 2:
+            scale = max(rms(column(0)), rms(column(1)))
+        elif axis == 2:
+            scale = max(map(abs, column(2)))
+        else:
+            shares = [abs(v) for v in column(3) if abs(v) > 1e-9]
+            scale = sum(shares) / len(shares)
+        return [v / scale if scale > 0 else 0.0 for v in column(axis)]
+
+    def slide(self, thrusts, axis, bounds, only_down=False):
+        """ControlAllocationSequentialDesaturation::desaturateActuators."""
+        vector = self.vector(axis)
+        for factor in (1.0, 0.5):
+            gains = [0.0]
+            for value, share in zip(thrusts, vector):
+                if abs(share) >= 0.2:
+                    gains += [(bounds[0] - value) / share] if value < bounds[0] else []
+                    gains += [(bounds[1] - value) / share] if value > bounds[1] else []
+            gain = factor * (min(gains) + max(gains))
+            if factor == 1.0 and only_down and gain > 0:
+                return thrusts
+            thrusts = [value + gain * share for value, share in zip(thrusts, vector)]
+        return thrusts
+
+    def sequential(self, request, airmode):
+        """mixAirmodeDisabled, mixAirmodeRP, mixAirmodeRPY and mixYaw."""
+        roll, pitch, yaw, thrust = request
+        if airmode == "roll-pitch-yaw":
+            thrusts = self.slide(self.thrusts(request), 3, self.bounds)
+            return self.slide(thrusts, 2, self.bounds)
+        thrusts = self.slide(self.thrusts([roll, pitch, 0.0, thrust]), 3, self.bounds, airmode == "disabled")
+        if airmode == "disabled":
+            thrusts = self.slide(self.slide(thrusts, 0, self.bounds), 1, self.bounds)
+        thrusts = [a + b for a, b in zip(thrusts, self.thrusts([0.0, 0.0, yaw, 0.0]))]
+        low, high = self.bounds
+        thrusts = self.slide(thrusts, 2, [low, high + 0.15 * (high - low)])
+        return self.slide(thrusts, 3, self.bounds, True)
+
+
+def setpoints(airframe, path):
+    """Requests of a CSV file with the voltage's [k_f, k_Q]."""
+    with open(path, newline="") as file:
         for asked in csv.DictReader(file):
-            request = [float(asked[column]) for column in COLUMNS]
-            k = airframe.factors(float(asked.get("voltage_v") or (airframe.voltage or {"reference_v": 0.0})["reference_v"]))
-            weights = [sum(inverse[a][b] * request[j] for b, j in enumerate(served)) for a in range(len(served))]
-            thrusts = [sum(c[i] * w for i, w in zip(served, weights)) / k[0] for c in columns]
-            throttles = [airframe.isolated_throttle(f) for f in thrusts]
-            given = [airframe.efforts(throttles[i], throttles[n + i]) for i in range(n)]
-            wrench = airframe.wrench([k[0] * f for f, _ in given] + [k[1] * q for _, q in given])
-            yield [f"{value:.4g}" for value in request] + [f"{value:.4f}" for value in wrench]
+            volts = float(asked.get("voltage_v") or (airframe.voltage or {"reference_v": 0.0})["reference_v"])
+            yield [float(asked[column]) for column in COLUMNS], airframe.factors(volts)
+
+
+def conventional(airframe, setpoints_path):
+    """The mixer that the paper compares with (section V). Its throttles, put into the pair's map."""
+    n = airframe.units
+    isolated = Isolated(airframe)
+    yield COLUMNS + [f"given_{column}" for column in COLUMNS]
+    for request, k in setpoints(airframe, setpoints_path):
+        throttles = [airframe.isolated_throttle(f / k[0]) for f in isolated.thrusts(request)]
+        given = [airframe.efforts(throttles[i], throttles[n + i]) for i in range(n)]
+        wrench = airframe.wrench([k[0] * f for f, _ in given] + [k[1] * q for _, q in given])
+        yield [f"{value:.4g}" for value in request] + [f"{value:.4f}" for value in wrench]
+
+
+def isolated_throttles(airframe, method, setpoints_path):
+    """Throttle per channel of a mixer that takes all rotors as isolated: `conventional` or, desaturated after PX4,
+    an airmode."""
+    n = airframe.units
+    isolated = Isolated(airframe)
+    channels = [pair[0] for pair in airframe.channels] + [pair[1] for pair in airframe.channels]
+    yield [f"throttle_{channel}" for channel in range(2 * n)]
+    for request, k in setpoints(airframe, setpoints_path):
+        request = [value / k[0] for value in request]
+        thrusts = isolated.thrusts(request) if method == "conventional" else isolated.sequential(request, method)
+        row = [0.0] * (2 * n)
+        for channel, thrust in zip(channels, thrusts):
+            row[channel] = airframe.isolated_throttle(thrust)
+        yield [f"{throttle:.7f}" for throttle in row]
 
 
 def main(arguments):
     match arguments:
         case ["conventional", path, setpoints_path]:
             csv.writer(sys.stdout, lineterminator="\n").writerows(conventional(Airframe(path), setpoints_path))
+            return 0
+        case ["isolated", path, method, setpoints_path]:
+            rows = isolated_throttles(Airframe(path), method, setpoints_path)
+            csv.writer(sys.stdout, lineterminator="\n").writerows(rows)
             return 0
         case ["draw", path, count, seed]:
             csv.writer(sys.stdout, lineterminator="\n").writerows(draw(Airframe(path), int(count), int(seed)))

@@ -9,7 +9,6 @@ pub mod authority;
 pub mod bench;
 pub mod colour;
 pub mod comparison;
-pub mod conventional;
 pub mod field;
 pub mod figure;
 pub mod gallery;

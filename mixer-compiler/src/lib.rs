@@ -16,6 +16,8 @@ mod hover;
 pub mod injectivity;
 pub mod interval;
 pub mod inversion;
+#[cfg(feature = "baselines")]
+pub mod isolated;
 mod layout;
 pub mod model;
 pub mod polynomial;

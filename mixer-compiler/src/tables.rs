@@ -289,7 +289,8 @@ impl VoltageTable {
         })
     }
 
-    fn view(&self) -> Voltage<'_> {
+    /// The correction as `mixer-rt` reads it.
+    pub fn view(&self) -> Voltage<'_> {
         let [thrust, torque] = &self.laws;
         Voltage {
             range_v: self.range_v,

@@ -24,6 +24,8 @@
 #![no_std]
 
 mod attainable;
+#[cfg(feature = "baselines")]
+pub mod baselines;
 mod desaturation;
 mod forward;
 mod health;

@@ -1,7 +1,6 @@
 //! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU, looking into its image;
 //! frames, random requests, the optimum of a request and other allocators to measure the mixer against.
 
-pub mod baselines;
 pub mod counts;
 pub mod firmware;
 pub mod frames;

@@ -2,9 +2,10 @@
 //! through the compiled mixer and through the conventional one, and what each coaxial unit then really gives.
 
 use mixer_compiler::airframe::Axis;
+use mixer_compiler::isolated::IsolatedTables;
+use mixer_rt::Wrench;
 
 use super::authority;
-use super::conventional::Conventional;
 use super::study::Study;
 
 /// What one mixer makes of one yaw command.
@@ -55,7 +56,7 @@ impl Comparison {
         if low.is_nan() || low >= high || count < 2 {
             return None;
         }
-        let conventional = Conventional::new(study.compiled);
+        let conventional = IsolatedTables::new(study.compiled);
         let rows = (0..count)
             .map(|k| {
                 // From both ends, so that a symmetric range has its zero exactly.
@@ -65,7 +66,7 @@ impl Comparison {
                 Row {
                     yaw_nm,
                     coaxial: answer(study, study.mix(wrench)),
-                    conventional: answer(study, conventional.throttles(wrench)),
+                    conventional: answer(study, throttles(study, &conventional, wrench)),
                 }
             })
             .collect();
@@ -77,10 +78,40 @@ impl Comparison {
                         * study.thrust_n
                 })
                 .collect(),
-            kappa_m: conventional.kappa_m(),
+            kappa_m: conventional.kappa_m,
             rows,
         })
     }
+}
+
+/// Throttles `[u, l]` of every unit by the conventional mixer at the reference voltage, and whether none was limited.
+pub fn throttles(
+    study: &Study<'_>,
+    conventional: &IsolatedTables,
+    wrench: [f64; 4],
+) -> (Vec<[f64; 2]>, bool) {
+    let airframe = &study.compiled.airframe;
+    let reference_v = airframe
+        .voltage
+        .as_ref()
+        .map_or(0.0, |voltage| voltage.reference_v as f32);
+    let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
+    // A study's wrenches are finite.
+    let (channels, within) = conventional
+        .conventional(&setpoint, reference_v)
+        .unwrap_or_default();
+    let throttle = |channel: usize| {
+        channels
+            .get(channel)
+            .map_or(f64::NAN, |&throttle| f64::from(throttle))
+    };
+    let units = airframe.units.iter();
+    (
+        units
+            .map(|unit| [throttle(unit.upper_channel), throttle(unit.lower_channel)])
+            .collect(),
+        within,
+    )
 }
 
 fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> Answer {

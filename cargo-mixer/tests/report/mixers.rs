@@ -3,10 +3,10 @@
 use std::fs;
 use std::process::Command;
 
-use cargo_mixer::report::comparison::Comparison;
-use cargo_mixer::report::conventional::Conventional;
+use cargo_mixer::report::comparison::{self, Comparison};
 use cargo_mixer::report::number::range;
 use cargo_mixer::report::study::Study;
+use mixer_compiler::isolated::IsolatedTables;
 
 use super::{compiled, root, scratch, x8};
 
@@ -83,7 +83,7 @@ fn the_conventional_mixer_is_the_oracle_s() {
         );
         let compiled = compiled(&airframe);
         let study = Study::new(&compiled, None);
-        let conventional = Conventional::new(&compiled);
+        let conventional = IsolatedTables::new(&compiled);
         let text = String::from_utf8(output.stdout).unwrap();
         let lines: Vec<&str> = text.lines().skip(1).collect();
         assert_eq!(lines.len(), asked.len());
@@ -93,7 +93,7 @@ fn the_conventional_mixer_is_the_oracle_s() {
                 .skip(4)
                 .map(|cell| cell.parse().unwrap())
                 .collect();
-            let (throttles, _) = conventional.throttles(asked);
+            let (throttles, _) = comparison::throttles(&study, &conventional, asked);
             let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
             for (given, expected) in study.wrench(&efforts).iter().zip(expected) {
                 // The oracle prints four decimals.

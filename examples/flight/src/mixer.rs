@@ -68,7 +68,7 @@ impl Mixer {
                 let throttle = SVector::from(mix.throttle).map(f64::from);
                 Ok((throttle, mix.saturation.any_axis()))
             }
-            Mixer::Simple(mixer) => Ok(mixer.mix(wrench, voltage_v)),
+            Mixer::Simple(mixer) => mixer.mix(wrench, voltage_v),
         }
     }
 }

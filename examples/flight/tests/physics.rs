@@ -146,7 +146,7 @@ fn the_conventional_mixer_agrees_with_the_oracle() {
     let map = PairMap::new(&airframe.pair, &airframe.throttle);
     let voltage = airframe.voltage.as_ref().unwrap();
     for (asked, volts, given) in ORACLE {
-        let (throttle, limited) = mixer.mix(&Vector4::from(asked), volts);
+        let (throttle, limited) = mixer.mix(&Vector4::from(asked), volts).unwrap();
         assert!(!limited);
         let efforts: Vec<[f64; 2]> = airframe
             .units
@@ -169,7 +169,7 @@ fn the_conventional_mixer_limits_and_says_so() {
         unreachable!("asked for the simple mixer")
     };
     for thrust in [-10.0, 0.0, 500.0] {
-        let (throttle, limited) = mixer.mix(&Vector4::new(0.0, 0.0, 0.0, thrust), 14.8);
+        let (throttle, limited) = mixer.mix(&Vector4::new(0.0, 0.0, 0.0, thrust), 14.8).unwrap();
         assert!(
             limited && throttle.iter().all(|d| (0.1..=1.0).contains(d)),
             "{throttle}"

@@ -4,9 +4,9 @@
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::isolated::IsolatedTables;
 use mixer_compiler::model::PairMap;
-use mixer_rt::Wrench;
-use mixer_tests::baselines::Isolated;
+use mixer_rt::{Airmode, Wrench};
 use mixer_tests::frames::{self, Options};
 use mixer_tests::random::Random;
 
@@ -92,7 +92,7 @@ fn compare(name: &str, compiled: &Compiled) {
         }
         wrench
     };
-    let isolated = Isolated::new(compiled);
+    let isolated = IsolatedTables::new(compiled);
     let reference_v = compiled
         .airframe
         .voltage
@@ -125,10 +125,21 @@ fn compare(name: &str, compiled: &Compiled) {
             })
             .collect();
         least_norm.count(request, wrench(&throttles), authority);
-        let rotors = isolated.conventional(request);
-        conventional.count(request, isolated.achieved(compiled, &rotors), authority);
-        let rotors = isolated.sequential(request);
-        sequential.count(request, isolated.achieved(compiled, &rotors), authority);
+        let given = |(throttles, _): (Vec<f32>, bool)| {
+            let units = compiled.airframe.units.iter();
+            let pairs: Vec<[f64; 2]> = units
+                .map(|unit| {
+                    [unit.upper_channel, unit.lower_channel].map(|channel| f64::from(throttles[channel]))
+                })
+                .collect();
+            wrench(&pairs)
+        };
+        if let Ok(mix) = isolated.conventional(&setpoint, reference_v) {
+            conventional.count(request, given(mix), authority);
+        }
+        if let Ok(mix) = isolated.sequential(Airmode::Disabled, &setpoint, reference_v) {
+            sequential.count(request, given(mix), authority);
+        }
     }
     exact.print(name, "this mixer");
     least_norm.print(name, "least norm, clamped");
