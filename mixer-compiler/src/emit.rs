@@ -5,7 +5,7 @@ use quote::quote;
 
 use crate::Compiled;
 use crate::tables::{AttainableTable, InverseTable, LawTable, MixerTables, QuantityTable, VerticalTable};
-use mixer_rt::Side;
+use mixer_rt::Facets;
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -150,29 +150,53 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     let Some(table) = table else {
         return quote!(::mixer_rt::NoShortcut);
     };
-    let side = |side: &Side| {
+    let units = table.units.iter().map(|unit| {
+        let (allocation, arms, ends) = (vector(&unit.allocation), vector(&unit.arms), vector(&unit.ends));
+        let [spin, null, per_null] = [unit.spin, unit.null, unit.per_null].map(float);
+        let channels = unit
+            .channels
+            .iter()
+            .map(|&channel| Literal::u8_unsuffixed(channel));
+        quote! {
+            ::mixer_rt::VerticalUnit {
+                allocation: #allocation,
+                arms: #arms,
+                spin: #spin,
+                null: #null,
+                per_null: #per_null,
+                ends: #ends,
+                channels: [#(#channels),*],
+            }
+        }
+    });
+    let sides = table.border.sides.iter().map(|side| {
         let corner = float(side.corner_n);
         let arcs = side.arcs.iter().map(|arc| {
             let [offset, slope, bend, shift] = [arc.offset, arc.slope, arc.bend, arc.shift].map(float);
             quote!(::mixer_rt::Arc { offset: #offset, slope: #slope, bend: #bend, shift: #shift })
         });
         quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*] })
-    };
-    let facets = table.facets.iter().map(|facets| {
-        let (normal, bounds) = (vector(&facets.normal), vector(&facets.bounds));
-        quote!(::mixer_rt::Facets { normal: #normal, bounds: #bounds })
     });
-    let thrust = vector(&table.thrust_n);
-    let (least, largest) = (side(&table.least_torque), side(&table.largest_torque));
-    let null = vector(&table.null);
+    let facets = |facets: &[Facets]| {
+        let facets = facets.iter().map(|facets| {
+            let (normal, bounds) = (vector(&facets.normal), vector(&facets.bounds));
+            quote!(::mixer_rt::Facets { normal: #normal, bounds: #bounds })
+        });
+        quote!(&[#(#facets),*])
+    };
+    let (thrust, chord) = (vector(&table.thrust_n), vector(&table.border.chord));
+    let quadrangle = matrix(&table.border.quadrangle);
+    let (slopes, walls) = (facets(&table.slopes), facets(&table.walls));
+    let share = float(table.torque_share());
     let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
     quote! {
-        ::mixer_rt::Vertical {
+        &::mixer_rt::Vertical {
+            units: &[#(#units),*],
             thrust_n: #thrust,
-            least_torque: #least,
-            largest_torque: #largest,
-            facets: &[#(#facets),*],
-            null: &#null,
+            border: ::mixer_rt::Border { sides: [#(#sides),*], chord: #chord, quadrangle: #quadrangle },
+            slopes: #slopes,
+            walls: #walls,
+            torque_share: #share,
             thrust_floor_n: #floor,
             thrust_middle_n: #middle,
         }
@@ -201,7 +225,9 @@ fn tables_type(tables: &MixerTables) -> TokenStream {
         } => seeded_type(seed.type_name(), *steps, *residuals),
     };
     match tables.shortcut {
-        Some(_) => quote!(::mixer_rt::Tables<'static, #basis, #inverse, ::mixer_rt::Vertical<'static>>),
+        Some(_) => {
+            quote!(::mixer_rt::Tables<'static, #basis, #inverse, &'static ::mixer_rt::Vertical<'static>>)
+        }
         None => quote!(::mixer_rt::Tables<'static, #basis, #inverse>),
     }
 }

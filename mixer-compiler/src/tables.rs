@@ -6,9 +6,9 @@
 mod inverse;
 
 use mixer_rt::{
-    AttainableSet, Biquadratic, Cubic, Desaturation, Edge, Facets, Health, Pair, Quantity, Quartic,
-    Saturation, Scalar, Scratch, SetpointError, Side, Tables, ThrottleRange, Tolerance, Unit, Vertical,
-    Voltage, VoltageLaw, Wrench,
+    AttainableSet, Biquadratic, Border, Cubic, Desaturation, Edge, Facets, Health, Pair, Quantity, Quartic,
+    Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit, Vertical,
+    VerticalUnit, Voltage, VoltageLaw, Wrench,
 };
 
 use crate::airframe::{Airframe, Basis};
@@ -89,19 +89,19 @@ impl AttainableTable {
     }
 }
 
-/// The shorter way to desaturate with vertical axes.
+/// The shorter way with vertical axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerticalTable {
+    /// Shares of C and C+.
+    pub units: Vec<VerticalUnit>,
     /// Least and largest thrust of a unit, N.
     pub thrust_n: [f32; 2],
-    /// Q_min(f).
-    pub least_torque: Side,
-    /// Q_max(f).
-    pub largest_torque: Side,
-    /// The attainable (roll, pitch, thrust).
-    pub facets: Vec<Facets>,
-    /// The null space of the thrusts.
-    pub null: Vec<f32>,
+    /// The attainable torques of a unit.
+    pub border: Border,
+    /// Facets of the attainable (roll, pitch, thrust) whose normals have the thrust component 1.
+    pub slopes: Vec<Facets>,
+    /// Facets whose normals have no thrust component.
+    pub walls: Vec<Facets>,
     /// Least thrust without torque, N.
     pub thrust_floor_n: f32,
     /// A thrust well inside, N.
@@ -112,14 +112,25 @@ impl VerticalTable {
     /// The table as `mixer-rt` reads it.
     pub fn view(&self) -> Vertical<'_> {
         Vertical {
+            units: &self.units,
             thrust_n: self.thrust_n,
-            least_torque: self.least_torque,
-            largest_torque: self.largest_torque,
-            facets: &self.facets,
-            null: &self.null,
+            border: self.border,
+            slopes: &self.slopes,
+            walls: &self.walls,
+            torque_share: self.torque_share(),
             thrust_floor_n: self.thrust_floor_n,
             thrust_middle_n: self.thrust_middle_n,
         }
+    }
+
+    /// 1 / n.
+    pub fn torque_share(&self) -> f32 {
+        1.0 / self.units.len() as f32
+    }
+
+    fn floats(&self) -> usize {
+        // Range, border, share, floor and middle beside the units and facets.
+        2 + 28 + 3 + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
     }
 }
 
@@ -215,10 +226,11 @@ impl MixerTables {
             + 2 // throttle range
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
             + 4 + 5 * self.attainable.edges.len()
-            + self.shortcut.as_ref().map_or(0, |table| 22 + 5 * table.facets.len() + table.null.len())
+            + self.shortcut.as_ref().map_or(0, VerticalTable::floats)
             + 2 // desaturation
             + 6; // tolerance
-        4 * floats + 2 * self.units.len()
+        let channels = 2 * self.units.len() * (1 + usize::from(self.shortcut.is_some()));
+        4 * floats + channels
     }
 }
 

@@ -5,7 +5,7 @@
 //! sqrt(f + B^2 / 4A - C). For the other bases such a combination is fitted and shifted to the inner side. The
 //! shift under the root is searched for, the rest is least squares.
 
-use mixer_rt::{Airmode, Arc, Axis, Facets, Side};
+use mixer_rt::{Airmode, Arc, Axis, Border, Facets, Side, VerticalUnit};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::airframe::Airframe;
@@ -25,6 +25,9 @@ const MARGIN: f64 = 2e-6;
 /// Of sums of a few f32 products.
 const ROUNDING: f32 = 1e-6;
 
+/// A unit whose thrust changes by less than this share of the largest along the null space has no part in it.
+const NO_PART: f64 = 1e-5;
+
 /// Shifts tried on a logarithmic scale, and halvings of the best interval.
 const SHIFTS: usize = 40;
 const HALVINGS: usize = 24;
@@ -40,6 +43,8 @@ pub(crate) fn table(
     let matrix = &effectiveness.matrix;
     let vertical = (0..n).all(|i| {
         matrix[(2, i)] == 0.0
+            && matrix[(3, i)] == 1.0
+            && matrix[(3, n + i)] == 0.0
             && matrix[(0, n + i)] == 0.0
             && matrix[(1, n + i)] == 0.0
             && matrix[(2, n + i)].abs() == 1.0
@@ -52,50 +57,115 @@ pub(crate) fn table(
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let [low, high] = pair.range();
     let edge = |from: [f64; 2], to: [f64; 2], side: f64| arc(&pair, from, to, side);
-    let least_torque = Side {
-        corner_n: pair.efforts([high, low])[0] as f32,
-        arcs: [
-            edge([low, low], [high, low], 1.0)?,
-            edge([high, low], [high, high], 1.0)?,
-        ],
-    };
-    let largest_torque = Side {
+    let largest = Side {
         corner_n: pair.efforts([low, high])[0] as f32,
         arcs: [
-            edge([low, low], [low, high], -1.0)?,
-            edge([low, high], [high, high], -1.0)?,
+            edge([low, low], [low, high], 1.0)?,
+            edge([low, high], [high, high], 1.0)?,
+        ],
+    };
+    let least = Side {
+        corner_n: pair.efforts([high, low])[0] as f32,
+        arcs: [
+            edge([low, low], [high, low], -1.0)?,
+            edge([high, low], [high, high], -1.0)?,
         ],
     };
     let columns: Vec<Vector3<f64>> = (0..n)
         .map(|i| Vector3::new(matrix[(0, i)], matrix[(1, i)], matrix[(3, i)]))
         .collect();
-    let [least, most] = [pair.efforts([low, low])[0], pair.efforts([high, high])[0]];
+    let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
+    let slope = (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
+    let border = Border {
+        sides: [largest, least],
+        chord: [ends[0][1] - slope * ends[0][0], slope].map(|x| x as f32),
+        quadrangle: quadrangle(&pair),
+    };
     // f32 rounding, inwards.
-    let thrust_n = [(least as f32).next_up(), (most as f32).next_down()];
-    let facets = facets(&columns, thrust_n.map(f64::from));
+    let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
+    let (slopes, walls) = facets(&columns, thrust_n.map(f64::from));
     // The floor was mixed on the polygon: at least what the facets allow without roll and pitch, with rounding.
-    let level = facets.iter().filter(|facets| facets.normal[2] != 0.0);
-    let least_level = level.map(|facets| facets.bounds[0]).fold(floor, f32::max);
+    let least_level = slopes.iter().map(|facets| facets.bounds[0]).fold(floor, f32::max);
     let table = VerticalTable {
+        units: units(airframe, effectiveness, &null_vector(&columns), thrust_n),
         thrust_n,
-        least_torque,
-        largest_torque,
-        facets,
-        null: null_vector(&columns),
+        border,
+        slopes,
+        walls,
         thrust_floor_n: least_level * (1.0 + ROUNDING),
         thrust_middle_n: 0.5 * (floor + ceiling),
     };
     inside(&pair, &table).then_some(table)
 }
 
-/// The arc of the edge from `from` to `to`, moved by its error to the side of +Q (1) or -Q (-1); `None` where f
-/// does not grow along the edge or no arc is close.
-fn arc(pair: &PairMap, from: [f64; 2], to: [f64; 2], side: f64) -> Option<Arc> {
-    let points: Vec<[f64; 2]> = (0..=SAMPLES)
+/// Shares of C and C+, rounded.
+fn units(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    null: &[f64],
+    [least, most]: [f32; 2],
+) -> Vec<VerticalUnit> {
+    let n = airframe.units.len();
+    let Effectiveness {
+        matrix,
+        pseudo_inverse,
+        ..
+    } = effectiveness;
+    let units = airframe.units.iter().zip(null).enumerate();
+    units
+        .map(|(i, (unit, &null))| VerticalUnit {
+            allocation: [0, 1, 3].map(|axis| pseudo_inverse[(i, axis)] as f32),
+            arms: [0, 1].map(|axis| matrix[(axis, i)] as f32),
+            spin: matrix[(2, n + i)] as f32,
+            null: null as f32,
+            per_null: if null == 0.0 { 0.0 } else { (1.0 / null) as f32 },
+            ends: if null < 0.0 { [most, least] } else { [least, most] },
+            channels: [unit.upper_channel as u8, unit.lower_channel as u8],
+        })
+        .collect()
+}
+
+/// Points `[f, Q]` of the edge of the throttle box from `from` to `to`.
+fn points(pair: &PairMap, from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
+    (0..=SAMPLES)
         .map(|k| {
             let share = k as f64 / SAMPLES as f64;
             pair.efforts(std::array::from_fn(|i| from[i] + share * (to[i] - from[i])))
         })
+        .collect()
+}
+
+/// The lines of [`Border::quadrangle`]: through the corners of the attainable set, moved inwards where its border bends
+/// inwards. Where Q does not grow as it does along the edges of usual pairs, a line that no thrust satisfies.
+fn quadrangle(pair: &PairMap) -> [[f32; 2]; 4] {
+    let [low, high] = pair.range();
+    let margin = MARGIN * pair.scale()[0];
+    // Towards more thrust at the first two edges, less at the others; all with Q growing.
+    let edges = [
+        ([low, low], [low, high], 1.0),
+        ([high, low], [low, low], 1.0),
+        ([high, high], [low, high], -1.0),
+        ([high, low], [high, high], -1.0),
+    ];
+    edges.map(|(from, to, inwards)| {
+        let points = points(pair, from, to);
+        let (first, last) = (points[0], points[SAMPLES]);
+        let slope = (last[0] - first[0]) / (last[1] - first[1]);
+        if last[1] <= first[1] || !slope.is_finite() {
+            return [inwards as f32 * f32::MAX, 0.0];
+        }
+        let offsets = points.iter().map(|[f, q]| inwards * (f - slope * q));
+        let offset = inwards * (offsets.fold(f64::NEG_INFINITY, f64::max) + margin);
+        [offset as f32, slope as f32]
+    })
+}
+
+/// The arc of the edge from `from` to `to` for `sign` Q, lowered by its error; `None` where f does not grow along the
+/// edge or no arc is close.
+fn arc(pair: &PairMap, from: [f64; 2], to: [f64; 2], sign: f64) -> Option<Arc> {
+    let points: Vec<[f64; 2]> = points(pair, from, to)
+        .iter()
+        .map(|[f, q]| [*f, sign * q])
         .collect();
     if points.windows(2).any(|pair| pair[1][0] <= pair[0][0]) {
         return None;
@@ -124,7 +194,7 @@ fn arc(pair: &PairMap, from: [f64; 2], to: [f64; 2], side: f64) -> Option<Arc> {
     if error > ARC_TOLERANCE * torque {
         return None;
     }
-    let offset = coefficients[0] + side * (error + MARGIN * torque);
+    let offset = coefficients[0] - (error + MARGIN * torque);
     Some(Arc {
         offset: offset as f32,
         slope: coefficients[1] as f32,
@@ -161,9 +231,9 @@ fn fit(points: &[[f64; 2]], shift: f64) -> Option<Fit> {
     error.is_finite().then_some(Fit { coefficients, error })
 }
 
-/// The facets of the zonotope of all thrusts: every two units span a pair of them.
-fn facets(columns: &[Vector3<f64>], [least, most]: [f64; 2]) -> Vec<Facets> {
-    let mut facets: Vec<Facets> = Vec::new();
+/// The facets of the zonotope of all thrusts, slopes and walls: every two units span a pair of them.
+fn facets(columns: &[Vector3<f64>], [least, most]: [f64; 2]) -> (Vec<Facets>, Vec<Facets>) {
+    let (mut slopes, mut walls): (Vec<Facets>, Vec<Facets>) = (Vec::new(), Vec::new());
     for (i, first) in columns.iter().enumerate() {
         for second in &columns[i + 1..] {
             let mut normal = first.cross(second);
@@ -182,26 +252,30 @@ fn facets(columns: &[Vector3<f64>], [least, most]: [f64; 2]) -> Vec<Facets> {
                 bounds[1] += (along * least).max(along * most);
             }
             let facet = Facets {
-                normal: std::array::from_fn(|k| normal[k] as f32),
+                normal: [normal[0] as f32, normal[1] as f32],
                 bounds: bounds.map(|x| x as f32),
             };
+            let facets = if level { &mut walls } else { &mut slopes };
             if !facets.contains(&facet) {
                 facets.push(facet);
             }
         }
     }
-    facets
+    (slopes, walls)
 }
 
 /// Thrusts that give no roll, pitch and thrust, the largest being 1; zeros for three units.
-fn null_vector(columns: &[Vector3<f64>]) -> Vec<f32> {
+fn null_vector(columns: &[Vector3<f64>]) -> Vec<f64> {
     let [a, b, c, d] = columns else {
         return vec![0.0; columns.len()];
     };
     let minor = |x: &Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>| x.cross(y).dot(z);
     let null = [minor(b, c, d), -minor(a, c, d), minor(a, b, d), -minor(a, b, c)];
     let largest = null.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-    null.iter().map(|x| (x / largest) as f32).collect()
+    null.iter()
+        .map(|x| x / largest)
+        .map(|x| if x.abs() < NO_PART { 0.0 } else { x })
+        .collect()
 }
 
 /// True where the arcs enclose no more than the attainable set, and hardly less.
@@ -213,7 +287,6 @@ fn inside(pair: &PairMap, table: &VerticalTable) -> bool {
     };
     let torque = pair.scale()[1];
     let [least, most] = table.thrust_n.map(f64::from);
-    let border = pair.border(SAMPLES);
     let side = |side: &Side, f: f64| {
         let [below, above] = &side.arcs;
         at(
@@ -225,15 +298,23 @@ fn inside(pair: &PairMap, table: &VerticalTable) -> bool {
             f,
         )
     };
+    let Border {
+        sides: [largest_torque, least_torque],
+        chord,
+        ..
+    } = &table.border;
+    let border = pair.border(SAMPLES);
     border.into_iter().enumerate().all(|(k, throttles)| {
         let [f, q] = pair.efforts(throttles);
         let f = f.clamp(least, most);
+        let chord = f64::from(chord[0]) + f64::from(chord[1]) * f;
         // The first half of the border is the lower side.
-        let lost = if k < 2 * SAMPLES {
-            side(&table.least_torque, f) - q
+        let (lost, beyond) = if k < 2 * SAMPLES {
+            (-side(least_torque, f) - q, q - chord)
         } else {
-            q - side(&table.largest_torque, f)
+            (q - side(largest_torque, f), chord - q)
         };
-        lost > -MARGIN * torque && lost < 2.0 * (ARC_TOLERANCE + MARGIN) * torque
+        let slack = MARGIN * torque;
+        lost > -slack && lost < 2.0 * (ARC_TOLERANCE * torque + slack) && beyond < slack
     })
 }

@@ -50,7 +50,16 @@ const STRAIGHT: f32 = 0.9995;
 const YAW: usize = 2;
 const THRUST: usize = 3;
 
+/// True where `request` is finite and within [`REQUEST_LIMIT`].
+#[inline(always)]
+pub(crate) fn is_bounded(request: &[f32; 4]) -> bool {
+    // The sign shifted out, numbers are ordered as their bits are.
+    let limit = REQUEST_LIMIT.to_bits() << 1;
+    request.iter().all(|value| value.to_bits() << 1 <= limit)
+}
+
 /// `request` within [`REQUEST_LIMIT`], with the direction of (roll, pitch) kept.
+#[cold]
 pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
     let largest = if roll.abs() > pitch.abs() {
         roll.abs()

@@ -62,8 +62,8 @@ pub struct Scratch {
     pub(crate) rotors: Rotors,
     /// c_i, scaled.
     reference: [f32; 2],
-    /// How far c_i is to move, scaled. In the shortcut: least and largest torque with this thrust, N m.
-    pub(crate) pair: [f32; 2],
+    /// How far c_i is to move, scaled.
+    pair: [f32; 2],
     face: Face,
 }
 

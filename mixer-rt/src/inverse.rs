@@ -22,10 +22,10 @@ pub struct ThrottleRange {
 }
 
 impl ThrottleRange {
-    /// `throttle` limited to the range; idle where it is NaN.
+    /// `throttle` limited to the range; some throttle of the range where it is NaN.
     #[inline(always)]
     pub fn clamp<S: Scalar>(&self, throttle: S) -> S {
-        throttle.within(self.min, self.max)
+        throttle.within_positive(self.min, self.max)
     }
 }
 

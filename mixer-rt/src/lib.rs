@@ -9,9 +9,9 @@
 //!   -> efforts eta = M+ u            eq. (8), least norm                      tables.rs
 //!   -> divided by k_f(V), k_Q(V)     to the reference voltage                 voltage.rs
 //!   -> throttles of every unit       inverse of (f, Q)(u, l)                  inverse.rs, forward.rs
-//!   -> if a unit cannot: desaturate  within the attainable set, by priority   desaturation.rs
+//!   -> if a unit cannot: desaturate  within the attainable set, by priority
 //!        three or four vertical units  in closed form                         vertical.rs
-//!        any frame, dead rotors        along paths of wrenches                homotopy.rs, attainable.rs, linear.rs
+//!        any frame, dead rotors        along paths of wrenches                desaturation.rs, homotopy.rs
 //!   -> achieved wrench               M (k_f f(u, l), k_Q Q(u, l))             mix.rs
 //! ```
 //!
@@ -55,7 +55,7 @@ pub use saturation::{Direction, Saturation};
 pub use scalar::Scalar;
 pub use sqrt::sqrt;
 pub use tables::{Tables, Tolerance, Unit};
-pub use vertical::{Arc, Facets, NoShortcut, Shortcut, Side, Vertical};
+pub use vertical::{Arc, Border, Facets, NoShortcut, Shortcut, Side, Vertical, VerticalUnit};
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
 

@@ -1,8 +1,8 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
-use crate::desaturation::{desaturate, limited, single_rotor};
+use crate::desaturation::{desaturate, is_bounded, limited, single_rotor};
 use crate::homotopy::{Rotors, Scratch};
-use crate::vertical::{Request, Shortcut};
+use crate::vertical::{Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;
 use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Wrench};
 
@@ -11,7 +11,8 @@ use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, 
 pub struct Mix<const CHANNELS: usize> {
     /// Throttle per output channel, each within the airframe's range; 0 for a failed rotor.
     pub throttle: [f32; CHANNELS],
-    /// The wrench that these throttles give by the airframe's model, at the given voltage.
+    /// The wrench that these throttles give by the airframe's model at the given voltage, within the proven tolerance
+    /// of the inverse map.
     pub achieved: Wrench,
     /// What could not be delivered.
     pub saturation: Saturation,
@@ -66,12 +67,10 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
     scratch: &mut [Scratch],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    let request = setpoint.to_array();
-    for (value, axis) in request.iter().zip(Axis::ALL) {
-        if !value.is_finite() {
-            return Err(SetpointError::NonFinite(axis));
-        }
+    if let (Some(vertical), true) = (tables.shortcut.vertical(), health.is_good()) {
+        return mix_vertical(tables, vertical, setpoint, voltage_v, throttle);
     }
+    let request = finite(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let per_factor = factors.map(|factor| 1.0 / factor);
 
@@ -80,27 +79,74 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
         scratch.efforts = [f * per_factor[0], q * per_factor[1]];
         scratch.rotors = rotors(unit.channels, health);
     }
-    let achieved = match tables.shortcut.vertical() {
-        Some(vertical) if health.is_good() => {
-            let request = at_reference(limited(request), per_factor);
-            vertical.desaturate(tables.units, &tables.desaturation, request, scratch);
-            invert(tables, factors, scratch, throttle).0
-        }
-        _ => {
-            let (achieved, delivered) = invert(tables, factors, scratch, throttle);
-            if delivered {
-                achieved
-            } else {
-                desaturate(tables, request, factors, scratch);
-                invert(tables, factors, scratch, throttle).0
-            }
-        }
-    };
+    let (mut achieved, delivered) = invert(tables, factors, scratch, throttle);
+    if !delivered {
+        desaturate(tables, request, factors, scratch);
+        (achieved, _) = invert(tables, factors, scratch, throttle);
+    }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
     Ok((
         Wrench::from_array(achieved),
         saturation.with_voltage_clamped(clamped),
     ))
+}
+
+/// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's proof each unit
+/// gives them within the tolerance, and the achieved wrench is theirs.
+#[inline(always)]
+fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
+    tables: &Tables<'_, P, I, S>,
+    vertical: &Vertical<'_>,
+    setpoint: &Wrench,
+    voltage_v: f32,
+    throttle: &mut [f32],
+) -> Result<(Wrench, Saturation), SetpointError> {
+    let request = setpoint.to_array();
+    let mut bounded = request;
+    if !is_bounded(&request) {
+        bounded = limited(finite(setpoint)?);
+    }
+    let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
+    let at_reference = at_reference(bounded, factors.map(|factor| 1.0 / factor));
+    let mut efforts = Efforts::default();
+    let delivered = vertical.least_norm(&at_reference, &mut efforts);
+    if !delivered {
+        vertical.desaturate(tables.desaturation.airmode, &at_reference, &mut efforts);
+    }
+    for (unit, effort) in vertical.units.iter().zip(&efforts) {
+        let efforts = [effort.thrust, effort.torque];
+        let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, efforts);
+        write(unit.channels, throttles, throttle);
+    }
+    let mut saturation = Saturation::NONE;
+    let mut achieved = *setpoint;
+    if !delivered {
+        achieved = vertical.wrench(&efforts, factors);
+        saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
+    }
+    Ok((achieved, saturation.with_voltage_clamped(clamped)))
+}
+
+/// The setpoint as `[roll, pitch, yaw, thrust]`.
+#[inline(always)]
+fn finite(setpoint: &Wrench) -> Result<[f32; 4], SetpointError> {
+    let request = setpoint.to_array();
+    for (value, axis) in request.iter().zip(Axis::ALL) {
+        if !value.is_finite() {
+            return Err(SetpointError::NonFinite(axis));
+        }
+    }
+    Ok(request)
+}
+
+/// Writes a unit's throttles to its channels.
+#[inline(always)]
+fn write(channels: [u8; 2], throttles: [f32; 2], outputs: &mut [f32]) {
+    for (channel, value) in channels.iter().zip(throttles) {
+        if let Some(slot) = outputs.get_mut(usize::from(*channel)) {
+            *slot = value;
+        }
+    }
 }
 
 /// `request` over `[k_f, k_Q]`: with vertical axes all but yaw is thrust.
@@ -141,11 +187,7 @@ fn invert<P: Quantity, I: Inverse<P>, S: Shortcut>(
             Rotors::Both => tables.inverse.throttles(&tables.pair, &tables.throttle, efforts),
             rotors => single_rotor(tables, rotors, efforts[0]).unwrap_or([0.0, 0.0]),
         };
-        for (channel, value) in unit.channels.iter().zip(throttles) {
-            if let Some(slot) = throttle.get_mut(usize::from(*channel)) {
-                *slot = value;
-            }
-        }
+        write(unit.channels, throttles, throttle);
         let given = tables.pair.efforts(throttles);
         for ((given, efforts), tolerance) in given.iter().zip(efforts).zip(tables.tolerance.efforts) {
             let missed = given - efforts;

@@ -13,30 +13,31 @@ pub enum Direction {
 
 /// What could not be delivered. Bit `2 * axis` is [`Direction::Positive`], bit `2 * axis + 1` is
 /// [`Direction::Negative`], with roll 0, pitch 1, yaw 2, thrust 3; bit 8 says that the voltage was clamped.
+// Of 32 bits, so that a mix consists of whole words; see `SetpointError`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Saturation(u16);
+pub struct Saturation(u32);
 
 impl Saturation {
     /// Everything was delivered.
     pub const NONE: Saturation = Saturation(0);
-    const VOLTAGE: u16 = 1 << 8;
+    const VOLTAGE: u32 = 1 << 8;
 
     /// The bits as documented on the type: 0..=0x1ff.
     #[inline]
     pub const fn bits(self) -> u16 {
-        self.0
+        self.0 as u16
     }
 
     /// The inverse of [`Saturation::bits`]; unknown bits are dropped.
     #[inline]
     pub const fn from_bits(bits: u16) -> Self {
-        Saturation(bits & 0x1ff)
+        Saturation(bits as u32 & 0x1ff)
     }
 
     /// True where anything was given up on this axis in this direction.
     #[inline]
     pub const fn is_saturated(self, axis: Axis, direction: Direction) -> bool {
-        let bit = 2 * axis as u16 + direction as u16;
+        let bit = 2 * axis as u32 + direction as u32;
         self.0 & (1 << bit) != 0
     }
 

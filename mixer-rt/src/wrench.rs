@@ -63,7 +63,9 @@ impl Axis {
 }
 
 /// Why a mix was refused. The caller keeps its last outputs or disarms; no throttle is ever made of a NaN.
+// Of whole words, as a mix is: copying a `Result` of other parts takes hundreds of instructions on a Cortex-M.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(align(4))]
 pub enum SetpointError {
     /// The setpoint is infinite or NaN on this axis (the first such axis is named).
     NonFinite(Axis),

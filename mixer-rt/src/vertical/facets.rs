@@ -1,0 +1,69 @@
+//! The attainable (roll, pitch, thrust).
+//!
+//! The thrusts lie in [a, b]^n, so w = C f lies in a zonotope, whose facets the compiler tabulates in pairs,
+//! `low <= d w <= high`. For a given direction of (roll, pitch) a facet is a line in the plane of (rho, thrust): the
+//! largest rho, and then the thrust nearest the request, are a linear program in two unknowns.
+
+use super::{Vertical, rolled};
+
+/// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <= high` for a slope,
+/// without the thrust for a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets {
+    /// The normal's components along roll and pitch.
+    pub normal: [f32; 2],
+    /// The bounds.
+    pub bounds: [f32; 2],
+}
+
+/// Steps of the search for the largest rho: at most one per facet, hardly ever more than two.
+const STEPS: u32 = 6;
+
+impl Vertical<'_> {
+    /// The largest share of (roll, pitch) up to 1 that some thrust of at most `ceiling` allows, and the thrusts
+    /// that it allows.
+    #[inline(always)]
+    pub(super) fn share(&self, roll: f32, pitch: f32, ceiling: f32) -> (f32, [f32; 2]) {
+        let mut share = 1.0;
+        for Facets { normal, bounds } in self.walls {
+            rolled();
+            let speed = normal[0] * roll + normal[1] * pitch;
+            let limit = if speed > 0.0 { bounds[1] } else { bounds[0] };
+            if speed > bounds[1] || speed < bounds[0] {
+                let most = limit / speed;
+                share = if most < share { most } else { share };
+            }
+        }
+        share = if share > 0.0 { share } else { 0.0 };
+        let mut range = [0.0, 0.0];
+        for _ in 0..STEPS {
+            // Thrust bounds at this share, and their velocities.
+            let (mut low, mut low_speed) = (-f32::MAX, 0.0);
+            let (mut high, mut high_speed) = (ceiling, 0.0);
+            for Facets { normal, bounds } in self.slopes {
+                rolled();
+                let speed = normal[0] * roll + normal[1] * pitch;
+                let at = speed * share;
+                if bounds[0] - at > low {
+                    (low, low_speed) = (bounds[0] - at, -speed);
+                }
+                if bounds[1] - at < high {
+                    (high, high_speed) = (bounds[1] - at, -speed);
+                }
+            }
+            range = [low, high];
+            // Where these two lines meet: the gap closes as the share shrinks.
+            let closing = low_speed - high_speed;
+            let met = share - (low - high) / closing;
+            if low <= high {
+                break;
+            }
+            share = if closing > 0.0 && met > 0.0 { met } else { 0.0 };
+        }
+        if range[0] > range[1] {
+            // Left by rounding only.
+            range = [range[1], range[1]];
+        }
+        (share, range)
+    }
+}

@@ -1,0 +1,183 @@
+//! How far yaw reaches: Y(f) = sum max(s_i Q_i) over the attainable torques.
+//!
+//! A unit's attainable set has two sides, Q_min(f) and Q_max(f), each of two arcs that meet in a corner: the images of
+//! the four edges of the throttle box. Y is a concave function along any straight way of thrusts.
+
+use super::{Search, Vertical, rolled};
+use crate::Scalar;
+
+/// `offset + slope f + bend sqrt(f + shift)`: the image of one edge of the throttle box. Exact for the
+/// biquadratic basis, on whose edges f and Q are both quadratic in one throttle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    /// N m.
+    pub offset: f32,
+    /// N m per N.
+    pub slope: f32,
+    /// N m per square root of N.
+    pub bend: f32,
+    /// N.
+    pub shift: f32,
+}
+
+impl Arc {
+    /// The torque at the thrust `f` and its derivative.
+    #[inline(always)]
+    fn tangent(&self, f: f32) -> (f32, f32) {
+        let root = (f + self.shift).root();
+        (
+            (self.offset + self.slope * f) + self.bend * root,
+            self.slope + 0.5 * self.bend / root,
+        )
+    }
+}
+
+/// One side of the attainable set: the largest torque in one direction at every thrust.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// The thrust at the corner, N.
+    pub corner_n: f32,
+    /// The arcs below and above it.
+    pub arcs: [Arc; 2],
+}
+
+impl Side {
+    #[inline(always)]
+    fn arc(&self, f: f32) -> &Arc {
+        let [below, above] = &self.arcs;
+        if f < self.corner_n { below } else { above }
+    }
+}
+
+/// The border of a unit's attainable set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Border {
+    /// Q_max(f), and -Q_min(f).
+    pub sides: [Side; 2],
+    /// Offset (N m) and slope (N m per N) of a line between the two sides.
+    pub chord: [f32; 2],
+    /// Offsets (N) and slopes (N per N m) of lines in the plane of (Q, f): a thrust that is at least the first two and
+    /// at most the last two is attainable with the torque.
+    pub quadrangle: [[f32; 2]; 4],
+}
+
+impl Border {
+    /// The side in which a unit with `spin` gives most yaw, or most against the yaw if `reversed`.
+    #[inline(always)]
+    fn side(&self, spin: f32, reversed: bool) -> &Side {
+        let [largest, least] = &self.sides;
+        if (spin < 0.0) != reversed { least } else { largest }
+    }
+
+    /// Least and largest of the thrusts that are known to be attainable with the torque `q`: most of them, without a
+    /// root.
+    #[inline(always)]
+    pub(super) fn thrusts_at(&self, q: f32) -> [f32; 2] {
+        let [a, b, c, d] = self.quadrangle.map(|[offset, slope]| offset + slope * q);
+        [if a > b { a } else { b }, if c < d { c } else { d }]
+    }
+
+    /// The least torque of a unit with `spin` in the direction of yaw (or against it if `reversed`) if it is above `p`.
+    #[inline(always)]
+    pub(super) fn least_above(&self, spin: f32, reversed: bool, f: f32, p: f32) -> Option<f32> {
+        let [offset, slope] = self.chord;
+        let chord = offset + slope * f;
+        let chord = if (spin < 0.0) != reversed { -chord } else { chord };
+        if p >= chord {
+            return None;
+        }
+        let least = -self.side(spin, !reversed).arc(f).tangent(f).0;
+        (least > p).then_some(least)
+    }
+}
+
+/// How far yaw reaches at a point of the units' way, and its derivative along the way.
+#[derive(Clone, Copy)]
+pub(super) struct Reach {
+    pub(super) yaw: f32,
+    by_z: f32,
+}
+
+/// Steps of the search for the largest yaw: the tangents of a function of nearly straight pieces meet at its top.
+const TOP_STEPS: u32 = 4;
+/// Steps of the retreat from a corner, each from the inside.
+const RETREAT_STEPS: u32 = 3;
+
+impl Vertical<'_> {
+    /// Looks in the direction of yaw, or against it if `reversed`.
+    #[inline(never)]
+    pub(super) fn look<'a>(&'a self, search: &mut [Search<'a>], reversed: bool) {
+        for (unit, state) in self.units.iter().zip(search) {
+            rolled();
+            state.side = self.border.side(unit.spin, reversed);
+        }
+    }
+}
+
+/// Moves the thrusts to `z` along the units' way and leaves their limits. Returns the sum of those.
+#[inline(never)]
+pub(super) fn reach(search: &mut [Search<'_>], z: f32) -> Reach {
+    let mut reach = Reach { yaw: 0.0, by_z: 0.0 };
+    for state in search {
+        let f = state.from + z * state.along;
+        let (torque, slope) = state.side.arc(f).tangent(f);
+        state.thrust = f;
+        state.limit = torque;
+        reach.yaw += torque;
+        reach.by_z += slope * state.along;
+    }
+    reach
+}
+
+/// z within `range` and the yaw reached there, about the largest; the search starts at a z with its reach.
+#[inline(always)]
+pub(super) fn top(search: &mut [Search<'_>], (start, here): (f32, Reach), range: [f32; 2]) -> (f32, f32) {
+    let end = if here.by_z > 0.0 { range[1] } else { range[0] };
+    let (mut near, mut near_z) = (here, start);
+    let (mut far, mut far_z) = (reach(search, end), end);
+    let mut best = if far.yaw > near.yaw {
+        (far_z, far.yaw)
+    } else {
+        (near_z, near.yaw)
+    };
+    for _ in 0..TOP_STEPS {
+        let turn = near.by_z - far.by_z;
+        // Still rising at the far end, or no turn to be seen.
+        if turn == 0.0 || (far.by_z > 0.0) == (here.by_z > 0.0) {
+            break;
+        }
+        let z = ((far.yaw - near.yaw) + (near.by_z * near_z - far.by_z * far_z)) / turn;
+        let middle = reach(search, z);
+        if middle.yaw > best.1 {
+            best = (z, middle.yaw);
+        }
+        if (middle.by_z > 0.0) == (here.by_z > 0.0) {
+            (near, near_z) = (middle, z);
+        } else {
+            (far, far_z) = (middle, z);
+        }
+    }
+    best
+}
+
+/// Moves the thrusts to where, seen from the start of the units' way, yaw last reaches `needed`: from the inside. Yaw
+/// reaches `reached` at 1. Returns how far it then reaches.
+#[inline(always)]
+pub(super) fn reach_from_inside(search: &mut [Search<'_>], mut reached: f32, needed: f32) -> f32 {
+    let mut outside = reached - needed;
+    let mut inside = reach(search, 0.0).yaw - needed;
+    // Yaw's reach is concave on the way, so a straight line between a point inside and one outside crosses
+    // zero inside.
+    let (mut inside_at, mut outside_at) = (0.0, 1.0);
+    for _ in 0..RETREAT_STEPS {
+        let inner = if inside > 0.0 { inside } else { 0.0 };
+        let at = inside_at + inner / (inner - outside) * (outside_at - inside_at);
+        reached = reach(search, at).yaw;
+        if reached >= needed {
+            (inside, inside_at) = (reached - needed, at);
+        } else {
+            (outside, outside_at) = (reached - needed, at);
+        }
+    }
+    reached
+}

@@ -1,0 +1,108 @@
+//! The thrusts: f = C+ w + z N.
+//!
+//! Where z has room and yaw does not reach the request, z is moved to where Y, the furthest yaw, is largest. Y is
+//! concave, so the part `(yaw - Y(0)) / (Y(z) - Y(0))` of the way is enough, and the thrusts are a Lipschitz function of
+//! the request, which they would not be if z were moved just far enough.
+
+use super::reach::{reach, reach_from_inside, top};
+use super::{Request, Search, Vertical, VerticalUnit, rolled};
+use crate::clamp;
+
+impl VerticalUnit {
+    /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
+    #[inline(always)]
+    pub(super) fn thrust(&self, wrench: &[f32; 3]) -> f32 {
+        let [roll, pitch, thrust] = self.allocation;
+        (roll * wrench[0] + pitch * wrench[1]) + thrust * wrench[2]
+    }
+}
+
+/// The z that leave all thrusts attainable; from `high` to `low` where there are none.
+#[derive(Clone, Copy)]
+struct NullRange {
+    low: f32,
+    high: f32,
+    /// False where a thrust that N does not change is out of its range.
+    others: bool,
+}
+
+impl Vertical<'_> {
+    /// Replaces the thrusts, which are the least-norm ones, by attainable ones of at most `ceiling` in all, from which yaw
+    /// can reach `wanted` if from any. Where it cannot even reach zero they are drawn towards those of the thrust
+    /// `middle`. Returns how far yaw reaches and leaves the limits with these thrusts.
+    #[inline(always)]
+    pub(super) fn attainable_thrusts(
+        &self,
+        request: &Request,
+        [ceiling, middle]: [f32; 2],
+        search: &mut [Search<'_>],
+        wanted: f32,
+    ) -> f32 {
+        let mut range = self.null_range(search);
+        let attainable = range.low <= range.high && range.others;
+        if !attainable {
+            let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
+            let wrench = [
+                share * request.roll,
+                share * request.pitch,
+                clamp(request.thrust, low, high),
+            ];
+            for (unit, state) in self.units.iter().zip(search.iter_mut()) {
+                rolled();
+                state.thrust = unit.thrust(&wrench);
+            }
+            range = self.null_range(search);
+        }
+        let NullRange { low, high, .. } = range;
+        let z = clamp(0.0, low, if high > low { high } else { low });
+        let mut here = reach(search, z);
+        // On the zonotope's border z has no room.
+        if attainable && here.yaw < wanted && high > low {
+            let (top_z, top) = top(search, (z, here), [low, high]);
+            let part = (wanted - here.yaw) / (top - here.yaw);
+            // Not a number where there is nothing to gain.
+            let part = if part < 1.0 { part } else { 1.0 };
+            here = reach(search, z + part * (top_z - z));
+        }
+        if here.yaw < 0.0 {
+            return self.retreat(search, here.yaw, 0.0, middle);
+        }
+        here.yaw
+    }
+
+    /// z's range; makes z the units' way.
+    #[inline(never)]
+    fn null_range(&self, search: &mut [Search<'_>]) -> NullRange {
+        let [least, most] = self.thrust_n;
+        let mut range = NullRange {
+            low: -f32::MAX,
+            high: f32::MAX,
+            others: true,
+        };
+        for (unit, state) in self.units.iter().zip(search) {
+            rolled();
+            let f = state.thrust;
+            (state.from, state.along) = (f, unit.null);
+            if unit.per_null == 0.0 {
+                range.others &= f >= least && f <= most;
+                continue;
+            }
+            let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
+            range.low = if from > range.low { from } else { range.low };
+            range.high = if to < range.high { to } else { range.high };
+        }
+        range
+    }
+
+    /// Draws the thrusts towards those of `middle_n` until yaw, which reaches `reached` now, reaches `needed`. Returns how
+    /// far it then reaches and leaves the limits.
+    #[inline(never)]
+    pub(super) fn retreat(&self, search: &mut [Search<'_>], reached: f32, needed: f32, middle_n: f32) -> f32 {
+        for (unit, state) in self.units.iter().zip(search.iter_mut()) {
+            rolled();
+            state.from = unit.allocation[2] * middle_n;
+            state.along = state.thrust - state.from;
+        }
+        reach_from_inside(search, reached, needed)
+    }
+}
