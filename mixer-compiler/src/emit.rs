@@ -4,8 +4,10 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
 use crate::Compiled;
-use crate::tables::{AttainableTable, InverseTable, LawTable, MixerTables, QuantityTable, VerticalTable};
-use mixer_rt::Facets;
+use crate::tables::{
+    AttainableTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable, VerticalTable,
+};
+use mixer_rt::{BilinearSeed, CubicSeed, EightTermSeed, Facets, QuadraticSeed, TableSeed};
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -279,15 +281,31 @@ fn inverse(inverse: &InverseTable) -> TokenStream {
             coordinates, seed, ..
         } => {
             let (x, y) = (vector(&coordinates.x), vector(&coordinates.y));
-            let (name, [upper, lower]) = (identifier(seed.type_name()), seed.coefficients().map(vector));
+            let name = identifier(seed.type_name());
+            let seed = match seed {
+                SeedTable::Bilinear(BilinearSeed { upper, lower }) => coefficients(upper, lower),
+                SeedTable::Quadratic(QuadraticSeed { upper, lower }) => coefficients(upper, lower),
+                SeedTable::EightTerm(EightTermSeed { upper, lower }) => coefficients(upper, lower),
+                SeedTable::Cubic(CubicSeed { upper, lower }) => coefficients(upper, lower),
+                SeedTable::Table(TableSeed { offset, knots }) => {
+                    let offset = vector(offset);
+                    let knots = knots.iter().map(|row| matrix(row));
+                    quote!(offset: #offset, knots: [#(#knots),*])
+                }
+            };
             quote! {
                 ::mixer_rt::Seeded {
                     coordinates: ::mixer_rt::RootCoordinates { x: #x, y: #y },
-                    seed: ::mixer_rt::#name { upper: #upper, lower: #lower },
+                    seed: ::mixer_rt::#name { #seed },
                 }
             }
         }
     }
+}
+
+fn coefficients(upper: &[f32], lower: &[f32]) -> TokenStream {
+    let (upper, lower) = (vector(upper), vector(lower));
+    quote!(upper: #upper, lower: #lower)
 }
 
 fn voltage(tables: &MixerTables) -> TokenStream {

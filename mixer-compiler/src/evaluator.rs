@@ -1,5 +1,7 @@
 //! The evaluators of the inverse map that the compiler can emit, cheapest first.
 
+use mixer_rt::TableSeed;
+
 use crate::airframe::Method;
 
 /// A form of the inverse map; `mixer-rt` has the code of each.
@@ -30,6 +32,8 @@ pub enum SeedForm {
     EightTerm,
     /// 1, x, y, xy, x2, y2, x2y, xy2, x3, y3.
     Cubic,
+    /// Bilinear between 4 x 4 knots.
+    Table,
 }
 
 /// What follows a seed.
@@ -64,26 +68,30 @@ const fn seeded(seed: SeedForm, refinement: Refinement) -> Evaluator {
 /// What `method = "auto"` tries, by instructions per unit on a Cortex-M4F: a residual costs more than any seed's
 /// further terms, a Jacobian more than a residual. Polynomials above degree 5 cost more than a seed and a Newton
 /// step and are worse by an order of magnitude.
-const CANDIDATES: [Evaluator; 19] = [
+const CANDIDATES: [Evaluator; 23] = [
     Evaluator::Polynomial { degree: 2 },
     Evaluator::Polynomial { degree: 3 },
     seeded(SeedForm::Bilinear, Refinement::None),
     seeded(SeedForm::Quadratic, Refinement::None),
     seeded(SeedForm::EightTerm, Refinement::None),
     seeded(SeedForm::Cubic, Refinement::None),
+    seeded(SeedForm::Table, Refinement::None),
     Evaluator::Polynomial { degree: 5 },
     seeded(SeedForm::Bilinear, Refinement::Newton),
     seeded(SeedForm::Quadratic, Refinement::Newton),
     seeded(SeedForm::EightTerm, Refinement::Newton),
     seeded(SeedForm::Cubic, Refinement::Newton),
+    seeded(SeedForm::Table, Refinement::Newton),
     seeded(SeedForm::Bilinear, Refinement::Shamanskii),
     seeded(SeedForm::Quadratic, Refinement::Shamanskii),
     seeded(SeedForm::EightTerm, Refinement::Shamanskii),
     seeded(SeedForm::Cubic, Refinement::Shamanskii),
+    seeded(SeedForm::Table, Refinement::Shamanskii),
     seeded(SeedForm::Bilinear, Refinement::Newton2),
     seeded(SeedForm::Quadratic, Refinement::Newton2),
     seeded(SeedForm::EightTerm, Refinement::Newton2),
     seeded(SeedForm::Cubic, Refinement::Newton2),
+    seeded(SeedForm::Table, Refinement::Newton2),
 ];
 
 impl Evaluator {
@@ -111,6 +119,7 @@ impl Evaluator {
                     SeedForm::Quadratic => "quadratic",
                     SeedForm::EightTerm => "eight-term",
                     SeedForm::Cubic => "cubic",
+                    SeedForm::Table => "table",
                 };
                 let refinement = match refinement {
                     Refinement::None => "",
@@ -133,6 +142,7 @@ impl Evaluator {
                     SeedForm::Quadratic => "quadratic",
                     SeedForm::EightTerm => "8-term",
                     SeedForm::Cubic => "cubic",
+                    SeedForm::Table => "4 x 4 table",
                 };
                 let refinement = match refinement {
                     Refinement::None => "",
@@ -147,21 +157,44 @@ impl Evaluator {
 }
 
 impl SeedForm {
-    /// Number of terms.
+    /// Number of coefficients per throttle.
     pub fn terms(self) -> usize {
         match self {
             SeedForm::Bilinear => 4,
             SeedForm::Quadratic => 6,
             SeedForm::EightTerm => 8,
             SeedForm::Cubic => 10,
+            SeedForm::Table => 16,
         }
     }
 
-    /// The terms at (x, y), in the order of `mixer-rt`'s seeds; those beyond [`SeedForm::terms`] are not used.
-    pub fn monomials(self, x: f64, y: f64) -> [f64; 10] {
+    /// What the coefficients are multiplied by at (x, y), in the order of `mixer-rt`'s seeds; for a table, whose
+    /// knots are at whole numbers from 0 to 3, the shares of its knots.
+    pub fn row(self, x: f64, y: f64) -> Vec<f64> {
+        if self == SeedForm::Table {
+            return shares(x, y);
+        }
         let (x2, y2) = (x * x, y * y);
-        [1.0, x, y, x * y, x2, y2, x2 * y, x * y2, x2 * x, y2 * y]
+        let all = [1.0, x, y, x * y, x2, y2, x2 * y, x * y2, x2 * x, y2 * y];
+        all[..self.terms()].to_vec()
     }
+}
+
+/// Shares of the 4 x 4 knots in bilinear interpolation.
+fn shares(x: f64, y: f64) -> Vec<f64> {
+    let cell = |x: f64| (x as usize).min(TableSeed::LAST_CELL);
+    let (i, j) = (cell(x), cell(y));
+    let (a, b) = (x - i as f64, y - j as f64);
+    let mut shares = vec![0.0; 16];
+    for (knot, share) in [
+        (0, (1.0 - a) * (1.0 - b)),
+        (4, a * (1.0 - b)),
+        (1, (1.0 - a) * b),
+        (5, a * b),
+    ] {
+        shares[4 * i + j + knot] = share;
+    }
+    shares
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ impl Compiled {
         let inverse = &self.airframe.inverse;
         let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
         let tolerance = [0, 1].map(|k| stated[k] / correction.largest[k]);
-        let mut inversion = Inversion::new(&pair, tolerance);
+        let mut inversion = Inversion::new(&pair, tolerance, true);
         let alternative = |evaluator: Evaluator| {
             let tables = MixerTables {
                 inverse: InverseTable::new(&inversion.fit(evaluator).0),

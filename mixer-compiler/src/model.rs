@@ -106,6 +106,23 @@ impl PairMap {
     /// Throttles on a `points` x `points` grid over the range that is denser towards the edges (Chebyshev's
     /// extrema), corners included.
     pub fn grid(&self, points: usize) -> Vec<[f64; 2]> {
+        squared(&self.nodes(points))
+    }
+
+    /// [`PairMap::grid`] with two more lines along every edge of the box: next to a fold an inverse bends within
+    /// less than the grid's first step.
+    pub fn edge_grid(&self, points: usize) -> Vec<[f64; 2]> {
+        let [low, high] = self.range;
+        let mut nodes = self.nodes(points);
+        let step = nodes[1] - low;
+        for share in [0.25, 0.0625] {
+            nodes.extend([low + share * step, high - share * step]);
+        }
+        nodes.sort_by(f64::total_cmp);
+        squared(&nodes)
+    }
+
+    fn nodes(&self, points: usize) -> Vec<f64> {
         let [low, high] = self.range;
         let node = |k: usize| {
             let share = 0.5 - 0.5 * libm::cos(std::f64::consts::PI * k as f64 / (points - 1) as f64);
@@ -115,11 +132,7 @@ impl PairMap {
                 low + (high - low) * share
             }
         };
-        let nodes: Vec<f64> = (0..points).map(node).collect();
-        nodes
-            .iter()
-            .flat_map(|&u| nodes.iter().map(move |&l| [u, l]))
-            .collect()
+        (0..points).map(node).collect()
     }
 
     /// `points` throttles along the border of the box, anticlockwise in the plane of (f, Q): since det J > 0 the
@@ -144,6 +157,13 @@ impl PairMap {
         }
         scale
     }
+}
+
+fn squared(nodes: &[f64]) -> Vec<[f64; 2]> {
+    nodes
+        .iter()
+        .flat_map(|&u| nodes.iter().map(move |&l| [u, l]))
+        .collect()
 }
 
 /// `[1, x, x^2, ..]` up to the largest exponent.

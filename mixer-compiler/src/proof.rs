@@ -8,9 +8,11 @@
 //! The box is cut into cells. On each, `cell.rs` bounds the residual; the worst cell is halved until the largest
 //! bound is close to the largest residual that was observed, or the work allowed is done.
 
+mod bend;
 mod cell;
 mod correction;
 mod expansion;
+mod table;
 mod taylor;
 
 use std::collections::BinaryHeap;
@@ -69,6 +71,9 @@ const START: usize = 8;
 /// Largest number of cells: some 50 ms in a build without optimisation.
 const MOST_CELLS: usize = 1600;
 
+/// Largest number of cells while nothing can be said of one of them.
+const MOST_UNBOUNDED: usize = 500;
+
 /// Bounds within this factor of the largest observed residual are sharp enough.
 const SHARP: f64 = 1.15;
 
@@ -100,7 +105,8 @@ pub fn prove(
         .map(|cell| Open::new(&subject, cell, goal))
         .collect();
     while let Some(worst) = open.peek() {
-        if worst.excess <= 1.0 || worst.stale >= STALE || cells >= MOST_CELLS {
+        let hopeless = cells >= MOST_UNBOUNDED && worst.excess.is_infinite() && !to_the_end;
+        if worst.excess <= 1.0 || worst.stale >= STALE || cells >= MOST_CELLS || hopeless {
             break;
         }
         let Some(worst) = open.pop() else { break };
@@ -274,5 +280,7 @@ impl Cell {
     }
 }
 
+#[cfg(test)]
+mod piecewise_tests;
 #[cfg(test)]
 mod tests;

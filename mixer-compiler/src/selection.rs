@@ -39,9 +39,10 @@ pub(crate) fn select(
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let correction = Correction::new(airframe, voltage.as_ref());
     let tolerance = tolerance_at_reference(airframe, &correction);
-    let mut inversion = Inversion::new(&pair, tolerance);
+    let candidates = Evaluator::candidates(&airframe.inverse.method);
+    let mut inversion = Inversion::new(&pair, tolerance, candidates.len() == 1);
     let mut best: Option<(Evaluator, MixerTables, f64)> = None;
-    for evaluator in Evaluator::candidates(&airframe.inverse.method) {
+    for evaluator in candidates {
         let (fitted, fit_error) = inversion.fit(evaluator);
         let inverse = InverseTable::new(&fitted);
         let tables = match &best {

@@ -89,7 +89,7 @@ fn the_tolerance_decides_on_the_evaluator() {
     let mut last = -1;
     for (thrust, torque) in [
         ("3.0", "0.04"),
-        ("0.5", "0.01"),
+        ("0.2", "2e-3"),
         ("0.01", "1e-4"),
         ("5e-5", "5e-7"),
     ] {

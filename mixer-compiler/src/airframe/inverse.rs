@@ -11,18 +11,22 @@ pub const EVALUATORS: &[&str] = &[
     "quadratic",
     "eight-term",
     "cubic",
+    "table",
     "bilinear-newton",
     "quadratic-newton",
     "eight-term-newton",
     "cubic-newton",
+    "table-newton",
     "bilinear-shamanskii",
     "quadratic-shamanskii",
     "eight-term-shamanskii",
     "cubic-shamanskii",
+    "table-shamanskii",
     "bilinear-newton2",
     "quadratic-newton2",
     "eight-term-newton2",
     "cubic-newton2",
+    "table-newton2",
 ];
 
 /// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.

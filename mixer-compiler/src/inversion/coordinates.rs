@@ -3,10 +3,9 @@
 //! If f and Q were quadratic forms of (u, l), two combinations f/F - p Q/T and f/F + r Q/T would be perfect squares
 //! of linear forms in u and l: p and -r are the generalised eigenvalues of the two forms. Their roots x and y would
 //! be linear in (u, l), and the inverse linear in (x, y). Real pairs deviate: offsets c1, c2 keep the radicands
-//! positive, and (p, r, c1, c2) are searched from there (Nelder and Mead 1965) for the least error of a bilinear
-//! fit.
+//! positive, and (p, r, c1, c2) are searched from there (Nelder and Mead 1965) for the least error of a fit.
 
-use super::{Sample, samples};
+use super::sample::{Sample, samples};
 use crate::model::PairMap;
 
 /// `x = sqrt(x0 f + x1 Q + x2)`, `y = sqrt(y0 f + y1 Q + y2)`, with f in N and Q in N m.
@@ -21,11 +20,51 @@ pub struct Coordinates {
 /// Points per side of the grid on which coordinates are judged.
 const GRID: usize = 11;
 
+/// Points per edge of the set's border.
+const BORDER: usize = 48;
+
+/// Least radicand at the border points.
+const POSITIVE: f64 = 3e-4;
+
+/// Least radicand at the start of the search.
+const START: f64 = 0.01;
+
 /// Edge of the simplex at the start.
 const EDGE: f64 = 0.1;
 
+/// An error in units of the tolerance that leaves the proof room.
+const ENOUGH: f64 = 0.75;
+
 /// Evaluations of the simplex search.
 const EVALUATIONS: usize = 220;
+
+/// What coordinates are searched for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    /// Terms of the fit: 4 or 6.
+    terms: usize,
+    /// Errors count by det J to the power `-emphasis`: where it is small, a Newton step bears smaller errors of its
+    /// seed.
+    pub(super) emphasis: f64,
+}
+
+impl Start {
+    /// The first suits ordinary pairs, the others pairs next to a fold.
+    pub(super) const ALL: [Start; 3] = [
+        Start {
+            terms: 4,
+            emphasis: 0.0,
+        },
+        Start {
+            terms: 4,
+            emphasis: 0.75,
+        },
+        Start {
+            terms: 6,
+            emphasis: 0.75,
+        },
+    ];
+}
 
 impl Coordinates {
     /// (x, y) at the efforts `[f, Q]`.
@@ -34,47 +73,91 @@ impl Coordinates {
         [root(self.x), root(self.y)]
     }
 
-    /// Searches the coordinates of a pair in which a bilinear fit of the throttles is best. Errors count for more
-    /// where det J is small, by its power `-emphasis`: 0 suits ordinary pairs, but next to a fold a Newton step
-    /// bears smaller errors of its seed than elsewhere.
-    pub fn search(pair: &PairMap, emphasis: f64) -> Self {
-        let scale = pair.scale();
-        let samples = samples(pair, GRID);
-        let [p, r] = eigenvalues(&samples, scale);
-        // Offsets just large enough to keep both radicands positive over the set.
-        let least = |by_q: f64| {
-            let radicands = samples
-                .iter()
-                .map(|s| s.efforts[0] / scale[0] + by_q * s.efforts[1] / scale[1]);
-            0.01 - radicands.fold(f64::INFINITY, f64::min)
-        };
-        let start = [p, r, least(-p), least(r)];
+    /// Searches the coordinates of a pair in which the start's fit of the throttles is best.
+    pub(super) fn search(pair: &PairMap, Start { terms, emphasis }: Start) -> Self {
+        let samples = samples(pair, pair.grid(GRID));
+        let plane = Plane::new(pair);
+        let [p, r] = eigenvalues(&samples, plane.scale);
         let weights = weights(pair, &samples, emphasis);
-        let objective =
-            |parameters: &[f64; 4]| bilinear_error(&samples, &weights, &Coordinates::new(scale, parameters));
-        Coordinates::new(scale, &minimise(start, EDGE, EVALUATIONS, objective))
+        let error = if terms == 4 {
+            fit_error::<4>
+        } else {
+            fit_error::<6>
+        };
+        let objective = |parameters: &[f64; 4]| error(&samples, &weights, &plane.coordinates(parameters));
+        let start = [p, r, plane.least(-p) + START, plane.least(r) + START];
+        plane.coordinates(&minimise(start, EDGE, EVALUATIONS, objective, |_, _| false))
     }
 
-    /// Searches on from here for the least `error`.
+    /// Searches on from here for the least `error`, until it is below 1 with something to spare, or will not become
+    /// so: half of the evaluations must bring it half of the way.
     pub fn improved(&self, pair: &PairMap, evaluations: usize, error: impl Fn(&Coordinates) -> f64) -> Self {
+        let plane = Plane::new(pair);
+        let start = [
+            -self.x[1] * plane.scale[1],
+            self.y[1] * plane.scale[1],
+            self.x[2],
+            self.y[2],
+        ];
+        let objective = |parameters: &[f64; 4]| error(&plane.coordinates(parameters));
+        let first = objective(&start);
+        let enough = |done: usize, least: f64| {
+            least < ENOUGH || (2 * done > evaluations && least > 1.0 && least - 1.0 > 0.5 * (first - 1.0))
+        };
+        plane.coordinates(&minimise(start, 0.3 * EDGE, evaluations, objective, enough))
+    }
+}
+
+/// The attainable set in units of the efforts' sizes.
+struct Plane {
+    scale: [f64; 2],
+    border: Vec<[f64; 2]>,
+}
+
+impl Plane {
+    fn new(pair: &PairMap) -> Self {
         let scale = pair.scale();
-        let start = [-self.x[1] * scale[1], self.y[1] * scale[1], self.x[2], self.y[2]];
-        let objective = |parameters: &[f64; 4]| error(&Coordinates::new(scale, parameters));
-        Coordinates::new(scale, &minimise(start, 0.3 * EDGE, evaluations, objective))
+        let scaled = |throttles: [f64; 2]| {
+            let [f, q] = pair.efforts(throttles);
+            [f / scale[0], q / scale[1]]
+        };
+        Plane {
+            scale,
+            border: pair.border(BORDER).into_iter().map(scaled).collect(),
+        }
     }
 
-    /// From (p, r, c1, c2).
-    fn new(scale: [f64; 2], [p, r, c1, c2]: &[f64; 4]) -> Self {
+    /// The least offset with which f/F + `by_q` Q/T is nowhere negative on the set.
+    fn least(&self, by_q: f64) -> f64 {
+        let (mut least, mut k) = (f64::INFINITY, 0);
+        while k < self.border.len() {
+            let [f, q] = self.border[k];
+            let value = f + by_q * q;
+            if value < least {
+                least = value;
+            }
+            k += 1;
+        }
+        -least
+    }
+
+    /// From (p, r, c1, c2). Radicands stay positive: where one were limited to zero, the fit would have a kink that
+    /// hides between the samples.
+    fn coordinates(&self, [p, r, c1, c2]: &[f64; 4]) -> Coordinates {
+        let offset = |by_q: f64, offset: f64| offset.max(self.least(by_q) + POSITIVE);
         Coordinates {
-            x: [1.0 / scale[0], -p / scale[1], *c1],
-            y: [1.0 / scale[0], r / scale[1], *c2],
+            x: [1.0 / self.scale[0], -p / self.scale[1], offset(-p, *c1)],
+            y: [1.0 / self.scale[0], r / self.scale[1], offset(*r, *c2)],
         }
     }
 }
 
 /// Weights of errors: a power of det J over its mean, bounded where det J vanishes.
-fn weights(pair: &PairMap, samples: &[Sample], emphasis: f64) -> Vec<f64> {
+pub(super) fn weights(pair: &PairMap, samples: &[Sample], emphasis: f64) -> Vec<f64> {
     const FLOOR: f64 = 0.003;
+    if emphasis == 0.0 {
+        return vec![1.0; samples.len()];
+    }
     let determinant = |sample: &Sample| {
         let [[f_u, f_l], [q_u, q_l]] = pair.jacobian(sample.throttles);
         (f_u * q_l - f_l * q_u).max(0.0)
@@ -125,28 +208,45 @@ fn quadratic_form(samples: &[Sample], value: impl Fn(&Sample) -> f64) -> [f64; 3
         .map_or([1.0, 0.0, 1.0], |factors| factors.solve(&right).into())
 }
 
-/// The sum of sixth powers of the weighted throttle errors of a bilinear least-squares fit: close to the maximum, yet
-/// smooth.
-fn bilinear_error(samples: &[Sample], weights: &[f64], coordinates: &Coordinates) -> f64 {
-    let mut normal = [[0.0f64; 6]; 4]; // with both right-hand sides as columns 4 and 5
+/// The sum of sixth powers of the weighted throttle errors of a least-squares fit: close to the maximum, yet smooth.
+/// The terms are 1, x, y, xy and, with `TERMS` = 6, x2 and y2.
+fn fit_error<const TERMS: usize>(samples: &[Sample], weights: &[f64], coordinates: &Coordinates) -> f64 {
+    let mut normal = [[0.0f64; TERMS]; TERMS];
+    let mut right = [[0.0f64; TERMS]; 2];
+    let mut rows = Vec::with_capacity(samples.len());
     for (sample, weight) in samples.iter().zip(weights) {
         let [x, y] = coordinates.at(sample.efforts);
-        let terms = [1.0, x, y, x * y];
-        let row = [1.0, x, y, x * y, sample.throttles[0], sample.throttles[1]];
-        for (i, (sums, term)) in normal.iter_mut().zip(terms).enumerate() {
-            for (sum, value) in sums.iter_mut().zip(row).skip(i) {
-                *sum += weight * weight * term * value;
+        let all = [1.0, x, y, x * y, x * x, y * y];
+        let mut row = [0.0; TERMS];
+        row.copy_from_slice(&all[..TERMS]);
+        let square = weight * weight;
+        // Plain loops: the search runs through here hundreds of times in builds without optimisation.
+        let mut i = 0;
+        while i < TERMS {
+            let weighted = square * row[i];
+            right[0][i] += weighted * sample.throttles[0];
+            right[1][i] += weighted * sample.throttles[1];
+            let mut j = i;
+            while j < TERMS {
+                normal[i][j] += weighted * row[j];
+                j += 1;
             }
+            i += 1;
         }
+        rows.push(row);
     }
-    let Some(solution) = solve_symmetric(normal) else {
+    let Some(solution) = solve_symmetric(normal, right) else {
         return f64::INFINITY;
     };
     let mut sum = 0.0;
-    for (sample, weight) in samples.iter().zip(weights) {
-        let [x, y] = coordinates.at(sample.efforts);
-        for (c, throttle) in solution.iter().zip(sample.throttles) {
-            let error = c[0] + c[1] * x + c[2] * y + c[3] * x * y - throttle;
+    for ((sample, weight), row) in samples.iter().zip(weights).zip(&rows) {
+        let (mut u, mut l, mut i) = (0.0, 0.0, 0);
+        while i < TERMS {
+            u += solution[0][i] * row[i];
+            l += solution[1][i] * row[i];
+            i += 1;
+        }
+        for error in [u - sample.throttles[0], l - sample.throttles[1]] {
             let error = error * weight;
             let square = error * error;
             sum += square * square * square;
@@ -155,39 +255,48 @@ fn bilinear_error(samples: &[Sample], weights: &[f64], coordinates: &Coordinates
     sum
 }
 
-/// Solves a symmetric positive definite 4 x 4 system given by its upper triangle, with two right-hand sides, by
-/// Gauss elimination without pivoting. (Written out, since the search solves it hundreds of times in builds at
-/// opt-level 0.)
-fn solve_symmetric(mut rows: [[f64; 6]; 4]) -> Option<[[f64; 4]; 2]> {
-    for i in 0..4 {
-        let pivot_row = rows[i];
-        let pivot = pivot_row[i];
+/// Solves a symmetric positive definite system given by its upper triangle, with two right-hand sides, by Gauss
+/// elimination without pivoting.
+fn solve_symmetric<const TERMS: usize>(
+    mut rows: [[f64; TERMS]; TERMS],
+    mut right: [[f64; TERMS]; 2],
+) -> Option<[[f64; TERMS]; 2]> {
+    for i in 0..TERMS {
+        let pivot = rows[i][i];
         if pivot.is_nan() || pivot <= 1e-12 {
             return None;
         }
-        for (k, row) in rows.iter_mut().enumerate().skip(i + 1) {
-            let factor = pivot_row[k] / pivot;
-            for (value, above) in row.iter_mut().zip(pivot_row).skip(k) {
-                *value -= factor * above;
+        for k in i + 1..TERMS {
+            let factor = rows[i][k] / pivot;
+            let mut j = k;
+            while j < TERMS {
+                rows[k][j] -= factor * rows[i][j];
+                j += 1;
+            }
+            for right in &mut right {
+                right[k] -= factor * right[i];
             }
         }
     }
-    let mut solution = [[0.0; 4]; 2];
-    for (column, unknowns) in solution.iter_mut().enumerate() {
-        for (i, row) in rows.iter().enumerate().rev() {
-            let known: f64 = row.iter().zip(&*unknowns).skip(i + 1).map(|(a, x)| a * x).sum();
-            unknowns[i] = (row[4 + column] - known) / row[i];
+    for unknowns in &mut right {
+        for i in (0..TERMS).rev() {
+            for j in i + 1..TERMS {
+                unknowns[i] -= rows[i][j] * unknowns[j];
+            }
+            unknowns[i] /= rows[i][i];
         }
     }
-    Some(solution)
+    Some(right)
 }
 
-/// Nelder and Mead's simplex search with their coefficients 1, 2, 1/2, 1/2.
+/// Nelder and Mead's simplex search with their coefficients 1, 2, 1/2, 1/2; `enough` may end it early, given the
+/// evaluations so far and the least value.
 fn minimise(
     start: [f64; 4],
     edge: f64,
     most_evaluations: usize,
     objective: impl Fn(&[f64; 4]) -> f64,
+    enough: impl Fn(usize, f64) -> bool,
 ) -> [f64; 4] {
     let mut simplex: Vec<([f64; 4], f64)> = vec![(start, objective(&start))];
     for k in 0..4 {
@@ -198,6 +307,9 @@ fn minimise(
     let mut evaluations = 5;
     while evaluations < most_evaluations {
         simplex.sort_by(|a, b| a.1.total_cmp(&b.1));
+        if enough(evaluations, simplex[0].1) {
+            break;
+        }
         let worst = simplex[4];
         let mut centre = [0.0; 4];
         for (vertex, _) in &simplex[..4] {

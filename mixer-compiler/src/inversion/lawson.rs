@@ -1,6 +1,8 @@
-//! Weighted least squares towards the least maximal error.
+//! Weighted least squares of the throttles towards the least maximal error after Newton steps.
 
 use nalgebra::{DMatrix, DVector};
+
+use super::joint::{SMOOTH, dot};
 
 /// Rounds of reweighting.
 pub(super) const ROUNDS: usize = 12;
@@ -8,47 +10,57 @@ pub(super) const ROUNDS: usize = 12;
 /// Relative size below which a column adds nothing that f64 could tell from rounding.
 const SINGULAR: f64 = 1e-13;
 
+/// Rounds after which a fit that is far off is given up.
+pub(super) const PATIENCE: usize = 4;
+
 /// Linear fits of two targets in common terms.
 pub(super) struct Lawson<'a> {
     /// The terms' values, per sample.
     pub(super) rows: &'a [Vec<f64>],
     /// What is to be met, per sample.
     pub(super) targets: &'a [[f64; 2]],
-    /// True where errors are linear in the coefficients, false where they are quadratic.
-    pub(super) direct: bool,
+    /// The weights of the first round.
+    pub(super) weights: Vec<f64>,
+    /// Combinations of coefficients that should be zero: they decide where there are no samples.
+    pub(super) smooth: &'a [Vec<f64>],
 }
 
 impl Lawson<'_> {
-    /// The best coefficients found, per target, and their largest `error(sample, fitted targets)`.
-    pub(super) fn fit(&self, rounds: usize, error: &dyn Fn(usize, [f64; 2]) -> f64) -> ([Vec<f64>; 2], f64) {
-        let direct = self.direct;
-        let mut weights = vec![1.0; self.rows.len()];
+    /// The best coefficients found, per target, and their largest `error(sample, fitted targets)`. Errors of more
+    /// than `hopeless` after a few rounds end the fit.
+    pub(super) fn fit(
+        &self,
+        rounds: usize,
+        hopeless: f64,
+        error: &dyn Fn(usize, [f64; 2]) -> f64,
+    ) -> ([Vec<f64>; 2], f64) {
+        let mut weights = self.weights.clone();
         let mut best = ([Vec::new(), Vec::new()], f64::INFINITY);
-        for _ in 0..rounds {
+        for round in 0..rounds {
             let coefficients = self.solve(&weights);
-            let evaluate = |row: &[f64]| {
-                let value = |c: &Vec<f64>| row.iter().zip(c).map(|(term, c)| term * c).sum::<f64>();
-                [value(&coefficients[0]), value(&coefficients[1])]
-            };
-            let errors: Vec<f64> = self
-                .rows
-                .iter()
-                .enumerate()
-                .map(|(index, row)| error(index, evaluate(row)))
-                .collect();
-            let largest = errors.iter().fold(0.0f64, |largest, &e| largest.max(e));
+            let mut errors = Vec::with_capacity(self.rows.len());
+            let mut largest = 0.0f64;
+            for (index, row) in self.rows.iter().enumerate() {
+                let error = error(index, [dot(row, &coefficients[0]), dot(row, &coefficients[1])]);
+                largest = largest.max(error);
+                errors.push(error);
+            }
             if largest < best.1 {
                 best = (coefficients, largest);
+            }
+            if round + 1 >= PATIENCE && best.1 > hopeless {
+                break;
             }
             // Lawson's factor is the error itself. Newton steps square the seed's error: its root then.
             let mut sum = 0.0;
             for (weight, error) in weights.iter_mut().zip(&errors) {
-                let share = error / largest;
-                *weight *= if direct { share } else { share.sqrt() } + 1e-3;
+                *weight *= (error / largest).sqrt() + 1e-3;
                 sum += *weight;
             }
             let scale = weights.len() as f64 / sum;
-            weights.iter_mut().for_each(|weight| *weight *= scale);
+            for weight in &mut weights {
+                *weight *= scale;
+            }
         }
         best
     }
@@ -60,15 +72,17 @@ impl Lawson<'_> {
         let terms = self.rows[0].len();
         let mut normal = vec![0.0; terms * terms];
         let mut right = [vec![0.0; terms], vec![0.0; terms]];
-        for ((row, target), &weight) in self.rows.iter().zip(self.targets).zip(weights) {
-            for (i, &left) in row.iter().enumerate() {
-                let weighted = weight * left;
-                right[0][i] += weighted * target[0];
-                right[1][i] += weighted * target[1];
-                for (slot, &term) in normal[i * terms..].iter_mut().zip(&row[..=i]) {
-                    *slot += weighted * term;
-                }
+        for (index, row) in self.rows.iter().enumerate() {
+            let (target, weight) = (self.targets[index], weights[index]);
+            for (i, &term) in row.iter().enumerate() {
+                right[0][i] += weight * term * target[0];
+                right[1][i] += weight * term * target[1];
             }
+            accumulate(&mut normal, terms, row, weight);
+        }
+        let size = (0..terms).map(|i| normal[i * terms + i]).sum::<f64>() / terms as f64;
+        for row in self.smooth {
+            accumulate(&mut normal, terms, row, SMOOTH * size);
         }
         let scale: Vec<f64> = (0..terms)
             .map(|i| 1.0 / normal[i * terms + i].max(f64::MIN_POSITIVE).sqrt())
@@ -86,5 +100,23 @@ impl Lawson<'_> {
             }
             None => vec![0.0; terms],
         })
+    }
+}
+
+/// Adds a row's products, weighted, to the lower triangle. (Plain loops: this is what a build without optimisation
+/// spends its time on.)
+fn accumulate(normal: &mut [f64], terms: usize, row: &[f64], weight: f64) {
+    let mut i = 0;
+    while i < terms {
+        let weighted = weight * row[i];
+        if weighted != 0.0 {
+            let (mut j, mut at) = (0, i * terms);
+            while j <= i {
+                normal[at] += weighted * row[j];
+                j += 1;
+                at += 1;
+            }
+        }
+        i += 1;
     }
 }

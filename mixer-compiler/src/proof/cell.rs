@@ -18,6 +18,7 @@
 
 use mixer_rt::{Pair, ThrottleRange, solve};
 
+use super::bend::{Bend, squares};
 use super::expansion::{Expansion, Monomials};
 use super::taylor::Taylor;
 use crate::tables::{InverseTable, QuantityTable};
@@ -69,6 +70,8 @@ struct Step {
     deviation: Deviation,
     /// Residual after it, where no throttle is limited.
     residual: [Taylor; 2],
+    /// The Jacobian where it started.
+    gradient: [[Taylor; 2]; 2],
     /// The Jacobian that it used, rounding included.
     jacobian: [[Taylor; 2]; 2],
     /// Bound of its error, rounding of coefficients included.
@@ -124,8 +127,8 @@ impl<'a> Local<'a> {
         }
         let mut bound = [0.0f64; 2];
         for Case { part, deviation, .. } in self.limited(&step.deviation) {
-            let (first, start) = part.seen_step(&step, start, self);
-            let Some(second) = part.step(&deviation, Some((&first, &start))) else {
+            let first = part.seen_step(&step, self);
+            let Some(second) = part.step(&deviation, Some(&first)) else {
                 return [f64::INFINITY; 2];
             };
             let found = part.after(&second, steps);
@@ -147,22 +150,26 @@ impl<'a> Local<'a> {
         bound
     }
 
-    /// One step from t* + `deviation`, with the Jacobian there or that of an `earlier` step from its deviation;
-    /// `None` where nothing can be said.
-    fn step(&self, deviation: &Deviation, earlier: Option<(&Step, &Deviation)>) -> Option<Step> {
+    /// One step from t* + `deviation`, with the Jacobian there or that of an `earlier` step; `None` where nothing can
+    /// be said.
+    fn step(&self, deviation: &Deviation, earlier: Option<&Step>) -> Option<Step> {
         let subject = self.subject;
         // Whatever the runtime has computed so far, it is an f32 without error now.
         let at = [0, 1].map(|k| self.truth[k].plus(&deviation[k]));
-        let (given, jacobian, jacobian_error) = match earlier {
+        let (given, computed) = subject.pair.efforts_and_jacobian(at);
+        let gradient = [0, 1].map(|k| {
+            let gap = subject.coefficients[k][1];
+            computed[k].map(|slope| slope.real().widened(gap))
+        });
+        let (jacobian, jacobian_error) = match earlier {
             None => {
-                let (given, jacobian) = subject.pair.efforts_and_jacobian(at);
-                let error = [0, 1]
-                    .map(|k| [0, 1].map(|m: usize| jacobian[k][m].error() + subject.coefficients[k][1]));
+                let error =
+                    [0, 1].map(|k| computed[k].map(|slope| slope.error() + subject.coefficients[k][1]));
                 let jacobian =
-                    [0, 1].map(|k| [0, 1].map(|m: usize| jacobian[k][m].real().widened(error[k][m])));
-                (given, jacobian, error)
+                    [0, 1].map(|k| [0, 1].map(|m: usize| computed[k][m].real().widened(error[k][m])));
+                (jacobian, error)
             }
-            Some((step, _)) => (subject.pair.efforts(at), step.jacobian, step.jacobian_error),
+            Some(step) => (step.jacobian, step.jacobian_error),
         };
         let missing = [0, 1].map(|k| self.efforts[k] - given[k]);
         let missing_error = [0, 1].map(|k| missing[k].error() + subject.coefficients[k][0]);
@@ -178,39 +185,30 @@ impl<'a> Local<'a> {
             missing_error[k] + along(0) + along(1)
         });
 
-        let reach = match earlier {
-            None => self.reach(deviation),
-            Some((_, first)) => {
-                let (here, there) = (self.reach(deviation), self.reach(first));
-                [here[0].max(there[0]), here[1].max(there[1])]
+        // How far an earlier Jacobian is from the one here.
+        let change = earlier
+            .map(|step| [0, 1].map(|k| [0, 1].map(|m: usize| gradient[k][m].plus(&-step.gradient[k][m]))));
+        let bend = Bend::new(&self.expansions, self.cell.half, deviation);
+        let left_out = |v: &[Taylor; 2]| {
+            let mut sums = bend.remainders(v);
+            for (k, sum) in sums.iter_mut().enumerate() {
+                *sum = sum.widened(slack[k]);
+                if let Some(change) = &change {
+                    *sum = sum
+                        .plus(&change[k][0].product(&v[0]))
+                        .plus(&change[k][1].product(&v[1]));
+                }
             }
-        };
-        let curvature = self
-            .expansions
-            .each_ref()
-            .map(|expansion| expansion.curvature(reach));
-        let change = earlier.map(|(_, first)| {
-            let since = [0, 1].map(|k| deviation[k].plus(&-first[k]));
-            curvature.each_ref().map(|curvature| curvature.change(&since))
-        });
-        let left_out = |v: &[Taylor; 2], k: usize, (squares, size): &([Taylor; 3], [f64; 2])| {
-            let mut sum = curvature[k].remainder(squares, *size).widened(slack[k]);
-            if let Some(change) = &change {
-                sum = sum
-                    .plus(&change[k][0].product(&v[0]))
-                    .plus(&change[k][1].product(&v[1]));
-            }
-            sum
+            sums
         };
         let back = deviation.map(|d| -d);
-        let back_squares = squares(&back);
-        let after = solve(jacobian, [0, 1].map(|k| left_out(&back, k, &back_squares))).map(Taylor::real);
+        let after = solve(jacobian, left_out(&back)).map(Taylor::real);
         let taken = [0, 1].map(|k| after[k].plus(&back[k]));
-        let taken_squares = squares(&taken);
-        let residual = [0, 1].map(|k| left_out(&taken, k, &taken_squares));
+        let residual = left_out(&taken);
         (bounded(&after) && bounded(&residual)).then_some(Step {
             deviation: after,
             residual,
+            gradient,
             jacobian,
             jacobian_error,
         })
@@ -258,16 +256,16 @@ impl<'a> Local<'a> {
         Local::new(self.subject, &cell)
     }
 
-    /// A step over the cell `whole`, and where it started, over this part of it.
-    fn seen_step(&self, step: &Step, start: &Deviation, whole: &Local<'_>) -> (Step, Deviation) {
+    /// A step over the cell `whole` over this part of it.
+    fn seen_step(&self, step: &Step, whole: &Local<'_>) -> Step {
         let pair = |functions: &[Taylor; 2]| functions.each_ref().map(|function| self.seen(function, whole));
-        let step = Step {
+        Step {
             deviation: pair(&step.deviation),
             residual: pair(&step.residual),
+            gradient: step.gradient.each_ref().map(pair),
             jacobian: step.jacobian.each_ref().map(pair),
             jacobian_error: step.jacobian_error,
-        };
-        (step, pair(start))
+        }
     }
 
     /// A function over the cell of `whole` as a function over this part of it.
@@ -390,10 +388,4 @@ impl<'a> Case<'a> {
 
 fn bounded(numbers: &[Taylor; 2]) -> bool {
     numbers.iter().all(Taylor::is_bounded)
-}
-
-/// vu2, vu vl and vl2, and bounds of |vu| and |vl|.
-fn squares(v: &[Taylor; 2]) -> ([Taylor; 3], [f64; 2]) {
-    let squares = [v[0].product(&v[0]), v[0].product(&v[1]), v[1].product(&v[1])];
-    (squares, v.map(|v| v.magnitude()))
 }

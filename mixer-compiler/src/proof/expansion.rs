@@ -191,7 +191,86 @@ impl Expansion {
     }
 }
 
+/// Powers of two functions up to the fourth total degree, `[exponent of the first][of the second]`.
+pub(super) type Powers = [[Taylor; SIZE]; SIZE];
+
+/// Products of `v` up to the total degree `degree`.
+pub(super) fn powers(v: &[Taylor; 2], degree: usize) -> Powers {
+    let mut powers = [[Taylor::exact(0.0); SIZE]; SIZE];
+    powers[0][0] = Taylor::exact(1.0);
+    for total in 1..=degree {
+        for i in 0..=total {
+            let j = total - i;
+            powers[i][j] = match (i, j) {
+                (1, 0) => v[0],
+                (0, 1) => v[1],
+                (_, 0) => powers[i - 1][0].product(&v[0]),
+                _ => powers[i][j - 1].product(&v[1]),
+            };
+        }
+    }
+    powers
+}
+
+/// F^(i,j)(t) / (i! j!) for i + j >= 2 as functions over the cell, by exponents; `None` where they vanish.
+pub(super) type Derivatives = [[Option<Taylor>; SIZE]; SIZE];
+
+impl Expansion {
+    /// The higher derivatives at a point t; `offset` are the [`powers`] of its distance from the centre, of the second
+    /// degree at least.
+    pub(super) fn derivatives(&self, offset: &Powers) -> Derivatives {
+        let mut derivatives = [[None; SIZE]; SIZE];
+        for (i, row) in derivatives.iter_mut().enumerate().take(self.degree[0] + 1) {
+            for (j, slot) in row.iter_mut().enumerate().take(self.degree[1] + 1) {
+                if i + j < 2 {
+                    continue;
+                }
+                let mut sum = Taylor::ball(self.slack);
+                let mut present = false;
+                for m in i..=self.degree[0] {
+                    for n in j..=self.degree[1] {
+                        let factor = self.p[m][n] * (BINOMIAL[m][i] * BINOMIAL[n][j]);
+                        if factor != 0.0 {
+                            present = true;
+                            let radius = factor.abs() * f64::EPSILON;
+                            sum = sum.plus(&offset[m - i][n - j].times(factor, radius));
+                        }
+                    }
+                }
+                *slot = present.then_some(sum);
+            }
+        }
+        derivatives
+    }
+}
+
+/// G(t; v) from the derivatives at t and the [`powers`] of v of the fourth degree.
+pub(super) fn beyond_linear(derivatives: &Derivatives, v: &Powers) -> Taylor {
+    let mut sum = Taylor::exact(0.0);
+    for (derivatives, v) in derivatives.iter().zip(v) {
+        for (derivative, v) in derivatives.iter().zip(v) {
+            if let Some(derivative) = derivative {
+                sum = sum.plus(&derivative.product(v));
+            }
+        }
+    }
+    sum
+}
+
 impl Curvature {
+    /// True where the bounds of [`Curvature::remainder`] say little of an offset of this `size`: what they leave open
+    /// does not shrink with the cell.
+    pub(super) fn is_vague(&self, size: [f64; 2]) -> bool {
+        const SHARE: f64 = 0.03;
+        let squares = [size[0] * size[0], size[0] * size[1], size[1] * size[1]];
+        let (mut known, mut open) = (0.0, self.higher_terms(size));
+        for ((square, centre), radius) in squares.iter().zip(&self.centre).zip(&self.radius) {
+            known += centre.abs() * square;
+            open += radius * square;
+        }
+        open > SHARE * known
+    }
+
     /// G(t; v) for t within reach of the centre. `squares` are vu2, vu vl, vl2 and `size` bounds |vu|, |vl|.
     pub(super) fn remainder(&self, squares: &[Taylor; 3], size: [f64; 2]) -> Taylor {
         let mut sum = Taylor::ball(self.higher_terms(size));
@@ -213,15 +292,6 @@ impl Curvature {
             power_u *= size_u;
         }
         sum * UP
-    }
-
-    /// How far the gradient may change over an offset v: `[by u, by l]`, linear in the Taylor models `v`.
-    pub(super) fn change(&self, v: &[Taylor; 2]) -> [Taylor; 2] {
-        let [uu, ul, ll] = [0, 1, 2].map(|k| (self.centre[k], self.radius[k]));
-        [
-            v[0].times(2.0 * uu.0, 2.0 * uu.1).plus(&v[1].times(ul.0, ul.1)),
-            v[0].times(ul.0, ul.1).plus(&v[1].times(2.0 * ll.0, 2.0 * ll.1)),
-        ]
     }
 
     /// How far the quantity may lie from a straight line over an offset v along one axis: F'' v2 / 8.

@@ -16,7 +16,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use mixer_rt::Scalar;
+use mixer_rt::{Scalar, TableSeed};
 
 use crate::interval::Interval;
 
@@ -410,6 +410,10 @@ impl Scalar for Taylor {
         let beyond = (range.high - f64::from(high)).max(f64::from(low) - range.low);
         // Limiting moves a number by no more than it lies outside, and two numbers no further apart.
         if beyond <= 0.0 { self } else { self.widened(beyond) }
+    }
+
+    fn interpolate(table: &TableSeed, place: [Taylor; 2]) -> [Taylor; 2] {
+        super::table::interpolate(table, place)
     }
 }
 

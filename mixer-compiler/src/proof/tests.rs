@@ -13,12 +13,12 @@ use crate::tables::{InverseTable, SeedTable};
 use mixer_rt::{Inverse, Scalar};
 
 /// The float x, exactly.
-fn exact(x: f64) -> BigRational {
+pub(super) fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap()
 }
 
 /// Numbers in [-1, 1] by a fixed congruential generator.
-fn numbers() -> impl FnMut() -> f64 {
+pub(super) fn numbers() -> impl FnMut() -> f64 {
     let mut state = 0x2545_f491_4f6c_dd1du64;
     move || {
         state ^= state << 13;

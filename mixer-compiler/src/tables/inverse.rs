@@ -2,7 +2,7 @@
 
 use mixer_rt::{
     BilinearSeed, CubicSeed, EightTermSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity,
-    RootCoordinates, Scalar, Seed, Seeded, ThrottleRange,
+    RootCoordinates, Scalar, Seed, Seeded, TableSeed, ThrottleRange,
 };
 
 use crate::evaluator::SeedForm;
@@ -46,11 +46,13 @@ pub enum SeedTable {
     EightTerm(EightTermSeed),
     /// Ten terms per throttle.
     Cubic(CubicSeed),
+    /// Sixteen knots.
+    Table(TableSeed),
 }
 
 impl SeedTable {
     /// Rounds the coefficients of u and of l.
-    fn new(form: SeedForm, [upper, lower]: [&[f64]; 2]) -> Self {
+    fn new(form: SeedForm, offset: [f64; 2], [upper, lower]: [&[f64]; 2]) -> Self {
         fn rounded<const TERMS: usize>(coefficients: &[f64]) -> [f32; TERMS] {
             std::array::from_fn(|index| coefficients.get(index).map_or(0.0, |&c| c as f32))
         }
@@ -71,6 +73,14 @@ impl SeedTable {
                 upper: rounded(upper),
                 lower: rounded(lower),
             }),
+            SeedForm::Table => {
+                let [upper, lower]: [[f32; 16]; 2] = [rounded(upper), rounded(lower)];
+                let knot = |index: usize| [upper[index], lower[index]];
+                SeedTable::Table(TableSeed {
+                    offset: offset.map(|x| x as f32),
+                    knots: std::array::from_fn(|i| std::array::from_fn(|j| knot(4 * i + j))),
+                })
+            }
         }
     }
 
@@ -81,16 +91,18 @@ impl SeedTable {
             SeedTable::Quadratic(_) => "QuadraticSeed",
             SeedTable::EightTerm(_) => "EightTermSeed",
             SeedTable::Cubic(_) => "CubicSeed",
+            SeedTable::Table(_) => "TableSeed",
         }
     }
 
-    /// Coefficients of u and of l.
-    pub fn coefficients(&self) -> [&[f32]; 2] {
+    /// Number of f32.
+    fn floats(&self) -> usize {
         match self {
-            SeedTable::Bilinear(seed) => [&seed.upper, &seed.lower],
-            SeedTable::Quadratic(seed) => [&seed.upper, &seed.lower],
-            SeedTable::EightTerm(seed) => [&seed.upper, &seed.lower],
-            SeedTable::Cubic(seed) => [&seed.upper, &seed.lower],
+            SeedTable::Bilinear(_) => 2 * 4,
+            SeedTable::Quadratic(_) => 2 * 6,
+            SeedTable::EightTerm(_) => 2 * 8,
+            SeedTable::Cubic(_) => 2 * 10,
+            SeedTable::Table(_) => 2 + 2 * 16,
         }
     }
 }
@@ -102,6 +114,7 @@ impl Seed for SeedTable {
             SeedTable::Quadratic(seed) => seed.guess(x, y),
             SeedTable::EightTerm(seed) => seed.guess(x, y),
             SeedTable::Cubic(seed) => seed.guess(x, y),
+            SeedTable::Table(seed) => seed.guess(x, y),
         }
     }
 }
@@ -128,13 +141,14 @@ impl InverseTable {
                 steps,
                 residuals,
                 coordinates,
+                offset,
                 coefficients: [upper, lower],
             } => InverseTable::Seeded {
                 coordinates: RootCoordinates {
                     x: coordinates.x.map(|x| x as f32),
                     y: coordinates.y.map(|x| x as f32),
                 },
-                seed: SeedTable::new(*seed, [upper, lower]),
+                seed: SeedTable::new(*seed, *offset, [upper, lower]),
                 steps: *steps,
                 residuals: *residuals,
             },
@@ -145,7 +159,7 @@ impl InverseTable {
     pub fn floats(&self) -> usize {
         match self {
             InverseTable::Polynomial { coefficients, .. } => 4 + 2 * coefficients[0].len(),
-            InverseTable::Seeded { seed, .. } => 6 + 2 * seed.coefficients()[0].len(),
+            InverseTable::Seeded { seed, .. } => 6 + seed.floats(),
         }
     }
 

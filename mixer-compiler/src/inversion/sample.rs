@@ -1,0 +1,59 @@
+//! What fits are judged on.
+
+use crate::model::PairMap;
+
+/// One throttle pair with its efforts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    pub(super) throttles: [f64; 2],
+    pub(super) efforts: [f64; 2],
+}
+
+/// Samples with all that fits ask of them.
+#[derive(Debug)]
+pub(super) struct Sampled {
+    pub(super) samples: Vec<Sample>,
+    /// Jacobians in units of the tolerances.
+    pub(super) jacobians: Vec<[[f64; 2]; 2]>,
+}
+
+impl Sampled {
+    pub(super) fn new(pair: &PairMap, points: usize, next_to_a_fold: bool, tolerance: [f64; 2]) -> Self {
+        let grid = match next_to_a_fold {
+            true => pair.edge_grid(points),
+            false => pair.grid(points),
+        };
+        let samples = samples(pair, grid);
+        let scaled = |sample: &Sample| {
+            let [by_f, by_q] = pair.jacobian(sample.throttles);
+            [by_f.map(|x| x / tolerance[0]), by_q.map(|x| x / tolerance[1])]
+        };
+        let jacobians = samples.iter().map(scaled).collect();
+        Sampled { samples, jacobians }
+    }
+}
+
+/// Samples at these throttles.
+pub(super) fn samples(pair: &PairMap, throttles: Vec<[f64; 2]>) -> Vec<Sample> {
+    let throttles = throttles.into_iter();
+    throttles
+        .map(|throttles| Sample {
+            throttles,
+            efforts: pair.efforts(throttles),
+        })
+        .collect()
+}
+
+/// True where det J falls to a small share of its mean.
+pub(super) fn next_to_a_fold(pair: &PairMap) -> bool {
+    const SHARE: f64 = 0.03;
+    const GRID: usize = 11;
+    let determinants = pair.grid(GRID).into_iter().map(|throttles| {
+        let [[f_u, f_l], [q_u, q_l]] = pair.jacobian(throttles);
+        f_u * q_l - f_l * q_u
+    });
+    let (least, sum) = determinants.fold((f64::INFINITY, 0.0), |(least, sum), determinant| {
+        (determinant.min(least), sum + determinant)
+    });
+    least < SHARE * sum / (GRID * GRID) as f64
+}
