@@ -82,6 +82,12 @@ fn sin(x: f64) -> f64 {
     x.sin()
 }
 
+/// x and y, m, at a distance from the centre and an angle clockwise from the nose.
+pub fn polar(arm_m: f64, angle_deg: f64) -> [f64; 2] {
+    let angle = angle_deg.to_radians();
+    [arm_m * cos(angle), arm_m * sin(angle)]
+}
+
 /// An irregular frame: units in about even directions around the centre with arms of 0.2 m to 0.7 m, random
 /// spins, axes tilted by up to `tilt` (about radians).
 pub fn irregular(random: &mut Random, units: usize, tilt: f64) -> Vec<Place> {

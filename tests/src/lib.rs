@@ -1,5 +1,5 @@
 //! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU, looking into its image;
-//! frames, random requests, the optimum of a request and other allocators to measure the mixer against.
+//! frames and their physics, requests, the optimum of a request and other allocators to measure the mixer against.
 
 pub mod counts;
 pub mod firmware;
@@ -7,7 +7,11 @@ pub mod frames;
 pub mod golden;
 pub mod image;
 pub mod optimum;
+pub mod physics;
 pub mod random;
+pub mod request;
+pub mod shortfall;
+pub mod soundness;
 pub mod vectors;
 
 use std::path::{Path, PathBuf};

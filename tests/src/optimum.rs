@@ -1,17 +1,45 @@
 //! An independent oracle of desaturation: the same lexicographic problem as linear programs in f64.
 //!
-//! Efforts of unit i are a convex combination of points of the border of its attainable set, so the programs
-//! range over the convex hull: what they attain is at least what is physically attainable.
+//! A unit's attainable set is cut into pieces, each stood for by the convex hull of points of it:
+//!
+//! * Both rotors, three units or more: one piece, from points of the border. The programs range over the convex hull:
+//!   what they attain is at least what is physically attainable. (The sum of several sets is nearly convex, whatever
+//!   each of them is.)
+//! * Both rotors, one unit or two: the images of small cells of the throttle box, since on the convex hull a single unit
+//!   would have 1.3 % more torque than it has, the paper's pair.
+//! * One rotor: a curve is left, which is anything but convex, as short arcs.
+//!
+//! The optimum over all choices of one piece per unit is found by branch and bound: a run of pieces is relaxed to the
+//! convex hull of all of them; the choice of runs that promises most is halved until single pieces are left.
 
-use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome, Variable};
-use mixer_compiler::Compiled;
+mod program;
+
+use microlp::Error;
 use mixer_compiler::model::PairMap;
-use mixer_rt::Airmode;
+use mixer_rt::{Airmode, Health};
+
+use crate::physics::Physics;
+use program::{Goal, Point, Program, Quantity, Ranges};
 
 /// Border points per edge of the throttle box.
 const SAMPLES: usize = 12;
 
-/// What a request is worth: the optimum of each step of DESIGN section 7.
+/// Arcs that a curve is cut into. The hull of one is 1e-4 N m wide for the paper's pair.
+const ARCS: usize = 16;
+
+/// The throttle box is halved this often in both directions.
+const HALVINGS: u32 = 2;
+
+/// Units up to which the box is cut.
+const FEW: usize = 2;
+
+/// Room for the solver's own tolerance between one program and the next.
+const SLACK: f64 = 1e-7;
+
+/// More torque (N m) or thrust (N) than any frame has.
+const FREE: (f64, f64) = (-1e4, 1e4);
+
+/// What a request is worth: the optimum of each step, in the order of priority.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optimum {
     /// Share of roll and pitch.
@@ -22,165 +50,248 @@ pub struct Optimum {
     pub thrust_n: f64,
 }
 
-/// The lexicographic programs of one frame at one voltage.
+/// What a unit can contribute to `[roll, pitch, yaw, thrust]`: the convex hulls of these points, neighbours in order.
+type Pieces<T> = Vec<Vec<T>>;
+
+/// The lexicographic programs of one frame at one voltage, with some rotors out.
 pub struct Oracle {
-    /// Per unit: contributions `[roll, pitch, yaw, thrust]` of the border points.
-    corners: Vec<Vec<[f64; 4]>>,
+    sets: Vec<Pieces<[f64; 4]>>,
     served: [bool; 4],
+    /// The frame's authority, N m and N.
+    size: [f64; 4],
     airmode: Airmode,
     reserve: f64,
 }
 
-struct Program {
-    problem: Problem,
-    share: Variable,
-    yaw: Variable,
-    thrust: Variable,
+/// A run of pieces `[from, to)` per unit, with its relaxed optimum.
+struct Node {
+    runs: Vec<[usize; 2]>,
+    point: Point,
 }
 
 impl Oracle {
-    /// The programs of a compiled frame with correction `[k_f, k_Q]`.
-    pub fn new(compiled: &Compiled, factors: [f64; 2]) -> Self {
-        let airframe = &compiled.airframe;
-        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-        let border: Vec<[f64; 2]> = pair.border(SAMPLES).iter().map(|&t| pair.efforts(t)).collect();
-        Self::over(compiled, factors, &border)
-    }
-
-    /// The programs over the mixer's own polygon: what it is to attain exactly.
-    pub fn of_polygon(compiled: &Compiled, factors: [f64; 2]) -> Self {
-        let corners = compiled.tables.attainable.corners();
-        let border: Vec<[f64; 2]> = corners.iter().map(|corner| corner.map(f64::from)).collect();
-        Self::over(compiled, factors, &border)
-    }
-
-    fn over(compiled: &Compiled, factors: [f64; 2], border: &[[f64; 2]]) -> Self {
-        let airframe = &compiled.airframe;
-        let n = airframe.units.len();
-        let matrix = &compiled.effectiveness.matrix;
-        let corners = (0..n)
-            .map(|i| {
-                border
-                    .iter()
-                    .map(|[f, q]| {
-                        std::array::from_fn(|axis| {
-                            matrix[(axis, i)] * factors[0] * f + matrix[(axis, n + i)] * factors[1] * q
-                        })
-                    })
-                    .collect()
-            })
-            .collect();
-        let served = std::array::from_fn(|axis| airframe.allocation.axes.iter().any(|a| *a as usize == axis));
+    /// The programs of a frame with correction `[k_f, k_Q]`.
+    pub fn new(
+        physics: &Physics,
+        allocation: &mixer_compiler::airframe::Allocation,
+        factors: [f64; 2],
+        health: Health,
+    ) -> Self {
+        let pair = &physics.pair;
+        let failed = |channel: usize| u8::try_from(channel).is_ok_and(|channel| health.has_failed(channel));
+        let n = physics.units();
+        let sets = physics.channels.iter().enumerate().map(|(i, channels)| {
+            let efforts = match channels.map(failed) {
+                [false, false] if n <= FEW => cells(pair),
+                [false, false] => vec![pair.border(SAMPLES)],
+                [false, true] => arcs(pair, |upper| [upper, 0.0]),
+                [true, false] => arcs(pair, |lower| [0.0, lower]),
+                [true, true] => vec![vec![[0.0; 2]]],
+            };
+            let contribution = |throttles: [f64; 2]| {
+                let [f, q] = pair.efforts(throttles);
+                std::array::from_fn(|axis| {
+                    physics.matrix[(axis, i)] * factors[0] * f
+                        + physics.matrix[(axis, n + i)] * factors[1] * q
+                })
+            };
+            let pieces = efforts.into_iter();
+            pieces
+                .map(|piece| piece.into_iter().map(contribution).collect())
+                .collect()
+        });
         Oracle {
-            corners,
-            served,
-            airmode: airframe.allocation.airmode,
-            reserve: airframe.allocation.yaw_reserve_nm,
+            sets: sets.collect(),
+            served: mixer_rt::Axis::ALL.map(|axis| allocation.controls(axis)),
+            // An axis that no unit has any part in is not served either.
+            size: physics
+                .authority()
+                .map(|authority| if authority > 0.0 { authority } else { 1.0 }),
+            airmode: allocation.airmode,
+            reserve: allocation.yaw_reserve_nm,
         }
     }
 
-    fn program(&self, objective: [f64; 3], direction: [f64; 2], ranges: [(f64, f64); 3]) -> Program {
-        let mut problem = Problem::new(OptimizationDirection::Maximize);
-        let share = problem.add_var(objective[0], ranges[0]);
-        let yaw = problem.add_var(objective[1], ranges[1]);
-        let thrust = problem.add_var(objective[2], ranges[2]);
-        let mut rows: [Vec<(Variable, f64)>; 4] = [
-            vec![(share, -direction[0])],
-            vec![(share, -direction[1])],
-            vec![(yaw, -1.0)],
-            vec![(thrust, -1.0)],
-        ];
-        for corners in &self.corners {
-            let weights: Vec<Variable> = corners
-                .iter()
-                .map(|_| problem.add_var(0.0, (0.0, f64::INFINITY)))
-                .collect();
-            for (weight, corner) in weights.iter().zip(corners) {
-                for (row, entry) in rows.iter_mut().zip(corner) {
-                    row.push((*weight, *entry));
-                }
-            }
-            let ones: Vec<(Variable, f64)> = weights.iter().map(|&w| (w, 1.0)).collect();
-            problem.add_constraint(ones, ComparisonOp::Eq, 1.0);
-        }
-        for (row, served) in rows.into_iter().zip(self.served) {
-            if served {
-                problem.add_constraint(row, ComparisonOp::Eq, 0.0);
-            }
-        }
-        Program {
-            problem,
-            share,
-            yaw,
-            thrust,
-        }
-    }
-
-    /// The variables `[share, yaw, thrust]` at the maximum of `objective`, `None` where nothing is feasible.
-    fn solve(&self, objective: [f64; 3], direction: [f64; 2], ranges: [(f64, f64); 3]) -> Option<[f64; 3]> {
-        let Program {
-            problem,
-            share,
-            yaw,
-            thrust,
-        } = self.program(objective, direction, ranges);
-        let SolveOutcome::Solution(solution) = problem.solve().ok()? else {
-            return None;
+    /// The optimum over all choices of pieces.
+    fn best(&self, goal: Goal, direction: [f64; 2], ranges: Ranges) -> Result<Option<Point>, Error> {
+        let solve = |runs: Vec<[usize; 2]>| -> Result<Option<Node>, Error> {
+            let sets = self.sets.iter().zip(&runs);
+            let program = Program {
+                sets: sets
+                    .map(|(pieces, &[from, to])| pieces[from..to].iter().flatten().copied().collect())
+                    .collect(),
+                served: self.served,
+                direction,
+                size: self.size,
+            };
+            Ok(program.solve(goal, ranges)?.map(|point| Node { runs, point }))
         };
-        Some([solution[share], solution[yaw], solution[thrust]])
+        let all = self.sets.iter().map(|pieces| [0, pieces.len()]).collect();
+        let mut open: Vec<Node> = solve(all)?.into_iter().collect();
+        loop {
+            let Some(most) =
+                (0..open.len()).max_by(|&a, &b| open[a].point.score.total_cmp(&open[b].point.score))
+            else {
+                return Ok(None);
+            };
+            let Node { runs, point } = open.swap_remove(most);
+            let Some(widest) = (0..runs.len())
+                .filter(|&k| runs[k][1] - runs[k][0] > 1)
+                .max_by_key(|&k| runs[k][1] - runs[k][0])
+            else {
+                return Ok(Some(point));
+            };
+            let [from, to] = runs[widest];
+            let middle = from.midpoint(to);
+            for half in [[from, middle], [middle, to]] {
+                let mut runs = runs.clone();
+                runs[widest] = half;
+                open.extend(solve(runs)?);
+            }
+        }
     }
 
-    /// True where the wrench `[roll, pitch, yaw, thrust]` is attainable.
-    pub fn attains(&self, [roll, pitch, yaw, thrust]: [f64; 4]) -> bool {
-        self.solve(
-            [0.0; 3],
-            [roll, pitch],
-            [(1.0, 1.0), (yaw, yaw), (thrust, thrust)],
-        )
-        .is_some()
-    }
-
-    /// The optimum of a request; `None` where not even roll = pitch = 0 is attainable with the yaw reserve.
-    pub fn optimum(&self, [roll, pitch, yaw, thrust]: [f64; 4]) -> Option<Optimum> {
-        const FREE: (f64, f64) = (-1e4, 1e4);
-        // Room for the solver's own tolerance between one program and the next.
-        const SLACK: f64 = 1e-7;
+    /// Where yaw and thrust may be whatever becomes of roll and pitch; `None` where no thrust leaves them at zero.
+    fn allowed(&self, [.., yaw, thrust]: [f64; 4]) -> Result<Option<Ranges>, Error> {
         let reserved = yaw.clamp(-self.reserve, self.reserve);
-        let mut yaws = (yaw.min(reserved), yaw.max(reserved));
-        let direction = [roll, pitch];
-        let mut thrusts = FREE;
-        if self.airmode == Airmode::Disabled {
-            let [_, _, floor] = self.solve([0.0, 0.0, -1.0], direction, [(0.0, 0.0), yaws, FREE])?;
-            thrusts.1 = thrust.max(floor + SLACK);
-        }
-        let mut shares = (0.0, 1.0);
-        if direction != [0.0; 2] {
-            let [share, ..] = self.solve([1.0, 0.0, 0.0], direction, [shares, yaws, thrusts])?;
-            shares = ((share - SLACK).max(0.0), share);
-        }
-        // The nearest value of a variable: its range, clamped to.
-        let nearest = |variable: usize, wanted: f64, ranges: [(f64, f64); 3]| -> Option<(f64, f64)> {
-            let mut objective = [0.0; 3];
-            objective[variable] = 1.0;
-            let high = self.solve(objective, direction, ranges)?[variable];
-            objective[variable] = -1.0;
-            let low = self.solve(objective, direction, ranges)?[variable];
-            let value = wanted.clamp(low.min(high), high.max(low));
-            let (low, high) = ranges[variable];
-            Some(((value - SLACK).max(low), (value + SLACK).min(high)))
+        let mut ranges = Ranges {
+            share: (0.0, 0.0),
+            yaw: (yaw.min(reserved), yaw.max(reserved)),
+            thrust: FREE,
         };
-        if self.airmode == Airmode::RollPitchYaw {
-            yaws = nearest(1, yaw, [shares, yaws, thrusts])?;
-            thrusts = nearest(2, thrust, [shares, yaws, thrusts])?;
-        } else {
-            thrusts = nearest(2, thrust, [shares, yaws, thrusts])?;
-            yaws = nearest(1, yaw, [shares, yaws, thrusts])?;
+        let Some(floor) = self.best(Goal::Lowest(Quantity::Thrust), [0.0; 2], ranges)? else {
+            return Ok(None);
+        };
+        if self.airmode == Airmode::Disabled {
+            ranges.thrust.1 = thrust.max(floor.thrust + SLACK);
         }
-        let middle = |(low, high): (f64, f64)| 0.5 * (low + high);
-        Some(Optimum {
-            share: shares.1,
-            yaw_nm: middle(yaws),
-            thrust_n: middle(thrusts),
-        })
+        Ok(Some(ranges))
     }
+
+    /// The largest thrust that a request may be answered with, N; `None` where roll = pitch = 0 is not attainable
+    /// within the yaw asked and its reserve.
+    ///
+    /// # Errors
+    /// The solver gave up.
+    pub fn thrust_ceiling(&self, request: [f64; 4]) -> Result<Option<f64>, Error> {
+        Ok(self.allowed(request)?.map(|ranges| ranges.thrust.1))
+    }
+
+    fn highest_share(&self, direction: [f64; 2], ranges: Ranges) -> Result<Option<f64>, Error> {
+        if direction == [0.0; 2] {
+            return Ok(Some(0.0));
+        }
+        let ranges = Ranges {
+            share: (0.0, 1.0),
+            ..ranges
+        };
+        let best = self.best(Goal::Highest(Quantity::Share), direction, ranges)?;
+        Ok(best.map(|point| point.share))
+    }
+
+    /// The ranges with `quantity` as near to `wanted` as they allow, and that value.
+    fn nearest(
+        &self,
+        (quantity, wanted): (Quantity, f64),
+        direction: [f64; 2],
+        ranges: Ranges,
+    ) -> Result<Option<(f64, Ranges)>, Error> {
+        let Some(point) = self.best(Goal::Nearest(quantity, wanted), direction, ranges)? else {
+            return Ok(None);
+        };
+        let value = point.get(quantity);
+        let about = |(low, high): (f64, f64)| ((value - SLACK).max(low), (value + SLACK).min(high));
+        let mut ranges = ranges;
+        match quantity {
+            Quantity::Share => ranges.share = about(ranges.share),
+            Quantity::Yaw => ranges.yaw = about(ranges.yaw),
+            Quantity::Thrust => ranges.thrust = about(ranges.thrust),
+        }
+        Ok(Some((value, ranges)))
+    }
+
+    /// Yaw and thrust of a request in the order of priority.
+    fn rest(&self, [.., yaw, thrust]: [f64; 4]) -> [(Quantity, f64); 2] {
+        let (yaw, thrust) = ((Quantity::Yaw, yaw), (Quantity::Thrust, thrust));
+        if self.airmode == Airmode::RollPitchYaw {
+            [yaw, thrust]
+        } else {
+            [thrust, yaw]
+        }
+    }
+
+    /// The optimum of a request; `None` where not even roll = pitch = 0 is attainable within the yaw asked and its
+    /// reserve.
+    ///
+    /// # Errors
+    /// The solver gave up.
+    pub fn optimum(&self, request: [f64; 4]) -> Result<Option<Optimum>, Error> {
+        self.optimum_given(request, None)
+    }
+
+    /// The optimum with the share of (roll, pitch), if one is given, not above it, and if with it a value of the next
+    /// priority is given, that one as near to it as can be.
+    ///
+    /// # Errors
+    /// The solver gave up.
+    pub fn optimum_given(
+        &self,
+        request: [f64; 4],
+        given: Option<(f64, Option<f64>)>,
+    ) -> Result<Option<Optimum>, Error> {
+        let direction = [request[0], request[1]];
+        let Some(mut ranges) = self.allowed(request)? else {
+            return Ok(None);
+        };
+        let Some(highest) = self.highest_share(direction, ranges)? else {
+            return Ok(None);
+        };
+        let share = given.map_or(highest, |(share, _)| share.clamp(0.0, highest));
+        ranges.share = ((share - SLACK).max(0.0), share);
+        let [mut second, third] = self.rest(request);
+        if let Some((_, Some(value))) = given {
+            second.1 = value;
+        }
+        let Some((second_value, ranges)) = self.nearest(second, direction, ranges)? else {
+            return Ok(None);
+        };
+        let Some((third_value, _)) = self.nearest(third, direction, ranges)? else {
+            return Ok(None);
+        };
+        let [yaw_nm, thrust_n] = match second.0 {
+            Quantity::Yaw => [second_value, third_value],
+            _ => [third_value, second_value],
+        };
+        Ok(Some(Optimum {
+            share,
+            yaw_nm,
+            thrust_n,
+        }))
+    }
+}
+
+/// The curve of one rotor as arcs, three throttles each.
+fn arcs(pair: &PairMap, throttles: fn(f64) -> [f64; 2]) -> Pieces<[f64; 2]> {
+    let [low, high] = pair.range();
+    let at = |k: usize| throttles(low + (high - low) * k as f64 / (2 * ARCS) as f64);
+    (0..ARCS).map(|k| (2 * k..=2 * k + 2).map(at).collect()).collect()
+}
+
+/// The throttle box as cells, their corners and the middles of their edges, in Morton's order: runs are compact.
+fn cells(pair: &PairMap) -> Pieces<[f64; 2]> {
+    let [low, high] = pair.range();
+    let per_side = 1usize << HALVINGS;
+    let cell = |index: usize| {
+        let half = |offset: usize| {
+            (0..HALVINGS as usize)
+                .map(|bit| (index >> (2 * bit + offset) & 1) << bit)
+                .sum::<usize>()
+        };
+        let at = |half_cells: usize| low + (high - low) * half_cells as f64 / (2 * per_side) as f64;
+        let (u, l) = (2 * half(0), 2 * half(1));
+        [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
+            .map(|(du, dl)| [at(u + du), at(l + dl)])
+            .to_vec()
+    };
+    (0..per_side * per_side).map(cell).collect()
 }

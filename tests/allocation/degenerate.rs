@@ -1,0 +1,99 @@
+//! Requests that no controller sends, and frames at the edge of what makes sense.
+
+use mixer_rt::{Axis, Health, SetpointError};
+use mixer_tests::frames::{self, AIRMODES, Place};
+use mixer_tests::random::Random;
+use mixer_tests::request::Request;
+use mixer_tests::soundness;
+
+use crate::{REFERENCE_V, compile};
+
+const NUMBERS: [f32; 14] = [
+    0.0,
+    -0.0,
+    1e-40,
+    -1e-40,
+    1e-6,
+    0.1,
+    -0.1,
+    1.0,
+    40.0,
+    -40.0,
+    1e4,
+    1e30,
+    f32::MAX,
+    f32::MIN,
+];
+
+fn at(position: [f64; 3], clockwise: bool) -> Place {
+    Place {
+        position,
+        axis: [0.0, 0.0, -1.0],
+        clockwise,
+    }
+}
+
+fn degenerate_frames() -> [(&'static str, Vec<Place>); 4] {
+    // Lever arms that differ by a factor of ten.
+    let mut uneven = frames::regular(6, 0.0);
+    for (k, place) in uneven.iter_mut().enumerate() {
+        place.position = place.position.map(|x| if k % 3 == 0 { 0.2 * x } else { 2.0 * x });
+    }
+    [
+        ("one unit", vec![at([0.0; 3], true)]),
+        (
+            "two units",
+            vec![at([0.0, 0.3, 0.0], true), at([0.0, -0.3, 0.0], false)],
+        ),
+        ("X8", frames::regular(4, 45.0)),
+        ("uneven arms", uneven),
+    ]
+}
+
+#[test]
+fn degenerate_requests_are_answered() {
+    let mut random = Random(6);
+    for (name, places) in degenerate_frames() {
+        for airmode in AIRMODES {
+            let frame = compile(&places, airmode, 0.0);
+            for _ in 0..200 {
+                let request = Request {
+                    wrench: std::array::from_fn(|_| NUMBERS[random.index(NUMBERS.len())]),
+                    volts: REFERENCE_V,
+                    health: Health::GOOD,
+                };
+                let answer = request.mix(&frame).expect("finite");
+                let fault = soundness::fault(&frame, &request, &answer).expect("solved");
+                assert_eq!(fault, None, "{name} {airmode}: {request:?} -> {answer:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_not_finite_is_refused_by_name() {
+    for (name, places) in degenerate_frames() {
+        let frame = compile(&places, "disabled", 0.0);
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for (index, axis) in Axis::ALL.into_iter().enumerate() {
+                let mut request = Request {
+                    wrench: [0.0, 0.0, 0.0, 20.0],
+                    volts: REFERENCE_V,
+                    health: Health::GOOD,
+                };
+                request.wrench[index] = bad;
+                assert_eq!(request.mix(&frame), Err(SetpointError::NonFinite(axis)), "{name}");
+            }
+            let request = Request {
+                wrench: [0.0, 0.0, 0.0, 20.0],
+                volts: bad,
+                health: Health::GOOD,
+            };
+            assert_eq!(
+                request.mix(&frame),
+                Err(SetpointError::NonFiniteVoltage),
+                "{name}"
+            );
+        }
+    }
+}

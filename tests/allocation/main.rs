@@ -1,0 +1,40 @@
+//! Allocation and desaturation: what is attainable is delivered, what is not is given up in the stated order.
+//!
+//! | file | holds the mixer to |
+//! |---|---|
+//! | `delivery.rs` | wrenches of random throttles: delivered |
+//! | `optimum.rs` | linear programs: no priority short by 1 % of its authority |
+//! | `failure.rs` | an X8 that loses a rotor: still flies |
+//! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
+//! | `degenerate.rs` | numbers that no controller sends |
+#![allow(missing_docs)]
+
+mod degenerate;
+mod delivery;
+mod failure;
+mod layout;
+mod optimum;
+mod properties;
+
+use mixer_tests::frames::{self, Options, Place};
+use mixer_tests::request::Frame;
+
+/// Of the frames' `[voltage]`.
+const REFERENCE_V: f32 = 14.8;
+
+fn regular_frames() -> [(&'static str, Vec<Place>); 4] {
+    [
+        ("X8", frames::regular(4, 45.0)),
+        ("Y6", frames::regular(3, 60.0)),
+        ("X10", frames::regular(5, 0.0)),
+        ("X12", frames::regular(6, 30.0)),
+    ]
+}
+
+fn compile(places: &[Place], airmode: &'static str, yaw_reserve_nm: f64) -> Frame {
+    let options = Options {
+        airmode,
+        yaw_reserve_nm,
+    };
+    Frame::new(frames::compile(places, options).unwrap_or_else(|faults| panic!("{faults}")))
+}

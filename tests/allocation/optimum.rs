@@ -1,0 +1,167 @@
+//! Answers against linear programs over the physical attainable sets, at any voltage and with rotors out.
+
+use mixer_rt::Health;
+use mixer_tests::frames::{self, AIRMODES, Options};
+use mixer_tests::optimum::Oracle;
+use mixer_tests::random::Random;
+use mixer_tests::request::Frame;
+use mixer_tests::shortfall::Shortfall;
+
+use crate::REFERENCE_V;
+
+#[derive(Default)]
+struct Judged {
+    requests: usize,
+    /// Requests without an optimum: not even roll = pitch = 0 is attainable.
+    void: usize,
+    missed: usize,
+    worst: Shortfall,
+}
+
+impl Judged {
+    /// Judges `count` requests at one voltage and one state of health.
+    fn judge(&mut self, frame: &Frame, random: &mut Random, (volts, health): (f32, Health), count: usize) {
+        let factors = frame.physics.factors(volts);
+        let oracle = Oracle::new(&frame.physics, frame.allocation(), factors, health);
+        for _ in 0..count {
+            let mut request = frame.draw(random, 0.6, volts);
+            request.health = health;
+            let answer = request.mix(frame).expect("finite");
+            let Some(shortfall) = Shortfall::of(&answer, &request, frame, &oracle).expect("solved") else {
+                self.void += 1;
+                continue;
+            };
+            self.requests += 1;
+            self.worst = self.worst.max(shortfall);
+            if shortfall.misses() {
+                self.missed += 1;
+                if std::env::var_os("MIXER_MISSES").is_some() {
+                    let name = &frame.compiled.airframe.units.len();
+                    println!(
+                        "{name} units, {:?}: {request:?} -> {:?}\n    {shortfall:?} of {:?}",
+                        frame.allocation(),
+                        answer.achieved,
+                        oracle.optimum(request.asked())
+                    );
+                }
+            }
+        }
+    }
+
+    fn add(&mut self, other: &Judged) {
+        self.requests += other.requests;
+        self.void += other.void;
+        self.missed += other.missed;
+        self.worst = self.worst.max(other.worst);
+    }
+
+    fn print(&self, name: &str) {
+        let Shortfall { torque, yaw, thrust } = self.worst;
+        println!(
+            "{name}: {} of {} miss the optimum; worst roll-pitch {:.2} %, thrust {:.2} %, yaw {:.2} %; {} void",
+            self.missed,
+            self.requests,
+            100.0 * torque,
+            100.0 * thrust,
+            100.0 * yaw,
+            self.void
+        );
+    }
+}
+
+/// An irregular frame that can hover, for about each that is asked for.
+fn irregular(random: &mut Random, units: usize, tilt: f64, options: Options) -> Option<Frame> {
+    let places = frames::irregular(random, units, tilt);
+    frames::compile(&places, options).ok().map(Frame::new)
+}
+
+#[test]
+fn vertical_frames_of_three_and_four_units_reach_the_optimum() {
+    let mut random = Random(2);
+    for n in [3, 4] {
+        for airmode in ["disabled", "roll-pitch"] {
+            let options = Options {
+                airmode,
+                yaw_reserve_nm: 0.0,
+            };
+            let mut judged = Judged::default();
+            let regular = frames::compile(&frames::regular(n, 45.0), options).map(Frame::new);
+            let others = (0..4).filter_map(|_| irregular(&mut random, n, 0.0, options));
+            let frames: Vec<Frame> = regular.into_iter().chain(others).collect();
+            for frame in &frames {
+                assert!(frame.compiled.tables.shortcut.is_some());
+                for volts in [REFERENCE_V, frame.draw_volts(&mut random)] {
+                    judged.judge(frame, &mut random, (volts, Health::GOOD), 20);
+                }
+            }
+            judged.print(&format!("{n} vertical units, {airmode}"));
+            assert!(judged.requests >= 120);
+            assert_eq!(judged.missed, 0);
+        }
+    }
+}
+
+#[test]
+fn any_frame_reaches_the_optimum() {
+    let mut random = Random(3);
+    let mut all = Judged::default();
+    for (kind, tilt) in [("vertical", 0.0), ("tilted", 0.08)] {
+        for n in 1..=8 {
+            let mut judged = Judged::default();
+            for airmode in AIRMODES {
+                for yaw_reserve_nm in [0.0, 0.03] {
+                    let options = Options {
+                        airmode,
+                        yaw_reserve_nm,
+                    };
+                    let Some(frame) = irregular(&mut random, n, tilt, options) else {
+                        continue;
+                    };
+                    for volts in [REFERENCE_V, frame.draw_volts(&mut random)] {
+                        judged.judge(&frame, &mut random, (volts, Health::GOOD), 15);
+                    }
+                }
+            }
+            judged.print(&format!("{n} {kind} units"));
+            all.add(&judged);
+        }
+    }
+    all.print("all");
+    assert!(all.requests >= 1500);
+    assert_eq!(all.missed, 0);
+}
+
+/// One or two rotors out, of different units or of the same.
+#[test]
+fn frames_with_rotors_out_reach_the_optimum() {
+    let mut random = Random(8);
+    let mut all = Judged::default();
+    for out in [1, 2] {
+        for (kind, tilt) in [("vertical", 0.0), ("tilted", 0.08)] {
+            let mut judged = Judged::default();
+            for n in 3..=6 {
+                for airmode in AIRMODES {
+                    let options = Options {
+                        airmode,
+                        yaw_reserve_nm: 0.0,
+                    };
+                    let Some(frame) = irregular(&mut random, n, tilt, options) else {
+                        continue;
+                    };
+                    for _ in 0..3 {
+                        let health = (0..out).fold(Health::GOOD, |health, _| {
+                            health.with_failed(random.index(2 * n) as u8)
+                        });
+                        let volts = frame.draw_volts(&mut random);
+                        judged.judge(&frame, &mut random, (volts, health), 4);
+                    }
+                }
+            }
+            judged.print(&format!("{out} out, {kind}"));
+            all.add(&judged);
+        }
+    }
+    all.print("all");
+    assert!(all.requests >= 200);
+    assert_eq!(all.missed, 0);
+}

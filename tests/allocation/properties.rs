@@ -1,0 +1,168 @@
+//! What holds for any layout and any request.
+//!
+//! The seed is fixed, so every run checks the same. `PROPTEST_CASES` sets the number of layouts, `PROPTEST_RNG_SEED`
+//! another seed. A failure shows the least layout and request that it could be brought to, as an airframe file and a
+//! wrench.
+
+use mixer_rt::{Health, SetpointError};
+use mixer_tests::request::{Frame, Request};
+use mixer_tests::soundness;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+use crate::layout::{any_request, attainable_request, layout, moderate_request};
+
+/// Each layout takes a compilation, about 0.1 s.
+const LAYOUTS: u32 = 40;
+
+fn config() -> ProptestConfig {
+    let default = ProptestConfig::default();
+    let is_set = |variable: &str| std::env::var_os(variable).is_some();
+    ProptestConfig {
+        cases: if is_set("PROPTEST_CASES") {
+            default.cases
+        } else {
+            LAYOUTS
+        },
+        rng_seed: if is_set("PROPTEST_RNG_SEED") {
+            default.rng_seed
+        } else {
+            RngSeed::Fixed(1)
+        },
+        failure_persistence: None,
+        max_shrink_iters: 4000,
+        ..default
+    }
+}
+
+/// `count` requests for one layout.
+fn many<S: Strategy>(request: S, count: usize) -> impl Strategy<Value = Vec<S::Value>> {
+    prop::collection::vec(request, 1..=count)
+}
+
+/// Fails where the answer to a request has a fault.
+fn sound(frame: &Frame, request: &Request) -> Result<(), TestCaseError> {
+    let answer = request.mix(frame).expect("finite");
+    let fault = soundness::fault(frame, request, &answer);
+    let fault = fault.map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
+    prop_assert_eq!(fault, None, "{:?} -> {:?}", request, answer);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    /// Throttles in range, the truth about the achieved wrench, flags by axis and side, no axis reversed or exceeded,
+    /// (roll, pitch) in the direction asked, no thrust raised with airmode disabled.
+    #[test]
+    fn answers_are_sound(layout in layout(), draws in many(any_request(0), 200)) {
+        let frame = layout.frame();
+        prop_assume!(frame.is_some());
+        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
+            let request = draw.of(frame);
+            sound(frame, &request)?;
+        }
+    }
+
+    #[test]
+    fn answers_with_rotors_out_are_sound(layout in layout(), draws in many(any_request(2), 100)) {
+        let frame = layout.frame();
+        prop_assume!(frame.is_some());
+        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
+            let request = draw.of(frame);
+            sound(frame, &request)?;
+        }
+    }
+
+    /// The wrench of throttles that keep 2 % off the ends of their range.
+    #[test]
+    fn attainable_wrenches_are_delivered(layout in layout(), draws in many(attainable_request(0.02, 0), 150)) {
+        let frame = layout.frame();
+        prop_assume!(frame.is_some());
+        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
+            let request = draw.of(frame);
+            let answer = request.mix(frame).expect("finite");
+            let served = frame.served();
+            for (index, axis) in mixer_rt::Axis::ALL.into_iter().enumerate().filter(|(index, _)| served[*index]) {
+                let missed = request.asked()[index] - answer.achieved[index];
+                let tolerance = frame.compiled.tables.tolerance.wrench[index];
+                prop_assert!(
+                    missed.abs() <= f64::from(tolerance) * (1.0 + 1e-6),
+                    "{} misses by {}: {:?} -> {:?}", axis.name(), missed, request, answer
+                );
+            }
+        }
+    }
+
+    /// The wrench of throttles at the ends of their range: the border of what is attainable.
+    #[test]
+    fn barely_attainable_wrenches_are_delivered_but_for_half_a_percent(
+        layout in layout(),
+        draws in many(attainable_request(0.0, 0), 150),
+    ) {
+        let frame = layout.frame();
+        prop_assume!(frame.is_some());
+        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
+            let request = draw.of(frame);
+            let answer = request.mix(frame).expect("finite");
+            for axis in (0..4).filter(|&axis| frame.served()[axis]) {
+                let missed = (request.asked()[axis] - answer.achieved[axis]).abs();
+                prop_assert!(missed <= 0.005 * frame.authority[axis], "axis {}: {:?} -> {:?}", axis, request, answer);
+            }
+        }
+    }
+
+    /// A relative change of 1e-4 of one axis, or of all, moves no throttle by more than 0.02.
+    #[test]
+    fn throttles_are_continuous_in_the_request(
+        layout in layout(),
+        draws in many((moderate_request(), 0..5_usize), 150),
+    ) {
+        let frame = layout.frame();
+        prop_assume!(frame.is_some());
+        for ((draw, moved), frame) in draws.iter().zip(frame.iter().cycle()) {
+            let request = draw.of(frame);
+            let mut near = request;
+            for (axis, value) in near.wrench.iter_mut().enumerate() {
+                if *moved == 4 || *moved == axis {
+                    *value *= 1.0 + 1e-4;
+                }
+            }
+            let [answer, moved] = [request, near].map(|request| request.mix(frame).expect("finite"));
+            let change = answer.change(&moved);
+            prop_assert!(change <= 0.02, "{}: {:?} -> {:?}, then {:?} -> {:?}", change, request, answer, near, moved);
+        }
+    }
+
+    /// A refusal exactly for what is not finite, whatever the bits and whichever rotors are out.
+    #[test]
+    fn any_bits_give_throttles_in_range_or_a_refusal(
+        layout in layout(),
+        draws in many((any::<[u32; 5]>(), any::<[u8; 3]>()), 200),
+    ) {
+        let frame = layout.frame();
+        prop_assume!(frame.is_some());
+        for ((bits, failed), frame) in draws.iter().zip(frame.iter().cycle()) {
+            let [volts, wrench @ ..] = bits.map(f32::from_bits);
+            let request = Request {
+                wrench,
+                volts,
+                // Channels beyond the frame's are no one's.
+                health: failed.iter().fold(Health::GOOD, |health, channel| health.with_failed(*channel)),
+            };
+            let first_bad = mixer_rt::Axis::ALL.into_iter().zip(wrench).find(|(_, value)| !value.is_finite());
+            let refusal = match first_bad {
+                Some((axis, _)) => Some(SetpointError::NonFinite(axis)),
+                None => (!volts.is_finite()).then_some(SetpointError::NonFiniteVoltage),
+            };
+            match request.mix(frame) {
+                Ok(answer) => {
+                    prop_assert_eq!(refusal, None);
+                    let fault = soundness::fault_of_form(frame, &request, &answer);
+                    prop_assert_eq!(fault, None, "{:?} -> {:?}", request, answer);
+                }
+                Err(error) => prop_assert_eq!(Some(error), refusal),
+            }
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What throttles give by the airframe file's own numbers, in f64: what mixers in f32 are judged against.
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Voltage;
+use mixer_compiler::model::PairMap;
+use mixer_rt::Health;
+use nalgebra::Matrix4xX;
+
+/// The forward physics of one frame.
+pub struct Physics {
+    /// Thrust and torque of one unit.
+    pub pair: PairMap,
+    /// M, 4 x 2n: all thrusts, then all torques.
+    pub matrix: Matrix4xX<f64>,
+    /// Outputs of the upper and of the lower rotor, per unit.
+    pub channels: Vec<[usize; 2]>,
+    voltage: Option<Voltage>,
+}
+
+impl Physics {
+    /// The physics of a compiled frame.
+    pub fn new(compiled: &Compiled) -> Self {
+        let airframe = &compiled.airframe;
+        Physics {
+            pair: PairMap::new(&airframe.pair, &airframe.throttle),
+            matrix: compiled.effectiveness.matrix.clone(),
+            channels: airframe
+                .units
+                .iter()
+                .map(|unit| [unit.upper_channel, unit.lower_channel])
+                .collect(),
+            voltage: airframe.voltage.clone(),
+        }
+    }
+
+    /// Number of units.
+    pub fn units(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// The declared range of voltage, V; `None` where voltage is ignored.
+    pub fn voltage_range(&self) -> Option<[f64; 2]> {
+        self.voltage.as_ref().map(|voltage| voltage.range_v)
+    }
+
+    /// The correction `[k_f, k_Q]` at a battery voltage, which is clamped into the range.
+    pub fn factors(&self, volts: f32) -> [f64; 2] {
+        self.voltage.as_ref().map_or([1.0, 1.0], |voltage| {
+            let [low, high] = voltage.range_v;
+            let volts = f64::from(volts).clamp(low, high);
+            [voltage.thrust_factor(volts), voltage.torque_factor(volts)]
+        })
+    }
+
+    /// `[roll, pitch, yaw, thrust]` (N m, N) that the units' efforts `[f, Q]` at the reference voltage give under the
+    /// correction `factors`.
+    pub fn wrench_of(&self, efforts: impl Iterator<Item = [f64; 2]>, factors: [f64; 2]) -> [f64; 4] {
+        let n = self.units();
+        let mut wrench = [0.0; 4];
+        for (i, [f, q]) in efforts.enumerate() {
+            for (axis, wrench) in wrench.iter_mut().enumerate() {
+                *wrench +=
+                    self.matrix[(axis, i)] * factors[0] * f + self.matrix[(axis, n + i)] * factors[1] * q;
+            }
+        }
+        wrench
+    }
+
+    /// `[roll, pitch, yaw, thrust]` (N m, N) that throttles, one per output, give at a battery voltage.
+    pub fn wrench(&self, throttle: &[f32], volts: f32) -> [f64; 4] {
+        let efforts = self.channels.iter().map(|channels| {
+            let throttles = channels.map(|channel| f64::from(throttle[channel]));
+            self.pair.efforts(throttles)
+        });
+        self.wrench_of(efforts, self.factors(volts))
+    }
+
+    /// The largest `[roll, pitch, yaw, thrust]` at the reference voltage, N m and N: all units at their best,
+    /// whatever the other axes lose.
+    pub fn authority(&self) -> [f64; 4] {
+        let [f, q] = self.pair.scale();
+        let n = self.units();
+        std::array::from_fn(|axis| {
+            (0..n)
+                .map(|i| self.matrix[(axis, i)].abs() * f + self.matrix[(axis, n + i)].abs() * q)
+                .sum()
+        })
+    }
+
+    /// The throttle at `share` of the allowed range, rounded into it.
+    pub fn throttle(&self, share: f64) -> f32 {
+        let [low, high] = self.pair.range();
+        let throttle = (low + share * (high - low)) as f32;
+        if f64::from(throttle) < low {
+            throttle.next_up()
+        } else if f64::from(throttle) > high {
+            throttle.next_down()
+        } else {
+            throttle
+        }
+    }
+
+    /// Throttles per output for shares of the allowed range; stopped rotors at 0.
+    pub fn throttles(&self, shares: impl Iterator<Item = f64>, health: Health) -> Vec<f32> {
+        (0..2 * self.units() as u8)
+            .zip(shares)
+            .map(|(channel, share)| {
+                if health.has_failed(channel) {
+                    0.0
+                } else {
+                    self.throttle(share)
+                }
+            })
+            .collect()
+    }
+}
