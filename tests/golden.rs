@@ -4,6 +4,8 @@
 use std::collections::BTreeSet;
 use std::fs;
 
+use mixer_rt::Wrench;
+use mixer_tests::vectors::{self, Kind};
 use mixer_tests::{airframes, golden};
 
 const MEND: &str =
@@ -56,21 +58,43 @@ fn compilation_is_deterministic() {
     assert_eq!(once, golden::outputs("isae-x8").expect("isae-x8"));
 }
 
-/// No vector is lost on the way into the table.
+/// No vector is lost on the way into the table, and every kind is what it says.
 #[test]
 fn golden_vectors_cover_what_they_should() {
     for name in airframes().expect("airframes/") {
         let compiled = golden::compile(&name).unwrap_or_else(|e| panic!("{e}"));
-        let setpoints = mixer_tests::vectors::setpoints(&compiled);
-        let saturated = setpoints
-            .iter()
-            .map(|(setpoint, v)| compiled.tables.mix(setpoint, *v).expect("finite").2.any_axis())
-            .filter(|saturated| *saturated)
-            .count();
-        assert!(setpoints.len() >= 300, "{name}: {}", setpoints.len());
-        let share = saturated as f64 / setpoints.len() as f64;
+        let is_saturated = |(setpoint, voltage_v): &(Wrench, f32)| {
+            let (.., saturation) = compiled.tables.mix(setpoint, *voltage_v).expect("finite");
+            saturation.any_axis()
+        };
+        let kinds = vectors::by_kind(&compiled);
+        let (mut all, mut all_saturated) = (0, 0);
+        for (kind, list) in &kinds {
+            let saturated = list.iter().filter(|vector| is_saturated(vector)).count();
+            println!("{name} {kind:?}: {saturated} of {} saturated", list.len());
+            all += list.len();
+            all_saturated += saturated;
+            match kind {
+                Kind::Attainable => assert_eq!(saturated, 0, "{name} {kind:?}"),
+                // Thrust of 40 % of the ceiling and roll, pitch and yaw of next to nothing are delivered.
+                Kind::Faint => assert!(saturated >= 18, "{name} {kind:?}"),
+                Kind::Alone | Kind::Together => assert_eq!(saturated, list.len(), "{name} {kind:?}"),
+                // A third is beyond what is attainable.
+                Kind::Edge => assert!(3 * saturated >= list.len(), "{name} {kind:?}"),
+                Kind::NullSpace => {
+                    assert_eq!(saturated, 0, "{name} {kind:?}");
+                    // One unit has no freedom.
+                    let expected = if compiled.airframe.units.len() > 1 { 20 } else { 0 };
+                    assert!(list.len() >= expected, "{name} {kind:?}: {}", list.len());
+                }
+                Kind::ByHand | Kind::Ordinary | Kind::Excessive => assert!(!list.is_empty()),
+            }
+        }
+        let share = f64::from(all_saturated as u32) / f64::from(all as u32);
+        println!("{name}: {all} vectors, {:.0} % saturated", 100.0 * share);
+        assert!((400..600).contains(&all), "{name}: {all}");
         assert!(
-            (0.2..0.8).contains(&share),
+            (0.3..0.8).contains(&share),
             "{name}: {share} of the vectors saturate"
         );
     }

@@ -4,7 +4,10 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Voltage;
 use mixer_compiler::model::PairMap;
 use mixer_rt::Health;
-use nalgebra::Matrix4xX;
+use nalgebra::{Matrix4xX, MatrixXx4};
+
+/// Newton steps that tell whether efforts are attainable.
+const STEPS: usize = 40;
 
 /// The forward physics of one frame.
 pub struct Physics {
@@ -12,6 +15,8 @@ pub struct Physics {
     pub pair: PairMap,
     /// M, 4 x 2n: all thrusts, then all torques.
     pub matrix: Matrix4xX<f64>,
+    /// M+, 2n x 4.
+    pseudo_inverse: MatrixXx4<f64>,
     /// Outputs of the upper and of the lower rotor, per unit.
     pub channels: Vec<[usize; 2]>,
     voltage: Option<Voltage>,
@@ -24,6 +29,7 @@ impl Physics {
         Physics {
             pair: PairMap::new(&airframe.pair, &airframe.throttle),
             matrix: compiled.effectiveness.matrix.clone(),
+            pseudo_inverse: compiled.effectiveness.pseudo_inverse.clone(),
             channels: airframe
                 .units
                 .iter()
@@ -85,6 +91,68 @@ impl Physics {
                 .map(|i| self.matrix[(axis, i)].abs() * f + self.matrix[(axis, n + i)].abs() * q)
                 .sum()
         })
+    }
+
+    /// The wrench furthest in `direction` (per axis, of the authority's size) that the frame can give: every unit at
+    /// the best point of its border. A corner of what is attainable.
+    pub fn furthest(&self, direction: [f64; 4], factors: [f64; 2]) -> [f64; 4] {
+        let n = self.units();
+        let per = self
+            .authority()
+            .map(|authority| if authority > 0.0 { 1.0 / authority } else { 0.0 });
+        let border: Vec<[f64; 2]> = self
+            .pair
+            .border(64)
+            .into_iter()
+            .map(|t| self.pair.efforts(t))
+            .collect();
+        let best = (0..n).map(|i| {
+            let gain = |column: usize| -> f64 {
+                (0..4)
+                    .map(|axis| direction[axis] * per[axis] * self.matrix[(axis, column)])
+                    .sum()
+            };
+            let (by_f, by_q) = (factors[0] * gain(i), factors[1] * gain(n + i));
+            let value = |[f, q]: &[f64; 2]| by_f * f + by_q * q;
+            let best = border.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+            best.copied().unwrap_or_default()
+        });
+        self.wrench_of(best, factors)
+    }
+
+    /// True where some throttles within the range give the efforts `[f, Q]` at the reference voltage: Newton steps,
+    /// clamped, from the middle and the corners of the range.
+    pub fn attains(&self, efforts: [f64; 2]) -> bool {
+        let [low, high] = self.pair.range();
+        let middle = 0.5 * (low + high);
+        let starts = [
+            [middle, middle],
+            [low, low],
+            [low, high],
+            [high, low],
+            [high, high],
+        ];
+        let scale = self.pair.scale();
+        starts.into_iter().any(|start| {
+            let mut throttles = start;
+            for _ in 0..STEPS {
+                throttles = self.pair.newton(throttles, efforts, 1);
+            }
+            let given = self.pair.efforts(throttles);
+            (0..2).all(|k| (given[k] - efforts[k]).abs() <= 1e-9 * scale[k])
+        })
+    }
+
+    /// True where the least-norm efforts M+ `wrench` are attainable for every unit.
+    pub fn least_norm_attains(&self, wrench: [f64; 4], factors: [f64; 2]) -> bool {
+        let n = self.units();
+        let effort = |row: usize, factor: f64| -> f64 {
+            (0..4)
+                .map(|axis| self.pseudo_inverse[(row, axis)] * wrench[axis])
+                .sum::<f64>()
+                / factor
+        };
+        (0..n).all(|i| self.attains([effort(i, factors[0]), effort(n + i, factors[1])]))
     }
 
     /// The throttle at `share` of the allowed range, rounded into it.

@@ -1,9 +1,13 @@
 //! The setpoints of the golden vectors.
 
+mod saturated;
+
 use mixer_compiler::Compiled;
 use mixer_compiler::model::PairMap;
 use mixer_rt::Wrench;
 use mixer_setpoints::{Ranges, Setpoints};
+
+use saturated::Saturated;
 
 /// Wrenches that random throttles give: attainable, by least norm or with the null space's help.
 const ATTAINABLE: usize = 80;
@@ -14,16 +18,51 @@ const ORDINARY: usize = 80;
 /// Wrenches drawn from three times the attainable ranges, and special numbers.
 const EXCESSIVE: usize = 80;
 
-/// Setpoints and voltages, always the same for one airframe, all finite.
-pub fn setpoints(compiled: &Compiled) -> Vec<(Wrench, f32)> {
-    let mut list = by_hand(compiled);
-    list.extend(attainable(compiled).take(ATTAINABLE));
-    list.extend(drawn(compiled, 0.15, 1).take(ORDINARY));
-    list.extend(drawn(compiled, 3.0, 2).take(EXCESSIVE));
-    list
+/// What a golden vector is of. The table holds the kinds in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Zero, single axes, thrusts to the ceiling and voltages beyond the range, chosen by hand.
+    ByHand,
+    /// Wrenches of random throttles at random voltages.
+    Attainable,
+    /// Wrenches about hover.
+    Ordinary,
+    /// Up to three times what is attainable on every axis, and special numbers.
+    Excessive,
+    /// One axis alone far beyond what there is.
+    Alone,
+    /// Several axes beyond what there is, all signs.
+    Together,
+    /// Torques with no thrust, with less than none and with next to none; torques next to none.
+    Faint,
+    /// Corners of the attainable set at both ends of the voltage's range, and a little inside and outside.
+    Edge,
+    /// Attainable, but not with least-norm efforts. None where there is no freedom left.
+    NullSpace,
 }
 
-/// Reference voltage and range; any numbers where the airframe ignores the voltage.
+/// Setpoints and voltages with their kinds, always the same for one airframe, all finite.
+pub fn by_kind(compiled: &Compiled) -> Vec<(Kind, Vec<(Wrench, f32)>)> {
+    let saturated = Saturated::new(compiled);
+    vec![
+        (Kind::ByHand, by_hand(compiled)),
+        (Kind::Attainable, attainable(compiled).take(ATTAINABLE).collect()),
+        (Kind::Ordinary, drawn(compiled, 0.15, 1).take(ORDINARY).collect()),
+        (Kind::Excessive, drawn(compiled, 3.0, 2).take(EXCESSIVE).collect()),
+        (Kind::Alone, saturated.alone()),
+        (Kind::Together, saturated.together()),
+        (Kind::Faint, saturated.faint()),
+        (Kind::Edge, saturated.edge()),
+        (Kind::NullSpace, saturated.null_space()),
+    ]
+}
+
+/// [`by_kind`] in one list.
+pub fn setpoints(compiled: &Compiled) -> Vec<(Wrench, f32)> {
+    by_kind(compiled).into_iter().flat_map(|(_, list)| list).collect()
+}
+
+/// Reference voltage and ends of the range; any numbers where the airframe ignores the voltage.
 pub fn voltages(compiled: &Compiled) -> [f32; 3] {
     compiled
         .airframe
