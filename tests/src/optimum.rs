@@ -151,30 +151,36 @@ impl Oracle {
         }
     }
 
-    /// Where yaw and thrust may be whatever becomes of roll and pitch; `None` where no thrust leaves them at zero.
-    fn allowed(&self, [.., yaw, thrust]: [f64; 4]) -> Result<Option<Ranges>, Error> {
+    /// Yaw from its reserve to the request, roll = pitch = 0, any thrust.
+    fn level(&self, yaw: f64) -> Ranges {
         let reserved = yaw.clamp(-self.reserve, self.reserve);
-        let mut ranges = Ranges {
+        Ranges {
             share: (0.0, 0.0),
             yaw: (yaw.min(reserved), yaw.max(reserved)),
             thrust: FREE,
-        };
-        let Some(floor) = self.best(Goal::Lowest(Quantity::Thrust), [0.0; 2], ranges)? else {
-            return Ok(None);
-        };
-        if self.airmode == Airmode::Disabled {
-            ranges.thrust.1 = thrust.max(floor.thrust + SLACK);
         }
-        Ok(Some(ranges))
     }
 
-    /// The largest thrust that a request may be answered with, N; `None` where roll = pitch = 0 is not attainable
-    /// within the yaw asked and its reserve.
+    /// The least thrust (N) at which roll = pitch = 0 is attainable with a yaw between its reserve and the one asked;
+    /// `None` where there is none. Airmode "disabled" never gives more than this or the thrust asked.
     ///
     /// # Errors
     /// The solver gave up.
-    pub fn thrust_ceiling(&self, request: [f64; 4]) -> Result<Option<f64>, Error> {
-        Ok(self.allowed(request)?.map(|ranges| ranges.thrust.1))
+    pub fn thrust_floor(&self, yaw: f64) -> Result<Option<f64>, Error> {
+        let least = self.best(Goal::Lowest(Quantity::Thrust), [0.0; 2], self.level(yaw))?;
+        Ok(least.map(|point| point.thrust))
+    }
+
+    /// Where yaw and thrust may be whatever becomes of roll and pitch; `None` where no thrust leaves them at zero.
+    fn allowed(&self, [.., yaw, thrust]: [f64; 4]) -> Result<Option<Ranges>, Error> {
+        let mut ranges = self.level(yaw);
+        let Some(floor) = self.thrust_floor(yaw)? else {
+            return Ok(None);
+        };
+        if self.airmode == Airmode::Disabled {
+            ranges.thrust.1 = thrust.max(floor + SLACK);
+        }
+        Ok(Some(ranges))
     }
 
     fn highest_share(&self, direction: [f64; 2], ranges: Ranges) -> Result<Option<f64>, Error> {

@@ -4,6 +4,7 @@ use mixer_rt::{Airmode, Axis, Direction};
 
 use crate::optimum::Oracle;
 use crate::request::{Answer, Frame, Request};
+use crate::shortfall::ALLOWED;
 
 /// Rounding of sums in f32, as a share of the authority.
 const ROUNDING: f64 = 5e-6;
@@ -83,7 +84,7 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
 }
 
 /// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode "disabled" does not raise
-/// the thrust: all where roll = pitch = 0 is attainable at all within the yaw asked and its reserve.
+/// the thrust beyond the request or the floor: all where roll = pitch = 0 is attainable at all within the yaw asked and its reserve.
 fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<String>, microlp::Error> {
     let served = frame.served();
     let mut asked = request.asked();
@@ -124,13 +125,16 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Opt
         frame.physics.factors(request.volts),
         request.health,
     );
-    let Some(ceiling) = oracle.thrust_ceiling(asked)? else {
+    let Some(floor) = oracle.thrust_floor(asked[2])? else {
         return Ok(None);
     };
-    if raised && answer.achieved[3] > ceiling + slack[3] {
+    // The mixer's own floor is that of what it has of the attainable set.
+    let most = floor + ALLOWED * frame.authority[3];
+    if raised && answer.achieved[3] > most {
+        let given = answer.achieved[3];
         fault = Some(format!(
-            "thrust: {} given where {ceiling} is the most",
-            answer.achieved[3]
+            "thrust: {} asked, {given} given, {floor} is the least",
+            asked[3]
         ));
     }
     Ok(fault)
