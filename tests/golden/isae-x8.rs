@@ -9,9 +9,9 @@
 /// * unit 3 at (-0.3182, 0.3182, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
 /// Inverse map: bilinear seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00378 N and 4.92e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (248 cells).
-/// Largest residual observed over 5433 efforts at the reference voltage: 0.00269 N, 3.44e-5 N m.
+/// Proven: each unit's thrust and torque are within 0.00376 N and 4.84e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (237 cells).
+/// Largest residual observed over 5422 efforts at the reference voltage: 0.00269 N, 3.42e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod isae_x8 {
     /// Number of coaxial units.
@@ -48,7 +48,7 @@ pub mod isae_x8 {
         'static,
         ::mixer_rt::Biquadratic,
         ::mixer_rt::Seeded<::mixer_rt::BilinearSeed, 1>,
-        ::mixer_rt::Vertical<'static>,
+        &'static ::mixer_rt::Vertical<'static>,
     > = ::mixer_rt::Tables {
         units: &[
             ::mixer_rt::Unit {
@@ -99,12 +99,12 @@ pub mod isae_x8 {
         },
         inverse: ::mixer_rt::Seeded {
             coordinates: ::mixer_rt::RootCoordinates {
-                x: [0.040342588, -2.5051825, 0.049270727],
-                y: [0.040342588, 3.083931, 0.07637111],
+                x: [0.040342588, -2.504363, 0.04923412],
+                y: [0.040342588, 3.0840058, 0.07635191],
             },
             seed: ::mixer_rt::BilinearSeed {
-                upper: [-0.30552167, 1.1684542, 0.35158804, -0.24767745],
-                lower: [-0.28033507, 0.16833168, 1.1530719, -0.09343905],
+                upper: [-0.30525702, 1.168284, 0.3510913, -0.24720146],
+                lower: [-0.28038272, 0.16849099, 1.1532216, -0.09372988],
             },
         },
         throttle: ::mixer_rt::ThrottleRange {
@@ -234,71 +234,122 @@ pub mod isae_x8 {
             airmode: ::mixer_rt::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
         },
-        shortcut: ::mixer_rt::Vertical {
+        shortcut: &::mixer_rt::Vertical {
+            units: &[
+                ::mixer_rt::VerticalUnit {
+                    allocation: [-0.7856694, 0.7856694, 0.25],
+                    arms: [-0.3182, 0.3182],
+                    spin: 1.0,
+                    null: -1.0,
+                    per_null: -1.0,
+                    ends: [24.787699, 0.5782414],
+                    channels: [0, 4],
+                },
+                ::mixer_rt::VerticalUnit {
+                    allocation: [0.7856694, 0.7856694, 0.25],
+                    arms: [0.3182, 0.3182],
+                    spin: -1.0,
+                    null: 1.0,
+                    per_null: 1.0,
+                    ends: [0.5782414, 24.787699],
+                    channels: [1, 5],
+                },
+                ::mixer_rt::VerticalUnit {
+                    allocation: [0.7856694, -0.7856694, 0.25],
+                    arms: [0.3182, -0.3182],
+                    spin: 1.0,
+                    null: -1.0,
+                    per_null: -1.0,
+                    ends: [24.787699, 0.5782414],
+                    channels: [2, 6],
+                },
+                ::mixer_rt::VerticalUnit {
+                    allocation: [-0.7856694, -0.7856694, 0.25],
+                    arms: [-0.3182, -0.3182],
+                    spin: -1.0,
+                    null: 1.0,
+                    per_null: 1.0,
+                    ends: [0.5782414, 24.787699],
+                    channels: [3, 7],
+                },
+            ],
             thrust_n: [0.5782414, 24.787699],
-            least_torque: ::mixer_rt::Side {
-                corner_n: 15.445115,
-                arcs: [
-                    ::mixer_rt::Arc {
-                        offset: 0.016781667,
-                        slope: -0.011311959,
-                        bend: -0.014597644,
-                        shift: 0.052052163,
+            border: ::mixer_rt::Border {
+                sides: [
+                    ::mixer_rt::Side {
+                        corner_n: 12.295637,
+                        arcs: [
+                            ::mixer_rt::Arc {
+                                offset: -0.017763613,
+                                slope: 0.013611965,
+                                bend: 0.019709112,
+                                shift: -0.39035276,
+                            },
+                            ::mixer_rt::Arc {
+                                offset: 0.42444146,
+                                slope: -0.016825354,
+                                bend: -0.0026954114,
+                                shift: -12.283145,
+                            },
+                        ],
                     },
-                    ::mixer_rt::Arc {
-                        offset: -0.5826794,
-                        slope: 0.023991078,
-                        bend: -0.00445537,
-                        shift: -14.908358,
+                    ::mixer_rt::Side {
+                        corner_n: 15.445115,
+                        arcs: [
+                            ::mixer_rt::Arc {
+                                offset: -0.016781667,
+                                slope: 0.011311959,
+                                bend: 0.014597644,
+                                shift: 0.052052163,
+                            },
+                            ::mixer_rt::Arc {
+                                offset: 0.5826794,
+                                slope: -0.023991078,
+                                bend: 0.00445537,
+                                shift: -14.908358,
+                            },
+                        ],
                     },
                 ],
-            },
-            largest_torque: ::mixer_rt::Side {
-                corner_n: 12.295637,
-                arcs: [
-                    ::mixer_rt::Arc {
-                        offset: -0.017763613,
-                        slope: 0.013611965,
-                        bend: 0.019709112,
-                        shift: -0.39035276,
-                    },
-                    ::mixer_rt::Arc {
-                        offset: 0.42444146,
-                        slope: -0.016825354,
-                        bend: -0.0026954114,
-                        shift: -12.283145,
-                    },
+                chord: [-0.0013334816, -0.000026889076],
+                quadrangle: [
+                    [0.65048337, 53.514347],
+                    [0.48459384, -69.455154],
+                    [24.544231, -56.8832],
+                    [24.87521, 43.779892],
                 ],
             },
-            facets: &[
+            slopes: &[
                 ::mixer_rt::Facets {
-                    normal: [0.0, -3.1426775, 1.0],
+                    normal: [0.0, -3.1426775],
                     bounds: [2.3129656, 99.150795],
                 },
                 ::mixer_rt::Facets {
-                    normal: [0.70710677, 0.70710677, 0.0],
-                    bounds: [-10.894322, 10.894322],
-                },
-                ::mixer_rt::Facets {
-                    normal: [3.1426775, 0.0, 1.0],
+                    normal: [3.1426775, 0.0],
                     bounds: [2.3129656, 99.150795],
                 },
                 ::mixer_rt::Facets {
-                    normal: [-3.1426775, 0.0, 1.0],
+                    normal: [-3.1426775, 0.0],
                     bounds: [2.3129656, 99.150795],
                 },
                 ::mixer_rt::Facets {
-                    normal: [0.70710677, -0.70710677, 0.0],
-                    bounds: [-10.894322, 10.894322],
-                },
-                ::mixer_rt::Facets {
-                    normal: [0.0, 3.1426775, 1.0],
+                    normal: [0.0, 3.1426775],
                     bounds: [2.3129656, 99.150795],
                 },
             ],
-            null: &[-1.0, 1.0, -1.0, 1.0],
-            thrust_floor_n: 2.3483777,
-            thrust_middle_n: 50.62896,
+            walls: &[
+                ::mixer_rt::Facets {
+                    normal: [0.70710677, 0.70710677],
+                    bounds: [-10.894322, 10.894322],
+                },
+                ::mixer_rt::Facets {
+                    normal: [0.70710677, -0.70710677],
+                    bounds: [-10.894322, 10.894322],
+                },
+            ],
+            torque_share: 0.25,
+            thrust_floor_n: 2.348356,
+            thrust_middle_n: 50.628956,
         },
         tolerance: ::mixer_rt::Tolerance {
             efforts: [0.008010632, 0.00008010632],

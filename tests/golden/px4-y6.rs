@@ -8,9 +8,9 @@
 /// * unit 2 at (0.25, -0.433, 0.0) m, upper rotor cw: channel 4 upper, 5 lower
 ///
 /// Inverse map: bilinear seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00378 N and 4.92e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (248 cells).
-/// Largest residual observed over 5433 efforts at the reference voltage: 0.00269 N, 3.44e-5 N m.
+/// Proven: each unit's thrust and torque are within 0.00376 N and 4.84e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (237 cells).
+/// Largest residual observed over 5422 efforts at the reference voltage: 0.00269 N, 3.42e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod px4_y6 {
     /// Number of coaxial units.
@@ -47,7 +47,7 @@ pub mod px4_y6 {
         'static,
         ::mixer_rt::Biquadratic,
         ::mixer_rt::Seeded<::mixer_rt::BilinearSeed, 1>,
-        ::mixer_rt::Vertical<'static>,
+        &'static ::mixer_rt::Vertical<'static>,
     > = ::mixer_rt::Tables {
         units: &[
             ::mixer_rt::Unit {
@@ -99,12 +99,12 @@ pub mod px4_y6 {
         },
         inverse: ::mixer_rt::Seeded {
             coordinates: ::mixer_rt::RootCoordinates {
-                x: [0.040342588, -2.5051825, 0.049270727],
-                y: [0.040342588, 3.083931, 0.07637111],
+                x: [0.040342588, -2.504363, 0.04923412],
+                y: [0.040342588, 3.0840058, 0.07635191],
             },
             seed: ::mixer_rt::BilinearSeed {
-                upper: [-0.30552167, 1.1684542, 0.35158804, -0.24767745],
-                lower: [-0.28033507, 0.16833168, 1.1530719, -0.09343905],
+                upper: [-0.30525702, 1.168284, 0.3510913, -0.24720146],
+                lower: [-0.28038272, 0.16849099, 1.1532216, -0.09372988],
             },
         },
         throttle: ::mixer_rt::ThrottleRange {
@@ -234,59 +234,100 @@ pub mod px4_y6 {
             airmode: ::mixer_rt::Airmode::RollPitch,
             yaw_reserve_nm: 0.0,
         },
-        shortcut: ::mixer_rt::Vertical {
+        shortcut: &::mixer_rt::Vertical {
+            units: &[
+                ::mixer_rt::VerticalUnit {
+                    allocation: [-1.1547344, 0.6666667, 0.33333334],
+                    arms: [-0.433, 0.25],
+                    spin: 1.0,
+                    null: 0.0,
+                    per_null: 0.0,
+                    ends: [0.5782414, 24.787699],
+                    channels: [0, 1],
+                },
+                ::mixer_rt::VerticalUnit {
+                    allocation: [0.0, -1.3333334, 0.33333334],
+                    arms: [0.0, -0.5],
+                    spin: 1.0,
+                    null: 0.0,
+                    per_null: 0.0,
+                    ends: [0.5782414, 24.787699],
+                    channels: [2, 3],
+                },
+                ::mixer_rt::VerticalUnit {
+                    allocation: [1.1547344, 0.6666667, 0.33333334],
+                    arms: [0.433, 0.25],
+                    spin: 1.0,
+                    null: 0.0,
+                    per_null: 0.0,
+                    ends: [0.5782414, 24.787699],
+                    channels: [4, 5],
+                },
+            ],
             thrust_n: [0.5782414, 24.787699],
-            least_torque: ::mixer_rt::Side {
-                corner_n: 15.445115,
-                arcs: [
-                    ::mixer_rt::Arc {
-                        offset: 0.016781667,
-                        slope: -0.011311959,
-                        bend: -0.014597644,
-                        shift: 0.052052163,
+            border: ::mixer_rt::Border {
+                sides: [
+                    ::mixer_rt::Side {
+                        corner_n: 12.295637,
+                        arcs: [
+                            ::mixer_rt::Arc {
+                                offset: -0.017763613,
+                                slope: 0.013611965,
+                                bend: 0.019709112,
+                                shift: -0.39035276,
+                            },
+                            ::mixer_rt::Arc {
+                                offset: 0.42444146,
+                                slope: -0.016825354,
+                                bend: -0.0026954114,
+                                shift: -12.283145,
+                            },
+                        ],
                     },
-                    ::mixer_rt::Arc {
-                        offset: -0.5826794,
-                        slope: 0.023991078,
-                        bend: -0.00445537,
-                        shift: -14.908358,
+                    ::mixer_rt::Side {
+                        corner_n: 15.445115,
+                        arcs: [
+                            ::mixer_rt::Arc {
+                                offset: -0.016781667,
+                                slope: 0.011311959,
+                                bend: 0.014597644,
+                                shift: 0.052052163,
+                            },
+                            ::mixer_rt::Arc {
+                                offset: 0.5826794,
+                                slope: -0.023991078,
+                                bend: 0.00445537,
+                                shift: -14.908358,
+                            },
+                        ],
                     },
                 ],
-            },
-            largest_torque: ::mixer_rt::Side {
-                corner_n: 12.295637,
-                arcs: [
-                    ::mixer_rt::Arc {
-                        offset: -0.017763613,
-                        slope: 0.013611965,
-                        bend: 0.019709112,
-                        shift: -0.39035276,
-                    },
-                    ::mixer_rt::Arc {
-                        offset: 0.42444146,
-                        slope: -0.016825354,
-                        bend: -0.0026954114,
-                        shift: -12.283145,
-                    },
+                chord: [-0.0013334816, -0.000026889076],
+                quadrangle: [
+                    [0.65048337, 53.514347],
+                    [0.48459384, -69.455154],
+                    [24.544231, -56.8832],
+                    [24.87521, 43.779892],
                 ],
             },
-            facets: &[
+            slopes: &[
                 ::mixer_rt::Facets {
-                    normal: [3.4642031, 2.0, 1.0],
+                    normal: [3.4642031, 2.0],
                     bounds: [1.7347243, 74.3631],
                 },
                 ::mixer_rt::Facets {
-                    normal: [0.0, -4.0, 1.0],
+                    normal: [0.0, -4.0],
                     bounds: [1.7347243, 74.3631],
                 },
                 ::mixer_rt::Facets {
-                    normal: [-3.4642031, 2.0, 1.0],
+                    normal: [-3.4642031, 2.0],
                     bounds: [1.7347243, 74.3631],
                 },
             ],
-            null: &[0.0, 0.0, 0.0],
-            thrust_floor_n: 1.8987808,
-            thrust_middle_n: 37.75898,
+            walls: &[],
+            torque_share: 0.33333334,
+            thrust_floor_n: 1.8987683,
+            thrust_middle_n: 37.758976,
         },
         tolerance: ::mixer_rt::Tolerance {
             efforts: [0.008010632, 0.00008010632],

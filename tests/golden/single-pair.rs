@@ -6,9 +6,9 @@
 /// * unit 0 at (0.0, 0.0, 0.0) m, upper rotor cw: channel 0 upper, 1 lower
 ///
 /// Inverse map: bilinear seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00302 N and 3.94e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (248 cells).
-/// Largest residual observed over 5433 efforts at the reference voltage: 0.00269 N, 3.44e-5 N m.
+/// Proven: each unit's thrust and torque are within 0.00303 N and 3.87e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (236 cells).
+/// Largest residual observed over 5421 efforts at the reference voltage: 0.00269 N, 3.42e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod single_pair {
     /// Number of coaxial units.
@@ -77,12 +77,12 @@ pub mod single_pair {
         },
         inverse: ::mixer_rt::Seeded {
             coordinates: ::mixer_rt::RootCoordinates {
-                x: [0.040342588, -2.5051825, 0.049270727],
-                y: [0.040342588, 3.083931, 0.07637111],
+                x: [0.040342588, -2.504363, 0.04923412],
+                y: [0.040342588, 3.0840058, 0.07635191],
             },
             seed: ::mixer_rt::BilinearSeed {
-                upper: [-0.30552167, 1.1684542, 0.35158804, -0.24767745],
-                lower: [-0.28033507, 0.16833168, 1.1530719, -0.09343905],
+                upper: [-0.30525702, 1.168284, 0.3510913, -0.24720146],
+                lower: [-0.28038272, 0.16849099, 1.1532216, -0.09372988],
             },
         },
         throttle: ::mixer_rt::ThrottleRange {
