@@ -13,7 +13,7 @@ use proptest::test_runner::RngSeed;
 use crate::layout::{any_request, attainable_request, layout, moderate_request};
 
 /// Each layout takes a compilation, about 0.1 s.
-const LAYOUTS: u32 = 40;
+const LAYOUTS: u32 = 32;
 
 fn config() -> ProptestConfig {
     let default = ProptestConfig::default();

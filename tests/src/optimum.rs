@@ -83,7 +83,7 @@ impl Oracle {
         let sets = physics.channels.iter().enumerate().map(|(i, channels)| {
             let efforts = match channels.map(failed) {
                 [false, false] if n <= FEW => cells(pair),
-                [false, false] => vec![pair.border(SAMPLES)],
+                [false, false] => vec![bulging(pair, pair.border(SAMPLES))],
                 [false, true] => arcs(pair, |upper| [upper, 0.0]),
                 [true, false] => arcs(pair, |lower| [0.0, lower]),
                 [true, true] => vec![vec![[0.0; 2]]],
@@ -273,6 +273,24 @@ impl Oracle {
             yaw_nm,
             thrust_n,
         }))
+    }
+}
+
+/// The throttles among `border` (anticlockwise) whose efforts are corners of the convex hull of all.
+fn bulging(pair: &PairMap, border: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let mut corners = border;
+    loop {
+        let efforts: Vec<[f64; 2]> = corners.iter().map(|&throttles| pair.efforts(throttles)).collect();
+        let n = efforts.len();
+        let inside = (0..n).find(|&k| {
+            let (before, at, after) = (efforts[(k + n - 1) % n], efforts[k], efforts[(k + 1) % n]);
+            let (f, q) = (after[0] - before[0], after[1] - before[1]);
+            f * (at[1] - before[1]) - q * (at[0] - before[0]) >= 0.0
+        });
+        match inside {
+            Some(k) => corners.remove(k),
+            None => return corners,
+        };
     }
 }
 
