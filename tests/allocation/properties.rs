@@ -33,6 +33,8 @@ fn config() -> ProptestConfig {
         },
         failure_persistence: None,
         max_shrink_iters: 4000,
+        // Milliseconds.
+        max_shrink_time: 60_000,
         ..default
     }
 }

@@ -58,7 +58,7 @@ impl Shortfall {
         let Some(optimum) = oracle.optimum(asked)? else {
             return Ok(None);
         };
-        let torque = asked[0].hypot(asked[1]);
+        let torque = (asked[0] * asked[0] + asked[1] * asked[1]).sqrt();
         let share = if torque > 0.0 {
             (answer.achieved[0] * asked[0] + answer.achieved[1] * asked[1]) / (torque * torque)
         } else {

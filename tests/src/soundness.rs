@@ -32,7 +32,7 @@ pub fn fault_of_form(frame: &Frame, request: &Request, answer: &Answer) -> Optio
 
 /// Throttles within the range, stopped rotors at 0.
 fn throttles(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
-    let range = frame.compiled.airframe.throttle.clone();
+    let range = frame.compiled.airframe.throttle;
     let count = 2 * frame.physics.units();
     if answer.throttle.len() != count {
         return Some(format!("{} throttles for {count} rotors", answer.throttle.len()));
@@ -108,9 +108,10 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Opt
         }
     }
     if served[0] && served[1] {
-        let torque = asked[0].hypot(asked[1]);
+        let length = |[roll, pitch]: [f64; 2]| (roll * roll + pitch * pitch).sqrt();
+        let torque = length([asked[0], asked[1]]);
         let turned = (answer.achieved[0] * asked[1] - answer.achieved[1] * asked[0]).abs();
-        if torque > 0.0 && turned > slack[0].hypot(slack[1]) * torque {
+        if torque > 0.0 && turned > length([slack[0], slack[1]]) * torque {
             fault = Some(format!("(roll, pitch) turned by {} N m", turned / torque));
         }
     }
