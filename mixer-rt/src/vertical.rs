@@ -128,7 +128,9 @@ pub(crate) type Efforts = [Effort; MOST_UNITS];
 struct Search<'a> {
     /// N.
     thrust: f32,
-    /// The side of the attainable set in the direction looked at.
+    /// Yaw per torque in the direction looked at, 1 or -1.
+    turn: f32,
+    /// The side of the attainable set in that direction.
     side: &'a Side,
     /// The largest torque with this thrust in that direction, N m.
     limit: f32,
@@ -180,22 +182,22 @@ impl Vertical<'_> {
         }
     }
 
-    /// Writes attainable efforts that serve `request` in the order of priority; the thrusts given are the least-norm
-    /// ones.
+    /// Writes attainable efforts that serve `request` in the order of priority.
     #[inline(never)]
     pub(crate) fn desaturate(&self, airmode: Airmode, request: &Request, efforts: &mut Efforts) {
         // So that nothing is known about how often the loops run: see `rolled`.
-        let mut search = efforts.map(|effort| Search {
-            thrust: effort.thrust,
+        let mut search = [Search {
+            thrust: 0.0,
+            turn: 0.0,
             side: &self.border.sides[0],
             limit: 0.0,
             from: 0.0,
             along: 0.0,
-        });
+        }; MOST_UNITS];
         let search = search.get_mut(..self.units.len()).unwrap_or_default();
         let (vertical, efforts, search) = black_box((self, efforts.as_mut_slice(), search));
-        let reversed = request.yaw < 0.0;
-        let wanted = if reversed { -request.yaw } else { request.yaw };
+        let direction = if request.yaw < 0.0 { -1.0 } else { 1.0 };
+        let wanted = direction * request.yaw;
         let mut ceiling = f32::MAX;
         if airmode == Airmode::Disabled {
             ceiling = if request.thrust > vertical.thrust_floor_n {
@@ -209,8 +211,8 @@ impl Vertical<'_> {
         } else {
             vertical.thrust_middle_n
         };
-        vertical.look(search, reversed);
-        let reached = vertical.attainable_thrusts(request, [ceiling, middle], search, wanted);
-        vertical.torques(search, efforts, reversed, wanted, reached, middle);
+        let limits = [ceiling, middle];
+        let reached = vertical.attainable_thrusts(request, limits, search, direction, wanted);
+        vertical.torques(search, efforts, wanted, reached, middle);
     }
 }

@@ -4,6 +4,8 @@
 //! `low <= d w <= high`. For a given direction of (roll, pitch) a facet is a line in the plane of (rho, thrust): the
 //! largest rho, and then the thrust nearest the request, are a linear program in two unknowns.
 
+use core::hint::black_box;
+
 use super::{Vertical, rolled};
 
 /// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <= high` for a slope,
@@ -15,6 +17,10 @@ pub struct Facets {
     /// The bounds.
     pub bounds: [f32; 2],
 }
+
+/// A gap between thrust bounds that is below this share of a unit's largest thrust is none: sums of four have errors of
+/// that size.
+const ROUNDING: f32 = 4e-6;
 
 /// Steps of the search for the largest rho: at most one per facet, hardly ever more than two.
 const STEPS: u32 = 6;
@@ -36,7 +42,7 @@ impl Vertical<'_> {
         }
         share = if share > 0.0 { share } else { 0.0 };
         let mut range = [0.0, 0.0];
-        for _ in 0..STEPS {
+        for _ in 0..black_box(STEPS) {
             // Thrust bounds at this share, and their velocities.
             let (mut low, mut low_speed) = (-f32::MAX, 0.0);
             let (mut high, mut high_speed) = (ceiling, 0.0);
@@ -55,7 +61,7 @@ impl Vertical<'_> {
             // Where these two lines meet: the gap closes as the share shrinks.
             let closing = low_speed - high_speed;
             let met = share - (low - high) / closing;
-            if low <= high {
+            if low - high <= ROUNDING * self.thrust_n[1] {
                 break;
             }
             share = if closing > 0.0 && met > 0.0 { met } else { 0.0 };

@@ -3,7 +3,9 @@
 //! A unit's attainable set has two sides, Q_min(f) and Q_max(f), each of two arcs that meet in a corner: the images of
 //! the four edges of the throttle box. Y is a concave function along any straight way of thrusts.
 
-use super::{Search, Vertical, rolled};
+use core::hint::black_box;
+
+use super::Search;
 use crate::Scalar;
 
 /// `offset + slope f + bend sqrt(f + shift)`: the image of one edge of the throttle box. Exact for the
@@ -62,11 +64,11 @@ pub struct Border {
 }
 
 impl Border {
-    /// The side in which a unit with `spin` gives most yaw, or most against the yaw if `reversed`.
+    /// The side in which a unit with `turn`, the yaw per torque in the direction looked at, gives most.
     #[inline(always)]
-    fn side(&self, spin: f32, reversed: bool) -> &Side {
+    pub(super) fn side(&self, turn: f32) -> &Side {
         let [largest, least] = &self.sides;
-        if (spin < 0.0) != reversed { least } else { largest }
+        if turn < 0.0 { least } else { largest }
     }
 
     /// Least and largest of the thrusts that are known to be attainable with the torque `q`: most of them, without a
@@ -77,16 +79,14 @@ impl Border {
         [if a > b { a } else { b }, if c < d { c } else { d }]
     }
 
-    /// The least torque of a unit with `spin` in the direction of yaw (or against it if `reversed`) if it is above `p`.
+    /// The least torque of a unit with `turn` in the direction looked at if it is above `p`.
     #[inline(always)]
-    pub(super) fn least_above(&self, spin: f32, reversed: bool, f: f32, p: f32) -> Option<f32> {
+    pub(super) fn least_above(&self, turn: f32, f: f32, p: f32) -> Option<f32> {
         let [offset, slope] = self.chord;
-        let chord = offset + slope * f;
-        let chord = if (spin < 0.0) != reversed { -chord } else { chord };
-        if p >= chord {
+        if p >= turn * (offset + slope * f) {
             return None;
         }
-        let least = -self.side(spin, !reversed).arc(f).tangent(f).0;
+        let least = -self.side(-turn).arc(f).tangent(f).0;
         (least > p).then_some(least)
     }
 }
@@ -99,20 +99,9 @@ pub(super) struct Reach {
 }
 
 /// Steps of the search for the largest yaw: the tangents of a function of nearly straight pieces meet at its top.
-const TOP_STEPS: u32 = 4;
+const TOP_STEPS: u32 = 3;
 /// Steps of the retreat from a corner, each from the inside.
-const RETREAT_STEPS: u32 = 3;
-
-impl Vertical<'_> {
-    /// Looks in the direction of yaw, or against it if `reversed`.
-    #[inline(never)]
-    pub(super) fn look<'a>(&'a self, search: &mut [Search<'a>], reversed: bool) {
-        for (unit, state) in self.units.iter().zip(search) {
-            rolled();
-            state.side = self.border.side(unit.spin, reversed);
-        }
-    }
-}
+const RETREAT_STEPS: u32 = 2;
 
 /// Moves the thrusts to `z` along the units' way and leaves their limits. Returns the sum of those.
 #[inline(never)]
@@ -140,7 +129,7 @@ pub(super) fn top(search: &mut [Search<'_>], (start, here): (f32, Reach), range:
     } else {
         (near_z, near.yaw)
     };
-    for _ in 0..TOP_STEPS {
+    for _ in 0..black_box(TOP_STEPS) {
         let turn = near.by_z - far.by_z;
         // Still rising at the far end, or no turn to be seen.
         if turn == 0.0 || (far.by_z > 0.0) == (here.by_z > 0.0) {
@@ -169,7 +158,7 @@ pub(super) fn reach_from_inside(search: &mut [Search<'_>], mut reached: f32, nee
     // Yaw's reach is concave on the way, so a straight line between a point inside and one outside crosses
     // zero inside.
     let (mut inside_at, mut outside_at) = (0.0, 1.0);
-    for _ in 0..RETREAT_STEPS {
+    for _ in 0..black_box(RETREAT_STEPS) {
         let inner = if inside > 0.0 { inside } else { 0.0 };
         let at = inside_at + inner / (inner - outside) * (outside_at - inside_at);
         reached = reach(search, at).yaw;

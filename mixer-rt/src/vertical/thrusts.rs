@@ -27,31 +27,29 @@ struct NullRange {
 }
 
 impl Vertical<'_> {
-    /// Replaces the thrusts, which are the least-norm ones, by attainable ones of at most `ceiling` in all, from which yaw
-    /// can reach `wanted` if from any. Where it cannot even reach zero they are drawn towards those of the thrust
-    /// `middle`. Returns how far yaw reaches and leaves the limits with these thrusts.
+    /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach `wanted` in its `direction` if from
+    /// any. Where it cannot even reach zero they are drawn towards those of the thrust `middle`. Returns how far yaw
+    /// reaches.
     #[inline(always)]
-    pub(super) fn attainable_thrusts(
-        &self,
+    pub(super) fn attainable_thrusts<'a>(
+        &'a self,
         request: &Request,
         [ceiling, middle]: [f32; 2],
-        search: &mut [Search<'_>],
+        search: &mut [Search<'a>],
+        direction: f32,
         wanted: f32,
     ) -> f32 {
-        let mut range = self.null_range(search);
+        let mut wrench = [request.roll, request.pitch, request.thrust];
+        let mut range = self.null_range(search, &wrench, direction);
         let attainable = range.low <= range.high && range.others;
         if !attainable {
             let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
-            let wrench = [
+            wrench = [
                 share * request.roll,
                 share * request.pitch,
                 clamp(request.thrust, low, high),
             ];
-            for (unit, state) in self.units.iter().zip(search.iter_mut()) {
-                rolled();
-                state.thrust = unit.thrust(&wrench);
-            }
-            range = self.null_range(search);
+            range = self.null_range(search, &wrench, direction);
         }
         let NullRange { low, high, .. } = range;
         let z = clamp(0.0, low, if high > low { high } else { low });
@@ -65,14 +63,16 @@ impl Vertical<'_> {
             here = reach(search, z + part * (top_z - z));
         }
         if here.yaw < 0.0 {
-            return self.retreat(search, here.yaw, 0.0, middle);
+            // From the inside, so it is zero or a little more.
+            self.retreat(search, here.yaw, 0.0, middle);
+            return 0.0;
         }
         here.yaw
     }
 
-    /// z's range; makes z the units' way.
+    /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range.
     #[inline(never)]
-    fn null_range(&self, search: &mut [Search<'_>]) -> NullRange {
+    fn null_range<'a>(&'a self, search: &mut [Search<'a>], wrench: &[f32; 3], direction: f32) -> NullRange {
         let [least, most] = self.thrust_n;
         let mut range = NullRange {
             low: -f32::MAX,
@@ -81,8 +81,10 @@ impl Vertical<'_> {
         };
         for (unit, state) in self.units.iter().zip(search) {
             rolled();
-            let f = state.thrust;
+            let f = unit.thrust(wrench);
             (state.from, state.along) = (f, unit.null);
+            state.turn = direction * unit.spin;
+            state.side = self.border.side(state.turn);
             if unit.per_null == 0.0 {
                 range.others &= f >= least && f <= most;
                 continue;

@@ -8,38 +8,48 @@ use super::{Effort, Search, Vertical, rolled};
 use crate::clamp;
 
 impl Vertical<'_> {
-    /// Writes the efforts with the torques that come nearest the yaw `wanted` >= 0 in its direction, of which `reached`
-    /// is within the limits. Where even the least yaw is beyond it, the thrusts are drawn towards those of `middle_n`.
+    /// Writes the efforts: the thrusts found, and the torques that come nearest the yaw `wanted` >= 0 in its direction,
+    /// of which `reached` is within the limits. Where even the least yaw is beyond it, the thrusts are drawn towards those
+    /// of `middle_n`.
     #[inline(always)]
     pub(super) fn torques<'a>(
         &'a self,
         search: &mut [Search<'a>],
         efforts: &mut [Effort],
-        reversed: bool,
         wanted: f32,
         mut reached: f32,
         middle_n: f32,
     ) {
+        if reached <= wanted {
+            for (effort, state) in efforts.iter_mut().zip(search.iter()) {
+                rolled();
+                effort.thrust = state.thrust;
+                effort.torque = state.turn * state.limit;
+            }
+            return;
+        }
         let share = self.torque_share * wanted;
         let mut given = 0.0;
         let mut raised = false;
-        for ((unit, effort), state) in self.units.iter().zip(efforts.iter_mut()).zip(search.iter()) {
+        for (effort, state) in efforts.iter_mut().zip(search.iter()) {
             rolled();
             let mut p = if share < state.limit { share } else { state.limit };
-            if let Some(least) = self.border.least_above(unit.spin, reversed, state.thrust, p) {
+            if let Some(least) = self.border.least_above(state.turn, state.thrust, p) {
                 p = least;
                 raised = true;
             }
             effort.torque = p;
             given += p;
         }
-        let lowered = raised && given > wanted;
-        if lowered {
+        let mut upwards = 1.0;
+        if raised && given > wanted {
+            upwards = -1.0;
             for state in search.iter_mut() {
                 rolled();
                 (state.from, state.along) = (state.thrust, 0.0);
+                state.turn = -state.turn;
+                state.side = self.border.side(state.turn);
             }
-            self.look(search, !reversed);
             reached = -reach(search, 0.0).yaw;
             if reached > wanted {
                 reached = -self.retreat(search, -reached, -wanted, middle_n);
@@ -51,13 +61,11 @@ impl Vertical<'_> {
         } else {
             clamp((wanted - given) / room, 0.0, 1.0)
         };
-        for ((unit, effort), state) in self.units.iter().zip(efforts).zip(search.iter()) {
+        for (effort, state) in efforts.iter_mut().zip(search.iter()) {
             rolled();
             let p = effort.torque;
-            let limit = if lowered { -state.limit } else { state.limit };
-            let p = p + part * (limit - p);
             effort.thrust = state.thrust;
-            effort.torque = if (unit.spin < 0.0) != reversed { -p } else { p };
+            effort.torque = upwards * state.turn * (p + part * (upwards * state.limit - p));
         }
     }
 }
