@@ -4,7 +4,7 @@
 //! `mixer-macros`, [`build_script`] and `cargo mixer`. [`compile`] shows the pipeline.
 
 pub mod airframe;
-mod attainable;
+pub mod attainable;
 #[cfg(feature = "format")]
 pub mod build_script;
 pub mod diagnostic;
@@ -32,6 +32,7 @@ mod vertical;
 pub mod voltage;
 
 use airframe::Airframe;
+use attainable::AreaLoss;
 use diagnostic::{Diagnostic, Diagnostics};
 use effectiveness::Effectiveness;
 use evaluator::Evaluator;
@@ -65,6 +66,8 @@ pub struct Compiled {
     pub thrust_range_n: [f32; 2],
     /// What it is proven to miss at most.
     pub certificate: Certificate,
+    /// What the polygon inside the attainable set leaves out.
+    pub lost_area: AreaLoss,
     /// What is emitted.
     pub tables: MixerTables,
 }
@@ -92,6 +95,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     let Selected {
         evaluator,
         mut tables,
+        lost_area,
         residual,
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
@@ -107,6 +111,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual,
         thrust_range_n,
         certificate,
+        lost_area,
         tables,
     })
 }

@@ -43,6 +43,11 @@ pub struct Summary {
     pub condition: f64,
     /// Served axes.
     pub axes: Vec<&'static str>,
+    /// Share of the attainable set's area that the mixer's polygon inside it leaves out, what its inward bends cost
+    /// included.
+    pub attainable_area_lost: f64,
+    /// What the inward bends cost alone, of any convex polygon.
+    pub attainable_area_lost_to_convexity: f64,
     /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque, N.
     pub thrust_range_n: [f32; 2],
 }
@@ -97,6 +102,8 @@ impl Summary {
             rank: compiled.effectiveness.rank,
             condition: compiled.effectiveness.condition,
             axes: airframe.allocation.axes.iter().map(|axis| axis.name()).collect(),
+            attainable_area_lost: compiled.lost_area.total,
+            attainable_area_lost_to_convexity: compiled.lost_area.convexity,
             thrust_range_n: compiled.thrust_range_n,
         }
     }
@@ -228,8 +235,14 @@ impl Report<'_> {
         )?;
         writeln!(
             f,
-            "attainable set  f {f_low:.3} to {f_high:.3} N, Q {q_low:.4} to {q_high:.4} N m per unit, {} corners",
-            corners.len()
+            "attainable set  f {f_low:.3} to {f_high:.3} N, Q {q_low:.4} to {q_high:.4} N m per unit",
+        )?;
+        writeln!(
+            f,
+            "desaturation    in a polygon of {} corners inside it that leaves out {:.3} % of its area, {:.3} % to be convex",
+            corners.len(),
+            100.0 * summary.attainable_area_lost,
+            100.0 * summary.attainable_area_lost_to_convexity
         )?;
         let [floor, ceiling] = summary.thrust_range_n;
         writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;

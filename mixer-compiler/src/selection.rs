@@ -3,7 +3,7 @@
 use mixer_rt::{Desaturation, Tolerance};
 
 use crate::airframe::{Airframe, Method};
-use crate::attainable::ConvexPart;
+use crate::attainable::{AreaLoss, ConvexPart};
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::effectiveness::Effectiveness;
 use crate::evaluator::Evaluator;
@@ -21,6 +21,8 @@ pub(crate) struct Selected {
     pub(crate) evaluator: Evaluator,
     /// The tables; a shortcut of desaturation is left open.
     pub(crate) tables: MixerTables,
+    /// What the polygon leaves out.
+    pub(crate) lost_area: AreaLoss,
     /// What was observed.
     pub(crate) residual: Residual,
     /// What is proven.
@@ -41,6 +43,7 @@ pub(crate) fn select(
     let tolerance = tolerance_at_reference(airframe, &correction);
     let candidates = Evaluator::candidates(&airframe.inverse.method);
     let mut inversion = Inversion::new(&pair, tolerance, candidates.len() == 1);
+    let convex = ConvexPart::new(&pair);
     let mut best: Option<(Evaluator, MixerTables, f64)> = None;
     for evaluator in candidates {
         let (fitted, fit_error) = inversion.fit(evaluator);
@@ -54,6 +57,7 @@ pub(crate) fn select(
                 airframe,
                 effectiveness,
                 &pair,
+                &convex,
                 voltage.clone(),
                 inverse,
                 tolerance,
@@ -71,6 +75,7 @@ pub(crate) fn select(
                     return Ok(Selected {
                         evaluator,
                         tables,
+                        lost_area: convex.lost,
                         residual,
                         certificate,
                     });
@@ -97,6 +102,7 @@ fn assemble(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,
+    convex: &ConvexPart,
     voltage: Option<VoltageTable>,
     inverse: InverseTable,
     tolerance: [f64; 2],
@@ -108,7 +114,7 @@ fn assemble(
         inverse,
         throttle: tables::throttle_table(airframe),
         voltage,
-        attainable: ConvexPart::new(pair).table(),
+        attainable: convex.table(),
         desaturation: Desaturation {
             airmode: airframe.allocation.airmode,
             yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,

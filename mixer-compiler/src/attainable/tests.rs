@@ -1,0 +1,125 @@
+//! The polygon against the border and against the area by another way.
+
+use super::*;
+use crate::Source;
+use crate::airframe::Airframe;
+
+/// Airframes and fixtures of all bases.
+fn pairs() -> Vec<(String, PairMap)> {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files: Vec<_> = ["airframes", "tests/fixtures"]
+        .into_iter()
+        .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    files.sort();
+    files
+        .into_iter()
+        .map(|path| {
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            let airframe =
+                Airframe::read(&Source::new(&name, std::fs::read_to_string(&path).unwrap())).unwrap();
+            (name, PairMap::new(&airframe.pair, &airframe.throttle))
+        })
+        .collect()
+}
+
+/// The area of an injective map's image is the integral of det J, here by Simpson's rule, which is exact for the low
+/// degrees.
+fn area(pair: &PairMap) -> f64 {
+    const POINTS: usize = 41;
+    let [low, high] = pair.range();
+    let step = (high - low) / (POINTS - 1) as f64;
+    let weight = |k: usize| match k {
+        0 => 1.0,
+        k if k + 1 == POINTS => 1.0,
+        k => 2.0 + 2.0 * (k % 2) as f64,
+    };
+    let mut sum = 0.0;
+    for i in 0..POINTS {
+        for j in 0..POINTS {
+            let [[f_u, f_l], [q_u, q_l]] = pair.jacobian([low + step * i as f64, low + step * j as f64]);
+            sum += weight(i) * weight(j) * (f_u * q_l - f_l * q_u);
+        }
+    }
+    sum * step * step / 9.0
+}
+
+#[test]
+fn the_polygon_is_convex_inside_the_set_and_loses_little() {
+    let pairs = pairs();
+    assert!(pairs.len() >= 8);
+    for (name, pair) in pairs {
+        let part = ConvexPart::new(&pair);
+        let n = part.corners.len();
+        for k in 0..n {
+            let turn = cross(
+                part.corners[k],
+                part.corners[(k + 1) % n],
+                part.corners[(k + 2) % n],
+            );
+            assert!(turn > 0.0, "{name}: corner {k}");
+        }
+        let border: Vec<[f64; 2]> = pair.border(2048).iter().map(|&t| pair.efforts(t)).collect();
+        for &point in &border {
+            let inside = (0..n).all(|k| cross(part.corners[k], part.corners[(k + 1) % n], point) > 0.0);
+            assert!(!inside, "{name}: {point:?} of the border is inside the polygon");
+        }
+        let lost = 1.0 - 0.5 * moments(&part.corners).0 / area(&pair);
+        let AreaLoss { total, convexity } = part.lost;
+        println!(
+            "{name}: {n} corners, {:.4} % of the area lost, {:.4} % by convexity",
+            100.0 * lost,
+            100.0 * convexity
+        );
+        assert!((lost - total).abs() < 1e-6, "{name}: {lost} {total}");
+        assert!(
+            lost <= LOSS.max((1.0 + CORNER_SHARE) * convexity + 3.0 * MARGIN),
+            "{name}: {lost}"
+        );
+    }
+}
+
+/// One corner fewer than found loses too much: checked on a polygon small enough to try all choices.
+#[test]
+fn the_corners_are_the_fewest() {
+    let n = 14;
+    let polygon: Vec<[f64; 2]> = (0..n)
+        .map(|k| {
+            let angle = 0.3 + std::f64::consts::TAU * (k as f64 + 0.2 * libm::sin(3.0 * k as f64)) / n as f64;
+            [2.0 * libm::cos(angle), libm::sin(angle)]
+        })
+        .collect();
+    let whole = moments(&polygon).0;
+    for share in [0.05, 0.15, 0.4] {
+        let found = fewest_corners(&polygon, share * whole);
+        assert!(whole - moments(&found).0 <= share * whole * (1.0 + 1e-12));
+        let best = (0u32..1 << n)
+            .filter(|mask| mask.count_ones() as usize == found.len() - 1 && found.len() > 3)
+            .map(|mask| {
+                let kept: Vec<[f64; 2]> = (0..n)
+                    .filter(|k| mask >> k & 1 == 1)
+                    .map(|k| polygon[k])
+                    .collect();
+                moments(&kept).0
+            })
+            .fold(0.0, f64::max);
+        // The sharpest corner is always kept, which may cost one.
+        let one_less = (0u32..1 << n)
+            .filter(|mask| mask.count_ones() as usize + 2 == found.len() && found.len() > 4)
+            .map(|mask| {
+                let kept: Vec<[f64; 2]> = (0..n)
+                    .filter(|k| mask >> k & 1 == 1)
+                    .map(|k| polygon[k])
+                    .collect();
+                moments(&kept).0
+            })
+            .fold(0.0, f64::max);
+        assert!(
+            best < (1.0 - 0.8 * share) * whole && one_less < (1.0 - share) * whole,
+            "{share}: {}",
+            found.len()
+        );
+    }
+}
