@@ -3,9 +3,9 @@
 //! Run with `--nocapture` (or through `tests/run`) to see the tables.
 #![allow(missing_docs)]
 
-use mixer_tests::airframes;
 use mixer_tests::firmware::Toolchain;
 use mixer_tests::image::Image;
+use mixer_tests::{airframes, evaluators};
 
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 512;
@@ -104,6 +104,24 @@ fn mixers_are_small_and_cannot_panic() {
             assert!(
                 code + tables <= SIZE_LIMIT_BYTES,
                 "{airframe}: over {SIZE_LIMIT_BYTES} bytes"
+            );
+        }
+    }
+}
+
+/// The compiler sorts evaluators by numbers that were counted; where code has changed since, they must be counted anew.
+#[test]
+fn evaluators_cost_what_the_compiler_believes() {
+    let counted = evaluators::counted(&toolchain()).unwrap_or_else(|e| panic!("{e}"));
+    let stated = mixer_compiler::evaluator::cost::INSTRUCTIONS;
+    assert_eq!(counted.len(), stated.len());
+    for ((name, counted), (stated_name, stated)) in counted.iter().zip(stated) {
+        assert_eq!(name, stated_name);
+        for (counted, stated) in counted.iter().zip(stated) {
+            assert!(
+                counted.abs_diff(stated) <= stated / 20,
+                "{name} takes {counted} instructions, mixer-compiler/src/evaluator/cost.rs says {stated}: run \
+                 `cargo run --release -p mixer-tests --bin evaluators`"
             );
         }
     }

@@ -1,8 +1,10 @@
-//! The evaluators of the inverse map that the compiler can emit, cheapest first.
+//! The evaluators of the inverse map that the compiler can emit.
+
+pub mod cost;
 
 use mixer_rt::TableSeed;
 
-use crate::airframe::Method;
+use crate::airframe::{Basis, Method};
 
 /// A form of the inverse map; `mixer-rt` has the code of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,9 +67,7 @@ const fn seeded(seed: SeedForm, refinement: Refinement) -> Evaluator {
     Evaluator::Seeded { seed, refinement }
 }
 
-/// What `method = "auto"` tries, by instructions per unit on a Cortex-M4F: a residual costs more than any seed's
-/// further terms, a Jacobian more than a residual. Polynomials above degree 5 cost more than a seed and a Newton
-/// step and are worse by an order of magnitude.
+/// What `method = "auto"` tries.
 const CANDIDATES: [Evaluator; 23] = [
     Evaluator::Polynomial { degree: 2 },
     Evaluator::Polynomial { degree: 3 },
@@ -95,9 +95,10 @@ const CANDIDATES: [Evaluator; 23] = [
 ];
 
 impl Evaluator {
-    /// The evaluators that a method allows, in the order in which they are tried.
-    pub fn candidates(method: &Method) -> Vec<Evaluator> {
-        match method {
+    /// The evaluators that a method allows, by what they cost with a pair of this basis: the order in which they are
+    /// tried.
+    pub fn candidates(method: &Method, basis: Basis) -> Vec<Evaluator> {
+        let mut candidates = match method {
             Method::Auto => CANDIDATES.to_vec(),
             Method::Polynomial { degree } => vec![Evaluator::Polynomial {
                 degree: *degree as u8,
@@ -106,7 +107,9 @@ impl Evaluator {
                 .into_iter()
                 .filter(|evaluator| evaluator.name() == *name)
                 .collect(),
-        }
+        };
+        candidates.sort_by_key(|evaluator| evaluator.cost(basis));
+        candidates
     }
 
     /// The name in airframe files (`inverse.method`), reports and JSON.

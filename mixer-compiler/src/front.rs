@@ -23,6 +23,8 @@ pub struct Alternative {
     pub evaluator: String,
     /// The name with its parameters, for people.
     pub description: String,
+    /// About the cycles per unit on a Cortex-M4F: [`Evaluator::cost`].
+    pub cost: Option<u32>,
     /// Bytes of its own constants: coordinates and coefficients, without the forward map.
     pub bytes: usize,
     /// Proven bounds at every voltage, `[N, N m]`; infinite where nothing could be proven.
@@ -36,10 +38,11 @@ pub struct Alternative {
 }
 
 impl Compiled {
-    /// All evaluators that `method = "auto"` tries, in its order: by instructions.
+    /// All evaluators that `method = "auto"` tries, in its order: by cost.
     pub fn front(&self) -> Vec<Alternative> {
         let pair = PairMap::new(&self.airframe.pair, &self.airframe.throttle);
         let correction = Correction::new(&self.airframe, self.tables.voltage.as_ref());
+        let basis = self.airframe.pair.basis;
         let inverse = &self.airframe.inverse;
         let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
         let tolerance = [0, 1].map(|k| stated[k] / correction.largest[k]);
@@ -54,6 +57,7 @@ impl Compiled {
             Alternative {
                 evaluator: evaluator.name(),
                 description: evaluator.description(),
+                cost: evaluator.cost(basis),
                 bytes: 4 * tables.inverse.floats(),
                 proven: certificate.stated,
                 observed: observed.efforts,
@@ -61,7 +65,7 @@ impl Compiled {
                 chosen: evaluator == self.evaluator,
             }
         };
-        Evaluator::candidates(&Method::Auto)
+        Evaluator::candidates(&Method::Auto, basis)
             .into_iter()
             .map(alternative)
             .collect()

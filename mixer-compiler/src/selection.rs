@@ -41,7 +41,7 @@ pub(crate) fn select(
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let correction = Correction::new(airframe, voltage.as_ref());
     let tolerance = tolerance_at_reference(airframe, &correction);
-    let candidates = Evaluator::candidates(&airframe.inverse.method);
+    let candidates = Evaluator::candidates(&airframe.inverse.method, airframe.pair.basis);
     let mut inversion = Inversion::new(&pair, tolerance, candidates.len() == 1);
     let convex = ConvexPart::new(&pair);
     let mut best: Option<(Evaluator, MixerTables, f64)> = None;

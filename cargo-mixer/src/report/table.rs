@@ -265,6 +265,7 @@ pub fn front(alternatives: &[Alternative]) -> String {
     let header = [
         "evaluator",
         "",
+        "cycles",
         "f proven (N)",
         "observed",
         "Q proven (N m)",
@@ -291,6 +292,7 @@ pub fn front(alternatives: &[Alternative]) -> String {
             vec![
                 escaped(&alternative.description),
                 verdict.to_owned(),
+                alternative.cost.map_or_else(String::new, |cost| cost.to_string()),
                 proven_f,
                 observed_f,
                 proven_q,
@@ -299,7 +301,7 @@ pub fn front(alternatives: &[Alternative]) -> String {
             ]
         })
         .collect();
-    let caption = "Evaluators by ascending cost on a Cortex-M4F, with what one unit misses over the attainable set: proven at \
+    let caption = "Evaluators by about the cycles of one unit on a Cortex-M4F, with what one unit misses over the attainable set: proven at \
                    every voltage, observed at the reference voltage";
     table(caption, &header.map(str::to_owned), &rows)
 }
