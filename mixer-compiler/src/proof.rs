@@ -155,6 +155,21 @@ pub fn prove(
     certificate
 }
 
+/// How far the efforts that the runtime computes of its throttles may be from those of the file's map, and the efforts
+/// that the inverse is given from those that were asked: `[N, N m]` at the reference voltage.
+pub fn rounding(airframe: &Airframe, tables: &MixerTables, correction: &Correction) -> [f64; 2] {
+    let subject = Subject::new(airframe, tables, correction);
+    let mut largest = [0.0f64; 2];
+    for Cell { centre, half } in Cell::grid([airframe.throttle.min, airframe.throttle.max], START) {
+        let at = [0, 1].map(|k: usize| Taylor::coordinate(centre[k], half[k], k == 1));
+        for (k, efforts) in tables.pair.efforts(at).into_iter().enumerate() {
+            let asked = efforts.magnitude() * subject.input[k];
+            largest[k] = largest[k].max(efforts.error() + subject.coefficients[k][0] + asked);
+        }
+    }
+    largest
+}
+
 /// A cell with its bound.
 struct Open {
     cell: Cell,

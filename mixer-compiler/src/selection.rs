@@ -1,10 +1,12 @@
 //! Choice of the evaluator: the cheapest whose emitted tables are proven to meet the tolerance.
 
+mod refusal;
+
 use mixer_rt::{Desaturation, Tolerance};
 
-use crate::airframe::{Airframe, Method};
+use crate::airframe::Airframe;
 use crate::attainable::{AreaLoss, ConvexPart};
-use crate::diagnostic::{Code, Diagnostic, number};
+use crate::diagnostic::Diagnostic;
 use crate::effectiveness::Effectiveness;
 use crate::evaluator::Evaluator;
 use crate::inversion::Inversion;
@@ -38,8 +40,26 @@ pub(crate) fn select(
     effectiveness: &Effectiveness,
     voltage: Option<VoltageTable>,
 ) -> Result<Selected, Vec<Diagnostic>> {
+    choose(airframe, effectiveness, voltage.as_ref()).map_err(|best| {
+        vec![refusal::diagnostic(
+            airframe,
+            effectiveness,
+            voltage.as_ref(),
+            best,
+        )]
+    })
+}
+
+/// The evaluator that came closest, and what is proven of it; `None` where there is none of the name asked for.
+type Best = Option<(Evaluator, Certificate)>;
+
+fn choose(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    voltage: Option<&VoltageTable>,
+) -> Result<Selected, Best> {
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-    let correction = Correction::new(airframe, voltage.as_ref());
+    let correction = Correction::new(airframe, voltage);
     let tolerance = tolerance_at_reference(airframe, &correction);
     let candidates = Evaluator::candidates(&airframe.inverse.method, airframe.pair.basis);
     let mut inversion = Inversion::new(&pair, tolerance, candidates.len() == 1);
@@ -58,9 +78,9 @@ pub(crate) fn select(
                 effectiveness,
                 &pair,
                 &convex,
-                voltage.clone(),
+                voltage.cloned(),
                 inverse,
-                tolerance,
+                &correction,
             ),
         };
         // The grid of the fit is part of the set: what fails there, fails.
@@ -86,7 +106,22 @@ pub(crate) fn select(
             best = Some((evaluator, tables, glance));
         }
     }
-    Err(vec![refusal(airframe, &pair, &correction, best)])
+    let Some((evaluator, tables, _)) = best else {
+        return Err(None);
+    };
+    // Proofs above were given up where they took long.
+    let mut residual = Residual::over_set(&pair, &tables);
+    let certificate = proof::prove(airframe, &pair, &tables, &correction, &mut residual, true);
+    if certificate.holds() && certificate.agrees(&residual) {
+        return Ok(Selected {
+            evaluator,
+            tables,
+            lost_area: convex.lost,
+            residual,
+            certificate,
+        });
+    }
+    Err(Some((evaluator, certificate)))
 }
 
 /// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage where efforts are
@@ -105,10 +140,10 @@ fn assemble(
     convex: &ConvexPart,
     voltage: Option<VoltageTable>,
     inverse: InverseTable,
-    tolerance: [f64; 2],
+    correction: &Correction,
 ) -> MixerTables {
     let units = tables::unit_tables(airframe, effectiveness);
-    MixerTables {
+    let mut tables = MixerTables {
         units,
         pair: tables::pair_table(airframe),
         inverse,
@@ -121,10 +156,17 @@ fn assemble(
         },
         shortcut: None,
         tolerance: Tolerance {
-            efforts: tolerance.map(|x| x as f32),
+            efforts: [0.0; 2],
             wrench: wrench_tolerance(airframe, effectiveness, pair),
         },
-    }
+    };
+    // The mixer compares what it computes, not what is: a request that is delivered must not look missed.
+    let (allowed, rounding) = (
+        tolerance_at_reference(airframe, correction),
+        proof::rounding(airframe, &tables, correction),
+    );
+    tables.tolerance.efforts = [0, 1].map(|k| ((allowed[k] + rounding[k]) as f32).next_up());
+    tables
 }
 
 /// What the tolerances of all units add up to on each axis, with the rounding of f32 sums of full efforts.
@@ -144,68 +186,4 @@ fn wrench_tolerance(airframe: &Airframe, effectiveness: &Effectiveness, pair: &P
             .sum();
         sum as f32
     })
-}
-
-fn refusal(
-    airframe: &Airframe,
-    pair: &PairMap,
-    correction: &Correction,
-    best: Option<(Evaluator, MixerTables, f64)>,
-) -> Diagnostic {
-    let inverse = &airframe.inverse;
-    let Some((evaluator, tables, _)) = best else {
-        let message = "no evaluator of this name";
-        return airframe.diagnostic(
-            Code::Tolerance,
-            "inverse.method",
-            message,
-            "",
-            "use method = \"auto\"",
-        );
-    };
-    let mut residual = Residual::over_set(pair, &tables);
-    let reached = proof::prove(airframe, pair, &tables, correction, &mut residual, true).stated;
-    if !reached.iter().all(|bound| bound.is_finite()) {
-        return airframe.diagnostic(
-            Code::Tolerance,
-            "inverse",
-            format!("nothing can be proven of the {}", evaluator.description()),
-            "",
-            "the map almost folds at the edge of the throttle range: raise throttle.min a little",
-        );
-    }
-    let (key, missed) = if reached[0] > inverse.thrust_tolerance_n {
-        (
-            "inverse.thrust_tolerance_n",
-            format!("{} N", number(inverse.thrust_tolerance_n)),
-        )
-    } else {
-        (
-            "inverse.torque_tolerance_nm",
-            format!("{} N m", number(inverse.torque_tolerance_nm)),
-        )
-    };
-    // Fits weigh thrust against torque by the tolerances: with both raised alike the same fit is found, but for the
-    // rounding of the numbers below.
-    let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
-    let share = (reached[0] / stated[0]).max(reached[1] / stated[1]) * 1.01;
-    let [offered_f, offered_q] = stated.map(|tolerance| crate::report::rounded_up(share * tolerance));
-    let [reached_f, reached_q] = reached.map(crate::report::rounded_up);
-    let (message, other) = match &inverse.method {
-        Method::Auto => (format!("no evaluator meets a tolerance of {missed}"), ""),
-        _ => (
-            format!("`inverse.method` does not meet a tolerance of {missed}"),
-            ", or method = \"auto\"",
-        ),
-    };
-    airframe.diagnostic(
-        Code::Tolerance,
-        key,
-        message,
-        format!(
-            "{} is proven within {reached_f} N and {reached_q} N m",
-            evaluator.description()
-        ),
-        format!("thrust_tolerance_n = {offered_f} with torque_tolerance_nm = {offered_q} would do{other}"),
-    )
 }

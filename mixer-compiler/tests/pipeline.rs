@@ -105,28 +105,41 @@ fn the_tolerance_decides_on_the_evaluator() {
     }
 }
 
-/// What a refusal offers as a mend must work.
+/// What a refusal offers as a mend must work, and asks for no more than is missing: a tolerance that is met is left as it
+/// is.
 #[test]
 fn offered_tolerances_would_do() {
-    let method = "torque_tolerance_nm = 1e-4\nmethod = \"bilinear\"";
-    let faults = refused(&[("torque_tolerance_nm = 1e-4", method)]);
-    let help = &faults.faults()[0].help;
-    let offered = |key: &str| {
-        let (_, rest) = help.split_once(&format!("{key} = ")).unwrap();
-        rest.split(' ').next().unwrap().to_owned()
-    };
-    let (thrust, torque) = (offered("thrust_tolerance_n"), offered("torque_tolerance_nm"));
-    let mended = isae_x8(&[
-        (
-            "thrust_tolerance_n = 0.01",
-            &format!("thrust_tolerance_n = {thrust}"),
-        ),
-        (
-            "torque_tolerance_nm = 1e-4",
-            &format!("torque_tolerance_nm = {torque}\nmethod = \"bilinear\""),
-        ),
-    ]);
-    assert!(mended.is_ok(), "{help}: {}", mended.unwrap_err());
+    for (thrust, torque, method, raised) in [
+        (0.01, 1e-4, "bilinear", [true, true]),
+        (0.01, 1e-9, "auto", [false, true]),
+        (1e-6, 1e-3, "auto", [true, false]),
+        (1e-7, 1e-9, "auto", [true, true]),
+    ] {
+        let text = |thrust: f64, torque: f64, method: &str| {
+            isae_x8(&[
+                (
+                    "thrust_tolerance_n = 0.01",
+                    &format!("thrust_tolerance_n = {thrust:?}"),
+                ),
+                (
+                    "torque_tolerance_nm = 1e-4",
+                    &format!("torque_tolerance_nm = {torque:?}\nmethod = {method:?}"),
+                ),
+            ])
+        };
+        let faults = text(thrust, torque, method).map(|_| ()).unwrap_err();
+        let help = &faults.faults()[0].help;
+        let offered = |key: &str| -> Option<f64> {
+            let (_, rest) = help.split_once(&format!("{key} = "))?;
+            rest.split(' ').next()?.parse().ok()
+        };
+        let keys = ["thrust_tolerance_n", "torque_tolerance_nm"];
+        assert_eq!(keys.map(|key| offered(key).is_some()), raised, "{faults}");
+        let [thrust, torque] = [0, 1].map(|k| offered(keys[k]).unwrap_or([thrust, torque][k]));
+        let mended = text(thrust, torque, method);
+        assert!(mended.is_ok(), "{help}: {}", mended.unwrap_err());
+        assert_eq!(help.contains("method"), method != "auto", "{help}");
+    }
 }
 
 /// The tabulated exponent law follows the file's to a few units in the last place of f32 and its tolerance.

@@ -440,3 +440,37 @@ fn a_fold_cannot_be_proven() {
     let certificate = prove_again(&compiled, &compiled.tables.clone());
     assert!(!certificate.holds(), "{certificate:?}");
 }
+
+/// At a tolerance near rounding level: what the runtime computes of its own throttles is off by no more than it allows
+/// for, and it allows for little more.
+#[test]
+fn delivered_efforts_do_not_look_missed() {
+    let text = airframe_text("airframes/isae-x8.toml")
+        .replace("tolerance_n = 0.01", "tolerance_n = 3e-5")
+        .replace("tolerance_nm = 1e-4", "tolerance_nm = 4e-7");
+    let compiled = compiled(text);
+    let (airframe, tables) = (&compiled.airframe, &compiled.tables);
+    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+    let correction = Correction::new(airframe, tables.voltage.as_ref());
+    let stated = airframe_tolerance(airframe);
+    let slack = [0, 1].map(|k| f64::from(tables.tolerance.efforts[k]) - stated[k] / correction.largest[k]);
+    let mut next = numbers();
+    let mut largest = [0.0f64; 2];
+    for _ in 0..20_000 {
+        let throttles = [0, 1].map(|_| (0.55 + 0.45 * next()) as f32);
+        let (computed, exactly) = (
+            tables.pair.efforts(throttles),
+            pair.efforts(throttles.map(|throttle| pair.clamp(f64::from(throttle)))),
+        );
+        let asked = exactly.map(|effort| effort as f32);
+        for k in 0..2 {
+            largest[k] = largest[k].max((f64::from(computed[k]) - f64::from(asked[k])).abs());
+        }
+    }
+    for k in 0..2 {
+        assert!(
+            largest[k] > 0.05 * slack[k] && largest[k] <= slack[k],
+            "{largest:?} {slack:?}"
+        );
+    }
+}
