@@ -189,11 +189,12 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     let (thrust, chord) = (vector(&table.thrust_n), vector(&table.border.chord));
     let quadrangle = matrix(&table.border.quadrangle);
     let (slopes, walls) = (facets(&table.slopes), facets(&table.walls));
-    let share = float(table.torque_share());
+    let (share, complete) = (float(table.torque_share()), table.complete);
     let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
     quote! {
         &::mixer_rt::Vertical {
             units: &[#(#units),*],
+            complete: #complete,
             thrust_n: #thrust,
             border: ::mixer_rt::Border { sides: [#(#sides),*], chord: #chord, quadrangle: #quadrangle },
             slopes: #slopes,

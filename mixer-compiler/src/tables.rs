@@ -94,6 +94,8 @@ impl AttainableTable {
 pub struct VerticalTable {
     /// Shares of C and C+.
     pub units: Vec<VerticalUnit>,
+    /// True where the airframe serves all axes.
+    pub complete: bool,
     /// Least and largest thrust of a unit, N.
     pub thrust_n: [f32; 2],
     /// The attainable torques of a unit.
@@ -113,6 +115,7 @@ impl VerticalTable {
     pub fn view(&self) -> Vertical<'_> {
         Vertical {
             units: &self.units,
+            complete: self.complete,
             thrust_n: self.thrust_n,
             border: self.border,
             slopes: &self.slopes,

@@ -1,4 +1,4 @@
-//! The table of `mixer-rt`'s shorter way to desaturate, for three or four units with vertical axes.
+//! The table of `mixer-rt`'s shorter way to desaturate, for up to four units with vertical axes.
 //!
 //! On an edge of the throttle box both efforts are polynomials of one throttle t. For the biquadratic basis they
 //! are quadratic, f = A t^2 + B t + C, so t is a square root of f and Q a combination of 1, f and
@@ -44,14 +44,22 @@ pub(crate) fn table(
     let vertical = (0..n).all(|i| {
         matrix[(2, i)] == 0.0
             && matrix[(3, i)] == 1.0
-            && matrix[(3, n + i)] == 0.0
             && matrix[(0, n + i)] == 0.0
             && matrix[(1, n + i)] == 0.0
             && matrix[(2, n + i)].abs() == 1.0
+            && matrix[(3, n + i)] == 0.0
     });
     // A reserve or yaw before thrust would couple the two small problems.
     let decoupled = allocation.yaw_reserve_nm == 0.0 && allocation.airmode != Airmode::RollPitchYaw;
-    if !vertical || !decoupled || !(3..=4).contains(&n) || allocation.axes.len() < Axis::ALL.len() {
+    let levers = [Axis::Roll, Axis::Pitch].map(|axis| allocation.controls(axis));
+    let free: Vec<Vector3<f64>> = [Vector3::x(), Vector3::y()]
+        .into_iter()
+        .zip(levers)
+        .filter_map(|(axis, served)| (!served).then_some(axis))
+        .collect();
+    // The null space of the thrusts has one dimension or none.
+    let spanned = (3..=4).contains(&(n + free.len()));
+    if !vertical || !decoupled || !spanned || !allocation.controls(Axis::Yaw) {
         return None;
     }
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
@@ -72,7 +80,10 @@ pub(crate) fn table(
         ],
     };
     let columns: Vec<Vector3<f64>> = (0..n)
-        .map(|i| Vector3::new(matrix[(0, i)], matrix[(1, i)], matrix[(3, i)]))
+        .map(|i| {
+            let [roll, pitch] = [0, 1].map(|axis| if levers[axis] { matrix[(axis, i)] } else { 0.0 });
+            Vector3::new(roll, pitch, matrix[(3, i)])
+        })
         .collect();
     let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
     let slope = (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
@@ -83,11 +94,12 @@ pub(crate) fn table(
     };
     // f32 rounding, inwards.
     let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
-    let (slopes, walls) = facets(&columns, thrust_n.map(f64::from));
+    let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
     // The floor was mixed on the polygon: at least what the facets allow without roll and pitch, with rounding.
     let least_level = slopes.iter().map(|facets| facets.bounds[0]).fold(floor, f32::max);
     let table = VerticalTable {
-        units: units(airframe, effectiveness, &null_vector(&columns), thrust_n),
+        units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
+        complete: free.is_empty(),
         thrust_n,
         border,
         slopes,
@@ -231,11 +243,22 @@ fn fit(points: &[[f64; 2]], shift: f64) -> Option<Fit> {
     error.is_finite().then_some(Fit { coefficients, error })
 }
 
-/// The facets of the zonotope of all thrusts, slopes and walls: every two units span a pair of them.
-fn facets(columns: &[Vector3<f64>], [least, most]: [f64; 2]) -> (Vec<Facets>, Vec<Facets>) {
+/// The facets of the zonotope of all thrusts, slopes and walls: every two units span a pair of them, or one unit and the
+/// `free` axis, or both of these where the airframe serves neither roll nor pitch.
+fn facets(
+    columns: &[Vector3<f64>],
+    free: &[Vector3<f64>],
+    [least, most]: [f64; 2],
+) -> (Vec<Facets>, Vec<Facets>) {
     let (mut slopes, mut walls): (Vec<Facets>, Vec<Facets>) = (Vec::new(), Vec::new());
-    for (i, first) in columns.iter().enumerate() {
-        for second in &columns[i + 1..] {
+    let (first, second) = match free {
+        [] => (columns, columns),
+        [_] => (columns, free),
+        [first, ..] => (std::slice::from_ref(first), &free[1..]),
+    };
+    for (i, first) in first.iter().enumerate() {
+        let later = if free.is_empty() { i + 1 } else { 0 };
+        for second in &second[later..] {
             let mut normal = first.cross(second);
             let level = normal[2].abs() < 1e-9 * normal.amax();
             normal /= if level { normal.norm() } else { normal[2] };
@@ -264,13 +287,15 @@ fn facets(columns: &[Vector3<f64>], [least, most]: [f64; 2]) -> (Vec<Facets>, Ve
     (slopes, walls)
 }
 
-/// Thrusts that give no roll, pitch and thrust, the largest being 1; zeros for three units.
-fn null_vector(columns: &[Vector3<f64>]) -> Vec<f64> {
-    let [a, b, c, d] = columns else {
+/// Thrusts that give no roll, pitch and thrust but along the `free` axes, the largest being 1; zeros where there are
+/// none.
+fn null_vector(columns: &[Vector3<f64>], free: &[Vector3<f64>]) -> Vec<f64> {
+    let [a, b, c, d] = &[columns, free].concat()[..] else {
         return vec![0.0; columns.len()];
     };
     let minor = |x: &Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>| x.cross(y).dot(z);
     let null = [minor(b, c, d), -minor(a, c, d), minor(a, b, d), -minor(a, b, c)];
+    let null = &null[..columns.len()];
     let largest = null.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     null.iter()
         .map(|x| x / largest)

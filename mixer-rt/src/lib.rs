@@ -10,7 +10,7 @@
 //!   -> divided by k_f(V), k_Q(V)     to the reference voltage                 voltage.rs
 //!   -> throttles of every unit       inverse of (f, Q)(u, l)                  inverse.rs, forward.rs
 //!   -> if a unit cannot: desaturate  within the attainable set, by priority
-//!        three or four vertical units  in closed form                         vertical.rs
+//!        up to four vertical units     in closed form                         vertical.rs
 //!        any frame, dead rotors        along paths of wrenches                desaturation.rs, homotopy.rs
 //!   -> achieved wrench               M (k_f f(u, l), k_Q Q(u, l))             mix.rs
 //! ```

@@ -120,7 +120,7 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     }
     let mut saturation = Saturation::NONE;
     let mut achieved = *setpoint;
-    if !delivered {
+    if !(delivered && vertical.complete) {
         achieved = vertical.wrench(&efforts, factors);
         saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
     }

@@ -49,11 +49,13 @@ pub struct VerticalUnit {
     pub channels: [u8; 2],
 }
 
-/// What a frame with vertical axes and three or four units needs. All at the reference voltage.
+/// What a frame with vertical axes and up to four units needs. All at the reference voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertical<'a> {
     /// The units, in the order of the airframe file.
     pub units: &'a [VerticalUnit],
+    /// True where the airframe serves all axes: then an attainable request is what the efforts give.
+    pub complete: bool,
     /// Least and largest thrust of a unit, N.
     pub thrust_n: [f32; 2],
     /// The attainable torques of a unit.

@@ -93,6 +93,10 @@ impl Vertical<'_> {
             range.low = if from > range.low { from } else { range.low };
             range.high = if to < range.high { to } else { range.high };
         }
+        if range.high == f32::MAX {
+            // There is no null space.
+            (range.low, range.high) = (0.0, 0.0);
+        }
         range
     }
 
