@@ -128,18 +128,24 @@ pub(crate) type Efforts = [Effort; MOST_UNITS];
 /// What is kept of a unit while its efforts are being found.
 #[derive(Clone, Copy)]
 struct Search<'a> {
-    /// N.
-    thrust: f32,
     /// Yaw per torque in the direction looked at, 1 or -1.
     turn: f32,
     /// The side of the attainable set in that direction.
     side: &'a Side,
-    /// The largest torque with this thrust in that direction, N m.
+    /// The largest torque in that direction, N m.
     limit: f32,
     /// A straight way of thrusts: where it starts, N, ..
     from: f32,
     /// .. and where to, N per unit of the way.
     along: f32,
+}
+
+impl Search<'_> {
+    /// The thrust at `z` along the way, N.
+    #[inline(always)]
+    fn thrust(&self, z: f32) -> f32 {
+        self.from + z * self.along
+    }
 }
 
 /// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take three times the code
@@ -189,7 +195,6 @@ impl Vertical<'_> {
     pub(crate) fn desaturate(&self, airmode: Airmode, request: &Request, efforts: &mut Efforts) {
         // So that nothing is known about how often the loops run: see `rolled`.
         let mut search = [Search {
-            thrust: 0.0,
             turn: 0.0,
             side: &self.border.sides[0],
             limit: 0.0,
@@ -214,7 +219,7 @@ impl Vertical<'_> {
             vertical.thrust_middle_n
         };
         let limits = [ceiling, middle];
-        let reached = vertical.attainable_thrusts(request, limits, search, direction, wanted);
-        vertical.torques(search, efforts, wanted, reached, middle);
+        let found = vertical.attainable_thrusts(request, limits, search, direction, wanted);
+        vertical.torques(search, efforts, wanted, found, middle);
     }
 }

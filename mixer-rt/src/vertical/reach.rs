@@ -103,14 +103,13 @@ const TOP_STEPS: u32 = 3;
 /// Steps of the retreat from a corner, each from the inside.
 const RETREAT_STEPS: u32 = 2;
 
-/// Moves the thrusts to `z` along the units' way and leaves their limits. Returns the sum of those.
+/// How far yaw reaches at `z` along the units' way; leaves the limits there.
 #[inline(never)]
 pub(super) fn reach(search: &mut [Search<'_>], z: f32) -> Reach {
     let mut reach = Reach { yaw: 0.0, by_z: 0.0 };
     for state in search {
-        let f = state.from + z * state.along;
+        let f = state.thrust(z);
         let (torque, slope) = state.side.arc(f).tangent(f);
-        state.thrust = f;
         state.limit = torque;
         reach.yaw += torque;
         reach.by_z += slope * state.along;
@@ -149,18 +148,18 @@ pub(super) fn top(search: &mut [Search<'_>], (start, here): (f32, Reach), range:
     best
 }
 
-/// Moves the thrusts to where, seen from the start of the units' way, yaw last reaches `needed`: from the inside. Yaw
-/// reaches `reached` at 1. Returns how far it then reaches.
+/// Where, seen from the start of the units' way, yaw last reaches `needed`, from the inside; it reaches `reached` at 1.
+/// Returns how far it reaches there, and leaves the limits.
 #[inline(always)]
-pub(super) fn reach_from_inside(search: &mut [Search<'_>], mut reached: f32, needed: f32) -> f32 {
+pub(super) fn reach_from_inside(search: &mut [Search<'_>], mut reached: f32, needed: f32) -> (f32, f32) {
     let mut outside = reached - needed;
     let mut inside = reach(search, 0.0).yaw - needed;
     // Yaw's reach is concave on the way, so a straight line between a point inside and one outside crosses
     // zero inside.
-    let (mut inside_at, mut outside_at) = (0.0, 1.0);
+    let (mut inside_at, mut outside_at, mut at) = (0.0, 1.0, 0.0);
     for _ in 0..black_box(RETREAT_STEPS) {
         let inner = if inside > 0.0 { inside } else { 0.0 };
-        let at = inside_at + inner / (inner - outside) * (outside_at - inside_at);
+        at = inside_at + inner / (inner - outside) * (outside_at - inside_at);
         reached = reach(search, at).yaw;
         if reached >= needed {
             (inside, inside_at) = (reached - needed, at);
@@ -168,5 +167,5 @@ pub(super) fn reach_from_inside(search: &mut [Search<'_>], mut reached: f32, nee
             (outside, outside_at) = (reached - needed, at);
         }
     }
-    reached
+    (reached, at)
 }

@@ -29,7 +29,7 @@ struct NullRange {
 impl Vertical<'_> {
     /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach `wanted` in its `direction` if from
     /// any. Where it cannot even reach zero they are drawn towards those of the thrust `middle`. Returns how far yaw
-    /// reaches.
+    /// reaches, and where they are on the units' way.
     #[inline(always)]
     pub(super) fn attainable_thrusts<'a>(
         &'a self,
@@ -38,7 +38,7 @@ impl Vertical<'_> {
         search: &mut [Search<'a>],
         direction: f32,
         wanted: f32,
-    ) -> f32 {
+    ) -> (f32, f32) {
         let mut wrench = [request.roll, request.pitch, request.thrust];
         let mut range = self.null_range(search, &wrench, direction);
         let attainable = range.low <= range.high && range.others;
@@ -52,7 +52,7 @@ impl Vertical<'_> {
             range = self.null_range(search, &wrench, direction);
         }
         let NullRange { low, high, .. } = range;
-        let z = clamp(0.0, low, if high > low { high } else { low });
+        let mut z = clamp(0.0, low, if high > low { high } else { low });
         let mut here = reach(search, z);
         // On the zonotope's border z has no room.
         if attainable && here.yaw < wanted && high > low {
@@ -60,14 +60,15 @@ impl Vertical<'_> {
             let part = (wanted - here.yaw) / (top - here.yaw);
             // Not a number where there is nothing to gain.
             let part = if part < 1.0 { part } else { 1.0 };
-            here = reach(search, z + part * (top_z - z));
+            z += part * (top_z - z);
+            here = reach(search, z);
         }
         if here.yaw < 0.0 {
             // From the inside, so it is zero or a little more.
-            self.retreat(search, here.yaw, 0.0, middle);
-            return 0.0;
+            let (_, z) = self.retreat(search, z, here.yaw, 0.0, middle);
+            return (0.0, z);
         }
-        here.yaw
+        (here.yaw, z)
     }
 
     /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range.
@@ -100,14 +101,22 @@ impl Vertical<'_> {
         range
     }
 
-    /// Draws the thrusts towards those of `middle_n` until yaw, which reaches `reached` now, reaches `needed`. Returns how
-    /// far it then reaches and leaves the limits.
-    #[inline(never)]
-    pub(super) fn retreat(&self, search: &mut [Search<'_>], reached: f32, needed: f32, middle_n: f32) -> f32 {
+    /// Draws the thrusts, now at `z` where yaw reaches `reached`, towards those of `middle_n` until it reaches `needed`.
+    /// Returns how far it then reaches and where the thrusts are on their new way; leaves the limits.
+    #[inline(always)]
+    pub(super) fn retreat(
+        &self,
+        search: &mut [Search<'_>],
+        z: f32,
+        reached: f32,
+        needed: f32,
+        middle_n: f32,
+    ) -> (f32, f32) {
         for (unit, state) in self.units.iter().zip(search.iter_mut()) {
             rolled();
+            let thrust = state.thrust(z);
             state.from = unit.allocation[2] * middle_n;
-            state.along = state.thrust - state.from;
+            state.along = thrust - state.from;
         }
         reach_from_inside(search, reached, needed)
     }

@@ -9,21 +9,21 @@ use crate::clamp;
 
 impl Vertical<'_> {
     /// Writes the efforts: the thrusts found, and the torques that come nearest the yaw `wanted` >= 0 in its direction,
-    /// of which `reached` is within the limits. Where even the least yaw is beyond it, the thrusts are drawn towards those
-    /// of `middle_n`.
+    /// of which `reached` is within the limits at `z` of the units' way. Where even the least yaw is beyond it, the thrusts
+    /// are drawn towards those of `middle_n`.
     #[inline(always)]
     pub(super) fn torques<'a>(
         &'a self,
         search: &mut [Search<'a>],
         efforts: &mut [Effort],
         wanted: f32,
-        mut reached: f32,
+        (mut reached, mut z): (f32, f32),
         middle_n: f32,
     ) {
         if reached <= wanted {
             for (effort, state) in efforts.iter_mut().zip(search.iter()) {
                 rolled();
-                effort.thrust = state.thrust;
+                effort.thrust = state.thrust(z);
                 effort.torque = state.turn * state.limit;
             }
             return;
@@ -34,7 +34,7 @@ impl Vertical<'_> {
         for (effort, state) in efforts.iter_mut().zip(search.iter()) {
             rolled();
             let mut p = if share < state.limit { share } else { state.limit };
-            if let Some(least) = self.border.least_above(state.turn, state.thrust, p) {
+            if let Some(least) = self.border.least_above(state.turn, state.thrust(z), p) {
                 p = least;
                 raised = true;
             }
@@ -46,13 +46,13 @@ impl Vertical<'_> {
             upwards = -1.0;
             for state in search.iter_mut() {
                 rolled();
-                (state.from, state.along) = (state.thrust, 0.0);
                 state.turn = -state.turn;
                 state.side = self.border.side(state.turn);
             }
-            reached = -reach(search, 0.0).yaw;
+            reached = -reach(search, z).yaw;
             if reached > wanted {
-                reached = -self.retreat(search, -reached, -wanted, middle_n);
+                (reached, z) = self.retreat(search, z, -reached, -wanted, middle_n);
+                reached = -reached;
             }
         }
         let room = reached - given;
@@ -64,7 +64,7 @@ impl Vertical<'_> {
         for (effort, state) in efforts.iter_mut().zip(search.iter()) {
             rolled();
             let p = effort.torque;
-            effort.thrust = state.thrust;
+            effort.thrust = state.thrust(z);
             effort.torque = upwards * state.turn * (p + part * (upwards * state.limit - p));
         }
     }
