@@ -1,0 +1,143 @@
+//! Every coaxial map of `MIXER_BENCH_DATA` in every basis compiles close to its fold, within the default tolerance.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use cargo_mixer::identify::identified::identify;
+use cargo_mixer::identify::{IdentifyArgs, fragment};
+use clap::Parser;
+use mixer_compiler::airframe::Airframe;
+use mixer_compiler::injectivity::ForwardMap;
+use mixer_compiler::model::PairMap;
+use mixer_compiler::{Compiled, Source};
+
+/// The command's arguments, so that its defaults are tested.
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    identify: IdentifyArgs,
+}
+
+/// The idle over the least one at which the map can be inverted.
+const IDLE: f64 = 1.03;
+
+fn fragment_of(map: &Path, basis: &str) -> String {
+    let words = [
+        "identify".into(),
+        map.as_os_str().to_owned(),
+        "--basis".into(),
+        basis.into(),
+    ];
+    let arguments = Arguments::try_parse_from(words)
+        .unwrap_or_else(|error| panic!("{error}"))
+        .identify;
+    let identified = identify(&arguments.files, &arguments.settings())
+        .unwrap_or_else(|refusals| panic!("{}: {}", map.display(), refusals[0]));
+    fragment::text(&identified)
+}
+
+/// A single pair on a stand, with these throttles instead of the fragment's.
+fn source(fragment: &str, [min, max]: [f64; 2]) -> Source {
+    let lines: Vec<String> = fragment
+        .lines()
+        .map(|line| match line.split_once(" = ") {
+            Some(("min", _)) => format!("min = {min:?}"),
+            Some(("max", _)) => format!("max = {max:?}"),
+            _ => line.to_owned(),
+        })
+        .collect();
+    let text = format!(
+        "name = \"bench\"\n{}\n[[unit]]\nposition_m = [0.0, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n\
+         [allocation]\naxes = [\"yaw\", \"thrust\"]\n",
+        lines.join("\n")
+    );
+    Source::new("bench.toml", text)
+}
+
+/// The area of the attainable set: the integral of det J over the box, by Simpson's rule.
+fn area(pair: &PairMap) -> f64 {
+    const POINTS: usize = 41;
+    let [low, high] = pair.range();
+    let step = (high - low) / (POINTS - 1) as f64;
+    let weight = |k: usize| match k {
+        k if k % (POINTS - 1) == 0 => 1.0,
+        k => 2.0 + 2.0 * (k % 2) as f64,
+    };
+    let mut sum = 0.0;
+    for i in 0..POINTS {
+        for j in 0..POINTS {
+            let [[f_u, f_l], [q_u, q_l]] = pair.jacobian([low + step * i as f64, low + step * j as f64]);
+            sum += weight(i) * weight(j) * (f_u * q_l - f_l * q_u);
+        }
+    }
+    sum * step * step / 9.0
+}
+
+/// The polygon's area over that of the set must be what the compiler says.
+fn check_area(compiled: &Compiled, what: &str) {
+    let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
+    let corners = compiled.tables.attainable.corners();
+    let ends = corners.iter().cycle().skip(1);
+    let twice: f64 = corners
+        .iter()
+        .zip(ends)
+        .map(|(a, b)| f64::from(a[0]) * f64::from(b[1]) - f64::from(a[1]) * f64::from(b[0]))
+        .sum();
+    let lost = 1.0 - 0.5 * twice / area(&pair);
+    let stated = compiled.lost_area;
+    assert!((lost - stated.total).abs() < 1e-5, "{what}: {lost}, {stated:?}");
+    assert!(
+        lost <= 0.002 || lost <= 1.1 * stated.convexity + 1e-4,
+        "{what}: {lost}, {stated:?}"
+    );
+}
+
+#[test]
+fn every_map_compiles_close_to_its_fold() {
+    let Some(data) = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from) else {
+        eprintln!("NOT RUN: every_map_compiles_close_to_its_fold needs MIXER_BENCH_DATA");
+        return;
+    };
+    let folder = data.join("newdexterity");
+    let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut maps: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    maps.retain(|path| path.to_string_lossy().contains("map10x10"));
+    maps.sort();
+    assert!(maps.len() >= 10, "{} maps in {}", maps.len(), folder.display());
+
+    println!(
+        "{:<19} {:<11} {:>4} {:>7} {:>5}  {:<22} {:>8} {:>8}  {:>6} {:>7}",
+        "map", "basis", "max", "min", "ms", "evaluator", "f (N)", "Q (N m)", "lost %", "corners"
+    );
+    for map in &maps {
+        for basis in ["biquadratic", "cubic", "quartic"] {
+            let fragment = fragment_of(map, basis);
+            let own = Airframe::read(&source(&fragment, [0.1, 1.0])).unwrap_or_else(|e| panic!("{e}"));
+            let measured = fragment
+                .lines()
+                .find_map(|line| line.strip_prefix("max = ")?.parse().ok());
+            for max in [1.0, measured.unwrap_or(1.0)] {
+                let name = map.file_name().unwrap_or_default().to_string_lossy();
+                let what = format!("{} {basis:<11} {max:>4}", &name[4..23]);
+                let least = ForwardMap::new(&own.pair).least_idle(max);
+                let min = IDLE * least.unwrap_or_else(|| panic!("{what}: folds at every idle"));
+                let started = Instant::now();
+                let compiled = mixer_compiler::compile(&source(&fragment, [min, max]))
+                    .unwrap_or_else(|faults| panic!("{what}, from {min}: {faults}"));
+                let [f, q] = compiled.certificate.stated;
+                println!(
+                    "{what} {min:>7.5} {:>5}  {:<22} {f:>8.2e} {q:>8.2e}  {:>6.3} {:>7}",
+                    started.elapsed().as_millis(),
+                    compiled.evaluator.name(),
+                    100.0 * compiled.lost_area.total,
+                    compiled.tables.attainable.edges.len()
+                );
+                assert!(
+                    compiled.certificate.holds() && compiled.certificate.agrees(&compiled.residual),
+                    "{what}"
+                );
+                check_area(&compiled, &what);
+            }
+        }
+    }
+}
