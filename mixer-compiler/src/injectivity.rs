@@ -92,11 +92,17 @@ impl ForwardMap {
     /// # Errors
     /// Where it folds, or why nothing could be proven.
     pub fn prove_injective(&self, throttle: ThrottleBox) -> Result<Injectivity, Fold> {
+        self.injective(throttle).map_err(|found| match found {
+            Some(at) => self.fold(throttle, at),
+            None => Fold::NotGlobal,
+        })
+    }
+
+    /// The proof, or throttles where det J may not be positive, if that is what fails.
+    fn injective(&self, throttle: ThrottleBox) -> Result<Injectivity, Option<[f64; 2]>> {
         let least_determinant = match self.determinant.prove_positive(throttle) {
             Sign::Positive { bound } => bound,
-            Sign::NotPositive { at } | Sign::Undecided { near: at } => {
-                return Err(self.fold(throttle, at));
-            }
+            Sign::NotPositive { at } | Sign::Undecided { near: at } => return Err(Some(at)),
         };
         let [thrust_size, torque_size] = self.scale.map(|size| Interval::exact(1.0 / size));
         let positive = |p: Bivariate| matches!(p.prove_positive(throttle), Sign::Positive { .. });
@@ -127,7 +133,7 @@ impl ForwardMap {
                 least_determinant,
                 combination: [a, b],
             }),
-            _ => Err(Fold::NotGlobal),
+            _ => Err(None),
         }
     }
 
@@ -165,7 +171,7 @@ impl ForwardMap {
         let steps = (high * IDLE_STEPS) as u32;
         let works = |step: u32| {
             let low = f64::from(step) / IDLE_STEPS;
-            low < high && self.prove_injective(ThrottleBox { low, high }).is_ok()
+            low < high && self.injective(ThrottleBox { low, high }).is_ok()
         };
         if works(0) {
             return Some(0.0);

@@ -185,13 +185,8 @@ impl<'a> Inversion<'a> {
             coordinates = coordinates.improved(self.pair, EVALUATIONS, of);
         } else if !self.thorough {
             let form = Form::new(coordinates, seed, &self.coarse.samples);
-            let (coefficients, error) = self.lawson(
-                &self.coarse.samples,
-                &form,
-                refinement,
-                lawson::PATIENCE,
-                emphasis,
-            );
+            let (coefficients, error) =
+                self.lawson(&self.coarse, &form, refinement, lawson::PATIENCE, emphasis);
             return (form.fitted(refinement, coefficients), error);
         }
         self.fit_seed_in(coordinates, seed, refinement, emphasis)
@@ -204,9 +199,8 @@ impl<'a> Inversion<'a> {
         refinement: Refinement,
         emphasis: f64,
     ) -> (FittedInverse, f64) {
-        let samples = &self.fine.samples;
-        let form = Form::new(coordinates, seed, samples);
-        let (coefficients, error) = self.lawson(samples, &form, refinement, lawson::ROUNDS, emphasis);
+        let form = Form::new(coordinates, seed, &self.fine.samples);
+        let (coefficients, error) = self.lawson(&self.fine, &form, refinement, lawson::ROUNDS, emphasis);
         (form.fitted(refinement, coefficients), error)
     }
 
@@ -219,8 +213,7 @@ impl<'a> Inversion<'a> {
         rounds: usize,
     ) -> f64 {
         let form = Form::new(*coordinates, seed, &self.coarse.samples);
-        self.lawson(&self.coarse.samples, &form, refinement, rounds, emphasis)
-            .1
+        self.lawson(&self.coarse, &form, refinement, rounds, emphasis).1
     }
 
     /// The coordinates of a start, searched once.
@@ -254,7 +247,7 @@ impl<'a> Inversion<'a> {
         };
         if degree > JOINT_DEGREE {
             let rows = rows(samples);
-            return fitted(self.lawson_of(samples, &rows, &[], Refinement::None, lawson::ROUNDS, 0.0));
+            return fitted(self.lawson_of(&self.fine, &rows, &[], Refinement::None, lawson::ROUNDS, 0.0));
         }
         let glance = self.joint_of(&self.glance, &rows(&self.glance.samples), &[], 2);
         if glance.1 > HOPELESS && !self.thorough {
@@ -294,15 +287,15 @@ impl<'a> Inversion<'a> {
 
     fn lawson(
         &self,
-        samples: &[Sample],
+        sampled: &Sampled,
         form: &Form,
         refinement: Refinement,
         rounds: usize,
         emphasis: f64,
     ) -> ([Vec<f64>; 2], f64) {
         self.lawson_of(
-            samples,
-            &form.rows(samples),
+            sampled,
+            &form.rows(&sampled.samples),
             &form.smooth(),
             refinement,
             rounds,
@@ -313,13 +306,14 @@ impl<'a> Inversion<'a> {
     /// The minimax fit of both throttles in the given terms, and its error after the refinement.
     fn lawson_of(
         &self,
-        samples: &[Sample],
+        sampled: &Sampled,
         rows: &[Vec<f64>],
         smooth: &[Vec<f64>],
         refinement: Refinement,
         rounds: usize,
         emphasis: f64,
     ) -> ([Vec<f64>; 2], f64) {
+        let samples = &sampled.samples;
         let targets: Vec<[f64; 2]> = samples.iter().map(|sample| sample.throttles).collect();
         let (steps, residuals) = refinement.steps();
         let error = |index: usize, guess: [f64; 2]| {
@@ -331,7 +325,6 @@ impl<'a> Inversion<'a> {
             let [f, q] = self.missed(throttles, efforts);
             f.max(q)
         };
-        let weights = coordinates::weights(self.pair, samples, emphasis);
         let hopeless = if self.thorough {
             f64::INFINITY
         } else {
@@ -340,7 +333,7 @@ impl<'a> Inversion<'a> {
         Lawson {
             rows,
             targets: &targets,
-            weights: weights.iter().map(|weight| weight * weight).collect(),
+            weights: sampled.weights(self.pair, emphasis),
             smooth,
         }
         .fit(rounds, hopeless, &error)

@@ -2,41 +2,45 @@
 
 use crate::airframe::{Pair, Throttle};
 
-/// Largest exponent of any basis.
-const DEGREE: usize = 4;
+/// One more than the largest exponent of any basis.
+const SIZE: usize = 5;
 
 /// Thrust and torque of one unit at the reference voltage (eq. (1)).
 #[derive(Clone, Debug)]
 pub struct PairMap {
-    terms: Vec<Term>,
+    /// Coefficients in thrust (N) and in torque (N m), by exponents of u and of l.
+    coefficients: [[[f64; 2]; SIZE]; SIZE],
+    /// How many of each row are in use, and how many rows.
+    widths: [usize; SIZE],
+    rows: usize,
     range: [f64; 2],
 }
 
-/// One monomial with its coefficient in thrust (N) and in torque (N m).
-#[derive(Clone, Debug)]
-struct Term {
-    powers: [usize; 2],
-    coefficients: [f64; 2],
+/// A value and its derivatives by u and by l, of thrust and of torque.
+#[derive(Clone, Copy, Default)]
+struct Slopes {
+    value: [f64; 2],
+    by_u: [f64; 2],
+    by_l: [f64; 2],
 }
 
 impl PairMap {
     /// The map of a pair over the allowed throttles.
     pub fn new(pair: &Pair, throttle: &Throttle) -> Self {
-        let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
-        let terms = pair
-            .basis
-            .exponents()
-            .iter()
-            .zip(coefficients)
-            .map(|(&(u, l), (&f, &q))| Term {
-                powers: [usize::from(u), usize::from(l)],
-                coefficients: [f, q],
-            })
-            .collect();
-        PairMap {
-            terms,
+        let mut map = PairMap {
+            coefficients: [[[0.0; 2]; SIZE]; SIZE],
+            widths: [0; SIZE],
+            rows: 0,
             range: [throttle.min, throttle.max],
+        };
+        let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
+        for (&exponents, (&f, &q)) in pair.basis.exponents().iter().zip(coefficients) {
+            let (i, j) = (usize::from(exponents.0), usize::from(exponents.1));
+            map.coefficients[i][j] = [f, q];
+            map.widths[i] = map.widths[i].max(j + 1);
+            map.rows = map.rows.max(i + 1);
         }
+        map
     }
 
     /// Least and largest throttle.
@@ -45,53 +49,76 @@ impl PairMap {
     }
 
     /// Efforts `[f, Q]` at throttles `[u, l]`, N and N m.
-    pub fn efforts(&self, throttles: [f64; 2]) -> [f64; 2] {
-        let [u, l] = throttles.map(powers);
-        let mut efforts = [0.0; 2];
-        for term in &self.terms {
-            let monomial = u[term.powers[0]] * l[term.powers[1]];
-            efforts[0] += term.coefficients[0] * monomial;
-            efforts[1] += term.coefficients[1] * monomial;
+    pub fn efforts(&self, [u, l]: [f64; 2]) -> [f64; 2] {
+        // Plain loops, here and below: fits in builds without optimisation spend half of their time here.
+        let (mut f, mut q) = (0.0, 0.0);
+        let mut i = self.rows;
+        while i > 0 {
+            i -= 1;
+            let row = &self.coefficients[i];
+            let (mut row_f, mut row_q) = (0.0, 0.0);
+            let mut j = self.widths[i];
+            while j > 0 {
+                j -= 1;
+                row_f = row_f * l + row[j][0];
+                row_q = row_q * l + row[j][1];
+            }
+            f = f * u + row_f;
+            q = q * u + row_q;
         }
-        efforts
+        [f, q]
+    }
+
+    /// Horner's rule in both throttles, with derivatives.
+    fn slopes(&self, [u, l]: [f64; 2]) -> Slopes {
+        let mut sum = Slopes::default();
+        let mut k = 0;
+        while k < 2 {
+            let (mut value, mut by_u, mut by_l) = (0.0, 0.0, 0.0);
+            let mut i = self.rows;
+            while i > 0 {
+                i -= 1;
+                let row = &self.coefficients[i];
+                let (mut inner, mut inner_by_l) = (0.0, 0.0);
+                let mut j = self.widths[i];
+                while j > 0 {
+                    j -= 1;
+                    inner_by_l = inner_by_l * l + inner;
+                    inner = inner * l + row[j][k];
+                }
+                by_u = by_u * u + value;
+                value = value * u + inner;
+                by_l = by_l * u + inner_by_l;
+            }
+            sum.value[k] = value;
+            sum.by_u[k] = by_u;
+            sum.by_l[k] = by_l;
+            k += 1;
+        }
+        sum
     }
 
     /// Jacobian `[[f_u, f_l], [Q_u, Q_l]]` at throttles `[u, l]`.
     pub fn jacobian(&self, throttles: [f64; 2]) -> [[f64; 2]; 2] {
-        let [u, l] = throttles.map(powers);
-        let mut jacobian = [[0.0; 2]; 2];
-        for Term {
-            powers: [i, j],
-            coefficients,
-        } in &self.terms
-        {
-            let by_u = if *i == 0 {
-                0.0
-            } else {
-                *i as f64 * u[i - 1] * l[*j]
-            };
-            let by_l = if *j == 0 {
-                0.0
-            } else {
-                *j as f64 * u[*i] * l[j - 1]
-            };
-            for (row, coefficient) in jacobian.iter_mut().zip(coefficients) {
-                row[0] += coefficient * by_u;
-                row[1] += coefficient * by_l;
-            }
-        }
-        jacobian
+        let Slopes { by_u, by_l, .. } = self.slopes(throttles);
+        [[by_u[0], by_l[0]], [by_u[1], by_l[1]]]
     }
 
     /// One Newton step from `throttles` towards `efforts` with `residuals` residuals to its Jacobian, each clamped
     /// to the range as `mixer-rt` does.
     pub fn newton(&self, throttles: [f64; 2], [f, q]: [f64; 2], residuals: u8) -> [f64; 2] {
-        let [[f_u, f_l], [q_u, q_l]] = self.jacobian(throttles);
+        let Slopes {
+            value: mut given,
+            by_u: [f_u, q_u],
+            by_l: [f_l, q_l],
+        } = self.slopes(throttles);
         let determinant = f_u * q_l - f_l * q_u;
         let [mut u, mut l] = throttles;
-        for _ in 0..residuals {
-            let [thrust, torque] = self.efforts([u, l]);
-            let (missing_f, missing_q) = (f - thrust, q - torque);
+        for residual in 0..residuals {
+            if residual > 0 {
+                given = self.efforts([u, l]);
+            }
+            let (missing_f, missing_q) = (f - given[0], q - given[1]);
             u = self.clamp(u + (missing_f * q_l - missing_q * f_l) / determinant);
             l = self.clamp(l + (missing_q * f_u - missing_f * q_u) / determinant);
         }
@@ -164,13 +191,4 @@ fn squared(nodes: &[f64]) -> Vec<[f64; 2]> {
         .iter()
         .flat_map(|&u| nodes.iter().map(move |&l| [u, l]))
         .collect()
-}
-
-/// `[1, x, x^2, ..]` up to the largest exponent.
-fn powers(x: f64) -> [f64; DEGREE + 1] {
-    let mut powers = [1.0; DEGREE + 1];
-    for k in 1..=DEGREE {
-        powers[k] = powers[k - 1] * x;
-    }
-    powers
 }

@@ -72,7 +72,7 @@ const START: usize = 8;
 const MOST_CELLS: usize = 1600;
 
 /// Largest number of cells while nothing can be said of one of them.
-const MOST_UNBOUNDED: usize = 500;
+const MOST_UNBOUNDED: usize = 300;
 
 /// Bounds within this factor of the largest observed residual are sharp enough.
 const SHARP: f64 = 1.15;

@@ -1,5 +1,8 @@
 //! What fits are judged on.
 
+use std::cell::OnceCell;
+
+use super::coordinates::weights;
 use crate::model::PairMap;
 
 /// One throttle pair with its efforts.
@@ -15,6 +18,8 @@ pub(super) struct Sampled {
     pub(super) samples: Vec<Sample>,
     /// Jacobians in units of the tolerances.
     pub(super) jacobians: Vec<[[f64; 2]; 2]>,
+    /// Squares of [`weights`] with an emphasis, once they are needed.
+    emphasised: OnceCell<(f64, Vec<f64>)>,
 }
 
 impl Sampled {
@@ -29,7 +34,29 @@ impl Sampled {
             [by_f.map(|x| x / tolerance[0]), by_q.map(|x| x / tolerance[1])]
         };
         let jacobians = samples.iter().map(scaled).collect();
-        Sampled { samples, jacobians }
+        Sampled {
+            samples,
+            jacobians,
+            emphasised: OnceCell::new(),
+        }
+    }
+
+    /// First weights of a fit whose errors count by det J to the power `-emphasis`; one emphasis other than 0 is
+    /// remembered.
+    pub(super) fn weights(&self, pair: &PairMap, emphasis: f64) -> Vec<f64> {
+        let squared = || {
+            let weights = weights(pair, &self.samples, emphasis);
+            weights.iter().map(|weight| weight * weight).collect()
+        };
+        if emphasis == 0.0 {
+            return vec![1.0; self.samples.len()];
+        }
+        let (known, weights) = self.emphasised.get_or_init(|| (emphasis, squared()));
+        if *known == emphasis {
+            weights.clone()
+        } else {
+            squared()
+        }
     }
 }
 
