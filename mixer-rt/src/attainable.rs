@@ -7,9 +7,11 @@
 //!
 //! Desaturation projects points of the plane onto this set. The projection of `p` is piecewise affine: the plane
 //! falls into the set itself, a strip beyond every edge, on which `p` goes to the edge, and a cone beyond every
-//! corner, on which it goes to the corner. [`Face`] names the region that `p` lies in.
+//! corner, on which it goes to the corner. [`Face`] names the region that `p` lies in, and a [`Point`] is held by
+//! coordinates of its own region, so that the projection stays exact however far outside `p` lies, and a point that
+//! comes to a border is on it.
 
-use crate::sqrt;
+use crate::clamp;
 
 /// One edge of a [`AttainableSet`], in the set's own units: see [`AttainableSet::scale`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,50 +38,95 @@ pub struct AttainableSet<'a> {
     pub edges: &'a [Edge],
 }
 
-/// Least distance from the set of a point amid its face's region, scaled.
-const AMID: f32 = 0.05;
-
 /// The part of a set that a point is projected onto.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Face {
-    /// The point itself.
+    /// The point itself. The index is that of an edge through whose triangle with the centre the point was seen last.
     #[default]
     Interior,
     /// The edge of this index.
-    Edge(u8),
+    Edge,
     /// The start of the edge of this index; for a chord 1 is its end.
-    Corner(u8),
+    Corner,
 }
 
-/// A change of face on the way of a point: after which step, and to which face.
-pub(crate) type Crossing = (f32, Face);
-
-/// A [`Face`] with its edges looked up.
-#[derive(Clone, Copy)]
-enum Located<'a> {
-    Interior,
-    Edge(&'a Edge),
-    /// The corner and the edges that end and start there, where there are such.
-    Corner([f32; 2], Option<&'a Edge>, Option<&'a Edge>),
+/// A point of the plane, by its projection.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Point {
+    pub(crate) face: Face,
+    index: u8,
+    /// Interior: the point. Edge: the projection's distance from the edge's start, and the point's from the edge,
+    /// outwards. Corner: the heights above the borders to the edge that ends there and to the edge that starts there
+    /// (a chord: above its only border, and the distance from the chord, outwards).
+    at: [f32; 2],
 }
 
-impl AttainableSet<'_> {
-    /// The face that the centre lies on.
-    #[inline]
-    pub(crate) fn central_face(&self) -> Face {
-        if self.is_chord() {
-            Face::Edge(0)
-        } else {
-            Face::Interior
-        }
+impl Point {
+    /// The face, and which one of its kind; any interior is the same.
+    pub(crate) fn region(&self) -> (Face, u8) {
+        (self.face, self.index)
     }
 
+    /// The distance from the set.
+    pub(crate) fn distance(&self) -> f32 {
+        match self.face {
+            Face::Interior => 0.0,
+            Face::Edge => self.at[1].abs(),
+            // Of these heights the larger one is about the distance.
+            Face::Corner => crate::clamp(self.at[0], self.at[1].abs(), f32::MAX),
+        }
+    }
+}
+
+/// A change of face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crossing {
+    /// After this multiple of the step.
+    pub(crate) share: f32,
+    face: Face,
+    index: u8,
+}
+
+/// The first fall of a height through zero.
+struct Falls {
+    barred: Option<(Face, u8)>,
+    first: Option<Crossing>,
+    limit: f32,
+}
+
+impl Falls {
+    /// `height` changes by `speed` per step; speeds below `noise` count as none.
+    #[inline(always)]
+    fn watch(&mut self, height: f32, speed: f32, noise: f32, face: Face, index: u8) {
+        if speed < -noise && height < -speed * self.limit && self.barred != Some((face, index)) {
+            let share = if height > 0.0 { height / -speed } else { 0.0 };
+            self.limit = share;
+            self.first = Some(Crossing { share, face, index });
+        }
+    }
+}
+
+/// Efforts that move by less than this on the whole way stand still.
+const STANDING: f32 = 3e-5;
+
+const NO_EDGE: Edge = Edge {
+    start: [0.0; 2],
+    along: [1.0, 0.0],
+    length: 0.0,
+};
+
+impl AttainableSet<'_> {
     #[inline]
     fn is_chord(&self) -> bool {
         self.edges.len() == 1
     }
 
-    /// The index of the edge before `index`.
+    #[inline]
+    fn edge(&self, index: u8) -> &Edge {
+        self.edges.get(usize::from(index)).unwrap_or(&NO_EDGE)
+    }
+
+    /// The index of the edge that ends at the corner of `index`.
     #[inline]
     fn before(&self, index: u8) -> u8 {
         match index.checked_sub(1) {
@@ -88,7 +135,7 @@ impl AttainableSet<'_> {
         }
     }
 
-    /// The corner at which the edge of `index` ends.
+    /// The index of the corner at which the edge of `index` ends.
     #[inline]
     fn after(&self, index: u8) -> u8 {
         let next = index.wrapping_add(1);
@@ -99,123 +146,268 @@ impl AttainableSet<'_> {
         }
     }
 
+    /// The position of the corner of `index`.
     #[inline]
-    fn locate(&self, face: Face) -> Located<'_> {
-        let edge = |index: u8| self.edges.get(usize::from(index));
-        match face {
-            Face::Interior => Located::Interior,
-            Face::Edge(index) => edge(index).map_or(Located::Interior, Located::Edge),
-            Face::Corner(index) => match (edge(index), edge(self.before(index))) {
-                (Some(starting), _) if self.is_chord() => {
-                    Located::Corner(starting.start, None, Some(starting))
-                }
-                (Some(starting), ending) => Located::Corner(starting.start, ending, Some(starting)),
-                (None, Some(ending)) => Located::Corner(ending.at(ending.length), Some(ending), None),
-                (None, None) => Located::Interior,
-            },
+    fn corner(&self, index: u8) -> [f32; 2] {
+        match self.edges.get(usize::from(index)) {
+            Some(edge) => edge.start,
+            None => {
+                let edge = self.edge(0);
+                edge.at(edge.length)
+            }
         }
     }
 
-    /// The projection of `point`, which lies in the region of `face`.
+    /// The edge through whose triangle with the centre `point` is seen, found from `index` on.
     #[inline]
-    pub(crate) fn project(&self, face: Face, point: [f32; 2]) -> [f32; 2] {
-        match self.locate(face) {
-            Located::Interior => point,
-            Located::Edge(edge) => edge.at(crate::clamp(edge.along(edge.relative(point)), 0.0, edge.length)),
-            Located::Corner(corner, ..) => corner,
-        }
-    }
-
-    /// A point that has the same projection as `point` and is well within the region of `face`.
-    pub(crate) fn amid(&self, face: Face, point: [f32; 2]) -> [f32; 2] {
-        let away = |from: [f32; 2], direction: [f32; 2]| {
-            let way = [point[0] - from[0], point[1] - from[1]];
-            let distance = sqrt(way[0] * way[0] + way[1] * way[1]);
-            let distance = if distance > AMID { distance } else { AMID };
-            let length = sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
-            let scale = distance / length;
-            [from[0] + scale * direction[0], from[1] + scale * direction[1]]
+    fn sector(&self, point: [f32; 2], index: u8) -> u8 {
+        let way = [point[0] - self.centre[0], point[1] - self.centre[1]];
+        // Positive where `way` is anticlockwise of the start of the edge.
+        let beyond_start = |index: u8| {
+            let start = self.edge(index).start;
+            (start[0] - self.centre[0]) * way[1] - (start[1] - self.centre[1]) * way[0] >= 0.0
         };
-        match self.locate(face) {
-            Located::Interior => point,
-            Located::Edge(edge) => away(self.project(face, point), edge.outwards()),
-            Located::Corner(corner, Some(ending), Some(starting)) => {
-                let (before, after) = (ending.outwards(), starting.outwards());
-                away(corner, [before[0] + after[0], before[1] + after[1]])
+        let mut index = index;
+        if beyond_start(index) {
+            for _ in self.edges {
+                let next = self.after(index);
+                if !beyond_start(next) {
+                    break;
+                }
+                index = next;
             }
-            Located::Corner(corner, Some(ending), None) => away(corner, ending.along),
-            Located::Corner(corner, None, Some(starting)) => away(corner, starting.along.map(|part| -part)),
-            Located::Corner(_, None, None) => point,
+        } else {
+            for _ in self.edges {
+                index = self.before(index);
+                if beyond_start(index) {
+                    break;
+                }
+            }
+        }
+        index
+    }
+
+    /// Finds the face that `point` is projected onto.
+    pub(crate) fn locate(&self, point: [f32; 2]) -> Point {
+        let mut index = 0;
+        if !self.is_chord() {
+            index = self.sector(point, 0);
+            let edge = self.edge(index);
+            if edge.beyond(edge.relative(point)) <= 0.0 {
+                return Point {
+                    face: Face::Interior,
+                    index,
+                    at: point,
+                };
+            }
+        }
+        // Along the border, downhill.
+        let mut backwards = false;
+        for _ in self.edges {
+            let edge = self.edge(index);
+            let way = edge.relative(point);
+            let s = edge.along(way);
+            if s < 0.0 {
+                let before = self.edge(self.before(index));
+                if self.is_chord() || before.along(before.relative(point)) >= before.length {
+                    return self.at_corner(index, way);
+                }
+                index = self.before(index);
+                backwards = true;
+            } else if s > edge.length && !backwards {
+                let corner = self.corner(self.after(index));
+                let way = [point[0] - corner[0], point[1] - corner[1]];
+                if self.is_chord() || self.edge(self.after(index)).along(way) <= 0.0 {
+                    return self.at_corner(self.after(index), way);
+                }
+                index = self.after(index);
+            } else {
+                return Point {
+                    face: Face::Edge,
+                    index,
+                    at: [clamp(s, 0.0, edge.length), edge.beyond(way)],
+                };
+            }
+        }
+        Point {
+            face: Face::Corner,
+            index,
+            at: [0.0; 2],
         }
     }
 
-    /// How the projection moves when the point moves by `step` within the region of `face`: P `step`.
+    /// The projection of `point`.
     #[inline]
-    pub(crate) fn project_step(&self, face: Face, step: [f32; 2]) -> [f32; 2] {
-        match self.locate(face) {
-            Located::Interior => step,
-            Located::Edge(edge) => {
-                let s = edge.along(step);
-                [s * edge.along[0], s * edge.along[1]]
-            }
-            Located::Corner(..) => [0.0, 0.0],
+    pub(crate) fn project(&self, point: &Point) -> [f32; 2] {
+        match point.face {
+            Face::Interior => point.at,
+            Face::Edge => self.edge(point.index).at(point.at[0]),
+            Face::Corner => self.corner(point.index),
         }
     }
 
-    /// The first change of face of a point that moves from `point`, in the region of `face`, by `share` times
-    /// `step`, if it comes before a share of `limit`. Velocities below `noise` count as none.
+    /// The direction of the edge that the projection is bound to.
+    #[inline]
+    pub(crate) fn direction(&self, point: &Point) -> [f32; 2] {
+        self.edge(point.index).along
+    }
+
+    /// The velocity of `point`, in its own coordinates, where it moves by `step` in the plane.
+    #[inline]
+    pub(crate) fn velocity(&self, point: &Point, step: [f32; 2]) -> [f32; 2] {
+        match point.face {
+            Face::Interior => step,
+            Face::Corner => self.heights(point.index, step),
+            Face::Edge => {
+                let edge = self.edge(point.index);
+                [edge.along(step), edge.beyond(step)]
+            }
+        }
+    }
+
+    /// The first change of face of a point on its way along `limit` times `velocity` (in its own coordinates).
+    /// Velocities below `noise` outside the set count as none.
     #[inline]
     pub(crate) fn crossing(
         &self,
-        face: Face,
-        point: [f32; 2],
-        step: [f32; 2],
+        point: &mut Point,
+        velocity: [f32; 2],
         limit: f32,
         noise: f32,
+        barred: Option<(Face, u8)>,
     ) -> Option<Crossing> {
-        let mut first = (limit, None);
-        // Falling through zero at `height`, with `speed`.
-        let mut falls = |height: f32, speed: f32, face: Face| {
-            if speed < -noise {
-                let share = if height > 0.0 { height / -speed } else { 0.0 };
-                if share < first.0 {
-                    first = (share, Some(face));
-                }
-            }
+        let mut falls = Falls {
+            barred,
+            first: None,
+            limit,
         };
-        match (self.locate(face), face) {
-            (Located::Interior, _) => {
-                for (index, edge) in self.edges.iter().enumerate() {
-                    let depth = -edge.beyond(edge.relative(point));
-                    falls(depth, -edge.beyond(step), Face::Edge(index as u8));
-                }
-            }
-            (Located::Edge(edge), Face::Edge(index)) => {
-                let from_start = edge.relative(point);
-                let (s, speed) = (edge.along(from_start), edge.along(step));
-                falls(s, speed, Face::Corner(index));
-                falls(edge.length - s, -speed, Face::Corner(self.after(index)));
+        let [along, away] = velocity;
+        let index = point.index;
+        match point.face {
+            Face::Interior => self.exit(point, velocity, &mut falls),
+            Face::Edge => {
+                falls.watch(point.at[0], along, STANDING, Face::Corner, index);
+                falls.watch(
+                    self.edge(index).length - point.at[0],
+                    -along,
+                    STANDING,
+                    Face::Corner,
+                    self.after(index),
+                );
                 if !self.is_chord() {
-                    falls(edge.beyond(from_start), edge.beyond(step), Face::Interior);
+                    falls.watch(point.at[1], away, noise, Face::Interior, index);
                 }
             }
-            (Located::Corner(corner, ending, starting), Face::Corner(index)) => {
-                let from_corner = [point[0] - corner[0], point[1] - corner[1]];
-                if let Some(edge) = ending {
-                    falls(
-                        edge.along(from_corner),
-                        edge.along(step),
-                        Face::Edge(self.before(index)),
-                    );
-                }
-                if let Some(edge) = starting {
-                    falls(-edge.along(from_corner), -edge.along(step), Face::Edge(index));
+            Face::Corner => {
+                let (ending, starting) = self.borders(index);
+                let [first, second] = point.at;
+                falls.watch(first, along, noise, Face::Edge, ending);
+                if !self.is_chord() {
+                    falls.watch(second, away, noise, Face::Edge, starting);
                 }
             }
-            _ => {}
         }
-        let (share, face) = first;
-        face.map(|face| (share, face))
+        falls.first
+    }
+
+    /// Where a point inside leaves the polygon.
+    #[inline]
+    fn exit(&self, point: &mut Point, velocity: [f32; 2], falls: &mut Falls) {
+        let end = [
+            point.at[0] + falls.limit * velocity[0],
+            point.at[1] + falls.limit * velocity[1],
+        ];
+        point.index = self.sector(end, point.index);
+        let edge = self.edge(point.index);
+        if edge.beyond(edge.relative(end)) > STANDING {
+            for (index, edge) in self.edges.iter().enumerate() {
+                let depth = -edge.beyond(edge.relative(point.at));
+                falls.watch(depth, -edge.beyond(velocity), STANDING, Face::Edge, index as u8);
+            }
+        }
+    }
+
+    /// Moves `point` by `way` in its own coordinates, within its region.
+    #[inline]
+    pub(crate) fn shift(&self, point: &mut Point, way: [f32; 2]) {
+        point.at = [point.at[0] + way[0], point.at[1] + way[1]];
+        if point.face == Face::Edge {
+            point.at[0] = clamp(point.at[0], 0.0, self.edge(point.index).length);
+        }
+    }
+
+    /// Takes `point`, which lies on the border of its region, over to the next.
+    pub(crate) fn cross(&self, point: &mut Point, crossing: Crossing) {
+        let Crossing { face, index, .. } = crossing;
+        let from = *point;
+        let at = match (from.face, face) {
+            (Face::Edge, Face::Interior) => self.edge(from.index).at(from.at[0]),
+            (Face::Edge, Face::Corner) => {
+                let away = from.at[1];
+                if self.is_chord() {
+                    [0.0, away]
+                } else if from.index == index {
+                    [away * self.turn(index), 0.0]
+                } else {
+                    [0.0, away * self.turn(index)]
+                }
+            }
+            (Face::Corner, Face::Edge) => {
+                let [first, second] = from.at;
+                let starts_here = from.index == index;
+                let away = if self.is_chord() {
+                    second
+                } else {
+                    (if starts_here { first } else { second }) / self.turn(from.index)
+                };
+                [if starts_here { 0.0 } else { self.edge(index).length }, away]
+            }
+            (Face::Interior, Face::Edge) => {
+                let edge = self.edge(index);
+                let s = edge.along(edge.relative(from.at));
+                [clamp(s, 0.0, edge.length), 0.0]
+            }
+            _ => from.at,
+        };
+        *point = Point { face, index, at };
+    }
+
+    /// The edges that end and start at the corner of `index`.
+    #[inline]
+    fn borders(&self, index: u8) -> (u8, u8) {
+        if self.is_chord() {
+            (0, 0)
+        } else {
+            (self.before(index), index)
+        }
+    }
+
+    /// The sine of the angle by which the border turns at the corner of `index`.
+    #[inline]
+    fn turn(&self, index: u8) -> f32 {
+        let (ending, starting) = self.borders(index);
+        self.edge(starting).beyond(self.edge(ending).along)
+    }
+
+    /// The heights of the way `from_corner` above the borders of the corner's region.
+    #[inline]
+    fn heights(&self, index: u8, from_corner: [f32; 2]) -> [f32; 2] {
+        let (ending, starting) = self.borders(index);
+        let (ending, starting) = (self.edge(ending), self.edge(starting));
+        if self.is_chord() {
+            let s = ending.along(from_corner);
+            [if index == 0 { -s } else { s }, ending.beyond(from_corner)]
+        } else {
+            [ending.along(from_corner), -starting.along(from_corner)]
+        }
+    }
+
+    fn at_corner(&self, index: u8, from_corner: [f32; 2]) -> Point {
+        Point {
+            face: Face::Corner,
+            index,
+            at: self.heights(index, from_corner),
+        }
     }
 }
 
@@ -237,12 +429,6 @@ impl Edge {
         vector[0] * self.along[1] - vector[1] * self.along[0]
     }
 
-    /// The outward normal.
-    #[inline]
-    fn outwards(&self) -> [f32; 2] {
-        [self.along[1], -self.along[0]]
-    }
-
     /// The point at distance `s` from the start.
     #[inline]
     fn at(&self, s: f32) -> [f32; 2] {
@@ -254,58 +440,4 @@ impl Edge {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const fn edge(start: [f32; 2], along: [f32; 2], length: f32) -> Edge {
-        Edge { start, along, length }
-    }
-
-    const SQUARE: AttainableSet<'static> = AttainableSet {
-        scale: [1.0, 1.0],
-        centre: [1.0, 1.0],
-        edges: &[
-            edge([0.0, 0.0], [1.0, 0.0], 2.0),
-            edge([2.0, 0.0], [0.0, 1.0], 2.0),
-            edge([2.0, 2.0], [-1.0, 0.0], 2.0),
-            edge([0.0, 2.0], [0.0, -1.0], 2.0),
-        ],
-    };
-    const CHORD: AttainableSet<'static> = AttainableSet {
-        scale: [1.0, 1.0],
-        centre: [1.0, 0.0],
-        edges: &[edge([0.0, 0.0], [1.0, 0.0], 2.0)],
-    };
-
-    /// Goes from the centre to `target` face by face; returns the projection there.
-    fn walk(set: &AttainableSet<'_>, target: [f32; 2]) -> ([f32; 2], Face) {
-        let (mut point, mut face) = (set.centre, set.central_face());
-        for _ in 0..8 {
-            let step = [target[0] - point[0], target[1] - point[1]];
-            match set.crossing(face, point, step, 1.0, 0.0) {
-                Some((share, next)) => {
-                    point = [point[0] + share * step[0], point[1] + share * step[1]];
-                    face = next;
-                }
-                None => break,
-            }
-        }
-        (set.project(face, target), face)
-    }
-
-    #[test]
-    fn projections_onto_a_square() {
-        assert_eq!(walk(&SQUARE, [1.5, 0.5]), ([1.5, 0.5], Face::Interior));
-        assert_eq!(walk(&SQUARE, [1.5, -1.0]), ([1.5, 0.0], Face::Edge(0)));
-        assert_eq!(walk(&SQUARE, [3.0, 0.5]), ([2.0, 0.5], Face::Edge(1)));
-        assert_eq!(walk(&SQUARE, [3.0, 5.0]), ([2.0, 2.0], Face::Corner(2)));
-        assert_eq!(walk(&SQUARE, [-3.0, -5.0]), ([0.0, 0.0], Face::Corner(0)));
-    }
-
-    #[test]
-    fn projections_onto_a_chord() {
-        assert_eq!(walk(&CHORD, [1.5, -1.0]), ([1.5, 0.0], Face::Edge(0)));
-        assert_eq!(walk(&CHORD, [-1.0, 3.0]), ([0.0, 0.0], Face::Corner(0)));
-        assert_eq!(walk(&CHORD, [4.0, 3.0]), ([2.0, 0.0], Face::Corner(1)));
-    }
-}
+mod tests;

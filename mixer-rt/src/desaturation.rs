@@ -14,8 +14,10 @@
 //! is a continuous function of the request: the attainable wrenches are a polytope, on which the nearest points
 //! above move continuously, and the efforts are the unique least-norm ones of the wrench reached.
 
-use crate::homotopy::{Bounds, Homotopy, Rotors, Scratch, Sets};
-use crate::{Quantity, Tables, Unit, clamp};
+use crate::chord::{Rotors, Sets};
+use crate::homotopy::{Homotopy, Scratch};
+use crate::rows::{ALONG, Bounds, THRUST, YAW};
+use crate::{Quantity, Tables, clamp};
 
 /// What desaturation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,12 +45,6 @@ const REQUEST_LIMIT: f32 = 1e5;
 
 /// Rounds of correction for the chords that stand for the curves of units with one rotor.
 const CHORD_ROUNDS: u32 = 4;
-
-/// Share of the largest attainable (roll, pitch) that is taken.
-const STRAIGHT: f32 = 0.9995;
-
-const YAW: usize = 2;
-const THRUST: usize = 3;
 
 /// True where `request` is finite and within [`REQUEST_LIMIT`].
 #[inline(always)]
@@ -117,82 +113,59 @@ fn prioritise<P, I, S>(
         airmode,
         yaw_reserve_nm,
     } = tables.desaturation;
-    let impaired = scratch.iter().any(|scratch| scratch.rotors != Rotors::Both);
-    let mut request = request;
     let reserved = clamp(request[YAW], -yaw_reserve_nm, yaw_reserve_nm) - offset[YAW];
+    let mut request = request;
     for (request, offset) in request.iter_mut().zip(offset) {
         *request -= offset;
     }
-    let [roll, pitch, yaw, thrust] = request;
-    let yaw_range = Bounds::at(reserved).including(yaw);
-    let thrust_range = Bounds {
+    let mut homotopy = Homotopy::new(tables, sets, factors, request, scratch);
+    let wanted = homotopy.rows_of(request);
+    let yaw = homotopy.bounds_of(YAW, Bounds::at(reserved).including(request[YAW]));
+    let thrust = Bounds {
         low: -REQUEST_LIMIT,
         high: if airmode == Airmode::Disabled {
-            thrust
+            wanted[THRUST]
         } else {
             REQUEST_LIMIT
         },
     };
-
-    let mut homotopy = Homotopy::from_centres(tables, sets, factors, scratch);
-    let start = homotopy.wrench();
-    let wide = [
-        Bounds::at(0.0),
-        Bounds::at(0.0),
-        yaw_range.including(start[YAW]),
-        thrust_range.including(start[THRUST]),
-    ];
-    homotopy.bound(wide);
-    // To where only yaw or thrust is asked; first let roll and pitch vanish, then bring the slack rows' bounds in.
-    let level = [Bounds::at(-offset[0]), Bounds::at(-offset[1])];
-    let [.., wide_yaw, wide_thrust] = wide;
-    homotopy.follow([level[0], level[1], wide_yaw, wide_thrust]);
-    homotopy.follow([level[0], level[1], yaw_range, wide_thrust]);
-    let [yaw_range, _] = homotopy.slack_bounds();
-    homotopy.follow([level[0], level[1], yaw_range, thrust_range]);
-    let [yaw_range, thrust_range] = homotopy.slack_bounds();
-
-    let share = homotopy.follow([Bounds::at(roll), Bounds::at(pitch), yaw_range, thrust_range]);
-    if share < 1.0 {
-        // The last multipliers before the end are large, and rounding may have turned the wrench: straighten it.
-        let share = share * STRAIGHT;
-        let part = |from: f32, to: f32| Bounds::at(from + share * (to - from));
-        homotopy.follow([
-            part(-offset[0], roll),
-            part(-offset[1], pitch),
-            yaw_range,
-            thrust_range,
-        ]);
-    }
-    let [at_roll, at_pitch, ..] = homotopy.wrench().map(Bounds::at);
-    let reached = if airmode == Airmode::RollPitchYaw {
-        homotopy.hold(YAW);
-        let reached = homotopy.follow([at_roll, at_pitch, Bounds::at(yaw), thrust_range]);
-        let [.., at_yaw, _] = homotopy.wrench().map(Bounds::at);
-        homotopy.hold(THRUST);
-        reached * homotopy.follow([at_roll, at_pitch, at_yaw, Bounds::at(thrust)])
-    } else {
-        homotopy.hold(THRUST);
-        let reached = homotopy.follow([at_roll, at_pitch, yaw_range, Bounds::at(thrust)]);
-        let [.., at_thrust] = homotopy.wrench().map(Bounds::at);
-        homotopy.hold(YAW);
-        reached * homotopy.follow([at_roll, at_pitch, Bounds::at(yaw), at_thrust])
-    };
-    if reached < 1.0 {
-        // Likewise: to the same (roll, pitch) a little nearer to the centres' wrench, where there is room.
-        let [.., at_yaw, at_thrust] = homotopy.wrench();
-        let inwards = |at: f32, start: f32| Bounds::at(start + STRAIGHT * (at - start));
-        homotopy.follow([
-            Bounds::at(STRAIGHT * at_roll.low),
-            Bounds::at(STRAIGHT * at_pitch.low),
-            inwards(at_yaw, start[YAW]),
-            inwards(at_thrust, start[THRUST]),
-        ]);
-    }
+    give_up(&mut homotopy, wanted, yaw, thrust, airmode);
     homotopy.write_efforts();
-    // With vertical axes and all rotors the centres and the least-norm efforts differ by what holds the wrench.
-    if !tables.units.iter().all(Unit::is_vertical) || impaired {
-        homotopy.settle();
+}
+
+/// The steps of the module's head, from where the way to the request has ended.
+fn give_up(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: Bounds, airmode: Airmode) {
+    const LEVEL: Bounds = Bounds::at(0.0);
+    const WIDE: Bounds = Bounds {
+        low: -REQUEST_LIMIT,
+        high: REQUEST_LIMIT,
+    };
+    homotopy.bound(ALONG, LEVEL);
+    homotopy.bound(YAW, yaw);
+    homotopy.bound(THRUST, WIDE);
+    if homotopy.follow([LEVEL, LEVEL, yaw, WIDE], false) < 1.0 {
+        homotopy.follow([LEVEL, LEVEL, WIDE, WIDE], false);
+        homotopy.bound(YAW, yaw);
+        homotopy.follow([LEVEL, LEVEL, yaw, WIDE], false);
+    }
+    let [.., yaw, _] = homotopy.bounds();
+    homotopy.bound(THRUST, thrust);
+    homotopy.follow([LEVEL, LEVEL, yaw, thrust], false);
+    let [.., yaw, thrust] = homotopy.bounds();
+    homotopy.hold(ALONG);
+    homotopy.follow([Bounds::at(wanted[ALONG]), LEVEL, yaw, thrust], true);
+    let order = if airmode == Airmode::RollPitchYaw {
+        [YAW, THRUST]
+    } else {
+        [THRUST, YAW]
+    };
+    for row in order {
+        homotopy.hold(row);
+        let mut target = homotopy.bounds();
+        if let (Some(target), Some(wanted)) = (target.get_mut(row), wanted.get(row)) {
+            *target = Bounds::at(*wanted);
+        }
+        homotopy.follow(target, true);
     }
 }
 

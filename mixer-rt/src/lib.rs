@@ -26,6 +26,7 @@
 mod attainable;
 #[cfg(feature = "baselines")]
 pub mod baselines;
+mod chord;
 mod desaturation;
 mod forward;
 mod health;
@@ -33,6 +34,9 @@ mod homotopy;
 mod inverse;
 mod linear;
 mod mix;
+mod piece;
+mod reference;
+mod rows;
 mod saturation;
 mod scalar;
 mod sqrt;

@@ -1,7 +1,8 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
+use crate::chord::Rotors;
 use crate::desaturation::{desaturate, is_bounded, limited, single_rotor};
-use crate::homotopy::{Rotors, Scratch};
+use crate::homotopy::Scratch;
 use crate::vertical::{Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;
 use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Wrench};

@@ -55,7 +55,11 @@ fn truth(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
     let of_efforts = tables.shortcut.is_some() && request.health.is_good();
     Axis::ALL.into_iter().enumerate().find_map(|(index, axis)| {
         let (said, given) = (answer.achieved[index], given[index]);
-        let tolerance = if of_efforts { tables.tolerance.wrench[index] } else { 0.0 };
+        let tolerance = if of_efforts {
+            tables.tolerance.wrench[index]
+        } else {
+            0.0
+        };
         let true_enough = (said - given).abs() <= ROUNDING * frame.authority[index] + f64::from(tolerance);
         (!true_enough).then(|| format!("{}: {said} said, {given} given by the throttles", axis.name()))
     })

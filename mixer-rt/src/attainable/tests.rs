@@ -1,0 +1,70 @@
+use super::*;
+
+const fn edge(start: [f32; 2], along: [f32; 2], length: f32) -> Edge {
+    Edge { start, along, length }
+}
+
+const SQUARE: AttainableSet<'static> = AttainableSet {
+    scale: [1.0, 1.0],
+    centre: [1.0, 1.0],
+    edges: &[
+        edge([0.0, 0.0], [1.0, 0.0], 2.0),
+        edge([2.0, 0.0], [0.0, 1.0], 2.0),
+        edge([2.0, 2.0], [-1.0, 0.0], 2.0),
+        edge([0.0, 2.0], [0.0, -1.0], 2.0),
+    ],
+};
+const CHORD: AttainableSet<'static> = AttainableSet {
+    scale: [1.0, 1.0],
+    centre: [1.0, 0.0],
+    edges: &[edge([0.0, 0.0], [1.0, 0.0], 2.0)],
+};
+
+/// Goes from the centre to `target` face by face.
+fn walk(set: &AttainableSet<'_>, target: [f32; 2]) -> Point {
+    let mut point = set.locate(set.centre);
+    let mut left = [target[0] - set.centre[0], target[1] - set.centre[1]];
+    for _ in 0..8 {
+        let velocity = set.velocity(&point, left);
+        let share = match set.crossing(&mut point, velocity, 1.0, 0.0, None) {
+            Some(crossing) => {
+                set.shift(&mut point, velocity.map(|v| crossing.share * v));
+                set.cross(&mut point, crossing);
+                crossing.share
+            }
+            None => {
+                set.shift(&mut point, velocity);
+                break;
+            }
+        };
+        left = left.map(|left| (1.0 - share) * left);
+    }
+    point
+}
+
+fn check(set: &AttainableSet<'_>, target: [f32; 2], face: Face, projection: [f32; 2]) {
+    for point in [walk(set, target), set.locate(target)] {
+        assert_eq!(
+            (point.face, set.project(&point)),
+            (face, projection),
+            "{target:?}"
+        );
+    }
+}
+
+#[test]
+fn projections_onto_a_square() {
+    check(&SQUARE, [1.5, 0.5], Face::Interior, [1.5, 0.5]);
+    check(&SQUARE, [1.5, -1.0], Face::Edge, [1.5, 0.0]);
+    check(&SQUARE, [3.0, 0.5], Face::Edge, [2.0, 0.5]);
+    check(&SQUARE, [3.0, 5.0], Face::Corner, [2.0, 2.0]);
+    check(&SQUARE, [-3.0, -5.0], Face::Corner, [0.0, 0.0]);
+    check(&SQUARE, [-1.0, 1.5], Face::Edge, [0.0, 1.5]);
+}
+
+#[test]
+fn projections_onto_a_chord() {
+    check(&CHORD, [1.5, -1.0], Face::Edge, [1.5, 0.0]);
+    check(&CHORD, [-1.0, 3.0], Face::Corner, [0.0, 0.0]);
+    check(&CHORD, [4.0, 3.0], Face::Corner, [2.0, 0.0]);
+}

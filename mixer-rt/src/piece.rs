@@ -1,0 +1,197 @@
+//! One affine piece of a path.
+
+use crate::attainable::{Crossing, Face};
+use crate::homotopy::{Homotopy, significant};
+use crate::linear::{Gram, Solution};
+use crate::rows::{Bounds, RowState};
+
+/// Velocities below this share of the multipliers' are rounding errors.
+const NOISE: f32 = 3e-7;
+
+/// What ends a piece.
+enum Event {
+    /// The path's end.
+    Arrival,
+    Face(usize, Crossing),
+    Row(usize, RowState),
+}
+
+impl Homotopy<'_> {
+    /// The factors of J and the rows of the present efforts.
+    #[inline]
+    fn survey(&self) -> (Gram, [f32; 4]) {
+        let active = self.rows.map(|row| row.state != RowState::Between);
+        let mut gram = Gram::default();
+        let mut wrench = [0.0; 4];
+        for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
+            let Some(set) = self.sets.of(scratch.rotors) else {
+                continue;
+            };
+            self.add(unit, set.project(&scratch.point), &mut wrench);
+            let free: &[[f32; 2]] = match scratch.point.face {
+                Face::Interior => &[[1.0, 0.0], [0.0, 1.0]],
+                Face::Edge => &[set.direction(&scratch.point)],
+                Face::Corner => &[],
+            };
+            for direction in free {
+                let mut effect = [0.0; 4];
+                self.add(unit, *direction, &mut effect);
+                let mut effect = self.turned.rows(effect);
+                for (effect, active) in effect.iter_mut().zip(active) {
+                    if !active {
+                        *effect = 0.0;
+                    }
+                }
+                gram.add(effect);
+            }
+        }
+        (gram, self.turned.rows(wrench))
+    }
+
+    /// One piece of the path towards `drift` from the present bounds. Returns the share made, `None` where there is
+    /// no way on.
+    pub(crate) fn piece(&mut self, drift: &[Bounds; 4]) -> Option<f32> {
+        let (gram, wrench) = self.survey();
+        // What rounding has done so far is made up for on the way.
+        let mut way = [0.0; 4];
+        for (((way, row), drift), wrench) in way.iter_mut().zip(&mut self.rows).zip(drift).zip(wrench) {
+            *way = match row.state {
+                RowState::Between => {
+                    row.value = wrench;
+                    0.0
+                }
+                RowState::AtHigh => drift.high + significant(row.value - wrench),
+                RowState::AtLow | RowState::Held => drift.low + significant(row.value - wrench),
+            };
+        }
+        let (multipliers, moving) = match gram.solve(way) {
+            Solution::Regular(velocity) => (velocity, 1.0),
+            Solution::Inconsistent(direction) => (direction, 0.0),
+        };
+        let noise = NOISE * multipliers.iter().fold(0.0, |sum, v| sum + v.abs());
+
+        // The first event: of the faces, ..
+        let (mut limit, mut event) = if moving > 0.0 {
+            (1.0, Some(Event::Arrival))
+        } else {
+            (f32::MAX, None)
+        };
+        let pull = self.turned.axes(multipliers);
+        let mut effect = [0.0; 4];
+        let units = self.units;
+        for (index, (unit, scratch)) in units.iter().zip(self.scratch.iter_mut()).enumerate() {
+            let Some(set) = self.sets.of(scratch.rotors) else {
+                continue;
+            };
+            let mut step = self.factors;
+            for (step, column) in step.iter_mut().zip(unit.effectiveness) {
+                *step *=
+                    (column[0] * pull[0] + column[1] * pull[1]) + (column[2] * pull[2] + column[3] * pull[3]);
+            }
+            let mut velocity = set.velocity(&scratch.point, step);
+            if moving == 0.0 {
+                match scratch.point.face {
+                    Face::Interior => velocity = [0.0; 2],
+                    Face::Edge => velocity[0] = 0.0,
+                    Face::Corner => {}
+                }
+            }
+            scratch.pair = velocity;
+            let efforts = match scratch.point.face {
+                Face::Interior => velocity,
+                Face::Edge => set.direction(&scratch.point).map(|part| part * velocity[0]),
+                Face::Corner => [0.0; 2],
+            };
+            let [by_f, by_q] = unit.effectiveness;
+            let [f, q] = [efforts[0] * self.factors[0], efforts[1] * self.factors[1]];
+            for ((effect, by_f), by_q) in effect.iter_mut().zip(by_f).zip(by_q) {
+                *effect += by_f * f + by_q * q;
+            }
+            let barred = match self.left {
+                Some((left, region)) if left == index && scratch.point.face != Face::Interior => Some(region),
+                _ => None,
+            };
+            if let Some(crossing) = set.crossing(&mut scratch.point, velocity, limit, noise, barred) {
+                limit = crossing.share;
+                event = Some(Event::Face(index, crossing));
+            }
+        }
+        // .. of the slack rows.
+        let speeds = self.turned.rows(effect);
+        for (index, (((row, drift), speed), pull)) in self
+            .rows
+            .iter()
+            .zip(drift)
+            .zip(speeds)
+            .zip(multipliers)
+            .enumerate()
+        {
+            let mut falls = |height: f32, speed: f32, state: RowState| {
+                if speed < -noise {
+                    let share = if height > 0.0 { height / -speed } else { 0.0 };
+                    if share < limit {
+                        limit = share;
+                        event = Some(Event::Row(index, state));
+                    }
+                }
+            };
+            match row.state {
+                RowState::Held => {}
+                RowState::AtLow => falls(row.multiplier, pull, RowState::Between),
+                RowState::AtHigh => falls(-row.multiplier, -pull, RowState::Between),
+                RowState::Between => {
+                    falls(
+                        row.value - row.bounds.low,
+                        speed - moving * drift.low,
+                        RowState::AtLow,
+                    );
+                    falls(
+                        row.bounds.high - row.value,
+                        moving * drift.high - speed,
+                        RowState::AtHigh,
+                    );
+                }
+            }
+        }
+        let event = event?;
+
+        let made = moving * limit;
+        for (((row, drift), pull), speed) in self.rows.iter_mut().zip(drift).zip(multipliers).zip(speeds) {
+            row.multiplier += limit * pull;
+            row.bounds.low += made * drift.low;
+            row.bounds.high += made * drift.high;
+            row.value = match row.state {
+                RowState::Between => row.value + limit * speed,
+                RowState::AtHigh => row.bounds.high,
+                RowState::AtLow | RowState::Held => row.bounds.low,
+            };
+        }
+        for scratch in self.scratch.iter_mut() {
+            if let Some(set) = self.sets.of(scratch.rotors) {
+                let velocity = scratch.pair;
+                set.shift(&mut scratch.point, [limit * velocity[0], limit * velocity[1]]);
+            }
+        }
+        self.left = None;
+        match event {
+            Event::Arrival => return Some(1.0),
+            Event::Face(index, crossing) => {
+                if let Some(scratch) = self.scratch.get_mut(index)
+                    && let Some(set) = self.sets.of(scratch.rotors)
+                {
+                    self.left = Some((index, scratch.point.region()));
+                    set.cross(&mut scratch.point, crossing);
+                }
+            }
+            Event::Row(index, state) => {
+                if let Some(row) = self.rows.get_mut(index) {
+                    row.state = state;
+                    if state == RowState::Between {
+                        row.multiplier = 0.0;
+                    }
+                }
+            }
+        }
+        Some(made)
+    }
+}
