@@ -189,6 +189,17 @@ impl<'h> Homotopy<'h> {
             low: crate::clamp(low, -FAR, FAR),
             high: crate::clamp(high, -FAR, FAR),
         });
+        if self
+            .rows
+            .iter()
+            .zip(&target)
+            .all(|(row, target)| row.suits(target))
+        {
+            for (row, target) in self.rows.iter_mut().zip(target) {
+                row.bounds = target;
+            }
+            return 1.0;
+        }
         let mut share = 0.0;
         loop {
             let left = 1.0 - share;
@@ -253,20 +264,20 @@ impl<'h> Homotopy<'h> {
         let mut wrench = [0.0; 4];
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
             if let Some(set) = self.sets.of(scratch.rotors) {
-                self.add(unit, set.project(&scratch.point), &mut wrench);
+                add(unit, self.factors, set.project(&scratch.point), &mut wrench);
             }
         }
         self.turned.rows(wrench)
     }
+}
 
-    /// Adds what scaled `efforts` of a unit give.
-    #[inline]
-    pub(crate) fn add(&self, unit: &Unit, efforts: [f32; 2], wrench: &mut [f32; 4]) {
-        let [by_f, by_q] = unit.effectiveness;
-        let [f, q] = [efforts[0] * self.factors[0], efforts[1] * self.factors[1]];
-        for ((wrench, by_f), by_q) in wrench.iter_mut().zip(by_f).zip(by_q) {
-            *wrench += by_f * f + by_q * q;
-        }
+/// Adds what scaled `efforts` of a unit give to the wrench.
+#[inline]
+pub(crate) fn add(unit: &Unit, factors: [f32; 2], efforts: [f32; 2], wrench: &mut [f32; 4]) {
+    let [by_f, by_q] = unit.effectiveness;
+    let [f, q] = [efforts[0] * factors[0], efforts[1] * factors[1]];
+    for ((wrench, by_f), by_q) in wrench.iter_mut().zip(by_f).zip(by_q) {
+        *wrench += by_f * f + by_q * q;
     }
 }
 

@@ -37,6 +37,9 @@ impl Gram {
         let mut weight = 1.0;
         for k in 0..4 {
             let entry = g[k];
+            if entry == 0.0 {
+                continue;
+            }
             let grown = self.diagonal[k] + weight * entry * entry;
             if grown <= LEAST_ANGLE * LEAST_ANGLE {
                 continue;
@@ -50,6 +53,9 @@ impl Gram {
                 let old = *value;
                 *value = kept * old + added * *g;
                 *g -= entry * old;
+            }
+            if weight == 0.0 {
+                break;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! One affine piece of a path.
 
 use crate::attainable::{Crossing, Face};
-use crate::homotopy::{Homotopy, significant};
+use crate::homotopy::{Homotopy, add, significant};
 use crate::linear::{Gram, Solution};
 use crate::rows::{Bounds, RowState};
 
@@ -27,7 +27,7 @@ impl Homotopy<'_> {
             let Some(set) = self.sets.of(scratch.rotors) else {
                 continue;
             };
-            self.add(unit, set.project(&scratch.point), &mut wrench);
+            add(unit, self.factors, set.project(&scratch.point), &mut wrench);
             let free: &[[f32; 2]] = match scratch.point.face {
                 Face::Interior => &[[1.0, 0.0], [0.0, 1.0]],
                 Face::Edge => &[set.direction(&scratch.point)],
@@ -35,7 +35,7 @@ impl Homotopy<'_> {
             };
             for direction in free {
                 let mut effect = [0.0; 4];
-                self.add(unit, *direction, &mut effect);
+                add(unit, self.factors, *direction, &mut effect);
                 let mut effect = self.turned.rows(effect);
                 for (effect, active) in effect.iter_mut().zip(active) {
                     if !active {
@@ -78,6 +78,7 @@ impl Homotopy<'_> {
         };
         let pull = self.turned.axes(multipliers);
         let mut effect = [0.0; 4];
+        let has_slack = self.rows.iter().any(|row| row.state == RowState::Between);
         let units = self.units;
         for (index, (unit, scratch)) in units.iter().zip(self.scratch.iter_mut()).enumerate() {
             let Some(set) = self.sets.of(scratch.rotors) else {
@@ -97,15 +98,13 @@ impl Homotopy<'_> {
                 }
             }
             scratch.pair = velocity;
-            let efforts = match scratch.point.face {
-                Face::Interior => velocity,
-                Face::Edge => set.direction(&scratch.point).map(|part| part * velocity[0]),
-                Face::Corner => [0.0; 2],
-            };
-            let [by_f, by_q] = unit.effectiveness;
-            let [f, q] = [efforts[0] * self.factors[0], efforts[1] * self.factors[1]];
-            for ((effect, by_f), by_q) in effect.iter_mut().zip(by_f).zip(by_q) {
-                *effect += by_f * f + by_q * q;
+            if has_slack {
+                let efforts = match scratch.point.face {
+                    Face::Interior => velocity,
+                    Face::Edge => set.direction(&scratch.point).map(|part| part * velocity[0]),
+                    Face::Corner => [0.0; 2],
+                };
+                add(unit, self.factors, efforts, &mut effect);
             }
             let barred = match self.left {
                 Some((left, region)) if left == index && scratch.point.face != Face::Interior => Some(region),

@@ -4,7 +4,7 @@
 //! nearest to either are the same. With tilted axes they are not. There the reference is between the two: the least-norm
 //! efforts where these are attainable, which makes them the result, and the centres where these are far from it.
 
-use crate::homotopy::Homotopy;
+use crate::homotopy::{Homotopy, add};
 use crate::linear::{Gram, Solution};
 use crate::rows::{Bounds, RowState};
 
@@ -40,10 +40,10 @@ impl Homotopy<'_> {
                 part * (set.centre[0] - least[0] / self.factors[0]),
                 part * (set.centre[1] - least[1] / self.factors[1]),
             ];
-            self.add(unit, way, &mut wrench);
+            add(unit, self.factors, way, &mut wrench);
             for direction in [[1.0, 0.0], [0.0, 1.0]] {
                 let mut effect = [0.0; 4];
-                self.add(unit, direction, &mut effect);
+                add(unit, self.factors, direction, &mut effect);
                 gram.add(self.turned.rows(effect));
             }
         }

@@ -60,6 +60,16 @@ pub(crate) struct Row {
 }
 
 impl Row {
+    /// True where nothing need move for the bounds to become `target`.
+    pub(crate) fn suits(&self, target: &Bounds) -> bool {
+        match self.state {
+            RowState::Between => target.low <= self.value && self.value <= target.high,
+            RowState::AtLow => self.bounds.low == target.low,
+            RowState::AtHigh => self.bounds.high == target.high,
+            RowState::Held => self.bounds == *target,
+        }
+    }
+
     /// Held where it is.
     pub(crate) fn hold(&mut self) {
         self.state = RowState::Held;
