@@ -112,7 +112,18 @@ fn mixers_are_small_and_cannot_panic() {
 /// The compiler sorts evaluators by numbers that were counted; where code has changed since, they must be counted anew.
 #[test]
 fn evaluators_cost_what_the_compiler_believes() {
-    let counted = evaluators::counted(&toolchain()).unwrap_or_else(|e| panic!("{e}"));
+    let toolchain = toolchain();
+    let image = toolchain
+        .build("evaluators", &[])
+        .unwrap_or_else(|e| panic!("{e}"));
+    let image = Image::read(&image).unwrap_or_else(|e| panic!("{e}"));
+    let checks = |symbol: &&String| symbol.contains("panic_bounds_check");
+    assert_eq!(
+        image.symbols.iter().find(checks),
+        None,
+        "an evaluator checks an index"
+    );
+    let counted = evaluators::counted(&toolchain).unwrap_or_else(|e| panic!("{e}"));
     let stated = mixer_compiler::evaluator::cost::INSTRUCTIONS;
     assert_eq!(counted.len(), stated.len());
     for ((name, counted), (stated_name, stated)) in counted.iter().zip(stated) {

@@ -23,34 +23,41 @@ impl TableSeed {
     ///
     /// A cell beyond [`TableSeed::LAST_CELL`] counts as that one.
     #[inline(always)]
-    pub fn within<S: Scalar>(&self, cell: [usize; 2], place: [S; 2]) -> [S; 2] {
-        let [i, j] = cell.map(|index| {
-            if index < Self::LAST_CELL {
-                index
-            } else {
-                Self::LAST_CELL
-            }
-        });
-        let ([near, far], [a, b]) = ([&self.knots[i], &self.knots[i + 1]], place);
-        let mix = |from: S, to: S, share: S| (to - from) * share + from;
-        let along = |j: usize, k: usize| mix(S::constant(near[j][k]), S::constant(far[j][k]), a);
-        [0, 1].map(|k| mix(along(j, k), along(j + 1, k), b))
+    pub fn within<S: Scalar>(&self, [i, j]: [usize; 2], [a, b]: [S; 2]) -> [S; 2] {
+        // Written out: where a closure is not inlined, the compiler does not see that no index is out of range.
+        let i = if i < Self::LAST_CELL { i } else { Self::LAST_CELL };
+        let j = if j < Self::LAST_CELL { j } else { Self::LAST_CELL };
+        let (near, far) = (&self.knots[i], &self.knots[i + 1]);
+        let low = between(near[j], far[j], a);
+        let high = between(near[j + 1], far[j + 1], a);
+        [(high[0] - low[0]) * b + low[0], (high[1] - low[1]) * b + low[1]]
     }
 
     /// `[u, l]` at the place `[x, y]` in the table.
     #[inline(always)]
-    pub fn at(&self, place: [f32; 2]) -> [f32; 2] {
-        // The conversion takes negative numbers and NaN to 0.
-        let cell = place.map(|x| {
-            let index = x as usize;
-            if index < Self::LAST_CELL {
-                index
-            } else {
-                Self::LAST_CELL
-            }
-        });
-        self.within(cell, [0, 1].map(|k| place[k] - cell[k] as f32))
+    pub fn at(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let (i, j) = (cell(x), cell(y));
+        self.within([i, j], [x - i as f32, y - j as f32])
     }
+}
+
+/// The cell along one coordinate.
+#[inline(always)]
+fn cell(x: f32) -> usize {
+    // The conversion takes negative numbers and NaN to 0.
+    let index = x as u32;
+    let last = TableSeed::LAST_CELL as u32;
+    (if index < last { index } else { last }) as usize
+}
+
+/// The share `share` of the way from one pair of numbers to another.
+#[inline(always)]
+fn between<S: Scalar>(from: [f32; 2], to: [f32; 2], share: S) -> [S; 2] {
+    let one = |from: S, to: S| (to - from) * share + from;
+    [
+        one(S::constant(from[0]), S::constant(to[0])),
+        one(S::constant(from[1]), S::constant(to[1])),
+    ]
 }
 
 impl Seed for TableSeed {

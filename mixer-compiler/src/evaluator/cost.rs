@@ -31,10 +31,10 @@ pub const INSTRUCTIONS: [(&str, [u32; 3]); 23] = [
     ("cubic-newton", [161, 167, 195]),
     ("cubic-shamanskii", [210, 219, 285]),
     ("cubic-newton2", [233, 247, 328]),
-    ("table", [138, 138, 138]),
-    ("table-newton", [220, 226, 254]),
-    ("table-shamanskii", [269, 278, 342]),
-    ("table-newton2", [292, 304, 385]),
+    ("table", [92, 92, 92]),
+    ("table-newton", [174, 180, 208]),
+    ("table-shamanskii", [223, 232, 298]),
+    ("table-newton2", [247, 260, 341]),
 ];
 
 /// Cycles of a division or a square root beyond those of other instructions (Cortex-M4 Technical Reference Manual,
