@@ -4,7 +4,7 @@
 //! included. Fits are least squares with Lawson's weights: after each solution every sample's weight is multiplied
 //! by a power of its error in the efforts, *measured after the evaluator's Newton steps*, which drives the fit
 //! towards the least possible maximum of what the mixer really misses. Evaluators without a step are fitted to the
-//! efforts at once ([`joint`]), seeds for Newton steps to the throttles ([`lawson`]).
+//! efforts at once (`joint.rs`), seeds for Newton steps to the throttles (`lawson.rs`).
 
 mod coordinates;
 mod form;
