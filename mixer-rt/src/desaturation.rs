@@ -46,6 +46,9 @@ const REQUEST_LIMIT: f32 = 1e5;
 /// Rounds of correction for the chords that stand for the curves of units with one rotor.
 const CHORD_ROUNDS: u32 = 4;
 
+/// Share of the mixer's tolerance below which a correction is not worth another round.
+const CORRECTED: f32 = 0.25;
+
 /// True where `request` is finite and within [`REQUEST_LIMIT`].
 #[inline(always)]
 pub(crate) fn is_bounded(request: &[f32; 4]) -> bool {
@@ -85,6 +88,7 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
     prioritise(tables, &sets, request, bulge, factors, scratch);
     if scratch.iter().any(|scratch| scratch.rotors != Rotors::Both) {
         for _ in 0..CHORD_ROUNDS {
+            let before = bulge;
             bulge = [0.0; 4];
             for (unit, scratch) in tables.units.iter().zip(scratch.iter()) {
                 let [f, q] = scratch.efforts;
@@ -94,6 +98,11 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
                         *bulge += effect * missed;
                     }
                 }
+            }
+            // What is left is less than the inverse map may miss.
+            let mut changes = bulge.iter().zip(before).zip(tables.tolerance.wrench);
+            if changes.all(|((now, before), tolerance)| (now - before).abs() < CORRECTED * tolerance) {
+                break;
             }
             prioritise(tables, &sets, request, bulge, factors, scratch);
         }

@@ -13,6 +13,9 @@ const LEAST_ANGLE: f32 = 1e-6;
 /// A right-hand side that misses the range of J by less than this share of what it is made of counts as within it.
 const CONSISTENT: f32 = 1e-5;
 
+/// With a determinant beyond this (the diagonal of J is at most one) no angle is below 0.03.
+const FAR_FROM_SINGULAR: f32 = 1e-3;
+
 /// What a system has for a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Solution {
@@ -61,10 +64,49 @@ impl Gram {
     }
 
     /// Solves `J x = b`. Where `J` is singular and `b` in its range, unknowns without a pivot are zero.
-    ///
+    pub(crate) fn solve(&self, b: [f32; 4]) -> Solution {
+        self.substitute(b)
+            .map_or_else(|| self.orthogonalise(b), Solution::Regular)
+    }
+
+    /// The solution where J is far from singular on the rows that have a part in it, which most often is so.
+    fn substitute(&self, b: [f32; 4]) -> Option<[f32; 4]> {
+        let mut determinant = 1.0;
+        for diagonal in self.diagonal {
+            if diagonal > 0.0 {
+                determinant *= diagonal;
+            }
+        }
+        if determinant < FAR_FROM_SINGULAR {
+            return None;
+        }
+        let mut x = b;
+        for k in 0..3 {
+            let value = x[k];
+            for (x, factor) in x.iter_mut().zip(self.columns[k]).skip(k + 1) {
+                *x -= factor * value;
+            }
+        }
+        for (x, diagonal) in x.iter_mut().zip(self.diagonal) {
+            if diagonal > 0.0 {
+                *x /= diagonal;
+            } else if *x != 0.0 {
+                return None;
+            }
+        }
+        for k in (0..3).rev() {
+            let mut value = x[k];
+            for (x, factor) in x.iter().zip(self.columns[k]).skip(k + 1) {
+                value -= factor * x;
+            }
+            x[k] = value;
+        }
+        Some(x)
+    }
+
     /// `J = C^T C` with `C = sqrt(D) L^T`, whose columns are orthogonalised, the longest that is left first: so a
     /// column that is a combination of others shows as one, however the rows of the wrench are ordered.
-    pub(crate) fn solve(&self, b: [f32; 4]) -> Solution {
+    fn orthogonalise(&self, b: [f32; 4]) -> Solution {
         let roots = self.diagonal.map(sqrt);
         let mut columns = [[0.0; 4]; 4];
         for k in 0..4 {
