@@ -12,7 +12,7 @@
 //!
 //! Each step is a straight path in the space of wrenches that [`Homotopy`] follows to its exact end. The result
 //! is a continuous function of the request: the attainable wrenches are a polytope, on which the nearest points
-//! above move continuously, and the efforts are the unique least-norm ones of the wrench reached.
+//! above move continuously, and the efforts are the only ones nearest to a reference that give the wrench reached.
 
 use crate::chord::{Rotors, Sets};
 use crate::homotopy::{Homotopy, Scratch};
@@ -138,12 +138,12 @@ fn prioritise<P, I, S>(
             REQUEST_LIMIT
         },
     };
-    give_up(&mut homotopy, wanted, yaw, thrust, airmode);
+    descend(&mut homotopy, wanted, yaw, thrust, airmode);
     homotopy.write_efforts();
 }
 
-/// The steps of the module's head, from where the way to the request has ended.
-fn give_up(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: Bounds, airmode: Airmode) {
+/// The steps of the module's head, one path each. `wanted` in rows; `yaw` and `thrust` are where these rows may be.
+fn descend(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: Bounds, airmode: Airmode) {
     const LEVEL: Bounds = Bounds::at(0.0);
     const WIDE: Bounds = Bounds {
         low: -REQUEST_LIMIT,
