@@ -13,7 +13,7 @@ inverse of the pair's map and voltage law, in double precision, standard library
 
 What it asks of every row:
   * throttles within [min, max]; one row per setpoint
-  * the achieved wrench is the one that these throttles give
+  * the achieved wrench is the one that these throttles give, within the file's tolerance of every unit
   * a request whose least-norm efforts are attainable is delivered: every unit's thrust and torque within the
     file's tolerance of them
   * otherwise no axis reverses or overshoots, (roll, pitch) keeps its direction, and airmode "disabled" does not

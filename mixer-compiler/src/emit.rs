@@ -191,6 +191,7 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     let (slopes, walls) = (facets(&table.slopes), facets(&table.walls));
     let (share, complete) = (float(table.torque_share()), table.complete);
     let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
+    let rounding = float(table.yaw_rounding_nm);
     quote! {
         &::mixer_rt::Vertical {
             units: &[#(#units),*],
@@ -202,6 +203,7 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
             torque_share: #share,
             thrust_floor_n: #floor,
             thrust_middle_n: #middle,
+            yaw_rounding_nm: #rounding,
         }
     }
 }

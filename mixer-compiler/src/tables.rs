@@ -108,6 +108,8 @@ pub struct VerticalTable {
     pub thrust_floor_n: f32,
     /// A thrust well inside, N.
     pub thrust_middle_n: f32,
+    /// Yaw that counts as none, N m.
+    pub yaw_rounding_nm: f32,
 }
 
 impl VerticalTable {
@@ -123,6 +125,7 @@ impl VerticalTable {
             torque_share: self.torque_share(),
             thrust_floor_n: self.thrust_floor_n,
             thrust_middle_n: self.thrust_middle_n,
+            yaw_rounding_nm: self.yaw_rounding_nm,
         }
     }
 
@@ -132,8 +135,8 @@ impl VerticalTable {
     }
 
     fn floats(&self) -> usize {
-        // Range, border, share, floor and middle beside the units and facets.
-        2 + 28 + 3 + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
+        // Range, border, share, floor, middle and rounding beside the units and facets.
+        2 + 28 + 4 + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
     }
 }
 

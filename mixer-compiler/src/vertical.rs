@@ -25,11 +25,14 @@ const MARGIN: f64 = 2e-6;
 /// Of sums of a few f32 products.
 const ROUNDING: f32 = 1e-6;
 
+/// Yaw that counts as none, as a share of the units' largest torques.
+const YAW_ROUNDING: f64 = 1e-5;
+
 /// A unit whose thrust changes by less than this share of the largest along the null space has no part in it.
 const NO_PART: f64 = 1e-5;
 
 /// Shifts tried on a logarithmic scale, and halvings of the best interval.
-const SHIFTS: usize = 40;
+const SHIFTS: usize = 80;
 const HALVINGS: usize = 24;
 
 /// The table, where the layout and the priorities allow the shorter way.
@@ -106,6 +109,7 @@ pub(crate) fn table(
         walls,
         thrust_floor_n: least_level * (1.0 + ROUNDING),
         thrust_middle_n: 0.5 * (floor + ceiling),
+        yaw_rounding_nm: (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32,
     };
     inside(&pair, &table).then_some(table)
 }
@@ -184,8 +188,8 @@ fn arc(pair: &PairMap, from: [f64; 2], to: [f64; 2], sign: f64) -> Option<Arc> {
     }
     let (first, last) = (points[0][0], points[SAMPLES][0]);
     let span = last - first;
-    // The radicand at the edge's start runs from a thousandth of the span to some ten times the span.
-    let start = |k: f64| span * libm::pow(10.0, -3.0 + 4.0 * k);
+    // The radicand at the edge's start runs from next to nothing, where f hardly grows at first, to ten times the span.
+    let start = |k: f64| span * libm::pow(10.0, -7.0 + 8.0 * k);
     let error = |k: f64| fit(&points, start(k) - first).map_or(f64::INFINITY, |fit| fit.error);
     let best = (0..=SHIFTS)
         .map(|k| k as f64 / SHIFTS as f64)

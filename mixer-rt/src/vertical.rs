@@ -70,6 +70,8 @@ pub struct Vertical<'a> {
     pub thrust_floor_n: f32,
     /// A thrust well inside the attainable set, N.
     pub thrust_middle_n: f32,
+    /// Yaw that counts as none where the attainable torques shrink to a point, N m.
+    pub yaw_rounding_nm: f32,
 }
 
 /// What an airframe's tables know about a shorter way than the homotopy.

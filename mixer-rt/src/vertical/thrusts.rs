@@ -63,7 +63,7 @@ impl Vertical<'_> {
             z += part * (top_z - z);
             here = reach(search, z);
         }
-        if here.yaw < 0.0 {
+        if here.yaw < -self.yaw_rounding_nm {
             // From the inside, so it is zero or a little more.
             let (_, z) = self.retreat(search, z, here.yaw, 0.0, middle);
             return (0.0, z);

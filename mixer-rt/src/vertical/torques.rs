@@ -42,7 +42,7 @@ impl Vertical<'_> {
             given += p;
         }
         let mut upwards = 1.0;
-        if raised && given > wanted {
+        if raised && given - wanted > self.yaw_rounding_nm {
             upwards = -1.0;
             for state in search.iter_mut() {
                 rolled();
@@ -50,7 +50,7 @@ impl Vertical<'_> {
                 state.side = self.border.side(state.turn);
             }
             reached = -reach(search, z).yaw;
-            if reached > wanted {
+            if reached - wanted > self.yaw_rounding_nm {
                 (reached, z) = self.retreat(search, z, -reached, -wanted, middle_n);
                 reached = -reached;
             }
