@@ -3,9 +3,10 @@
 //! Run with `--nocapture` (or through `tests/run`) to see the tables.
 #![allow(missing_docs)]
 
-use mixer_tests::firmware::Toolchain;
+use mixer_tests::counts::{self, Row};
+use mixer_tests::firmware::{Toolchain, Variant};
 use mixer_tests::image::Image;
-use mixer_tests::{airframes, evaluators};
+use mixer_tests::{airframes, digest, evaluators, golden};
 
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 512;
@@ -51,6 +52,11 @@ fn table(text: &str) -> Vec<Line> {
         .collect()
 }
 
+fn size_image(toolchain: &Toolchain, variant: &Variant) -> Image {
+    let path = toolchain.build("size", variant).unwrap_or_else(|e| panic!("{e}"));
+    Image::read(&path).unwrap_or_else(|e| panic!("{e}"))
+}
+
 fn toolchain() -> Toolchain {
     Toolchain::find().unwrap_or_else(|missing| panic!("{missing}"))
 }
@@ -58,7 +64,9 @@ fn toolchain() -> Toolchain {
 #[test]
 fn golden_vectors_have_the_same_bits_as_on_the_host() {
     let toolchain = toolchain();
-    let text = toolchain.run("golden", &[]).unwrap_or_else(|e| panic!("{e}"));
+    let text = toolchain
+        .run("golden", &Variant::default())
+        .unwrap_or_else(|e| panic!("{e}"));
     println!("{text}");
 
     let lines = table(&text);
@@ -75,31 +83,38 @@ fn golden_vectors_have_the_same_bits_as_on_the_host() {
         };
         assert!(line.stack <= limit, "stack is over {limit} bytes: {line:?}");
     }
-    let again = toolchain.run("golden", &[]).unwrap_or_else(|e| panic!("{e}"));
+    let again = toolchain
+        .run("golden", &Variant::default())
+        .unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(text, again, "a second run counts the same instructions");
 }
 
 #[test]
 fn mixers_are_small_and_cannot_panic() {
     let toolchain = toolchain();
-    let image = |cfgs: &[String]| {
-        let path = toolchain.build("size", cfgs).unwrap_or_else(|e| panic!("{e}"));
-        Image::read(&path).unwrap_or_else(|e| panic!("{e}"))
-    };
     // What one mixer adds to an image that does nothing.
-    let empty = image(&[]);
+    let empty = size_image(&toolchain, &Variant::default());
     println!(
         "bytes added to an image\n{:<24} {:>8} {:>8} {:>8}",
         "airframe", "code", "tables", "sum"
     );
     for airframe in airframes().expect("airframes") {
-        let image = image(&["airframe".into(), format!("airframe={airframe:?}")]);
+        let variant = Variant {
+            cfgs: vec!["airframe".into(), format!("airframe={airframe:?}")],
+            features: Vec::new(),
+        };
+        let image = size_image(&toolchain, &variant);
         let (code, tables) = (image.code - empty.code, image.tables - empty.tables);
         println!("{airframe:<24} {code:>8} {tables:>8} {:>8}", code + tables);
 
         assert!(code > 100, "{airframe}: the mixer is not in the image");
         assert_eq!(image.ram, empty.ram, "{airframe}: a mixer has no state");
         assert_eq!(image.panic_symbols(), [""; 0], "{airframe}");
+        assert_eq!(
+            image.helper_symbols(),
+            [""; 0],
+            "{airframe}: soft float or a copy loop"
+        );
         if airframe == REFERENCE {
             assert!(
                 code + tables <= SIZE_LIMIT_BYTES,
@@ -141,7 +156,7 @@ fn evaluators_cost_what_the_compiler_believes() {
 /// The size image proves by linking that no panic is reachable: here is the panic that must not link.
 #[test]
 fn a_reachable_panic_does_not_link() {
-    let linked = toolchain().build("size", &["panic_path".into()]);
+    let linked = toolchain().build("size", &Variant::with("panic_path"));
     let message = linked.expect_err("an index out of range went unnoticed");
     assert!(message.contains("the_mixer_can_panic"), "{message}");
 }
@@ -158,7 +173,9 @@ fn panic_symbols_are_found_where_there_are_some() {
 /// after which the rotors stop.
 #[test]
 fn control_loop_holds_and_then_disarms() {
-    let text = toolchain().run("firmware", &[]).unwrap_or_else(|e| panic!("{e}"));
+    let text = toolchain()
+        .run("firmware", &Variant::default())
+        .unwrap_or_else(|e| panic!("{e}"));
     println!("{text}");
     assert!(text.contains("mixed 1197, held 43, disarmed 60\n"), "{text}");
     assert!(
@@ -166,3 +183,104 @@ fn control_loop_holds_and_then_disarms() {
         "{text}"
     );
 }
+
+/// A hundred thousand setpoints per airframe: attainable, saturated, not finite. A million where `MIXER_MILLION` names the
+/// airframe, or for `all`.
+#[test]
+fn random_setpoints_have_the_same_bits_as_on_the_host() {
+    let toolchain = toolchain();
+    let millions = std::env::var("MIXER_MILLION").unwrap_or_default();
+    let mut faults = Vec::new();
+    for airframe in airframes().expect("airframes") {
+        let million = millions.split(',').any(|name| name == airframe || name == "all");
+        let count = if million { 1_000_000 } else { 100_000 };
+        let mut variant = Variant {
+            cfgs: vec!["airframe".into(), format!("airframe={airframe:?}")],
+            features: Vec::new(),
+        };
+        if million {
+            variant.cfgs.push("million".into());
+        }
+        let printed = toolchain
+            .run_uncounted("digest", &variant)
+            .unwrap_or_else(|e| panic!("{e}"));
+        let target: Vec<&str> = printed.lines().collect();
+        let compiled = golden::compile(&airframe).unwrap_or_else(|e| panic!("{e}"));
+        let host: Vec<String> = digest::of(&compiled, count)
+            .iter()
+            .map(|d| format!("{d:016x}"))
+            .collect();
+        println!(
+            "{airframe:<24} {count:>8} setpoints, digest {}",
+            host.last().expect("ten digests")
+        );
+        if target != host {
+            let tenth = host.iter().zip(&target).position(|(host, target)| host != target);
+            faults.push(format!(
+                "{airframe}: other bits from tenth {tenth:?} on: {host:?} {target:?}"
+            ));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// How far a count may be from the held one where another compiler builds the firmware. A search for the dearest
+/// request takes other ways there.
+const OTHER_COMPILER: f64 = 0.03;
+const OTHER_COMPILER_SEARCHED: f64 = 0.15;
+
+/// The counts of `tests/counts.csv`, to the instruction and to the byte, where the same compiler builds the firmware.
+#[test]
+fn counts_are_those_held() {
+    let toolchain = toolchain();
+    let (compiler, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
+    let same = compiler == toolchain.compiler;
+    if !same {
+        println!(
+            "ANOTHER COMPILER: the counts are those of {compiler}, this is {}: compared within {} %, not for equality",
+            toolchain.compiler,
+            100.0 * OTHER_COMPILER
+        );
+    }
+    let airframes = airframes().expect("airframes");
+    let names: Vec<_> = held.iter().map(|row| row.subject.clone()).collect();
+    assert_eq!(
+        names,
+        counts::all(&airframes),
+        "a row per subject, in order: {MEND}"
+    );
+    let compared = if std::env::var_os("MIXER_COUNTS").is_some_and(|value| value == "all") {
+        counts::all(&airframes)
+    } else {
+        counts::compared(&airframes)
+    };
+    println!(
+        "{} of {} rows compared; MIXER_COUNTS=all compares all",
+        compared.len(),
+        held.len()
+    );
+    let empty = size_image(&toolchain, &Variant::default());
+    let mut faults = Vec::new();
+    for held in held.iter().filter(|row| compared.contains(&row.subject)) {
+        let now = Row::measure(&toolchain, &held.subject, &empty).unwrap_or_else(|e| panic!("{e}"));
+        println!("{now}");
+        for ((column, held_value), value) in counts::COLUMNS.iter().zip(held.values).zip(now.values) {
+            let allowed = match *column {
+                _ if same => 0.0,
+                "searched_worst" => OTHER_COMPILER_SEARCHED,
+                _ => OTHER_COMPILER,
+            };
+            if value.abs_diff(held_value) as f64 > allowed * held_value as f64 {
+                let change = 100.0 * (value as f64 / held_value as f64 - 1.0);
+                faults.push(format!(
+                    "{:?} {column}: {held_value} held, {value} counted, {change:+.2} %",
+                    held.subject
+                ));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}\n{MEND}", faults.join("\n"));
+}
+
+const MEND: &str =
+    "if the change is meant, `cargo run -p mixer-tests --bin counts -- --bless` and look at the difference";

@@ -1,74 +1,212 @@
-//! What a mix costs on the target, counted to the instruction by the `counts` image of `examples/firmware`.
+//! What a mix costs on the target: instructions, counted one by one by the `counts` image of `examples/firmware`, and
+//! bytes of code, tables and stack.
+//!
+//! `tests/counts.csv` holds a [`Row`] per [`Subject`]. It is written by `cargo run -p mixer-tests --bin counts -- --bless`
+//! only, and begins with the compiler that built the firmware: another one gives other counts.
 
 use std::fmt;
+use std::path::PathBuf;
 
-use crate::firmware::Toolchain;
+use crate::firmware::{Toolchain, Variant};
+use crate::image::Image;
+use crate::root;
 
-/// What the requests of one set cost.
+/// A mixer of an airframe.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// `coaxial`, or a baseline: `conventional`, `sequential`, `wls`.
+    pub mixer: String,
+    /// A file of `airframes/`, or one of `examples/firmware/build/frames.rs`.
+    pub airframe: String,
+}
+
+impl Subject {
+    fn new(mixer: &str, airframe: &str) -> Self {
+        Subject {
+            mixer: mixer.to_owned(),
+            airframe: airframe.to_owned(),
+        }
+    }
+
+    fn variant(&self) -> Variant {
+        let mut variant = Variant {
+            cfgs: vec!["airframe".into(), format!("airframe={:?}", self.airframe)],
+            features: Vec::new(),
+        };
+        if self.mixer != "coaxial" {
+            variant
+                .cfgs
+                .extend(["baseline".into(), format!("baseline={:?}", self.mixer)]);
+        }
+        if self.mixer == "wls" {
+            variant.features.push("wls-alloc");
+        }
+        variant
+    }
+}
+
+/// The subjects that every run of the tests compares: all airframes, and the baselines of `mixer-rt` on the X8.
+pub fn compared(airframes: &[String]) -> Vec<Subject> {
+    let airframes = airframes.iter().map(|airframe| Subject::new("coaxial", airframe));
+    let baselines = ["conventional", "sequential"].map(|mixer| Subject::new(mixer, "isae-x8"));
+    airframes.chain(baselines).collect()
+}
+
+/// All subjects: those compared, the baselines on other frames, regular frames of 1 to 8 units, and the X8
+/// with five tolerances.
+pub fn all(airframes: &[String]) -> Vec<Subject> {
+    let mut subjects = compared(airframes);
+    subjects.push(Subject::new("wls", "isae-x8"));
+    for airframe in ["px4-y6", "px4-x12"] {
+        subjects.extend(["conventional", "sequential", "wls"].map(|mixer| Subject::new(mixer, airframe)));
+    }
+    subjects.extend((1..=8).map(|units| Subject::new("coaxial", &format!("regular-{units}"))));
+    let tolerances = ["0.1", "0.01", "0.004", "2e-4", "3e-5"];
+    subjects.extend(tolerances.map(|tolerance| Subject::new("coaxial", &format!("tolerance-{tolerance}"))));
+    subjects
+}
+
+/// What one subject costs. Instructions of all requests of a set (`_sum`) and of its dearest (`_worst`), bytes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Count {
-    /// `attainable`, `saturated` or `searched`.
-    pub set: String,
-    /// How many requests.
-    pub requests: u64,
-    /// Instructions of all of them.
-    pub sum: u64,
-    /// Instructions of the dearest.
-    pub worst: u64,
-    /// Deepest stack, bytes.
-    pub stack: u64,
-    /// The dearest: roll, pitch, yaw (N m), thrust (N), voltage (V).
-    pub dearest: [f32; 5],
+pub struct Row {
+    /// Whose cost.
+    pub subject: Subject,
+    /// Name and value, in the order of [`COLUMNS`].
+    pub values: [u64; COLUMNS.len()],
+}
+
+/// Names of a [`Row`]'s values. `attainable` and `saturated` are sets of as many `requests` each, drawn by
+/// `mixer_setpoints::Requests`; `searched` is what a search for the dearest request found.
+pub const COLUMNS: [&str; 9] = [
+    "code_b",
+    "tables_b",
+    "stack_b",
+    "requests",
+    "attainable_sum",
+    "attainable_worst",
+    "saturated_sum",
+    "saturated_worst",
+    "searched_worst",
+];
+
+impl Row {
+    /// Builds and runs one subject. `empty` is the `size` image without a mixer.
+    ///
+    /// # Errors
+    /// As [`Toolchain::run`], or if an image prints something else.
+    pub fn measure(toolchain: &Toolchain, subject: &Subject, empty: &Image) -> Result<Row, String> {
+        let variant = subject.variant();
+        let size = Image::read(&toolchain.build("size", &variant)?)?;
+        let text = toolchain.run("counts", &variant)?;
+        let counts: Option<Vec<Count>> = text.lines().map(Count::parse).collect();
+        let fault = || format!("{subject:?}: not counts:\n{text}");
+        let counts = counts.ok_or_else(fault)?;
+        let set = |name: &str| counts.iter().find(|count| count.set == name).ok_or_else(fault);
+        let (attainable, saturated, searched) = (set("attainable")?, set("saturated")?, set("searched")?);
+        Ok(Row {
+            subject: subject.clone(),
+            values: [
+                size.code - empty.code,
+                size.tables - empty.tables,
+                counts.iter().map(|count| count.stack).max().unwrap_or(0),
+                attainable.requests,
+                attainable.sum,
+                attainable.worst,
+                saturated.sum,
+                saturated.worst,
+                searched.worst,
+            ],
+        })
+    }
+
+    /// The value of a column.
+    pub fn get(&self, column: &str) -> u64 {
+        let index = COLUMNS.iter().position(|name| *name == column);
+        index.map_or(0, |index| self.values[index])
+    }
+
+    /// Mean over the set `attainable` or `saturated`.
+    pub fn mean(&self, set: &str) -> f64 {
+        self.get(&format!("{set}_sum")) as f64 / self.get("requests") as f64
+    }
+
+    fn parse(line: &str) -> Option<Row> {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [mixer, airframe, values @ ..] = &cells[..] else {
+            return None;
+        };
+        let values: Vec<u64> = values
+            .iter()
+            .map(|cell| cell.parse().ok())
+            .collect::<Option<_>>()?;
+        Some(Row {
+            subject: Subject::new(mixer, airframe),
+            values: values.try_into().ok()?,
+        })
+    }
+}
+
+/// One line of CSV.
+impl fmt::Display for Row {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let values = self.values.map(|value| value.to_string()).join(",");
+        write!(f, "{},{},{values}", self.subject.mixer, self.subject.airframe)
+    }
+}
+
+/// What one set of requests costs, as the image prints it.
+struct Count {
+    set: String,
+    requests: u64,
+    sum: u64,
+    worst: u64,
+    stack: u64,
 }
 
 impl Count {
-    /// Instructions per request.
-    pub fn mean(&self) -> f64 {
-        self.sum as f64 / self.requests as f64
-    }
-
     fn parse(line: &str) -> Option<Count> {
         let cells: Vec<&str> = line.split_whitespace().collect();
-        let [set, requests, sum, worst, stack, dearest] = cells[..] else {
+        let [set, requests, sum, worst, stack, _dearest] = cells[..] else {
             return None;
         };
-        let bits: Result<Vec<u32>, _> = dearest
-            .split(',')
-            .map(|word| u32::from_str_radix(word, 16))
-            .collect();
         Some(Count {
             set: set.to_owned(),
             requests: requests.parse().ok()?,
             sum: sum.parse().ok()?,
             worst: worst.parse().ok()?,
             stack: stack.parse().ok()?,
-            dearest: <[u32; 5]>::try_from(bits.ok()?).ok()?.map(f32::from_bits),
         })
     }
 }
 
-impl fmt::Display for Count {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{:<10} {:>8} {:>10.1} {:>8} {:>8}",
-            self.set,
-            self.requests,
-            self.mean(),
-            self.worst,
-            self.stack
-        )
-    }
+/// The file of the counts.
+pub fn file() -> PathBuf {
+    root().join("tests/counts.csv")
 }
 
-/// Counts the mixer of one airframe alone in its image.
+/// The text of the file: the compiler, the header, the rows.
+pub fn text(compiler: &str, rows: &[Row]) -> String {
+    let rows: String = rows.iter().map(|row| format!("{row}\n")).collect();
+    format!("# {compiler}\nmixer,airframe,{}\n{rows}", COLUMNS.join(","))
+}
+
+/// The compiler and the rows of the file.
 ///
 /// # Errors
-/// As [`Toolchain::run`], or if the image prints something else.
-pub fn mixer(toolchain: &Toolchain, airframe: &str) -> Result<Vec<Count>, String> {
-    let text = toolchain.run("counts", &["airframe".into(), format!("airframe={airframe:?}")])?;
-    let counts: Option<Vec<Count>> = text.lines().map(Count::parse).collect();
-    counts
-        .filter(|counts| !counts.is_empty())
-        .ok_or_else(|| format!("{airframe}: not counts:\n{text}"))
+/// If it cannot be read or is not what [`text`] writes.
+pub fn held() -> Result<(String, Vec<Row>), String> {
+    let path = file();
+    let fault = |what: &str| format!("{}: {what}", path.display());
+    let text = std::fs::read_to_string(&path).map_err(|e| fault(&e.to_string()))?;
+    let mut lines = text.lines();
+    let compiler = lines.next().and_then(|line| line.strip_prefix("# "));
+    let header = format!("mixer,airframe,{}", COLUMNS.join(","));
+    if lines.next() != Some(&header) {
+        return Err(fault("not the expected header"));
+    }
+    let rows: Option<Vec<Row>> = lines.map(Row::parse).collect();
+    match (compiler, rows) {
+        (Some(compiler), Some(rows)) => Ok((compiler.to_owned(), rows)),
+        _ => Err(fault("not counts")),
+    }
 }

@@ -12,7 +12,28 @@ use crate::root;
 
 const TARGET: &str = "thumbv7em-none-eabihf";
 /// Far more than any image needs; an image that hangs must not hang the tests.
-const TIME_LIMIT: Duration = Duration::from_secs(120);
+const TIME_LIMIT: Duration = Duration::from_secs(300);
+/// Of images that mix up to a million times.
+const LONG_TIME_LIMIT: Duration = Duration::from_secs(3600);
+
+/// What of an image is chosen when it is built.
+#[derive(Clone, Debug, Default)]
+pub struct Variant {
+    /// Configuration of the image's own crate.
+    pub cfgs: Vec<String>,
+    /// Features of the firmware package.
+    pub features: Vec<&'static str>,
+}
+
+impl Variant {
+    /// With one configuration flag.
+    pub fn with(cfg: &str) -> Self {
+        Variant {
+            cfgs: vec![cfg.to_owned()],
+            features: Vec::new(),
+        }
+    }
+}
 
 /// What builds firmware on this machine.
 pub struct Toolchain {
@@ -21,6 +42,8 @@ pub struct Toolchain {
     arguments: Vec<&'static str>,
     /// Inside the firmware's own `target`, apart from what its user builds, and one per toolchain.
     target_dir: PathBuf,
+    /// The compiler, by its own name and version.
+    pub compiler: String,
 }
 
 impl Toolchain {
@@ -42,6 +65,7 @@ impl Toolchain {
                 environment: Vec::new(),
                 arguments: Vec::new(),
                 target_dir: target.join("tests"),
+                compiler: version(Path::new(&rustc)),
             });
         }
         let debian = Path::new("/usr/bin/rustc");
@@ -62,6 +86,7 @@ impl Toolchain {
                 ],
                 arguments: vec!["-Zbuild-std=core"],
                 target_dir: target.join("tests-build-std"),
+                compiler: version(debian),
             });
         }
         Err(format!(
@@ -70,13 +95,13 @@ impl Toolchain {
         ))
     }
 
-    /// Builds one image in release mode, its own crate with `cfgs`, and returns the path of its ELF file, which is its
-    /// own for these `cfgs`.
+    /// Builds one image in release mode, its own crate as `variant` says, and returns the path of its ELF file, which is
+    /// that variant's own.
     ///
     /// # Errors
     ///
     /// What the compiler said.
-    pub fn build(&self, image: &str, cfgs: &[String]) -> Result<PathBuf, String> {
+    pub fn build(&self, image: &str, variant: &Variant) -> Result<PathBuf, String> {
         let images = self.target_dir.join("images");
         let fault = |e: std::io::Error| format!("{}: {e}", images.display());
         fs::create_dir_all(&images).map_err(fault)?;
@@ -84,8 +109,11 @@ impl Toolchain {
         let lock = File::create(images.join(".lock")).map_err(fault)?;
         lock.lock().map_err(fault)?;
         let mut command = self.command("rustc", image);
+        for feature in &variant.features {
+            command.args(["--features", feature]);
+        }
         command.arg("--");
-        for cfg in cfgs {
+        for cfg in &variant.cfgs {
             command.args(["--cfg", cfg]);
         }
         let output = command.output().map_err(|e| format!("cannot start cargo: {e}"))?;
@@ -94,7 +122,7 @@ impl Toolchain {
         }
         let built = self.target_dir.join(TARGET).join("release").join(image);
         let name: String = std::iter::once(image)
-            .chain(cfgs.iter().map(String::as_str))
+            .chain(variant.cfgs.iter().map(String::as_str))
             .collect::<Vec<_>>()
             .join(",")
             .replace('"', "");
@@ -103,14 +131,37 @@ impl Toolchain {
         Ok(kept)
     }
 
-    /// Builds one image with `cfgs`, runs it in QEMU and returns what it printed.
+    /// Builds one image, runs it in QEMU and returns what it printed.
     ///
     /// # Errors
     ///
     /// What the compiler said, or what the image printed before it failed or was stopped for taking too long.
-    pub fn run(&self, image: &str, cfgs: &[String]) -> Result<String, String> {
-        let elf = self.build(image, cfgs)?;
-        let runner = runner()?;
+    pub fn run(&self, image: &str, variant: &Variant) -> Result<String, String> {
+        self.start(image, variant, &runner()?, TIME_LIMIT)
+    }
+
+    /// As [`Toolchain::run`], but QEMU does not count instructions, which makes it faster.
+    ///
+    /// # Errors
+    ///
+    /// As [`Toolchain::run`].
+    pub fn run_uncounted(&self, image: &str, variant: &Variant) -> Result<String, String> {
+        let mut runner = runner()?;
+        if let Some(at) = runner.iter().position(|word| word == "-icount") {
+            // The option and its value.
+            runner.drain(at..(at + 2).min(runner.len()));
+        }
+        self.start(image, variant, &runner, LONG_TIME_LIMIT)
+    }
+
+    fn start(
+        &self,
+        image: &str,
+        variant: &Variant,
+        runner: &[String],
+        limit: Duration,
+    ) -> Result<String, String> {
+        let elf = self.build(image, variant)?;
         let (qemu, arguments) = runner.split_first().ok_or("the runner is empty")?;
         let mut child = Command::new(qemu)
             .args(arguments)
@@ -129,7 +180,7 @@ impl Toolchain {
             if let Some(status) = child.try_wait().map_err(|e| e.to_string())? {
                 break Some(status);
             }
-            if started.elapsed() > TIME_LIMIT {
+            if started.elapsed() > limit {
                 child.kill().map_err(|e| e.to_string())?;
                 child.wait().map_err(|e| e.to_string())?;
                 break None;
@@ -145,7 +196,7 @@ impl Toolchain {
             Some(status) => Err(format!("{image}: {status}\n{text}")),
             None => Err(format!(
                 "{image}: not finished after {} s\n{text}",
-                TIME_LIMIT.as_secs()
+                limit.as_secs()
             )),
         }
     }
@@ -178,6 +229,15 @@ impl Toolchain {
 
 fn folder() -> PathBuf {
     root().join("examples/firmware")
+}
+
+/// First line of `rustc --version`: release, commit and date.
+fn version(rustc: &Path) -> String {
+    let output = Command::new(rustc).arg("--version").output();
+    let text = output
+        .map(|output| String::from_utf8_lossy(&output.stdout).into_owned())
+        .unwrap_or_default();
+    text.lines().next().unwrap_or("unknown").to_owned()
 }
 
 /// QEMU and its arguments, as `cargo run` in the firmware's folder starts it.

@@ -43,6 +43,19 @@ impl Image {
         })
     }
 
+    /// Symbols of helpers that a mixer has no need of: arithmetic in software, copying and filling of memory.
+    pub fn helper_symbols(&self) -> Vec<&str> {
+        let helper = |symbol: &&str| {
+            symbol.starts_with("__aeabi_")
+                || [
+                    "memcpy", "memmove", "memset", "memclr", "__addsf3", "__mulsf3", "__divsf3", "__adddf3",
+                    "__muldf3",
+                ]
+                .contains(symbol)
+        };
+        self.symbols.iter().map(String::as_str).filter(helper).collect()
+    }
+
     /// Symbols of Rust's panic machinery, and of what leads to it only.
     pub fn panic_symbols(&self) -> Vec<&str> {
         let tell_tale = [

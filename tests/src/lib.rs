@@ -2,6 +2,7 @@
 //! frames and their physics, requests, the optimum of a request and other allocators to measure the mixer against.
 
 pub mod counts;
+pub mod digest;
 pub mod evaluators;
 pub mod firmware;
 pub mod frames;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 /// Name of all of them, hence of their modules.
-pub(crate) const NAME: &str = "measured";
+const NAME: &str = "measured";
 
 /// The paper's pair and voltage, as in `airframes/isae-x8.toml`.
 const PAIR: &str = r#"

@@ -74,7 +74,7 @@ fn vectors(path: &Path) -> Result<Vectors, String> {
             .map_err(|e| fault(format!("saturation `{saturation}`: {e}")))?;
         for cell in floats {
             let digits = cell.strip_prefix("0x").filter(|digits| digits.len() == 8);
-            if !digits.is_some_and(|digits| u32::from_str_radix(digits, 16).is_ok()) {
+            if digits.is_none_or(|digits| u32::from_str_radix(digits, 16).is_err()) {
                 return Err(fault(format!("`{cell}` is not f32 bits such as 0x3f800000")));
             }
         }

@@ -1,18 +1,40 @@
 //! Lays out the images' memory and prepares what they mix.
 //!
 //! `airframes/*.toml` decides which airframes there are. Written to OUT_DIR: `memory.x`, `golden.rs` (airframes and
-//! vectors of the `golden` image), `size.rs` and `counts.rs` (the airframe that `--cfg airframe="<name>"` selects
-//! for these images), and the requests of the `counts` image.
+//! vectors of the `golden` image), `subject.rs` (the airframe that `--cfg airframe="<name>"` selects for the `counts` and
+//! the `size` image), and the requests of the `counts` image.
 
 mod frames;
 mod golden;
+mod isolated;
 mod requests;
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+use mixer_compiler::{Compiled, Source};
+
 /// Relative to this package's folder.
 const AIRFRAMES: &str = "../../airframes";
+
+/// An airframe that can be selected.
+struct Measured {
+    name: String,
+    path: PathBuf,
+    compiled: Compiled,
+}
+
+impl Measured {
+    fn read(name: &str, path: PathBuf) -> Result<Measured, String> {
+        let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let source = Source::new(path.display().to_string(), text);
+        Ok(Measured {
+            name: name.to_owned(),
+            compiled: mixer_compiler::compile(&source).map_err(|faults| faults.to_string())?,
+            path,
+        })
+    }
+}
 
 fn main() {
     println!("cargo::rerun-if-changed=build");
@@ -35,27 +57,33 @@ fn generate() -> Result<(), String> {
 
     let airframes = airframes()?;
     write("golden.rs", &golden::image(&airframes)?)?;
-    write("size.rs", &size(&airframes))?;
-
-    let mut measured: Vec<(String, PathBuf)> = airframes
-        .iter()
-        .map(|name| (name.clone(), path_of(name)))
-        .collect();
+    let mut measured = Vec::new();
+    for name in &airframes {
+        measured.push(Measured::read(name, path_of(name))?);
+    }
     for (name, text) in frames::all() {
         let file = format!("{name}.toml");
         write(&file, &text)?;
-        measured.push((name, out.join(file)));
+        measured.push(Measured::read(&name, out.join(file))?);
     }
-    for (name, path) in &measured {
-        requests::write(name, path, &out)?;
+    for measured in &measured {
+        requests::write(measured, &out)?;
     }
-    write("counts.rs", &counts(&measured)?)?;
+    write("subject.rs", &subject(&measured)?)?;
+    write("requests.rs", &requests_of(&measured))?;
 
-    let names: Vec<String> = measured.iter().map(|(name, _)| format!("{name:?}")).collect();
+    let names: Vec<String> = measured
+        .iter()
+        .map(|measured| format!("{:?}", measured.name))
+        .collect();
     println!(
         "cargo::rustc-check-cfg=cfg(airframe, values(none(), {}))",
         names.join(", ")
     );
+    println!(
+        "cargo::rustc-check-cfg=cfg(baseline, values(none(), \"conventional\", \"sequential\", \"wls\"))"
+    );
+    println!("cargo::rustc-check-cfg=cfg(million)");
     println!("cargo::rustc-check-cfg=cfg(panic_path)");
     Ok(())
 }
@@ -87,37 +115,34 @@ fn module(airframe: &str) -> String {
     airframe.replace('-', "_")
 }
 
-fn size(airframes: &[String]) -> String {
-    airframes
-        .iter()
-        .map(|airframe| {
-            let module = module(airframe);
-            format!(
-                "#[cfg(airframe = \"{airframe}\")]\nmixer_macros::airframe!(\"{AIRFRAMES}/{airframe}.toml\");\n\
-                 #[cfg(airframe = \"{airframe}\")]\nuse {module}::mix;\n"
-            )
-        })
-        .collect()
-}
-
-/// The airframe of the `counts` image.
-fn counts(measured: &[(String, PathBuf)]) -> Result<String, String> {
+/// The airframe of the `counts` and the `size` image, and the tables of its isolated rotors.
+fn subject(measured: &[Measured]) -> Result<String, String> {
     let mut items = String::new();
-    for (name, path) in measured {
+    for Measured { name, path, compiled } in measured {
         let path = fs::canonicalize(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let module = if path_of(name).exists() {
-            module(name)
-        } else {
-            module(frames::NAME)
-        };
+        let module = module(&compiled.airframe.name);
+        let isolated = isolated::tables(compiled);
         items.push_str(&format!(
-            "#[cfg(airframe = \"{name}\")]\nmixer_macros::airframe!({path:?});\n\
-             #[cfg(airframe = \"{name}\")]\nuse {module} as airframe;\n\
-             #[cfg(airframe = \"{name}\")]\nstatic ATTAINABLE: &[u8] = include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{name}.attainable\"));\n\
-             #[cfg(airframe = \"{name}\")]\nstatic SATURATED: &[u8] = include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{name}.saturated\"));\n"
+            "#[cfg(airframe = \"{name}\")]\nmod selected {{\n\
+             mixer_macros::airframe!({path:?});\npub(crate) use self::{module} as airframe;\n{isolated}}}\n\
+             #[cfg(airframe = \"{name}\")]\npub(crate) use selected::*;\n"
         ));
     }
     Ok(items)
+}
+
+/// The requests of the `counts` image.
+fn requests_of(measured: &[Measured]) -> String {
+    let mut items = String::new();
+    for Measured { name, .. } in measured {
+        for (constant, set) in [("ATTAINABLE", "attainable"), ("SATURATED", "saturated")] {
+            items.push_str(&format!(
+                "#[cfg(airframe = \"{name}\")]\nstatic {constant}: &[u8] = \
+                 include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{name}.{set}\"));\n"
+            ));
+        }
+    }
+    items
 }
 
 /// Relative to this package's folder.

@@ -4,20 +4,19 @@
 use std::fs;
 use std::path::Path;
 
-use mixer_compiler::Source;
 use mixer_setpoints::{Kind, Requests};
 
+use crate::Measured;
+
 /// Requests of each kind.
-const COUNT: usize = 4_000;
+const COUNT: usize = 2_000;
 const SEED: u64 = 8;
 
 /// Writes `<name>.attainable` and `<name>.saturated` to `out`: roll, pitch, yaw, thrust and voltage as
 /// little-endian f32, request by request.
-pub(crate) fn write(name: &str, airframe: &Path, out: &Path) -> Result<(), String> {
-    println!("cargo::rerun-if-changed={}", airframe.display());
-    let text = fs::read_to_string(airframe).map_err(|e| format!("{}: {e}", airframe.display()))?;
-    let source = Source::new(airframe.display().to_string(), text);
-    let compiled = mixer_compiler::compile(&source).map_err(|faults| faults.to_string())?;
+pub(crate) fn write(measured: &Measured, out: &Path) -> Result<(), String> {
+    let Measured { name, path, compiled } = measured;
+    println!("cargo::rerun-if-changed={}", path.display());
     let tables = compiled.tables.view();
     for (kind, extension) in [(Kind::Attainable, "attainable"), (Kind::Saturated, "saturated")] {
         let bytes: Vec<u8> = Requests::new(&tables, kind, SEED)

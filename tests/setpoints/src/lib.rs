@@ -5,9 +5,11 @@
 //! the machine. [`Requests`] are drawn around what one airframe's mixer can deliver, from its own tables.
 #![no_std]
 
+mod mixture;
 mod random;
 mod requests;
 
+pub use mixture::Mixture;
 pub use random::Random;
 pub use requests::{Kind, Requests};
 

@@ -1,12 +1,16 @@
-//! Prints what a mix costs on a Cortex-M4F: `cargo run --release -p mixer-tests --bin counts [AIRFRAME..]`.
+//! Prints what a mix costs on a Cortex-M4F, counted in QEMU.
 //!
-//! Without arguments every file in `airframes/`; `regular-1` to `regular-8` and `tolerance-0.1` to
-//! `tolerance-3e-5` are those of `examples/firmware/build/frames.rs`.
+//! ```text
+//! cargo run -p mixer-tests --bin counts                      all subjects, as in the README
+//! cargo run -p mixer-tests --bin counts -- isae-x8 regular-3 only these airframes
+//! cargo run -p mixer-tests --bin counts -- --bless           all of them, and writes tests/counts.csv
+//! ```
 
 use std::process::ExitCode;
 
-use mixer_tests::firmware::Toolchain;
-use mixer_tests::{airframes, counts};
+use mixer_tests::counts::{self, Row};
+use mixer_tests::firmware::{Toolchain, Variant};
+use mixer_tests::image::Image;
 
 fn main() -> ExitCode {
     match print() {
@@ -20,19 +24,48 @@ fn main() -> ExitCode {
 
 fn print() -> Result<(), String> {
     let toolchain = Toolchain::find()?;
-    let mut names: Vec<String> = std::env::args().skip(1).collect();
-    if names.is_empty() {
-        names = airframes().map_err(|error| format!("airframes/: {error}"))?;
+    let mut named: Vec<String> = std::env::args().skip(1).collect();
+    let bless = named.iter().any(|name| name == "--bless");
+    named.retain(|name| name != "--bless");
+    if bless && !named.is_empty() {
+        return Err("--bless writes all counts: name no airframe".into());
     }
+    let airframes = mixer_tests::airframes().map_err(|error| format!("airframes/: {error}"))?;
+    let mut subjects = counts::all(&airframes);
+    subjects.retain(|subject| named.is_empty() || named.contains(&subject.airframe));
+    let empty = Image::read(&toolchain.build("size", &Variant::default())?)?;
+
+    println!("{}", toolchain.compiler);
     println!(
-        "{:<20} {:<10} {:>8} {:>10} {:>8} {:>8}",
-        "airframe", "requests", "count", "mean", "worst", "stack_b"
+        "{:<13} {:<17} {:>10} {:>7} {:>10} {:>7} {:>8} {:>6} {:>6} {:>6}",
+        "instructions", "", "attainable", "", "saturated", "", "searched", "bytes", "", ""
     );
-    for name in names {
-        for count in counts::mixer(&toolchain, &name)? {
-            let [roll, pitch, yaw, thrust, voltage_v] = count.dearest;
-            println!("{name:<20} {count}  dearest {roll:e},{pitch:e},{yaw:e},{thrust:e},{voltage_v}");
-        }
+    println!(
+        "{:<13} {:<17} {:>10} {:>7} {:>10} {:>7} {:>8} {:>6} {:>6} {:>6}",
+        "mixer", "airframe", "mean", "worst", "mean", "worst", "worst", "code", "tables", "stack"
+    );
+    let mut rows = Vec::new();
+    for subject in &subjects {
+        let row = Row::measure(&toolchain, subject, &empty)?;
+        println!(
+            "{:<13} {:<17} {:>10.0} {:>7} {:>10.0} {:>7} {:>8} {:>6} {:>6} {:>6}",
+            subject.mixer,
+            subject.airframe,
+            row.mean("attainable"),
+            row.get("attainable_worst"),
+            row.mean("saturated"),
+            row.get("saturated_worst"),
+            row.get("searched_worst"),
+            row.get("code_b"),
+            row.get("tables_b"),
+            row.get("stack_b")
+        );
+        rows.push(row);
+    }
+    if bless {
+        let path = counts::file();
+        std::fs::write(&path, counts::text(&toolchain.compiler, &rows))
+            .map_err(|error| format!("{}: {error}", path.display()))?;
     }
     Ok(())
 }

@@ -1,10 +1,10 @@
 //! One mixer and nothing else.
 //!
-//! Built with `--cfg airframe --cfg airframe="<name>"` this image reads a setpoint and a voltage from registers, mixes, and writes
+//! Built with a mixer chosen (see `src/subject`) this image reads a setpoint and a voltage from registers, mixes, and writes
 //! the result to registers; built without, it does nothing. The difference between the two in `.text` and
 //! `.rodata` is what the mixer adds to an image: code, tables, and the two dozen loads and stores around it.
 //!
-//! The image links only if no panic can be reached: the panic handler calls a function that does not exist.
+//! Except for `wls`, whose crate can panic, the image links only if no panic can be reached: the panic handler calls a function that does not exist.
 //! `--cfg panic_path` adds an index that may be out of range, so that a test can see the link fail.
 #![no_std]
 #![no_main]
@@ -13,7 +13,9 @@ use core::panic::PanicInfo;
 
 use cortex_m_rt::entry;
 
-include!(concat!(env!("OUT_DIR"), "/size.rs"));
+#[cfg(airframe)]
+#[path = "../subject/mod.rs"]
+mod subject;
 
 /// Any place that the optimiser knows nothing about; the image is measured, never run.
 #[cfg(any(airframe, panic_path))]
@@ -21,6 +23,8 @@ const REGISTERS: *mut u32 = 0x4000_0000 as *mut u32;
 
 #[entry]
 fn main() -> ! {
+    #[cfg(airframe)]
+    subject::prepare();
     loop {
         #[cfg(airframe)]
         step();
@@ -45,7 +49,15 @@ fn step() {
         yaw_nm: read(2),
         thrust_n: read(3),
     };
-    match mix(&setpoint, read(4)) {
+    match subject::mix(&setpoint, read(4)) {
+        #[cfg(baseline)]
+        Ok((throttle, within)) => {
+            for (offset, throttle) in throttle.iter().enumerate() {
+                write(16 + offset, throttle.to_bits());
+            }
+            write(9, u32::from(within));
+        }
+        #[cfg(not(baseline))]
         Ok(mix) => {
             for (offset, throttle) in mix.throttle.iter().enumerate() {
                 write(16 + offset, throttle.to_bits());
@@ -60,6 +72,7 @@ fn step() {
     }
 }
 
+#[cfg(not(baseline = "wls"))]
 unsafe extern "C" {
     /// Defined nowhere.
     safe fn the_mixer_can_panic() -> !;
@@ -67,5 +80,8 @@ unsafe extern "C" {
 
 #[panic_handler]
 fn panic(_: &PanicInfo) -> ! {
-    the_mixer_can_panic()
+    #[cfg(not(baseline = "wls"))]
+    the_mixer_can_panic();
+    #[cfg(baseline = "wls")]
+    loop {}
 }

@@ -7,7 +7,7 @@ use mixer_rt::Wrench;
 use crate::Mixer;
 
 /// Depth that is painted, bytes. Far deeper than any mixer may go.
-const PAINTED: usize = 4096;
+const PAINTED: usize = 8192;
 /// As a float this is a NaN, which no mixer stores.
 const PAINT: u32 = 0x7fc0_5ac4;
 

@@ -1,6 +1,6 @@
-//! Counts the instructions of one airframe's mixer, request by request.
+//! Counts the instructions of one mixer, request by request.
 //!
-//! Built with `--cfg airframe --cfg airframe="<name>"`. Prints a line per set of requests: how many, the sum and the worst of their
+//! Which one: see `src/subject`. Prints a line per set of requests: how many, the sum and the worst of their
 //! instructions, the deepest stack, and the request that cost most (roll, pitch, yaw, thrust, voltage as f32 bits).
 //! The sets are `attainable` and `saturated`, drawn by the host (`mixer_setpoints::Requests`), and `searched`:
 //! what a random search for the dearest requests tries. Only one airframe is linked, as in a user's image: what is
@@ -12,13 +12,16 @@
 mod measurement;
 #[cfg(airframe)]
 mod search;
+#[cfg(airframe)]
+#[path = "../../subject/mod.rs"]
+mod subject;
 
 use core::panic::PanicInfo;
 
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprintln};
 
-include!(concat!(env!("OUT_DIR"), "/counts.rs"));
+include!(concat!(env!("OUT_DIR"), "/requests.rs"));
 
 #[entry]
 fn main() -> ! {

@@ -3,10 +3,12 @@
 use core::mem::MaybeUninit;
 
 use cortex_m_semihosting::hprintln;
-use mixer_rt::{Mix, SetpointError, Wrench};
+use mixer_rt::Wrench;
 use probe::{Counter, NOPS};
 
-use crate::{ATTAINABLE, SATURATED, airframe, search};
+use crate::search::Search;
+use crate::subject::{self, Mixed};
+use crate::{ATTAINABLE, SATURATED};
 
 /// A wrench and the battery's voltage.
 #[derive(Clone, Copy)]
@@ -34,14 +36,12 @@ pub(crate) fn requests(bytes: &'static [u8]) -> impl Iterator<Item = Request> {
     })
 }
 
-type Mixed = Result<Mix<{ airframe::CHANNELS }>, SetpointError>;
-
 /// # Safety
 ///
 /// `setpoint` is valid to read, `output` to write a [`Mixed`].
 unsafe extern "C" fn mix(setpoint: *const Wrench, output: *mut (), voltage_v: f32) {
     // SAFETY: the caller's promise.
-    unsafe { output.cast::<Mixed>().write(airframe::mix(&*setpoint, voltage_v)) }
+    unsafe { output.cast::<Mixed>().write(subject::mix(&*setpoint, voltage_v)) }
 }
 
 /// What the requests of one set cost.
@@ -70,7 +70,7 @@ impl Tally {
         }
     }
 
-    /// Mixes `request`, once for the stack and once for the instructions; returns these.
+    /// Mixes `request`, once for the instructions, which it returns, and once for the stack.
     pub(crate) fn measure(&mut self, counter: &Counter, request: &Request) -> u32 {
         let [roll_nm, pitch_nm, yaw_nm, thrust_n] = request.wrench;
         let setpoint = Wrench {
@@ -82,10 +82,10 @@ impl Tally {
         let mut output = MaybeUninit::<Mixed>::uninit();
         let pointer = output.as_mut_ptr().cast();
         // SAFETY: the output is of the type that `mix` writes, which it does in every call; no interrupt is enabled.
-        let (stack, instructions, mixed) = unsafe {
+        let (instructions, stack, mixed) = unsafe {
             (
-                probe::high_water(mix, &setpoint, pointer, request.voltage_v),
                 counter.count(mix, &setpoint, pointer, request.voltage_v),
+                probe::high_water(mix, &setpoint, pointer, request.voltage_v),
                 output.assume_init(),
             )
         };
@@ -98,6 +98,11 @@ impl Tally {
             self.dearest = *request;
         }
         instructions
+    }
+
+    /// Instructions of all requests.
+    pub(crate) fn instructions(&self) -> u64 {
+        self.sum
     }
 
     /// Prints a line; false if a request was refused.
@@ -133,13 +138,10 @@ pub(crate) fn run() -> bool {
             return false;
         }
     };
-    let mut passed = true;
-    for (name, bytes) in [("attainable", ATTAINABLE), ("saturated", SATURATED)] {
-        let mut tally = Tally::new();
-        for request in requests(bytes) {
-            tally.measure(&counter, &request);
-        }
-        passed &= tally.print(name);
-    }
-    passed & search::dearest(&counter, SATURATED).print("searched")
+    subject::prepare();
+    let attainable = Search::new(&counter).set(ATTAINABLE);
+    let mut search = Search::new(&counter);
+    let saturated = search.set(SATURATED);
+    let searched = search.vary();
+    attainable.print("attainable") & saturated.print("saturated") & searched.print("searched")
 }

@@ -6,53 +6,70 @@ use crate::measurement::{Request, Tally, requests};
 
 /// Dearest requests that the search varies.
 const POOL: usize = 16;
-const ROUNDS: u32 = 4_000;
+/// The search ends after as many variations or instructions.
+const ROUNDS: u32 = 20_000;
+const BUDGET: u64 = 80_000_000;
 
 /// A request and what it cost.
 type Costly = (u32, Request);
 
-struct Search<'a> {
+/// Keeps the dearest requests of what it measures.
+pub(crate) struct Search<'a> {
     counter: &'a Counter,
-    tally: Tally,
     pool: [Costly; POOL],
 }
 
-impl Search<'_> {
-    fn try_request(&mut self, request: Request) {
-        let instructions = self.tally.measure(self.counter, &request);
+impl<'a> Search<'a> {
+    pub(crate) fn new(counter: &'a Counter) -> Self {
+        let nothing = Request {
+            wrench: [0.0; 4],
+            voltage_v: 0.0,
+        };
+        Search {
+            counter,
+            pool: [(0, nothing); POOL],
+        }
+    }
+
+    /// Measures the requests of one set.
+    pub(crate) fn set(&mut self, bytes: &'static [u8]) -> Tally {
+        let mut tally = Tally::new();
+        for request in requests(bytes) {
+            self.measure(&mut tally, request);
+        }
+        tally
+    }
+
+    /// Varies the dearest requests so far by all magnitudes, one value or all at a time, and keeps what costs more: it
+    /// follows the branches of a mixer to where several are taken at once.
+    pub(crate) fn vary(&mut self) -> Tally {
+        let mut tally = Tally::new();
+        for (_, request) in self.pool {
+            self.measure(&mut tally, request);
+        }
+        let mut random = Random(1);
+        for _ in 0..ROUNDS {
+            let draw = random.bits();
+            let (_, request) = self.pool[draw as usize % POOL];
+            let varied = random.vary(request, (draw >> 8) % 24, (draw >> 16) % 8);
+            if varied.wrench.iter().all(|value| value.is_finite()) {
+                self.measure(&mut tally, varied);
+            }
+            if tally.instructions() > BUDGET {
+                break;
+            }
+        }
+        tally
+    }
+
+    fn measure(&mut self, tally: &mut Tally, request: Request) {
+        let instructions = tally.measure(self.counter, &request);
         if let Some(cheapest) = self.pool.iter_mut().min_by_key(|(cost, _)| *cost)
             && instructions > cheapest.0
         {
             *cheapest = (instructions, request);
         }
     }
-}
-
-/// Varies the dearest requests of `bytes` by all magnitudes, one value or all at a time, and keeps what costs more:
-/// it follows the branches of a mixer to where several are taken at once.
-pub(crate) fn dearest(counter: &Counter, bytes: &'static [u8]) -> Tally {
-    let nothing = Request {
-        wrench: [0.0; 4],
-        voltage_v: 0.0,
-    };
-    let mut search = Search {
-        counter,
-        tally: Tally::new(),
-        pool: [(0, nothing); POOL],
-    };
-    for request in requests(bytes) {
-        search.try_request(request);
-    }
-    let mut random = Random(1);
-    for _ in 0..ROUNDS {
-        let draw = random.bits();
-        let (_, request) = search.pool[draw as usize % POOL];
-        let varied = random.vary(request, (draw >> 8) % 24, (draw >> 16) % 8);
-        if varied.wrench.iter().all(|value| value.is_finite()) {
-            search.try_request(varied);
-        }
-    }
-    search.tally
 }
 
 /// Xorshift (Marsaglia 2003), 32 bits.
