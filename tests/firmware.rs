@@ -129,7 +129,7 @@ fn mixers_are_small_and_cannot_panic() {
 fn evaluators_cost_what_the_compiler_believes() {
     let toolchain = toolchain();
     let image = toolchain
-        .build("evaluators", &[])
+        .build("evaluators", &Variant::default())
         .unwrap_or_else(|e| panic!("{e}"));
     let image = Image::read(&image).unwrap_or_else(|e| panic!("{e}"));
     let checks = |symbol: &&String| symbol.contains("panic_bounds_check");

@@ -1,6 +1,6 @@
 //! What evaluators of the inverse map cost on the target, counted by the `evaluators` image of `examples/firmware`.
 
-use crate::firmware::Toolchain;
+use crate::firmware::{Toolchain, Variant};
 
 /// Name of an evaluator, a polynomial's with its degree, and instructions per unit with a biquadratic, a cubic and a
 /// quartic pair.
@@ -11,7 +11,7 @@ pub type Count = (String, [u32; 3]);
 /// # Errors
 /// As [`Toolchain::run`], or if the image prints something else.
 pub fn counted(toolchain: &Toolchain) -> Result<Vec<Count>, String> {
-    let text = toolchain.run("evaluators", &[])?;
+    let text = toolchain.run("evaluators", &Variant::default())?;
     let mut counts: Vec<Count> = Vec::new();
     for line in text.lines() {
         let fault = || format!("not a count: {line}");
