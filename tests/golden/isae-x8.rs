@@ -372,10 +372,10 @@ pub mod isae_x8 {
                                 shift: -0.39035276,
                             },
                             ::mixer_rt::Arc {
-                                offset: 0.42444146,
-                                slope: -0.016825354,
-                                bend: -0.0026954114,
-                                shift: -12.283145,
+                                offset: 0.42477813,
+                                slope: -0.016847977,
+                                bend: -0.002590516,
+                                shift: -12.295612,
                             },
                         ],
                     },
@@ -436,6 +436,7 @@ pub mod isae_x8 {
             torque_share: 0.25,
             thrust_floor_n: 2.3234298,
             thrust_middle_n: 50.62774,
+            yaw_rounding_nm: 0.00000870436,
         },
         tolerance: ::mixer_rt::Tolerance {
             efforts: [0.00802774, 0.0000802624],

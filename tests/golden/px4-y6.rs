@@ -363,10 +363,10 @@ pub mod px4_y6 {
                                 shift: -0.39035276,
                             },
                             ::mixer_rt::Arc {
-                                offset: 0.42444146,
-                                slope: -0.016825354,
-                                bend: -0.0026954114,
-                                shift: -12.283145,
+                                offset: 0.42477813,
+                                slope: -0.016847977,
+                                bend: -0.002590516,
+                                shift: -12.295612,
                             },
                         ],
                     },
@@ -414,6 +414,7 @@ pub mod px4_y6 {
             torque_share: 0.33333334,
             thrust_floor_n: 1.8683702,
             thrust_middle_n: 37.752903,
+            yaw_rounding_nm: 0.00000652827,
         },
         tolerance: ::mixer_rt::Tolerance {
             efforts: [0.00802774, 0.0000802624],

@@ -302,10 +302,10 @@ pub mod single_pair {
                                 shift: -0.39035276,
                             },
                             ::mixer_rt::Arc {
-                                offset: 0.42444146,
-                                slope: -0.016825354,
-                                bend: -0.0026954114,
-                                shift: -12.283145,
+                                offset: 0.42477813,
+                                slope: -0.016847977,
+                                bend: -0.002590516,
+                                shift: -12.295612,
                             },
                         ],
                     },
@@ -345,6 +345,7 @@ pub mod single_pair {
             torque_share: 1.0,
             thrust_floor_n: 0.62279004,
             thrust_middle_n: 12.5843,
+            yaw_rounding_nm: 0.00000217609,
         },
         tolerance: ::mixer_rt::Tolerance {
             efforts: [0.010008186, 0.00010012725],
