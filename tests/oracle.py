@@ -200,15 +200,16 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation):
     truth = airframe.wrench(efforts)
     # A fitted voltage law may be a millionth off.
     noise = [a + 2e-6 * sum(abs(m * e) for m, e in zip(row, efforts)) for a, row in zip(rounding(airframe, k), airframe.m)]
+    for axis, was, said, allowed in zip(AXES, truth, achieved, noise):
+        if abs(was - said) > allowed:
+            faults.append(f"achieved {axis} is {was!r}, the mixer says {said!r}")
+
     wanted = [sum(m * r for m, r in zip(row, request)) for row in airframe.m_plus]
     attainable = all(airframe.attains([wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
     budget = [
         sum(abs(row[i]) * airframe.tolerance[0] + abs(row[n + i]) * airframe.tolerance[1] for i in range(n)) + 4 * allowed
         for row, allowed in zip(airframe.m, noise)
     ]
-    for axis, was, said, allowed in zip(AXES, truth, achieved, budget):
-        if abs(was - said) > allowed:
-            faults.append(f"achieved {axis} is {was!r}, the mixer says {said!r}")
     if attainable:
         for i in range(n):
             off = [abs(efforts[i] - wanted[i]), abs(efforts[n + i] - wanted[n + i])]
@@ -238,7 +239,7 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation):
         if airframe.airmode == "disabled" and truth[3] > max(request[3], 1.25 * floor) + budget[3]:
             faults.append(f"thrust is raised from {request[3]!r} to {truth[3]!r}")
     for axis in range(4):
-        missing = request[axis] - achieved[axis]
+        missing = request[axis] - truth[axis]
         for bit, missed in ((1 << 2 * axis, missing), (2 << 2 * axis, -missing)):
             if missed > 1.1 * budget[axis] and not saturation & bit:
                 faults.append(f"{AXES[axis]} misses {missed!r} without a flag")

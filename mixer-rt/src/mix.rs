@@ -12,8 +12,7 @@ use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, 
 pub struct Mix<const CHANNELS: usize> {
     /// Throttle per output channel, each within the airframe's range; 0 for a failed rotor.
     pub throttle: [f32; CHANNELS],
-    /// The wrench that these throttles give by the airframe's model at the given voltage, within the proven tolerance
-    /// of the inverse map.
+    /// The wrench that these throttles give, by the airframe's model at the given voltage.
     pub achieved: Wrench,
     /// What could not be delivered.
     pub saturation: Saturation,
@@ -93,7 +92,7 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
 }
 
 /// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's proof each unit
-/// gives them within the tolerance, and the achieved wrench is theirs.
+/// gives them within the tolerance.
 #[inline(always)]
 fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     tables: &Tables<'_, P, I, S>,
@@ -110,21 +109,17 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let at_reference = at_reference(bounded, factors.map(|factor| 1.0 / factor));
     let mut efforts = Efforts::default();
-    let delivered = vertical.least_norm(&at_reference, &mut efforts);
-    if !delivered {
+    if !vertical.least_norm(&at_reference, &mut efforts) {
         vertical.desaturate(tables.desaturation.airmode, &at_reference, &mut efforts);
     }
-    for (unit, effort) in vertical.units.iter().zip(&efforts) {
-        let efforts = [effort.thrust, effort.torque];
-        let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, efforts);
+    for (unit, effort) in vertical.units.iter().zip(&mut efforts) {
+        let wanted = [effort.thrust, effort.torque];
+        let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, wanted);
         write(unit.channels, throttles, throttle);
+        [effort.thrust, effort.torque] = tables.pair.efforts(throttles);
     }
-    let mut saturation = Saturation::NONE;
-    let mut achieved = *setpoint;
-    if !(delivered && vertical.complete) {
-        achieved = vertical.wrench(&efforts, factors);
-        saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
-    }
+    let achieved = vertical.wrench(&efforts, factors);
+    let saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
     Ok((achieved, saturation.with_voltage_clamped(clamped)))
 }
 

@@ -47,20 +47,12 @@ fn throttles(frame: &Frame, request: &Request, answer: &Answer) -> Option<String
     })
 }
 
-/// The achieved wrench is what the throttles give; where allocation is in closed form, what the efforts give, which the
-/// inverse map meets within its tolerance.
+/// The achieved wrench is what the throttles give.
 fn truth(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
     let given = frame.physics.wrench(&answer.throttle, request.volts);
-    let tables = &frame.compiled.tables;
-    let of_efforts = tables.shortcut.is_some() && request.health.is_good();
     Axis::ALL.into_iter().enumerate().find_map(|(index, axis)| {
         let (said, given) = (answer.achieved[index], given[index]);
-        let tolerance = if of_efforts {
-            tables.tolerance.wrench[index]
-        } else {
-            0.0
-        };
-        let true_enough = (said - given).abs() <= ROUNDING * frame.authority[index] + f64::from(tolerance);
+        let true_enough = (said - given).abs() <= ROUNDING * frame.authority[index];
         (!true_enough).then(|| format!("{}: {said} said, {given} given by the throttles", axis.name()))
     })
 }
