@@ -66,7 +66,8 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
     subjects
 }
 
-/// What one subject costs. Instructions of all requests of a set (`_sum`) and of its dearest (`_worst`), bytes.
+/// What one subject costs. Instructions of all requests of a set (`_sum`), of its middle
+/// one (`_median`) and of its dearest (`_worst`), bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Whose cost.
@@ -77,12 +78,13 @@ pub struct Row {
 
 /// Names of a [`Row`]'s values. `attainable` and `saturated` are sets of as many `requests` each, drawn by
 /// `mixer_setpoints::Requests`; `searched` is what a search for the dearest request found.
-pub const COLUMNS: [&str; 9] = [
+pub const COLUMNS: [&str; 10] = [
     "code_b",
     "tables_b",
     "stack_b",
     "requests",
     "attainable_sum",
+    "attainable_median",
     "attainable_worst",
     "saturated_sum",
     "saturated_worst",
@@ -111,6 +113,7 @@ impl Row {
                 counts.iter().map(|count| count.stack).max().unwrap_or(0),
                 attainable.requests,
                 attainable.sum,
+                attainable.median,
                 attainable.worst,
                 saturated.sum,
                 saturated.worst,
@@ -159,6 +162,7 @@ struct Count {
     set: String,
     requests: u64,
     sum: u64,
+    median: u64,
     worst: u64,
     stack: u64,
 }
@@ -166,13 +170,14 @@ struct Count {
 impl Count {
     fn parse(line: &str) -> Option<Count> {
         let cells: Vec<&str> = line.split_whitespace().collect();
-        let [set, requests, sum, worst, stack, _dearest] = cells[..] else {
+        let [set, requests, sum, median, worst, stack, _dearest] = cells[..] else {
             return None;
         };
         Some(Count {
             set: set.to_owned(),
             requests: requests.parse().ok()?,
             sum: sum.parse().ok()?,
+            median: median.parse().ok()?,
             worst: worst.parse().ok()?,
             stack: stack.parse().ok()?,
         })

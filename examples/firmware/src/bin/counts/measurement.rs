@@ -49,6 +49,8 @@ pub(crate) struct Tally {
     requests: u32,
     sum: u64,
     worst: u32,
+    /// Zero where it is not known.
+    median: u32,
     stack: usize,
     dearest: Request,
     /// Requests that were refused, though all are finite.
@@ -61,6 +63,7 @@ impl Tally {
             requests: 0,
             sum: 0,
             worst: 0,
+            median: 0,
             stack: 0,
             dearest: Request {
                 wrench: [0.0; 4],
@@ -100,6 +103,15 @@ impl Tally {
         instructions
     }
 
+    /// How many there were.
+    pub(crate) fn requests(&self) -> usize {
+        self.requests as usize
+    }
+
+    pub(crate) fn set_median(&mut self, instructions: u32) {
+        self.median = instructions;
+    }
+
     /// Instructions of all requests.
     pub(crate) fn instructions(&self) -> u64 {
         self.sum
@@ -109,10 +121,11 @@ impl Tally {
     pub(crate) fn print(&self, set: &str) -> bool {
         let [roll, pitch, yaw, thrust] = self.dearest.wrench.map(f32::to_bits);
         hprintln!(
-            "{} {} {} {} {} {:08x},{:08x},{:08x},{:08x},{:08x}",
+            "{} {} {} {} {} {} {:08x},{:08x},{:08x},{:08x},{:08x}",
             set,
             self.requests,
             self.sum,
+            self.median,
             self.worst,
             self.stack,
             roll,

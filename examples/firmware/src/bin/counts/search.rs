@@ -4,6 +4,8 @@ use probe::Counter;
 
 use crate::measurement::{Request, Tally, requests};
 
+/// Requests of a set at most.
+const SET: usize = 4_000;
 /// Dearest requests that the search varies.
 const POOL: usize = 16;
 /// The search ends after as many variations or instructions.
@@ -34,8 +36,13 @@ impl<'a> Search<'a> {
     /// Measures the requests of one set.
     pub(crate) fn set(&mut self, bytes: &'static [u8]) -> Tally {
         let mut tally = Tally::new();
-        for request in requests(bytes) {
-            self.measure(&mut tally, request);
+        let mut counts = [0; SET];
+        for (request, count) in requests(bytes).zip(&mut counts) {
+            *count = self.measure(&mut tally, request);
+        }
+        let counts = &mut counts[..tally.requests()];
+        if !counts.is_empty() {
+            tally.set_median(*counts.select_nth_unstable(counts.len() / 2).1);
         }
         tally
     }
@@ -62,13 +69,14 @@ impl<'a> Search<'a> {
         tally
     }
 
-    fn measure(&mut self, tally: &mut Tally, request: Request) {
+    fn measure(&mut self, tally: &mut Tally, request: Request) -> u32 {
         let instructions = tally.measure(self.counter, &request);
         if let Some(cheapest) = self.pool.iter_mut().min_by_key(|(cost, _)| *cost)
             && instructions > cheapest.0
         {
             *cheapest = (instructions, request);
         }
+        instructions
     }
 }
 
