@@ -3,10 +3,11 @@
 //! Run with `--nocapture` (or through `tests/run`) to see the tables.
 #![allow(missing_docs)]
 
+use mixer_compiler::cost::COUNTED;
 use mixer_tests::counts::{self, Row};
 use mixer_tests::firmware::{Toolchain, Variant};
 use mixer_tests::image::Image;
-use mixer_tests::{airframes, digest, evaluators, golden};
+use mixer_tests::{airframes, digest, evaluators, golden, overhead};
 
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 512;
@@ -281,6 +282,40 @@ fn counts_are_those_held() {
     }
     assert!(faults.is_empty(), "{}\n{MEND}", faults.join("\n"));
 }
+
+/// The compiler's model of what a mix costs follows from the counts held, and says how good it is.
+#[test]
+fn the_model_of_a_mix_is_that_of_the_counts() {
+    let (compiler, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
+    let samples = overhead::samples(&held).unwrap_or_else(|e| panic!("{e}"));
+    let fitted = overhead::fit(&samples).unwrap_or_else(|e| panic!("{e}"));
+    let path = overhead::file();
+    let written = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    assert!(
+        fitted == COUNTED && written == overhead::text(&compiler, &fitted),
+        "{} does not follow from tests/counts.csv: {fitted:?}; `cargo run -p mixer-tests --bin counts -- --fit`",
+        path.display()
+    );
+    for sample in &samples {
+        for &quantity in sample.quantities() {
+            let error = sample.error(&fitted, quantity);
+            let stated = sample.overhead(&fitted, quantity).error;
+            assert!(
+                error.abs() <= stated,
+                "{}: {error} is over {stated}",
+                sample.airframe
+            );
+            assert!(
+                stated <= MODEL_ERROR,
+                "{}, {quantity:?}: {stated}",
+                sample.airframe
+            );
+        }
+    }
+}
+
+/// As a share of what was counted.
+const MODEL_ERROR: f64 = 0.1;
 
 const MEND: &str =
     "if the change is meant, `cargo run -p mixer-tests --bin counts -- --bless` and look at the difference";

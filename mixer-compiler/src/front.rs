@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::Compiled;
 use crate::airframe::Method;
+use crate::cost;
 use crate::evaluator::Evaluator;
 use crate::inversion::Inversion;
 use crate::model::PairMap;
@@ -23,8 +24,12 @@ pub struct Alternative {
     pub evaluator: String,
     /// The name with its parameters, for people.
     pub description: String,
+    /// Instructions per unit on a Cortex-M4F: [`Evaluator::instructions`].
+    pub instructions: Option<u32>,
     /// About the cycles per unit on a Cortex-M4F: [`Evaluator::cost`].
     pub cost: Option<u32>,
+    /// About the instructions of a whole mix of this airframe: [`cost::delivered`].
+    pub delivered: Option<u32>,
     /// Bytes of its own constants: coordinates and coefficients, without the forward map.
     pub bytes: usize,
     /// Proven bounds at every voltage, `[N, N m]`; infinite where nothing could be proven.
@@ -35,6 +40,17 @@ pub struct Alternative {
     pub holds: bool,
     /// True for the one that the compiler chose.
     pub chosen: bool,
+}
+
+impl Alternative {
+    /// Whether it was chosen or would do, in a word or two.
+    pub fn verdict(&self) -> &'static str {
+        match (self.chosen, self.holds) {
+            (true, _) => "chosen",
+            (false, true) => "would do",
+            (false, false) => "",
+        }
+    }
 }
 
 impl Compiled {
@@ -57,7 +73,9 @@ impl Compiled {
             Alternative {
                 evaluator: evaluator.name(),
                 description: evaluator.description(),
+                instructions: evaluator.instructions(basis),
                 cost: evaluator.cost(basis),
+                delivered: cost::delivered(self, evaluator),
                 bytes: 4 * tables.inverse.floats(),
                 proven: certificate.stated,
                 observed: observed.efforts,

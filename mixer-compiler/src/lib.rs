@@ -7,6 +7,7 @@ pub mod airframe;
 pub mod attainable;
 #[cfg(feature = "format")]
 pub mod build_script;
+pub mod cost;
 pub mod diagnostic;
 pub mod effectiveness;
 mod emit;

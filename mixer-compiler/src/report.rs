@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::Compiled;
+use crate::cost::Cost;
 
 /// `cargo mixer check --json`, but for the time taken.
 #[derive(Clone, Debug, Serialize)]
@@ -50,6 +51,8 @@ pub struct Summary {
     pub attainable_area_lost_to_convexity: f64,
     /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque, N.
     pub thrust_range_n: [f32; 2],
+    /// What it costs on the target.
+    pub cost: Cost,
 }
 
 /// The certificate in `cargo mixer check --json`.
@@ -105,6 +108,7 @@ impl Summary {
             attainable_area_lost: compiled.lost_area.total,
             attainable_area_lost_to_convexity: compiled.lost_area.convexity,
             thrust_range_n: compiled.thrust_range_n,
+            cost: Cost::new(compiled),
         }
     }
 }

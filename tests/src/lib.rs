@@ -9,6 +9,7 @@ pub mod frames;
 pub mod golden;
 pub mod image;
 pub mod optimum;
+pub mod overhead;
 pub mod physics;
 pub mod random;
 pub mod request;

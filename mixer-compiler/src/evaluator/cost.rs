@@ -42,16 +42,21 @@ pub const INSTRUCTIONS: [(&str, [u32; 3]); 23] = [
 const LONG: u32 = 13;
 
 impl Evaluator {
-    /// About the cycles that one unit takes on a Cortex-M4F: instructions counted, and what divisions and roots take
-    /// longer than others. `None` for polynomials of a degree that has not been counted.
-    pub fn cost(self, basis: Basis) -> Option<u32> {
+    /// Instructions that one unit takes on a Cortex-M4F. `None` for polynomials of a degree that has not been counted.
+    pub fn instructions(self, basis: Basis) -> Option<u32> {
         let column = Basis::ALL.iter().position(|&known| known == basis)?;
         let name = match self {
             Evaluator::Polynomial { degree } => format!("polynomial-{degree}"),
             Evaluator::Seeded { .. } => self.name(),
         };
         let (_, counts) = INSTRUCTIONS.iter().find(|(known, _)| *known == name)?;
-        Some(counts[column] + LONG * self.divisions_and_roots())
+        Some(counts[column])
+    }
+
+    /// About the cycles that one unit takes on a Cortex-M4F: instructions counted, and what divisions and roots take
+    /// longer than others. `None` for polynomials of a degree that has not been counted.
+    pub fn cost(self, basis: Basis) -> Option<u32> {
+        Some(self.instructions(basis)? + LONG * self.divisions_and_roots())
     }
 
     /// One division per Jacobian: both residuals of Shamanskii's step share it.

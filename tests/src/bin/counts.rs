@@ -3,7 +3,8 @@
 //! ```text
 //! cargo run -p mixer-tests --bin counts                      all subjects, as in the README
 //! cargo run -p mixer-tests --bin counts -- isae-x8 regular-3 only these airframes
-//! cargo run -p mixer-tests --bin counts -- --bless           all of them, and writes tests/counts.csv
+//! cargo run -p mixer-tests --bin counts -- --bless           all of them, and writes tests/counts.csv and what --fit does
+//! cargo run -p mixer-tests --bin counts -- --fit             counts nothing; fits the compiler's model to tests/counts.csv
 //! ```
 
 use std::process::ExitCode;
@@ -11,6 +12,7 @@ use std::process::ExitCode;
 use mixer_tests::counts::{self, Row};
 use mixer_tests::firmware::{Toolchain, Variant};
 use mixer_tests::image::Image;
+use mixer_tests::overhead;
 
 fn main() -> ExitCode {
     match print() {
@@ -23,8 +25,12 @@ fn main() -> ExitCode {
 }
 
 fn print() -> Result<(), String> {
-    let toolchain = Toolchain::find()?;
     let mut named: Vec<String> = std::env::args().skip(1).collect();
+    if named == ["--fit"] {
+        let (compiler, rows) = counts::held()?;
+        return fit(&compiler, &rows);
+    }
+    let toolchain = Toolchain::find()?;
     let bless = named.iter().any(|name| name == "--bless");
     named.retain(|name| name != "--bless");
     if bless && !named.is_empty() {
@@ -66,6 +72,27 @@ fn print() -> Result<(), String> {
         let path = counts::file();
         std::fs::write(&path, counts::text(&toolchain.compiler, &rows))
             .map_err(|error| format!("{}: {error}", path.display()))?;
+        fit(&toolchain.compiler, &rows)?;
+    }
+    Ok(())
+}
+
+/// Fits the compiler's model to counts, writes it and says how well it does.
+fn fit(compiler: &str, rows: &[Row]) -> Result<(), String> {
+    let samples = overhead::samples(rows)?;
+    let counted = overhead::fit(&samples)?;
+    overhead::write(compiler, &counted)?;
+    println!("{:<17} {:<10} {:>9} {:>7}", "", "", "counted", "model");
+    for sample in &samples {
+        for &quantity in sample.quantities() {
+            let value = sample.counted(quantity);
+            let error = 100.0 * sample.error(&counted, quantity);
+            println!(
+                "{:<17} {:<10} {value:>9.0} {error:>+6.1}%",
+                sample.airframe,
+                format!("{quantity:?}").to_lowercase()
+            );
+        }
     }
     Ok(())
 }
