@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
+use mixer_compiler::cost::Cost;
 use mixer_compiler::diagnostic::Record;
 use mixer_compiler::report::{Report, Summary};
 use serde::Serialize;
@@ -52,8 +53,9 @@ pub fn run(args: &CheckArgs) -> ExitCode {
         )),
         Ok(compiled) => crate::finish(writeln!(
             out,
-            "{}compiled in     {compile_ms:.0} ms",
-            Report(&compiled)
+            "{}{}compiled in     {compile_ms:.0} ms",
+            Report(&compiled),
+            Cost::new(&compiled)
         )),
         Err(refusal) => {
             let records = match &refusal {

@@ -9,6 +9,7 @@ pub mod authority;
 pub mod bench;
 pub mod colour;
 pub mod comparison;
+pub mod cost;
 pub mod field;
 pub mod figure;
 pub mod gallery;

@@ -76,6 +76,10 @@ fn check_prints_the_key_lines() {
         "\ntolerance       0.01 N, 0.0001 N m per unit",
         "\nresidual ",
         "\ntables ",
+        "\ncost            Cortex-M4F, counted in QEMU",
+        "\n  inverse       ",
+        "\n  mix           about ",
+        "\n  saturated     counted with 4 units, desaturation in closed form: mean ",
         "\ncompiled in ",
     ] {
         assert!(
@@ -99,6 +103,15 @@ fn check_json_has_the_documented_keys() {
     assert!(summary["evaluator"].is_string());
     assert!(summary["table_bytes"].as_u64().unwrap() > 0);
     assert!(summary["compile_ms"].as_f64().unwrap() > 0.0);
+    let cost = &summary["cost"];
+    assert_eq!(cost["target"], "Cortex-M4F, counted in QEMU");
+    assert_eq!(cost["desaturation"], "closed-form");
+    assert_eq!(cost["table_bytes"], summary["table_bytes"]);
+    let count = |key: &str| cost[key].as_u64().unwrap_or_else(|| panic!("{key}: {cost}"));
+    assert_eq!(4 * count("inverse_instructions"), count("inverses_instructions"));
+    assert_eq!(4 * count("inverse_cycles"), count("inverses_cycles"));
+    assert!(count("delivered_instructions") > count("inverses_instructions"));
+    assert!(cost["counted"][0]["worst"][1].as_u64().unwrap() > count("delivered_instructions"));
     // Null as long as nothing is proven, but there.
     for (key, tolerance) in [("proven_thrust_n", 0.01), ("proven_torque_nm", 1e-4)] {
         let bound = summary.get(key).unwrap();

@@ -6,11 +6,14 @@
 use std::fmt::Write as _;
 
 use mixer_compiler::airframe::Axis;
+use mixer_compiler::cost::Cost;
+use mixer_compiler::front::Alternative;
 use mixer_compiler::report::{Summary, rounded_up};
 
 use super::authority;
 use super::bench::BenchPoints;
 use super::comparison::Comparison;
+use super::cost;
 use super::figure::Figure;
 use super::layout;
 use super::maps::{self, Effort};
@@ -35,7 +38,7 @@ pub const THRUSTS: usize = 61;
 const HOVER_STRIDE: usize = 2;
 
 /// Sections of the page in their order: anchor and title.
-pub const SECTIONS: [(&str, &str); 8] = [
+pub const SECTIONS: [(&str, &str); 9] = [
     ("layout", "Layout"),
     ("comparison", "Yaw at constant thrust"),
     ("authority", "Authority"),
@@ -43,6 +46,7 @@ pub const SECTIONS: [(&str, &str); 8] = [
     ("forward", "Forward maps"),
     ("inverse", "Inverse maps"),
     ("error", "Error of the inverse"),
+    ("cost", "Cost on the target"),
     ("matrices", "Allocation"),
 ];
 
@@ -51,6 +55,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
+    let front = compiled.front();
     let mut html = String::new();
     let name = escaped(&airframe.name);
     let _ = writeln!(
@@ -78,7 +83,8 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
             "attainable" => attainable_section(study),
             "forward" => forward_section(study, bench),
             "inverse" => inverse_section(study),
-            "error" => error_section(study, &errors),
+            "error" => error_section(study, &errors, &front),
+            "cost" => cost_section(study, &front),
             _ => table::matrices(study),
         });
         html.push_str("</section>\n");
@@ -232,7 +238,7 @@ fn inverse_section(study: &Study<'_>) -> String {
     }))
 }
 
-fn error_section(study: &Study<'_>, fields: &[super::field::Field; 2]) -> String {
+fn error_section(study: &Study<'_>, fields: &[super::field::Field; 2], front: &[Alternative]) -> String {
     let plots: Vec<String> = Effort::BOTH
         .into_iter()
         .zip(fields)
@@ -240,7 +246,7 @@ fn error_section(study: &Study<'_>, fields: &[super::field::Field; 2]) -> String
             let summary = Summary::new(study.compiled);
             let observed = [summary.observed_thrust_n, summary.observed_torque_nm][effort as usize];
             let caption = format!(
-                "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}.",
+                "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}. At the reference voltage.",
                 rounded_up(maps::error_bound(study, effort)),
                 summary.observed_points,
                 rounded_up(observed),
@@ -252,7 +258,20 @@ fn error_section(study: &Study<'_>, fields: &[super::field::Field; 2]) -> String
     let text = "<p>What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
          precision as on the target, the map in double precision. \
          Colours are logarithmic over two decades up to the proven bound.</p>\n";
-    text.to_owned() + &figures(&plots) + &table::front(&study.compiled.front())
+    text.to_owned() + &figures(&plots) + &table::front(front)
+}
+
+fn cost_section(study: &Study<'_>, front: &[Alternative]) -> String {
+    let costs = Cost::new(study.compiled);
+    let text = format!(
+        "<p>{}. The inverse map is counted on its own, evaluator by evaluator; its cycles are its instructions and 13 more for every \
+         division and square root. The whole mix is estimated: the inverse map of all units, and for checks, voltage and \
+         allocation what counted mixers that desaturate {} take per unit and per mix beside it. Memory that makes the \
+         core wait is not in it.</p>\n",
+        costs.target,
+        costs.desaturation.description()
+    );
+    text + &cost::facts(&costs) + &cost::evaluators(study.compiled.airframe.units.len(), front)
 }
 
 /// What the script needs: the forward map and the error on its grid.

@@ -36,6 +36,16 @@ pub fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> String {
     html
 }
 
+/// Names with values, which are markup already.
+pub fn facts_table<'a>(facts: impl IntoIterator<Item = &'a (&'a str, String)>) -> String {
+    let mut html = String::from("<table class=\"facts\"><tbody>\n");
+    for (name, value) in facts {
+        let _ = writeln!(html, "<tr><th scope=\"row\">{name}</th><td>{value}</td></tr>");
+    }
+    html.push_str("</tbody></table>\n");
+    html
+}
+
 /// Names with values: what `check` prints.
 pub fn summary(study: &Study<'_>) -> String {
     let compiled = study.compiled;
@@ -102,12 +112,7 @@ pub fn summary(study: &Study<'_>) -> String {
                 }),
         ),
     ];
-    let mut html = String::from("<table class=\"facts\"><tbody>\n");
-    for (name, value) in facts {
-        let _ = writeln!(html, "<tr><th scope=\"row\">{name}</th><td>{value}</td></tr>");
-    }
-    html.push_str("</tbody></table>\n");
-    html
+    facts_table(&facts)
 }
 
 /// Places, spins and outputs of the units.
@@ -275,11 +280,6 @@ pub fn front(alternatives: &[Alternative]) -> String {
     let rows: Vec<Vec<String>> = alternatives
         .iter()
         .map(|alternative| {
-            let verdict = match (alternative.chosen, alternative.holds) {
-                (true, _) => "chosen",
-                (false, true) => "would do",
-                (false, false) => "",
-            };
             let proven = alternative.proven.map(|bound| {
                 if bound.is_finite() {
                     rounded_up(bound)
@@ -291,7 +291,7 @@ pub fn front(alternatives: &[Alternative]) -> String {
             let [[proven_f, proven_q], [observed_f, observed_q]] = [proven, observed];
             vec![
                 escaped(&alternative.description),
-                verdict.to_owned(),
+                alternative.verdict().to_owned(),
                 alternative.cost.map_or_else(String::new, |cost| cost.to_string()),
                 proven_f,
                 observed_f,

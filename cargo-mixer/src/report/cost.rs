@@ -1,0 +1,108 @@
+//! Tables of what the airframe costs on the target.
+
+use mixer_compiler::cost::{Cost, Frames, range};
+use mixer_compiler::front::Alternative;
+
+use super::number::{escaped, fixed};
+use super::table::{facts_table, table};
+
+/// Where an evaluator has not been counted.
+const NOT_COUNTED: &str = "not counted";
+
+fn number(value: Option<u32>) -> String {
+    value.map_or(NOT_COUNTED.to_owned(), |value| value.to_string())
+}
+
+/// The chosen evaluator and the whole mix.
+pub fn facts(cost: &Cost) -> String {
+    let inverse = |instructions: Option<u32>, cycles: Option<u32>| match (instructions, cycles) {
+        (Some(instructions), Some(cycles)) => format!("{instructions} instructions, {cycles} cycles"),
+        _ => NOT_COUNTED.to_owned(),
+    };
+    let error = fixed(100.0 * cost.delivered_error, 1);
+    let delivered = match cost.delivered_instructions {
+        Some(delivered) => format!(
+            "about {delivered} instructions; the estimate is off by {error} % at most on counted frames"
+        ),
+        None => NOT_COUNTED.to_owned(),
+    };
+    let mut facts = vec![
+        (
+            "Inverse map of one unit",
+            inverse(cost.inverse_instructions, cost.inverse_cycles),
+        ),
+        (
+            "Inverse map of all units",
+            inverse(cost.inverses_instructions, cost.inverses_cycles),
+        ),
+        ("Mix that least norm delivers", delivered),
+    ];
+    if let (Some(attainable), Some(error)) = (cost.attainable_instructions, cost.attainable_error) {
+        let error = fixed(100.0 * error, 1);
+        facts.push((
+            "Mean of attainable requests",
+            format!("about {attainable} instructions; off by {error} % at most"),
+        ));
+    }
+    for frames in &cost.counted {
+        facts.push(("Other requests", others(frames)));
+    }
+    facts.push((
+        "Constants",
+        format!(
+            "{} bytes of the inverse map, {} bytes in all",
+            cost.inverse_bytes, cost.table_bytes
+        ),
+    ));
+    facts_table(&facts)
+}
+
+/// What requests cost on counted frames.
+fn others(frames: &Frames) -> String {
+    let units = match frames.units {
+        1 => "1 unit".to_owned(),
+        units => format!("{units} units"),
+    };
+    format!(
+        "counted with {units}, desaturating {}: {} instructions in the mean of random attainable wrenches, {} of requests most \
+         of which saturate, {} for the dearest found",
+        frames.kind.description(),
+        range(frames.attainable_mean),
+        range(frames.saturated_mean),
+        range(frames.worst)
+    )
+}
+
+/// All evaluators, in the order of their cost.
+pub fn evaluators(units: usize, front: &[Alternative]) -> String {
+    let all = format!("of {units}");
+    let header = [
+        "evaluator",
+        "",
+        "instructions of one unit",
+        "cycles",
+        &format!("instructions {all}"),
+        &format!("cycles {all}"),
+        "whole mix, about",
+        "bytes",
+    ];
+    let times = |one: Option<u32>| number(one.map(|one| one * units as u32));
+    let rows: Vec<Vec<String>> = front
+        .iter()
+        .map(|alternative| {
+            vec![
+                escaped(&alternative.description),
+                alternative.verdict().to_owned(),
+                number(alternative.instructions),
+                number(alternative.cost),
+                times(alternative.instructions),
+                times(alternative.cost),
+                number(alternative.delivered),
+                alternative.bytes.to_string(),
+            ]
+        })
+        .collect();
+    let caption = "Evaluators: instructions and cycles of the inverse map, instructions of a mix that least norm delivers, bytes of \
+                   the inverse map\u{2019}s constants";
+    table(caption, &header.map(str::to_owned), &rows)
+}
