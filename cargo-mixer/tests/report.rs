@@ -9,12 +9,13 @@ use std::{env, fs};
 use cargo_mixer::report::page::{SECTIONS, page};
 use cargo_mixer::report::study::Study;
 use cargo_mixer::sweep::{Data, sweep};
-use mixer_compiler::cost::{Cost, range};
 use mixer_compiler::{Compiled, Source, compile};
 use roxmltree::{Document, Node, ParsingOptions};
 
 #[path = "report/browser.rs"]
 mod browser;
+#[path = "report/cost.rs"]
+mod cost;
 #[path = "report/mixers.rs"]
 mod mixers;
 #[path = "report/pictures.rs"]
@@ -113,6 +114,7 @@ fn pages_are_well_formed_and_complete() {
         let authority = sections.iter().find(|(id, _)| *id == "authority").unwrap().1;
         let served = compiled.airframe.allocation.axes.len() - 1;
         assert_eq!(named(authority, "svg").count(), served, "{name}");
+        cost::assert_cost(document.root(), &compiled);
     }
 }
 
@@ -239,62 +241,6 @@ fn the_error_stays_below_its_bound() {
         assert!(
             largest[0] <= allowed[0] && largest[1] <= allowed[1],
             "{largest:?} {allowed:?}"
-        );
-    }
-}
-
-/// The page's costs are those of the compiler, and the whole mix holds its parts.
-#[test]
-fn the_cost_on_the_target_is_the_compiler_s() {
-    for compiled in airframes().into_iter().chain(folder("tests/fixtures")) {
-        let name = &compiled.airframe.name;
-        let page = page(&Study::new(&compiled, None), None);
-        let document = parsed(&page);
-        let section = named(document.root(), "section").find(|n| n.attribute("id") == Some("cost"));
-        let section = section.unwrap();
-        let text: String = section.descendants().filter_map(|n| n.text()).collect();
-        assert!(text.contains("Cortex-M4F, counted in QEMU"), "{name}: {text}");
-        let cells = |row: Node| -> Vec<String> {
-            let cells = row.children().filter(|n| n.is_element());
-            cells
-                .map(|cell| cell.text().unwrap_or_default().to_owned())
-                .collect()
-        };
-        let rows: Vec<Vec<String>> = named(section, "tr").map(cells).collect();
-
-        let cost = Cost::new(&compiled);
-        assert!(!cost.counted.is_empty(), "{name}: no counted frames");
-        for frames in &cost.counted {
-            let worst = range(frames.worst);
-            assert!(text.contains(&worst), "{name}: no {worst}");
-            assert!(frames.attainable_mean[0] <= frames.saturated_mean[1], "{name}");
-            assert!(frames.saturated_mean[1] <= frames.worst[1], "{name}");
-        }
-        // A forced polynomial is not among those that the compiler chooses from.
-        let chosen = rows
-            .iter()
-            .find(|row| row.get(1).is_some_and(|verdict| verdict == "chosen"));
-        assert_eq!(
-            chosen.is_some(),
-            !compiled.evaluator.name().starts_with("polynomial"),
-            "{name}"
-        );
-        let Some(chosen) = chosen else { continue };
-        let numbers: Vec<u32> = chosen[2..].iter().map(|cell| cell.parse().unwrap()).collect();
-        let [one, cycles, all, all_cycles, mix, bytes] = numbers[..] else {
-            panic!("{name}: {chosen:?}")
-        };
-        let units = compiled.airframe.units.len() as u32;
-        assert_eq!(Some(one), cost.inverse_instructions, "{name}");
-        assert_eq!(Some(cycles), cost.inverse_cycles, "{name}");
-        assert_eq!((all, all_cycles), (units * one, units * cycles), "{name}");
-        assert_eq!(Some(mix), cost.delivered_instructions, "{name}");
-        assert_eq!(bytes as usize, cost.inverse_bytes, "{name}");
-        assert!(one < cycles && all < mix, "{name}: {chosen:?}");
-        assert!(cost.inverse_bytes < cost.table_bytes, "{name}");
-        assert!(
-            cost.delivered_error > 0.0 && cost.delivered_error < 0.2,
-            "{name}: {cost:?}"
         );
     }
 }

@@ -35,7 +35,7 @@ pub fn facts(cost: &Cost) -> String {
             "Inverse map of all units",
             inverse(cost.inverses_instructions, cost.inverses_cycles),
         ),
-        ("Mix that least norm delivers", delivered),
+        ("Request that least norm delivers", delivered),
     ];
     if let (Some(attainable), Some(error)) = (cost.attainable_instructions, cost.attainable_error) {
         let error = fixed(100.0 * error, 1);
@@ -75,15 +75,18 @@ fn others(frames: &Frames) -> String {
 
 /// All evaluators, in the order of their cost.
 pub fn evaluators(units: usize, front: &[Alternative]) -> String {
-    let all = format!("of {units}");
+    let all = match units {
+        1 => "1 unit".to_owned(),
+        units => format!("{units} units"),
+    };
     let header = [
         "evaluator",
         "",
-        "instructions of one unit",
+        "one unit",
         "cycles",
-        &format!("instructions {all}"),
-        &format!("cycles {all}"),
-        "whole mix, about",
+        &all,
+        "cycles",
+        "whole mix",
         "bytes",
     ];
     let times = |one: Option<u32>| number(one.map(|one| one * units as u32));
@@ -102,7 +105,7 @@ pub fn evaluators(units: usize, front: &[Alternative]) -> String {
             ]
         })
         .collect();
-    let caption = "Evaluators: instructions and cycles of the inverse map, instructions of a mix that least norm delivers, bytes of \
-                   the inverse map\u{2019}s constants";
+    let caption = "Evaluators of the inverse map: instructions and cycles of one unit and of all, about the instructions of a \
+                   mix that least norm delivers, bytes of constants";
     table(caption, &header.map(str::to_owned), &rows)
 }

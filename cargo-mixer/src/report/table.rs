@@ -275,7 +275,6 @@ pub fn front(alternatives: &[Alternative]) -> String {
         "observed",
         "Q proven (N m)",
         "observed",
-        "bytes",
     ];
     let rows: Vec<Vec<String>> = alternatives
         .iter()
@@ -297,7 +296,6 @@ pub fn front(alternatives: &[Alternative]) -> String {
                 observed_f,
                 proven_q,
                 observed_q,
-                alternative.bytes.to_string(),
             ]
         })
         .collect();

@@ -1,0 +1,59 @@
+//! The page's costs are those of the compiler, and the whole mix holds its parts.
+
+use mixer_compiler::Compiled;
+use mixer_compiler::cost::{Cost, range};
+use roxmltree::Node;
+
+use super::named;
+
+/// Reads the section on the target's cost.
+pub(crate) fn assert_cost(page: Node<'_, '_>, compiled: &Compiled) {
+    let name = &compiled.airframe.name;
+    let section = named(page, "section")
+        .find(|node| node.attribute("id") == Some("cost"))
+        .unwrap();
+    let text: String = section.descendants().filter_map(|node| node.text()).collect();
+    assert!(text.contains("Cortex-M4F, counted in QEMU"), "{name}: {text}");
+    let cells = |row: Node<'_, '_>| -> Vec<String> {
+        let cells = row.children().filter(Node::is_element);
+        cells
+            .map(|cell| cell.text().unwrap_or_default().to_owned())
+            .collect()
+    };
+    let rows: Vec<Vec<String>> = named(section, "tr").map(cells).collect();
+
+    let cost = Cost::new(compiled);
+    assert!(!cost.counted.is_empty(), "{name}: no counted frames");
+    for frames in &cost.counted {
+        let worst = range(frames.worst);
+        assert!(text.contains(&worst), "{name}: no {worst}");
+        assert!(frames.attainable_mean[1] <= frames.saturated_mean[1], "{name}");
+        assert!(frames.saturated_mean[1] <= frames.worst[1], "{name}");
+    }
+    assert!(
+        cost.delivered_error > 0.0 && cost.delivered_error < 0.2,
+        "{name}: {cost:?}"
+    );
+    let chosen = rows
+        .iter()
+        .find(|row| row.get(1).is_some_and(|verdict| verdict == "chosen"));
+    let Some(chosen) = chosen else {
+        // A polynomial of another degree is not among those that the compiler chooses from.
+        assert_eq!(compiled.evaluator.name(), "polynomial", "{name}: none is chosen");
+        assert_eq!(cost.inverse_instructions, None, "{name}");
+        assert!(text.contains("not counted"), "{name}");
+        return;
+    };
+    let numbers: Vec<u32> = chosen[2..].iter().map(|cell| cell.parse().unwrap()).collect();
+    let [one, cycles, all, all_cycles, mix, bytes] = numbers[..] else {
+        panic!("{name}: {chosen:?}")
+    };
+    let units = compiled.airframe.units.len() as u32;
+    assert_eq!(Some(one), cost.inverse_instructions, "{name}");
+    assert_eq!(Some(cycles), cost.inverse_cycles, "{name}");
+    assert_eq!((all, all_cycles), (units * one, units * cycles), "{name}");
+    assert_eq!(Some(mix), cost.delivered_instructions, "{name}");
+    assert_eq!(bytes as usize, cost.inverse_bytes, "{name}");
+    assert!(one < cycles && all < mix, "{name}: {chosen:?}");
+    assert!(cost.inverse_bytes < cost.table_bytes, "{name}");
+}
