@@ -8,6 +8,13 @@ use crate::rows::{Bounds, RowState};
 /// Velocities below this share of the multipliers' are rounding errors.
 const NOISE: f32 = 3e-7;
 
+/// What the efforts may miss of the way, as a share of it and beside that.
+const MISSED: f32 = 2e-6;
+
+/// Corrections of velocities that miss the way by more. Each takes the angle between almost dependent directions, over
+/// the rounding error, off what is missed.
+const REFINEMENTS: u32 = 3;
+
 /// What ends a piece.
 enum Event {
     /// The path's end.
@@ -48,6 +55,52 @@ impl Homotopy<'_> {
         (gram, self.turned.rows(wrench))
     }
 
+    /// Adds the velocities that multipliers changing by `multipliers` give, and to `effect` that of the wrench. At
+    /// rest (`moving` 0) no effort moves.
+    #[inline]
+    fn accelerate(&mut self, multipliers: [f32; 4], moving: f32, effect: &mut [f32; 4]) {
+        let pull = self.turned.axes(multipliers);
+        for (unit, scratch) in self.units.iter().zip(self.scratch.iter_mut()) {
+            let Some(set) = self.sets.of(scratch.rotors) else {
+                continue;
+            };
+            let mut step = self.factors;
+            for (step, column) in step.iter_mut().zip(unit.effectiveness) {
+                *step *=
+                    (column[0] * pull[0] + column[1] * pull[1]) + (column[2] * pull[2] + column[3] * pull[3]);
+            }
+            let mut velocity = set.velocity(&scratch.point, step);
+            match scratch.point.face {
+                Face::Interior => {
+                    velocity = velocity.map(|speed| moving * speed);
+                    add(unit, self.factors, velocity, effect);
+                }
+                Face::Edge => {
+                    velocity[0] *= moving;
+                    let along = set.direction(&scratch.point).map(|part| part * velocity[0]);
+                    add(unit, self.factors, along, effect);
+                }
+                Face::Corner => {}
+            }
+            scratch.pair = [scratch.pair[0] + velocity[0], scratch.pair[1] + velocity[1]];
+        }
+    }
+
+    /// What `speeds` miss of `way` in the rows that are not slack, and the largest of it.
+    #[inline]
+    fn missed(&self, way: &[f32; 4], speeds: &[f32; 4]) -> ([f32; 4], f32) {
+        let (mut missed, mut largest) = ([0.0; 4], 0.0);
+        for (((missed, row), way), speed) in missed.iter_mut().zip(&self.rows).zip(way).zip(speeds) {
+            if row.state != RowState::Between {
+                *missed = way - speed;
+                if missed.abs() > largest {
+                    largest = missed.abs();
+                }
+            }
+        }
+        (missed, largest)
+    }
+
     /// One piece of the path towards `drift` from the present bounds. Returns the share made, `None` where there is
     /// no way on.
     pub(crate) fn piece(&mut self, drift: &[Bounds; 4]) -> Option<f32> {
@@ -76,36 +129,34 @@ impl Homotopy<'_> {
         } else {
             (f32::MAX, None)
         };
-        let pull = self.turned.axes(multipliers);
+        for scratch in self.scratch.iter_mut() {
+            scratch.pair = [0.0; 2];
+        }
         let mut effect = [0.0; 4];
-        let has_slack = self.rows.iter().any(|row| row.state == RowState::Between);
-        let units = self.units;
-        for (index, (unit, scratch)) in units.iter().zip(self.scratch.iter_mut()).enumerate() {
+        self.accelerate(multipliers, moving, &mut effect);
+        let mut speeds = self.turned.rows(effect);
+        if moving > 0.0 {
+            // Multipliers that are large hide, in rounding, what the efforts miss of the way.
+            let bearable = way.iter().fold(MISSED, |sum, way| sum + MISSED * way.abs());
+            let mut worst = f32::MAX;
+            for _ in 0..REFINEMENTS {
+                let (missed, size) = self.missed(&way, &speeds);
+                if size <= bearable || size > 0.5 * worst {
+                    break;
+                }
+                worst = size;
+                let Solution::Regular(correction) = gram.solve(missed) else {
+                    break;
+                };
+                self.accelerate(correction, moving, &mut effect);
+                speeds = self.turned.rows(effect);
+            }
+        }
+        for (index, scratch) in self.scratch.iter_mut().enumerate() {
             let Some(set) = self.sets.of(scratch.rotors) else {
                 continue;
             };
-            let mut step = self.factors;
-            for (step, column) in step.iter_mut().zip(unit.effectiveness) {
-                *step *=
-                    (column[0] * pull[0] + column[1] * pull[1]) + (column[2] * pull[2] + column[3] * pull[3]);
-            }
-            let mut velocity = set.velocity(&scratch.point, step);
-            if moving == 0.0 {
-                match scratch.point.face {
-                    Face::Interior => velocity = [0.0; 2],
-                    Face::Edge => velocity[0] = 0.0,
-                    Face::Corner => {}
-                }
-            }
-            scratch.pair = velocity;
-            if has_slack {
-                let efforts = match scratch.point.face {
-                    Face::Interior => velocity,
-                    Face::Edge => set.direction(&scratch.point).map(|part| part * velocity[0]),
-                    Face::Corner => [0.0; 2],
-                };
-                add(unit, self.factors, efforts, &mut effect);
-            }
+            let velocity = scratch.pair;
             let barred = match self.left {
                 Some((left, region)) if left == index && scratch.point.face != Face::Interior => Some(region),
                 _ => None,
@@ -116,7 +167,6 @@ impl Homotopy<'_> {
             }
         }
         // .. of the slack rows.
-        let speeds = self.turned.rows(effect);
         for (index, (((row, drift), speed), pull)) in self
             .rows
             .iter()

@@ -19,6 +19,7 @@ use mixer_compiler::model::PairMap;
 use mixer_rt::{Airmode, Health};
 
 use crate::physics::Physics;
+use crate::request::Frame;
 use program::{Goal, Point, Program, Quantity, Ranges};
 
 /// Border points per edge of the throttle box.
@@ -110,6 +111,26 @@ impl Oracle {
             airmode: allocation.airmode,
             reserve: allocation.yaw_reserve_nm,
         }
+    }
+
+    /// The programs of a frame with all rotors over the polygons that its mixer has for the attainable sets: what the
+    /// mixer itself would attain if it solved them exactly.
+    pub fn of_polygons(frame: &Frame, volts: f32) -> Self {
+        let factors = frame.physics.factors(volts);
+        let mut oracle = Oracle::new(&frame.physics, frame.allocation(), factors, Health::GOOD);
+        let corners = frame.compiled.tables.attainable.corners();
+        let n = oracle.sets.len();
+        for (i, pieces) in oracle.sets.iter_mut().enumerate() {
+            let contribution = |corner: &[f32; 2]| {
+                let [f, q] = corner.map(f64::from);
+                std::array::from_fn(|axis| {
+                    frame.physics.matrix[(axis, i)] * factors[0] * f
+                        + frame.physics.matrix[(axis, n + i)] * factors[1] * q
+                })
+            };
+            *pieces = vec![corners.iter().map(contribution).collect()];
+        }
+        oracle
     }
 
     /// The optimum over all choices of pieces.
