@@ -109,7 +109,8 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let at_reference = at_reference(bounded, factors.map(|factor| 1.0 / factor));
     let mut efforts = Efforts::default();
-    if !vertical.least_norm(&at_reference, &mut efforts) {
+    let delivered = vertical.least_norm(&at_reference, &mut efforts);
+    if !delivered {
         vertical.desaturate(tables.desaturation.airmode, &at_reference, &mut efforts);
     }
     for (unit, effort) in vertical.units.iter().zip(&mut efforts) {
@@ -119,7 +120,10 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
         [effort.thrust, effort.torque] = tables.pair.efforts(throttles);
     }
     let achieved = vertical.wrench(&efforts, factors);
-    let saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
+    let mut saturation = Saturation::NONE;
+    if !(delivered && vertical.complete) {
+        saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
+    }
     Ok((achieved, saturation.with_voltage_clamped(clamped)))
 }
 
