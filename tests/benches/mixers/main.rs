@@ -1,19 +1,23 @@
 //! Host time per mix as ratios within one run: `cargo bench -p mixer-tests`.
 //!
 //! Criterion prints nanoseconds per 256 requests; what is comparable between machines is the ratio of one mixer's to
-//! another's. The requests are those of `mixer_setpoints::Requests`, the same for all mixers of an airframe.
+//! another's, which a table at the end gives. The requests are those of `mixer_setpoints::Requests`, the same for all mixers of an airframe.
 #![allow(missing_docs)]
 
-use std::hint::black_box;
+mod ratios;
+mod wls;
 
-use criterion::{
-    BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
-};
+use std::hint::black_box;
+use std::time::SystemTime;
+
+use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use mixer_compiler::isolated::IsolatedTables;
 use mixer_rt::baselines::IsolatedRotors;
 use mixer_rt::{Airmode, Wrench};
 use mixer_setpoints::{Kind, Requests};
 use mixer_tests::golden;
+use wls::WeightedLeastSquares;
+use wls_alloc::wls::ControlAllocator;
 
 mixer_macros::airframe!("../airframes/isae-x8.toml");
 mixer_macros::airframe!("../airframes/px4-y6.toml");
@@ -52,41 +56,71 @@ fn baselines<const ROTORS: usize>(
     isolated: &IsolatedRotors<'_>,
     airmode: Airmode,
 ) {
-    bench(group, "conventional", asked, |setpoint, voltage_v| {
+    bench(group, MIXERS[1], asked, |setpoint, voltage_v| {
         let mut throttle = [0.0; ROTORS];
         let _ = black_box(isolated.conventional(setpoint, voltage_v, &mut throttle));
         black_box(throttle);
     });
-    bench(group, "sequential", asked, |setpoint, voltage_v| {
+    bench(group, MIXERS[2], asked, |setpoint, voltage_v| {
         let mut throttle = [0.0; ROTORS];
         let _ = black_box(isolated.sequential(airmode, setpoint, voltage_v, &mut throttle));
         black_box(throttle);
     });
 }
 
+/// The mixers, this one first.
+const MIXERS: [&str; 4] = ["coaxial", "conventional", "sequential", "wls"];
+
+/// Benchmarks of one airframe; adds the names of its groups.
 macro_rules! airframe {
-    ($criterion:ident, $name:literal, $module:ident) => {
+    ($criterion:ident, $groups:ident, $name:literal, $module:ident) => {
+        const ROTORS: usize = $module::CHANNELS;
         let compiled = golden::compile($name).unwrap_or_else(|e| panic!("{e}"));
         let isolated = IsolatedTables::new(&compiled);
         for (kind, set) in [(Kind::Attainable, "attainable"), (Kind::Saturated, "saturated")] {
             let asked = asked(&$module::TABLES, kind);
-            let mut group = $criterion.benchmark_group(format!("{}/{set}", $name));
+            let name = format!("{}, {set}", $name);
+            let mut group = $criterion.benchmark_group(&name);
             group.throughput(Throughput::Elements(REQUESTS as u64));
-            bench(&mut group, "coaxial", &asked, |setpoint, voltage_v| {
+            bench(&mut group, MIXERS[0], &asked, |setpoint, voltage_v| {
                 let _ = black_box($module::mix(setpoint, voltage_v));
             });
             let airmode = $module::TABLES.desaturation.airmode;
-            baselines::<{ $module::CHANNELS }>(&mut group, &asked, &isolated.view(), airmode);
+            baselines::<ROTORS>(&mut group, &asked, &isolated.view(), airmode);
+            let voltage = $module::TABLES.voltage.as_ref();
+            let mut wls = WeightedLeastSquares::<ControlAllocator<ROTORS, 4, { ROTORS + 4 }>, ROTORS>::new(
+                &isolated, voltage,
+            );
+            bench(&mut group, MIXERS[3], &asked, |setpoint, voltage_v| {
+                black_box(wls.mix(setpoint, voltage_v));
+            });
             group.finish();
+            $groups.push(name);
         }
     };
 }
 
-fn mixers(criterion: &mut Criterion) {
-    airframe!(criterion, "isae-x8", isae_x8);
-    airframe!(criterion, "px4-y6", px4_y6);
-    airframe!(criterion, "px4-x12", px4_x12);
+fn x8(criterion: &mut Criterion, groups: &mut Vec<String>) {
+    airframe!(criterion, groups, "isae-x8", isae_x8);
 }
 
-criterion_group!(benches, mixers);
-criterion_main!(benches);
+fn y6(criterion: &mut Criterion, groups: &mut Vec<String>) {
+    airframe!(criterion, groups, "px4-y6", px4_y6);
+}
+
+fn x12(criterion: &mut Criterion, groups: &mut Vec<String>) {
+    airframe!(criterion, groups, "px4-x12", px4_x12);
+}
+
+fn main() {
+    let start = SystemTime::now();
+    let mut criterion = Criterion::default()
+        .output_directory(&ratios::folder())
+        .configure_from_args();
+    let mut groups = Vec::new();
+    x8(&mut criterion, &mut groups);
+    y6(&mut criterion, &mut groups);
+    x12(&mut criterion, &mut groups);
+    criterion.final_summary();
+    ratios::print(&groups, &MIXERS, start);
+}
