@@ -8,7 +8,7 @@ use mixer_tests::soundness;
 
 use crate::{REFERENCE_V, compile};
 
-const NUMBERS: [f32; 14] = [
+pub(crate) const NUMBERS: [f32; 14] = [
     0.0,
     -0.0,
     1e-40,
@@ -33,7 +33,7 @@ fn at(position: [f64; 3], clockwise: bool) -> Place {
     }
 }
 
-fn degenerate_frames() -> [(&'static str, Vec<Place>); 4] {
+pub(crate) fn degenerate_frames() -> [(&'static str, Vec<Place>); 4] {
     // Lever arms that differ by a factor of ten.
     let mut uneven = frames::regular(6, 0.0);
     for (k, place) in uneven.iter_mut().enumerate() {

@@ -7,11 +7,13 @@
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
 //! | `degenerate.rs` | numbers that no controller sends |
+//! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
 #![allow(missing_docs)]
 
 mod degenerate;
 mod delivery;
 mod failure;
+mod finite;
 mod layout;
 mod optimum;
 mod properties;

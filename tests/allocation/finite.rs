@@ -1,0 +1,200 @@
+//! No number that is not finite arises on the way from a finite setpoint to the throttles.
+//!
+//! The last step limits throttles by comparing bits, which takes a NaN to one end of the range or to the other by its
+//! sign, and the sign of a NaN depends on the processor. So the throttles' range says nothing; what is watched here is
+//! what goes into the inverse map, and every operation within it.
+
+use std::cell::Cell;
+use std::ops::{Add, Div, Mul, Sub};
+
+use mixer_compiler::tables::{InverseTable, MixerTables};
+use mixer_rt::{Health, Inverse, Pair, Quantity, Scalar, Scratch, TableSeed, Tables, ThrottleRange, Wrench};
+use mixer_tests::frames::{self, AIRMODES, Options};
+use mixer_tests::random::Random;
+
+use crate::degenerate::{NUMBERS, degenerate_frames};
+
+/// An `f32` that is finite.
+#[derive(Clone, Copy)]
+struct Finite(f32);
+
+fn finite(x: f32) -> Finite {
+    assert!(x.is_finite(), "{x}");
+    Finite(x)
+}
+
+macro_rules! operation {
+    ($operation:ident, $method:ident, $symbol:tt) => {
+        impl $operation for Finite {
+            type Output = Finite;
+            fn $method(self, other: Finite) -> Finite {
+                finite(self.0 $symbol other.0)
+            }
+        }
+        operation!($operation<f32>, $method, $symbol);
+    };
+    ($operation:ident<f32>, $method:ident, $symbol:tt) => {
+        impl $operation<f32> for Finite {
+            type Output = Finite;
+            fn $method(self, other: f32) -> Finite {
+                finite(self.0 $symbol other)
+            }
+        }
+    };
+}
+
+operation!(Add, add, +);
+operation!(Sub, sub, -);
+operation!(Mul, mul, *);
+operation!(Div<f32>, div, /);
+
+impl Scalar for Finite {
+    fn constant(value: f32) -> Self {
+        finite(value)
+    }
+    fn reciprocal(self) -> Self {
+        finite(self.0.reciprocal())
+    }
+    fn root(self) -> Self {
+        finite(self.0.root())
+    }
+    fn within(self, low: f32, high: f32) -> Self {
+        finite(self.0.within(low, high))
+    }
+    fn interpolate(table: &TableSeed, place: [Self; 2]) -> [Self; 2] {
+        table.at(place.map(|x| x.0)).map(finite)
+    }
+}
+
+/// [`mixer_rt::Seeded`]'s and [`mixer_rt::PolynomialInverse`]'s operations on numbers that have to be finite.
+fn evaluate(tables: &MixerTables, efforts: [f32; 2]) -> [f32; 2] {
+    let efforts = efforts.map(finite);
+    let mut throttles = tables.inverse.guess(efforts).map(|x| tables.throttle.clamp(x));
+    let (steps, residuals) = tables.inverse.steps();
+    for _ in 0..steps {
+        let (mut given, jacobian) = tables.pair.efforts_and_jacobian(throttles);
+        for residual in 0..residuals {
+            if residual > 0 {
+                given = tables.pair.efforts(throttles);
+            }
+            let step = mixer_rt::solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
+            throttles = [0, 1].map(|k| tables.throttle.clamp(throttles[k] + step[k]));
+        }
+    }
+    throttles.map(|x| x.0)
+}
+
+/// An evaluator that keeps the largest efforts it is asked for, and refuses those that are not finite.
+struct Watched<'a> {
+    inverse: &'a InverseTable,
+    largest: Cell<f32>,
+}
+
+impl<P: Quantity> Inverse<P> for &Watched<'_> {
+    fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
+        for effort in efforts {
+            assert!(effort.is_finite(), "{efforts:?}");
+            self.largest.set(self.largest.get().max(effort.abs()));
+        }
+        self.inverse.throttles(pair, range, efforts)
+    }
+}
+
+/// Mixes and returns the largest effort that went into the inverse map.
+fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: Health) -> f32 {
+    let watched = Watched {
+        inverse: &tables.inverse,
+        largest: Cell::new(0.0),
+    };
+    let view = tables.view();
+    let view = Tables {
+        units: view.units,
+        complete: view.complete,
+        pair: view.pair,
+        inverse: &watched,
+        throttle: view.throttle,
+        voltage: view.voltage,
+        attainable: view.attainable,
+        quadrangle: view.quadrangle,
+        redistribution: view.redistribution,
+        desaturation: view.desaturation,
+        shortcut: view.shortcut,
+        tolerance: view.tolerance,
+    };
+    let units = tables.units.len();
+    let (mut scratch, mut throttle) = (vec![Scratch::default(); units], vec![0.0; 2 * units]);
+    let [roll_nm, pitch_nm, yaw_nm, thrust_n] = setpoint;
+    let wrench = Wrench {
+        roll_nm,
+        pitch_nm,
+        yaw_nm,
+        thrust_n,
+    };
+    let mixed = mixer_rt::mix_into(&view, &wrench, volts, health, &mut scratch, &mut throttle);
+    let (achieved, _) = mixed.expect("finite");
+    assert!(
+        achieved.to_array().iter().all(|x| x.is_finite()),
+        "{wrench:?} -> {achieved:?}"
+    );
+    watched.largest.get()
+}
+
+/// An evaluator is asked for less than this in the test below.
+const LARGEST: f32 = 1e8;
+
+#[test]
+fn efforts_are_finite() {
+    let mut random = Random(11);
+    for (name, places) in degenerate_frames() {
+        for (airmode, yaw_reserve_nm) in AIRMODES.into_iter().zip([0.0, 0.02, 0.0]) {
+            let options = Options {
+                airmode,
+                yaw_reserve_nm,
+            };
+            let compiled = frames::compile(&places, options).expect("a frame");
+            for _ in 0..400 {
+                let setpoint = std::array::from_fn(|_| NUMBERS[random.index(NUMBERS.len())]);
+                let volts = NUMBERS[random.index(NUMBERS.len())];
+                let health = match random.index(2) {
+                    0 => Health::GOOD,
+                    _ => Health::GOOD.with_failed(random.index(2 * places.len()) as u8),
+                };
+                let largest = largest_effort(&compiled.tables, setpoint, volts, health);
+                assert!(largest < LARGEST, "{name} {airmode}: {setpoint:?} -> {largest}");
+            }
+        }
+    }
+}
+
+#[test]
+fn evaluators_are_finite_far_outside_the_attainable_set() {
+    let file = mixer_tests::root().join("airframes/isae-x8.toml");
+    let text = std::fs::read_to_string(file).expect("an airframe");
+    let compiled = frames::compile_text(&text).expect("an X8");
+    let front = compiled.front();
+    assert!(front.len() > 4, "{front:?}");
+    let numbers = [0.0, 1e-45, 1e-30, 1e-6, 0.1, 1.0, 12.0, 30.0, 1e3, 1e6, LARGEST];
+    let numbers: Vec<f32> = numbers.into_iter().flat_map(|x| [x, -x]).collect();
+    for alternative in front {
+        let mut airframe: toml::Table = text.parse().expect("TOML");
+        let mut inverse = toml::Table::new();
+        inverse.insert("method".into(), alternative.evaluator.to_string().into());
+        if alternative.evaluator == "polynomial" {
+            inverse.insert("degree".into(), 9.into());
+        }
+        inverse.insert("thrust_tolerance_n".into(), 5.0.into());
+        inverse.insert("torque_tolerance_nm".into(), 0.1.into());
+        airframe.insert("inverse".into(), inverse.into());
+        let compiled = frames::compile_text(&airframe.to_string())
+            .unwrap_or_else(|faults| panic!("{}: {faults}", alternative.evaluator));
+        let tables = &compiled.tables;
+        for &f in &numbers {
+            for &q in &numbers {
+                let watched = evaluate(tables, [f, q]);
+                let given = (&tables.inverse).throttles(&tables.pair, &tables.throttle, [f, q]);
+                let bits = |throttles: [f32; 2]| throttles.map(f32::to_bits);
+                assert_eq!(bits(watched), bits(given), "{} at {f} {q}", alternative.evaluator);
+            }
+        }
+    }
+}
