@@ -14,7 +14,7 @@
 //! is a continuous function of the request: the attainable wrenches are a polytope, on which the nearest points
 //! above move continuously, and the efforts are the only ones nearest to a reference that give the wrench reached.
 
-use crate::chord::{Rotors, Sets};
+use crate::chord::{Chord, Rotors, Sets};
 use crate::homotopy::{Homotopy, Scratch};
 use crate::rows::{ALONG, Bounds, THRUST, YAW};
 use crate::{Quantity, Tables, clamp};
@@ -43,11 +43,11 @@ pub struct Desaturation {
 /// overflows.
 const REQUEST_LIMIT: f32 = 1e5;
 
-/// Rounds of correction for the chords that stand for the curves of units with one rotor.
-const CHORD_ROUNDS: u32 = 4;
+/// Rounds in which the lines that stand for the curves of single rotors are drawn again where the units have come to.
+const ROUNDS: u32 = 12;
 
-/// Share of the mixer's tolerance below which a correction is not worth another round.
-const CORRECTED: f32 = 0.25;
+/// Share of the mixer's tolerance by which lines and curves may be apart.
+const TOUCHING: f32 = 0.25;
 
 /// True where `request` is finite and within [`REQUEST_LIMIT`].
 #[inline(always)]
@@ -83,38 +83,46 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
     scratch: &mut [Scratch],
 ) {
     let request = limited(request);
-    let sets = Sets::new(tables.attainable, &tables.pair, &tables.throttle);
-    let mut bulge = [0.0; 4];
-    prioritise(tables, &sets, request, bulge, factors, scratch);
-    if scratch.iter().any(|scratch| scratch.rotors != Rotors::Both) {
-        for _ in 0..CHORD_ROUNDS {
-            let before = bulge;
-            bulge = [0.0; 4];
-            for (unit, scratch) in tables.units.iter().zip(scratch.iter()) {
-                let [f, q] = scratch.efforts;
-                if let Some(throttles) = single_rotor(tables, scratch.rotors, f) {
-                    let missed = factors[1] * (tables.pair.torque.value(throttles[0], throttles[1]) - q);
-                    for (bulge, effect) in bulge.iter_mut().zip(unit.effectiveness[1]) {
-                        *bulge += effect * missed;
-                    }
+    let sets = Sets {
+        both: tables.attainable,
+    };
+    let (pair, range, scale) = (&tables.pair, &tables.throttle, tables.attainable.scale);
+    for scratch in scratch.iter_mut() {
+        if let Some(chord) = Chord::of_curve(pair, range, scratch.rotors, scale) {
+            scratch.chord = chord;
+        }
+    }
+    for _ in 0..ROUNDS {
+        prioritise(tables, &sets, request, factors, scratch);
+        let mut missed = [0.0; 4];
+        for (unit, scratch) in tables.units.iter().zip(scratch.iter_mut()) {
+            let [f, q] = scratch.efforts;
+            if let Some(throttle) = single_rotor(tables, scratch.rotors, f)
+                && let Some(throttles) = scratch.rotors.throttles(throttle)
+                && let Some(tangent) = scratch
+                    .chord
+                    .tangent(pair, range, scratch.rotors, scale, throttle)
+            {
+                scratch.chord = tangent;
+                let off = factors[1] * (tables.pair.torque.value(throttles[0], throttles[1]) - q);
+                for (missed, effect) in missed.iter_mut().zip(unit.effectiveness[1]) {
+                    *missed += (effect * off).abs();
                 }
             }
-            // What is left is less than the inverse map may miss.
-            let mut changes = bulge.iter().zip(before).zip(tables.tolerance.wrench);
-            if changes.all(|((now, before), tolerance)| (now - before).abs() < CORRECTED * tolerance) {
-                break;
-            }
-            prioritise(tables, &sets, request, bulge, factors, scratch);
+        }
+        // What is left is less than the inverse map may miss.
+        let mut missed = missed.iter().zip(tables.tolerance.wrench);
+        if missed.all(|(missed, tolerance)| *missed <= TOUCHING * tolerance) {
+            break;
         }
     }
 }
 
-/// The steps of the module's head. `offset` is a wrench that the units give beside the efforts.
+/// The steps of the module's head, with straight lines for the curves of single rotors.
 fn prioritise<P, I, S>(
     tables: &Tables<'_, P, I, S>,
     sets: &Sets<'_>,
     request: [f32; 4],
-    offset: [f32; 4],
     factors: [f32; 2],
     scratch: &mut [Scratch],
 ) {
@@ -122,11 +130,7 @@ fn prioritise<P, I, S>(
         airmode,
         yaw_reserve_nm,
     } = tables.desaturation;
-    let reserved = clamp(request[YAW], -yaw_reserve_nm, yaw_reserve_nm) - offset[YAW];
-    let mut request = request;
-    for (request, offset) in request.iter_mut().zip(offset) {
-        *request -= offset;
-    }
+    let reserved = clamp(request[YAW], -yaw_reserve_nm, yaw_reserve_nm);
     let mut homotopy = Homotopy::new(tables, sets, factors, request, scratch);
     let wanted = homotopy.rows_of(request);
     let yaw = homotopy.bounds_of(YAW, Bounds::at(reserved).including(request[YAW]));
@@ -181,27 +185,22 @@ fn descend(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: B
 /// Halvings of the throttle range that find a single rotor's throttle: to the last bit of a float.
 const HALVINGS: u32 = 24;
 
-/// The throttles at which a unit with one rotor gives the thrust `f` (N at the reference voltage); `None` with
+/// The throttle at which a unit with one rotor gives the thrust `f` (N at the reference voltage); `None` with
 /// both or no rotor.
 pub(crate) fn single_rotor<P: Quantity, I, S>(
     tables: &Tables<'_, P, I, S>,
     rotors: Rotors,
     f: f32,
-) -> Option<[f32; 2]> {
-    let throttles = |throttle| match rotors {
-        Rotors::Upper => Some([throttle, 0.0]),
-        Rotors::Lower => Some([0.0, throttle]),
-        Rotors::Both | Rotors::None => None,
-    };
+) -> Option<f32> {
     let (mut low, mut high) = (tables.throttle.min, tables.throttle.max);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        let [u, l] = throttles(middle)?;
+        let [u, l] = rotors.throttles(middle)?;
         if tables.pair.thrust.value(u, l) < f {
             low = middle;
         } else {
             high = middle;
         }
     }
-    throttles(0.5 * (low + high))
+    Some(0.5 * (low + high))
 }

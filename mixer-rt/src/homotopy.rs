@@ -30,7 +30,7 @@
 //! Efforts are scaled by the set's `scale`.
 
 use crate::attainable::{Face, Point};
-use crate::chord::{Rotors, Sets};
+use crate::chord::{Chord, Rotors, Sets};
 use crate::rows::{Bounds, Row, RowState, Turned};
 use crate::{Tables, Unit, sqrt};
 
@@ -60,6 +60,8 @@ pub struct Scratch {
     pub(crate) efforts: [f32; 2],
     /// Which of its rotors work.
     pub(crate) rotors: Rotors,
+    /// What stands for its attainable set where only one does.
+    pub(crate) chord: Chord,
     /// p_i, scaled.
     pub(crate) point: Point,
     /// The velocity of p_i in its own coordinates.
@@ -172,7 +174,7 @@ impl<'h> Homotopy<'h> {
     /// Writes the efforts, N and N m at the reference voltage, into the scratch.
     pub(crate) fn write_efforts(&mut self) {
         for scratch in self.scratch.iter_mut() {
-            scratch.efforts = match self.sets.of(scratch.rotors) {
+            scratch.efforts = match self.sets.of(scratch.rotors, &scratch.chord) {
                 Some(set) => {
                     let [f, q] = set.project(&scratch.point);
                     [f * set.scale[0], q * set.scale[1]]
@@ -236,7 +238,7 @@ impl<'h> Homotopy<'h> {
     fn press(&mut self) {
         for scratch in self.scratch.iter_mut() {
             let velocity = scratch.pair;
-            if let Some(set) = self.sets.of(scratch.rotors) {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let away = velocity.map(|speed| if speed > PARALLEL { PUSH * speed } else { 0.0 });
                 match scratch.point.face {
                     Face::Interior => {}
@@ -263,7 +265,7 @@ impl<'h> Homotopy<'h> {
     pub(crate) fn actual(&self) -> [f32; 4] {
         let mut wrench = [0.0; 4];
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
-            if let Some(set) = self.sets.of(scratch.rotors) {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 add(unit, self.factors, set.project(&scratch.point), &mut wrench);
             }
         }

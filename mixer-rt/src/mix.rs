@@ -185,7 +185,9 @@ fn invert<P: Quantity, I: Inverse<P>, S: Shortcut>(
         let efforts = scratch.efforts;
         let throttles = match scratch.rotors {
             Rotors::Both => tables.inverse.throttles(&tables.pair, &tables.throttle, efforts),
-            rotors => single_rotor(tables, rotors, efforts[0]).unwrap_or([0.0, 0.0]),
+            rotors => single_rotor(tables, rotors, efforts[0])
+                .and_then(|throttle| rotors.throttles(throttle))
+                .unwrap_or([0.0, 0.0]),
         };
         write(unit.channels, throttles, throttle);
         let given = tables.pair.efforts(throttles);

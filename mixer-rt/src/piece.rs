@@ -31,7 +31,7 @@ impl Homotopy<'_> {
         let mut gram = Gram::default();
         let mut wrench = [0.0; 4];
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
-            let Some(set) = self.sets.of(scratch.rotors) else {
+            let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
                 continue;
             };
             add(unit, self.factors, set.project(&scratch.point), &mut wrench);
@@ -61,7 +61,7 @@ impl Homotopy<'_> {
     fn accelerate(&mut self, multipliers: [f32; 4], moving: f32, effect: &mut [f32; 4]) {
         let pull = self.turned.axes(multipliers);
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter_mut()) {
-            let Some(set) = self.sets.of(scratch.rotors) else {
+            let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
                 continue;
             };
             let mut step = self.factors;
@@ -153,7 +153,7 @@ impl Homotopy<'_> {
             }
         }
         for (index, scratch) in self.scratch.iter_mut().enumerate() {
-            let Some(set) = self.sets.of(scratch.rotors) else {
+            let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
                 continue;
             };
             let velocity = scratch.pair;
@@ -216,7 +216,7 @@ impl Homotopy<'_> {
             };
         }
         for scratch in self.scratch.iter_mut() {
-            if let Some(set) = self.sets.of(scratch.rotors) {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let velocity = scratch.pair;
                 set.shift(&mut scratch.point, [limit * velocity[0], limit * velocity[1]]);
             }
@@ -226,7 +226,7 @@ impl Homotopy<'_> {
             Event::Arrival => return Some(1.0),
             Event::Face(index, crossing) => {
                 if let Some(scratch) = self.scratch.get_mut(index)
-                    && let Some(set) = self.sets.of(scratch.rotors)
+                    && let Some(set) = self.sets.of(scratch.rotors, &scratch.chord)
                 {
                     self.left = Some((index, scratch.point.region()));
                     set.cross(&mut scratch.point, crossing);

@@ -17,7 +17,7 @@ impl Homotopy<'_> {
     fn least_norm_part(&self, request: &[f32; 4]) -> f32 {
         let mut part = 1.0;
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
-            if let Some(set) = self.sets.of(scratch.rotors) {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let [f, q] = unit.efforts(request);
                 let distance = set.locate([f / self.factors[0], q / self.factors[1]]).distance();
                 let near = 1.0 - distance / LEAST_NORM_REACH;
@@ -32,7 +32,7 @@ impl Homotopy<'_> {
         let mut gram = Gram::default();
         let mut wrench = [0.0; 4];
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
-            let Some(set) = self.sets.of(scratch.rotors) else {
+            let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
                 continue;
             };
             let least = unit.efforts(request);
@@ -67,7 +67,7 @@ impl Homotopy<'_> {
             [0.0; 4]
         };
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter_mut()) {
-            if let Some(set) = self.sets.of(scratch.rotors) {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let mut reference = set.centre;
                 if part > 0.0 {
                     let least = unit.efforts(&request);

@@ -113,14 +113,18 @@ impl Oracle {
         }
     }
 
-    /// The programs of a frame with all rotors over the polygons that its mixer has for the attainable sets: what the
-    /// mixer itself would attain if it solved them exactly.
-    pub fn of_polygons(frame: &Frame, volts: f32) -> Self {
+    /// The programs of a frame over the polygons that its mixer has for the attainable sets of units with both rotors:
+    /// what the mixer itself would attain if it solved them exactly.
+    pub fn of_polygons(frame: &Frame, volts: f32, health: Health) -> Self {
         let factors = frame.physics.factors(volts);
-        let mut oracle = Oracle::new(&frame.physics, frame.allocation(), factors, Health::GOOD);
+        let mut oracle = Oracle::new(&frame.physics, frame.allocation(), factors, health);
         let corners = frame.compiled.tables.attainable.corners();
         let n = oracle.sets.len();
+        let failed = |&channel: &usize| u8::try_from(channel).is_ok_and(|channel| health.has_failed(channel));
         for (i, pieces) in oracle.sets.iter_mut().enumerate() {
+            if frame.physics.channels[i].iter().any(failed) {
+                continue;
+            }
             let contribution = |corner: &[f32; 2]| {
                 let [f, q] = corner.map(f64::from);
                 std::array::from_fn(|axis| {
