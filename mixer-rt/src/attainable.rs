@@ -431,7 +431,7 @@ impl Edge {
 
     /// The point at distance `s` from the start.
     #[inline]
-    fn at(&self, s: f32) -> [f32; 2] {
+    pub(crate) fn at(&self, s: f32) -> [f32; 2] {
         [
             self.start[0] + s * self.along[0],
             self.start[1] + s * self.along[1],

@@ -37,12 +37,11 @@ const SWING: f32 = 0.25;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Chord {
     edge: [Edge; 1],
-    centre: [f32; 2],
-    /// The efforts in which it meets the curve, N and N m, and how that thrust changed last.
-    meeting: Option<[f32; 2]>,
+    /// The efforts in which it meets the curve, N and N m (NaN for the chord), and how that thrust changed last.
+    meeting: [f32; 2],
     step: f32,
-    /// dQ/df, where it is no longer that of the tangent.
-    slope: Option<f32>,
+    /// dQ/df, where it is no longer that of the tangent; else NaN.
+    slope: f32,
 }
 
 impl Default for Chord {
@@ -53,10 +52,9 @@ impl Default for Chord {
                 along: [1.0, 0.0],
                 length: 0.0,
             }],
-            centre: [0.0; 2],
-            meeting: None,
+            meeting: [f32::NAN; 2],
             step: 0.0,
-            slope: None,
+            slope: f32::NAN,
         }
     }
 }
@@ -73,10 +71,9 @@ impl Chord {
                 along: vector.map(|part| part / length),
                 length,
             }],
-            centre: [start[0] + 0.5 * vector[0], start[1] + 0.5 * vector[1]],
-            meeting: None,
+            meeting: [f32::NAN; 2],
             step: 0.0,
-            slope: None,
+            slope: f32::NAN,
         }
     }
 
@@ -109,18 +106,19 @@ impl Chord {
         });
         let mut slope = self.slope;
         let mut step = 0.0;
-        if let Some(before) = self.meeting {
+        let before = self.meeting;
+        if !before[0].is_nan() {
             step = f - before[0];
-            if slope.is_none() && step * self.step < 0.0 && step.abs() > SWING * self.step.abs() {
-                slope = Some((q - before[1]) / step);
+            if slope.is_nan() && step * self.step < 0.0 && step.abs() > SWING * self.step.abs() {
+                slope = (q - before[1]) / step;
             }
         }
         let low = pair.efforts(rotors.throttles(range.min)?)[0];
         let high = pair.efforts(rotors.throttles(range.max)?)[0];
-        let direction = slope.unwrap_or(q_by / f_by);
+        let direction = if slope.is_nan() { q_by / f_by } else { slope };
         let at = |thrust: f32| [thrust, q + direction * (thrust - f)];
         Some(Chord {
-            meeting: Some([f, q]),
+            meeting: [f, q],
             step,
             slope,
             ..Chord::new(at(low), at(high), scale)
@@ -142,7 +140,7 @@ impl Sets<'_> {
             Rotors::Both => Some(self.both),
             Rotors::Upper | Rotors::Lower => Some(AttainableSet {
                 scale: self.both.scale,
-                centre: chord.centre,
+                centre: chord.edge[0].at(0.5 * chord.edge[0].length),
                 edges: &chord.edge,
             }),
             Rotors::None => None,
