@@ -75,14 +75,13 @@ pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
 }
 
 /// Finds attainable efforts (`[f, Q]` at the reference voltage, in the scratch) that serve `request` (`[roll,
-/// pitch, yaw, thrust]`) in the order of priority. `factors` is `[k_f, k_Q]`.
+/// pitch, yaw, thrust]`, within [`REQUEST_LIMIT`]) in the order of priority. `factors` is `[k_f, k_Q]`.
 pub(crate) fn desaturate<P: Quantity, I, S>(
     tables: &Tables<'_, P, I, S>,
     request: [f32; 4],
     factors: [f32; 2],
     scratch: &mut [Scratch],
 ) {
-    let request = limited(request);
     let sets = Sets {
         both: tables.attainable,
     };

@@ -70,18 +70,18 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
     if let (Some(vertical), true) = (tables.shortcut.vertical(), health.is_good()) {
         return mix_vertical(tables, vertical, setpoint, voltage_v, throttle);
     }
-    let request = finite(setpoint)?;
+    let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let per_factor = factors.map(|factor| 1.0 / factor);
 
     for (unit, scratch) in tables.units.iter().zip(scratch.iter_mut()) {
-        let [f, q] = unit.efforts(&request);
+        let [f, q] = unit.efforts(&bounded);
         scratch.efforts = [f * per_factor[0], q * per_factor[1]];
         scratch.rotors = rotors(unit.channels, health);
     }
     let (mut achieved, delivered) = invert(tables, factors, scratch, throttle);
     if !delivered {
-        desaturate(tables, request, factors, scratch);
+        desaturate(tables, bounded, factors, scratch);
         (achieved, _) = invert(tables, factors, scratch, throttle);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
@@ -101,11 +101,7 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     voltage_v: f32,
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    let request = setpoint.to_array();
-    let mut bounded = request;
-    if !is_bounded(&request) {
-        bounded = limited(finite(setpoint)?);
-    }
+    let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let at_reference = at_reference(bounded, factors.map(|factor| 1.0 / factor));
     let mut efforts = Efforts::default();
@@ -125,6 +121,16 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
         saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
     }
     Ok((achieved, saturation.with_voltage_clamped(clamped)))
+}
+
+/// The setpoint as `[roll, pitch, yaw, thrust]`, and the same within what is looked at.
+#[inline(always)]
+fn bounded(setpoint: &Wrench) -> Result<([f32; 4], [f32; 4]), SetpointError> {
+    let request = setpoint.to_array();
+    if is_bounded(&request) {
+        return Ok((request, request));
+    }
+    Ok((request, limited(finite(setpoint)?)))
 }
 
 /// The setpoint as `[roll, pitch, yaw, thrust]`.

@@ -109,14 +109,11 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
     let view = tables.view();
     let view = Tables {
         units: view.units,
-        complete: view.complete,
         pair: view.pair,
         inverse: &watched,
         throttle: view.throttle,
         voltage: view.voltage,
         attainable: view.attainable,
-        quadrangle: view.quadrangle,
-        redistribution: view.redistribution,
         desaturation: view.desaturation,
         shortcut: view.shortcut,
         tolerance: view.tolerance,
