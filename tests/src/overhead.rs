@@ -235,7 +235,7 @@ pub fn file() -> PathBuf {
     root().join("mixer-compiler/src/cost/counted.rs")
 }
 
-/// Writes [`file`].
+/// Writes [`file()`].
 ///
 /// # Errors
 /// It cannot be written.
@@ -244,7 +244,7 @@ pub fn write(compiler: &str, counted: &Counted) -> Result<(), String> {
     fs::write(&path, text(compiler, counted)).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// The content of [`file`].
+/// The content of [`file()`].
 pub fn text(compiler: &str, counted: &Counted) -> String {
     let overhead = |Overhead {
                         per_mix,
