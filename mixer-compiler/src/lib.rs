@@ -73,6 +73,9 @@ pub struct Compiled {
     pub tables: MixerTables,
 }
 
+/// Share of the attainable area that convexity may cost where desaturation is in closed form.
+const MOST_LOST_TO_CONVEXITY: f64 = 0.0025;
+
 /// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> proof -> tables.
 ///
 /// # Errors
@@ -101,7 +104,10 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
     let thrust_range_n = hover::thrust_range(&airframe, &tables)?;
-    tables.shortcut = vertical::table(&airframe, &effectiveness, thrust_range_n);
+    // The closed form knows no efforts beyond the convex part; the general way inverts before it asks for that.
+    if lost_area.convexity <= MOST_LOST_TO_CONVEXITY {
+        tables.shortcut = vertical::table(&airframe, &effectiveness, thrust_range_n);
+    }
     Ok(Compiled {
         source_name: source.name.clone(),
         airframe,
