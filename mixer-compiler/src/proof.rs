@@ -296,6 +296,8 @@ impl Cell {
 }
 
 #[cfg(test)]
+mod enclosure_tests;
+#[cfg(test)]
 mod piecewise_tests;
 #[cfg(test)]
 mod tests;

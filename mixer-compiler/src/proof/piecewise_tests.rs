@@ -5,9 +5,9 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive};
 
 use super::bend::Bend;
+use super::enclosure_tests::{exact, numbers};
 use super::expansion::{Expansion, Monomials};
 use super::taylor::Taylor;
-use super::tests::{exact, numbers};
 use crate::airframe::Basis;
 
 fn small(n: i64) -> BigRational {

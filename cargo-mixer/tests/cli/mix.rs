@@ -1,0 +1,189 @@
+//! `cargo mixer mix`: rows in, rows out.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+use crate::{HEADER, X8, assert_status, cargo_mixer, root, run_with, stderr, stdout};
+
+/// One row of `mix`: throttles, achieved wrench, saturation.
+fn row(line: &str) -> (Vec<f32>, [f32; 4], u16) {
+    let fields: Vec<&str> = line.split(',').collect();
+    let (saturation, numbers) = fields.split_last().unwrap();
+    let numbers: Vec<f32> = numbers.iter().map(|number| number.parse().unwrap()).collect();
+    let (throttles, achieved) = numbers.split_at(numbers.len() - 4);
+    (
+        throttles.to_vec(),
+        achieved.try_into().unwrap(),
+        saturation.parse().unwrap(),
+    )
+}
+
+#[test]
+fn mix_prints_the_bits_of_the_tables() {
+    let text = std::fs::read_to_string(root().join(X8)).unwrap();
+    let compiled = mixer_compiler::compile(&mixer_compiler::Source::new(X8, text)).unwrap();
+    let setpoints: Vec<([f32; 4], f32)> = (0..200u8)
+        .map(|i| {
+            let x = f32::from(i) / 200.0;
+            ([x - 0.3, 1.7 * x * x - 0.4, 0.7 - x, 90.0 * x], 12.5 + 5.0 * x)
+        })
+        .collect();
+    let rows = setpoints
+        .iter()
+        .map(|([roll, pitch, yaw, thrust], voltage)| format!("{voltage},{thrust},{roll},{pitch},{yaw}\n"));
+    let input = format!(
+        "voltage_v,thrust_n,roll_nm,pitch_nm,yaw_nm\n{}",
+        rows.collect::<String>()
+    );
+    let output = run_with(&["mix", X8], input.as_bytes());
+    assert_status(&output, 0);
+    let mut lines = stdout(&output).lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(header.len(), 8 + 4 + 1);
+    assert_eq!((header[0], header[7]), ("throttle_0", "throttle_7"));
+    assert_eq!(
+        header[8..],
+        [
+            "achieved_roll_nm",
+            "achieved_pitch_nm",
+            "achieved_yaw_nm",
+            "achieved_thrust_n",
+            "saturation"
+        ]
+    );
+    let rows: Vec<_> = lines.map(row).collect();
+    assert_eq!(rows.len(), setpoints.len());
+    let (mut saturated, mut clamped) = (0, 0);
+    for ((wrench, voltage), (throttles, achieved, saturation)) in setpoints.iter().zip(&rows) {
+        let wrench = mixer_rt::Wrench::from_array(*wrench);
+        let expected = compiled.tables.mix(&wrench, *voltage).unwrap();
+        let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(throttles), bits(&expected.0));
+        assert_eq!(bits(achieved), bits(&expected.1.to_array()));
+        assert_eq!(*saturation, expected.2.bits());
+        saturated += u32::from(expected.2.any_axis());
+        clamped += u32::from(expected.2.voltage_clamped());
+    }
+    // The sequence shows both kinds of row.
+    assert!(
+        (1..200).contains(&saturated) && (1..200).contains(&clamped),
+        "{saturated} {clamped}"
+    );
+}
+
+#[test]
+fn mix_takes_the_reference_voltage_without_a_column() {
+    let without = run_with(&["mix", X8], format!("{HEADER}\n0.5,0,0.1,40\n").as_bytes());
+    let with = run_with(
+        &["mix", X8],
+        format!("{HEADER},voltage_v\n0.5,0,0.1,40,14.8\n").as_bytes(),
+    );
+    assert_status(&without, 0);
+    assert_status(&with, 0);
+    assert_eq!(stdout(&without), stdout(&with));
+    assert_eq!(stdout(&without).lines().count(), 2);
+}
+
+#[test]
+fn mix_answers_each_row_before_the_next() {
+    let mut child = cargo_mixer(&["mix", X8]).spawn().unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let (sender, answers) = mpsc::channel();
+    let output = BufReader::new(child.stdout.take().unwrap());
+    let reader = thread::spawn(move || output.lines().try_for_each(|line| sender.send(line.unwrap())));
+    // An answer that is kept back fails the test; it does not hang it.
+    let answer = || answers.recv_timeout(Duration::from_secs(30)).expect("no answer");
+    writeln!(stdin, "{HEADER}").unwrap();
+    assert!(answer().starts_with("throttle_0,"));
+    for thrust_n in [20.0, 30.0, 40.0] {
+        // In two pieces: half a line is no reason to keep an answer back.
+        write!(stdin, "0,0,0,{thrust_n}\n0,").unwrap();
+        let (_, [.., achieved], _) = row(&answer());
+        assert!((achieved - thrust_n).abs() < 0.04, "{achieved}");
+        writeln!(stdin, "0,0,{thrust_n}").unwrap();
+        let (_, [.., again], _) = row(&answer());
+        assert_eq!(again, achieved);
+    }
+    drop(stdin);
+    reader.join().unwrap().unwrap();
+    assert_eq!(answers.try_recv(), Err(mpsc::TryRecvError::Disconnected));
+    assert!(child.wait().unwrap().success());
+}
+
+#[test]
+fn mix_names_the_line_of_a_bad_row_and_goes_on() {
+    let input = format!(
+        "{HEADER},voltage_v\r\n0,0,0,31,15\r\n\r\nnan,0,0,31,15\r\n0,0,0,inf,15\r\n0,0,0,31,nan\r\n0,0,0,31\r\nx,0,0,31,15\r\n\"0,0,0,31,15\r\n0,0,0,31,15"
+    );
+    let output = run_with(&["mix", X8], input.as_bytes());
+    assert_status(&output, 1);
+    let answers: Vec<&str> = stdout(&output).lines().skip(1).collect();
+    assert_eq!(answers.len(), 2);
+    assert_eq!(answers[0], answers[1]);
+    let expected = "\
+error: stdin:4: the roll setpoint is not finite
+error: stdin:5: the thrust setpoint is not finite
+error: stdin:6: the voltage is not finite
+error: stdin:7: 4 columns where the header has 5
+error: stdin:8: roll_nm `x` is not a number
+error: stdin:9: a quote is not closed on its line
+error: 6 bad rows are left out
+";
+    assert_eq!(stderr(&output), expected);
+}
+
+#[test]
+fn mix_refuses_a_header_that_is_none() {
+    for (input, message) in [
+        (
+            "",
+            "error: stdin:1: the input is empty; its first line is the header ",
+        ),
+        (
+            "0,0,0,31\n0,0,0,31\n",
+            "error: stdin:1: no column roll_nm, pitch_nm, yaw_nm, thrust_n; ",
+        ),
+        (
+            "roll_nm,pitch_nm,yaw_nm\n0,0,0\n",
+            "error: stdin:1: no column thrust_n; ",
+        ),
+        (
+            "roll_nm,pitch_nm,yaw_nm,thrust_n,yaw_nm\n",
+            "error: stdin:1: column `yaw_nm` stands twice",
+        ),
+        (
+            "roll_nm,pitch_nm,yaw_nm,thrust_n,v\n",
+            "error: stdin:1: unknown column `v`; ",
+        ),
+    ] {
+        let output = run_with(&["mix", X8], input.as_bytes());
+        assert_status(&output, 1);
+        assert_eq!(stdout(&output), "");
+        assert!(stderr(&output).starts_with(message), "{}", stderr(&output));
+    }
+    // A header alone is a sequence of no setpoints.
+    let output = run_with(&["mix", X8], HEADER.as_bytes());
+    assert_status(&output, 0);
+    assert_eq!(stdout(&output).lines().count(), 1);
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_fault() {
+    // More rows than any pipe holds.
+    let input = format!("{HEADER}\n{}", "0,0,0,31\n".repeat(10_000));
+    let mut child = cargo_mixer(&["mix", X8]).spawn().unwrap();
+    let mut first = [0; 8];
+    let mut reader = child.stdout.take().unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let writer = thread::spawn(move || {
+        let _ = stdin.write_all(input.as_bytes());
+    });
+    reader.read_exact(&mut first).unwrap();
+    drop(reader);
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    assert_status(&output, 0);
+    assert_eq!(&first, b"throttle");
+}

@@ -1,0 +1,227 @@
+//! Taylor models and expansions against exact arithmetic.
+
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::{Signed, ToPrimitive, Zero};
+
+use super::expansion::{Expansion, Monomials};
+use super::*;
+use crate::airframe::Basis;
+use crate::interval::Interval;
+use mixer_rt::Scalar;
+
+/// The float x, exactly.
+pub(super) fn exact(x: f64) -> BigRational {
+    BigRational::from_float(x).unwrap()
+}
+
+/// Numbers in [-1, 1] by a fixed congruential generator.
+pub(super) fn numbers() -> impl FnMut() -> f64 {
+    let mut state = 0x2545_f491_4f6c_dd1du64;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A function of (a, b) three times over: enclosed, exactly, and in f32 as the runtime computes it.
+#[derive(Clone)]
+struct Thrice {
+    enclosed: Taylor,
+    exact: BigRational,
+    computed: f32,
+}
+
+impl Thrice {
+    fn check(&self, a: &BigRational, b: &BigRational, what: &str) {
+        let (centre, radius) = self.enclosed.at(a, b);
+        let off = (&self.exact - centre).abs();
+        assert!(
+            off <= radius,
+            "{what}: {self:?} is {:?} off",
+            off.to_f64(),
+            self = self.enclosed
+        );
+        let error = (exact(f64::from(self.computed)) - &self.exact).abs();
+        assert!(
+            error <= exact(self.enclosed.error()),
+            "{what}: error {:?} > {:?}",
+            error.to_f64(),
+            self.enclosed.error()
+        );
+        let range = self.enclosed.range();
+        assert!(
+            exact(range.low) <= self.exact && self.exact <= exact(range.high),
+            "{what}"
+        );
+    }
+}
+
+impl Taylor {
+    /// The polynomial part at (a, b), and the remainder.
+    fn at(&self, a: &BigRational, b: &BigRational) -> (BigRational, BigRational) {
+        let [c, ca, cb, caa, cab, cbb] = self.coefficients().map(exact);
+        let value = c + ca * a + cb * b + caa * a * a + cab * a * b + cbb * b * b;
+        (value, exact(self.remainder()))
+    }
+}
+
+/// Random straight-line programs over random cells, at random points of the cells: values within the enclosures and
+/// f32 results within the error bounds, judged in exact rational arithmetic.
+#[test]
+fn taylor_models_enclose_exact_and_f32_results() {
+    let mut next = numbers();
+    let mut pick = numbers();
+    let (mut tightest, mut steps) = (0.0f64, 0);
+    for _ in 0..300 {
+        // The point is one that f32 can hold, as are the coordinates of the runtime.
+        let (a, b) = (
+            exact((next() * 64.0).round() / 64.0),
+            exact((next() * 64.0).round() / 64.0),
+        );
+        let half = 1.0 / 64.0;
+        let mut stack: Vec<Thrice> = [false, true]
+            .into_iter()
+            .map(|second| {
+                let centre = (next() * 32.0).round() / 32.0 + 2.0;
+                let at = exact(centre) + exact(half) * if second { &b } else { &a };
+                Thrice {
+                    enclosed: Taylor::coordinate(centre, half, second),
+                    computed: at.to_f64().unwrap() as f32,
+                    exact: at,
+                }
+            })
+            .collect();
+        for _ in 0..8 {
+            let index = |x: f64| ((x + 1.0) * 0.5 * stack.len() as f64) as usize % stack.len();
+            let (x, y) = (stack[index(pick())].clone(), stack[index(pick())].clone());
+            let constant = next() as f32;
+            let (what, result) = match ((pick() + 1.0) * 4.0) as u32 {
+                0 => (
+                    "x + y",
+                    (
+                        x.enclosed + y.enclosed,
+                        &x.exact + &y.exact,
+                        x.computed + y.computed,
+                    ),
+                ),
+                1 => (
+                    "x - y",
+                    (
+                        x.enclosed - y.enclosed,
+                        &x.exact - &y.exact,
+                        x.computed - y.computed,
+                    ),
+                ),
+                2 => (
+                    "x y",
+                    (
+                        x.enclosed * y.enclosed,
+                        &x.exact * &y.exact,
+                        x.computed * y.computed,
+                    ),
+                ),
+                3 => {
+                    let exact = &x.exact + exact(f64::from(constant));
+                    ("x + c", (x.enclosed + constant, exact, x.computed + constant))
+                }
+                4 => {
+                    let exact = &x.exact * exact(f64::from(constant));
+                    ("c x", (x.enclosed * constant, exact, x.computed * constant))
+                }
+                5 => {
+                    let exact = &x.exact / exact(f64::from(constant));
+                    ("x / c", (x.enclosed / constant, exact, x.computed / constant))
+                }
+                _ => {
+                    let Interval { low, high } = x.enclosed.range();
+                    if low <= 0.0 && high >= 0.0 || x.exact.is_zero() {
+                        continue;
+                    }
+                    (
+                        "1 / x",
+                        (x.enclosed.reciprocal(), x.exact.recip(), 1.0 / x.computed),
+                    )
+                }
+            };
+            let (enclosed, exact, computed) = result;
+            if !enclosed.is_bounded() {
+                continue;
+            }
+            let result = Thrice {
+                enclosed,
+                exact,
+                computed,
+            };
+            result.check(&a, &b, what);
+            let error = (f64::from(result.computed) - result.exact.to_f64().unwrap()).abs();
+            tightest = tightest.max(error / result.enclosed.error());
+            steps += 1;
+            stack.push(result);
+        }
+    }
+    // Bounds that are never nearly met would hold by being useless.
+    assert!(tightest > 0.5, "{tightest}");
+    assert!(steps > 1500, "{steps}");
+}
+
+/// Roots: the square of what is enclosed must enclose the radicand, which exact arithmetic can tell.
+#[test]
+fn roots_are_enclosed() {
+    let mut next = numbers();
+    for _ in 0..2000 {
+        let centre = 0.07 + (next() + 1.0) * 0.6;
+        let radicand = Taylor::coordinate(centre, 0.05, false) * Taylor::coordinate(1.0, 0.03, true);
+        let root = radicand.root();
+        let (a, b) = (exact(next()), exact(next()));
+        let truth = (exact(centre) + exact(0.05) * &a) * (exact(1.0) + exact(0.03) * &b);
+        let (value, remainder) = root.at(&a, &b);
+        let (low, high) = (&value - &remainder, &value + &remainder);
+        assert!(low.is_negative() || &low * &low <= truth);
+        assert!(&high * &high >= truth);
+        assert!(root.range().high - root.range().low < 1.0, "{root:?}");
+    }
+    // A radicand that may be negative counts as zero.
+    let root = Taylor::coordinate(0.01, 0.02, false).root();
+    assert!(root.range().low <= 0.0 && root.range().high * root.range().high >= 0.03);
+}
+
+/// Every derivative that is read from an expansion, against the exact polynomial.
+#[test]
+fn expansions_enclose_the_polynomial() {
+    let mut next = numbers();
+    let power = |x: &BigRational, exponent: u8| {
+        (0..exponent).fold(BigRational::from(BigInt::from(1)), |product, _| product * x)
+    };
+    for basis in Basis::ALL {
+        for _ in 0..50 {
+            let terms: Vec<f64> = basis.exponents().iter().map(|_| 10.0 * next()).collect();
+            let centre = [0.5 + 0.4 * next(), 0.5 + 0.4 * next()];
+            let half = [0.06 * (1.0 + next()), 0.06 * (1.0 + next())];
+            let expansion = Expansion::new(&Monomials::new(basis, &terms), centre, half);
+            let at = [next(), next()].map(exact);
+            let throttle = [0, 1].map(|k: usize| exact(centre[k]) + exact(half[k]) * &at[k]);
+            let sum = |order: [u8; 2]| {
+                let mut sum = BigRational::zero();
+                for (&(i, j), &term) in basis.exponents().iter().zip(&terms) {
+                    if i >= order[0] && j >= order[1] {
+                        let factor = if order[0] == 1 { f64::from(i) } else { 1.0 }
+                            * if order[1] == 1 { f64::from(j) } else { 1.0 };
+                        sum += exact(term)
+                            * exact(factor)
+                            * power(&throttle[0], i - order[0])
+                            * power(&throttle[1], j - order[1]);
+                    }
+                }
+                sum
+            };
+            let [by_u, by_l] = expansion.gradient();
+            for (enclosed, order) in [(expansion.value(), [0, 0]), (by_u, [1, 0]), (by_l, [0, 1])] {
+                let (value, remainder) = enclosed.at(&at[0], &at[1]);
+                assert!((sum(order) - value).abs() <= remainder, "{basis:?} {order:?}");
+            }
+        }
+    }
+}
