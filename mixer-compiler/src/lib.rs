@@ -5,6 +5,7 @@
 
 pub mod airframe;
 pub mod attainable;
+pub mod bernstein;
 #[cfg(feature = "format")]
 pub mod build_script;
 pub mod cost;

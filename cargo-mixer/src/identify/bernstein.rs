@@ -1,9 +1,11 @@
 //! Bernstein coefficients of a polynomial on a rectangle.
 //!
-//! On [0, 1] the power s^i is the sum over k >= i of C(k, i) / C(n, i) B_k(s). A polynomial lies between its least and
-//! its greatest Bernstein coefficient, and the corner coefficients are its corner values. The compiler's
+//! Row by row and column by column those of one variable. A polynomial lies between its least and its greatest Bernstein
+//! coefficient, and the corner coefficients are its corner values. The compiler's
 //! [`Bivariate`](mixer_compiler::polynomial::Bivariate) proves a sign by them; here they are what a programme constrains,
 //! so that they are linear in the polynomial and in floating point.
+
+use mixer_compiler::bernstein::coefficients as one_variable;
 
 use super::polynomial::Polynomial;
 
@@ -23,38 +25,6 @@ pub fn coefficients(p: &Polynomial, cell: Cell) -> Vec<Vec<f64>> {
     }
     out
 }
-
-/// Power coefficients in t to Bernstein coefficients on [a, b].
-fn one_variable(power: &[f64], [a, b]: [f64; 2]) -> Vec<f64> {
-    let n = power.len() - 1;
-    // t = a + (b - a) s: Taylor shift by synthetic division, then scaling.
-    let mut c = power.to_vec();
-    for i in 0..n {
-        for k in (i..n).rev() {
-            c[k] += a * c[k + 1];
-        }
-    }
-    let mut scale = 1.0;
-    for x in &mut c {
-        *x *= scale;
-        scale *= b - a;
-    }
-    (0..=n)
-        .map(|k| (0..=k).map(|i| BINOMIAL[k][i] / BINOMIAL[n][i] * c[i]).sum())
-        .collect()
-}
-
-/// C(n, k) up to n = 7, more than any determinant's degree.
-const BINOMIAL: [[f64; 8]; 8] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 3.0, 3.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 4.0, 6.0, 4.0, 1.0, 0.0, 0.0, 0.0],
-    [1.0, 5.0, 10.0, 10.0, 5.0, 1.0, 0.0, 0.0],
-    [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0, 0.0],
-    [1.0, 7.0, 21.0, 35.0, 35.0, 21.0, 7.0, 1.0],
-];
 
 #[cfg(test)]
 mod tests {

@@ -1,11 +1,11 @@
 //! Proof that a polynomial law leaves thrust and torque over the whole voltage range.
 //!
-//! A polynomial of degree n on [0, 1] lies between the least and the greatest of its Bernstein coefficients
-//! b_i = sum over j <= i of C(i,j)/C(n,j) a_j, so what is left of it above a least factor is positive where all
-//! b_i are. Where they are not, the interval is halved (de Casteljau) until they are, or until an end of an
+//! A polynomial lies between the least and the greatest of its Bernstein coefficients, so what is left of it above a
+//! least factor is positive where all of these are. Where they are not, the interval is halved (de Casteljau) until they are, or until an end of an
 //! interval is itself not positive.
 
 use super::horner;
+use crate::bernstein;
 
 /// Least k over the range. The mixer divides by k; below this a rotor hardly turns.
 pub(super) const LEAST_FACTOR: f64 = 1e-3;
@@ -13,24 +13,9 @@ pub(super) const LEAST_FACTOR: f64 = 1e-3;
 /// Where on [a, b] the polynomial is not above the least factor, and its value there; `None` where it is proven to
 /// be. The place is that of the least value among the found one and a fine grid.
 pub(super) fn below_least(coefficients: &[f64], [a, b]: [f64; 2]) -> Option<(f64, f64)> {
-    // Shift and scale to t in [0, 1], x = a + (b - a) t, by repeated synthetic division.
-    let mut c = coefficients.to_vec();
-    let n = c.len().checked_sub(1)?;
-    c[0] -= LEAST_FACTOR;
-    for i in 0..n {
-        for j in (i..n).rev() {
-            c[j] += a * c[j + 1];
-        }
-    }
-    let mut scale = 1.0;
-    for c in &mut c {
-        *c *= scale;
-        scale *= b - a;
-    }
-    let bernstein: Vec<f64> = (0..=n)
-        .map(|i| (0..=i).map(|j| choose(i, j) / choose(n, j) * c[j]).sum())
-        .collect();
-    let found = descend(bernstein, 0.0, 1.0, 0)?;
+    let mut above = coefficients.to_vec();
+    *above.first_mut()? -= LEAST_FACTOR;
+    let found = descend(bernstein::coefficients(&above, [a, b]), 0.0, 1.0, 0)?;
     const GRID: usize = 256;
     let grid = (0..=GRID).map(|i| i as f64 / GRID as f64);
     let worst = grid
@@ -67,10 +52,6 @@ fn descend(bernstein: Vec<f64>, t0: f64, t1: f64, depth: usize) -> Option<f64> {
 }
 
 /// Binomial coefficient, for n <= 8.
-fn choose(n: usize, k: usize) -> f64 {
-    (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
