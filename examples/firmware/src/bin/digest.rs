@@ -7,13 +7,11 @@
 #[path = "../subject/mod.rs"]
 mod subject;
 
-use core::panic::PanicInfo;
-
 use cortex_m_rt::entry;
-use cortex_m_semihosting::{debug, hprintln};
 
 #[cfg(all(airframe, not(baseline)))]
 fn run() -> bool {
+    use cortex_m_semihosting::hprintln;
     use mixer_rt::Wrench;
     use mixer_setpoints::{Digest, Mixture};
 
@@ -37,27 +35,10 @@ fn run() -> bool {
 
 #[cfg(not(all(airframe, not(baseline))))]
 fn run() -> bool {
-    hprintln!("no airframe: build with --cfg airframe --cfg 'airframe=\"isae-x8\"'");
-    false
+    probe::no_airframe()
 }
 
 #[entry]
 fn main() -> ! {
-    debug::exit(if run() {
-        debug::EXIT_SUCCESS
-    } else {
-        debug::EXIT_FAILURE
-    });
-    loop {
-        cortex_m::asm::wfi();
-    }
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo) -> ! {
-    hprintln!("{}", info);
-    debug::exit(debug::EXIT_FAILURE);
-    loop {
-        cortex_m::asm::wfi();
-    }
+    probe::exit(run())
 }

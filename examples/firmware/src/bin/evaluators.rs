@@ -7,15 +7,13 @@
 #![no_std]
 #![no_main]
 
-use core::panic::PanicInfo;
-
 use cortex_m_rt::entry;
-use cortex_m_semihosting::{debug, hprintln};
+use cortex_m_semihosting::hprintln;
 use mixer_rt::{
     BilinearSeed, Biquadratic, Cubic, CubicSeed, EightTermSeed, Inverse, Pair, PolynomialInverse,
     QuadraticSeed, Quartic, RootCoordinates, Seeded, TableSeed, ThrottleRange, Wrench,
 };
-use probe::{Counter, Mixer, NOPS};
+use probe::{Counter, Mixer};
 
 static RANGE: ThrottleRange = ThrottleRange { min: 0.1, max: 1.0 };
 
@@ -196,28 +194,10 @@ impl Count {
 
 #[entry]
 fn main() -> ! {
-    let passed = match Counter::new() {
-        Ok(counter) => {
-            print(&Count::new(counter));
-            true
-        }
-        Err(inexact) => {
-            hprintln!(
-                "{} instructions were counted as {}: is -icount shift=10 set?",
-                NOPS,
-                inexact.counted
-            );
-            false
-        }
-    };
-    debug::exit(if passed {
-        debug::EXIT_SUCCESS
-    } else {
-        debug::EXIT_FAILURE
-    });
-    loop {
-        cortex_m::asm::wfi();
-    }
+    probe::exit(probe::with_counter(|counter| {
+        print(&Count::new(counter));
+        true
+    }))
 }
 
 fn print(count: &Count) {
@@ -284,13 +264,4 @@ fn print(count: &Count) {
         "table-shamanskii",
         "table-newton2"
     );
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo) -> ! {
-    hprintln!("{}", info);
-    debug::exit(debug::EXIT_FAILURE);
-    loop {
-        cortex_m::asm::wfi();
-    }
 }

@@ -16,10 +16,7 @@ mod search;
 #[path = "../../subject/mod.rs"]
 mod subject;
 
-use core::panic::PanicInfo;
-
 use cortex_m_rt::entry;
-use cortex_m_semihosting::{debug, hprintln};
 
 include!(concat!(env!("OUT_DIR"), "/requests.rs"));
 
@@ -28,25 +25,6 @@ fn main() -> ! {
     #[cfg(airframe)]
     let passed = measurement::run();
     #[cfg(not(airframe))]
-    let passed = {
-        hprintln!("no airframe: build with --cfg airframe --cfg 'airframe=\"isae-x8\"'");
-        false
-    };
-    debug::exit(if passed {
-        debug::EXIT_SUCCESS
-    } else {
-        debug::EXIT_FAILURE
-    });
-    loop {
-        cortex_m::asm::wfi();
-    }
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo) -> ! {
-    hprintln!("{}", info);
-    debug::exit(debug::EXIT_FAILURE);
-    loop {
-        cortex_m::asm::wfi();
-    }
+    let passed = probe::no_airframe();
+    probe::exit(passed)
 }

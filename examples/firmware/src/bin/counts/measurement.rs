@@ -4,7 +4,7 @@ use core::mem::MaybeUninit;
 
 use cortex_m_semihosting::hprintln;
 use mixer_rt::Wrench;
-use probe::{Counter, NOPS};
+use probe::Counter;
 
 use crate::search::Search;
 use crate::subject::{self, Mixed};
@@ -140,21 +140,12 @@ impl Tally {
 
 /// Measures and prints all sets; false if something is wrong with the measurement.
 pub(crate) fn run() -> bool {
-    let counter = match Counter::new() {
-        Ok(counter) => counter,
-        Err(inexact) => {
-            hprintln!(
-                "{} instructions were counted as {}: is -icount shift=10 set?",
-                NOPS,
-                inexact.counted
-            );
-            return false;
-        }
-    };
-    subject::prepare();
-    let attainable = Search::new(&counter).set(ATTAINABLE);
-    let mut search = Search::new(&counter);
-    let saturated = search.set(SATURATED);
-    let searched = search.vary();
-    attainable.print("attainable") & saturated.print("saturated") & searched.print("searched")
+    probe::with_counter(|counter| {
+        subject::prepare();
+        let attainable = Search::new(&counter).set(ATTAINABLE);
+        let mut search = Search::new(&counter);
+        let saturated = search.set(SATURATED);
+        let searched = search.vary();
+        attainable.print("attainable") & saturated.print("saturated") & searched.print("searched")
+    })
 }

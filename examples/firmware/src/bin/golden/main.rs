@@ -9,13 +9,11 @@
 #![no_main]
 
 use core::mem::MaybeUninit;
-use core::panic::PanicInfo;
 
 use cortex_m_rt::entry;
-use cortex_m_semihosting::{debug, hprintln};
+use cortex_m_semihosting::hprintln;
 use mixer_rt::{Mix, SetpointError, Wrench};
-
-use probe::{Counter, Mixer, NOPS};
+use probe::{Counter, Mixer};
 
 /// One row of the golden vectors; floats as their f32 bits.
 struct Vector<const CHANNELS: usize> {
@@ -194,25 +192,7 @@ unsafe fn accepted_non_finite<const CHANNELS: usize>(vectors: &[Vector<CHANNELS>
 
 #[entry]
 fn main() -> ! {
-    let passed = match Counter::new() {
-        Ok(counter) => run(counter),
-        Err(inexact) => {
-            hprintln!(
-                "{} instructions were counted as {}: is -icount shift=10 set?",
-                NOPS,
-                inexact.counted
-            );
-            false
-        }
-    };
-    debug::exit(if passed {
-        debug::EXIT_SUCCESS
-    } else {
-        debug::EXIT_FAILURE
-    });
-    loop {
-        cortex_m::asm::wfi();
-    }
+    probe::exit(probe::with_counter(run))
 }
 
 fn run(counter: Counter) -> bool {
@@ -235,13 +215,4 @@ fn run(counter: Counter) -> bool {
     };
     for_each_airframe(&mut check);
     check.passed
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo) -> ! {
-    hprintln!("{}", info);
-    debug::exit(debug::EXIT_FAILURE);
-    loop {
-        cortex_m::asm::wfi();
-    }
 }
