@@ -61,18 +61,20 @@ impl PolynomialInverse<'_> {
         [self.evaluate(self.upper, s, t), self.evaluate(self.lower, s, t)]
     }
 
-    /// Horner's rule in both variables; terms beyond the coefficients count as zero.
-    #[inline]
+    /// Horner's rule in both variables; powers of the first variable without all their coefficients are left out.
+    // Compilers unroll these loops where the degree is known; those of nested ranges of it not all of them do.
+    #[inline(always)]
     fn evaluate<S: Scalar>(&self, coefficients: &[f32], s: S, t: S) -> S {
-        let mut rest = coefficients.iter();
+        let mut rest = coefficients;
         let mut value = S::constant(0.0);
-        for i in 0..=self.degree {
-            let mut row = S::constant(0.0);
-            for _ in 0..=i {
-                if let Some(coefficient) = rest.next() {
-                    row = row * t + *coefficient;
-                }
-            }
+        for i in 0..usize::from(self.degree) + 1 {
+            let Some((row, after)) = rest.split_at_checked(i + 1) else {
+                break;
+            };
+            rest = after;
+            let row = row
+                .iter()
+                .fold(S::constant(0.0), |row, coefficient| row * t + *coefficient);
             value = value * s + row;
         }
         value
