@@ -62,6 +62,8 @@ pub struct Scratch {
     pub(crate) rotors: Rotors,
     /// What stands for its attainable set where only one does.
     pub(crate) chord: Chord,
+    /// Columns of B_i: rows per scaled effort.
+    pub(crate) columns: [[f32; 4]; 2],
     /// p_i, scaled.
     pub(crate) point: Point,
     /// The velocity of p_i in its own coordinates.
@@ -132,6 +134,12 @@ impl<'h> Homotopy<'h> {
                 .scratch
                 .iter()
                 .all(|scratch| scratch.rotors == Rotors::Both);
+        for (unit, scratch) in homotopy.units.iter().zip(homotopy.scratch.iter_mut()) {
+            let effects = unit.effectiveness.into_iter().zip(homotopy.factors);
+            for (column, (effect, factor)) in scratch.columns.iter_mut().zip(effects) {
+                *column = homotopy.turned.rows(effect.map(|effect| effect * factor));
+            }
+        }
         homotopy.start(request, is_tilted);
         homotopy
     }
@@ -263,23 +271,40 @@ impl<'h> Homotopy<'h> {
 
     /// The rows of the present efforts.
     pub(crate) fn actual(&self) -> [f32; 4] {
-        let mut wrench = [0.0; 4];
-        for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
+        let mut rows = [0.0; 4];
+        for scratch in self.scratch.iter() {
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
-                add(unit, self.factors, set.project(&scratch.point), &mut wrench);
+                scratch.add(set.project(&scratch.point), &mut rows);
             }
         }
-        self.turned.rows(wrench)
+        rows
     }
 }
 
-/// Adds what scaled `efforts` of a unit give to the wrench.
-#[inline]
-pub(crate) fn add(unit: &Unit, factors: [f32; 2], efforts: [f32; 2], wrench: &mut [f32; 4]) {
-    let [by_f, by_q] = unit.effectiveness;
-    let [f, q] = [efforts[0] * factors[0], efforts[1] * factors[1]];
-    for ((wrench, by_f), by_q) in wrench.iter_mut().zip(by_f).zip(by_q) {
-        *wrench += by_f * f + by_q * q;
+impl Scratch {
+    /// Adds what scaled `efforts` give to the rows.
+    #[inline]
+    pub(crate) fn add(&self, [f, q]: [f32; 2], rows: &mut [f32; 4]) {
+        let [by_f, by_q] = &self.columns;
+        for ((row, by_f), by_q) in rows.iter_mut().zip(by_f).zip(by_q) {
+            *row += by_f * f + by_q * q;
+        }
+    }
+
+    /// The rows of a direction of the scaled efforts.
+    #[inline]
+    pub(crate) fn effect(&self, direction: [f32; 2]) -> [f32; 4] {
+        let mut rows = [0.0; 4];
+        self.add(direction, &mut rows);
+        rows
+    }
+
+    /// The step of p_i where the multipliers change by `multipliers`: B_i^T lambda.
+    #[inline]
+    pub(crate) fn step(&self, multipliers: &[f32; 4]) -> [f32; 2] {
+        let [m0, m1, m2, m3] = *multipliers;
+        let along = |[c0, c1, c2, c3]: &[f32; 4]| (c0 * m0 + c1 * m1) + (c2 * m2 + c3 * m3);
+        [along(&self.columns[0]), along(&self.columns[1])]
     }
 }
 

@@ -16,6 +16,90 @@ const CONSISTENT: f32 = 1e-5;
 /// With a determinant beyond this (the diagonal of J is at most one) no angle is below 0.03.
 const FAR_FROM_SINGULAR: f32 = 1e-3;
 
+/// A pivot that is a smaller share of its diagonal entry is left to the factors that are updated vector by vector.
+const LEAST_PIVOT: f32 = 1e-3;
+
+/// J itself: enough where it is far from singular, which most often is so.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Moments {
+    /// The lower triangle, by rows; other entries are not used.
+    rows: [[f32; 4]; 4],
+}
+
+/// L D L^T = J.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Factors {
+    /// L below its diagonal, by rows.
+    rows: [[f32; 4]; 4],
+    /// 1 / D; 0 for rows that are not active.
+    per_pivot: [f32; 4],
+}
+
+impl Moments {
+    /// Adds `g g^T`.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, g: &[f32; 4]) {
+        for (i, row) in self.rows.iter_mut().enumerate() {
+            for (entry, factor) in row.iter_mut().zip(g).take(i + 1) {
+                *entry += g[i] * factor;
+            }
+        }
+    }
+
+    /// The factors for the `active` rows; `None` where these are nearly dependent.
+    #[inline(always)]
+    pub(crate) fn factors(&self, active: [bool; 4]) -> Option<Factors> {
+        let mut rows = self.rows;
+        let mut per_pivot = [0.0; 4];
+        for i in 0..4 {
+            if !active[i] {
+                rows[i] = [0.0; 4];
+                continue;
+            }
+            // Row i of L D, then of L.
+            let mut pivot = rows[i][i];
+            for j in 0..i {
+                let mut entry = rows[i][j];
+                for (own, other) in rows[i].iter().zip(&rows[j]).take(j) {
+                    entry -= own * other;
+                }
+                rows[i][j] = entry;
+            }
+            for j in 0..i {
+                let entry = rows[i][j];
+                rows[i][j] = entry * per_pivot[j];
+                pivot -= entry * rows[i][j];
+            }
+            if pivot <= LEAST_PIVOT * self.rows[i][i] {
+                return None;
+            }
+            per_pivot[i] = 1.0 / pivot;
+        }
+        Some(Factors { rows, per_pivot })
+    }
+}
+
+impl Factors {
+    /// Solves `J x = b`; 0 for rows that are not active.
+    #[inline]
+    pub(crate) fn solve(&self, mut x: [f32; 4]) -> [f32; 4] {
+        for i in 1..4 {
+            for j in 0..i {
+                x[i] -= self.rows[i][j] * x[j];
+            }
+        }
+        for (x, per_pivot) in x.iter_mut().zip(self.per_pivot) {
+            *x *= per_pivot;
+        }
+        for i in (0..3).rev() {
+            for j in i + 1..4 {
+                x[i] -= self.rows[j][i] * x[j];
+            }
+        }
+        x
+    }
+}
+
 /// What a system has for a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Solution {

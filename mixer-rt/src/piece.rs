@@ -1,8 +1,8 @@
 //! One affine piece of a path.
 
 use crate::attainable::{Crossing, Face};
-use crate::homotopy::{Homotopy, add, significant};
-use crate::linear::{Gram, Solution};
+use crate::homotopy::{Homotopy, significant};
+use crate::linear::{Gram, Moments, Solution};
 use crate::rows::{Bounds, RowState};
 
 /// Velocities below this share of the multipliers' are rounding errors.
@@ -24,61 +24,71 @@ enum Event {
 }
 
 impl Homotopy<'_> {
-    /// The factors of J and the rows of the present efforts.
+    /// J and the rows of the present efforts.
     #[inline]
-    fn survey(&self) -> (Gram, [f32; 4]) {
-        let active = self.rows.map(|row| row.state != RowState::Between);
-        let mut gram = Gram::default();
-        let mut wrench = [0.0; 4];
-        for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
+    fn survey(&self) -> (Moments, [f32; 4]) {
+        let mut moments = Moments::default();
+        let mut rows = [0.0; 4];
+        for scratch in self.scratch.iter() {
             let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
                 continue;
             };
-            add(unit, self.factors, set.project(&scratch.point), &mut wrench);
-            let free: &[[f32; 2]] = match scratch.point.face {
-                Face::Interior => &[[1.0, 0.0], [0.0, 1.0]],
-                Face::Edge => &[set.direction(&scratch.point)],
-                Face::Corner => &[],
-            };
-            for direction in free {
-                let mut effect = [0.0; 4];
-                add(unit, self.factors, *direction, &mut effect);
-                let mut effect = self.turned.rows(effect);
-                for (effect, active) in effect.iter_mut().zip(active) {
-                    if !active {
-                        *effect = 0.0;
+            scratch.add(set.project(&scratch.point), &mut rows);
+            match scratch.point.face {
+                Face::Interior => {
+                    for column in &scratch.columns {
+                        moments.add(column);
                     }
                 }
-                gram.add(effect);
+                Face::Edge => moments.add(&scratch.effect(set.direction(&scratch.point))),
+                Face::Corner => {}
             }
         }
-        (gram, self.turned.rows(wrench))
+        (moments, rows)
     }
 
-    /// Adds the velocities that multipliers changing by `multipliers` give, and to `effect` that of the wrench. At
-    /// rest (`moving` 0) no effort moves.
-    #[inline]
-    fn accelerate(&mut self, multipliers: [f32; 4], moving: f32, effect: &mut [f32; 4]) {
-        let pull = self.turned.axes(multipliers);
-        for (unit, scratch) in self.units.iter().zip(self.scratch.iter_mut()) {
+    /// The factors of J, exact to the last angle.
+    #[inline(never)]
+    fn gram(&self, gram: &mut Gram) {
+        let active = self.rows.map(|row| row.state != RowState::Between);
+        let mut add = |mut effect: [f32; 4]| {
+            for (effect, active) in effect.iter_mut().zip(active) {
+                if !active {
+                    *effect = 0.0;
+                }
+            }
+            gram.add(effect);
+        };
+        for scratch in self.scratch.iter() {
             let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
                 continue;
             };
-            let mut step = self.factors;
-            for (step, column) in step.iter_mut().zip(unit.effectiveness) {
-                *step *=
-                    (column[0] * pull[0] + column[1] * pull[1]) + (column[2] * pull[2] + column[3] * pull[3]);
+            match scratch.point.face {
+                Face::Interior => scratch.columns.into_iter().for_each(&mut add),
+                Face::Edge => add(scratch.effect(set.direction(&scratch.point))),
+                Face::Corner => {}
             }
-            let mut velocity = set.velocity(&scratch.point, step);
+        }
+    }
+
+    /// Adds the velocities that multipliers changing by `multipliers` give, and to `speeds` those of the rows. At rest
+    /// (`moving` 0) no effort moves.
+    #[inline(never)]
+    fn accelerate(&mut self, multipliers: &[f32; 4], moving: f32, speeds: &mut [f32; 4]) {
+        for scratch in self.scratch.iter_mut() {
+            let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
+                continue;
+            };
+            let mut velocity = set.velocity(&scratch.point, scratch.step(multipliers));
             match scratch.point.face {
                 Face::Interior => {
                     velocity = velocity.map(|speed| moving * speed);
-                    add(unit, self.factors, velocity, effect);
+                    scratch.add(velocity, speeds);
                 }
                 Face::Edge => {
                     velocity[0] *= moving;
                     let along = set.direction(&scratch.point).map(|part| part * velocity[0]);
-                    add(unit, self.factors, along, effect);
+                    scratch.add(along, speeds);
                 }
                 Face::Corner => {}
             }
@@ -104,7 +114,7 @@ impl Homotopy<'_> {
     /// One piece of the path towards `drift` from the present bounds. Returns the share made, `None` where there is
     /// no way on.
     pub(crate) fn piece(&mut self, drift: &[Bounds; 4]) -> Option<f32> {
-        let (gram, wrench) = self.survey();
+        let (moments, wrench) = self.survey();
         // What rounding has done so far is made up for on the way.
         let mut way = [0.0; 4];
         for (((way, row), drift), wrench) in way.iter_mut().zip(&mut self.rows).zip(drift).zip(wrench) {
@@ -117,7 +127,16 @@ impl Homotopy<'_> {
                 RowState::AtLow | RowState::Held => drift.low + significant(row.value - wrench),
             };
         }
-        let (multipliers, moving) = match gram.solve(way) {
+        let factors = moments.factors(self.rows.map(|row| row.state != RowState::Between));
+        let mut gram = Gram::default();
+        let solution = match &factors {
+            Some(factors) => Solution::Regular(factors.solve(way)),
+            None => {
+                self.gram(&mut gram);
+                gram.solve(way)
+            }
+        };
+        let (multipliers, moving) = match solution {
             Solution::Regular(velocity) => (velocity, 1.0),
             Solution::Inconsistent(direction) => (direction, 0.0),
         };
@@ -132,9 +151,8 @@ impl Homotopy<'_> {
         for scratch in self.scratch.iter_mut() {
             scratch.pair = [0.0; 2];
         }
-        let mut effect = [0.0; 4];
-        self.accelerate(multipliers, moving, &mut effect);
-        let mut speeds = self.turned.rows(effect);
+        let mut speeds = [0.0; 4];
+        self.accelerate(&multipliers, moving, &mut speeds);
         if moving > 0.0 {
             // Multipliers that are large hide, in rounding, what the efforts miss of the way.
             let bearable = way.iter().fold(MISSED, |sum, way| sum + MISSED * way.abs());
@@ -145,11 +163,14 @@ impl Homotopy<'_> {
                     break;
                 }
                 worst = size;
-                let Solution::Regular(correction) = gram.solve(missed) else {
+                let correction = match &factors {
+                    Some(factors) => Solution::Regular(factors.solve(missed)),
+                    None => gram.solve(missed),
+                };
+                let Solution::Regular(correction) = correction else {
                     break;
                 };
-                self.accelerate(correction, moving, &mut effect);
-                speeds = self.turned.rows(effect);
+                self.accelerate(&correction, moving, &mut speeds);
             }
         }
         for (index, scratch) in self.scratch.iter_mut().enumerate() {

@@ -4,7 +4,7 @@
 //! nearest to either are the same. With tilted axes they are not. There the reference is between the two: the least-norm
 //! efforts where these are attainable, which makes them the result, and the centres where these are far from it.
 
-use crate::homotopy::{Homotopy, add};
+use crate::homotopy::Homotopy;
 use crate::linear::{Gram, Solution};
 use crate::rows::{Bounds, RowState};
 
@@ -27,7 +27,7 @@ impl Homotopy<'_> {
         part
     }
 
-    /// The multipliers, by axis, that draw the reference nearest to the centres.
+    /// The multipliers that draw the reference nearest to the centres.
     fn towards_centres(&self, request: &[f32; 4], part: f32) -> [f32; 4] {
         let mut gram = Gram::default();
         let mut wrench = [0.0; 4];
@@ -40,15 +40,13 @@ impl Homotopy<'_> {
                 part * (set.centre[0] - least[0] / self.factors[0]),
                 part * (set.centre[1] - least[1] / self.factors[1]),
             ];
-            add(unit, self.factors, way, &mut wrench);
-            for direction in [[1.0, 0.0], [0.0, 1.0]] {
-                let mut effect = [0.0; 4];
-                add(unit, self.factors, direction, &mut effect);
-                gram.add(self.turned.rows(effect));
+            scratch.add(way, &mut wrench);
+            for column in scratch.columns {
+                gram.add(column);
             }
         }
-        match gram.solve(self.turned.rows(wrench)) {
-            Solution::Regular(multipliers) => self.turned.axes(multipliers),
+        match gram.solve(wrench) {
+            Solution::Regular(multipliers) => multipliers,
             Solution::Inconsistent(_) => [0.0; 4],
         }
     }
@@ -71,14 +69,11 @@ impl Homotopy<'_> {
                 let mut reference = set.centre;
                 if part > 0.0 {
                     let least = unit.efforts(&request);
-                    let columns = unit.effectiveness;
-                    for (((reference, least), factor), column) in
-                        reference.iter_mut().zip(least).zip(self.factors).zip(columns)
+                    let step = scratch.step(&pull);
+                    for (((reference, least), factor), step) in
+                        reference.iter_mut().zip(least).zip(self.factors).zip(step)
                     {
-                        *reference += part * (least / factor - *reference)
-                            + factor
-                                * ((column[0] * pull[0] + column[1] * pull[1])
-                                    + (column[2] * pull[2] + column[3] * pull[3]));
+                        *reference += part * (least / factor - *reference) + step;
                     }
                 }
                 scratch.point = set.locate(reference);

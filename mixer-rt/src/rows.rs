@@ -110,16 +110,4 @@ impl Turned {
             thrust * self.scale[THRUST],
         ]
     }
-
-    /// The transpose of [`Turned::rows`]: what multipliers of the rows are as multipliers of the axes.
-    #[inline]
-    pub(crate) fn axes(&self, [along, across, yaw, thrust]: [f32; 4]) -> [f32; 4] {
-        let [cos, sin] = self.direction;
-        [
-            self.scale[0] * (cos * along - sin * across),
-            self.scale[1] * (sin * along + cos * across),
-            yaw * self.scale[YAW],
-            thrust * self.scale[THRUST],
-        ]
-    }
 }
