@@ -310,19 +310,26 @@ impl AttainableSet<'_> {
         falls.first
     }
 
-    /// Where a point inside leaves the polygon.
+    /// Where a point inside leaves the polygon. Where the way's end is seen through an edge that it lies beyond, the way
+    /// leaves through that edge or before: from there the same again.
     #[inline]
     fn exit(&self, point: &mut Point, velocity: [f32; 2], falls: &mut Falls) {
-        let end = [
-            point.at[0] + falls.limit * velocity[0],
-            point.at[1] + falls.limit * velocity[1],
-        ];
-        point.index = self.sector(end, point.index);
-        let edge = self.edge(point.index);
-        if edge.beyond(edge.relative(end)) > STANDING {
-            for (index, edge) in self.edges.iter().enumerate() {
-                let depth = -edge.beyond(edge.relative(point.at));
-                falls.watch(depth, -edge.beyond(velocity), STANDING, Face::Edge, index as u8);
+        let from = point.at;
+        let mut allowed = STANDING;
+        for _ in self.edges {
+            let limit = falls.limit;
+            let end = [from[0] + limit * velocity[0], from[1] + limit * velocity[1]];
+            let index = self.sector(end, point.index);
+            let edge = self.edge(index);
+            if edge.beyond(edge.relative(end)) <= allowed {
+                break;
+            }
+            allowed = 0.0;
+            point.index = index;
+            let depth = -edge.beyond(edge.relative(from));
+            falls.watch(depth, -edge.beyond(velocity), STANDING, Face::Edge, index);
+            if falls.limit >= limit {
+                break;
             }
         }
     }
