@@ -162,7 +162,7 @@ fn descend(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: B
     }
     let [.., yaw, _] = homotopy.bounds();
     homotopy.bound(THRUST, thrust);
-    homotopy.follow([LEVEL, LEVEL, yaw, thrust], false);
+    homotopy.follow([LEVEL, LEVEL, yaw, thrust], true);
     let [.., yaw, thrust] = homotopy.bounds();
     homotopy.hold(ALONG);
     homotopy.follow([Bounds::at(wanted[ALONG]), LEVEL, yaw, thrust], true);
