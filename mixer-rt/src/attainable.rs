@@ -191,6 +191,13 @@ impl AttainableSet<'_> {
     pub(crate) fn locate(&self, point: [f32; 2]) -> Point {
         let mut index = 0;
         if !self.is_chord() {
+            if point == self.centre {
+                return Point {
+                    face: Face::Interior,
+                    index,
+                    at: point,
+                };
+            }
             index = self.sector(point, 0);
             let edge = self.edge(index);
             if edge.beyond(edge.relative(point)) <= 0.0 {

@@ -10,6 +10,10 @@
 //! airmode disabled the thrust stays below the request, or below the least thrust that the rotors at idle and
 //! the yaw allow.
 //!
+//! Where the least-norm efforts, each limited to the attainable set, miss the request by little, a path straight from
+//! there to the request comes first: most attainable requests are a few pieces away. It ends in the same efforts as the
+//! steps do, so nothing jumps where it is or is not tried.
+//!
 //! Each step is a straight path in the space of wrenches that [`Homotopy`] follows to its exact end. The result
 //! is a continuous function of the request: the attainable wrenches are a polytope, on which the nearest points
 //! above move continuously, and the efforts are the only ones nearest to a reference that give the wrench reached.
@@ -152,6 +156,10 @@ fn descend(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: B
         low: -REQUEST_LIMIT,
         high: REQUEST_LIMIT,
     };
+    if homotopy.follow_straight(&wanted) {
+        return;
+    }
+    homotopy.start();
     homotopy.bound(ALONG, LEVEL);
     homotopy.bound(YAW, yaw);
     homotopy.bound(THRUST, WIDE);

@@ -40,6 +40,13 @@ const PIECES_PER_UNIT: u32 = 48;
 /// The same for a frame as a whole.
 const PIECES: u32 = 64;
 
+/// Pieces per unit of the way straight to a request: what is attainable has hardly ever needed more.
+const STRAIGHT_PIECES_PER_UNIT: u32 = 2;
+
+/// Pieces in a row, per unit, that make no way: more than five have only been seen where rounding errors turned units
+/// to and fro for ever.
+const STILL_PIECES_PER_UNIT: u32 = 6;
+
 /// Ways shorter than this, in rows, are rounding errors.
 const STANDING: f32 = 1e-6;
 
@@ -56,7 +63,7 @@ const FAR: f32 = 16.0;
 /// What a unit keeps while the efforts are being found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scratch {
-    /// `[f, Q]` at the reference voltage, N and N m.
+    /// `[f, Q]` at the reference voltage, N and N m; on the way c_i, scaled.
     pub(crate) efforts: [f32; 2],
     /// Which of its rotors work.
     pub(crate) rotors: Rotors,
@@ -85,7 +92,7 @@ pub(crate) struct Homotopy<'h> {
 }
 
 impl<'h> Homotopy<'h> {
-    /// Starts where the multipliers vanish: roll and pitch across the request held, the other rows slack.
+    /// With the units' references, nowhere yet.
     pub(crate) fn new<P, I, S>(
         tables: &'h Tables<'_, P, I, S>,
         sets: &'h Sets<'h>,
@@ -96,9 +103,7 @@ impl<'h> Homotopy<'h> {
         let scale = tables.attainable.scale;
         let factors = [factors[0] * scale[0], factors[1] * scale[1]];
         let (mut squares, mut allocated) = ([0.0; 4], [false; 4]);
-        let mut pieces_left = PIECES;
         for (unit, scratch) in tables.units.iter().zip(scratch.iter()) {
-            pieces_left = pieces_left.saturating_add(PIECES_PER_UNIT);
             if scratch.rotors == Rotors::None {
                 continue;
             }
@@ -126,7 +131,7 @@ impl<'h> Homotopy<'h> {
             factors,
             turned: Turned::new(row_scale, request),
             rows: [Row::default(); 4],
-            pieces_left,
+            pieces_left: 0,
             left: None,
         };
         let is_tilted = !tables.units.iter().all(Unit::is_vertical)
@@ -140,8 +145,25 @@ impl<'h> Homotopy<'h> {
                 *column = homotopy.turned.rows(effect.map(|effect| effect * factor));
             }
         }
-        homotopy.start(request, is_tilted);
+        homotopy.refer(&request, is_tilted);
         homotopy
+    }
+
+    fn units_times(&self, pieces: u32) -> u32 {
+        pieces.saturating_mul(self.units.len() as u32)
+    }
+
+    /// Starts at the references, roll and pitch across the request held, the other rows slack.
+    pub(crate) fn start(&mut self) {
+        self.place(&[0.0; 4], RowState::Between);
+        self.pieces_left = self.units_times(PIECES_PER_UNIT).saturating_add(PIECES);
+    }
+
+    /// Goes straight to the rows `wanted`, from the efforts that would be nearest to the references if none were
+    /// limited. False where it does not come to them or where that does not look worth while.
+    pub(crate) fn follow_straight(&mut self, wanted: &[f32; 4]) -> bool {
+        self.pieces_left = self.units_times(STRAIGHT_PIECES_PER_UNIT);
+        self.place_near(wanted) && self.follow(wanted.map(Bounds::at), false) >= 1.0
     }
 
     /// The rows of a wrench.
@@ -211,6 +233,7 @@ impl<'h> Homotopy<'h> {
             return 1.0;
         }
         let mut share = 0.0;
+        let mut still = 0;
         loop {
             let left = 1.0 - share;
             if left <= 0.0 {
@@ -238,6 +261,11 @@ impl<'h> Homotopy<'h> {
                 self.stay();
                 return share;
             };
+            still = if made > 0.0 { 0 } else { still + 1 };
+            if still > self.units_times(STILL_PIECES_PER_UNIT) {
+                self.stay();
+                return share;
+            }
             share += made * left;
         }
     }

@@ -5,6 +5,8 @@
 //! is never formed, which would square its condition number: a vector is told from a combination of others down to an
 //! angle of [`LEAST_ANGLE`], where the entries of J would hide angles below the root of the rounding error.
 
+use core::hint::black_box;
+
 use crate::sqrt;
 
 /// A vector that differs from a combination of the others by less than this (vectors are of order one) adds nothing.
@@ -46,9 +48,16 @@ impl Moments {
         }
     }
 
+    /// Which rows any vector has a part in.
+    #[inline(always)]
+    pub(crate) fn spanned(&self) -> [bool; 4] {
+        let [[first, ..], [_, second, ..], [_, _, third, _], [_, _, _, fourth]] = self.rows;
+        [first, second, third, fourth].map(|square| square > 0.0)
+    }
+
     /// The factors for the `active` rows; `None` where these are nearly dependent.
     #[inline(always)]
-    pub(crate) fn factors(&self, active: [bool; 4]) -> Option<Factors> {
+    pub(crate) fn factors(self, active: [bool; 4]) -> Option<Factors> {
         let mut rows = self.rows;
         let mut per_pivot = [0.0; 4];
         for i in 0..4 {
@@ -110,7 +119,7 @@ pub(crate) enum Solution {
 }
 
 /// The factors of J; zero before the first vector.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gram {
     /// D.
     diagonal: [f32; 4],
@@ -119,6 +128,14 @@ pub(crate) struct Gram {
 }
 
 impl Gram {
+    /// Of no vectors.
+    pub(crate) fn new() -> Self {
+        Gram {
+            diagonal: [0.0; 4],
+            columns: [[0.0; 4]; 4],
+        }
+    }
+
     /// Adds `g g^T`.
     pub(crate) fn add(&mut self, mut g: [f32; 4]) {
         let mut weight = 1.0;
@@ -205,7 +222,8 @@ impl Gram {
         let mut pivots = [NO_PIVOT; 4];
         let mut left = [true; 4];
         let (mut rest, mut size) = (b, [largest + 1.0; 4]);
-        for pivot in &mut pivots {
+        // One after the other: four copies of the loop would be hardly faster.
+        for pivot in black_box(pivots.as_mut_slice()) {
             let mut longest = (LEAST_ANGLE * LEAST_ANGLE, 4);
             for (index, (column, left)) in columns.iter().zip(left).enumerate() {
                 let square = dot(column, column);
@@ -296,7 +314,7 @@ mod tests {
     use super::*;
 
     fn gram(vectors: &[[f32; 4]]) -> Gram {
-        let mut gram = Gram::default();
+        let mut gram = Gram::new();
         for vector in vectors {
             gram.add(*vector);
         }

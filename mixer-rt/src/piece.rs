@@ -2,7 +2,7 @@
 
 use crate::attainable::{Crossing, Face};
 use crate::homotopy::{Homotopy, significant};
-use crate::linear::{Gram, Moments, Solution};
+use crate::linear::{Factors, Gram, Moments, Solution};
 use crate::rows::{Bounds, RowState};
 
 /// Velocities below this share of the multipliers' are rounding errors.
@@ -26,7 +26,7 @@ enum Event {
 impl Homotopy<'_> {
     /// J and the rows of the present efforts.
     #[inline]
-    fn survey(&self) -> (Moments, [f32; 4]) {
+    pub(crate) fn survey(&self) -> (Moments, [f32; 4]) {
         let mut moments = Moments::default();
         let mut rows = [0.0; 4];
         for scratch in self.scratch.iter() {
@@ -47,28 +47,46 @@ impl Homotopy<'_> {
         (moments, rows)
     }
 
-    /// The factors of J, exact to the last angle.
+    /// Solves `J x = b` for the rows that are not slack.
+    #[inline]
+    fn solve(&self, factors: Option<&Factors>, b: &[f32; 4]) -> Solution {
+        match factors {
+            Some(factors) => Solution::Regular(factors.solve(*b)),
+            None => self.solve_exactly(b),
+        }
+    }
+
+    /// [`Homotopy::solve`] where J is singular or nearly so.
     #[inline(never)]
-    fn gram(&self, gram: &mut Gram) {
-        let active = self.rows.map(|row| row.state != RowState::Between);
-        let mut add = |mut effect: [f32; 4]| {
-            for (effect, active) in effect.iter_mut().zip(active) {
-                if !active {
-                    *effect = 0.0;
-                }
-            }
-            gram.add(effect);
-        };
+    fn solve_exactly(&self, b: &[f32; 4]) -> Solution {
+        let active = self.active();
+        let mut gram = Gram::new();
         for scratch in self.scratch.iter() {
             let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
                 continue;
             };
-            match scratch.point.face {
-                Face::Interior => scratch.columns.into_iter().for_each(&mut add),
-                Face::Edge => add(scratch.effect(set.direction(&scratch.point))),
-                Face::Corner => {}
+            let free: &[[f32; 2]] = match scratch.point.face {
+                Face::Interior => &[[1.0, 0.0], [0.0, 1.0]],
+                Face::Edge => &[set.direction(&scratch.point)],
+                Face::Corner => &[],
+            };
+            for direction in free {
+                let mut effect = scratch.effect(*direction);
+                for (effect, active) in effect.iter_mut().zip(active) {
+                    if !active {
+                        *effect = 0.0;
+                    }
+                }
+                gram.add(effect);
             }
         }
+        gram.solve(*b)
+    }
+
+    /// Which rows are not slack.
+    #[inline]
+    fn active(&self) -> [bool; 4] {
+        self.rows.map(|row| row.state != RowState::Between)
     }
 
     /// Adds the velocities that multipliers changing by `multipliers` give, and to `speeds` those of the rows. At rest
@@ -127,22 +145,14 @@ impl Homotopy<'_> {
                 RowState::AtLow | RowState::Held => drift.low + significant(row.value - wrench),
             };
         }
-        let factors = moments.factors(self.rows.map(|row| row.state != RowState::Between));
-        let mut gram = Gram::default();
-        let solution = match &factors {
-            Some(factors) => Solution::Regular(factors.solve(way)),
-            None => {
-                self.gram(&mut gram);
-                gram.solve(way)
-            }
-        };
-        let (multipliers, moving) = match solution {
+        let factors = moments.factors(self.active());
+        let (multipliers, moving) = match self.solve(factors.as_ref(), &way) {
             Solution::Regular(velocity) => (velocity, 1.0),
             Solution::Inconsistent(direction) => (direction, 0.0),
         };
         let noise = NOISE * multipliers.iter().fold(0.0, |sum, v| sum + v.abs());
 
-        // The first event: of the faces, ..
+        // The first event.
         let (mut limit, mut event) = if moving > 0.0 {
             (1.0, Some(Event::Arrival))
         } else {
@@ -163,28 +173,30 @@ impl Homotopy<'_> {
                     break;
                 }
                 worst = size;
-                let correction = match &factors {
-                    Some(factors) => Solution::Regular(factors.solve(missed)),
-                    None => gram.solve(missed),
-                };
-                let Solution::Regular(correction) = correction else {
+                let Solution::Regular(correction) = self.solve(factors.as_ref(), &missed) else {
                     break;
                 };
                 self.accelerate(&correction, moving, &mut speeds);
             }
         }
-        for (index, scratch) in self.scratch.iter_mut().enumerate() {
-            let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
-                continue;
-            };
-            let velocity = scratch.pair;
-            let barred = match self.left {
-                Some((left, region)) if left == index && scratch.point.face != Face::Interior => Some(region),
-                _ => None,
-            };
-            if let Some(crossing) = set.crossing(&mut scratch.point, velocity, limit, noise, barred) {
-                limit = crossing.share;
-                event = Some(Event::Face(index, crossing));
+        // Of the faces, those outside first, which leave the ways inside shorter to look at.
+        for outside in [true, false] {
+            for (index, scratch) in self.scratch.iter_mut().enumerate() {
+                if (scratch.point.face != Face::Interior) != outside {
+                    continue;
+                }
+                let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
+                    continue;
+                };
+                let velocity = scratch.pair;
+                let barred = match self.left {
+                    Some((left, region)) if left == index && outside => Some(region),
+                    _ => None,
+                };
+                if let Some(crossing) = set.crossing(&mut scratch.point, velocity, limit, noise, barred) {
+                    limit = crossing.share;
+                    event = Some(Event::Face(index, crossing));
+                }
             }
         }
         // .. of the slack rows.

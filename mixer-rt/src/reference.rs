@@ -5,11 +5,14 @@
 //! efforts where these are attainable, which makes them the result, and the centres where these are far from it.
 
 use crate::homotopy::Homotopy;
-use crate::linear::{Gram, Solution};
-use crate::rows::{Bounds, RowState};
+use crate::linear::Moments;
+use crate::rows::{ACROSS, Bounds, Row, RowState};
 
 /// Distance from the attainable set, scaled, beyond which least-norm efforts have no say.
 const LEAST_NORM_REACH: f32 = 0.2;
+
+/// Limited efforts that miss the request by more than this, in rows, are not worth a way straight to it.
+const NEAR: f32 = 0.3;
 
 impl Homotopy<'_> {
     /// How much of the way from the centres to the least-norm efforts of `request` the reference goes: all of it
@@ -29,7 +32,7 @@ impl Homotopy<'_> {
 
     /// The multipliers that draw the reference nearest to the centres.
     fn towards_centres(&self, request: &[f32; 4], part: f32) -> [f32; 4] {
-        let mut gram = Gram::default();
+        let mut moments = Moments::default();
         let mut wrench = [0.0; 4];
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
             let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) else {
@@ -41,26 +44,23 @@ impl Homotopy<'_> {
                 part * (set.centre[1] - least[1] / self.factors[1]),
             ];
             scratch.add(way, &mut wrench);
-            for column in scratch.columns {
-                gram.add(column);
+            for column in &scratch.columns {
+                moments.add(column);
             }
         }
-        match gram.solve(wrench) {
-            Solution::Regular(multipliers) => multipliers,
-            Solution::Inconsistent(_) => [0.0; 4],
-        }
+        let factors = moments.factors(moments.spanned());
+        factors.map_or([0.0; 4], |factors| factors.solve(wrench))
     }
 
-    /// Puts every unit at its reference, pulled near to the centre of its set; roll and pitch across the request
-    /// held, the other rows slack.
-    pub(crate) fn start(&mut self, request: [f32; 4], is_tilted: bool) {
+    /// Keeps every unit's reference, pulled near to the centre of its set, in the place of its efforts.
+    pub(crate) fn refer(&mut self, request: &[f32; 4], is_tilted: bool) {
         let part = if is_tilted {
-            self.least_norm_part(&request)
+            self.least_norm_part(request)
         } else {
             0.0
         };
         let pull = if part > 0.0 {
-            self.towards_centres(&request, part)
+            self.towards_centres(request, part)
         } else {
             [0.0; 4]
         };
@@ -68,7 +68,7 @@ impl Homotopy<'_> {
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let mut reference = set.centre;
                 if part > 0.0 {
-                    let least = unit.efforts(&request);
+                    let least = unit.efforts(request);
                     let step = scratch.step(&pull);
                     for (((reference, least), factor), step) in
                         reference.iter_mut().zip(least).zip(self.factors).zip(step)
@@ -76,17 +76,51 @@ impl Homotopy<'_> {
                         *reference += part * (least / factor - *reference) + step;
                     }
                 }
-                scratch.point = set.locate(reference);
+                scratch.efforts = reference;
             }
         }
-        let wrench = self.actual();
-        for (row, value) in self.rows.iter_mut().zip(wrench) {
-            row.value = value;
-            row.bounds = Bounds::at(value);
+    }
+
+    /// Puts every unit where `multipliers` draw it from its reference. Roll and pitch across the request are held, the
+    /// other rows as `others` says.
+    pub(crate) fn place(&mut self, multipliers: &[f32; 4], others: RowState) {
+        for scratch in self.scratch.iter_mut() {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
+                let (reference, step) = (scratch.efforts, scratch.step(multipliers));
+                scratch.point = set.locate([reference[0] + step[0], reference[1] + step[1]]);
+            }
         }
-        let [along, _, yaw, thrust] = &mut self.rows;
-        for row in [along, yaw, thrust] {
-            row.state = RowState::Between;
+        let rows = self.actual();
+        for (row, value) in self.rows.iter_mut().zip(rows) {
+            *row = Row {
+                state: others,
+                value,
+                bounds: Bounds::at(value),
+                multiplier: 0.0,
+            };
         }
+        self.rows[ACROSS].state = RowState::Held;
+        self.left = None;
+    }
+
+    /// Puts every unit where the efforts would be nearest to the references if none were limited, all rows held. False
+    /// where these, limited, miss `wanted` by far.
+    pub(crate) fn place_near(&mut self, wanted: &[f32; 4]) -> bool {
+        self.place(&[0.0; 4], RowState::Held);
+        let (moments, rows) = self.survey();
+        let Some(factors) = moments.factors(moments.spanned()) else {
+            return false;
+        };
+        let mut way = *wanted;
+        for (way, row) in way.iter_mut().zip(rows) {
+            *way -= row;
+        }
+        self.place(&factors.solve(way), RowState::Held);
+        let missed = self
+            .rows
+            .iter()
+            .zip(wanted)
+            .map(|(row, wanted)| wanted - row.value);
+        missed.fold(0.0, |sum: f32, missed| sum + missed.abs()) < NEAR
     }
 }

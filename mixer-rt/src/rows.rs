@@ -7,8 +7,9 @@
 
 use crate::sqrt;
 
-/// Roll and pitch along the request. The next row is across it.
+/// Roll and pitch along the request, and across it.
 pub(crate) const ALONG: usize = 0;
+pub(crate) const ACROSS: usize = 1;
 pub(crate) const YAW: usize = 2;
 pub(crate) const THRUST: usize = 3;
 
