@@ -111,12 +111,11 @@ fn mixers_are_small_and_cannot_panic() {
         assert!(code > 100, "{airframe}: the mixer is not in the image");
         assert_eq!(image.ram, empty.ram, "{airframe}: a mixer has no state");
         assert_eq!(image.panic_symbols(), [""; 0], "{airframe}");
-        // The general way of desaturation copies and clears whole words; the closed form has no such call.
-        let whole_words = ["__aeabi_memcpy4", "__aeabi_memclr4"];
-        let closed_form = airframe != "px4-x12";
-        let mut helpers = image.helper_symbols();
-        helpers.retain(|symbol| closed_form || !whole_words.contains(symbol));
-        assert_eq!(helpers, [""; 0], "{airframe}: soft float or a copy loop");
+        assert_eq!(
+            image.helper_symbols(),
+            [""; 0],
+            "{airframe}: soft float or a copy loop"
+        );
         if airframe == REFERENCE {
             assert!(
                 code + tables <= SIZE_LIMIT_BYTES,

@@ -31,6 +31,7 @@
 
 use crate::attainable::{Face, Point};
 use crate::chord::{Chord, Rotors, Sets};
+use crate::linear::unknown_zero;
 use crate::rows::{Bounds, Row, RowState, Turned};
 use crate::{Tables, Unit, sqrt};
 
@@ -61,7 +62,7 @@ const PARALLEL: f32 = 1e-5;
 const FAR: f32 = 16.0;
 
 /// What a unit keeps while the efforts are being found.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scratch {
     /// `[f, Q]` at the reference voltage, N and N m; on the way c_i, scaled.
     pub(crate) efforts: [f32; 2],
@@ -75,6 +76,20 @@ pub struct Scratch {
     pub(crate) point: Point,
     /// The velocity of p_i in its own coordinates.
     pub(crate) pair: [f32; 2],
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        let zero = unknown_zero();
+        Scratch {
+            efforts: [zero; 2],
+            rotors: Rotors::Both,
+            chord: Chord::default(),
+            columns: [[zero; 4]; 2],
+            point: Point::default(),
+            pair: [zero; 2],
+        }
+    }
 }
 
 /// The efforts of all units on their way along a path of wrenches.

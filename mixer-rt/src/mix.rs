@@ -5,7 +5,7 @@ use crate::desaturation::{desaturate, is_bounded, limited, single_rotor};
 use crate::homotopy::Scratch;
 use crate::vertical::{Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;
-use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Wrench};
+use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};
 
 /// What a mix gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,9 +43,20 @@ pub fn mix_with_health<const UNITS: usize, const CHANNELS: usize, P: Quantity, I
     voltage_v: f32,
     health: Health,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
-    let mut scratch = [Scratch::default(); UNITS];
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let (achieved, saturation) = mix_into(tables, setpoint, voltage_v, health, &mut scratch, &mut throttle)?;
+    let desaturated = |request, factors, throttle: &mut [f32]| {
+        let mut scratch = [Scratch::default(); UNITS];
+        desaturated(tables, request, factors, health, &mut scratch, throttle)
+    };
+    let (achieved, saturation) = mix_units(
+        tables,
+        tables.units,
+        setpoint,
+        voltage_v,
+        health,
+        &mut throttle,
+        desaturated,
+    )?;
     Ok(Mix {
         throttle,
         achieved,
@@ -67,6 +78,24 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
     scratch: &mut [Scratch],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
+    let units = tables.units.get(..scratch.len()).unwrap_or(tables.units);
+    let desaturated = |request, factors, throttle: &mut [f32]| {
+        desaturated(tables, request, factors, health, scratch, throttle)
+    };
+    mix_units(tables, units, setpoint, voltage_v, health, throttle, desaturated)
+}
+
+/// [`mix_into`] with `desaturated` for what least norm does not deliver.
+#[inline(always)]
+fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
+    tables: &Tables<'_, P, I, S>,
+    units: &[Unit],
+    setpoint: &Wrench,
+    voltage_v: f32,
+    health: Health,
+    throttle: &mut [f32],
+    desaturated: impl FnOnce([f32; 4], [f32; 2], &mut [f32]) -> [f32; 4],
+) -> Result<(Wrench, Saturation), SetpointError> {
     if let (Some(vertical), true) = (tables.shortcut.vertical(), health.is_good()) {
         return mix_vertical(tables, vertical, setpoint, voltage_v, throttle);
     }
@@ -74,21 +103,50 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let per_factor = factors.map(|factor| 1.0 / factor);
 
-    for (unit, scratch) in tables.units.iter().zip(scratch.iter_mut()) {
+    let mut achieved = [0.0; 4];
+    let mut delivered = true;
+    for unit in units {
         let [f, q] = unit.efforts(&bounded);
-        scratch.efforts = [f * per_factor[0], q * per_factor[1]];
-        scratch.rotors = rotors(unit.channels, health);
+        let efforts = [f * per_factor[0], q * per_factor[1]];
+        let rotors = rotors(unit.channels, health);
+        let given = invert(tables, unit, rotors, efforts, throttle);
+        for ((given, efforts), tolerance) in given.iter().zip(efforts).zip(tables.tolerance.efforts) {
+            let missed = given - efforts;
+            delivered &= missed <= tolerance && missed >= -tolerance;
+        }
+        unit.add_wrench(given, factors, &mut achieved);
     }
-    let (mut achieved, delivered) = invert(tables, factors, scratch, throttle);
     if !delivered {
-        desaturate(tables, bounded, factors, scratch);
-        (achieved, _) = invert(tables, factors, scratch, throttle);
+        achieved = desaturated(bounded, factors, throttle);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
     Ok((
         Wrench::from_array(achieved),
         saturation.with_voltage_clamped(clamped),
     ))
+}
+
+/// Writes the throttles that serve `request` in the order of priority; returns the wrench `[roll, pitch, yaw, thrust]`
+/// that they give.
+#[inline(always)]
+fn desaturated<P: Quantity, I: Inverse<P>, S: Shortcut>(
+    tables: &Tables<'_, P, I, S>,
+    request: [f32; 4],
+    factors: [f32; 2],
+    health: Health,
+    scratch: &mut [Scratch],
+    throttle: &mut [f32],
+) -> [f32; 4] {
+    for (unit, scratch) in tables.units.iter().zip(scratch.iter_mut()) {
+        scratch.rotors = rotors(unit.channels, health);
+    }
+    desaturate(tables, request, factors, scratch);
+    let mut achieved = [0.0; 4];
+    for (unit, scratch) in tables.units.iter().zip(scratch) {
+        let given = invert(tables, unit, scratch.rotors, scratch.efforts, throttle);
+        unit.add_wrench(given, factors, &mut achieved);
+    }
+    achieved
 }
 
 /// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's proof each unit
@@ -176,39 +234,23 @@ fn rotors([upper, lower]: [u8; 2], health: Health) -> Rotors {
     }
 }
 
-/// Writes the throttles of all units for their efforts; returns the wrench `[roll, pitch, yaw, thrust]` that they
-/// give and whether every unit gives its efforts within the tolerance.
+/// Writes a unit's throttles for its `efforts` and returns the efforts that they give.
 #[inline(always)]
-fn invert<P: Quantity, I: Inverse<P>, S: Shortcut>(
+fn invert<P: Quantity, I: Inverse<P>, S>(
     tables: &Tables<'_, P, I, S>,
-    factors: [f32; 2],
-    scratch: &[Scratch],
+    unit: &Unit,
+    rotors: Rotors,
+    efforts: [f32; 2],
     throttle: &mut [f32],
-) -> ([f32; 4], bool) {
-    let mut achieved = [0.0; 4];
-    let mut delivered = true;
-    for (unit, scratch) in tables.units.iter().zip(scratch) {
-        let efforts = scratch.efforts;
-        let throttles = match scratch.rotors {
-            Rotors::Both => tables.inverse.throttles(&tables.pair, &tables.throttle, efforts),
-            rotors => single_rotor(tables, rotors, efforts[0])
-                .and_then(|throttle| rotors.throttles(throttle))
-                .unwrap_or([0.0, 0.0]),
-        };
-        write(unit.channels, throttles, throttle);
-        let given = tables.pair.efforts(throttles);
-        for ((given, efforts), tolerance) in given.iter().zip(efforts).zip(tables.tolerance.efforts) {
-            let missed = given - efforts;
-            delivered &= missed <= tolerance && missed >= -tolerance;
-        }
-        for ((effect, factor), given) in unit.effectiveness.iter().zip(factors).zip(given) {
-            let given = factor * given;
-            for (achieved, effect) in achieved.iter_mut().zip(effect) {
-                *achieved += effect * given;
-            }
-        }
-    }
-    (achieved, delivered)
+) -> [f32; 2] {
+    let throttles = match rotors {
+        Rotors::Both => tables.inverse.throttles(&tables.pair, &tables.throttle, efforts),
+        rotors => single_rotor(tables, rotors, efforts[0])
+            .and_then(|throttle| rotors.throttles(throttle))
+            .unwrap_or([0.0, 0.0]),
+    };
+    write(unit.channels, throttles, throttle);
+    tables.pair.efforts(throttles)
 }
 
 /// An airframe's mixer as a type, for code that is generic over airframes. The compiler implements it.

@@ -38,7 +38,9 @@ impl Bounds {
     }
 }
 
+/// A word, like the rest of a [`Row`], which then is copied word by word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u32)]
 pub(crate) enum RowState {
     /// Wherever the efforts put it; no multiplier.
     Between,

@@ -24,6 +24,17 @@ impl Unit {
         })
     }
 
+    /// Adds what `efforts` `[f, Q]` give to a wrench `[roll, pitch, yaw, thrust]` at the voltage's `[k_f, k_Q]`.
+    #[inline(always)]
+    pub(crate) fn add_wrench(&self, efforts: [f32; 2], factors: [f32; 2], wrench: &mut [f32; 4]) {
+        for ((effect, factor), effort) in self.effectiveness.iter().zip(factors).zip(efforts) {
+            let effort = factor * effort;
+            for (wrench, effect) in wrench.iter_mut().zip(effect) {
+                *wrench += effect * effort;
+            }
+        }
+    }
+
     /// True where thrust gives no yaw and torque nothing but yaw.
     #[inline(always)]
     pub(crate) fn is_vertical(&self) -> bool {
