@@ -1,12 +1,12 @@
 //! The attainable sets of units that have lost a rotor.
 //!
-//! What is left is the curve of the other rotor, with the lost one's throttle at zero. A straight line stands for it:
-//! at first the chord from the idle to the full throttle, then the tangent where the unit has come to, over the same
-//! range of thrust. Where that repeats itself, line and curve meet in the unit's efforts. An optimum on a curve may lie
-//! between the ends to which the tangents lead in turn: there the secant between them takes their place.
+//! What is left is the curve of the other rotor, with the lost one's throttle at zero. A straight line stands for it or
+//! for a part of it: at first the chord from end to end, then the tangent where the unit has come to, over the same range
+//! of thrust. Where that repeats itself, line and curve meet in the unit's efforts. An optimum on a curve may lie between
+//! the ends to which the tangents lead in turn: there the secant between them takes their place.
 
 use crate::attainable::AttainableSet;
-use crate::{Edge, Pair, Quantity, ThrottleRange, sqrt};
+use crate::{Edge, Pair, Quantity, sqrt};
 
 /// Which rotors of a unit work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,15 +33,28 @@ impl Rotors {
 /// A step back by more than this share of the last one is a swing.
 const SWING: f32 = 0.25;
 
+/// How a line stands to its curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Kind {
+    /// Through its ends.
+    #[default]
+    Chord,
+    /// Along it where they meet.
+    Tangent,
+    /// In the direction of a swing.
+    Secant,
+}
+
 /// The line that stands for the curve of a single rotor, scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Chord {
     edge: [Edge; 1],
-    /// The efforts in which it meets the curve, N and N m (NaN for the chord), and how that thrust changed last.
+    /// Throttles of the part that it stands for.
+    range: [f32; 2],
+    kind: Kind,
+    /// The efforts in which it meets the curve, N and N m, and how that thrust changed last; zero for the chord.
     meeting: [f32; 2],
     step: f32,
-    /// dQ/df, where it is no longer that of the tangent; else NaN.
-    slope: f32,
 }
 
 impl Default for Chord {
@@ -52,49 +65,48 @@ impl Default for Chord {
                 along: [1.0, 0.0],
                 length: 0.0,
             }],
-            meeting: [f32::NAN; 2],
+            range: [0.0; 2],
+            kind: Kind::Chord,
+            meeting: [0.0; 2],
             step: 0.0,
-            slope: f32::NAN,
         }
     }
 }
 
-impl Chord {
-    /// From `low` to `high`, both `[f, Q]` in N and N m.
-    fn new(low: [f32; 2], high: [f32; 2], scale: [f32; 2]) -> Self {
-        let start = [low[0] / scale[0], low[1] / scale[1]];
-        let vector = [high[0] / scale[0] - start[0], high[1] / scale[1] - start[1]];
-        let length = sqrt(vector[0] * vector[0] + vector[1] * vector[1]);
-        Chord {
-            edge: [Edge {
-                start,
-                along: vector.map(|part| part / length),
-                length,
-            }],
-            meeting: [f32::NAN; 2],
-            step: 0.0,
-            slope: f32::NAN,
-        }
-    }
+/// The edge from `low` to `high`, both `[f, Q]` in N and N m, scaled.
+fn edge(low: [f32; 2], high: [f32; 2], scale: [f32; 2]) -> [Edge; 1] {
+    let start = [low[0] / scale[0], low[1] / scale[1]];
+    let vector = [high[0] / scale[0] - start[0], high[1] / scale[1] - start[1]];
+    let length = sqrt(vector[0] * vector[0] + vector[1] * vector[1]);
+    [Edge {
+        start,
+        along: vector.map(|part| part / length),
+        length,
+    }]
+}
 
-    /// The chord of the whole curve; `None` with both or no rotor.
-    pub(crate) fn of_curve<P: Quantity>(
+impl Chord {
+    /// The chord of the curve between two throttles; `None` with both or no rotor.
+    pub(crate) fn between<P: Quantity>(
         pair: &Pair<P>,
-        throttle: &ThrottleRange,
+        range: [f32; 2],
         rotors: Rotors,
         scale: [f32; 2],
     ) -> Option<Self> {
-        let low = pair.efforts(rotors.throttles(throttle.min)?);
-        let high = pair.efforts(rotors.throttles(throttle.max)?);
-        Some(Chord::new(low, high, scale))
+        let low = pair.efforts(rotors.throttles(range[0])?);
+        let high = pair.efforts(rotors.throttles(range[1])?);
+        Some(Chord {
+            edge: edge(low, high, scale),
+            range,
+            ..Chord::default()
+        })
     }
 
-    /// The tangent at a throttle, over the curve's range of thrust; `None` with both or no rotor. Where the thrust
-    /// swings to and fro, the secant of the swing gives the direction from then on.
+    /// The tangent at a throttle, over the same range of thrust; `None` with both or no rotor. Where the thrust swings
+    /// to and fro, the secant of the swing gives the direction from then on.
     pub(crate) fn tangent<P: Quantity>(
         &self,
         pair: &Pair<P>,
-        range: &ThrottleRange,
         rotors: Rotors,
         scale: [f32; 2],
         throttle: f32,
@@ -104,24 +116,27 @@ impl Chord {
             Rotors::Upper => by_upper,
             _ => by_lower,
         });
-        let mut slope = self.slope;
-        let mut step = 0.0;
-        let before = self.meeting;
-        if !before[0].is_nan() {
-            step = f - before[0];
-            if slope.is_nan() && step * self.step < 0.0 && step.abs() > SWING * self.step.abs() {
-                slope = (q - before[1]) / step;
+        let way = [f - self.meeting[0], q - self.meeting[1]];
+        let step = if self.kind == Kind::Chord { 0.0 } else { way[0] };
+        let swings = step * self.step < 0.0 && step.abs() > SWING * self.step.abs();
+        let (kind, slope) = match self.kind {
+            Kind::Secant => {
+                let [df, dq] = self.edge[0].along;
+                (Kind::Secant, dq * scale[1] / (df * scale[0]))
             }
-        }
-        let low = pair.efforts(rotors.throttles(range.min)?)[0];
-        let high = pair.efforts(rotors.throttles(range.max)?)[0];
-        let direction = if slope.is_nan() { q_by / f_by } else { slope };
-        let at = |thrust: f32| [thrust, q + direction * (thrust - f)];
+            Kind::Tangent if swings => (Kind::Secant, way[1] / way[0]),
+            _ => (Kind::Tangent, q_by / f_by),
+        };
+        let [low, high] = self.range;
+        let low = pair.efforts(rotors.throttles(low)?)[0];
+        let high = pair.efforts(rotors.throttles(high)?)[0];
+        let at = |thrust: f32| [thrust, q + slope * (thrust - f)];
         Some(Chord {
+            edge: edge(at(low), at(high), scale),
+            range: self.range,
+            kind,
             meeting: [f, q],
             step,
-            slope,
-            ..Chord::new(at(low), at(high), scale)
         })
     }
 }

@@ -91,7 +91,7 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
     };
     let (pair, range, scale) = (&tables.pair, &tables.throttle, tables.attainable.scale);
     for scratch in scratch.iter_mut() {
-        if let Some(chord) = Chord::of_curve(pair, range, scratch.rotors, scale) {
+        if let Some(chord) = Chord::between(pair, [range.min, range.max], scratch.rotors, scale) {
             scratch.chord = chord;
         }
     }
@@ -102,9 +102,7 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
             let [f, q] = scratch.efforts;
             if let Some(throttle) = single_rotor(tables, scratch.rotors, f)
                 && let Some(throttles) = scratch.rotors.throttles(throttle)
-                && let Some(tangent) = scratch
-                    .chord
-                    .tangent(pair, range, scratch.rotors, scale, throttle)
+                && let Some(tangent) = scratch.chord.tangent(pair, scratch.rotors, scale, throttle)
             {
                 scratch.chord = tangent;
                 let off = factors[1] * (tables.pair.torque.value(throttles[0], throttles[1]) - q);
