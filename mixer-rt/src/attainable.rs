@@ -11,7 +11,7 @@
 //! coordinates of its own region, so that the projection stays exact however far outside `p` lies, and a point that
 //! comes to a border is on it.
 
-use crate::clamp;
+use crate::{clamp, sqrt};
 
 /// One edge of a [`AttainableSet`], in the set's own units: see [`AttainableSet::scale`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,16 +65,6 @@ impl Point {
     /// The face, and which one of its kind; any interior is the same.
     pub(crate) fn region(&self) -> (Face, u8) {
         (self.face, self.index)
-    }
-
-    /// The distance from the set.
-    pub(crate) fn distance(&self) -> f32 {
-        match self.face {
-            Face::Interior => 0.0,
-            Face::Edge => self.at[1].abs(),
-            // Of these heights the larger one is about the distance.
-            Face::Corner => crate::clamp(self.at[0], self.at[1].abs(), f32::MAX),
-        }
     }
 }
 
@@ -241,6 +231,13 @@ impl AttainableSet<'_> {
             index,
             at: [0.0; 2],
         }
+    }
+
+    /// The distance of `point` from the set.
+    pub(crate) fn distance(&self, point: [f32; 2]) -> f32 {
+        let nearest = self.project(&self.locate(point));
+        let [f, q] = [point[0] - nearest[0], point[1] - nearest[1]];
+        sqrt(f * f + q * q)
     }
 
     /// The projection of `point`.

@@ -22,7 +22,7 @@ impl Homotopy<'_> {
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let [f, q] = unit.efforts(request);
-                let distance = set.locate([f / self.factors[0], q / self.factors[1]]).distance();
+                let distance = set.distance([f / self.factors[0], q / self.factors[1]]);
                 let near = 1.0 - distance / LEAST_NORM_REACH;
                 part = if near < part { near } else { part };
             }

@@ -68,3 +68,32 @@ fn projections_onto_a_chord() {
     check(&CHORD, [-1.0, 3.0], Face::Corner, [0.0, 0.0]);
     check(&CHORD, [4.0, 3.0], Face::Corner, [2.0, 0.0]);
 }
+
+/// A corner at which the border turns by little: its two heights say little of the distance.
+#[test]
+fn the_distance_is_that_of_the_projection() {
+    const FLAT: AttainableSet<'static> = AttainableSet {
+        scale: [1.0, 1.0],
+        centre: [0.0, 1.0],
+        edges: &[
+            edge([-4.8, 1.4], [0.96, -0.28], 5.0),
+            edge([0.0, 0.0], [0.96, 0.28], 5.0),
+            edge([4.8, 1.4], [-1.0, 0.0], 9.6),
+        ],
+    };
+    for (set, point, distance) in [
+        (&SQUARE, [1.5, 0.5], 0.0),
+        (&SQUARE, [1.5, -1.0], 1.0),
+        (&SQUARE, [5.0, 6.0], 5.0),
+        (&FLAT, [0.0, -1.0], 1.0),
+        (&FLAT, [0.28, -0.96], 1.0),
+        (&FLAT, [2.68, -0.26], 1.0),
+        (&CHORD, [5.0, 4.0], 5.0),
+    ] {
+        let found = set.distance(point);
+        assert!(
+            (found - distance).abs() < 1e-6,
+            "{point:?}: {found}, not {distance}"
+        );
+    }
+}
