@@ -28,6 +28,12 @@ impl Rotors {
             Rotors::Both | Rotors::None => None,
         }
     }
+
+    /// True where one of them works.
+    #[inline]
+    pub(crate) fn is_single(self) -> bool {
+        matches!(self, Rotors::Upper | Rotors::Lower)
+    }
 }
 
 /// A step back by more than this share of the last one is a swing.

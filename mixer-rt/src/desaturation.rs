@@ -17,10 +17,11 @@
 //! Each step is a straight path in the space of wrenches that [`Homotopy`] follows to its exact end. The result
 //! is a continuous function of the request: the attainable wrenches are a polytope, on which the nearest points
 //! above move continuously, and the efforts are the only ones nearest to a reference that give the wrench reached.
+//! With rotors out there may be several optima: see [`crate::search`].
 
-use crate::chord::{Chord, Rotors, Sets};
+use crate::chord::{Rotors, Sets};
 use crate::homotopy::{Homotopy, Scratch};
-use crate::rows::{ALONG, Bounds, THRUST, YAW};
+use crate::rows::{ACROSS, ALONG, Bounds, THRUST, YAW};
 use crate::{Quantity, Tables, clamp};
 
 /// What desaturation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).
@@ -47,12 +48,6 @@ pub struct Desaturation {
 /// overflows.
 const REQUEST_LIMIT: f32 = 1e5;
 
-/// Rounds in which the lines that stand for the curves of single rotors are drawn again where the units have come to.
-const ROUNDS: u32 = 12;
-
-/// Share of the mixer's tolerance by which lines and curves may be apart.
-const TOUCHING: f32 = 0.25;
-
 /// True where `request` is finite and within [`REQUEST_LIMIT`].
 #[inline(always)]
 pub(crate) fn is_bounded(request: &[f32; 4]) -> bool {
@@ -78,55 +73,28 @@ pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
     [roll * share, pitch * share, limit(yaw), limit(thrust)]
 }
 
-/// Finds attainable efforts (`[f, Q]` at the reference voltage, in the scratch) that serve `request` (`[roll,
-/// pitch, yaw, thrust]`, within [`REQUEST_LIMIT`]) in the order of priority. `factors` is `[k_f, k_Q]`.
-pub(crate) fn desaturate<P: Quantity, I, S>(
-    tables: &Tables<'_, P, I, S>,
-    request: [f32; 4],
-    factors: [f32; 2],
-    scratch: &mut [Scratch],
-) {
-    let sets = Sets {
-        both: tables.attainable,
-    };
-    let (pair, range, scale) = (&tables.pair, &tables.throttle, tables.attainable.scale);
-    for scratch in scratch.iter_mut() {
-        if let Some(chord) = Chord::between(pair, [range.min, range.max], scratch.rotors, scale) {
-            scratch.chord = chord;
-        }
-    }
-    for _ in 0..ROUNDS {
-        prioritise(tables, &sets, request, factors, scratch);
-        let mut missed = [0.0; 4];
-        for (unit, scratch) in tables.units.iter().zip(scratch.iter_mut()) {
-            let [f, q] = scratch.efforts;
-            if let Some(throttle) = single_rotor(tables, scratch.rotors, f)
-                && let Some(throttles) = scratch.rotors.throttles(throttle)
-                && let Some(tangent) = scratch.chord.tangent(pair, scratch.rotors, scale, throttle)
-            {
-                scratch.chord = tangent;
-                let off = factors[1] * (tables.pair.torque.value(throttles[0], throttles[1]) - q);
-                for (missed, effect) in missed.iter_mut().zip(unit.effectiveness[1]) {
-                    *missed += (effect * off).abs();
-                }
-            }
-        }
-        // What is left is less than the inverse map may miss.
-        let mut missed = missed.iter().zip(tables.tolerance.wrench);
-        if missed.all(|(missed, tolerance)| *missed <= TOUCHING * tolerance) {
-            break;
-        }
-    }
+/// What the steps came to, in rows.
+#[derive(Clone, Copy)]
+pub(crate) struct Outcome {
+    /// How far out of bounds: roll and pitch across the request, yaw, thrust. More than rounding only where not even
+    /// roll = pitch = 0 is attainable.
+    pub(crate) beyond: f32,
+    /// How far from the request, in the order of priority.
+    pub(crate) short: [f32; 3],
+    /// The largest thrust that was allowed.
+    pub(crate) ceiling: f32,
 }
 
-/// The steps of the module's head, with straight lines for the curves of single rotors.
-fn prioritise<P, I, S>(
+/// The steps of the module's head, with straight lines for the curves of single rotors. `ceiling` is the largest thrust
+/// that is allowed, in its row; `None` where that is to be found.
+pub(crate) fn prioritise<P, I, S>(
     tables: &Tables<'_, P, I, S>,
     sets: &Sets<'_>,
     request: [f32; 4],
     factors: [f32; 2],
+    ceiling: Option<f32>,
     scratch: &mut [Scratch],
-) {
+) -> Outcome {
     let Desaturation {
         airmode,
         yaw_reserve_nm,
@@ -135,27 +103,58 @@ fn prioritise<P, I, S>(
     let mut homotopy = Homotopy::new(tables, sets, factors, request, scratch);
     let wanted = homotopy.rows_of(request);
     let yaw = homotopy.bounds_of(YAW, Bounds::at(reserved).including(request[YAW]));
-    let thrust = Bounds {
-        low: -REQUEST_LIMIT,
-        high: if airmode == Airmode::Disabled {
-            wanted[THRUST]
-        } else {
-            REQUEST_LIMIT
-        },
+    let asked = if airmode == Airmode::Disabled {
+        wanted[THRUST]
+    } else {
+        REQUEST_LIMIT
     };
-    descend(&mut homotopy, wanted, yaw, thrust, airmode);
+    let mut thrust = Bounds {
+        low: -REQUEST_LIMIT,
+        high: ceiling.unwrap_or(asked),
+    };
+    let found = descend(&mut homotopy, wanted, yaw, thrust, airmode);
+    if ceiling.is_none() {
+        thrust.high = found;
+    }
     homotopy.write_efforts();
+    let reached = homotopy.actual();
+    let short = |row: usize| match (wanted.get(row), reached.get(row)) {
+        (Some(wanted), Some(reached)) => (wanted - reached).abs(),
+        _ => 0.0,
+    };
+    let [second, third] = order(airmode);
+    Outcome {
+        beyond: short(ACROSS) + yaw.distance(reached[YAW]) + thrust.distance(reached[THRUST]),
+        short: [short(ALONG), short(second), short(third)],
+        ceiling: thrust.high,
+    }
+}
+
+/// The rows after roll and pitch in the order of priority.
+fn order(airmode: Airmode) -> [usize; 2] {
+    if airmode == Airmode::RollPitchYaw {
+        [YAW, THRUST]
+    } else {
+        [THRUST, YAW]
+    }
 }
 
 /// The steps of the module's head, one path each. `wanted` in rows; `yaw` and `thrust` are where these rows may be.
-fn descend(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: Bounds, airmode: Airmode) {
+/// Returns the largest thrust that was allowed: more than in `thrust` where roll = pitch = 0 needs more.
+fn descend(
+    homotopy: &mut Homotopy<'_>,
+    wanted: [f32; 4],
+    yaw: Bounds,
+    thrust: Bounds,
+    airmode: Airmode,
+) -> f32 {
     const LEVEL: Bounds = Bounds::at(0.0);
     const WIDE: Bounds = Bounds {
         low: -REQUEST_LIMIT,
         high: REQUEST_LIMIT,
     };
     if homotopy.follow_straight(&wanted) {
-        return;
+        return thrust.high;
     }
     homotopy.start();
     homotopy.bound(ALONG, LEVEL);
@@ -172,12 +171,7 @@ fn descend(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: B
     let [.., yaw, thrust] = homotopy.bounds();
     homotopy.hold(ALONG);
     homotopy.follow([Bounds::at(wanted[ALONG]), LEVEL, yaw, thrust], true);
-    let order = if airmode == Airmode::RollPitchYaw {
-        [YAW, THRUST]
-    } else {
-        [THRUST, YAW]
-    };
-    for row in order {
+    for row in order(airmode) {
         homotopy.hold(row);
         let mut target = homotopy.bounds();
         if let (Some(target), Some(wanted)) = (target.get_mut(row), wanted.get(row)) {
@@ -185,6 +179,7 @@ fn descend(homotopy: &mut Homotopy<'_>, wanted: [f32; 4], yaw: Bounds, thrust: B
         }
         homotopy.follow(target, true);
     }
+    thrust.high
 }
 
 /// Halvings of the throttle range that find a single rotor's throttle: to the last bit of a float.

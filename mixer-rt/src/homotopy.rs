@@ -66,6 +66,8 @@ const FAR: f32 = 16.0;
 pub struct Scratch {
     /// `[f, Q]` at the reference voltage, N and N m; on the way c_i, scaled.
     pub(crate) efforts: [f32; 2],
+    /// Those of the best end so far.
+    pub(crate) best: [f32; 2],
     /// Which of its rotors work.
     pub(crate) rotors: Rotors,
     /// What stands for its attainable set where only one does.
@@ -83,6 +85,7 @@ impl Default for Scratch {
         let zero = unknown_zero();
         Scratch {
             efforts: [zero; 2],
+            best: [zero; 2],
             rotors: Rotors::Both,
             chord: Chord::default(),
             columns: [[zero; 4]; 2],

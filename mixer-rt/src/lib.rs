@@ -39,6 +39,7 @@ mod reference;
 mod rows;
 mod saturation;
 mod scalar;
+mod search;
 mod sqrt;
 mod table;
 mod tables;

@@ -1,8 +1,9 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
 use crate::chord::Rotors;
-use crate::desaturation::{desaturate, is_bounded, limited, single_rotor};
+use crate::desaturation::{is_bounded, limited, single_rotor};
 use crate::homotopy::Scratch;
+use crate::search::desaturate;
 use crate::vertical::{Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;
 use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};

@@ -36,6 +36,17 @@ impl Bounds {
             high: if value > self.high { value } else { self.high },
         }
     }
+
+    /// How far `value` is outside.
+    pub(crate) fn distance(self, value: f32) -> f32 {
+        if value > self.high {
+            value - self.high
+        } else if value < self.low {
+            self.low - value
+        } else {
+            0.0
+        }
+    }
 }
 
 /// A word, like the rest of a [`Row`], which then is copied word by word.

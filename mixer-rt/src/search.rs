@@ -1,0 +1,186 @@
+//! Desaturation with rotors out: rounds of tangents, and the best of the optima to which these lead.
+//!
+//! The line that stands for a single rotor's curve is drawn again wherever the unit has come to, until line and curve
+//! meet ([`crate::chord`]). What is found so is an optimum among the efforts near by; a curve is not convex, so there may
+//! be a better one elsewhere. Where something is left to be wished for, the rounds are therefore begun anew on every
+//! quarter of the curve, or with several curves on every combination of halves of the first two, and last from the best
+//! end found so far on the whole curves. The best of all ends stands.
+//!
+//! Ends are compared by their priorities, but so that no more of one is given up for all of the next than [`NEXT`]:
+//! two optima whose roll and pitch differ by rounding may differ by all of the thrust. Where the request changes and
+//! another optimum becomes the best the efforts jump, as any choice by these priorities must.
+
+use crate::chord::{Chord, Sets};
+use crate::desaturation::{Outcome, prioritise, single_rotor};
+use crate::homotopy::Scratch;
+use crate::{Quantity, Tables};
+
+/// Halvings of the curves in all: one curve is tried in quarters, two in halves.
+const HALVINGS: u32 = 2;
+
+/// Rounds at most from whole curves, and from parts: 12 + 4 x 6 + 12 at worst. Most ends are reached in one to four.
+const ROUNDS: u32 = 12;
+const ROUNDS_OF_PARTS: u32 = 6;
+
+/// Share of the mixer's tolerance by which lines and curves may be apart.
+const TOUCHING: f32 = 0.25;
+
+/// What is given up of one priority for all of the next, in rows.
+const NEXT: f32 = 0.005;
+
+/// What leaving the bounds costs, beside falling short in the first priority.
+const BEYOND: f32 = 4.0;
+
+/// An end that is worse by more than this after a round, or after [`TRIED`] of them, will not be the best. The lines
+/// of the first rounds are off their curves by about a tenth of that.
+const HOPELESS: f32 = 0.1;
+const TRIED: u32 = 4;
+
+/// Rows that miss by less are delivered.
+const DELIVERED: f32 = 1e-3;
+
+/// Where rounds end.
+#[derive(Clone, Copy)]
+struct End {
+    /// The lines meet their curves.
+    touches: bool,
+    outcome: Outcome,
+}
+
+impl Outcome {
+    /// Lower is better.
+    fn cost(&self) -> f32 {
+        let [first, second, third] = self.short;
+        BEYOND * self.beyond + first + NEXT * (second + NEXT * third)
+    }
+
+    fn is_delivered(&self) -> bool {
+        self.beyond < DELIVERED && self.short.iter().all(|short| *short < DELIVERED)
+    }
+}
+
+/// A frame and what is asked of it.
+struct Search<'s, 't, P, I, S> {
+    tables: &'s Tables<'t, P, I, S>,
+    request: [f32; 4],
+    factors: [f32; 2],
+}
+
+/// Finds attainable efforts (`[f, Q]` at the reference voltage, in the scratch) that serve `request` (`[roll,
+/// pitch, yaw, thrust]`, bounded) in the order of priority. `factors` is `[k_f, k_Q]`.
+pub(crate) fn desaturate<P: Quantity, I, S>(
+    tables: &Tables<'_, P, I, S>,
+    request: [f32; 4],
+    factors: [f32; 2],
+    scratch: &mut [Scratch],
+) {
+    let search = Search {
+        tables,
+        request,
+        factors,
+    };
+    search.draw(scratch, 0, 0);
+    let mut best = search.settle(scratch, ROUNDS, None);
+    let mut singles = 0;
+    for scratch in scratch.iter_mut() {
+        scratch.best = scratch.efforts;
+        singles += u32::from(scratch.rotors.is_single());
+    }
+    if singles == 0 || best.outcome.is_delivered() {
+        return;
+    }
+    let halvings = if singles == 1 { HALVINGS } else { 1 };
+    for combination in 0..1 << HALVINGS {
+        search.draw(scratch, halvings, combination);
+        search.improve(scratch, ROUNDS_OF_PARTS, &mut best);
+    }
+    search.draw(scratch, 0, 0);
+    for scratch in scratch.iter_mut() {
+        search.touch(scratch, scratch.best[0]);
+    }
+    search.improve(scratch, ROUNDS, &mut best);
+    for scratch in scratch.iter_mut() {
+        scratch.efforts = scratch.best;
+    }
+}
+
+impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
+    /// Chords of the curves; of curves halved so often only of one part each, `combination` says which: its bits are those
+    /// of all parts in turn. Once [`HALVINGS`] are used up, curves are whole.
+    fn draw(&self, scratch: &mut [Scratch], halvings: u32, combination: u32) {
+        let tables = self.tables;
+        let (low, high) = (tables.throttle.min, tables.throttle.max);
+        let (mut left, mut combination) = (HALVINGS, combination);
+        for scratch in scratch.iter_mut().filter(|scratch| scratch.rotors.is_single()) {
+            let halvings = if left < halvings { left } else { halvings };
+            left -= halvings;
+            let parts = 1 << halvings;
+            let part = combination & (parts - 1);
+            combination >>= halvings;
+            let step = (high - low) / parts as f32;
+            let range = [part, part + 1].map(|part| low + part as f32 * step);
+            if let Some(chord) = Chord::between(&tables.pair, range, scratch.rotors, tables.attainable.scale)
+            {
+                scratch.chord = chord;
+            }
+        }
+    }
+
+    /// Draws the line of a unit again for the thrust `f`; returns the throttles there, `None` where there is no line.
+    fn touch(&self, scratch: &mut Scratch, f: f32) -> Option<[f32; 2]> {
+        let (rotors, scale) = (scratch.rotors, self.tables.attainable.scale);
+        let throttle = single_rotor(self.tables, rotors, f)?;
+        scratch.chord = scratch
+            .chord
+            .tangent(&self.tables.pair, rotors, scale, throttle)?;
+        rotors.throttles(throttle)
+    }
+
+    /// Rounds from the lines drawn; an end that is better takes the place of `best`.
+    fn improve(&self, scratch: &mut [Scratch], rounds: u32, best: &mut End) {
+        let end = self.settle(scratch, rounds, Some(best));
+        if end.touches && (!best.touches || end.outcome.cost() < best.outcome.cost()) {
+            *best = end;
+            for scratch in scratch.iter_mut() {
+                scratch.best = scratch.efforts;
+            }
+        }
+    }
+
+    /// At most `rounds` of them, fewer where the end will not be better than `best`.
+    #[inline(never)]
+    fn settle(&self, scratch: &mut [Scratch], rounds: u32, best: Option<&End>) -> End {
+        let tables = self.tables;
+        let sets = Sets {
+            both: tables.attainable,
+        };
+        let hopeless = best.map(|best| best.outcome.cost() + HOPELESS);
+        let ceiling = best.map(|best| best.outcome.ceiling);
+        let mut round = 0;
+        loop {
+            let outcome = prioritise(tables, &sets, self.request, self.factors, ceiling, scratch);
+            round += 1;
+            let least = if round < TRIED {
+                outcome.short[0]
+            } else {
+                outcome.cost()
+            };
+            let mut off = [0.0; 4];
+            for (unit, scratch) in tables.units.iter().zip(scratch.iter_mut()) {
+                let [f, q] = scratch.efforts;
+                if let Some([u, l]) = self.touch(scratch, f) {
+                    let missed = self.factors[1] * (tables.pair.torque.value(u, l) - q);
+                    for (off, effect) in off.iter_mut().zip(unit.effectiveness[1]) {
+                        *off += (effect * missed).abs();
+                    }
+                }
+            }
+            // What is left is less than the inverse map may miss.
+            let mut off = off.iter().zip(tables.tolerance.wrench);
+            let touches = off.all(|(off, tolerance)| *off <= TOUCHING * tolerance);
+            if touches || round >= rounds || hopeless.is_some_and(|hopeless| least > hopeless) {
+                return End { touches, outcome };
+            }
+        }
+    }
+}
