@@ -16,8 +16,10 @@ struct Judged {
     void: usize,
     /// Requests on which the optimum over the physical sets is missed, ..
     missed: usize,
-    /// .. and of those the ones on which the optimum over the mixer's own polygons is missed, too. The polygons lose 0.2 %
-    /// of the area, and a little less roll and pitch can cost several percent of what is left for thrust or yaw.
+    /// .. and of those the ones on which the optimum over the mixer's own polygons is missed, too. The paper's set bends
+    /// inwards at one side, which costs any convex set inside it 0.18 % of the area and half a percent of its height at
+    /// either end of that side; and next to the largest roll and pitch a little less of them is worth several percent of
+    /// what is left for thrust or yaw. More edges do not help: with 147 instead of 35 the same requests miss by as much.
     missed_within: usize,
     worst: Shortfall,
 }
@@ -31,10 +33,17 @@ impl Judged {
             let mut request = frame.draw(random, 0.6, volts);
             request.health = health;
             let answer = request.mix(frame).expect("finite");
-            let Some(shortfall) = Shortfall::of(&answer, &request, frame, &oracle).expect("solved") else {
+            let Some(mut shortfall) = Shortfall::of(&answer, &request, frame, &oracle).expect("solved")
+            else {
                 self.void += 1;
                 continue;
             };
+            if shortfall.misses() {
+                // Perhaps not of what is attainable, but only of its convex hull.
+                let exact = Oracle::exact(&frame.physics, frame.allocation(), factors, health);
+                let exact = Shortfall::of(&answer, &request, frame, &exact).expect("solved");
+                shortfall = exact.unwrap_or(shortfall);
+            }
             self.requests += 1;
             self.worst = self.worst.max(shortfall);
             if shortfall.misses() {
@@ -78,6 +87,12 @@ impl Judged {
     }
 }
 
+/// Random numbers from a fixed seed; `MIXER_SEED` sets another.
+fn random(seed: u64) -> Random {
+    let other = std::env::var("MIXER_SEED").ok().map(|text| text.parse());
+    Random(other.map_or(seed, |other| other.expect("MIXER_SEED is a number")))
+}
+
 /// An irregular frame that can hover, for about each that is asked for.
 fn irregular(random: &mut Random, units: usize, tilt: f64, options: Options) -> Option<Frame> {
     let places = frames::irregular(random, units, tilt);
@@ -86,7 +101,7 @@ fn irregular(random: &mut Random, units: usize, tilt: f64, options: Options) -> 
 
 #[test]
 fn vertical_frames_of_three_and_four_units_reach_the_optimum() {
-    let mut random = Random(2);
+    let mut random = random(2);
     for n in [3, 4] {
         for airmode in ["disabled", "roll-pitch"] {
             let options = Options {
@@ -112,7 +127,7 @@ fn vertical_frames_of_three_and_four_units_reach_the_optimum() {
 
 #[test]
 fn any_frame_reaches_the_optimum() {
-    let mut random = Random(3);
+    let mut random = random(3);
     let mut all = Judged::default();
     for (kind, tilt) in [("vertical", 0.0), ("tilted", 0.08)] {
         for n in 1..=8 {
@@ -139,7 +154,7 @@ fn any_frame_reaches_the_optimum() {
     assert!(all.requests >= 1200);
     assert_eq!(all.missed_within, 0);
     assert!(
-        all.missed * 500 <= all.requests,
+        all.missed * 600 <= all.requests,
         "{} of {}",
         all.missed,
         all.requests
@@ -149,7 +164,7 @@ fn any_frame_reaches_the_optimum() {
 /// One or two rotors out, of different units or of the same.
 #[test]
 fn frames_with_rotors_out_reach_the_optimum() {
-    let mut random = Random(8);
+    let mut random = random(8);
     let mut all = Judged::default();
     for out in [1, 2] {
         for (kind, tilt) in [("vertical", 0.0), ("tilted", 0.08)] {
@@ -178,9 +193,10 @@ fn frames_with_rotors_out_reach_the_optimum() {
     }
     all.print("all");
     assert!(all.requests >= 200);
-    // Curves are not convex: along two of them the mixer may come to a local optimum.
+    // Curves are not convex: with other seeds one request in 700 comes to a local optimum.
+    assert_eq!(all.missed_within, 0);
     assert!(
-        all.missed * 100 <= all.requests,
+        all.missed * 400 <= all.requests,
         "{} of {}",
         all.missed,
         all.requests

@@ -5,8 +5,8 @@
 //! * Both rotors, three units or more: one piece, from points of the border. The programs range over the convex hull:
 //!   what they attain is at least what is physically attainable. (The sum of several sets is nearly convex, whatever
 //!   each of them is.)
-//! * Both rotors, one unit or two: the images of small cells of the throttle box, since on the convex hull a single unit
-//!   would have 1.3 % more torque than it has, the paper's pair.
+//! * Both rotors, one unit or two, or any number in [`Oracle::exact`]: the images of small cells of the throttle box,
+//!   since on the convex hull a single unit would have 1.3 % more torque than it has, the paper's pair.
 //! * One rotor: a curve is left, which is anything but convex, as short arcs.
 //!
 //! The optimum over all choices of one piece per unit is found by branch and bound: a run of pieces is relaxed to the
@@ -28,7 +28,7 @@ const SAMPLES: usize = 12;
 /// Arcs that a curve is cut into. The hull of one is 1e-4 N m wide for the paper's pair.
 const ARCS: usize = 16;
 
-/// The throttle box is halved this often in both directions.
+/// The throttle box is halved this often in both directions, if both need it.
 const HALVINGS: u32 = 2;
 
 /// Units up to which the box is cut.
@@ -78,12 +78,33 @@ impl Oracle {
         factors: [f64; 2],
         health: Health,
     ) -> Self {
+        Oracle::cut(physics, allocation, factors, health, physics.units() <= FEW)
+    }
+
+    /// As [`Oracle::new`], with the sets of units with both rotors cut into pieces, however many units there are. An
+    /// optimum takes seconds.
+    pub fn exact(
+        physics: &Physics,
+        allocation: &mixer_compiler::airframe::Allocation,
+        factors: [f64; 2],
+        health: Health,
+    ) -> Self {
+        Oracle::cut(physics, allocation, factors, health, true)
+    }
+
+    fn cut(
+        physics: &Physics,
+        allocation: &mixer_compiler::airframe::Allocation,
+        factors: [f64; 2],
+        health: Health,
+        is_cut: bool,
+    ) -> Self {
         let pair = &physics.pair;
         let failed = |channel: usize| u8::try_from(channel).is_ok_and(|channel| health.has_failed(channel));
         let n = physics.units();
         let sets = physics.channels.iter().enumerate().map(|(i, channels)| {
             let efforts = match channels.map(failed) {
-                [false, false] if n <= FEW => cells(pair),
+                [false, false] if is_cut => cells(pair),
                 [false, false] => vec![bulging(pair, pair.border(SAMPLES))],
                 [false, true] => arcs(pair, |upper| [upper, 0.0]),
                 [true, false] => arcs(pair, |lower| [0.0, lower]),
@@ -326,21 +347,46 @@ fn arcs(pair: &PairMap, throttles: fn(f64) -> [f64; 2]) -> Pieces<[f64; 2]> {
     (0..ARCS).map(|k| (2 * k..=2 * k + 2).map(at).collect()).collect()
 }
 
-/// The throttle box as cells, their corners and the middles of their edges, in Morton's order: runs are compact.
+/// The throttle box as cells, cut only across the edges whose images bend inwards: in both directions
+/// [`HALVINGS`] times, in Morton's order, so that runs are compact; in one direction once more.
 fn cells(pair: &PairMap) -> Pieces<[f64; 2]> {
     let [low, high] = pair.range();
-    let per_side = 1usize << HALVINGS;
-    let cell = |index: usize| {
-        let half = |offset: usize| {
-            (0..HALVINGS as usize)
-                .map(|bit| (index >> (2 * bit + offset) & 1) << bit)
-                .sum::<usize>()
-        };
-        let at = |half_cells: usize| low + (high - low) * half_cells as f64 / (2 * per_side) as f64;
-        let (u, l) = (2 * half(0), 2 * half(1));
-        [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
-            .map(|(du, dl)| [at(u + du), at(l + dl)])
-            .to_vec()
+    let at = |share: f64| low + (high - low) * share;
+    // Positive where the image of an edge, followed anticlockwise, bends to the left: det J is positive.
+    let bend = |edge: &dyn Fn(f64) -> [f64; 2]| {
+        let [from, middle, to] = [0.0, 0.5, 1.0].map(|share| pair.efforts(edge(at(share))));
+        (to[0] - from[0]) * (middle[1] - from[1]) - (to[1] - from[1]) * (middle[0] - from[0])
     };
-    (0..per_side * per_side).map(cell).collect()
+    let is_cut = [
+        bend(&|u| [u, low]) > 0.0 || bend(&|u| [u, high]) < 0.0,
+        bend(&|l| [high, l]) > 0.0 || bend(&|l| [low, l]) < 0.0,
+    ];
+    let halvings = match is_cut {
+        [true, true] => [HALVINGS; 2],
+        one => one.map(|is_cut| if is_cut { HALVINGS + 1 } else { 0 }),
+    };
+    let place = |index: usize, side: usize| match (is_cut, halvings[side]) {
+        ([true, true], halvings) => (0..halvings as usize)
+            .map(|bit| (index >> (2 * bit + side) & 1) << bit)
+            .sum(),
+        (_, 0) => 0,
+        _ => index,
+    };
+    let cell = |index: usize| {
+        let [u, l] = [0, 1].map(|side| {
+            let (place, parts) = (place(index, side) as f64, f64::from(1u32 << halvings[side]));
+            move |share: f64| at((place + share) / parts)
+        });
+        let border = (0..4 * SAMPLES).map(|k| {
+            let share = (k % SAMPLES) as f64 / SAMPLES as f64;
+            match k / SAMPLES {
+                0 => [u(share), l(0.0)],
+                1 => [u(1.0), l(share)],
+                2 => [u(1.0 - share), l(1.0)],
+                _ => [u(0.0), l(1.0 - share)],
+            }
+        });
+        bulging(pair, border.collect())
+    };
+    (0..1usize << (halvings[0] + halvings[1])).map(cell).collect()
 }
