@@ -4,34 +4,14 @@
 //! commands of that point, and what the bench measured there is what the pair would really have given. The difference
 //! from what was asked is the error of the whole way: of the model, of the tables and of the inverse map.
 
-use std::path::{Path, PathBuf};
+mod maps;
 
-use cargo_mixer::identify::identified::{Identified, identify};
-use cargo_mixer::identify::{IdentifyArgs, fragment};
-use clap::Parser;
+use std::path::Path;
+
+use cargo_mixer::identify::fragment;
+use cargo_mixer::identify::identified::Identified;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::Wrench;
-
-/// The command's arguments, so that its defaults are tested.
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    identify: IdentifyArgs,
-}
-
-fn identified(file: &Path, basis: &str) -> Identified {
-    let words = [
-        "identify".into(),
-        file.as_os_str().to_owned(),
-        "--basis".into(),
-        basis.into(),
-    ];
-    let arguments = Arguments::try_parse_from(words)
-        .unwrap_or_else(|error| panic!("{error}"))
-        .identify;
-    identify(&arguments.files, &arguments.settings())
-        .unwrap_or_else(|refusals| panic!("{}: {}", file.display(), refusals[0]))
-}
 
 /// The fragment completed to a single pair on a stand, as its comments say.
 fn compiled(identified: &Identified) -> Compiled {
@@ -45,23 +25,16 @@ fn compiled(identified: &Identified) -> Compiled {
 
 #[test]
 fn every_map_flies_as_it_was_measured() {
-    let Some(data) = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from) else {
-        eprintln!("NOT RUN: every_map_flies_as_it_was_measured needs MIXER_BENCH_DATA");
+    let Some(files) = maps::files("every_map_flies_as_it_was_measured") else {
         return;
     };
-    let folder = data.join("newdexterity");
-    let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-    let mut maps: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    maps.retain(|path| path.to_string_lossy().contains("map10x10"));
-    maps.sort();
-    assert!(maps.len() >= 10, "{} maps in {}", maps.len(), folder.display());
 
     println!("end-to-end error: asked less measured, in % of the largest on the bench (rms, max)");
     println!(
         "{:<14} {:>6} {:>14} {:>14}  map",
         "basis", "points", "thrust", "torque"
     );
-    for map in &maps {
+    for map in &files {
         for basis in ["cubic", "auto"] {
             fly(map, basis);
         }
@@ -71,7 +44,7 @@ fn every_map_flies_as_it_was_measured() {
 /// One map in one basis.
 fn fly(map: &Path, basis: &str) {
     let name = map.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let identified = identified(map, basis);
+    let identified = maps::identified(map, basis);
     let compiled = compiled(&identified);
     let pair = mixer_compiler::model::PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
     let (low, high) = (compiled.airframe.throttle.min, compiled.airframe.throttle.max);

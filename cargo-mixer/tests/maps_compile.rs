@@ -1,55 +1,25 @@
 //! Every coaxial map of `MIXER_BENCH_DATA` in every basis compiles close to its fold, within the default tolerance.
 
-use std::path::{Path, PathBuf};
+mod maps;
+
 use std::time::Instant;
 
-use cargo_mixer::identify::identified::identify;
-use cargo_mixer::identify::{IdentifyArgs, fragment};
-use clap::Parser;
+use cargo_mixer::identify::fragment;
+use cargo_mixer::identify::identified::Identified;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::injectivity::ForwardMap;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::{Compiled, Source};
 
-/// The command's arguments, so that its defaults are tested.
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    identify: IdentifyArgs,
-}
-
 /// The idle over the least one at which the map can be inverted.
 const IDLE: f64 = 1.03;
 
-fn fragment_of(map: &Path, basis: &str) -> String {
-    let words = [
-        "identify".into(),
-        map.as_os_str().to_owned(),
-        "--basis".into(),
-        basis.into(),
-    ];
-    let arguments = Arguments::try_parse_from(words)
-        .unwrap_or_else(|error| panic!("{error}"))
-        .identify;
-    let identified = identify(&arguments.files, &arguments.settings())
-        .unwrap_or_else(|refusals| panic!("{}: {}", map.display(), refusals[0]));
-    fragment::text(&identified)
-}
-
-/// A single pair on a stand, with these throttles instead of the fragment's.
-fn source(fragment: &str, [min, max]: [f64; 2]) -> Source {
-    let lines: Vec<String> = fragment
-        .lines()
-        .map(|line| match line.split_once(" = ") {
-            Some(("min", _)) => format!("min = {min:?}"),
-            Some(("max", _)) => format!("max = {max:?}"),
-            _ => line.to_owned(),
-        })
-        .collect();
+/// A single pair on a stand, with these throttles instead of the identified.
+fn source(identified: &Identified, throttle: [f64; 2]) -> Source {
     let text = format!(
         "name = \"bench\"\n{}\n[[unit]]\nposition_m = [0.0, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n\
          [allocation]\naxes = [\"yaw\", \"thrust\"]\n",
-        lines.join("\n")
+        maps::with_throttle(identified, throttle)
     );
     Source::new("bench.toml", text)
 }
@@ -94,26 +64,19 @@ fn check_area(compiled: &Compiled, what: &str) {
 
 #[test]
 fn every_map_compiles_close_to_its_fold() {
-    let Some(data) = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from) else {
-        eprintln!("NOT RUN: every_map_compiles_close_to_its_fold needs MIXER_BENCH_DATA");
+    let Some(files) = maps::files("every_map_compiles_close_to_its_fold") else {
         return;
     };
-    let folder = data.join("newdexterity");
-    let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-    let mut maps: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    maps.retain(|path| path.to_string_lossy().contains("map10x10"));
-    maps.sort();
-    assert!(maps.len() >= 10, "{} maps in {}", maps.len(), folder.display());
 
     println!(
         "{:<19} {:<11} {:>4} {:>7} {:>5}  {:<22} {:>8} {:>8}  {:>6} {:>7}",
         "map", "basis", "max", "min", "ms", "evaluator", "f (N)", "Q (N m)", "lost %", "corners"
     );
-    for map in &maps {
+    for map in &files {
         for basis in ["biquadratic", "cubic", "quartic"] {
-            let fragment = fragment_of(map, basis);
-            let own = Airframe::read(&source(&fragment, [0.1, 1.0])).unwrap_or_else(|e| panic!("{e}"));
-            let measured = fragment
+            let identified = maps::identified(map, basis);
+            let own = Airframe::read(&source(&identified, [0.1, 1.0])).unwrap_or_else(|e| panic!("{e}"));
+            let measured = fragment::text(&identified)
                 .lines()
                 .find_map(|line| line.strip_prefix("max = ")?.parse().ok());
             for max in [1.0, measured.unwrap_or(1.0)] {
@@ -122,7 +85,7 @@ fn every_map_compiles_close_to_its_fold() {
                 let least = ForwardMap::new(&own.pair).least_idle(max);
                 let min = IDLE * least.unwrap_or_else(|| panic!("{what}: folds at every idle"));
                 let started = Instant::now();
-                let compiled = mixer_compiler::compile(&source(&fragment, [min, max]))
+                let compiled = mixer_compiler::compile(&source(&identified, [min, max]))
                     .unwrap_or_else(|faults| panic!("{what}, from {min}: {faults}"));
                 let [f, q] = compiled.certificate.stated;
                 println!(
