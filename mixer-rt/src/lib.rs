@@ -62,7 +62,9 @@ pub use scalar::Scalar;
 pub use sqrt::sqrt;
 pub use table::TableSeed;
 pub use tables::{Tables, Tolerance, Unit};
-pub use vertical::{Arc, Border, Facets, NoShortcut, Shortcut, Side, Vertical, VerticalUnit};
+pub use vertical::{
+    Arc, Border, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, TorqueLimit, Vertical, VerticalUnit,
+};
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
 

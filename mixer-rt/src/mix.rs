@@ -111,10 +111,7 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
         let efforts = [f * per_factor[0], q * per_factor[1]];
         let rotors = rotors(unit.channels, health);
         let given = invert(tables, unit, rotors, efforts, throttle);
-        for ((given, efforts), tolerance) in given.iter().zip(efforts).zip(tables.tolerance.efforts) {
-            let missed = given - efforts;
-            delivered &= missed <= tolerance && missed >= -tolerance;
-        }
+        delivered &= is_within(given, efforts, tables.tolerance.efforts);
         unit.add_wrench(given, factors, &mut achieved);
     }
     if !delivered {
@@ -153,9 +150,9 @@ fn desaturated<P: Quantity, I: Inverse<P>, S: Shortcut>(
 /// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's proof each unit
 /// gives them within the tolerance.
 #[inline(always)]
-fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
+fn mix_vertical<P: Quantity, I: Inverse<P>, S: Shortcut>(
     tables: &Tables<'_, P, I, S>,
-    vertical: &Vertical<'_>,
+    vertical: &Vertical<'_, S::Side>,
     setpoint: &Wrench,
     voltage_v: f32,
     throttle: &mut [f32],
@@ -164,15 +161,33 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let at_reference = at_reference(bounded, factors.map(|factor| 1.0 / factor));
     let mut efforts = Efforts::default();
-    let delivered = vertical.least_norm(&at_reference, &mut efforts);
-    if !delivered {
-        vertical.desaturate(tables.desaturation.airmode, &at_reference, &mut efforts);
+    let mut delivered = vertical.least_norm(&at_reference, &mut efforts);
+    let airmode = tables.desaturation.airmode;
+    // Beyond what is known of a set that is not convex only the inverse map tells.
+    let mut is_tried = !delivered && !vertical.border.is_concave();
+    if !delivered && !is_tried {
+        vertical.desaturate(airmode, &at_reference, &mut efforts);
     }
-    for (unit, effort) in vertical.units.iter().zip(&mut efforts) {
-        let wanted = [effort.thrust, effort.torque];
-        let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, wanted);
-        write(unit.channels, throttles, throttle);
-        [effort.thrust, effort.torque] = tables.pair.efforts(throttles);
+    loop {
+        let mut is_near = true;
+        for (unit, effort) in vertical.units.iter().zip(&mut efforts) {
+            let wanted = [effort.thrust, effort.torque];
+            let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, wanted);
+            write(unit.channels, throttles, throttle);
+            [effort.thrust, effort.torque] = tables.pair.efforts(throttles);
+            if is_tried {
+                is_near = is_within([effort.thrust, effort.torque], wanted, tables.tolerance.efforts);
+                if !is_near {
+                    break;
+                }
+            }
+        }
+        if !is_tried || is_near {
+            delivered |= is_tried;
+            break;
+        }
+        is_tried = false;
+        vertical.desaturate(airmode, &at_reference, &mut efforts);
     }
     let achieved = vertical.wrench(&efforts, factors);
     let mut saturation = Saturation::NONE;
@@ -233,6 +248,17 @@ fn rotors([upper, lower]: [u8; 2], health: Health) -> Rotors {
         (true, false) => Rotors::Lower,
         (true, true) => Rotors::None,
     }
+}
+
+/// True where efforts are those `wanted` within `tolerance`.
+#[inline(always)]
+fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
+    let mut within = true;
+    for ((given, wanted), tolerance) in given.iter().zip(wanted).zip(tolerance) {
+        let missed = given - wanted;
+        within &= missed <= tolerance && missed >= -tolerance;
+    }
+    within
 }
 
 /// Writes a unit's throttles for its `efforts` and returns the efforts that they give.

@@ -7,7 +7,7 @@
 //! ```text
 //! 1. w within the zonotope of the thrusts in [a, b]^n                          vertical/facets.rs
 //! 2. f = C+ w + z N, N the null space of C, with z as near zero as can be      vertical/thrusts.rs
-//! 3. z where yaw reaches furthest, if it does not reach the request            vertical/reach.rs
+//! 3. z where yaw reaches furthest, if it does not reach the request            vertical/reach.rs, polyline.rs
 //! 4. the torques within [Q_min(f), Q_max(f)]                                   vertical/torques.rs
 //! ```
 //!
@@ -16,12 +16,14 @@
 //! together, by less than the corner's torque is worth.
 
 mod facets;
+mod polyline;
 mod reach;
 mod thrusts;
 mod torques;
 
 pub use facets::Facets;
-pub use reach::{Arc, Border, Side};
+pub use polyline::{Knot, Polyline};
+pub use reach::{Arc, Border, Side, TorqueLimit};
 
 use core::hint::black_box;
 
@@ -51,7 +53,7 @@ pub struct VerticalUnit {
 
 /// What a frame with vertical axes and up to four units needs. All at the reference voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertical<'a> {
+pub struct Vertical<'a, S = Side> {
     /// The units, in the order of the airframe file.
     pub units: &'a [VerticalUnit],
     /// True where the airframe serves all axes: then an attainable request is what the efforts give.
@@ -59,7 +61,7 @@ pub struct Vertical<'a> {
     /// Least and largest thrust of a unit, N.
     pub thrust_n: [f32; 2],
     /// The attainable torques of a unit.
-    pub border: Border,
+    pub border: Border<S>,
     /// Facets of the attainable (roll, pitch, thrust) whose normals have the thrust component 1.
     pub slopes: &'a [Facets],
     /// Facets whose normals have no thrust component.
@@ -76,8 +78,11 @@ pub struct Vertical<'a> {
 
 /// What an airframe's tables know about a shorter way than the homotopy.
 pub trait Shortcut {
+    /// What the sides of its attainable set are.
+    type Side: TorqueLimit;
+
     /// The shorter way, where there is one.
-    fn vertical(&self) -> Option<&Vertical<'_>>;
+    fn vertical(&self) -> Option<&Vertical<'_, Self::Side>>;
 }
 
 /// No shorter way: tilted axes, more than four units, or priorities that couple thrust and yaw.
@@ -85,6 +90,8 @@ pub trait Shortcut {
 pub struct NoShortcut;
 
 impl Shortcut for NoShortcut {
+    type Side = Side;
+
     #[inline(always)]
     fn vertical(&self) -> Option<&Vertical<'_>> {
         None
@@ -92,16 +99,20 @@ impl Shortcut for NoShortcut {
 }
 
 /// By reference, so that an image whose rotors never fail holds this table and not the rest.
-impl Shortcut for &Vertical<'_> {
+impl<S: TorqueLimit> Shortcut for &Vertical<'_, S> {
+    type Side = S;
+
     #[inline(always)]
-    fn vertical(&self) -> Option<&Vertical<'_>> {
+    fn vertical(&self) -> Option<&Vertical<'_, S>> {
         Some(self)
     }
 }
 
-impl Shortcut for Option<Vertical<'_>> {
+impl<S: TorqueLimit> Shortcut for Option<Vertical<'_, S>> {
+    type Side = S;
+
     #[inline(always)]
-    fn vertical(&self) -> Option<&Vertical<'_>> {
+    fn vertical(&self) -> Option<&Vertical<'_, S>> {
         self.as_ref()
     }
 }
@@ -128,12 +139,11 @@ pub(crate) struct Effort {
 pub(crate) type Efforts = [Effort; MOST_UNITS];
 
 /// What is kept of a unit while its efforts are being found.
-#[derive(Clone, Copy)]
-struct Search<'a> {
+struct Search<'a, S> {
     /// Yaw per torque in the direction looked at, 1 or -1.
     turn: f32,
     /// The side of the attainable set in that direction.
-    side: &'a Side,
+    side: &'a S,
     /// The largest torque in that direction, N m.
     limit: f32,
     /// A straight way of thrusts: where it starts, N, ..
@@ -142,7 +152,16 @@ struct Search<'a> {
     along: f32,
 }
 
-impl Search<'_> {
+impl<S> Clone for Search<'_, S> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S> Copy for Search<'_, S> {}
+
+impl<S> Search<'_, S> {
     /// The thrust at `z` along the way, N.
     #[inline(always)]
     fn thrust(&self, z: f32) -> f32 {
@@ -157,7 +176,7 @@ fn rolled() {
     black_box(());
 }
 
-impl Vertical<'_> {
+impl<S: TorqueLimit> Vertical<'_, S> {
     /// Writes the least-norm efforts of `request`; true only where all are attainable.
     #[inline(always)]
     pub(crate) fn least_norm(&self, request: &Request, efforts: &mut Efforts) -> bool {

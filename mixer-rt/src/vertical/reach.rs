@@ -1,12 +1,22 @@
 //! How far yaw reaches: Y(f) = sum max(s_i Q_i) over the attainable torques.
 //!
-//! A unit's attainable set has two sides, Q_min(f) and Q_max(f), each of two arcs that meet in a corner: the images of
-//! the four edges of the throttle box. Y is a concave function along any straight way of thrusts.
+//! A unit's attainable set has two sides, Q_min(f) and Q_max(f). Where these are concave so is Y along any straight way of
+//! thrusts. They are then two arcs each that meet in a corner: the images of the four edges of the throttle box. Else they
+//! are polylines: vertical/polyline.rs.
 
 use core::hint::black_box;
 
-use super::Search;
+use super::{Knot, Search};
 use crate::Scalar;
+
+/// One side of the attainable set: the largest torque in one direction at every thrust.
+pub trait TorqueLimit {
+    /// The torque at the thrust `f`, and its derivative.
+    fn tangent(&self, f: f32) -> (f32, f32);
+
+    /// Where the derivative changes, if it does so only at knots; none where the torque is a concave function.
+    fn knots(&self) -> &[Knot];
+}
 
 /// `offset + slope f + bend sqrt(f + shift)`: the image of one edge of the throttle box. Exact for the
 /// biquadratic basis, on whose edges f and Q are both quadratic in one throttle.
@@ -34,7 +44,7 @@ impl Arc {
     }
 }
 
-/// One side of the attainable set: the largest torque in one direction at every thrust.
+/// A concave side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
     /// The thrust at the corner, N.
@@ -43,19 +53,25 @@ pub struct Side {
     pub arcs: [Arc; 2],
 }
 
-impl Side {
+impl TorqueLimit for Side {
     #[inline(always)]
-    fn arc(&self, f: f32) -> &Arc {
+    fn tangent(&self, f: f32) -> (f32, f32) {
         let [below, above] = &self.arcs;
-        if f < self.corner_n { below } else { above }
+        let arc = if f < self.corner_n { below } else { above };
+        arc.tangent(f)
+    }
+
+    #[inline(always)]
+    fn knots(&self) -> &[Knot] {
+        &[]
     }
 }
 
 /// The border of a unit's attainable set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Border {
+pub struct Border<S = Side> {
     /// Q_max(f), and -Q_min(f).
-    pub sides: [Side; 2],
+    pub sides: [S; 2],
     /// Offset (N m) and slope (N m per N) of a line between the two sides.
     pub chord: [f32; 2],
     /// Offsets (N) and slopes (N per N m) of lines in the plane of (Q, f): a thrust that is at least the first two and
@@ -63,10 +79,17 @@ pub struct Border {
     pub quadrangle: [[f32; 2]; 4],
 }
 
-impl Border {
+impl<S: TorqueLimit> Border<S> {
+    /// True where yaw's reach is a concave function along any straight way of thrusts.
+    #[inline(always)]
+    pub(crate) fn is_concave(&self) -> bool {
+        let [largest, least] = &self.sides;
+        largest.knots().is_empty() && least.knots().is_empty()
+    }
+
     /// The side in which a unit with `turn`, the yaw per torque in the direction looked at, gives most.
     #[inline(always)]
-    pub(super) fn side(&self, turn: f32) -> &Side {
+    pub(super) fn side(&self, turn: f32) -> &S {
         let [largest, least] = &self.sides;
         if turn < 0.0 { least } else { largest }
     }
@@ -86,7 +109,7 @@ impl Border {
         if p >= turn * (offset + slope * f) {
             return None;
         }
-        let least = -self.side(-turn).arc(f).tangent(f).0;
+        let least = -self.side(-turn).tangent(f).0;
         (least > p).then_some(least)
     }
 }
@@ -95,21 +118,23 @@ impl Border {
 #[derive(Clone, Copy)]
 pub(super) struct Reach {
     pub(super) yaw: f32,
-    by_z: f32,
+    pub(super) by_z: f32,
 }
 
 /// Steps of the search for the largest yaw: the tangents of a function of nearly straight pieces meet at its top.
 const TOP_STEPS: u32 = 3;
 /// Steps of the retreat from a corner, each from the inside.
 const RETREAT_STEPS: u32 = 2;
+/// The same where yaw's reach is not concave.
+const LONG_RETREAT_STEPS: u32 = 5;
 
 /// How far yaw reaches at `z` along the units' way; leaves the limits there.
 #[inline(never)]
-pub(super) fn reach(search: &mut [Search<'_>], z: f32) -> Reach {
+pub(super) fn reach<S: TorqueLimit>(search: &mut [Search<'_, S>], z: f32) -> Reach {
     let mut reach = Reach { yaw: 0.0, by_z: 0.0 };
     for state in search {
         let f = state.thrust(z);
-        let (torque, slope) = state.side.arc(f).tangent(f);
+        let (torque, slope) = state.side.tangent(f);
         state.limit = torque;
         reach.yaw += torque;
         reach.by_z += slope * state.along;
@@ -119,7 +144,11 @@ pub(super) fn reach(search: &mut [Search<'_>], z: f32) -> Reach {
 
 /// z within `range` and the yaw reached there, about the largest; the search starts at a z with its reach.
 #[inline(always)]
-pub(super) fn top(search: &mut [Search<'_>], (start, here): (f32, Reach), range: [f32; 2]) -> (f32, f32) {
+pub(super) fn top<S: TorqueLimit>(
+    search: &mut [Search<'_, S>],
+    (start, here): (f32, Reach),
+    range: [f32; 2],
+) -> (f32, f32) {
     let end = if here.by_z > 0.0 { range[1] } else { range[0] };
     let (mut near, mut near_z) = (here, start);
     let (mut far, mut far_z) = (reach(search, end), end);
@@ -151,13 +180,23 @@ pub(super) fn top(search: &mut [Search<'_>], (start, here): (f32, Reach), range:
 /// Where, seen from the start of the units' way, yaw last reaches `needed`, from the inside; it reaches `reached` at 1.
 /// Returns how far it reaches there, and leaves the limits.
 #[inline(always)]
-pub(super) fn reach_from_inside(search: &mut [Search<'_>], mut reached: f32, needed: f32) -> (f32, f32) {
+pub(super) fn reach_from_inside<S: TorqueLimit>(
+    search: &mut [Search<'_, S>],
+    mut reached: f32,
+    needed: f32,
+    is_concave: bool,
+) -> (f32, f32) {
     let mut outside = reached - needed;
     let mut inside = reach(search, 0.0).yaw - needed;
-    // Yaw's reach is concave on the way, so a straight line between a point inside and one outside crosses
-    // zero inside.
+    // Where yaw's reach is concave on the way, a straight line between a point inside and one outside crosses zero
+    // inside. Else it may do so outside, by less and less: a point inside that stays counts half (Illinois).
     let (mut inside_at, mut outside_at, mut at) = (0.0, 1.0, 0.0);
-    for _ in 0..black_box(RETREAT_STEPS) {
+    let steps = if is_concave {
+        RETREAT_STEPS
+    } else {
+        LONG_RETREAT_STEPS
+    };
+    for _ in 0..black_box(steps) {
         let inner = if inside > 0.0 { inside } else { 0.0 };
         at = inside_at + inner / (inner - outside) * (outside_at - inside_at);
         reached = reach(search, at).yaw;
@@ -165,6 +204,9 @@ pub(super) fn reach_from_inside(search: &mut [Search<'_>], mut reached: f32, nee
             (inside, inside_at) = (reached - needed, at);
         } else {
             (outside, outside_at) = (reached - needed, at);
+            if !is_concave {
+                inside *= 0.5;
+            }
         }
     }
     (reached, at)

@@ -2,10 +2,11 @@
 //!
 //! Where z has room and yaw does not reach the request, z is moved to where Y, the furthest yaw, is largest. Y is
 //! concave, so the part `(yaw - Y(0)) / (Y(z) - Y(0))` of the way is enough, and the thrusts are a Lipschitz function of
-//! the request, which they would not be if z were moved just far enough.
+//! the request, which they would not be if z were moved just far enough. Where Y is not concave see vertical/polyline.rs.
 
+use super::polyline::climb;
 use super::reach::{reach, reach_from_inside, top};
-use super::{Request, Search, Vertical, VerticalUnit, rolled};
+use super::{Request, Search, TorqueLimit, Vertical, VerticalUnit, rolled};
 use crate::clamp;
 
 impl VerticalUnit {
@@ -26,7 +27,7 @@ struct NullRange {
     others: bool,
 }
 
-impl Vertical<'_> {
+impl<S: TorqueLimit> Vertical<'_, S> {
     /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach `wanted` in its `direction` if from
     /// any. Where it cannot even reach zero they are drawn towards those of the thrust `middle`. Returns how far yaw
     /// reaches, and where they are on the units' way.
@@ -35,7 +36,7 @@ impl Vertical<'_> {
         &'a self,
         request: &Request,
         [ceiling, middle]: [f32; 2],
-        search: &mut [Search<'a>],
+        search: &mut [Search<'a, S>],
         direction: f32,
         wanted: f32,
     ) -> (f32, f32) {
@@ -55,7 +56,10 @@ impl Vertical<'_> {
         let mut z = clamp(0.0, low, if high > low { high } else { low });
         let mut here = reach(search, z);
         // On the zonotope's border z has no room.
-        if attainable && here.yaw < wanted && high > low {
+        let is_short = attainable && here.yaw < wanted && high > low;
+        if is_short && !self.border.is_concave() {
+            (z, here) = climb(search, (z, here), [low, high], wanted, self.yaw_rounding_nm);
+        } else if is_short {
             let (top_z, top) = top(search, (z, here), [low, high]);
             let part = (wanted - here.yaw) / (top - here.yaw);
             // Not a number where there is nothing to gain.
@@ -65,15 +69,33 @@ impl Vertical<'_> {
         }
         if here.yaw < -self.yaw_rounding_nm {
             // From the inside, so it is zero or a little more.
-            let (_, z) = self.retreat(search, z, here.yaw, 0.0, middle);
-            return (0.0, z);
+            let (_, at) = self.retreat(search, z, here.yaw, 0.0, middle);
+            if self.border.is_concave() {
+                return (0.0, at);
+            }
+            // z has some room there, and yaw may gain much from it.
+            let drawn = wrench.map(|part| at * part);
+            let drawn = [drawn[0], drawn[1], drawn[2] + (1.0 - at) * middle];
+            let NullRange { low, high, .. } = self.null_range(search, &drawn, direction);
+            z *= at;
+            here = reach(search, z);
+            if here.yaw < wanted && high > low {
+                z = clamp(z, low, high);
+                (z, here) = climb(search, (z, here), [low, high], wanted, self.yaw_rounding_nm);
+            }
+            return (if here.yaw > 0.0 { here.yaw } else { 0.0 }, z);
         }
         (here.yaw, z)
     }
 
     /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range.
     #[inline(never)]
-    fn null_range<'a>(&'a self, search: &mut [Search<'a>], wrench: &[f32; 3], direction: f32) -> NullRange {
+    fn null_range<'a>(
+        &'a self,
+        search: &mut [Search<'a, S>],
+        wrench: &[f32; 3],
+        direction: f32,
+    ) -> NullRange {
         let [least, most] = self.thrust_n;
         let mut range = NullRange {
             low: -f32::MAX,
@@ -106,7 +128,7 @@ impl Vertical<'_> {
     #[inline(always)]
     pub(super) fn retreat(
         &self,
-        search: &mut [Search<'_>],
+        search: &mut [Search<'_, S>],
         z: f32,
         reached: f32,
         needed: f32,
@@ -118,6 +140,6 @@ impl Vertical<'_> {
             state.from = unit.allocation[2] * middle_n;
             state.along = thrust - state.from;
         }
-        reach_from_inside(search, reached, needed)
+        reach_from_inside(search, reached, needed, self.border.is_concave())
     }
 }

@@ -4,17 +4,17 @@
 //! All in the direction of yaw, p_i = s_i Q_i: the least-norm p_i are alike, yaw / n.
 
 use super::reach::reach;
-use super::{Effort, Search, Vertical, rolled};
+use super::{Effort, Search, TorqueLimit, Vertical, rolled};
 use crate::clamp;
 
-impl Vertical<'_> {
+impl<S: TorqueLimit> Vertical<'_, S> {
     /// Writes the efforts: the thrusts found, and the torques that come nearest the yaw `wanted` >= 0 in its direction,
     /// of which `reached` is within the limits at `z` of the units' way. Where even the least yaw is beyond it, the thrusts
     /// are drawn towards those of `middle_n`.
     #[inline(always)]
     pub(super) fn torques<'a>(
         &'a self,
-        search: &mut [Search<'a>],
+        search: &mut [Search<'a, S>],
         efforts: &mut [Effort],
         wanted: f32,
         (mut reached, mut z): (f32, f32),
