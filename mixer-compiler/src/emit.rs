@@ -5,7 +5,7 @@ use quote::quote;
 
 use crate::Compiled;
 use crate::tables::{
-    AttainableTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable, VerticalTable,
+    AttainableTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable, SideTable, VerticalTable,
 };
 use mixer_rt::{BilinearSeed, CubicSeed, EightTermSeed, Facets, QuadraticSeed, TableSeed};
 
@@ -171,14 +171,7 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
             }
         }
     });
-    let sides = table.border.sides.iter().map(|side| {
-        let corner = float(side.corner_n);
-        let arcs = side.arcs.iter().map(|arc| {
-            let [offset, slope, bend, shift] = [arc.offset, arc.slope, arc.bend, arc.shift].map(float);
-            quote!(::mixer_rt::Arc { offset: #offset, slope: #slope, bend: #bend, shift: #shift })
-        });
-        quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*] })
-    });
+    let sides = table.border.sides.iter().map(side);
     let facets = |facets: &[Facets]| {
         let facets = facets.iter().map(|facets| {
             let (normal, bounds) = (vector(&facets.normal), vector(&facets.bounds));
@@ -208,6 +201,29 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     }
 }
 
+fn side(side: &SideTable) -> TokenStream {
+    match side {
+        SideTable::Arcs(side) => {
+            let corner = float(side.corner_n);
+            let arcs = side.arcs.iter().map(|arc| {
+                let [offset, slope, bend, shift] = [arc.offset, arc.slope, arc.bend, arc.shift].map(float);
+                quote!(::mixer_rt::Arc { offset: #offset, slope: #slope, bend: #bend, shift: #shift })
+            });
+            quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*] })
+        }
+        SideTable::Polyline(knots) => {
+            let knots = knots.iter().map(|knot| {
+                let [thrust, torque, slope, bend] =
+                    [knot.thrust_n, knot.torque_nm, knot.slope, knot.bend].map(float);
+                quote! {
+                    ::mixer_rt::Knot { thrust_n: #thrust, torque_nm: #torque, slope: #slope, bend: #bend }
+                }
+            });
+            quote!(::mixer_rt::Polyline(&[#(#knots),*]))
+        }
+    }
+}
+
 fn attainable(set: &AttainableTable) -> TokenStream {
     let (scale, centre) = (vector(&set.scale), vector(&set.centre));
     let edges = set.edges.iter().map(|edge| {
@@ -229,10 +245,18 @@ fn tables_type(tables: &MixerTables) -> TokenStream {
             ..
         } => seeded_type(seed.type_name(), *steps, *residuals),
     };
-    match tables.shortcut {
-        Some(_) => {
+    match tables.shortcut.as_ref().map(|table| &table.border.sides[0]) {
+        Some(SideTable::Arcs(_)) => {
             quote!(::mixer_rt::Tables<'static, #basis, #inverse, &'static ::mixer_rt::Vertical<'static>>)
         }
+        Some(SideTable::Polyline(_)) => quote! {
+            ::mixer_rt::Tables<
+                'static,
+                #basis,
+                #inverse,
+                &'static ::mixer_rt::Vertical<'static, ::mixer_rt::Polyline<'static>>
+            >
+        },
         None => quote!(::mixer_rt::Tables<'static, #basis, #inverse>),
     }
 }

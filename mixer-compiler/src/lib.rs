@@ -39,6 +39,7 @@ use diagnostic::{Diagnostic, Diagnostics};
 use effectiveness::Effectiveness;
 use evaluator::Evaluator;
 use injectivity::Injectivity;
+use model::PairMap;
 use proc_macro2::TokenStream;
 use proof::Certificate;
 use residual::Residual;
@@ -70,12 +71,11 @@ pub struct Compiled {
     pub certificate: Certificate,
     /// What the polygon inside the attainable set leaves out.
     pub lost_area: AreaLoss,
+    /// What the sides leave out that desaturation in closed form reads instead; `None` without it.
+    pub lost_between_sides: Option<f64>,
     /// What is emitted.
     pub tables: MixerTables,
 }
-
-/// Share of the attainable area that convexity may cost where desaturation is in closed form.
-const MOST_LOST_TO_CONVEXITY: f64 = 0.0025;
 
 /// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> proof -> tables.
 ///
@@ -105,10 +105,12 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
     let thrust_range_n = hover::thrust_range(&airframe, &tables)?;
-    // The closed form knows no efforts beyond the convex part; the general way inverts before it asks for that.
-    if lost_area.convexity <= MOST_LOST_TO_CONVEXITY {
-        tables.shortcut = vertical::table(&airframe, &effectiveness, thrust_range_n);
-    }
+    tables.shortcut = vertical::table(&airframe, &effectiveness, lost_area.convexity, thrust_range_n);
+    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+    let lost_between_sides = tables
+        .shortcut
+        .as_ref()
+        .map(|table| attainable::lost_between(&pair, &table.border.sides, table.thrust_n));
     Ok(Compiled {
         source_name: source.name.clone(),
         airframe,
@@ -120,6 +122,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         thrust_range_n,
         certificate,
         lost_area,
+        lost_between_sides,
         tables,
     })
 }

@@ -4,6 +4,7 @@
 //! holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs `mixer-rt` itself on them.
 
 mod inverse;
+mod sides;
 
 use mixer_rt::{
     AttainableSet, Biquadratic, Border, Cubic, Desaturation, Edge, Facets, Health, Pair, Quantity, Quartic,
@@ -16,6 +17,7 @@ use crate::effectiveness::Effectiveness;
 use crate::voltage::TabulatedLaw;
 
 pub use inverse::{InverseTable, SeedTable};
+pub use sides::{SideTable, SideView};
 
 /// The tables of one airframe.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +101,7 @@ pub struct VerticalTable {
     /// Least and largest thrust of a unit, N.
     pub thrust_n: [f32; 2],
     /// The attainable torques of a unit.
-    pub border: Border,
+    pub border: Border<SideTable>,
     /// Facets of the attainable (roll, pitch, thrust) whose normals have the thrust component 1.
     pub slopes: Vec<Facets>,
     /// Facets whose normals have no thrust component.
@@ -114,12 +116,16 @@ pub struct VerticalTable {
 
 impl VerticalTable {
     /// The table as `mixer-rt` reads it.
-    pub fn view(&self) -> Vertical<'_> {
+    pub fn view(&self) -> Vertical<'_, SideView<'_>> {
         Vertical {
             units: &self.units,
             complete: self.complete,
             thrust_n: self.thrust_n,
-            border: self.border,
+            border: Border {
+                sides: self.border.sides.each_ref().map(SideTable::view),
+                chord: self.border.chord,
+                quadrangle: self.border.quadrangle,
+            },
             slopes: &self.slopes,
             walls: &self.walls,
             torque_share: self.torque_share(),
@@ -136,7 +142,8 @@ impl VerticalTable {
 
     fn floats(&self) -> usize {
         // Range, border, share, floor, middle and rounding beside the units and facets.
-        2 + 28 + 4 + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
+        let sides: usize = self.border.sides.iter().map(SideTable::floats).sum();
+        2 + (sides + 10) + 4 + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
     }
 }
 
@@ -179,7 +186,7 @@ pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
     /// The tables as `mixer-rt` reads them.
-    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<Vertical<'_>>> {
+    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<Vertical<'_, SideView<'_>>>> {
         Tables {
             units: &self.units,
             pair: self.pair,

@@ -3,7 +3,10 @@
 //! On an edge of the throttle box both efforts are polynomials of one throttle t. For the biquadratic basis they
 //! are quadratic, f = A t^2 + B t + C, so t is a square root of f and Q a combination of 1, f and
 //! sqrt(f + B^2 / 4A - C). For the other bases such a combination is fitted and shifted to the inner side. The
-//! shift under the root is searched for, the rest is least squares.
+//! shift under the root is searched for, the rest is least squares. Where the set is not convex, or no arc is
+//! close, the sides are polylines: vertical/outline.rs.
+
+mod outline;
 
 use mixer_rt::{Airmode, Arc, Axis, Border, Facets, Side, VerticalUnit};
 use nalgebra::{Matrix3, Vector3};
@@ -11,13 +14,16 @@ use nalgebra::{Matrix3, Vector3};
 use crate::airframe::Airframe;
 use crate::effectiveness::Effectiveness;
 use crate::model::PairMap;
-use crate::tables::VerticalTable;
+use crate::tables::{SideTable, VerticalTable};
 
 /// Points per edge at which an arc is fitted and checked.
 const SAMPLES: usize = 48;
 
 /// Largest distance of an arc from its edge, as a share of the largest torque: costs 0.2 % of the area at most.
 const ARC_TOLERANCE: f64 = 1e-3;
+
+/// Share of the attainable area that convexity may cost where the sides are arcs.
+const MOST_LOST_TO_CONVEXITY: f64 = 0.0025;
 
 /// What an arc keeps from its edge for rounding, as a share of the largest torque.
 const MARGIN: f64 = 2e-6;
@@ -39,6 +45,7 @@ const HALVINGS: usize = 24;
 pub(crate) fn table(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
+    convexity: f64,
     [floor, ceiling]: [f32; 2],
 ) -> Option<VerticalTable> {
     let n = airframe.units.len();
@@ -67,7 +74,72 @@ pub(crate) fn table(
     }
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let [low, high] = pair.range();
-    let edge = |from: [f64; 2], to: [f64; 2], side: f64| arc(&pair, from, to, side);
+    let columns: Vec<Vector3<f64>> = (0..n)
+        .map(|i| {
+            let [roll, pitch] = [0, 1].map(|axis| if levers[axis] { matrix[(axis, i)] } else { 0.0 });
+            Vector3::new(roll, pitch, matrix[(3, i)])
+        })
+        .collect();
+    let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
+    let slope = (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
+    // f32 rounding, inwards.
+    let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
+    let border = |sides: [SideTable; 2]| Border {
+        sides,
+        chord: [ends[0][1] - slope * ends[0][0], slope].map(|x| x as f32),
+        quadrangle: quadrangle(&pair),
+    };
+    let arcs = if convexity <= MOST_LOST_TO_CONVEXITY {
+        arcs(&pair)
+            .map(&border)
+            .filter(|border| inside(&pair, border, thrust_n))
+    } else {
+        None
+    };
+    let border = arcs.or_else(|| outline::sides(&pair, thrust_n).map(&border))?;
+    let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
+    let yaw_rounding_nm = (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32;
+    let spins: Vec<f64> = (0..n).map(|i| matrix[(2, n + i)]).collect();
+    // The polygon's floor may be well above that of a set that is not convex.
+    let floor = match &border.sides {
+        [SideTable::Arcs(_), _] => floor,
+        sides => level_floor(sides, thrust_n, &spins, yaw_rounding_nm)?,
+    };
+    // At least what the facets allow without roll and pitch, with rounding.
+    let least_level = slopes.iter().map(|facets| facets.bounds[0]).fold(floor, f32::max);
+    Some(VerticalTable {
+        units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
+        complete: free.is_empty(),
+        thrust_n,
+        border,
+        slopes,
+        walls,
+        thrust_floor_n: least_level * (1.0 + ROUNDING),
+        thrust_middle_n: 0.5 * (floor + ceiling),
+        yaw_rounding_nm,
+    })
+}
+
+/// The least thrust in all (N) at which units with these `spins` and equal thrusts within `thrust_n` can leave yaw at zero.
+fn level_floor(sides: &[SideTable; 2], thrust_n: [f32; 2], spins: &[f64], rounding: f32) -> Option<f32> {
+    const STEPS: usize = 2000;
+    let [least, most] = thrust_n.map(f64::from);
+    let reaches = |f: f64, direction: f64| {
+        let reach = spins
+            .iter()
+            .map(|spin| sides[usize::from(direction * spin < 0.0)].torque(f));
+        reach.sum::<f64>() >= -f64::from(rounding)
+    };
+    (0..STEPS)
+        .map(|k| least + (most - least) * k as f64 / STEPS as f64)
+        .find(|&f| reaches(f, 1.0) && reaches(f, -1.0))
+        .map(|f| (f * spins.len() as f64) as f32)
+}
+
+/// Both sides as arcs, where all edges have one.
+fn arcs(pair: &PairMap) -> Option<[SideTable; 2]> {
+    let [low, high] = pair.range();
+    let edge = |from: [f64; 2], to: [f64; 2], side: f64| arc(pair, from, to, side);
     let largest = Side {
         corner_n: pair.efforts([low, high])[0] as f32,
         arcs: [
@@ -82,36 +154,7 @@ pub(crate) fn table(
             edge([high, low], [high, high], -1.0)?,
         ],
     };
-    let columns: Vec<Vector3<f64>> = (0..n)
-        .map(|i| {
-            let [roll, pitch] = [0, 1].map(|axis| if levers[axis] { matrix[(axis, i)] } else { 0.0 });
-            Vector3::new(roll, pitch, matrix[(3, i)])
-        })
-        .collect();
-    let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
-    let slope = (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
-    let border = Border {
-        sides: [largest, least],
-        chord: [ends[0][1] - slope * ends[0][0], slope].map(|x| x as f32),
-        quadrangle: quadrangle(&pair),
-    };
-    // f32 rounding, inwards.
-    let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
-    let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
-    // The floor was mixed on the polygon: at least what the facets allow without roll and pitch, with rounding.
-    let least_level = slopes.iter().map(|facets| facets.bounds[0]).fold(floor, f32::max);
-    let table = VerticalTable {
-        units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
-        complete: free.is_empty(),
-        thrust_n,
-        border,
-        slopes,
-        walls,
-        thrust_floor_n: least_level * (1.0 + ROUNDING),
-        thrust_middle_n: 0.5 * (floor + ceiling),
-        yaw_rounding_nm: (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32,
-    };
-    inside(&pair, &table).then_some(table)
+    Some([largest, least].map(SideTable::Arcs))
 }
 
 /// Shares of C and C+, rounded.
@@ -308,42 +351,24 @@ fn null_vector(columns: &[Vector3<f64>], free: &[Vector3<f64>]) -> Vec<f64> {
 }
 
 /// True where the arcs enclose no more than the attainable set, and hardly less.
-fn inside(pair: &PairMap, table: &VerticalTable) -> bool {
-    let at = |arc: &Arc, f: f64| {
-        f64::from(arc.offset)
-            + f64::from(arc.slope) * f
-            + f64::from(arc.bend) * (f + f64::from(arc.shift)).max(0.0).sqrt()
-    };
+fn inside(pair: &PairMap, border: &Border<SideTable>, thrust_n: [f32; 2]) -> bool {
     let torque = pair.scale()[1];
-    let [least, most] = table.thrust_n.map(f64::from);
-    let side = |side: &Side, f: f64| {
-        let [below, above] = &side.arcs;
-        at(
-            if f < f64::from(side.corner_n) {
-                below
+    let [least, most] = thrust_n.map(f64::from);
+    let [largest_torque, least_torque] = &border.sides;
+    pair.border(SAMPLES)
+        .into_iter()
+        .enumerate()
+        .all(|(k, throttles)| {
+            let [f, q] = pair.efforts(throttles);
+            let f = f.clamp(least, most);
+            let chord = f64::from(border.chord[0]) + f64::from(border.chord[1]) * f;
+            // The first half of the border is the lower side.
+            let (lost, beyond) = if k < 2 * SAMPLES {
+                (-least_torque.torque(f) - q, q - chord)
             } else {
-                above
-            },
-            f,
-        )
-    };
-    let Border {
-        sides: [largest_torque, least_torque],
-        chord,
-        ..
-    } = &table.border;
-    let border = pair.border(SAMPLES);
-    border.into_iter().enumerate().all(|(k, throttles)| {
-        let [f, q] = pair.efforts(throttles);
-        let f = f.clamp(least, most);
-        let chord = f64::from(chord[0]) + f64::from(chord[1]) * f;
-        // The first half of the border is the lower side.
-        let (lost, beyond) = if k < 2 * SAMPLES {
-            (-side(least_torque, f) - q, q - chord)
-        } else {
-            (q - side(largest_torque, f), chord - q)
-        };
-        let slack = MARGIN * torque;
-        lost > -slack && lost < 2.0 * (ARC_TOLERANCE * torque + slack) && beyond < slack
-    })
+                (q - largest_torque.torque(f), chord - q)
+            };
+            let slack = MARGIN * torque;
+            lost > -slack && lost < 2.0 * (ARC_TOLERANCE * torque + slack) && beyond < slack
+        })
 }
