@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::Compiled;
 use crate::cost::Cost;
+use crate::tables::SideTable;
 
 /// `cargo mixer check --json`, but for the time taken.
 #[derive(Clone, Debug, Serialize)]
@@ -49,6 +50,8 @@ pub struct Summary {
     pub attainable_area_lost: f64,
     /// What the inward bends cost alone, of any convex polygon.
     pub attainable_area_lost_to_convexity: f64,
+    /// Share of it that the sides leave out which the mixer reads instead where it desaturates in closed form.
+    pub attainable_area_lost_in_closed_form: Option<f64>,
     /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque, N.
     pub thrust_range_n: [f32; 2],
     /// What it costs on the target.
@@ -107,6 +110,7 @@ impl Summary {
             axes: airframe.allocation.axes.iter().map(|axis| axis.name()).collect(),
             attainable_area_lost: compiled.lost_area.total,
             attainable_area_lost_to_convexity: compiled.lost_area.convexity,
+            attainable_area_lost_in_closed_form: compiled.lost_between_sides,
             thrust_range_n: compiled.thrust_range_n,
             cost: Cost::new(compiled),
         }
@@ -241,9 +245,24 @@ impl Report<'_> {
             f,
             "attainable set  f {f_low:.3} to {f_high:.3} N, Q {q_low:.4} to {q_high:.4} N m per unit",
         )?;
+        let mut polygon = "desaturation";
+        if let Some(lost) = summary.attainable_area_lost_in_closed_form {
+            let shape = match tables.shortcut.as_ref().map(|table| &table.border.sides) {
+                Some([SideTable::Polyline(upper), SideTable::Polyline(lower)]) => {
+                    format!("polylines of {} and {} knots", upper.len(), lower.len())
+                }
+                _ => "two arcs on either side".to_owned(),
+            };
+            writeln!(
+                f,
+                "desaturation    in closed form between {shape}, which leave out {:.3} % of its area",
+                100.0 * lost
+            )?;
+            polygon = "  rotors out";
+        }
         writeln!(
             f,
-            "desaturation    in a polygon of {} corners inside it that leaves out {:.3} % of its area, {:.3} % to be convex",
+            "{polygon:<16}in a polygon of {} corners inside it that leaves out {:.3} % of its area, {:.3} % to be convex",
             corners.len(),
             100.0 * summary.attainable_area_lost,
             100.0 * summary.attainable_area_lost_to_convexity
