@@ -7,6 +7,7 @@
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
 //! | `degenerate.rs` | numbers that no controller sends |
+//! | `shapes.rs` | the same on attainable sets that are not convex, real ones with `MIXER_BENCH_DATA` |
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
 #![allow(missing_docs)]
 
@@ -17,6 +18,7 @@ mod finite;
 mod layout;
 mod optimum;
 mod properties;
+mod shapes;
 
 use mixer_tests::frames::{self, Options, Place};
 use mixer_tests::request::Frame;

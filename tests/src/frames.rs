@@ -109,9 +109,14 @@ pub fn irregular(random: &mut Random, units: usize, tilt: f64) -> Vec<Place> {
         .collect()
 }
 
-/// The airframe file of a frame; unit k has channels `channels[2 k]` and `channels[2 k + 1]`.
+/// The airframe file of a frame with the paper's pair; unit k has channels `channels[2 k]` and `channels[2 k + 1]`.
 pub fn toml(places: &[Place], channels: &[usize], options: Options) -> String {
-    let mut text = format!("name = \"frame\"\n{PAPER}");
+    toml_with_pair(PAPER, places, channels, options)
+}
+
+/// As [`toml`], with these `[throttle]`, `[pair]` and, if any, `[voltage]`.
+pub fn toml_with_pair(pair: &str, places: &[Place], channels: &[usize], options: Options) -> String {
+    let mut text = format!("name = \"frame\"\n{pair}\n");
     let Options {
         airmode,
         yaw_reserve_nm,

@@ -1,0 +1,304 @@
+//! Pairs whose attainable sets are not convex: made up ones, and the real maps of `MIXER_BENCH_DATA` in three bases. On
+//! an X8, where yaw may have several peaks along the null space of the thrusts, and on a Y6.
+
+#[path = "../../cargo-mixer/tests/maps/mod.rs"]
+mod maps;
+
+use cargo_mixer::identify::fragment;
+use mixer_compiler::airframe::{Airframe, Spin};
+use mixer_compiler::injectivity::ForwardMap;
+use mixer_compiler::model::PairMap;
+use mixer_compiler::{Compiled, Source};
+use mixer_rt::{Health, TorqueLimit};
+use mixer_tests::frames::{self, Options};
+use mixer_tests::random::Random;
+use mixer_tests::request::{Answer, Frame, Request};
+use mixer_tests::soundness;
+
+use crate::regular_frames;
+
+/// Made up: the lower rotor hardly adds thrust while the upper one is at full throttle, so that the set bends inwards
+/// there.
+const BENT: [(&str, &str); 2] = [
+    (
+        "bent, biquadratic",
+        "[throttle]\nmin = 0.25\nmax = 1.0\n[pair]\nbasis = \"biquadratic\"\n\
+         thrust_n = [0.0, 0.0, 14.0, 0.0, -4.8, 0.0, 10.0, 0.0]\n\
+         torque_nm = [0.0, 0.0, -0.15, 0.0, 0.0, 0.0, 0.14, 0.0]\nupper_spin = \"cw\"\n",
+    ),
+    (
+        "bent, cubic",
+        "[throttle]\nmin = 0.25\nmax = 1.0\n[pair]\nbasis = \"cubic\"\n\
+         thrust_n = [1.5, 0.4, -0.6, 0.8, 12.5, -4.9, 9.4, 0.3, 0.2]\n\
+         torque_nm = [-0.012, 0.004, 0.003, 0.011, -0.135, 0.002, 0.128, -0.004, 0.003]\nupper_spin = \"cw\"\n",
+    ),
+];
+
+/// Distance of the drawn throttles to the ends of their range, as a share of it.
+const MARGIN: f64 = 0.01;
+
+/// Relative change of a request, and what it may move a throttle by.
+const CHANGE: f32 = 1e-4;
+const MOST_MOVED: f32 = 0.02;
+
+/// Share of the authority by which yaw may be short of the best along the null space.
+const SHORT: f64 = 0.01;
+
+/// What came of many requests.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    /// Attainable, and of these delivered.
+    attainable: usize,
+    delivered: usize,
+    /// Answers with a fault.
+    faults: usize,
+    /// Out of reach, of these short of the best yaw, and by how much at worst.
+    saturated: usize,
+    short: usize,
+    shortest: f64,
+    /// Pairs of requests next to each other, of these the ones with a jump, and the largest.
+    pairs: usize,
+    jumps: usize,
+    jump: f32,
+}
+
+impl Tally {
+    fn add(&mut self, other: Tally) {
+        self.attainable += other.attainable;
+        self.delivered += other.delivered;
+        self.faults += other.faults;
+        self.saturated += other.saturated;
+        self.short += other.short;
+        self.shortest = self.shortest.max(other.shortest);
+        self.pairs += other.pairs;
+        self.jumps += other.jumps;
+        self.jump = self.jump.max(other.jump);
+    }
+}
+
+/// Wrenches of random throttles.
+fn deliver(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) {
+    for _ in 0..count {
+        let shares: Vec<f64> = (0..2 * frame.physics.units())
+            .map(|_| random.between(MARGIN, 1.0 - MARGIN))
+            .collect();
+        let throttles = frame.physics.throttles(shares.into_iter(), Health::GOOD);
+        let request = Request {
+            wrench: frame.physics.wrench(&throttles, 0.0).map(|x| x as f32),
+            volts: 0.0,
+            health: Health::GOOD,
+        };
+        let answer = request.mix(frame).expect("finite");
+        let delivered = !answer.saturation.any_axis();
+        tally.delivered += usize::from(delivered);
+        if !delivered && std::env::var_os("MIXER_MISSES").is_some() {
+            println!("  {request:?} -> {:?}", answer.achieved);
+        }
+    }
+    tally.attainable += count;
+}
+
+/// The most yaw in the direction asked (N m) that the answer's own roll, pitch and thrust leave, by small steps along the
+/// null space of an X8's thrusts.
+fn best_yaw(frame: &Frame, answer: &Answer, direction: f64) -> f64 {
+    const STEPS: usize = 2000;
+    let table = frame.compiled.tables.shortcut.as_ref().expect("closed form");
+    let view = table.view();
+    let [roll, pitch, _, thrust] = answer.achieved;
+    let least: Vec<f64> = table
+        .units
+        .iter()
+        .map(|unit| {
+            let [by_roll, by_pitch, by_thrust] = unit.allocation.map(f64::from);
+            by_roll * roll + by_pitch * pitch + by_thrust * thrust
+        })
+        .collect();
+    let [low, high] = table.thrust_n.map(f64::from);
+    let size = high - low;
+    let mut best = f64::NEG_INFINITY;
+    for step in 0..=2 * STEPS {
+        let z = size * (step as f64 / STEPS as f64 - 1.0);
+        let mut yaw = 0.0;
+        let mut within = true;
+        for (unit, least) in table.units.iter().zip(&least) {
+            let f = least + z * f64::from(unit.null);
+            within &= f >= low && f <= high;
+            let turn = direction * f64::from(unit.spin);
+            let side = &view.border.sides[usize::from(turn < 0.0)];
+            yaw += f64::from(side.tangent(f as f32).0);
+        }
+        if within && yaw > best {
+            best = yaw;
+        }
+    }
+    best
+}
+
+/// Requests of which most are out of reach: sound, near the best, continuous.
+fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) {
+    for _ in 0..count {
+        let request = frame.draw(random, 1.0, 0.0);
+        let answer = request.mix(frame).expect("finite");
+        let fault = soundness::fault(frame, &request, &answer).expect("solved");
+        // The oracle takes convex hulls, which reach below the least thrust: that is held to the inverse map instead.
+        let tables = &frame.compiled.tables;
+        let floor = tables.shortcut.as_ref().map_or(0.0, |table| table.thrust_floor_n);
+        let is_floor = answer.achieved[3] <= f64::from(floor + tables.tolerance.wrench[3]);
+        if let Some(fault) = fault.filter(|fault| !(is_floor && fault.starts_with("thrust"))) {
+            println!("  {fault}: {request:?} -> {answer:?}");
+            tally.faults += 1;
+        }
+        let asked = request.asked();
+        let direction = if asked[2] < 0.0 { -1.0 } else { 1.0 };
+        if answer.saturation.any_axis() && frame.physics.units() == 4 {
+            let best = best_yaw(frame, &answer, direction).min(direction * asked[2]);
+            let short = (best - direction * answer.achieved[2]) / frame.authority[2];
+            tally.saturated += 1;
+            tally.short += usize::from(short > SHORT);
+            tally.shortest = tally.shortest.max(short);
+            if short > SHORT && std::env::var_os("MIXER_MISSES").is_some() {
+                println!("  short {short}: {request:?} -> {:?}", answer.achieved);
+            }
+        }
+        let moved = random.index(5);
+        let mut near = request;
+        for (axis, value) in near.wrench.iter_mut().enumerate() {
+            if moved == 4 || moved == axis {
+                *value *= 1.0 + CHANGE;
+            }
+        }
+        let change = answer.change(&near.mix(frame).expect("finite"));
+        tally.pairs += 1;
+        tally.jumps += usize::from(change > MOST_MOVED);
+        tally.jump = tally.jump.max(change);
+        if change > MOST_MOVED && std::env::var_os("MIXER_MISSES").is_some() {
+            println!(
+                "  jump {change}: {request:?} moved {moved} -> {:?}",
+                answer.achieved
+            );
+        }
+    }
+}
+
+/// The least thrust in all at which equal thrusts f leave no yaw: torques q of the units with one spin, their negative
+/// share of the others.
+fn least_level_thrust(frame: &Frame, most: f64) -> f64 {
+    const STEPS: usize = 100;
+    let pair = &frame.physics.pair;
+    let units = frame.physics.units();
+    let clockwise = frame
+        .compiled
+        .airframe
+        .units
+        .iter()
+        .filter(|unit| unit.upper_spin == Spin::Cw);
+    let clockwise = clockwise.count() as f64;
+    let share = clockwise / (units as f64 - clockwise);
+    let [idle, torque] = [pair.efforts([pair.range()[0]; 2])[0], pair.scale()[1]];
+    let at = |k: usize, from: f64, to: f64| from + (to - from) * k as f64 / STEPS as f64;
+    let is_level = |f: f64| {
+        (0..=STEPS).any(|k| {
+            let q = at(k, -0.3 * torque, 0.3 * torque);
+            frame.physics.attains([f, q]) && frame.physics.attains([f, share * q])
+        })
+    };
+    let each = (0..=STEPS)
+        .map(|k| at(k, idle, most / units as f64))
+        .find(|&f| is_level(f));
+    each.map_or(most, |f| f * units as f64)
+}
+
+/// The pair on an X8 and a Y6; `None` where these desaturate along a path.
+fn judge(name: &str, pair: &str, count: usize) -> Option<Tally> {
+    let mut tally = Tally::default();
+    let mut random = Random(21);
+    for (frame_name, places) in regular_frames().into_iter().take(2) {
+        for airmode in ["disabled", "roll-pitch"] {
+            let mut channels: Vec<usize> = (0..2 * places.len()).collect();
+            random.shuffle(&mut channels);
+            let options = Options {
+                airmode,
+                yaw_reserve_nm: 0.0,
+            };
+            let text = frames::toml_with_pair(pair, &places, &channels, options);
+            let compiled = frames::compile_text(&text).unwrap_or_else(|faults| panic!("{name}: {faults}"));
+            let frame = Frame::new(compiled);
+            if frame_name == "X8" && airmode == "disabled" {
+                println!("{name}: {}", losses(&frame.compiled));
+            }
+            let floor = f64::from(frame.compiled.tables.shortcut.as_ref()?.thrust_floor_n);
+            if airmode == "disabled" {
+                let above = floor - least_level_thrust(&frame, floor);
+                assert!(
+                    above <= SHORT * frame.authority[3],
+                    "{name}, {frame_name}: {above} N of {floor} N"
+                );
+            }
+            deliver(&frame, &mut random, count, &mut tally);
+            saturate(&frame, &mut random, count, &mut tally);
+        }
+    }
+    println!("    {tally:?}");
+    Some(tally)
+}
+
+fn losses(compiled: &Compiled) -> String {
+    let [polygon, convexity] =
+        [compiled.lost_area.total, compiled.lost_area.convexity].map(|share| 100.0 * share);
+    let sides = compiled
+        .lost_between_sides
+        .map_or("none".to_owned(), |share| format!("{:.3} %", 100.0 * share));
+    format!("polygon loses {polygon:.3} % ({convexity:.3} % to convexity), sides {sides}")
+}
+
+fn hold(tally: &Tally) {
+    let missed = tally.attainable - tally.delivered;
+    assert!(1000 * missed <= tally.attainable, "{tally:?}");
+    assert_eq!((tally.faults, tally.short, tally.jumps), (0, 0, 0), "{tally:?}");
+}
+
+#[test]
+fn sets_that_bend_inwards_are_used() {
+    for (name, pair) in BENT {
+        let tally = judge(name, pair, 2000).expect("closed form");
+        hold(&tally);
+    }
+}
+
+#[test]
+fn sets_of_real_pairs_are_used() {
+    const IDLE: f64 = 1.03;
+    let Some(files) = maps::files("sets_of_real_pairs_are_used") else {
+        return;
+    };
+    let mut sum = Tally::default();
+    let (mut pairs, mut closed) = (0, 0);
+    for map in &files {
+        for basis in ["biquadratic", "cubic", "quartic"] {
+            let identified = maps::identified(map, basis);
+            let name = map.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let text = maps::with_throttle(&identified, [0.1, 1.0]);
+            let places = frames::regular(4, 45.0);
+            let channels: Vec<usize> = (0..8).collect();
+            let text = frames::toml_with_pair(&text, &places, &channels, Options::default());
+            let own =
+                Airframe::read(&Source::new("own.toml", text)).unwrap_or_else(|faults| panic!("{faults}"));
+            let least = ForwardMap::new(&own.pair).least_idle(1.0).expect("an idle");
+            let idle = IDLE * least;
+            let [idle_n, _] = PairMap::new(&own.pair, &own.throttle).efforts([idle; 2]);
+            // Far below the throttles of its bench a map may give a negative thrust.
+            let pair = if idle_n < 0.0 {
+                fragment::text(&identified)
+            } else {
+                maps::with_throttle(&identified, [idle, 1.0])
+            };
+            pairs += 1;
+            if let Some(tally) = judge(&format!("{} {basis}", &name[4..23]), &pair, 200) {
+                closed += 1;
+                sum.add(tally);
+            }
+        }
+    }
+    println!("{closed} of {pairs} in closed form: {sum:?}");
+    hold(&sum);
+}
