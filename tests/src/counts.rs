@@ -66,6 +66,13 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
     subjects
 }
 
+/// Frames that are counted by name only: a Y6 and an X8 whose attainable sets are not convex.
+pub fn by_name() -> Vec<Subject> {
+    ["bent-3", "bent-4"]
+        .map(|airframe| Subject::new("coaxial", airframe))
+        .to_vec()
+}
+
 /// What one subject costs. Instructions of all requests of a set (`_sum`), of its middle
 /// one (`_median`) and of its dearest (`_worst`), bytes.
 #[derive(Clone, Debug, PartialEq)]

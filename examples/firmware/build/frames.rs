@@ -22,9 +22,28 @@ thrust_exponent = 1.75
 torque_exponent = 1.75
 "#;
 
-/// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N.
+/// A made-up pair, whose lower rotor hardly adds thrust while the upper one is at full throttle: its attainable set bends
+/// inwards.
+const BENT: &str = r#"
+[throttle]
+min = 0.25
+max = 1.0
+[pair]
+basis = "cubic"
+thrust_n  = [1.5, 0.4, -0.6, 0.8, 12.5, -4.9, 9.4, 0.3, 0.2]
+torque_nm = [-0.012, 0.004, 0.003, 0.011, -0.135, 0.002, 0.128, -0.004, 0.003]
+upper_spin = "cw"
+[voltage]
+reference_v = 14.8
+range_v = [12.8, 16.8]
+thrust_exponent = 1.75
+torque_exponent = 1.75
+"#;
+
+/// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N; a Y6 and an X8 whose
+/// attainable sets are not convex.
 pub(crate) fn all() -> Vec<(String, String)> {
-    let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(units, "")));
+    let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(PAIR, units, "")));
     let tolerances = [
         ("0.1", "9e-4"),
         ("0.01", "1e-4"),
@@ -35,19 +54,20 @@ pub(crate) fn all() -> Vec<(String, String)> {
     let tolerances = tolerances.into_iter().map(|(thrust_n, torque_nm)| {
         let inverse =
             format!("[inverse]\nthrust_tolerance_n = {thrust_n}\ntorque_tolerance_nm = {torque_nm}\n");
-        (format!("tolerance-{thrust_n}"), regular(4, &inverse))
+        (format!("tolerance-{thrust_n}"), regular(PAIR, 4, &inverse))
     });
-    sizes.chain(tolerances).collect()
+    let bent = [3, 4].map(|units| (format!("bent-{units}"), regular(BENT, units, "")));
+    sizes.chain(tolerances).chain(bent).collect()
 }
 
 /// One unit lies ahead, two lie abreast.
-fn regular(units: u32, inverse: &str) -> String {
+fn regular(pair: &str, units: u32, inverse: &str) -> String {
     let first_angle_deg = match units {
         1 => 0.0,
         2 => 90.0,
         _ => 180.0 / f64::from(units),
     };
-    let mut text = format!("name = {NAME:?}\n{PAIR}{inverse}");
+    let mut text = format!("name = {NAME:?}\n{pair}{inverse}");
     let _ = write!(
         text,
         "[layout]\narm_m = 0.45\nunits = {units}\nfirst_angle_deg = {first_angle_deg:?}\n"
