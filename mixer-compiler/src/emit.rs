@@ -185,8 +185,8 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     let (share, complete) = (float(table.torque_share()), table.complete);
     let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
     let rounding = float(table.yaw_rounding_nm);
-    quote! {
-        &::mixer_rt::Vertical {
+    let vertical = quote! {
+        ::mixer_rt::Vertical {
             units: &[#(#units),*],
             complete: #complete,
             thrust_n: #thrust,
@@ -197,6 +197,17 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
             thrust_floor_n: #floor,
             thrust_middle_n: #middle,
             yaw_rounding_nm: #rounding,
+        }
+    };
+    let Some(coupling) = &table.coupling else {
+        return quote!(&#vertical);
+    };
+    let (scale, most) = (float(coupling.scale), vector(&coupling.most_yaw_nm));
+    let floors = matrix(&coupling.floors_n);
+    quote! {
+        &::mixer_rt::Coupled {
+            vertical: #vertical,
+            coupling: ::mixer_rt::Coupling { scale: #scale, most_yaw_nm: #most, floors_n: #floors },
         }
     }
 }
@@ -245,20 +256,17 @@ fn tables_type(tables: &MixerTables) -> TokenStream {
             ..
         } => seeded_type(seed.type_name(), *steps, *residuals),
     };
-    match tables.shortcut.as_ref().map(|table| &table.border.sides[0]) {
-        Some(SideTable::Arcs(_)) => {
-            quote!(::mixer_rt::Tables<'static, #basis, #inverse, &'static ::mixer_rt::Vertical<'static>>)
+    let Some(table) = &tables.shortcut else {
+        return quote!(::mixer_rt::Tables<'static, #basis, #inverse>);
+    };
+    let way = match (&table.coupling, &table.border.sides[0]) {
+        (Some(_), _) => quote!(::mixer_rt::Coupled<'static>),
+        (None, SideTable::Arcs(_)) => quote!(::mixer_rt::Vertical<'static>),
+        (None, SideTable::Polyline(_)) => {
+            quote!(::mixer_rt::Vertical<'static, ::mixer_rt::Polyline<'static>>)
         }
-        Some(SideTable::Polyline(_)) => quote! {
-            ::mixer_rt::Tables<
-                'static,
-                #basis,
-                #inverse,
-                &'static ::mixer_rt::Vertical<'static, ::mixer_rt::Polyline<'static>>
-            >
-        },
-        None => quote!(::mixer_rt::Tables<'static, #basis, #inverse>),
-    }
+    };
+    quote!(::mixer_rt::Tables<'static, #basis, #inverse, &'static #way>)
 }
 
 fn seeded_type(seed: &str, steps: u8, residuals: u8) -> TokenStream {

@@ -7,8 +7,8 @@ mod inverse;
 mod sides;
 
 use mixer_rt::{
-    AttainableSet, Biquadratic, Border, Cubic, Desaturation, Edge, Facets, Health, Pair, Quantity, Quartic,
-    Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit, Vertical,
+    AttainableSet, Biquadratic, Border, Coupling, Cubic, Desaturation, Edge, Facets, Health, Pair, Quantity,
+    Quartic, Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit, Vertical,
     VerticalUnit, Voltage, VoltageLaw, Wrench,
 };
 
@@ -112,6 +112,8 @@ pub struct VerticalTable {
     pub thrust_middle_n: f32,
     /// Yaw that counts as none, N m.
     pub yaw_rounding_nm: f32,
+    /// What priorities need that couple thrust and yaw.
+    pub coupling: Option<Coupling>,
 }
 
 impl VerticalTable {
@@ -144,6 +146,8 @@ impl VerticalTable {
         // Range, border, share, floor, middle and rounding beside the units and facets.
         let sides: usize = self.border.sides.iter().map(SideTable::floats).sum();
         2 + (sides + 10) + 4 + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
+            // Scale, yaws and floors.
+            + self.coupling.map_or(0, |coupling| 1 + 2 + 2 * coupling.floors_n[0].len())
     }
 }
 
@@ -181,12 +185,15 @@ pub enum LawTable {
     Points(Vec<[f32; 2]>),
 }
 
+/// The shorter way to desaturate, where there is one, as `mixer-rt` reads it.
+pub type AnyShortcut<'a> = Option<(Vertical<'a, SideView<'a>>, Option<Coupling>)>;
+
 /// What [`MixerTables::mix`] gives: throttle per channel, achieved wrench, saturation.
 pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
     /// The tables as `mixer-rt` reads them.
-    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<Vertical<'_, SideView<'_>>>> {
+    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, AnyShortcut<'_>> {
         Tables {
             units: &self.units,
             pair: self.pair,
@@ -195,7 +202,7 @@ impl MixerTables {
             voltage: self.voltage.as_ref().map(VoltageTable::view),
             attainable: self.attainable.view(),
             desaturation: self.desaturation,
-            shortcut: self.shortcut.as_ref().map(VerticalTable::view),
+            shortcut: self.shortcut.as_ref().map(|table| (table.view(), table.coupling)),
             tolerance: self.tolerance,
         }
     }

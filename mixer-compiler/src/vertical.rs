@@ -6,6 +6,7 @@
 //! shift under the root is searched for, the rest is least squares. Where the set is not convex, or no arc is
 //! close, the sides are polylines: vertical/outline.rs.
 
+mod coupling;
 mod outline;
 
 use mixer_rt::{Airmode, Arc, Axis, Border, Facets, Side, VerticalUnit};
@@ -59,8 +60,6 @@ pub(crate) fn table(
             && matrix[(2, n + i)].abs() == 1.0
             && matrix[(3, n + i)] == 0.0
     });
-    // A reserve or yaw before thrust would couple the two small problems.
-    let decoupled = allocation.yaw_reserve_nm == 0.0 && allocation.airmode != Airmode::RollPitchYaw;
     let levers = [Axis::Roll, Axis::Pitch].map(|axis| allocation.controls(axis));
     let free: Vec<Vector3<f64>> = [Vector3::x(), Vector3::y()]
         .into_iter()
@@ -69,7 +68,7 @@ pub(crate) fn table(
         .collect();
     // The null space of the thrusts has one dimension or none.
     let spanned = (3..=4).contains(&(n + free.len()));
-    if !vertical || !decoupled || !spanned || !allocation.controls(Axis::Yaw) {
+    if !vertical || !spanned || !allocation.controls(Axis::Yaw) {
         return None;
     }
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
@@ -96,7 +95,10 @@ pub(crate) fn table(
     } else {
         None
     };
-    let border = arcs.or_else(|| outline::sides(&pair, thrust_n).map(&border))?;
+    // A reserve of yaw, or yaw before thrust, couples thrust and yaw: that takes concave sides.
+    let coupled = allocation.yaw_reserve_nm > 0.0 || allocation.airmode == Airmode::RollPitchYaw;
+    let outline = || outline::sides(&pair, thrust_n).map(&border);
+    let border = if coupled { arcs } else { arcs.or_else(outline) }?;
     let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
     let yaw_rounding_nm = (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32;
     let spins: Vec<f64> = (0..n).map(|i| matrix[(2, n + i)]).collect();
@@ -107,7 +109,7 @@ pub(crate) fn table(
     };
     // At least what the facets allow without roll and pitch, with rounding.
     let least_level = slopes.iter().map(|facets| facets.bounds[0]).fold(floor, f32::max);
-    Some(VerticalTable {
+    let mut table = VerticalTable {
         units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
         complete: free.is_empty(),
         thrust_n,
@@ -117,7 +119,12 @@ pub(crate) fn table(
         thrust_floor_n: least_level * (1.0 + ROUNDING),
         thrust_middle_n: 0.5 * (floor + ceiling),
         yaw_rounding_nm,
-    })
+        coupling: None,
+    };
+    if coupled {
+        table.coupling = Some(coupling::coupling(&table, pair.scale()));
+    }
+    Some(table)
 }
 
 /// The least thrust in all (N) at which units with these `spins` and equal thrusts within `thrust_n` can leave yaw at zero.

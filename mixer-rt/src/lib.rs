@@ -63,7 +63,8 @@ pub use sqrt::sqrt;
 pub use table::TableSeed;
 pub use tables::{Tables, Tolerance, Unit};
 pub use vertical::{
-    Arc, Border, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, TorqueLimit, Vertical, VerticalUnit,
+    Arc, Border, Coupled, Coupling, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, TorqueLimit,
+    Vertical, VerticalUnit,
 };
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};

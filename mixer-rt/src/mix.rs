@@ -6,7 +6,7 @@ use crate::homotopy::Scratch;
 use crate::search::desaturate;
 use crate::vertical::{Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;
-use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};
+use crate::{Axis, Desaturation, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};
 
 /// What a mix gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,14 +159,14 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S: Shortcut>(
 ) -> Result<(Wrench, Saturation), SetpointError> {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
-    let at_reference = at_reference(bounded, factors.map(|factor| 1.0 / factor));
+    let per_factor = factors.map(|factor| 1.0 / factor);
+    let at_reference = at_reference(bounded, per_factor);
     let mut efforts = Efforts::default();
     let mut delivered = vertical.least_norm(&at_reference, &mut efforts);
-    let airmode = tables.desaturation.airmode;
     // Beyond what is known of a set that is not convex only the inverse map tells.
     let mut is_tried = !delivered && !vertical.border.is_concave();
     if !delivered && !is_tried {
-        vertical.desaturate(airmode, &at_reference, &mut efforts);
+        desaturate_vertical(tables, vertical, per_factor[1], &at_reference, &mut efforts);
     }
     loop {
         let mut is_near = true;
@@ -187,7 +187,7 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S: Shortcut>(
             break;
         }
         is_tried = false;
-        vertical.desaturate(airmode, &at_reference, &mut efforts);
+        desaturate_vertical(tables, vertical, per_factor[1], &at_reference, &mut efforts);
     }
     let achieved = vertical.wrench(&efforts, factors);
     let mut saturation = Saturation::NONE;
@@ -195,6 +195,27 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S: Shortcut>(
         saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
     }
     Ok((achieved, saturation.with_voltage_clamped(clamped)))
+}
+
+/// Writes attainable efforts that serve `request` in the order of priority. `per_torque` is 1 / k_Q.
+#[inline(always)]
+fn desaturate_vertical<P, I, S: Shortcut>(
+    tables: &Tables<'_, P, I, S>,
+    vertical: &Vertical<'_, S::Side>,
+    per_torque: f32,
+    request: &Request,
+    efforts: &mut Efforts,
+) {
+    let Desaturation {
+        airmode,
+        yaw_reserve_nm,
+    } = tables.desaturation;
+    match tables.shortcut.coupling() {
+        None => vertical.desaturate(airmode, request, efforts),
+        Some(coupling) => {
+            vertical.desaturate_coupled(coupling, airmode, yaw_reserve_nm * per_torque, request, efforts);
+        }
+    }
 }
 
 /// The setpoint as `[roll, pitch, yaw, thrust]`, and the same within what is looked at.

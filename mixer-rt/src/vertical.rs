@@ -14,13 +14,20 @@
 //! Near a corner of the zonotope yaw may not even reach zero (with all rotors at the ceiling every unit has the
 //! torque Q(1, 1)). There the thrusts are drawn towards the middle until it does: thrust, roll and pitch give way
 //! together, by less than the corner's torque is worth.
+//!
+//! Where yaw comes before thrust, or a reserve of it before roll and pitch, the problems are not apart, and linear
+//! programs take the place of 2 and 3: vertical/coupled.rs. An airframe's tables hold what these need or do not, and then
+//! their code is not linked.
 
+mod coupled;
 mod facets;
 mod polyline;
+mod program;
 mod reach;
 mod thrusts;
 mod torques;
 
+pub use coupled::{Coupled, Coupling};
 pub use facets::Facets;
 pub use polyline::{Knot, Polyline};
 pub use reach::{Arc, Border, Side, TorqueLimit};
@@ -83,9 +90,15 @@ pub trait Shortcut {
 
     /// The shorter way, where there is one.
     fn vertical(&self) -> Option<&Vertical<'_, Self::Side>>;
+
+    /// What it needs where the priorities couple thrust and yaw.
+    #[inline(always)]
+    fn coupling(&self) -> Option<&Coupling> {
+        None
+    }
 }
 
-/// No shorter way: tilted axes, more than four units, or priorities that couple thrust and yaw.
+/// No shorter way: tilted axes or more than four units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoShortcut;
 
@@ -108,12 +121,32 @@ impl<S: TorqueLimit> Shortcut for &Vertical<'_, S> {
     }
 }
 
-impl<S: TorqueLimit> Shortcut for Option<Vertical<'_, S>> {
+impl Shortcut for &Coupled<'_> {
+    type Side = Side;
+
+    #[inline(always)]
+    fn vertical(&self) -> Option<&Vertical<'_>> {
+        Some(&self.vertical)
+    }
+
+    #[inline(always)]
+    fn coupling(&self) -> Option<&Coupling> {
+        Some(&self.coupling)
+    }
+}
+
+/// Any of these, where it is known at run time only.
+impl<S: TorqueLimit> Shortcut for Option<(Vertical<'_, S>, Option<Coupling>)> {
     type Side = S;
 
     #[inline(always)]
     fn vertical(&self) -> Option<&Vertical<'_, S>> {
-        self.as_ref()
+        self.as_ref().map(|(vertical, _)| vertical)
+    }
+
+    #[inline(always)]
+    fn coupling(&self) -> Option<&Coupling> {
+        self.as_ref().and_then(|(_, coupling)| coupling.as_ref())
     }
 }
 
@@ -161,7 +194,19 @@ impl<S> Clone for Search<'_, S> {
 
 impl<S> Copy for Search<'_, S> {}
 
-impl<S> Search<'_, S> {
+impl<'a, S> Search<'a, S> {
+    /// Before anything is known.
+    #[inline(always)]
+    fn new(border: &'a Border<S>) -> Self {
+        Search {
+            turn: 0.0,
+            side: &border.sides[0],
+            limit: 0.0,
+            from: 0.0,
+            along: 0.0,
+        }
+    }
+
     /// The thrust at `z` along the way, N.
     #[inline(always)]
     fn thrust(&self, z: f32) -> f32 {
@@ -215,32 +260,25 @@ impl<S: TorqueLimit> Vertical<'_, S> {
     #[inline(never)]
     pub(crate) fn desaturate(&self, airmode: Airmode, request: &Request, efforts: &mut Efforts) {
         // So that nothing is known about how often the loops run: see `rolled`.
-        let mut search = [Search {
-            turn: 0.0,
-            side: &self.border.sides[0],
-            limit: 0.0,
-            from: 0.0,
-            along: 0.0,
-        }; MOST_UNITS];
+        let mut search = [Search::new(&self.border); MOST_UNITS];
         let search = search.get_mut(..self.units.len()).unwrap_or_default();
         let (vertical, efforts, search) = black_box((self, efforts.as_mut_slice(), search));
         let direction = if request.yaw < 0.0 { -1.0 } else { 1.0 };
         let wanted = direction * request.yaw;
+        let limits = vertical.thrust_limits(airmode, request.thrust, vertical.thrust_floor_n);
+        let found = vertical.attainable_thrusts(request, limits, search, direction, wanted);
+        let [_, middle] = limits;
+        vertical.torques(search, efforts, wanted, found, middle);
+    }
+
+    /// The most thrust that may be given, and a thrust well inside below it, N.
+    #[inline(always)]
+    fn thrust_limits(&self, airmode: Airmode, asked: f32, floor: f32) -> [f32; 2] {
         let mut ceiling = f32::MAX;
         if airmode == Airmode::Disabled {
-            ceiling = if request.thrust > vertical.thrust_floor_n {
-                request.thrust
-            } else {
-                vertical.thrust_floor_n
-            };
+            ceiling = if asked > floor { asked } else { floor };
         }
-        let middle = if ceiling < vertical.thrust_middle_n {
-            ceiling
-        } else {
-            vertical.thrust_middle_n
-        };
-        let limits = [ceiling, middle];
-        let found = vertical.attainable_thrusts(request, limits, search, direction, wanted);
-        vertical.torques(search, efforts, wanted, found, middle);
+        let middle = self.thrust_middle_n;
+        [ceiling, if ceiling < middle { ceiling } else { middle }]
     }
 }

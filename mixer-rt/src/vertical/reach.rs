@@ -35,7 +35,7 @@ pub struct Arc {
 impl Arc {
     /// The torque at the thrust `f` and its derivative.
     #[inline(always)]
-    fn tangent(&self, f: f32) -> (f32, f32) {
+    pub(super) fn tangent(&self, f: f32) -> (f32, f32) {
         let root = (f + self.shift).root();
         (
             (self.offset + self.slope * f) + self.bend * root,

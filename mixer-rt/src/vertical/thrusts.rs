@@ -20,11 +20,29 @@ impl VerticalUnit {
 
 /// The z that leave all thrusts attainable; from `high` to `low` where there are none.
 #[derive(Clone, Copy)]
-struct NullRange {
+pub(super) struct NullRange {
     low: f32,
     high: f32,
     /// False where a thrust that N does not change is out of its range.
     others: bool,
+}
+
+impl NullRange {
+    /// True where some z leaves all thrusts attainable.
+    #[inline(always)]
+    pub(super) fn is_attainable(&self) -> bool {
+        self.low <= self.high && self.others
+    }
+
+    /// The z nearest zero.
+    #[inline(always)]
+    pub(super) fn nearest(&self) -> f32 {
+        clamp(
+            0.0,
+            self.low,
+            if self.high > self.low { self.high } else { self.low },
+        )
+    }
 }
 
 impl<S: TorqueLimit> Vertical<'_, S> {
@@ -42,7 +60,7 @@ impl<S: TorqueLimit> Vertical<'_, S> {
     ) -> (f32, f32) {
         let mut wrench = [request.roll, request.pitch, request.thrust];
         let mut range = self.null_range(search, &wrench, direction);
-        let attainable = range.low <= range.high && range.others;
+        let attainable = range.is_attainable();
         if !attainable {
             let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
             wrench = [
@@ -53,7 +71,7 @@ impl<S: TorqueLimit> Vertical<'_, S> {
             range = self.null_range(search, &wrench, direction);
         }
         let NullRange { low, high, .. } = range;
-        let mut z = clamp(0.0, low, if high > low { high } else { low });
+        let mut z = range.nearest();
         let mut here = reach(search, z);
         // On the zonotope's border z has no room.
         let is_short = attainable && here.yaw < wanted && high > low;
@@ -90,7 +108,7 @@ impl<S: TorqueLimit> Vertical<'_, S> {
 
     /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range.
     #[inline(never)]
-    fn null_range<'a>(
+    pub(super) fn null_range<'a>(
         &'a self,
         search: &mut [Search<'a, S>],
         wrench: &[f32; 3],
