@@ -32,17 +32,19 @@ pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
 pub enum Kind {
     /// Vertical axes and little freedom: a few cases, each solved at once.
     ClosedForm,
-    /// Any other layout or priorities: face by face along a path of wrenches.
+    /// The same where priorities couple thrust and yaw: linear programs in a few unknowns.
+    Coupled,
+    /// Any other layout: face by face along a path of wrenches.
     Path,
 }
 
 impl Kind {
     /// The kind of a compiled airframe.
     pub fn of(compiled: &Compiled) -> Kind {
-        if compiled.tables.shortcut.is_some() {
-            Kind::ClosedForm
-        } else {
-            Kind::Path
+        match &compiled.tables.shortcut {
+            Some(table) if table.coupling.is_some() => Kind::Coupled,
+            Some(_) => Kind::ClosedForm,
+            None => Kind::Path,
         }
     }
 
@@ -50,6 +52,7 @@ impl Kind {
     pub fn description(self) -> &'static str {
         match self {
             Kind::ClosedForm => "in closed form",
+            Kind::Coupled => "in closed form, thrust and yaw together",
             Kind::Path => "along a path of wrenches",
         }
     }
@@ -100,7 +103,7 @@ impl Counted {
     /// The overhead of requests that least norm delivers.
     pub fn delivered(&self, kind: Kind) -> Overhead {
         match kind {
-            Kind::ClosedForm => self.closed_form,
+            Kind::ClosedForm | Kind::Coupled => self.closed_form,
             Kind::Path => self.path,
         }
     }

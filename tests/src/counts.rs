@@ -52,8 +52,8 @@ pub fn compared(airframes: &[String]) -> Vec<Subject> {
     airframes.chain(baselines).collect()
 }
 
-/// All subjects: those compared, the baselines on other frames, regular frames of 1 to 8 units, and the X8
-/// with five tolerances.
+/// All subjects: those compared, the baselines on other frames, regular frames of 1 to 8 units, and the X8 with five
+/// tolerances and with other priorities.
 pub fn all(airframes: &[String]) -> Vec<Subject> {
     let mut subjects = compared(airframes);
     subjects.push(Subject::new("wls", "isae-x8"));
@@ -63,6 +63,8 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
     subjects.extend((1..=8).map(|units| Subject::new("coaxial", &format!("regular-{units}"))));
     let tolerances = ["0.1", "0.01", "0.004", "2e-4", "3e-5"];
     subjects.extend(tolerances.map(|tolerance| Subject::new("coaxial", &format!("tolerance-{tolerance}"))));
+    let priorities = ["roll-pitch-yaw", "reserve-0.1", "roll-pitch-yaw-reserve-0.1"];
+    subjects.extend(priorities.map(|priority| Subject::new("coaxial", priority)));
     subjects
 }
 

@@ -48,7 +48,7 @@ impl Sample {
     pub fn quantities(&self) -> &'static [Quantity] {
         match self.kind {
             Kind::ClosedForm => &[Quantity::Delivered, Quantity::Attainable],
-            Kind::Path => &[Quantity::Delivered],
+            Kind::Coupled | Kind::Path => &[Quantity::Delivered],
         }
     }
 
@@ -79,8 +79,8 @@ impl Sample {
     fn factors(&self, quantity: Quantity) -> [f64; PARAMETERS] {
         let mut factors = [0.0; PARAMETERS];
         let overhead = match (self.kind, quantity) {
-            (Kind::ClosedForm, Quantity::Delivered) => CLOSED_FORM,
-            (Kind::ClosedForm, Quantity::Attainable) => CLOSED_FORM_MEAN,
+            (Kind::ClosedForm | Kind::Coupled, Quantity::Delivered) => CLOSED_FORM,
+            (Kind::ClosedForm | Kind::Coupled, Quantity::Attainable) => CLOSED_FORM_MEAN,
             (Kind::Path, _) => PATH,
         };
         factors[overhead] = 1.0;
@@ -171,18 +171,18 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
         path: overhead(PATH),
         frames: Box::leak(ranges(samples).into_boxed_slice()),
     };
-    let error = |kind: Kind, of: Quantity| {
+    let error = |kinds: &[Kind], of: Quantity| {
         let errors = known
             .iter()
-            .filter(|(sample, quantity)| sample.kind == kind && *quantity == of)
+            .filter(|(sample, quantity)| kinds.contains(&sample.kind) && *quantity == of)
             .map(|(sample, quantity)| sample.error(&counted, *quantity).abs());
         // Thousandths, rounded up.
         (1e3 * errors.fold(0.0, f64::max)).ceil() / 1e3
     };
     let errors = [
-        error(Kind::ClosedForm, Quantity::Delivered),
-        error(Kind::ClosedForm, Quantity::Attainable),
-        error(Kind::Path, Quantity::Delivered),
+        error(&[Kind::ClosedForm, Kind::Coupled], Quantity::Delivered),
+        error(&[Kind::ClosedForm], Quantity::Attainable),
+        error(&[Kind::Path], Quantity::Delivered),
     ];
     counted.closed_form.error = errors[0];
     counted.closed_form_mean.error = errors[1];
@@ -194,7 +194,7 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
 fn ranges(samples: &[Sample]) -> Vec<Frames> {
     let mut all: Vec<Frames> = Vec::new();
     let largest = samples.iter().map(|sample| sample.units).max().unwrap_or(0);
-    for kind in [Kind::ClosedForm, Kind::Path] {
+    for kind in [Kind::ClosedForm, Kind::Coupled, Kind::Path] {
         for units in 1..=largest {
             let alike = || {
                 let alike = samples

@@ -1,4 +1,4 @@
-//! Airframes that are measured and nothing else: how cost grows with units and with tolerance.
+//! Airframes that are measured and nothing else: how cost grows with units and with tolerance, and what other priorities cost.
 
 use std::fmt::Write as _;
 
@@ -40,8 +40,8 @@ thrust_exponent = 1.75
 torque_exponent = 1.75
 "#;
 
-/// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N; a Y6 and an X8 whose
-/// attainable sets are not convex.
+/// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N, with yaw before thrust, and
+/// with a reserve of yaw; a Y6 and an X8 whose attainable sets are not convex.
 pub(crate) fn all() -> Vec<(String, String)> {
     let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(PAIR, units, "")));
     let tolerances = [
@@ -56,18 +56,32 @@ pub(crate) fn all() -> Vec<(String, String)> {
             format!("[inverse]\nthrust_tolerance_n = {thrust_n}\ntorque_tolerance_nm = {torque_nm}\n");
         (format!("tolerance-{thrust_n}"), regular(PAIR, 4, &inverse))
     });
+    let priorities = [
+        ("roll-pitch-yaw", "airmode = \"roll-pitch-yaw\""),
+        ("reserve-0.1", "yaw_reserve_nm = 0.1"),
+        (
+            "roll-pitch-yaw-reserve-0.1",
+            "airmode = \"roll-pitch-yaw\"\nyaw_reserve_nm = 0.1",
+        ),
+    ];
+    let priorities = priorities.map(|(name, allocation)| {
+        (
+            name.to_owned(),
+            regular(PAIR, 4, &format!("[allocation]\n{allocation}\n")),
+        )
+    });
     let bent = [3, 4].map(|units| (format!("bent-{units}"), regular(BENT, units, "")));
-    sizes.chain(tolerances).chain(bent).collect()
+    sizes.chain(tolerances).chain(priorities).chain(bent).collect()
 }
 
 /// One unit lies ahead, two lie abreast.
-fn regular(pair: &str, units: u32, inverse: &str) -> String {
+fn regular(pair: &str, units: u32, options: &str) -> String {
     let first_angle_deg = match units {
         1 => 0.0,
         2 => 90.0,
         _ => 180.0 / f64::from(units),
     };
-    let mut text = format!("name = {NAME:?}\n{pair}{inverse}");
+    let mut text = format!("name = {NAME:?}\n{pair}{options}");
     let _ = write!(
         text,
         "[layout]\narm_m = 0.45\nunits = {units}\nfirst_angle_deg = {first_angle_deg:?}\n"
