@@ -14,10 +14,13 @@
 //! there to the request comes first: most attainable requests are a few pieces away. It ends in the same efforts as the
 //! steps do, so nothing jumps where it is or is not tried.
 //!
+//! What is delivered in full near the end of what is attainable is eased into what is given up there ([`Homotopy::ease`]).
+//!
 //! Each step is a straight path in the space of wrenches that [`Homotopy`] follows to its exact end. The result
 //! is a continuous function of the request: the attainable wrenches are a polytope, on which the nearest points
-//! above move continuously, and the efforts are the only ones nearest to a reference that give the wrench reached.
-//! With rotors out there may be several optima: see [`crate::search`].
+//! above move continuously, and the efforts are the only ones nearest to a reference that give the wrench reached. How
+//! steep it is depends on the priorities: where a little less of one allows much more of the next, throttles are as
+//! steep. With rotors out there may be several optima: see [`crate::search`].
 
 use crate::chord::{Rotors, Sets};
 use crate::homotopy::{Homotopy, Scratch};
@@ -112,12 +115,15 @@ pub(crate) fn prioritise<P, I, S>(
         low: -REQUEST_LIMIT,
         high: ceiling.unwrap_or(asked),
     };
-    let found = descend(&mut homotopy, wanted, yaw, thrust, airmode);
+    let descent = descend(&mut homotopy, wanted, yaw, thrust, airmode);
     if ceiling.is_none() {
-        thrust.high = found;
+        thrust.high = descent.ceiling;
     }
     homotopy.write_efforts();
     let reached = homotopy.actual();
+    if descent.delivered {
+        homotopy.ease(&request);
+    }
     let short = |row: usize| match (wanted.get(row), reached.get(row)) {
         (Some(wanted), Some(reached)) => (wanted - reached).abs(),
         _ => 0.0,
@@ -139,22 +145,32 @@ fn order(airmode: Airmode) -> [usize; 2] {
     }
 }
 
+/// Where the steps have led.
+struct Descent {
+    /// The largest thrust that was allowed: more than asked for where roll = pitch = 0 needs more.
+    ceiling: f32,
+    /// True where all that was wanted has been reached.
+    delivered: bool,
+}
+
 /// The steps of the module's head, one path each. `wanted` in rows; `yaw` and `thrust` are where these rows may be.
-/// Returns the largest thrust that was allowed: more than in `thrust` where roll = pitch = 0 needs more.
 fn descend(
     homotopy: &mut Homotopy<'_>,
     wanted: [f32; 4],
     yaw: Bounds,
     thrust: Bounds,
     airmode: Airmode,
-) -> f32 {
+) -> Descent {
     const LEVEL: Bounds = Bounds::at(0.0);
     const WIDE: Bounds = Bounds {
         low: -REQUEST_LIMIT,
         high: REQUEST_LIMIT,
     };
     if homotopy.follow_straight(&wanted) {
-        return thrust.high;
+        return Descent {
+            ceiling: thrust.high,
+            delivered: true,
+        };
     }
     homotopy.start();
     homotopy.bound(ALONG, LEVEL);
@@ -170,16 +186,19 @@ fn descend(
     homotopy.follow([LEVEL, LEVEL, yaw, thrust], true);
     let [.., yaw, thrust] = homotopy.bounds();
     homotopy.hold(ALONG);
-    homotopy.follow([Bounds::at(wanted[ALONG]), LEVEL, yaw, thrust], true);
+    let mut delivered = homotopy.follow([Bounds::at(wanted[ALONG]), LEVEL, yaw, thrust], true) >= 1.0;
     for row in order(airmode) {
         homotopy.hold(row);
         let mut target = homotopy.bounds();
         if let (Some(target), Some(wanted)) = (target.get_mut(row), wanted.get(row)) {
             *target = Bounds::at(*wanted);
         }
-        homotopy.follow(target, true);
+        delivered &= homotopy.follow(target, true) >= 1.0;
     }
-    thrust.high
+    Descent {
+        ceiling: thrust.high,
+        delivered,
+    }
 }
 
 /// Halvings of the throttle range that find a single rotor's throttle: to the last bit of a float.

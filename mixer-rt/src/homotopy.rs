@@ -61,6 +61,13 @@ const PARALLEL: f32 = 1e-5;
 /// No row reaches this: rows have unit length, efforts are of order one.
 const FAR: f32 = 16.0;
 
+/// The last part of the way to the end of what is attainable on which efforts are eased into those at the end. The longer
+/// it is, the less steep, and the more often the way to the end is looked at.
+const EASE: f32 = 0.02;
+
+/// Least-norm efforts nearer to the attainable set than this, scaled, leave less to easing.
+const LEAST_NORM_NEAR: f32 = 0.05;
+
 /// What a unit keeps while the efforts are being found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scratch {
@@ -174,6 +181,11 @@ impl<'h> Homotopy<'h> {
     /// Starts at the references, roll and pitch across the request held, the other rows slack.
     pub(crate) fn start(&mut self) {
         self.place(&[0.0; 4], RowState::Between);
+        self.refill();
+    }
+
+    /// Allows as many pieces as all steps together may need.
+    fn refill(&mut self) {
         self.pieces_left = self.units_times(PIECES_PER_UNIT).saturating_add(PIECES);
     }
 
@@ -285,6 +297,45 @@ impl<'h> Homotopy<'h> {
                 return share;
             }
             share += made * left;
+        }
+    }
+
+    /// Near the end of what is attainable, eases the efforts of `request`, which has been reached, into those at the end.
+    ///
+    /// The efforts nearest to the reference are steep where several edges are almost dependent: with the last bit of
+    /// what is attainable they cross whole edges. At the end itself there is no choice. So on the last [`EASE`] of the
+    /// ray from the wrench of the sets' centres through that of the request the efforts go over into straight ones between
+    /// the centres and the ray's end, which give the same wrench. Efforts that are all but least norm stay, since where
+    /// they are just attainable these are the result.
+    pub(crate) fn ease(&mut self, request: &[f32; 4]) {
+        let mut centre = [0.0; 4];
+        for scratch in self.scratch.iter() {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
+                scratch.add(set.centre, &mut centre);
+            }
+        }
+        self.refill();
+        let mut beyond = self.bounds();
+        for (beyond, centre) in beyond.iter_mut().zip(centre) {
+            *beyond = Bounds::at(beyond.low + EASE * (beyond.low - centre));
+        }
+        let share = self.follow(beyond, false);
+        if share >= 1.0 {
+            return;
+        }
+        let inwards = 1.0 / (1.0 + share * EASE);
+        let straight =
+            (1.0 - share) * crate::clamp(self.least_norm_distance(request) / LEAST_NORM_NEAR, 0.0, 1.0);
+        for scratch in self.scratch.iter_mut() {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
+                let end = set.project(&scratch.point);
+                for (((effort, end), centre), scale) in
+                    scratch.efforts.iter_mut().zip(end).zip(set.centre).zip(set.scale)
+                {
+                    let on_ray = scale * (centre + inwards * (end - centre));
+                    *effort += straight * (on_ray - *effort);
+                }
+            }
         }
     }
 

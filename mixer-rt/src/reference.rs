@@ -15,19 +15,17 @@ const LEAST_NORM_REACH: f32 = 0.2;
 const NEAR: f32 = 0.3;
 
 impl Homotopy<'_> {
-    /// How much of the way from the centres to the least-norm efforts of `request` the reference goes: all of it
-    /// where those are attainable, so that they are the result, and none where they are far from it.
-    fn least_norm_part(&self, request: &[f32; 4]) -> f32 {
-        let mut part = 1.0;
+    /// How far, scaled, the least-norm efforts of `request` are from attainable: the unit furthest off.
+    pub(crate) fn least_norm_distance(&self, request: &[f32; 4]) -> f32 {
+        let mut furthest = 0.0;
         for (unit, scratch) in self.units.iter().zip(self.scratch.iter()) {
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let [f, q] = unit.efforts(request);
                 let distance = set.distance([f / self.factors[0], q / self.factors[1]]);
-                let near = 1.0 - distance / LEAST_NORM_REACH;
-                part = if near < part { near } else { part };
+                furthest = if distance > furthest { distance } else { furthest };
             }
         }
-        part
+        furthest
     }
 
     /// The multipliers that draw the reference nearest to the centres.
@@ -55,7 +53,8 @@ impl Homotopy<'_> {
     /// Keeps every unit's reference, pulled near to the centre of its set, in the place of its efforts.
     pub(crate) fn refer(&mut self, request: &[f32; 4], is_tilted: bool) {
         let part = if is_tilted {
-            self.least_norm_part(request)
+            // All of the way from the centres to least-norm efforts that are attainable, so that they are the result.
+            1.0 - self.least_norm_distance(request) / LEAST_NORM_REACH
         } else {
             0.0
         };
