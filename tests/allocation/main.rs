@@ -6,6 +6,7 @@
 //! | `optimum.rs` | linear programs: no priority short by 1 % of its authority |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
+//! | `steep.rs` | requests near which throttles once jumped |
 //! | `degenerate.rs` | numbers that no controller sends |
 //! | `shapes.rs` | the same on attainable sets that are not convex, real ones with `MIXER_BENCH_DATA` |
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
@@ -19,6 +20,7 @@ mod layout;
 mod optimum;
 mod properties;
 mod shapes;
+mod steep;
 
 use mixer_tests::frames::{self, Options, Place};
 use mixer_tests::request::Frame;

@@ -12,6 +12,7 @@
 //! The optimum over all choices of one piece per unit is found by branch and bound: a run of pieces is relaxed to the
 //! convex hull of all of them; the choice of runs that promises most is halved until single pieces are left.
 
+pub mod change;
 mod program;
 
 use microlp::Error;

@@ -1,0 +1,61 @@
+//! Requests near which the efforts nearest to the reference are steep, found by `properties.rs`.
+
+use mixer_rt::Health;
+use mixer_tests::frames::Place;
+use mixer_tests::request::{Frame, Request};
+
+use crate::compile;
+
+fn place(position: [f64; 3], axis: [f64; 2], clockwise: bool) -> Place {
+    Place {
+        position,
+        axis: [axis[0], axis[1], -1.0],
+        clockwise,
+    }
+}
+
+/// Changes one axis by 1e-4 of it: no throttle moves by more than 0.02.
+fn stays(frame: &Frame, wrench: [f32; 4], volts: f32, axis: usize) {
+    let request = Request {
+        wrench,
+        volts,
+        health: Health::GOOD,
+    };
+    let mut near = request;
+    near.wrench[axis] *= 1.0 + 1e-4;
+    let [answer, moved] = [request, near].map(|request| request.mix(frame).expect("finite"));
+    let change = answer.change(&moved);
+    assert!(change <= 0.02, "{change}: {answer:?}, then {moved:?}");
+}
+
+/// Least-norm efforts that come into the cone of a corner.
+#[test]
+fn the_reference_does_not_jump() {
+    let places = [
+        place([-0.2396, 0.0495, -0.0154], [0.1498, -0.0280], true),
+        place([-0.0908, -0.3344, -0.0239], [0.0328, -0.0033], false),
+        place([0.4879, 0.2033, 0.0068], [0.0959, 0.0507], true),
+    ];
+    let frame = compile(&places, "roll-pitch", 0.079);
+    let mut asked = [0.0, 0.0, 0.18646625, 19.194763];
+    for step in 0..200 {
+        asked[1] = 1.9 + 1e-3 * step as f32;
+        stays(&frame, asked, 13.897931, 1);
+    }
+}
+
+/// Little less than all is attainable, and all but the last bit of it without crossing an edge.
+#[test]
+fn the_last_bit_comes_gradually() {
+    let places = [
+        place([0.02875, -0.53661, -0.0130], [-0.04819, 0.07345], true),
+        place([0.62633, 0.32506, -0.0500], [-0.14330, -0.07641], false),
+        place([-0.37419, 0.15251, -0.0465], [-0.03352, -0.09509], false),
+    ];
+    let frame = compile(&places, "roll-pitch-yaw", 0.0);
+    let mut asked = [4.6543736, -4.008832, 0.22767107, 0.0];
+    for step in 0..200 {
+        asked[3] = 26.0 + 1e-3 * step as f32;
+        stays(&frame, asked, 15.425033, 3);
+    }
+}
