@@ -44,9 +44,12 @@ const PIECES: u32 = 64;
 /// Pieces per unit of the way straight to a request: what is attainable has hardly ever needed more.
 const STRAIGHT_PIECES_PER_UNIT: u32 = 2;
 
-/// Pieces in a row, per unit, that make no way: more than five have only been seen where rounding errors turned units
-/// to and fro for ever.
-const STILL_PIECES_PER_UNIT: u32 = 6;
+/// Pieces in a row, per unit, that make no way, after which rounding errors of the wrench are no longer made up for, and
+/// after as many more the path ends. More than five have only been seen where such errors turned units to and fro.
+const STILL_PIECES_PER_UNIT: u32 = 5;
+
+/// Rows nearer than this to where they are to be are there, once they are known to come no nearer.
+const SETTLED: f32 = 3e-5;
 
 /// Ways shorter than this, in rows, are rounding errors.
 const STANDING: f32 = 1e-6;
@@ -247,7 +250,7 @@ impl<'h> Homotopy<'h> {
     /// Moves held rows and the bounds of slack rows straight towards `target`, as far as attainable; returns the
     /// share of the way that was made. `presses`: where the way has ended, what comes next stays there.
     pub(crate) fn follow(&mut self, target: [Bounds; 4], presses: bool) -> f32 {
-        let target = target.map(|Bounds { low, high }| Bounds {
+        let mut target = target.map(|Bounds { low, high }| Bounds {
             low: crate::clamp(low, -FAR, FAR),
             high: crate::clamp(high, -FAR, FAR),
         });
@@ -263,7 +266,7 @@ impl<'h> Homotopy<'h> {
             return 1.0;
         }
         let mut share = 0.0;
-        let mut still = 0;
+        let (mut still, mut settled) = (0, false);
         loop {
             let left = 1.0 - share;
             if left <= 0.0 {
@@ -293,8 +296,12 @@ impl<'h> Homotopy<'h> {
             };
             still = if made > 0.0 { 0 } else { still + 1 };
             if still > self.units_times(STILL_PIECES_PER_UNIT) {
-                self.stay();
-                return share;
+                if settled {
+                    self.stay();
+                    return share;
+                }
+                self.settle(&mut target);
+                (settled, still) = (true, 0);
             }
             share += made * left;
         }
@@ -350,6 +357,17 @@ impl<'h> Homotopy<'h> {
                     Face::Edge => set.shift(&mut scratch.point, [0.0, away[1]]),
                     Face::Corner => set.shift(&mut scratch.point, away),
                 }
+            }
+        }
+    }
+
+    /// Takes the wrench of the present efforts for that of the held rows, and for the target of those that are there but
+    /// for rounding errors.
+    fn settle(&mut self, target: &mut [Bounds; 4]) {
+        self.stay();
+        for (row, target) in self.rows.iter().zip(target) {
+            if row.state == RowState::Held && (row.value - target.low).abs() < SETTLED {
+                *target = row.bounds;
             }
         }
     }

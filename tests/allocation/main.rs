@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `delivery.rs` | wrenches of random throttles: delivered |
 //! | `optimum.rs` | linear programs: no priority short by 1 % of its authority |
+//! | `continuity.rs` | requests at the end of a priority: answered as their neighbours are |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
 //! | `steep.rs` | requests near which throttles once jumped |
@@ -12,6 +13,7 @@
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
 #![allow(missing_docs)]
 
+mod continuity;
 mod degenerate;
 mod delivery;
 mod failure;
