@@ -1,4 +1,4 @@
-//! Requests near which the efforts nearest to the reference are steep, found by `properties.rs`.
+//! Requests near which the efforts nearest to the reference are steep, found with random layouts.
 
 use mixer_rt::Health;
 use mixer_tests::frames::Place;
@@ -26,22 +26,6 @@ fn stays(frame: &Frame, wrench: [f32; 4], volts: f32, axis: usize) {
     let [answer, moved] = [request, near].map(|request| request.mix(frame).expect("finite"));
     let change = answer.change(&moved);
     assert!(change <= 0.02, "{change}: {answer:?}, then {moved:?}");
-}
-
-/// Least-norm efforts that come into the cone of a corner.
-#[test]
-fn the_reference_does_not_jump() {
-    let places = [
-        place([-0.2396, 0.0495, -0.0154], [0.1498, -0.0280], true),
-        place([-0.0908, -0.3344, -0.0239], [0.0328, -0.0033], false),
-        place([0.4879, 0.2033, 0.0068], [0.0959, 0.0507], true),
-    ];
-    let frame = compile(&places, "roll-pitch", 0.079);
-    let mut asked = [0.0, 0.0, 0.18646625, 19.194763];
-    for step in 0..200 {
-        asked[1] = 1.9 + 1e-3 * step as f32;
-        stays(&frame, asked, 13.897931, 1);
-    }
 }
 
 /// Little less than all is attainable, and all but the last bit of it without crossing an edge.
