@@ -384,7 +384,7 @@ pub mod coaxial_bicopter {
             ],
             walls: &[],
             torque_share: 0.5,
-            thrust_floor_n: 1.161715,
+            thrust_floor_n: 1.1617149,
             thrust_middle_n: 25.31387,
             yaw_rounding_nm: 0.00000435218,
         },
