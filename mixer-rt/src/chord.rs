@@ -55,8 +55,6 @@ enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Chord {
     edge: [Edge; 1],
-    /// Throttles of the part that it stands for.
-    range: [f32; 2],
     kind: Kind,
     /// The efforts in which it meets the curve, N and N m, and how that thrust changed last; zero for the chord.
     meeting: [f32; 2],
@@ -71,7 +69,6 @@ impl Default for Chord {
                 along: [1.0, 0.0],
                 length: 0.0,
             }],
-            range: [0.0; 2],
             kind: Kind::Chord,
             meeting: [0.0; 2],
             step: 0.0,
@@ -103,7 +100,6 @@ impl Chord {
         let high = pair.efforts(rotors.throttles(range[1])?);
         Some(Chord {
             edge: edge(low, high, scale),
-            range,
             ..Chord::default()
         })
     }
@@ -133,13 +129,12 @@ impl Chord {
             Kind::Tangent if swings => (Kind::Secant, way[1] / way[0]),
             _ => (Kind::Tangent, q_by / f_by),
         };
-        let [low, high] = self.range;
-        let low = pair.efforts(rotors.throttles(low)?)[0];
-        let high = pair.efforts(rotors.throttles(high)?)[0];
+        let [Edge { start, along, length }] = self.edge;
+        let low = scale[0] * start[0];
+        let high = low + scale[0] * (along[0] * length);
         let at = |thrust: f32| [thrust, q + slope * (thrust - f)];
         Some(Chord {
             edge: edge(at(low), at(high), scale),
-            range: self.range,
             kind,
             meeting: [f, q],
             step,

@@ -90,6 +90,7 @@ pub(crate) struct Outcome {
 
 /// The steps of the module's head, with straight lines for the curves of single rotors. `ceiling` is the largest thrust
 /// that is allowed, in its row; `None` where that is to be found.
+#[inline(never)]
 pub(crate) fn prioritise<P, I, S>(
     tables: &Tables<'_, P, I, S>,
     sets: &Sets<'_>,
@@ -104,6 +105,7 @@ pub(crate) fn prioritise<P, I, S>(
     } = tables.desaturation;
     let reserved = clamp(request[YAW], -yaw_reserve_nm, yaw_reserve_nm);
     let mut homotopy = Homotopy::new(tables, sets, factors, request, scratch);
+    homotopy.prepare(&request);
     let wanted = homotopy.rows_of(request);
     let yaw = homotopy.bounds_of(YAW, Bounds::at(reserved).including(request[YAW]));
     let asked = if airmode == Airmode::Disabled {

@@ -120,7 +120,8 @@ pub(crate) struct Homotopy<'h> {
 }
 
 impl<'h> Homotopy<'h> {
-    /// With the units' references, nowhere yet.
+    /// Nowhere yet: [`Homotopy::prepare`] comes next.
+    #[inline(always)]
     pub(crate) fn new<P, I, S>(
         tables: &'h Tables<'_, P, I, S>,
         sets: &'h Sets<'h>,
@@ -152,7 +153,7 @@ impl<'h> Homotopy<'h> {
                 *scale = 1.0 / sqrt(square);
             }
         }
-        let mut homotopy = Homotopy {
+        Homotopy {
             units: tables.units,
             scratch,
             sets,
@@ -161,20 +162,20 @@ impl<'h> Homotopy<'h> {
             rows: [Row::default(); 4],
             pieces_left: 0,
             left: None,
-        };
-        let is_tilted = !tables.units.iter().all(Unit::is_vertical)
-            && homotopy
-                .scratch
-                .iter()
-                .all(|scratch| scratch.rotors == Rotors::Both);
-        for (unit, scratch) in homotopy.units.iter().zip(homotopy.scratch.iter_mut()) {
-            let effects = unit.effectiveness.into_iter().zip(homotopy.factors);
+        }
+    }
+
+    /// Gives the units their columns and references.
+    pub(crate) fn prepare(&mut self, request: &[f32; 4]) {
+        let is_tilted = !self.units.iter().all(Unit::is_vertical)
+            && self.scratch.iter().all(|scratch| scratch.rotors == Rotors::Both);
+        for (unit, scratch) in self.units.iter().zip(self.scratch.iter_mut()) {
+            let effects = unit.effectiveness.into_iter().zip(self.factors);
             for (column, (effect, factor)) in scratch.columns.iter_mut().zip(effects) {
-                *column = homotopy.turned.rows(effect.map(|effect| effect * factor));
+                *column = self.turned.rows(effect.map(|effect| effect * factor));
             }
         }
-        homotopy.refer(&request, is_tilted);
-        homotopy
+        self.refer(request, is_tilted);
     }
 
     fn units_times(&self, pieces: u32) -> u32 {

@@ -79,15 +79,21 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
         request,
         factors,
     };
+    let singles = scratch
+        .iter()
+        .filter(|scratch| scratch.rotors.is_single())
+        .count();
+    if singles == 0 {
+        search.round(scratch, None);
+        return;
+    }
     search.draw(scratch, 0, 0);
     let mut best = search.settle(scratch, ROUNDS, None);
-    let mut singles = 0;
+    if best.outcome.is_delivered() {
+        return;
+    }
     for scratch in scratch.iter_mut() {
         scratch.best = scratch.efforts;
-        singles += u32::from(scratch.rotors.is_single());
-    }
-    if singles == 0 || best.outcome.is_delivered() {
-        return;
     }
     let halvings = if singles == 1 { HALVINGS } else { 1 };
     for combination in 0..1 << HALVINGS {
@@ -147,18 +153,23 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
         }
     }
 
+    /// The steps with the lines as they are drawn.
+    fn round(&self, scratch: &mut [Scratch], ceiling: Option<f32>) -> Outcome {
+        let sets = Sets {
+            both: self.tables.attainable,
+        };
+        prioritise(self.tables, &sets, self.request, self.factors, ceiling, scratch)
+    }
+
     /// At most `rounds` of them, fewer where the end will not be better than `best`.
     #[inline(never)]
     fn settle(&self, scratch: &mut [Scratch], rounds: u32, best: Option<&End>) -> End {
         let tables = self.tables;
-        let sets = Sets {
-            both: tables.attainable,
-        };
         let hopeless = best.map(|best| best.outcome.cost() + HOPELESS);
         let ceiling = best.map(|best| best.outcome.ceiling);
         let mut round = 0;
         loop {
-            let outcome = prioritise(tables, &sets, self.request, self.factors, ceiling, scratch);
+            let outcome = self.round(scratch, ceiling);
             round += 1;
             let least = if round < TRIED {
                 outcome.short[0]
