@@ -8,7 +8,7 @@
 //! ```
 //!
 //! instructions, the median over attainable requests. The overheads are fitted to whole mixers, counted request by
-//! request in QEMU, apart for the two [`Kind`]s of mixers; for those in closed form the mean over attainable requests is
+//! request in QEMU, apart for the [`Kind`]s of mixers; for those in closed form the mean over attainable requests is
 //! modelled likewise. Any other request costs what was counted on frames of that kind and size; there is no model of
 //! it, the ranges are quoted.
 
@@ -20,6 +20,7 @@ use serde::Serialize;
 
 use crate::Compiled;
 use crate::evaluator::Evaluator;
+use crate::tables::SideTable;
 
 pub use counted::COUNTED;
 
@@ -32,6 +33,8 @@ pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
 pub enum Kind {
     /// Vertical axes and little freedom: a few cases, each solved at once.
     ClosedForm,
+    /// The same between sides that bend inwards: yaw may have several peaks.
+    Bent,
     /// The same where priorities couple thrust and yaw: linear programs in a few unknowns.
     Coupled,
     /// Any other layout: face by face along a path of wrenches.
@@ -43,6 +46,7 @@ impl Kind {
     pub fn of(compiled: &Compiled) -> Kind {
         match &compiled.tables.shortcut {
             Some(table) if table.coupling.is_some() => Kind::Coupled,
+            Some(table) if matches!(table.border.sides[0], SideTable::Polyline(_)) => Kind::Bent,
             Some(_) => Kind::ClosedForm,
             None => Kind::Path,
         }
@@ -52,6 +56,7 @@ impl Kind {
     pub fn description(self) -> &'static str {
         match self {
             Kind::ClosedForm => "in closed form",
+            Kind::Bent => "in closed form, between sides that bend inwards",
             Kind::Coupled => "in closed form, thrust and yaw together",
             Kind::Path => "along a path of wrenches",
         }
@@ -103,7 +108,7 @@ impl Counted {
     /// The overhead of requests that least norm delivers.
     pub fn delivered(&self, kind: Kind) -> Overhead {
         match kind {
-            Kind::ClosedForm | Kind::Coupled => self.closed_form,
+            Kind::ClosedForm | Kind::Bent | Kind::Coupled => self.closed_form,
             Kind::Path => self.path,
         }
     }

@@ -43,3 +43,27 @@ fn the_last_bit_comes_gradually() {
         stays(&frame, asked, 15.425033, 3);
     }
 }
+
+/// Where roll and pitch leave the thrusts no room at all, rounding leaves them less; the reserve of yaw is kept.
+#[test]
+fn a_reserve_is_kept_where_thrusts_have_no_room() {
+    let vertical = [0.0, 0.0];
+    let places = [
+        place([-0.003970421513648438, 0.27762963756311904, 0.0], vertical, true),
+        place([-0.19671269978719483, 0.03611251503887493, 0.0], vertical, false),
+        place([0.0018966751448836689, -0.3358674052841479, 0.0], vertical, false),
+        place([0.6250584676096459, -0.11655371243145435, 0.0], vertical, false),
+    ];
+    let reserve = 0.04606133174454187;
+    let frame = compile(&places, "disabled", reserve);
+    let mut request = Request {
+        wrench: [3.3156884, 15.232795, 0.10576367, 65.15473],
+        volts: 13.748151,
+        health: Health::GOOD,
+    };
+    for _ in 0..200 {
+        request.wrench[0] += 1e-5;
+        let answer = request.mix(&frame).expect("finite");
+        assert!(answer.achieved[2] > reserve - 1e-3, "{request:?}: {answer:?}");
+    }
+}

@@ -52,8 +52,8 @@ pub fn compared(airframes: &[String]) -> Vec<Subject> {
     airframes.chain(baselines).collect()
 }
 
-/// All subjects: those compared, the baselines on other frames, regular frames of 1 to 8 units, and the X8 with five
-/// tolerances and with other priorities.
+/// All subjects: those compared, the baselines on other frames, regular frames of 1 to 8 units, the X8 with five
+/// tolerances and with other priorities, and a Y6 and an X8 whose attainable sets are not convex.
 pub fn all(airframes: &[String]) -> Vec<Subject> {
     let mut subjects = compared(airframes);
     subjects.push(Subject::new("wls", "isae-x8"));
@@ -64,15 +64,9 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
     let tolerances = ["0.1", "0.01", "0.004", "2e-4", "3e-5"];
     subjects.extend(tolerances.map(|tolerance| Subject::new("coaxial", &format!("tolerance-{tolerance}"))));
     let priorities = ["roll-pitch-yaw", "reserve-0.1", "roll-pitch-yaw-reserve-0.1"];
-    subjects.extend(priorities.map(|priority| Subject::new("coaxial", priority)));
+    let others = priorities.into_iter().chain(["bent-3", "bent-4"]);
+    subjects.extend(others.map(|airframe| Subject::new("coaxial", airframe)));
     subjects
-}
-
-/// Frames that are counted by name only: a Y6 and an X8 whose attainable sets are not convex.
-pub fn by_name() -> Vec<Subject> {
-    ["bent-3", "bent-4"]
-        .map(|airframe| Subject::new("coaxial", airframe))
-        .to_vec()
 }
 
 /// What one subject costs. Instructions of all requests of a set (`_sum`), of its middle

@@ -186,9 +186,13 @@ impl<S: TorqueLimit> Climb<'_, '_, S> {
             } else if thrust - self.limit > ROUNDING * self.range[1] {
                 row.rest[0] = 1.0;
                 row.excess = thrust - self.limit;
-            } else if let Some(limit) = self.go(point) {
-                row = limit;
             } else {
+                if let Some(limit) = self.go(point)
+                    && corner.keep(&limit, held, price)
+                {
+                    continue;
+                }
+                // Where no corner keeps the limits, by rounding alone, this point is next to them.
                 let tangent = self.tangent();
                 row.excess = yaw - tangent.yaw;
                 // No number where rows are as good as parallel.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo run -p mixer-tests --bin counts                      all subjects, as in the README
-//! cargo run -p mixer-tests --bin counts -- isae-x8 regular-3 only these airframes; bent-3 and bent-4 are not among all
+//! cargo run -p mixer-tests --bin counts -- isae-x8 regular-3 only these airframes
 //! cargo run -p mixer-tests --bin counts -- --bless           all of them, and writes tests/counts.csv and what --fit does
 //! cargo run -p mixer-tests --bin counts -- --fit             counts nothing; fits the compiler's model to tests/counts.csv
 //! ```
@@ -38,9 +38,6 @@ fn print() -> Result<(), String> {
     }
     let airframes = mixer_tests::airframes().map_err(|error| format!("airframes/: {error}"))?;
     let mut subjects = counts::all(&airframes);
-    if !named.is_empty() {
-        subjects.extend(counts::by_name());
-    }
     subjects.retain(|subject| named.is_empty() || named.contains(&subject.airframe));
     let empty = Image::read(&toolchain.build("size", &Variant::default())?)?;
 
