@@ -114,7 +114,7 @@ pub fn toml(places: &[Place], channels: &[usize], options: Options) -> String {
     toml_with_pair(PAPER, places, channels, options)
 }
 
-/// As [`toml`], with these `[throttle]`, `[pair]` and, if any, `[voltage]`.
+/// As [`toml()`], with these `[throttle]`, `[pair]` and, if any, `[voltage]`.
 pub fn toml_with_pair(pair: &str, places: &[Place], channels: &[usize], options: Options) -> String {
     let mut text = format!("name = \"frame\"\n{pair}\n");
     let Options {

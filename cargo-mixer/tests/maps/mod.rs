@@ -44,6 +44,7 @@ pub(crate) fn identified(map: &Path, basis: &str) -> Identified {
 }
 
 /// The tables that it writes, with these throttles instead of its own.
+#[allow(dead_code, reason = "not all tests that share this module change them")]
 pub(crate) fn with_throttle(identified: &Identified, [min, max]: [f64; 2]) -> String {
     let lines: Vec<String> = fragment::text(identified)
         .lines()
