@@ -53,14 +53,7 @@ impl ConvexPart {
     /// A convex polygon inside the attainable set at the reference voltage.
     pub(crate) fn new(pair: &PairMap) -> Self {
         let scale = pair.scale();
-        let border: Vec<[f64; 2]> = pair
-            .border(SAMPLES)
-            .into_iter()
-            .map(|throttles| {
-                let [f, q] = pair.efforts(throttles);
-                [f / scale[0], q / scale[1]]
-            })
-            .collect();
+        let border = pair.scaled_border(SAMPLES);
         let mut polygon = hull(&border);
         for _ in 0..CUTS {
             let Some((point, normal)) = deepest(&border, &polygon) else {

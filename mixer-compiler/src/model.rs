@@ -175,6 +175,17 @@ impl PairMap {
         border
     }
 
+    /// The efforts `[f, Q]` along the border of the attainable set, over [`PairMap::scale`]; points as in
+    /// [`PairMap::border`].
+    pub(crate) fn scaled_border(&self, points: usize) -> Vec<[f64; 2]> {
+        let scale = self.scale();
+        let scaled = |throttles| {
+            let [f, q] = self.efforts(throttles);
+            [f / scale[0], q / scale[1]]
+        };
+        self.border(points).into_iter().map(scaled).collect()
+    }
+
     /// Largest thrust (N) and largest absolute torque (N m) over the box: the sizes of the efforts.
     pub fn scale(&self) -> [f64; 2] {
         let mut scale = [0.0f64; 2];

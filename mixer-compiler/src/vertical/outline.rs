@@ -104,14 +104,7 @@ impl Outline {
     /// is left between the sides is not connected.
     pub(super) fn new(pair: &PairMap) -> Option<Outline> {
         let scale = pair.scale();
-        let border: Vec<[f64; 2]> = pair
-            .border(SAMPLES)
-            .into_iter()
-            .map(|throttles| {
-                let [f, q] = pair.efforts(throttles);
-                [f / scale[0], q / scale[1]]
-            })
-            .collect();
+        let border = pair.scaled_border(SAMPLES);
         let (first, last) = (border[0], border[2 * SAMPLES]);
         let slope = (last[1] - first[1]) / (last[0] - first[0]);
         if last[0] <= first[0] || !slope.is_finite() {
