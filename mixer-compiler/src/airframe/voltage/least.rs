@@ -1,8 +1,8 @@
 //! Proof that a polynomial law leaves thrust and torque over the whole voltage range.
 //!
 //! A polynomial lies between the least and the greatest of its Bernstein coefficients, so what is left of it above a
-//! least factor is positive where all of these are. Where they are not, the interval is halved (de Casteljau) until they are, or until an end of an
-//! interval is itself not positive.
+//! least factor is positive where all of these are. Where they are not, the interval is halved (de Casteljau) until they
+//! are, or until an end of an interval is itself not positive.
 
 use super::horner;
 use crate::bernstein;
@@ -51,7 +51,6 @@ fn descend(bernstein: Vec<f64>, t0: f64, t1: f64, depth: usize) -> Option<f64> {
     descend(left, t0, middle, depth + 1).or_else(|| descend(tail, middle, t1, depth + 1))
 }
 
-/// Binomial coefficient, for n <= 8.
 #[cfg(test)]
 mod tests {
     use super::*;
