@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 /// Name of all of them, hence of their modules.
 const NAME: &str = "measured";
 
-/// The paper's pair and voltage, as in `airframes/isae-x8.toml`.
+/// The paper's pair, as in `airframes/isae-x8.toml`.
 const PAIR: &str = r#"
 [throttle]
 min = 0.1
@@ -15,11 +15,6 @@ basis = "biquadratic"
 thrust_n  = [5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363]
 torque_nm = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720]
 upper_spin = "cw"
-[voltage]
-reference_v = 14.8
-range_v = [12.8, 16.8]
-thrust_exponent = 1.75
-torque_exponent = 1.75
 "#;
 
 /// A made-up pair, whose lower rotor hardly adds thrust while the upper one is at full throttle: its attainable set bends
@@ -33,7 +28,10 @@ basis = "cubic"
 thrust_n  = [1.5, 0.4, -0.6, 0.8, 12.5, -4.9, 9.4, 0.3, 0.2]
 torque_nm = [-0.012, 0.004, 0.003, 0.011, -0.135, 0.002, 0.128, -0.004, 0.003]
 upper_spin = "cw"
-[voltage]
+"#;
+
+/// The paper's voltage, as in `airframes/isae-x8.toml`.
+const VOLTAGE: &str = r#"[voltage]
 reference_v = 14.8
 range_v = [12.8, 16.8]
 thrust_exponent = 1.75
@@ -81,7 +79,7 @@ fn regular(pair: &str, units: u32, options: &str) -> String {
         2 => 90.0,
         _ => 180.0 / f64::from(units),
     };
-    let mut text = format!("name = {NAME:?}\n{pair}{options}");
+    let mut text = format!("name = {NAME:?}\n{pair}{VOLTAGE}{options}");
     let _ = write!(
         text,
         "[layout]\narm_m = 0.45\nunits = {units}\nfirst_angle_deg = {first_angle_deg:?}\n"
