@@ -198,8 +198,7 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     output(writeln!(stdout().lock(), "{out}"))?;
     match file {
         Some(path) => {
-            fragment::write_atomically(path, &fragment)
-                .map_err(|error| complain(format_args!("{}: {error}", path.display())))?;
+            crate::file::write(path, &fragment).map_err(complain)?;
             remark(format_args!("wrote {}", path.display()));
         }
         None if !to_stdout && !args.json => remark("\n(nothing written: -o PAIR.toml writes the tables)"),

@@ -3,8 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::identify::fragment::write_atomically;
-
 pub mod authority;
 pub mod bench;
 pub mod colour;
@@ -61,9 +59,9 @@ pub fn run(args: &ReportArgs) -> ExitCode {
     };
     let study = Study::new(&compiled, args.thrust);
     let page = page::page(&study, bench.as_ref());
-    match write_atomically(&args.output, &page) {
+    match crate::file::write(&args.output, &page) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => crate::complain(format_args!("{}: {error}", args.output.display())),
+        Err(message) => crate::complain(message),
     }
 }
 

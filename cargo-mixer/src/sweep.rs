@@ -7,7 +7,6 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 use mixer_compiler::airframe::Axis;
 
-use crate::identify::fragment::write_atomically;
 use crate::report::authority;
 use crate::report::comparison::Comparison;
 use crate::report::maps::ERROR_SIDE;
@@ -81,9 +80,9 @@ pub fn run(args: &SweepArgs) -> ExitCode {
             let _ = write!(stderr().lock(), "{table}");
             crate::finish(stdout().lock().write_all(csv.as_bytes()))
         }
-        Some(path) => match write_atomically(path, &csv) {
+        Some(path) => match crate::file::write(path, &csv) {
             Ok(()) => crate::finish(write!(stdout().lock(), "{table}")),
-            Err(error) => crate::complain(format_args!("{}: {error}", path.display())),
+            Err(message) => crate::complain(message),
         },
     }
 }
