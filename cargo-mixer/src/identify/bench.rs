@@ -93,6 +93,16 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         mut refused,
     } = log;
     let rows = samples.len() + refused.len();
+    if let (true, Some(first)) = (samples.is_empty(), refused.first()) {
+        return Err(Refusal::of(
+            format!("{name}:{}", first.line),
+            format!(
+                "none of {rows} rows can be read, and this is the first: {}",
+                first.reason
+            ),
+            "numbers in every row, throttles in [0, 1] or with their unit",
+        ));
+    }
     no_empty_throttle(
         &name,
         columns.upper.as_ref().map_or("", |c| c.name.as_str()),
@@ -232,7 +242,7 @@ fn no_empty_throttle(name: &str, column: &str, samples: &[Sample], rotor: usize)
         return Ok(());
     }
     let reason = match samples.len() {
-        0 => "no row could be read".to_string(),
+        0 => "there are no rows below the header".to_string(),
         n => format!("the throttle column {column:?} is empty in all {n} rows"),
     };
     Err(Refusal::of(

@@ -242,7 +242,9 @@ impl Cells {
         if throttle > 1.02 {
             let why = match column.scale {
                 Scale::Factor(1.0) if !self.pwm_given => {
-                    "is above 1: give --pwm-range 1000,2000 if it is a pulse width".to_string()
+                    "is above 1: give --pwm-range 1000,2000 if it is a pulse width, --unit upper=% --unit lower=% if \
+                     it is in per cent"
+                        .to_string()
                 }
                 _ => format!("is throttle {throttle:.3}, above the range {low}..{high} us (--pwm-range)"),
             };

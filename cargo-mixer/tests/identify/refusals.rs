@@ -90,11 +90,16 @@ fn missing_columns_and_empty_commands() {
     assert!(reason(b"a,b,c\n1,2,3\n").contains("no throttle column"));
     let text = reason("ESC signal (µs),Thrust (gf)\n,1\n,2\n".as_bytes());
     assert!(text.contains("empty in all 2 rows"), "{text}");
-    assert!(reason(b"upper,lower,thrust_n,torque_nm\n").contains("no row could be read"));
+    assert!(reason(b"upper,lower,thrust_n,torque_nm\n").contains("no rows below the header"));
 }
 
 #[test]
 fn only_bad_rows() {
+    let text = reason(b"upper,lower,thrust_n,torque_nm\n50,50,8,.1\n60,50,9,.2\n");
+    assert!(
+        text.starts_with("bench.csv:2: none of 2 rows can be read") && text.contains("--unit upper=%"),
+        "{text}"
+    );
     let text = reason(b"upper,lower,thrust_n,torque_nm\n.5,.5,,1\n.6,.5,,2\n");
     assert!(
         text.contains("none of 2 rows can be used") && text.contains("line 2: the thrust is empty"),
