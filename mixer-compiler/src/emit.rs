@@ -59,6 +59,19 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
                 ::mixer_rt::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
             }
 
+            /// [`mix`] with the rotors out that `health` names by channel.
+            ///
+            /// # Errors
+            /// As [`mix`].
+            #[inline]
+            pub fn mix_with_health(
+                setpoint: &::mixer_rt::Wrench,
+                voltage_v: f32,
+                health: ::mixer_rt::Health,
+            ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
+                ::mixer_rt::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
+            }
+
             /// The tables; see `mixer_rt::Tables` for their meaning and units.
             pub static TABLES: #tables_type = #tables;
         }

@@ -119,6 +119,13 @@ fn refusal(given: &Path, message: &str, span: Span) -> proc_macro2::TokenStream 
                 ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
                     ::core::unreachable!()
                 }
+                pub fn mix_with_health(
+                    _: &::mixer_rt::Wrench,
+                    _: f32,
+                    _: ::mixer_rt::Health,
+                ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
+                    ::core::unreachable!()
+                }
             }
         }
     });
