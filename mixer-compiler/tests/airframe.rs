@@ -81,6 +81,44 @@ fn isae_x8_is_as_in_the_paper() {
     assert_eq!(airframe.allocation.axes, Axis::ALL);
 }
 
+/// `docs/firmware.md` against PX4's `octa_cox`: motors from 1, FRD.
+#[test]
+fn the_guide_s_units_are_those_of_px4() {
+    let guide = std::fs::read_to_string(workspace().join("docs/firmware.md")).unwrap();
+    let tables: Vec<&str> = guide
+        .split("```toml\n")
+        .filter_map(|block| block.split("```").next())
+        .filter(|block| block.starts_with("[[unit]]") || block.starts_with("[allocation]"))
+        .collect();
+    assert_eq!(tables.len(), 2);
+    let airframe = read(&format!("{PAIR}{}", tables.concat()));
+    let units: Vec<_> = airframe
+        .units
+        .iter()
+        .map(|unit| {
+            let [x, y, _] = unit.position_m.map(f64::signum);
+            (
+                x,
+                y,
+                unit.upper_spin,
+                unit.upper_channel + 1,
+                unit.lower_channel + 1,
+            )
+        })
+        .collect();
+    assert_eq!(
+        units,
+        [
+            (1.0, 1.0, Spin::Ccw, 1, 6),
+            (1.0, -1.0, Spin::Cw, 2, 5),
+            (-1.0, -1.0, Spin::Ccw, 3, 8),
+            (-1.0, 1.0, Spin::Cw, 4, 7)
+        ]
+    );
+    assert_eq!(airframe.allocation.airmode, Airmode::RollPitch);
+    assert_eq!(airframe.allocation.yaw_reserve_nm, 0.1);
+}
+
 #[test]
 fn layout_expands_to_units_clockwise_from_the_nose() {
     let airframe = read(&format!(

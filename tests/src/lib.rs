@@ -19,6 +19,11 @@ pub mod vectors;
 
 use std::path::{Path, PathBuf};
 
+/// The examples of `docs/firmware.md` are run with the other documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/firmware.md")]
+pub struct Firmware;
+
 /// The project's folder.
 pub fn root() -> PathBuf {
     // This package lies directly in it.
