@@ -1,4 +1,4 @@
-//! The range of bare thrust, mixed with the very tables that are emitted: a frame that cannot hover is refused.
+//! The range of bare thrust, by the mixer itself: a frame that cannot hover is refused.
 
 use mixer_rt::{Airmode, Axis, Direction, Saturation, Wrench};
 
@@ -9,7 +9,11 @@ use crate::tables::MixerTables;
 /// More thrust than any airframe has, N.
 const BEYOND_N: f32 = 1e5;
 
-/// Least and largest thrust without roll, pitch and yaw, N at the reference voltage.
+/// Halvings of the thrusts between one that is delivered and one that is not.
+const HALVINGS: usize = 24;
+
+/// Least and largest thrust without roll, pitch and yaw, N at the reference voltage, within the polygon that the general
+/// way knows of the attainable set.
 ///
 /// # Errors
 /// A layout that cannot hover: at no thrust, or at a single one only, the served torques vanish.
@@ -17,16 +21,8 @@ pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<
     // Where thrust gives way to the torques.
     let mut tables = tables.clone();
     tables.desaturation.airmode = Airmode::RollPitchYaw;
-    let voltage_v = airframe
-        .voltage
-        .as_ref()
-        .map_or(0.0, |voltage| voltage.reference_v as f32);
     let bare = |thrust_n: f32| {
-        let setpoint = Wrench {
-            thrust_n,
-            ..Wrench::default()
-        };
-        let (_, achieved, saturation) = tables.mix(&setpoint, voltage_v).ok()?;
+        let (achieved, saturation) = mix_bare(airframe, &tables, thrust_n)?;
         let level = airframe
             .allocation
             .axes
@@ -45,6 +41,47 @@ pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<
             "check positions, spins and thrust axes: the units must balance each other, each with a torque near zero",
         )]),
     }
+}
+
+/// The same with the tables that are emitted, whose closed form may know more of the attainable set than the polygon:
+/// from the ends `within` the polygon outwards.
+pub(crate) fn delivered_range(
+    airframe: &Airframe,
+    tables: &MixerTables,
+    within @ [floor, ceiling]: [f32; 2],
+) -> [f32; 2] {
+    if tables.shortcut.is_none() {
+        return within;
+    }
+    let end = |mut inside: f32, mut outside: f32| {
+        let mut reached = inside;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            match mix_bare(airframe, tables, middle) {
+                Some((achieved, saturation)) if !saturation.any_axis() => {
+                    (inside, reached) = (middle, achieved.thrust_n);
+                }
+                _ => outside = middle,
+            }
+        }
+        reached
+    };
+    let span = ceiling - floor;
+    [end(floor, floor - span), end(ceiling, ceiling + span)]
+}
+
+/// What is made of a request for thrust alone at the reference voltage.
+fn mix_bare(airframe: &Airframe, tables: &MixerTables, thrust_n: f32) -> Option<(Wrench, Saturation)> {
+    let voltage_v = airframe
+        .voltage
+        .as_ref()
+        .map_or(0.0, |voltage| voltage.reference_v as f32);
+    let setpoint = Wrench {
+        thrust_n,
+        ..Wrench::default()
+    };
+    let (_, achieved, saturation) = tables.mix(&setpoint, voltage_v).ok()?;
+    Some((achieved, saturation))
 }
 
 fn saturated(saturation: Saturation, axis: Axis) -> bool {

@@ -65,7 +65,7 @@ pub struct Compiled {
     pub evaluator: Evaluator,
     /// What it was observed to miss.
     pub residual: Residual,
-    /// Least and largest thrust without torque at the reference voltage, N.
+    /// Least and largest thrust that is delivered without torque at the reference voltage, N.
     pub thrust_range_n: [f32; 2],
     /// What it is proven to miss at most.
     pub certificate: Certificate,
@@ -104,8 +104,9 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual,
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
-    let thrust_range_n = hover::thrust_range(&airframe, &tables)?;
-    tables.shortcut = vertical::table(&airframe, &effectiveness, lost_area.convexity, thrust_range_n);
+    let in_polygon = hover::thrust_range(&airframe, &tables)?;
+    tables.shortcut = vertical::table(&airframe, &effectiveness, lost_area.convexity, in_polygon);
+    let thrust_range_n = hover::delivered_range(&airframe, &tables, in_polygon);
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let lost_between_sides = tables
         .shortcut

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use mixer_compiler::diagnostic::{Code, Diagnostics};
 use mixer_compiler::{Compiled, Source};
+use mixer_rt::Wrench;
 
 /// `airframes/isae-x8.toml` with each `(from, to)` replaced.
 fn isae_x8(replacements: &[(&str, &str)]) -> Result<Compiled, Diagnostics> {
@@ -71,6 +72,44 @@ fn least_idle_is_where_the_model_folds() {
     let faults = refused(&[("min = 0.10", "min = 0.0887")]);
     assert_eq!(faults.faults()[0].code, Code::Fold);
     assert!(faults.faults()[0].help.contains("0.08875"), "{faults}");
+}
+
+/// A request for thrust alone is delivered at both ends of the stated range and not beyond them, in closed form between
+/// arcs and between polylines, and in the general way.
+#[test]
+fn bare_thrust_is_what_is_delivered() {
+    let bent = [
+        ("min = 0.10", "min = 0.25"),
+        (
+            "[5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363]",
+            "[0.0, 0.0, 14.0, 0.0, -4.8, 0.0, 10.0, 0.0]",
+        ),
+        (
+            "[-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720]",
+            "[0.0, 0.0, -0.15, 0.0, 0.0, 0.0, 0.14, 0.0]",
+        ),
+    ];
+    let position = "position_m = [0.3182, 0.3182, 0.0]";
+    let tilted = format!("{position}\naxis = [0.0998, 0.0, -0.9950]");
+    let cases: [&[(&str, &str)]; 3] = [&[], &bent, &[(position, &tilted)]];
+    for replacements in cases {
+        let compiled = isae_x8(replacements).unwrap_or_else(|faults| panic!("{faults}"));
+        let tolerance = compiled.tables.tolerance.wrench[3];
+        let [floor, ceiling] = compiled.thrust_range_n;
+        for (end, outwards) in [(floor, -1.0), (ceiling, 1.0)] {
+            let is_delivered = |thrust_n: f32| {
+                let setpoint = Wrench {
+                    thrust_n,
+                    ..Wrench::default()
+                };
+                let (_, _, saturation) = compiled.tables.mix(&setpoint, 14.8).unwrap();
+                !saturation.any_axis()
+            };
+            assert!(is_delivered(end), "{end}");
+            let beyond = end + outwards * 2.0 * tolerance;
+            assert!(!is_delivered(beyond), "{beyond} beyond {end}");
+        }
+    }
 }
 
 /// Looser tolerances get cheaper evaluators, tighter ones more steps; every choice is within its tolerance.
