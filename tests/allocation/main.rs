@@ -4,10 +4,9 @@
 //! |---|---|
 //! | `delivery.rs` | wrenches of random throttles: delivered |
 //! | `optimum.rs` | linear programs: no priority short by 1 % of its authority |
-//! | `continuity.rs` | requests at the end of a priority: answered as their neighbours are |
+//! | `continuity.rs` | requests near which throttles or what is delivered once jumped: answered as their neighbours are |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
-//! | `steep.rs` | requests near which throttles once jumped |
 //! | `degenerate.rs` | numbers that no controller sends |
 //! | `shapes.rs` | the same on attainable sets that are not convex, real ones with `MIXER_BENCH_DATA` |
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
@@ -22,7 +21,6 @@ mod layout;
 mod optimum;
 mod properties;
 mod shapes;
-mod steep;
 
 use mixer_tests::frames::{self, Options, Place};
 use mixer_tests::request::Frame;

@@ -12,7 +12,7 @@ use mixer_tests::soundness;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::layout::{any_request, attainable_request, layout, moderate_request};
+use crate::layout::{Draw, Layout, any_request, attainable_request, layout, moderate_request};
 
 /// The largest change of a throttle where nothing forces more.
 const JUMP: f32 = 0.02;
@@ -50,10 +50,22 @@ fn many<S: Strategy>(request: S, count: usize) -> impl Strategy<Value = Vec<S::V
     prop::collection::vec(request, 1..=count)
 }
 
-/// Fails where the answer to a request has a fault.
-fn sound(frame: &Frame, request: &Request) -> Result<(), TestCaseError> {
+/// Holds every draw for `layout` to `property`; a layout that makes no frame counts for nothing.
+fn each<D>(
+    layout: &Layout,
+    draws: &[D],
+    property: impl Fn(&Frame, &D) -> Result<(), TestCaseError>,
+) -> Result<(), TestCaseError> {
+    let frame = layout.frame().ok_or_else(|| TestCaseError::reject("no frame"))?;
+    draws.iter().try_for_each(|draw| property(&frame, draw))
+}
+
+/// Throttles in range, the truth about the achieved wrench, flags by axis and side, no axis reversed or exceeded,
+/// (roll, pitch) in the direction asked, no thrust raised with airmode disabled.
+fn sound(frame: &Frame, draw: &Draw) -> Result<(), TestCaseError> {
+    let request = draw.of(frame);
     let answer = request.mix(frame).expect("finite");
-    let fault = soundness::fault(frame, request, &answer);
+    let fault = soundness::fault(frame, &request, &answer);
     let fault = fault.map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
     prop_assert_eq!(fault, None, "{:?} -> {:?}", request, answer);
     Ok(())
@@ -62,34 +74,20 @@ fn sound(frame: &Frame, request: &Request) -> Result<(), TestCaseError> {
 proptest! {
     #![proptest_config(config())]
 
-    /// Throttles in range, the truth about the achieved wrench, flags by axis and side, no axis reversed or exceeded,
-    /// (roll, pitch) in the direction asked, no thrust raised with airmode disabled.
     #[test]
     fn answers_are_sound(layout in layout(), draws in many(any_request(0), 200)) {
-        let frame = layout.frame();
-        prop_assume!(frame.is_some());
-        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
-            let request = draw.of(frame);
-            sound(frame, &request)?;
-        }
+        each(&layout, &draws, sound)?;
     }
 
     #[test]
     fn answers_with_rotors_out_are_sound(layout in layout(), draws in many(any_request(2), 100)) {
-        let frame = layout.frame();
-        prop_assume!(frame.is_some());
-        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
-            let request = draw.of(frame);
-            sound(frame, &request)?;
-        }
+        each(&layout, &draws, sound)?;
     }
 
     /// No priority is short by more than 1 % of its authority, whichever of the rotors work.
     #[test]
     fn answers_reach_the_optimum(layout in layout(), draws in many(moderate_request(2), 20)) {
-        let frame = layout.frame();
-        prop_assume!(frame.is_some());
-        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
+        each(&layout, &draws, |frame, draw| {
             let request = draw.of(frame);
             let answer = request.mix(frame).expect("finite");
             let factors = frame.physics.factors(request.volts);
@@ -100,15 +98,14 @@ proptest! {
                 shortfall.is_none_or(|shortfall| !shortfall.misses()),
                 "{:?}: {:?} -> {:?}", shortfall, request, answer
             );
-        }
+            Ok(())
+        })?;
     }
 
     /// The wrench of throttles that keep 2 % off the ends of their range.
     #[test]
     fn attainable_wrenches_are_delivered(layout in layout(), draws in many(attainable_request(0.02, 0), 150)) {
-        let frame = layout.frame();
-        prop_assume!(frame.is_some());
-        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
+        each(&layout, &draws, |frame, draw| {
             let request = draw.of(frame);
             let answer = request.mix(frame).expect("finite");
             let served = frame.served();
@@ -120,7 +117,8 @@ proptest! {
                     "{} misses by {}: {:?} -> {:?}", axis.name(), missed, request, answer
                 );
             }
-        }
+            Ok(())
+        })?;
     }
 
     /// The wrench of throttles at the ends of their range: the border of what is attainable.
@@ -129,16 +127,15 @@ proptest! {
         layout in layout(),
         draws in many(attainable_request(0.0, 0), 150),
     ) {
-        let frame = layout.frame();
-        prop_assume!(frame.is_some());
-        for (draw, frame) in draws.iter().zip(frame.iter().cycle()) {
+        each(&layout, &draws, |frame, draw| {
             let request = draw.of(frame);
             let answer = request.mix(frame).expect("finite");
             for axis in (0..4).filter(|&axis| frame.served()[axis]) {
                 let missed = (request.asked()[axis] - answer.achieved[axis]).abs();
                 prop_assert!(missed <= 0.005 * frame.authority[axis], "axis {}: {:?} -> {:?}", axis, request, answer);
             }
-        }
+            Ok(())
+        })?;
     }
 
     /// A relative change of 1e-4 of one axis, or of all, moves no throttle by more than 0.02, but where the priorities
@@ -148,9 +145,7 @@ proptest! {
         layout in layout(),
         draws in many((moderate_request(0), 0..5_usize), 300),
     ) {
-        let frame = layout.frame();
-        prop_assume!(frame.is_some());
-        for ((draw, moved), frame) in draws.iter().zip(frame.iter().cycle()) {
+        each(&layout, &draws, |frame, (draw, moved)| {
             let request = draw.of(frame);
             let mut near = request;
             for (axis, value) in near.wrench.iter_mut().enumerate() {
@@ -168,7 +163,8 @@ proptest! {
                     "{}, {:?} of it forced: {:?} -> {:?}, then {:?} -> {:?}", change, forced, request, answer, near, moved
                 );
             }
-        }
+            Ok(())
+        })?;
     }
 
     /// A refusal exactly for what is not finite, whatever the bits and whichever rotors are out.
@@ -177,9 +173,7 @@ proptest! {
         layout in layout(),
         draws in many((any::<[u32; 5]>(), any::<[u8; 3]>()), 200),
     ) {
-        let frame = layout.frame();
-        prop_assume!(frame.is_some());
-        for ((bits, failed), frame) in draws.iter().zip(frame.iter().cycle()) {
+        each(&layout, &draws, |frame, (bits, failed)| {
             let [volts, wrench @ ..] = bits.map(f32::from_bits);
             let request = Request {
                 wrench,
@@ -200,6 +194,7 @@ proptest! {
                 }
                 Err(error) => prop_assert_eq!(Some(error), refusal),
             }
-        }
+            Ok(())
+        })?;
     }
 }
