@@ -1,9 +1,10 @@
-//! Requests that no controller sends, and frames at the edge of what makes sense.
+//! Requests that no controller sends, voltages that no battery has, and frames at the edge of what makes sense.
 
 use mixer_rt::{Axis, Health, SetpointError};
 use mixer_tests::frames::{self, AIRMODES, Place};
+use mixer_tests::golden;
 use mixer_tests::random::Random;
-use mixer_tests::request::Request;
+use mixer_tests::request::{Frame, Request};
 use mixer_tests::soundness;
 
 use crate::{REFERENCE_V, compile};
@@ -59,7 +60,10 @@ fn degenerate_requests_are_answered() {
             for _ in 0..200 {
                 let request = Request {
                     wrench: std::array::from_fn(|_| NUMBERS[random.index(NUMBERS.len())]),
-                    volts: REFERENCE_V,
+                    volts: match random.index(2) {
+                        0 => REFERENCE_V,
+                        _ => NUMBERS[random.index(NUMBERS.len())],
+                    },
                     health: Health::GOOD,
                 };
                 let answer = request.mix(&frame).expect("finite");
@@ -96,4 +100,25 @@ fn what_is_not_finite_is_refused_by_name() {
             );
         }
     }
+}
+
+#[test]
+fn an_airframe_without_voltage_takes_any() {
+    let frame = Frame::new(golden::compile("single-pair").expect("compiles"));
+    assert_eq!(frame.compiled.tables.voltage, None);
+    let at = |volts| {
+        let request = Request {
+            wrench: [0.0, 0.0, 0.05, 10.0],
+            volts,
+            health: Health::GOOD,
+        };
+        request.mix(&frame).expect("finite")
+    };
+    for volts in NUMBERS
+        .into_iter()
+        .chain([f32::NAN, f32::INFINITY, f32::NEG_INFINITY])
+    {
+        assert_eq!(at(volts), at(REFERENCE_V), "{volts}");
+    }
+    assert!(!at(f32::NAN).saturation.voltage_clamped());
 }
