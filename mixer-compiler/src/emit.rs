@@ -50,7 +50,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage (V).
             ///
             /// # Errors
-            /// A setpoint or voltage that is infinite or NaN.
+            /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a correction.
             #[inline]
             pub fn mix(
                 setpoint: &::mixer_rt::Wrench,

@@ -20,7 +20,8 @@ pub struct Mix<const CHANNELS: usize> {
 }
 
 /// Mixes for an airframe of `UNITS` units and `CHANNELS` = 2 `UNITS` rotors. `voltage_v` is the battery's present
-/// voltage, V; an airframe without `[voltage]` ignores it.
+/// voltage, V: outside the airframe's range it is taken as the nearest within and flagged, zero as well; an airframe
+/// without `[voltage]` ignores it. Any finite setpoint is mixed.
 ///
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
