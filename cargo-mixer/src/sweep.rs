@@ -124,7 +124,7 @@ fn no_yaw(study: &Study<'_>) -> String {
     if study.serves(Axis::Yaw) {
         let [floor, ceiling] = study.compiled.thrust_range_n;
         format!(
-            "at {} N {name} has no yaw to sweep; its bare thrust is {:.1} to {:.1} N",
+            "at {:?} N {name} has no yaw to sweep; its bare thrust is {:.1} to {:.1} N",
             study.thrust_n, floor, ceiling
         )
     } else {

@@ -216,7 +216,8 @@ pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>>
                 throttle.high
             )
         }
-        None => "check the order and the signs of the coefficients: thrust must rise with both throttles"
+        None => "check the order and the signs of the coefficients: thrust must rise with both throttles, torque fall \
+                 with the upper one and rise with the lower one"
             .to_owned(),
     };
     Err(vec![match fold {
