@@ -173,7 +173,11 @@ impl fmt::Display for Report<'_> {
             rounded_up(torque),
             summary.observed_points
         )?;
-        writeln!(f, "tables          {} bytes", summary.table_bytes)
+        let linked = match summary.attainable_area_lost_in_closed_form {
+            Some(_) => "; without `mix_with_health` only what the closed form reads is linked",
+            None => "",
+        };
+        writeln!(f, "tables          {} bytes{linked}", summary.table_bytes)
     }
 }
 
