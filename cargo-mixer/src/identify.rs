@@ -45,7 +45,7 @@ pub mod voltage;
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
 ///
-/// Reads coaxial maps (newdexterity columns), RCbenchmark 1520/1580/1780, Tyto Flight Stand, and the plain
+/// Reads coaxial maps (`PWM Left`, `PWM Right`, ..), RCbenchmark 1520/1580/1780, Tyto Flight Stand, and the plain
 /// `upper,lower,thrust_n,torque_nm[,voltage_v]` with throttles in [0, 1]. Several files are joined: repeats of one
 /// pair, the same at other voltages, and single-rotor sweeps at two voltages for the exponents.
 #[derive(Debug, Clone, Args)]

@@ -10,8 +10,8 @@ use mixer_compiler::isolated::IsolatedTables;
 
 use super::{compiled, root, scratch, x8};
 
-/// The largest yaw that four units give at 10 N each, N m: four times the lesser of -Q_min and Q_max there (0.571).
-const YAW_AT_10_N: f64 = 0.57;
+/// The largest yaw that four units give at 10 N each, N m: twice Q_max - Q_min there (0.644).
+const YAW_AT_10_N: f64 = 0.643;
 
 #[test]
 fn the_coaxial_mixer_keeps_every_unit_s_thrust_and_the_conventional_one_does_not() {
@@ -47,7 +47,10 @@ fn the_coaxial_mixer_keeps_every_unit_s_thrust_and_the_conventional_one_does_not
         let [low, high] = range(thrusts);
         spread = spread.max(high - low);
         // The lower rotor works in the wake of the upper one, which this mixer does not know.
-        assert!(row.conventional.wrench[3] < 36.0, "{:?}", row.conventional.wrench);
+        assert!(row.conventional.wrench[3] < 37.5, "{:?}", row.conventional.wrench);
+        if row.conventional.within {
+            assert!(row.conventional.wrench[3] < 36.0, "{:?}", row.conventional.wrench);
+        }
     }
     assert!(constant >= 30, "{constant}");
     assert!(spread > 1.5, "{spread}");
