@@ -54,9 +54,13 @@ fn mix(path: &str, setpoints: &str) -> String {
     let compiled = mixer_compiler::compile(&mixer_compiler::Source::new(path, text));
     let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
     let mut mixed = Vec::new();
-    let bad = cargo_mixer::mix::mix(&compiled, setpoints.as_bytes(), &mut mixed, |bad| {
-        eprintln!("{bad:?}")
-    });
+    let bad = cargo_mixer::mix::mix(
+        &compiled,
+        mixer_rt::Health::GOOD,
+        setpoints.as_bytes(),
+        &mut mixed,
+        |bad| eprintln!("{bad:?}"),
+    );
     assert!(matches!(bad, Ok(0)), "{bad:?}");
     String::from_utf8(mixed).expect("CSV is UTF-8")
 }

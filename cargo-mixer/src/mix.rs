@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
+use mixer_rt::Health;
 
 use crate::setpoints::{BadLine, HeaderError, Setpoints};
 
@@ -17,6 +18,7 @@ use crate::setpoints::{BadLine, HeaderError, Setpoints};
 ///      Numbers read back to the same bits (f32).
 ///      saturation is a sum: 1 roll, 4 pitch, 16 yaw, 64 thrust is achieved below the setpoint; 2, 8, 32, 128 above
 ///      it; 256 the voltage was outside the airframe's range and clamped into it.
+///      The throttle of a rotor that is out is 0.
 ///
 /// A bad row is reported with its line on stderr and left out; the exit status is then 1.
 #[derive(clap::Args, Debug)]
@@ -24,6 +26,9 @@ use crate::setpoints::{BadLine, HeaderError, Setpoints};
 pub struct MixArgs {
     /// The airframe file
     airframe: PathBuf,
+    /// The rotor at this output is out; for several, again
+    #[arg(long, value_name = "CHANNEL")]
+    failed: Vec<u8>,
 }
 
 /// Runs the command.
@@ -32,9 +37,27 @@ pub fn run(args: &MixArgs) -> ExitCode {
         Ok(compiled) => compiled,
         Err(refusal) => return refusal.report(),
     };
+    let rotors = compiled.airframe.rotors();
+    if let Some(channel) = args
+        .failed
+        .iter()
+        .find(|channel| usize::from(**channel) >= rotors)
+    {
+        crate::complain(format_args!(
+            "--failed {channel}: the channels of {} are 0 to {}",
+            compiled.airframe.name,
+            rotors - 1
+        ));
+        return ExitCode::from(2);
+    }
+    let health = args
+        .failed
+        .iter()
+        .fold(Health::GOOD, |health, channel| health.with_failed(*channel));
     let bad_line = |BadLine { line, message }| crate::complain(format_args!("stdin:{line}: {message}"));
     match mix(
         &compiled,
+        health,
         stdin().lock(),
         BufWriter::new(stdout().lock()),
         bad_line,
@@ -59,13 +82,14 @@ pub enum Stopped {
     Output(io::Error),
 }
 
-/// Mixes every row of `input` into `output`; bad rows go to `bad_line`. Returns their number. A reader of `output`
+/// Mixes every row of `input` into `output` with the rotors that `health` leaves; bad rows go to `bad_line`. Returns their number. A reader of `output`
 /// that has seen enough ends the mixing without an error.
 ///
 /// # Errors
 /// A header that is none, or input or output that fails.
 pub fn mix<T>(
     compiled: &Compiled,
+    health: Health,
     input: impl Read,
     mut output: impl Write,
     mut bad_line: impl FnMut(BadLine) -> T,
@@ -105,7 +129,7 @@ pub fn mix<T>(
         };
         let mixed = row.and_then(|row| {
             let voltage_v = row.voltage_v.unwrap_or(reference_v);
-            let mixed = compiled.tables.mix(&row.wrench, voltage_v);
+            let mixed = compiled.tables.mix_with_health(&row.wrench, voltage_v, health);
             mixed.map_err(|error| BadLine {
                 line,
                 message: error.to_string(),

@@ -21,6 +21,20 @@ fn row(line: &str) -> (Vec<f32>, [f32; 4], u16) {
 }
 
 #[test]
+fn a_rotor_that_is_out_stands_still_and_thrust_is_kept() {
+    let input = format!("{HEADER}\n0,0,0,40\n");
+    let output = run_with(&["mix", X8, "--failed", "4"], input.as_bytes());
+    assert_status(&output, 0);
+    let (throttles, achieved, _) = row(stdout(&output).lines().nth(1).unwrap());
+    let stopped: Vec<usize> = (0..8).filter(|&channel| throttles[channel] == 0.0).collect();
+    assert_eq!(stopped, [4]);
+    assert!((achieved[3] - 40.0).abs() < 0.05, "{achieved:?}");
+    let output = run_with(&["mix", X8, "--failed", "0", "--failed", "8"], input.as_bytes());
+    assert_status(&output, 2);
+    assert!(stderr(&output).contains("0 to 7"), "{}", stderr(&output));
+}
+
+#[test]
 fn mix_prints_the_bits_of_the_tables() {
     let text = std::fs::read_to_string(root().join(X8)).unwrap();
     let compiled = mixer_compiler::compile(&mixer_compiler::Source::new(X8, text)).unwrap();
