@@ -2,7 +2,8 @@
 //!
 //! A coaxial push-pull multirotor has `n` units of two stacked, contra-rotating rotors. The lower rotor works in
 //! the wake of the upper one, so a unit's thrust and torque are polynomials of *both* throttles (Chebbi et al.
-//! 2020, eq. (1)). This crate evaluates what `mixer-compiler` has tabulated from an airframe file:
+//! 2020, eq. (1)). This crate evaluates what `mixer-compiler` has tabulated from an airframe file. Firmware calls the `mix`
+//! of the module that `mixer_macros::airframe!` or `mixer_compiler::build_script` makes of that file, which calls [`mix()`]:
 //!
 //! ```text
 //! setpoint u = [roll, pitch, yaw, thrust]                                     wrench.rs

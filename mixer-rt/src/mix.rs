@@ -34,7 +34,8 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>
     mix_with_health::<UNITS, CHANNELS, P, I, S>(tables, setpoint, voltage_v, Health::GOOD)
 }
 
-/// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells how much.
+/// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells how much. `UNITS` is not
+/// inferred; the generated module has this function without it. Links the general way of desaturation for every frame.
 ///
 /// # Errors
 /// As [`mix`].
