@@ -1,15 +1,19 @@
 //! The attainable set of one unit: all efforts (f, Q) that its rotors can give together.
 //!
 //! It is the image of the throttle box under the forward map, a curved quadrangle ("the zone of achievable
-//! thrust-torque pairs", section IV-B2), almost convex: for the paper's pair its convex hull is 0.35 % larger. The
-//! compiler tabulates a convex polygon inside it. Of a unit that has lost a rotor a curve is left, and of that
-//! its chord.
+//! thrust-torque pairs", section IV-B2), almost convex for the paper's pair: its convex hull is 0.35 % larger. Those of
+//! real pairs bend inwards more. The compiler tabulates a polygon inside it, all of which is seen from one point, the
+//! centre. Of a unit that has lost a rotor a curve is left, and of that its chord.
 //!
 //! Desaturation projects points of the plane onto this set. The projection of `p` is piecewise affine: the plane
 //! falls into the set itself, a strip beyond every edge, on which `p` goes to the edge, and a cone beyond every
 //! corner, on which it goes to the corner. [`Face`] names the region that `p` lies in, and a [`Point`] is held by
 //! coordinates of its own region, so that the projection stays exact however far outside `p` lies, and a point that
 //! comes to a border is on it.
+//!
+//! Where the border bends inwards, at a corner of more than 180 degrees, the strips of both edges overlap: there a
+//! projection that comes to the corner goes on along the other edge, from the same distance. `p` turns about the corner
+//! by the angle between the edges.
 
 use crate::{clamp, sqrt};
 
@@ -24,14 +28,13 @@ pub struct Edge {
     pub length: f32,
 }
 
-/// A convex set inside the attainable set at the reference voltage; at another voltage it is scaled by
-/// `[k_f, k_Q]`.
+/// A set inside the attainable set at the reference voltage; at another voltage it is scaled by `[k_f, k_Q]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttainableSet<'a> {
     /// Newtons and newton metres per unit of the coordinates below; both positive. They make the set about as
     /// high as it is wide.
     pub scale: [f32; 2],
-    /// A point well inside (for a chord its middle), scaled.
+    /// A point inside from which all of it is seen (for a chord its middle), scaled.
     pub centre: [f32; 2],
     /// The edges of the polygon, anticlockwise in the plane with f to the right and Q upwards, each starting
     /// where its predecessor ends. A single edge is a chord, taken from both sides.
@@ -290,14 +293,21 @@ impl AttainableSet<'_> {
         match point.face {
             Face::Interior => self.exit(point, velocity, &mut falls),
             Face::Edge => {
-                falls.watch(point.at[0], along, STANDING, Face::Corner, index);
-                falls.watch(
-                    self.edge(index).length - point.at[0],
-                    -along,
-                    STANDING,
-                    Face::Corner,
-                    self.after(index),
-                );
+                let (height, corner, next) = if along < 0.0 {
+                    (point.at[0], index, self.before(index))
+                } else {
+                    let after = self.after(index);
+                    (self.edge(index).length - point.at[0], after, after)
+                };
+                let (face, next) = if self.turn(corner) >= 0.0 {
+                    (Face::Corner, corner)
+                } else if barred == Some((Face::Edge, next)) {
+                    // Either edge leads to the other: the way goes inside.
+                    (Face::Interior, index)
+                } else {
+                    (Face::Edge, next)
+                };
+                falls.watch(height, -along.abs(), STANDING, face, next);
                 if !self.is_chord() {
                     falls.watch(point.at[1], away, noise, Face::Interior, index);
                 }
@@ -314,27 +324,39 @@ impl AttainableSet<'_> {
         falls.first
     }
 
-    /// Where a point inside leaves the polygon. Where the way's end is seen through an edge that it lies beyond, the way
-    /// leaves through that edge or before: from there the same again.
+    /// Where a point inside leaves the polygon: through the first edge, of those through which the way comes to be seen in
+    /// turn, whose far corner it leaves on the centre's side, or through the last, if it ends beyond that.
     #[inline]
     fn exit(&self, point: &mut Point, velocity: [f32; 2], falls: &mut Falls) {
         let from = point.at;
-        let mut allowed = STANDING;
+        let limit = falls.limit;
+        let end = [from[0] + limit * velocity[0], from[1] + limit * velocity[1]];
+        let last = self.sector(end, point.index);
+        let mut index = if from == self.centre {
+            last
+        } else {
+            self.sector(from, point.index)
+        };
+        let left_of_way =
+            |point: [f32; 2]| velocity[0] * (point[1] - from[1]) - velocity[1] * (point[0] - from[0]);
+        let forwards = left_of_way(self.centre) >= 0.0;
         for _ in self.edges {
-            let limit = falls.limit;
-            let end = [from[0] + limit * velocity[0], from[1] + limit * velocity[1]];
-            let index = self.sector(end, point.index);
-            let edge = self.edge(index);
-            if edge.beyond(edge.relative(end)) <= allowed {
+            if index == last {
                 break;
             }
-            allowed = 0.0;
-            point.index = index;
+            let next = self.after(index);
+            let far = left_of_way(self.corner(if forwards { next } else { index }));
+            let is_passed = if forwards { far <= 0.0 } else { far >= 0.0 };
+            if !is_passed && self.edge(index).beyond(velocity) > 0.0 {
+                break;
+            }
+            index = if forwards { next } else { self.before(index) };
+        }
+        point.index = index;
+        let edge = self.edge(index);
+        if index != last || edge.beyond(edge.relative(end)) > STANDING {
             let depth = -edge.beyond(edge.relative(from));
             falls.watch(depth, -edge.beyond(velocity), STANDING, Face::Edge, index);
-            if falls.limit >= limit {
-                break;
-            }
         }
     }
 
@@ -353,6 +375,13 @@ impl AttainableSet<'_> {
         let from = *point;
         let at = match (from.face, face) {
             (Face::Edge, Face::Interior) => self.edge(from.index).at(from.at[0]),
+            (Face::Edge, Face::Edge) => {
+                let starts_here = self.after(from.index) == index;
+                [
+                    if starts_here { 0.0 } else { self.edge(index).length },
+                    from.at[1],
+                ]
+            }
             (Face::Edge, Face::Corner) => {
                 let away = from.at[1];
                 if self.is_chord() {

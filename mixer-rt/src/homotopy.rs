@@ -1,7 +1,7 @@
 //! The attainable efforts nearest to a reference that give a wrench, followed along a path of wrenches.
 //!
-//! With y_i the efforts of unit i, c_i its reference efforts and A its attainable set, a convex polygon, the
-//! problem at wrench w is
+//! With y_i the efforts of unit i, c_i its reference efforts and A its attainable set, a polygon, the problem at wrench w
+//! is
 //!
 //! ```text
 //! least  sum |y_i - c_i|^2 / 2   with   sum B_i y_i = w,   y_i in A
@@ -21,6 +21,9 @@
 //! v w' > 0, which changes no effort, until a face changes. If none ever does, v is the normal of a plane that
 //! touches the attainable wrenches at w and parts them from the rest of the path: w is the exact end of what is
 //! attainable on it.
+//!
+//! Where A bends inwards this holds of the edges on which the path is: it goes on from one to the next at a corner, and
+//! ends where no way on is on the edges at hand.
 //!
 //! Any lambda is a start: it solves the problem at the wrench that its own efforts give.
 //!

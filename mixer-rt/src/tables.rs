@@ -66,7 +66,7 @@ pub struct Tables<'a, P, I, S = NoShortcut> {
     pub throttle: ThrottleRange,
     /// The voltage correction; without one k = 1.
     pub voltage: Option<Voltage<'a>>,
-    /// A convex polygon inside the attainable set.
+    /// A polygon inside the attainable set.
     pub attainable: AttainableSet<'a>,
     /// What is given up when a unit cannot follow.
     pub desaturation: Desaturation,

@@ -20,6 +20,19 @@ const CHORD: AttainableSet<'static> = AttainableSet {
     edges: &[edge([0.0, 0.0], [1.0, 0.0], 2.0)],
 };
 
+/// A square with a notch in its right side, which turns inwards at (1.9, 1).
+const NOTCHED: AttainableSet<'static> = AttainableSet {
+    scale: [1.0, 1.0],
+    centre: [1.0, 1.0],
+    edges: &[
+        edge([0.0, 0.0], [1.0, 0.0], 2.0),
+        edge([2.0, 0.0], [-0.099_503_72, 0.995_037_2], 1.004_987_6),
+        edge([1.9, 1.0], [0.099_503_72, 0.995_037_2], 1.004_987_6),
+        edge([2.0, 2.0], [-1.0, 0.0], 2.0),
+        edge([0.0, 2.0], [0.0, -1.0], 2.0),
+    ],
+};
+
 /// Goes from the centre to `target` face by face.
 fn walk(set: &AttainableSet<'_>, target: [f32; 2]) -> Point {
     let mut point = set.locate(set.centre);
@@ -60,6 +73,54 @@ fn projections_onto_a_square() {
     check(&SQUARE, [3.0, 5.0], Face::Corner, [2.0, 2.0]);
     check(&SQUARE, [-3.0, -5.0], Face::Corner, [0.0, 0.0]);
     check(&SQUARE, [-1.0, 1.5], Face::Edge, [0.0, 1.5]);
+}
+
+#[test]
+fn projections_onto_a_notched_square() {
+    check(&NOTCHED, [1.85, 1.1], Face::Interior, [1.85, 1.1]);
+    check(&NOTCHED, [1.5, -1.0], Face::Edge, [1.5, 0.0]);
+    check(&NOTCHED, [3.0, 5.0], Face::Corner, [2.0, 2.0]);
+    for (target, index) in [([2.5, 0.5], 1), ([2.5, 1.5], 2)] {
+        for point in [walk(&NOTCHED, target), NOTCHED.locate(target)] {
+            assert_eq!(point.region(), (Face::Edge, index), "{target:?}");
+        }
+    }
+}
+
+/// From one edge of the notch to the other and back, at the same distance from the border, and where both lead to each
+/// other, inside.
+#[test]
+fn a_projection_goes_on_around_a_notch() {
+    let mut point = NOTCHED.locate([2.5, 0.5]);
+    let [s, away] = point.at;
+    let velocity = [2.0, 0.0];
+    let crossing = NOTCHED.crossing(&mut point, velocity, 1.0, 0.0, None).unwrap();
+    NOTCHED.shift(&mut point, velocity.map(|v| crossing.share * v));
+    assert!(s + crossing.share * velocity[0] - 1.004_987_6 < 1e-6);
+    NOTCHED.cross(&mut point, crossing);
+    assert_eq!((point.region(), point.at), ((Face::Edge, 2), [0.0, away]));
+
+    let velocity = [-2.0, 0.0];
+    let mut back = point;
+    let crossing = NOTCHED.crossing(&mut back, velocity, 1.0, 0.0, None).unwrap();
+    NOTCHED.cross(&mut back, crossing);
+    assert_eq!(back.region(), (Face::Edge, 1));
+
+    let barred = Some((Face::Edge, 1));
+    let crossing = NOTCHED.crossing(&mut point, velocity, 1.0, 0.0, barred).unwrap();
+    NOTCHED.cross(&mut point, crossing);
+    assert_eq!((point.face, point.at), (Face::Interior, [1.9, 1.0]));
+}
+
+/// A way inside that would cut across the notch stops at it.
+#[test]
+fn a_way_across_a_notch_leaves_the_set() {
+    let from = [1.96, 0.3];
+    let mut point = NOTCHED.locate(from);
+    assert_eq!(point.face, Face::Interior);
+    let velocity = [0.0, 1.4];
+    let crossing = NOTCHED.crossing(&mut point, velocity, 1.0, 0.0, None).unwrap();
+    assert!((crossing.share - 0.1 / 1.4).abs() < 1e-6, "{crossing:?}");
 }
 
 #[test]
