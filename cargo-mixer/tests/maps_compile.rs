@@ -56,10 +56,7 @@ fn check_area(compiled: &Compiled, what: &str) {
     let lost = 1.0 - 0.5 * twice / area(&pair);
     let stated = compiled.lost_area;
     assert!((lost - stated.total).abs() < 1e-5, "{what}: {lost}, {stated:?}");
-    assert!(
-        lost <= 0.002 || lost <= 1.1 * stated.convexity + 1e-4,
-        "{what}: {lost}, {stated:?}"
-    );
+    assert!(lost <= 0.002, "{what}: {lost}, {stated:?}");
 }
 
 #[test]

@@ -266,7 +266,7 @@ impl Report<'_> {
         }
         writeln!(
             f,
-            "{polygon:<16}in a polygon of {} corners inside it that leaves out {:.3} % of its area, {:.3} % to be convex",
+            "{polygon:<16}in a polygon of {} corners inside it that leaves out {:.3} % of its area (convex: {:.3} %)",
             corners.len(),
             100.0 * summary.attainable_area_lost,
             100.0 * summary.attainable_area_lost_to_convexity

@@ -5,7 +5,7 @@ mod refusal;
 use mixer_rt::{Desaturation, Tolerance};
 
 use crate::airframe::Airframe;
-use crate::attainable::{AreaLoss, ConvexPart};
+use crate::attainable::{AreaLoss, Polygon};
 use crate::diagnostic::Diagnostic;
 use crate::effectiveness::Effectiveness;
 use crate::evaluator::Evaluator;
@@ -63,7 +63,7 @@ fn choose(
     let tolerance = tolerance_at_reference(airframe, &correction);
     let candidates = Evaluator::candidates(&airframe.inverse.method, airframe.pair.basis);
     let mut inversion = Inversion::new(&pair, tolerance, candidates.len() == 1);
-    let convex = ConvexPart::new(&pair);
+    let polygon = Polygon::new(&pair);
     let mut best: Option<(Evaluator, MixerTables, f64)> = None;
     for evaluator in candidates {
         let (fitted, fit_error) = inversion.fit(evaluator);
@@ -77,7 +77,7 @@ fn choose(
                 airframe,
                 effectiveness,
                 &pair,
-                &convex,
+                &polygon,
                 voltage.cloned(),
                 inverse,
                 &correction,
@@ -95,7 +95,7 @@ fn choose(
                     return Ok(Selected {
                         evaluator,
                         tables,
-                        lost_area: convex.lost,
+                        lost_area: polygon.lost,
                         residual,
                         certificate,
                     });
@@ -116,7 +116,7 @@ fn choose(
         return Ok(Selected {
             evaluator,
             tables,
-            lost_area: convex.lost,
+            lost_area: polygon.lost,
             residual,
             certificate,
         });
@@ -137,7 +137,7 @@ fn assemble(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,
-    convex: &ConvexPart,
+    polygon: &Polygon,
     voltage: Option<VoltageTable>,
     inverse: InverseTable,
     correction: &Correction,
@@ -149,7 +149,7 @@ fn assemble(
         inverse,
         throttle: tables::throttle_table(airframe),
         voltage,
-        attainable: convex.table(),
+        attainable: polygon.table(),
         desaturation: Desaturation {
             airmode: airframe.allocation.airmode,
             yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,

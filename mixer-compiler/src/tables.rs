@@ -54,7 +54,7 @@ pub struct AttainableTable {
 }
 
 impl AttainableTable {
-    /// Rounds a convex polygon `[f, Q]` (N, N m), anticlockwise.
+    /// Rounds a polygon `[f, Q]` (N, N m), anticlockwise, that is seen whole from `centre`.
     pub fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
         let scaled = |[f, q]: [f64; 2]| [f / scale[0], q / scale[1]];
         let ends = vertices.iter().cycle().skip(1);

@@ -14,13 +14,8 @@ struct Judged {
     requests: usize,
     /// Requests without an optimum: not even roll = pitch = 0 is attainable.
     void: usize,
-    /// Requests on which the optimum over the physical sets is missed, ..
+    /// Requests on which the optimum is missed.
     missed: usize,
-    /// .. and of those the ones on which the optimum over the mixer's own polygons is missed, too. The paper's set bends
-    /// inwards at one side, which costs any convex set inside it 0.18 % of the area and half a percent of its height at
-    /// either end of that side; and next to the largest roll and pitch a little less of them is worth several percent of
-    /// what is left for thrust or yaw. More edges do not help: with 147 instead of 35 the same requests miss by as much.
-    missed_within: usize,
     worst: Shortfall,
 }
 
@@ -48,13 +43,10 @@ impl Judged {
             self.worst = self.worst.max(shortfall);
             if shortfall.misses() {
                 self.missed += 1;
-                let own = Oracle::of_polygons(frame, volts, health);
-                let own = Shortfall::of(&answer, &request, frame, &own).expect("solved");
-                self.missed_within += usize::from(own.is_none_or(|own| own.misses()));
                 if std::env::var_os("MIXER_MISSES").is_some() {
                     let name = &frame.compiled.airframe.units.len();
                     println!(
-                        "{name} units, {:?}: {request:?} -> {:?}\n    {shortfall:?} of {:?}; of the polygons' {own:?}",
+                        "{name} units, {:?}: {request:?} -> {:?}\n    {shortfall:?} of {:?}",
                         frame.allocation(),
                         answer.achieved,
                         oracle.optimum(request.asked())
@@ -68,17 +60,15 @@ impl Judged {
         self.requests += other.requests;
         self.void += other.void;
         self.missed += other.missed;
-        self.missed_within += other.missed_within;
         self.worst = self.worst.max(other.worst);
     }
 
     fn print(&self, name: &str) {
         let Shortfall { torque, yaw, thrust } = self.worst;
         println!(
-            "{name}: {} of {} miss the physical optimum, {} the polygons'; worst roll-pitch {:.2} %, thrust {:.2} %, yaw {:.2} %; {} void",
+            "{name}: {} of {} miss the optimum; worst roll-pitch {:.2} %, thrust {:.2} %, yaw {:.2} %; {} void",
             self.missed,
             self.requests,
-            self.missed_within,
             100.0 * torque,
             100.0 * thrust,
             100.0 * yaw,
@@ -152,9 +142,9 @@ fn any_frame_reaches_the_optimum() {
     }
     all.print("all");
     assert!(all.requests >= 1200);
-    assert_eq!(all.missed_within, 0);
+    // The paper's set bends inwards at one side: one request in some thousands comes to a local optimum.
     assert!(
-        all.missed * 600 <= all.requests,
+        all.missed * 1000 <= all.requests,
         "{} of {}",
         all.missed,
         all.requests
@@ -194,7 +184,6 @@ fn frames_with_rotors_out_reach_the_optimum() {
     all.print("all");
     assert!(all.requests >= 200);
     // Curves are not convex: with other seeds one request in 700 comes to a local optimum.
-    assert_eq!(all.missed_within, 0);
     assert!(
         all.missed * 400 <= all.requests,
         "{} of {}",

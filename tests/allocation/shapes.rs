@@ -10,7 +10,7 @@ use mixer_compiler::injectivity::ForwardMap;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::{Health, TorqueLimit};
-use mixer_tests::frames::{self, Options};
+use mixer_tests::frames::{self, AIRMODES, Options};
 use mixer_tests::random::Random;
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
@@ -265,15 +265,11 @@ fn sets_that_bend_inwards_are_used() {
     }
 }
 
-#[test]
-fn sets_of_real_pairs_are_used() {
+/// The real pairs in three bases, with their names; `None` without bench data.
+fn real_pairs(test: &str) -> Option<Vec<(String, String)>> {
     const IDLE: f64 = 1.03;
-    let Some(files) = maps::files("sets_of_real_pairs_are_used") else {
-        return;
-    };
-    let mut sum = Tally::default();
-    let (mut pairs, mut closed) = (0, 0);
-    for map in &files {
+    let mut pairs = Vec::new();
+    for map in &maps::files(test)? {
         for basis in ["biquadratic", "cubic", "quartic"] {
             let identified = maps::identified(map, basis);
             let name = map.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -292,13 +288,53 @@ fn sets_of_real_pairs_are_used() {
             } else {
                 maps::with_throttle(&identified, [idle, 1.0])
             };
-            pairs += 1;
-            if let Some(tally) = judge(&format!("{} {basis}", &name[4..23]), &pair, 200) {
-                closed += 1;
-                sum.add(tally);
-            }
+            pairs.push((format!("{} {basis}", &name[4..23]), pair));
         }
     }
-    println!("{closed} of {pairs} in closed form: {sum:?}");
+    Some(pairs)
+}
+
+#[test]
+fn sets_of_real_pairs_are_used() {
+    let Some(pairs) = real_pairs("sets_of_real_pairs_are_used") else {
+        return;
+    };
+    let mut sum = Tally::default();
+    let mut closed = 0;
+    for (name, pair) in &pairs {
+        if let Some(tally) = judge(name, pair, 200) {
+            closed += 1;
+            sum.add(tally);
+        }
+    }
+    println!("{closed} of {} in closed form: {sum:?}", pairs.len());
+    hold(&sum);
+}
+
+/// On an X12, which desaturates along a path.
+#[test]
+fn polygons_of_real_pairs_are_used() {
+    const COUNT: usize = 100;
+    let Some(pairs) = real_pairs("polygons_of_real_pairs_are_used") else {
+        return;
+    };
+    let mut random = Random(22);
+    let places = frames::regular(6, 30.0);
+    let channels: Vec<usize> = (0..2 * places.len()).collect();
+    let mut sum = Tally::default();
+    for ((name, pair), airmode) in pairs.iter().zip(AIRMODES.iter().cycle()) {
+        let options = Options {
+            airmode,
+            yaw_reserve_nm: 0.0,
+        };
+        let text = frames::toml_with_pair(pair, &places, &channels, options);
+        let compiled = frames::compile_text(&text).unwrap_or_else(|faults| panic!("{name}: {faults}"));
+        let lost = compiled.lost_area.total;
+        assert!(lost <= 0.002, "{name}: {lost} of the area lost");
+        let frame = Frame::new(compiled);
+        deliver(&frame, &mut random, COUNT, &mut sum);
+        saturate(&frame, &mut random, COUNT, &mut sum);
+    }
+    println!("{} pairs on an X12: {sum:?}", pairs.len());
     hold(&sum);
 }

@@ -135,8 +135,8 @@ impl Oracle {
         }
     }
 
-    /// The programs of a frame over the polygons that its mixer has for the attainable sets of units with both rotors:
-    /// what the mixer itself would attain if it solved them exactly.
+    /// The programs of a frame over the convex hulls of the polygons that its mixer has for the attainable sets of units
+    /// with both rotors.
     pub fn of_polygons(frame: &Frame, volts: f32, health: Health) -> Self {
         let factors = frame.physics.factors(volts);
         let mut oracle = Oracle::new(&frame.physics, frame.allocation(), factors, health);

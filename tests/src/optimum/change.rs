@@ -21,8 +21,8 @@ struct Corner {
 }
 
 /// The change of a throttle that the priorities themselves force between two requests at one voltage, all rotors working:
-/// the least possible largest one between any optimal efforts of the one and any of the other, over the mixer's own
-/// polygons, about the throttles of `answer`. Where an optimum is so steep that the rounding error of a higher priority
+/// the least possible largest one between any optimal efforts of the one and any of the other, over the convex hulls of the
+/// mixer's own polygons, about the throttles of `answer`. Where an optimum is so steep that the rounding error of a higher priority
 /// forces more, that. `None` where a request has no optimum.
 ///
 /// # Errors
