@@ -266,17 +266,7 @@ impl<S: TorqueLimit> Vertical<'_, S> {
         direction: f32,
         needs: Needs,
     ) -> (f32, f32) {
-        let mut wrench = [request.roll, request.pitch, request.thrust];
-        let mut range = self.null_range(search, &wrench, direction);
-        if !range.is_attainable() {
-            let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
-            wrench = [
-                share * request.roll,
-                share * request.pitch,
-                clamp(request.thrust, low, high),
-            ];
-            range = self.null_range(search, &wrench, direction);
-        }
+        let (wrench, range, _) = self.within_facets(request, ceiling, search, direction);
         let mut ways = [[0.0; 3]; MOST_UNITS];
         let mut size = 0.0;
         for ((unit, state), way) in self.units.iter().zip(search.iter()).zip(&mut ways) {

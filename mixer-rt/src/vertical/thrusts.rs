@@ -30,7 +30,7 @@ pub(super) struct NullRange {
 impl NullRange {
     /// True where some z leaves all thrusts attainable.
     #[inline(always)]
-    pub(super) fn is_attainable(&self) -> bool {
+    fn is_attainable(&self) -> bool {
         self.low <= self.high && self.others
     }
 
@@ -58,18 +58,7 @@ impl<S: TorqueLimit> Vertical<'_, S> {
         direction: f32,
         wanted: f32,
     ) -> (f32, f32) {
-        let mut wrench = [request.roll, request.pitch, request.thrust];
-        let mut range = self.null_range(search, &wrench, direction);
-        let attainable = range.is_attainable();
-        if !attainable {
-            let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
-            wrench = [
-                share * request.roll,
-                share * request.pitch,
-                clamp(request.thrust, low, high),
-            ];
-            range = self.null_range(search, &wrench, direction);
-        }
+        let (wrench, range, attainable) = self.within_facets(request, ceiling, search, direction);
         let NullRange { low, high, .. } = range;
         let mut z = range.nearest();
         let mut here = reach(search, z);
@@ -106,9 +95,34 @@ impl<S: TorqueLimit> Vertical<'_, S> {
         (here.yaw, z)
     }
 
+    /// Starts at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to where the facets allow them if
+    /// need be. Returns these, z's range, and true where there was no need.
+    #[inline(always)]
+    pub(super) fn within_facets<'a>(
+        &'a self,
+        request: &Request,
+        ceiling: f32,
+        search: &mut [Search<'a, S>],
+        direction: f32,
+    ) -> ([f32; 3], NullRange, bool) {
+        let mut wrench = [request.roll, request.pitch, request.thrust];
+        let mut range = self.null_range(search, &wrench, direction);
+        let attainable = range.is_attainable();
+        if !attainable {
+            let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
+            wrench = [
+                share * request.roll,
+                share * request.pitch,
+                clamp(request.thrust, low, high),
+            ];
+            range = self.null_range(search, &wrench, direction);
+        }
+        (wrench, range, attainable)
+    }
+
     /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range.
     #[inline(never)]
-    pub(super) fn null_range<'a>(
+    fn null_range<'a>(
         &'a self,
         search: &mut [Search<'a, S>],
         wrench: &[f32; 3],
