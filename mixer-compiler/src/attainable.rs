@@ -106,9 +106,9 @@ fn moments(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
     (area, moment.map(|m| m / area))
 }
 
-/// Twice the area that a closed border of [`SAMPLES`] points per edge encloses. Chords of a smooth border lose the
+/// Twice the area that a closed border of an even number of points per edge encloses. Chords of a smooth border lose the
 /// square of their length: that of every other point tells how much (Richardson).
-fn border_area(border: &[[f64; 2]]) -> f64 {
+pub(crate) fn border_area(border: &[[f64; 2]]) -> f64 {
     let every_other: Vec<[f64; 2]> = border.iter().copied().step_by(2).collect();
     let (fine, coarse) = (moments(border).0, moments(&every_other).0);
     fine + (fine - coarse) / 3.0

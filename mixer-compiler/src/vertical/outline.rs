@@ -7,6 +7,7 @@
 
 use mixer_rt::Knot;
 
+use crate::attainable::border_area;
 use crate::model::PairMap;
 use crate::tables::SideTable;
 
@@ -110,12 +111,7 @@ impl Outline {
         if last[0] <= first[0] || !slope.is_finite() {
             return None;
         }
-        let whole: f64 = (0..border.len())
-            .map(|k| {
-                let (a, b) = (border[k], border[(k + 1) % border.len()]);
-                0.5 * (a[0] * b[1] - a[1] * b[0])
-            })
-            .sum();
+        let whole = 0.5 * border_area(&border);
         let curves = [1.0, -1.0].map(|sign| {
             // From the chord, which is the same line for both.
             let above: Vec<[f64; 2]> = border
