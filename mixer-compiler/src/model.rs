@@ -186,6 +186,13 @@ impl PairMap {
         self.border(points).into_iter().map(scaled).collect()
     }
 
+    /// The efforts `[f, Q]` on the box's diagonal, which runs through the attainable set from its idle corner to its full
+    /// one, in `steps` steps.
+    pub(crate) fn diagonal(&self, steps: usize) -> impl Iterator<Item = [f64; 2]> {
+        let [low, high] = self.range;
+        (0..=steps).map(move |k| self.efforts([low + (high - low) * k as f64 / steps as f64; 2]))
+    }
+
     /// Largest thrust (N) and largest absolute torque (N m) over the box: the sizes of the efforts.
     pub fn scale(&self) -> [f64; 2] {
         let mut scale = [0.0f64; 2];

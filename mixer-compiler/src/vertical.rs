@@ -7,12 +7,14 @@
 //! close, the sides are polylines: vertical/outline.rs.
 
 mod coupling;
+mod drawing;
 mod outline;
 
 use mixer_rt::{Airmode, Arc, Axis, Border, Facets, Side, VerticalUnit};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::airframe::Airframe;
+use crate::attainable;
 use crate::effectiveness::Effectiveness;
 use crate::model::PairMap;
 use crate::tables::{SideTable, VerticalTable};
@@ -25,6 +27,9 @@ const ARC_TOLERANCE: f64 = 1e-3;
 
 /// Share of the attainable area that convexity may cost where the sides are arcs.
 const MOST_LOST_TO_CONVEXITY: f64 = 0.0025;
+
+/// .. and what arcs may cost in all, where polylines can take their place.
+const MOST_LOST: f64 = 0.002;
 
 /// What an arc keeps from its edge for rounding, as a share of the largest torque.
 const MARGIN: f64 = 2e-6;
@@ -80,17 +85,18 @@ pub(crate) fn table(
         })
         .collect();
     let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
-    let slope = (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
     // f32 rounding, inwards.
     let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
-    let border = |sides: [SideTable; 2]| Border {
+    let slope = (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
+    let chord = [ends[0][1] - slope * ends[0][0], slope];
+    let border = |(sides, chord): ([SideTable; 2], [f64; 2])| Border {
         sides,
-        chord: [ends[0][1] - slope * ends[0][0], slope].map(|x| x as f32),
+        chord: chord.map(|x| x as f32),
         quadrangle: quadrangle(&pair),
     };
     let arcs = if convexity <= MOST_LOST_TO_CONVEXITY {
         arcs(&pair)
-            .map(&border)
+            .map(|sides| border((sides, chord)))
             .filter(|border| inside(&pair, border, thrust_n))
     } else {
         None
@@ -98,7 +104,14 @@ pub(crate) fn table(
     // A reserve of yaw, or yaw before thrust, couples thrust and yaw: that takes concave sides.
     let coupled = allocation.yaw_reserve_nm > 0.0 || allocation.airmode == Airmode::RollPitchYaw;
     let outline = || outline::sides(&pair, thrust_n).map(&border);
-    let border = if coupled { arcs } else { arcs.or_else(outline) }?;
+    let border = if coupled {
+        arcs
+    } else {
+        let loses_little = |border: &Border<SideTable>| {
+            attainable::lost_between(&pair, &border.sides, thrust_n) <= MOST_LOST
+        };
+        arcs.filter(loses_little).or_else(outline)
+    }?;
     let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
     let yaw_rounding_nm = (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32;
     let spins: Vec<f64> = (0..n).map(|i| matrix[(2, n + i)]).collect();
