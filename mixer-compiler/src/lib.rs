@@ -8,6 +8,7 @@ pub mod attainable;
 pub mod bernstein;
 #[cfg(feature = "format")]
 pub mod build_script;
+mod chain;
 pub mod cost;
 pub mod diagnostic;
 pub mod effectiveness;

@@ -1,6 +1,7 @@
 //! The fewest corners of a polygon inside a border that is seen whole from one point.
 
 use super::{cross, distance};
+use crate::chain::Chains;
 
 /// Borders of more points than this have a corner at every so many of them, and where they turn by more than [`SHARP`],
 /// the sine.
@@ -28,6 +29,9 @@ const MARGIN: f64 = 5e-6;
 const THIRDS: usize = 24;
 const LOOKED_AT: usize = 128;
 
+/// Corners that may be, per candidate.
+const LEVELS: usize = 1 + 2 * DEPTHS.len();
+
 /// A border as a chain from its sharpest point around to it again, with what may be a corner.
 struct Chain {
     nodes: Vec<[f64; 2]>,
@@ -40,15 +44,6 @@ struct Chain {
     centre: [f64; 2],
 }
 
-const LEVELS: usize = 1 + 2 * DEPTHS.len();
-
-/// A straight way from one corner to a later one, by its index: candidate times [`LEVELS`] and level.
-struct Chord {
-    to: usize,
-    /// Twice the area outside.
-    lost: f64,
-}
-
 /// The fewest corners, anticlockwise, with which a polygon inside a closed border loses no more than `allowed` of twice its
 /// area, or if [`MOST_CORNERS`] lose more, these; of those the ones that lose least. The border's sharpest point is
 /// among them. `None` where no corners do, or `centre` does not see all of the border.
@@ -57,41 +52,14 @@ pub(super) fn fewest_corners(border: &[[f64; 2]], centre: [f64; 2], allowed: f64
         return None;
     }
     let chain = Chain::new(border, centre)?;
-    let count = chain.candidates.len() * LEVELS;
-    let end = count - LEVELS;
-    let chords: Vec<Vec<Chord>> = (0..end)
+    let end = (chain.candidates.len() - 1) * LEVELS;
+    let chords: Vec<Vec<(usize, f64)>> = (0..end)
         .map(|start| chain.chords(start, FUTILE * allowed))
         .collect();
-    // What reaching a corner over so many chords loses at least.
-    let mut least = vec![f64::INFINITY; count];
-    least[0] = 0.0;
-    let mut origins: Vec<Vec<usize>> = Vec::new();
-    while least[end] > allowed && origins.len() < MOST_CORNERS {
-        let mut next = vec![f64::INFINITY; count];
-        let mut from = vec![0; count];
-        for (start, chords) in chords.iter().enumerate() {
-            for &Chord { to, lost } in chords {
-                let sum = least[start] + lost;
-                if sum < next[to] {
-                    next[to] = sum;
-                    from[to] = start;
-                }
-            }
-        }
-        least = next;
-        origins.push(from);
-    }
-    if least[end] == f64::INFINITY {
-        return None;
-    }
-    let mut corners = Vec::with_capacity(origins.len());
-    let mut at = end;
-    for from in origins.iter().rev() {
-        at = from[at];
-        corners.push(chain.corner(at));
-    }
-    corners.reverse();
-    Some(corners)
+    let chains = Chains::new(&chords, end, allowed, MOST_CORNERS);
+    let mut corners = chains.corners(chains.lost.len().checked_sub(1)?)?;
+    corners.pop();
+    Some(corners.into_iter().map(|corner| chain.corner(corner)).collect())
 }
 
 impl Chain {
@@ -137,8 +105,9 @@ impl Chain {
         self.corners[index / LEVELS][index % LEVELS]
     }
 
-    /// The ways from a corner that have the border on their right and lose no more than `bearable`.
-    fn chords(&self, start: usize, bearable: f64) -> Vec<Chord> {
+    /// The ways from a corner, by its index (that of its candidate times [`LEVELS`], and its level), to later ones that have
+    /// the border on their right and lose no more than `bearable`, with twice the area that each loses.
+    fn chords(&self, start: usize, bearable: f64) -> Vec<(usize, f64)> {
         let from = self.corner(start);
         let first = self.candidates[start / LEVELS];
         let last = self.nodes.len() - 1;
@@ -160,8 +129,7 @@ impl Chain {
                     let passes = leftmost.is_none_or(|leftmost| cross(from, leftmost, end) >= 0.0);
                     let slants = cross(self.centre, from, end) >= SLANT * distance(from, end);
                     if passes && slants && lost <= bearable {
-                        let to = next * LEVELS + level;
-                        chords.push(Chord { to, lost });
+                        chords.push((next * LEVELS + level, lost));
                     }
                 }
                 next += 1;

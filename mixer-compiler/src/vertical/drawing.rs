@@ -1,5 +1,7 @@
 //! The fewest knots that draw the sides of an attainable set.
 
+use crate::chain::Chains;
+
 /// What a knot may be below the side, as shares of the largest torque: where the side bends inwards a knot on it would
 /// take chords outside.
 pub(super) const LEVELS: [f64; 4] = [0.0, 0.0006, 0.0015, 0.004];
@@ -25,7 +27,7 @@ pub(super) struct Curve {
 
 impl Curve {
     /// Drawings with 2, 3, .. knots, the first and last of them at the curve's ends. Both curves may lose `allowed`.
-    fn drawings(&self, allowed: f64) -> Drawings<'_> {
+    fn drawings(&self, allowed: f64) -> Chains {
         let levels = LEVELS.len();
         let count = self.candidates.len() * levels;
         // Chords below the curve: from, to, what is lost.
@@ -51,60 +53,13 @@ impl Curve {
                 }
             }
         }
-        let mut least = vec![f64::INFINITY; count];
-        least[0] = 0.0;
-        let mut drawings = Drawings {
-            curve: self,
-            lost: Vec::new(),
-            origins: Vec::new(),
-        };
-        while drawings.lost.len() + 1 < MOST_KNOTS && least[count - levels] > FINE * allowed {
-            let mut next = vec![f64::INFINITY; count];
-            let mut from = vec![0; count];
-            for start in 0..count {
-                if least[start] == f64::INFINITY {
-                    continue;
-                }
-                for &(end, lost) in &chords[start] {
-                    if least[start] + lost < next[end] {
-                        next[end] = least[start] + lost;
-                        from[end] = start;
-                    }
-                }
-            }
-            least = next;
-            drawings.lost.push(least[count - levels]);
-            drawings.origins.push(from);
-        }
-        drawings
+        Chains::new(&chords, count - levels, FINE * allowed, MOST_KNOTS - 1)
     }
 
     /// A knot that may be: one of [`LEVELS`] at one of the candidates.
     fn point(&self, state: usize) -> [f64; 2] {
         let [f, q] = self.nodes[self.candidates[state / LEVELS.len()]];
         [f, q - LEVELS[state % LEVELS.len()]]
-    }
-}
-
-/// The drawings of a curve that lose least of the area below it, by their number of knots less two.
-struct Drawings<'a> {
-    curve: &'a Curve,
-    /// What each loses.
-    lost: Vec<f64>,
-    /// The knot before each knot that may be, where that is a drawing's last.
-    origins: Vec<Vec<usize>>,
-}
-
-impl Drawings<'_> {
-    fn knots(&self, index: usize) -> Vec<[f64; 2]> {
-        let mut at = (self.curve.candidates.len() - 1) * LEVELS.len();
-        let mut knots = vec![self.curve.point(at)];
-        for from in self.origins[..=index].iter().rev() {
-            at = from[at];
-            knots.push(self.curve.point(at));
-        }
-        knots.reverse();
-        knots
     }
 }
 
@@ -123,9 +78,8 @@ pub(super) fn fewest_knots(curves: &[Curve; 2], allowed: f64) -> Option<[Vec<[f6
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     })?;
     let [upper, lower] = [0, 1].map(|k| {
-        drawings[k].lost[best[k]]
-            .is_finite()
-            .then(|| drawings[k].knots(best[k]))
+        let knots = drawings[k].corners(best[k])?.into_iter();
+        Some(knots.map(|knot| curves[k].point(knot)).collect())
     });
     Some([upper?, lower?])
 }
