@@ -269,6 +269,9 @@ impl<'h> Homotopy<'h> {
             }
             return 1.0;
         }
+        for row in &mut self.rows {
+            row.choose_side();
+        }
         let mut share = 0.0;
         let (mut still, mut settled) = (0, false);
         loop {

@@ -217,8 +217,11 @@ impl Homotopy<'_> {
                     }
                 }
             };
+            // Between equal bounds there is nowhere to go, whichever sign the multiplier takes.
+            let is_fixed = row.bounds.low == row.bounds.high && drift.low == drift.high;
             match row.state {
                 RowState::Held => {}
+                RowState::AtLow | RowState::AtHigh if is_fixed => {}
                 RowState::AtLow => falls(row.multiplier, pull, RowState::Between),
                 RowState::AtHigh => falls(-row.multiplier, -pull, RowState::Between),
                 RowState::Between => {

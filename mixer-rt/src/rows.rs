@@ -84,6 +84,15 @@ impl Row {
         }
     }
 
+    /// At the bound that the multiplier's sign is of: between equal bounds either may have come about.
+    pub(crate) fn choose_side(&mut self) {
+        self.state = match self.state {
+            RowState::AtLow if self.multiplier < 0.0 => RowState::AtHigh,
+            RowState::AtHigh if self.multiplier > 0.0 => RowState::AtLow,
+            state => state,
+        };
+    }
+
     /// Held where it is.
     pub(crate) fn hold(&mut self) {
         self.state = RowState::Held;
