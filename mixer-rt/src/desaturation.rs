@@ -185,7 +185,7 @@ fn descend(
     }
     let [.., yaw, _] = homotopy.bounds();
     homotopy.bound(THRUST, thrust);
-    homotopy.follow([LEVEL, LEVEL, yaw, thrust], true);
+    homotopy.follow([LEVEL, LEVEL, yaw, thrust], false);
     let [.., yaw, thrust] = homotopy.bounds();
     homotopy.hold(ALONG);
     let mut delivered = homotopy.follow([Bounds::at(wanted[ALONG]), LEVEL, yaw, thrust], true) >= 1.0;

@@ -269,6 +269,7 @@ impl<'h> Homotopy<'h> {
             }
             return 1.0;
         }
+        self.left = None;
         for row in &mut self.rows {
             row.choose_side();
         }
