@@ -57,10 +57,6 @@ const SETTLED: f32 = 3e-5;
 /// Ways shorter than this, in rows, are rounding errors.
 const STANDING: f32 = 1e-6;
 
-/// At the end of what is attainable any multiple of the normal may be added to the multipliers. This much of it keeps
-/// what comes after on the face that was reached.
-const PUSH: f32 = 1e7;
-
 /// A border from which the normal leads away by less than this counts as parallel to it.
 const PARALLEL: f32 = 1e-5;
 
@@ -295,10 +291,7 @@ impl<'h> Homotopy<'h> {
                 return share;
             };
             self.pieces_left = pieces_left;
-            let Some(made) = self.piece(&drift) else {
-                if presses {
-                    self.press();
-                }
+            let Some(made) = self.piece(&drift, presses) else {
                 self.stay();
                 return share;
             };
@@ -354,17 +347,24 @@ impl<'h> Homotopy<'h> {
         }
     }
 
-    /// Goes far along the normal at which the path has ended; the velocities are still in the scratch.
-    fn press(&mut self) {
+    /// Keeps what comes next on the face of the attainable wrenches whose `normal` the path has ended at: any multiple of
+    /// it may be added to the multipliers, and infinitely much is. The velocities are still in the scratch.
+    pub(crate) fn press(&mut self, normal: &[f32; 4]) {
+        let far = |speed: f32| if speed > PARALLEL { f32::INFINITY } else { 0.0 };
         for scratch in self.scratch.iter_mut() {
             let velocity = scratch.pair;
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
-                let away = velocity.map(|speed| if speed > PARALLEL { PUSH * speed } else { 0.0 });
                 match scratch.point.face {
                     Face::Interior => {}
-                    Face::Edge => set.shift(&mut scratch.point, [0.0, away[1]]),
-                    Face::Corner => set.shift(&mut scratch.point, away),
+                    Face::Edge => set.shift(&mut scratch.point, [0.0, far(velocity[1])]),
+                    Face::Corner => set.shift(&mut scratch.point, velocity.map(far)),
                 }
+            }
+        }
+        // A slack row whose bound has a part in it will not be released again.
+        for (row, pull) in self.rows.iter_mut().zip(normal) {
+            if row.state != RowState::Between && pull.abs() > PARALLEL {
+                row.hold();
             }
         }
     }

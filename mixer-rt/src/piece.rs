@@ -130,8 +130,8 @@ impl Homotopy<'_> {
     }
 
     /// One piece of the path towards `drift` from the present bounds. Returns the share made, `None` where there is
-    /// no way on.
-    pub(crate) fn piece(&mut self, drift: &[Bounds; 4]) -> Option<f32> {
+    /// no way on; `presses`: what comes next then stays there.
+    pub(crate) fn piece(&mut self, drift: &[Bounds; 4], presses: bool) -> Option<f32> {
         let (moments, wrench) = self.survey();
         // What rounding has done so far is made up for on the way.
         let mut way = [0.0; 4];
@@ -238,7 +238,12 @@ impl Homotopy<'_> {
                 }
             }
         }
-        let event = event?;
+        let Some(event) = event else {
+            if presses {
+                self.press(&multipliers);
+            }
+            return None;
+        };
 
         let made = moving * limit;
         for (((row, drift), pull), speed) in self.rows.iter_mut().zip(drift).zip(multipliers).zip(speeds) {
