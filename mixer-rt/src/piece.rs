@@ -1,7 +1,7 @@
 //! One affine piece of a path.
 
 use crate::attainable::{Crossing, Face};
-use crate::homotopy::{Homotopy, significant};
+use crate::homotopy::{Homotopy, STANDING, significant};
 use crate::linear::{Factors, Gram, Moments, Solution};
 use crate::rows::{Bounds, RowState};
 
@@ -208,7 +208,7 @@ impl Homotopy<'_> {
             .zip(multipliers)
             .enumerate()
         {
-            let mut falls = |height: f32, speed: f32, state: RowState| {
+            let mut falls = |height: f32, speed: f32, noise: f32, state: RowState| {
                 if speed < -noise {
                     let share = if height > 0.0 { height / -speed } else { 0.0 };
                     if share < limit {
@@ -222,17 +222,19 @@ impl Homotopy<'_> {
             match row.state {
                 RowState::Held => {}
                 RowState::AtLow | RowState::AtHigh if is_fixed => {}
-                RowState::AtLow => falls(row.multiplier, pull, RowState::Between),
-                RowState::AtHigh => falls(-row.multiplier, -pull, RowState::Between),
+                RowState::AtLow => falls(row.multiplier, pull, noise, RowState::Between),
+                RowState::AtHigh => falls(-row.multiplier, -pull, noise, RowState::Between),
                 RowState::Between => {
                     falls(
                         row.value - row.bounds.low,
                         speed - moving * drift.low,
+                        STANDING,
                         RowState::AtLow,
                     );
                     falls(
                         row.bounds.high - row.value,
                         moving * drift.high - speed,
+                        STANDING,
                         RowState::AtHigh,
                     );
                 }
