@@ -6,7 +6,7 @@
 //! quarter of the curve, or with several curves on every combination of halves of the first two, and last from the best
 //! end found so far on the whole curves. The best of all ends stands.
 //!
-//! Ends are compared by their priorities, but so that no more of one is given up for all of the next than [`NEXT`]:
+//! Ends are compared by their priorities, bounds first, but so that no more of one is given up for all of the next than [`NEXT`]:
 //! two optima whose roll and pitch differ by rounding may differ by all of the thrust. Where the request changes and
 //! another optimum becomes the best the efforts jump, as any choice by these priorities must.
 
@@ -28,8 +28,11 @@ const TOUCHING: f32 = 0.25;
 /// What is given up of one priority for all of the next, in rows.
 const NEXT: f32 = 0.005;
 
-/// What leaving the bounds costs, beside falling short in the first priority.
-const BEYOND: f32 = 4.0;
+/// What leaving the bounds costs, beside falling short in the first priority: so much that no end gains by it.
+const BEYOND: f32 = 1e3;
+
+/// Rows beyond their bounds by less than this are within, but for rounding and what lines and curves are apart.
+const WITHIN: f32 = 1e-4;
 
 /// An end that is worse by more than this after a round, or after [`TRIED`] of them, will not be the best. The lines
 /// of the first rounds are off their curves by about a tenth of that.
@@ -51,7 +54,16 @@ impl Outcome {
     /// Lower is better.
     fn cost(&self) -> f32 {
         let [first, second, third] = self.short;
-        BEYOND * self.beyond + first + NEXT * (second + NEXT * third)
+        let beyond = if self.is_within() {
+            0.0
+        } else {
+            self.beyond - WITHIN
+        };
+        BEYOND * beyond + first + NEXT * (second + NEXT * third)
+    }
+
+    fn is_within(&self) -> bool {
+        self.beyond < WITHIN
     }
 
     fn is_delivered(&self) -> bool {

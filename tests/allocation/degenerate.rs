@@ -26,7 +26,7 @@ pub(crate) const NUMBERS: [f32; 14] = [
     f32::MIN,
 ];
 
-fn at(position: [f64; 3], clockwise: bool) -> Place {
+pub(crate) fn at(position: [f64; 3], clockwise: bool) -> Place {
     Place {
         position,
         axis: [0.0, 0.0, -1.0],
