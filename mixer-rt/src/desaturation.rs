@@ -49,7 +49,7 @@ pub struct Desaturation {
 
 /// Largest torque (N m) and thrust (N) that is looked at: far beyond any rotor, and small enough that no product
 /// overflows.
-const REQUEST_LIMIT: f32 = 1e5;
+pub(crate) const REQUEST_LIMIT: f32 = 1e5;
 
 /// True where `request` is finite and within [`REQUEST_LIMIT`].
 #[inline(always)]
@@ -86,10 +86,14 @@ pub(crate) struct Outcome {
     pub(crate) short: [f32; 3],
     /// The largest thrust that was allowed.
     pub(crate) ceiling: f32,
+    /// What was asked for.
+    pub(crate) wanted: [f32; 4],
+    /// The thrust reached.
+    pub(crate) thrust: f32,
 }
 
 /// The steps of the module's head, with straight lines for the curves of single rotors. `ceiling` is the largest thrust
-/// that is allowed, in its row; `None` where that is to be found.
+/// that is allowed beside the one asked, in its row; `None` where that is to be found.
 #[inline(never)]
 pub(crate) fn prioritise<P, I, S>(
     tables: &Tables<'_, P, I, S>,
@@ -115,9 +119,17 @@ pub(crate) fn prioritise<P, I, S>(
     };
     let mut thrust = Bounds {
         low: -REQUEST_LIMIT,
-        high: ceiling.unwrap_or(asked),
+        high: match ceiling {
+            Some(ceiling) if ceiling > asked => ceiling,
+            _ => asked,
+        },
     };
-    let descent = descend(&mut homotopy, wanted, yaw, thrust, airmode);
+    // With a ceiling that has been found lines may miss roll = pitch = 0, where they need not touch the curves.
+    let level = Bounds {
+        low: 0.0,
+        high: if ceiling.is_some() { wanted[ALONG] } else { 0.0 },
+    };
+    let descent = descend(&mut homotopy, wanted, [level, yaw, thrust], airmode);
     if ceiling.is_none() {
         thrust.high = descent.ceiling;
     }
@@ -135,6 +147,8 @@ pub(crate) fn prioritise<P, I, S>(
         beyond: short(ACROSS) + yaw.distance(reached[YAW]) + thrust.distance(reached[THRUST]),
         short: [short(ALONG), short(second), short(third)],
         ceiling: thrust.high,
+        wanted,
+        thrust: reached[THRUST],
     }
 }
 
@@ -155,12 +169,12 @@ struct Descent {
     delivered: bool,
 }
 
-/// The steps of the module's head, one path each. `wanted` in rows; `yaw` and `thrust` are where these rows may be.
+/// The steps of the module's head, one path each. `wanted` in rows; `level` is where roll and pitch along the request
+/// are at first, `yaw` and `thrust` are where these rows may be.
 fn descend(
     homotopy: &mut Homotopy<'_>,
     wanted: [f32; 4],
-    yaw: Bounds,
-    thrust: Bounds,
+    [level, yaw, thrust]: [Bounds; 3],
     airmode: Airmode,
 ) -> Descent {
     const LEVEL: Bounds = Bounds::at(0.0);
@@ -175,17 +189,17 @@ fn descend(
         };
     }
     homotopy.start();
-    homotopy.bound(ALONG, LEVEL);
+    homotopy.bound(ALONG, level);
     homotopy.bound(YAW, yaw);
     homotopy.bound(THRUST, WIDE);
-    if homotopy.follow([LEVEL, LEVEL, yaw, WIDE], false) < 1.0 {
-        homotopy.follow([LEVEL, LEVEL, WIDE, WIDE], false);
+    if homotopy.follow([level, LEVEL, yaw, WIDE], false) < 1.0 {
+        homotopy.follow([level, LEVEL, WIDE, WIDE], false);
         homotopy.bound(YAW, yaw);
-        homotopy.follow([LEVEL, LEVEL, yaw, WIDE], false);
+        homotopy.follow([level, LEVEL, yaw, WIDE], false);
     }
     let [.., yaw, _] = homotopy.bounds();
     homotopy.bound(THRUST, thrust);
-    homotopy.follow([LEVEL, LEVEL, yaw, thrust], false);
+    homotopy.follow([level, LEVEL, yaw, thrust], false);
     let [.., yaw, thrust] = homotopy.bounds();
     homotopy.hold(ALONG);
     let mut delivered = homotopy.follow([Bounds::at(wanted[ALONG]), LEVEL, yaw, thrust], true) >= 1.0;

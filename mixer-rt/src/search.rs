@@ -6,12 +6,15 @@
 //! quarter of the curve, or with several curves on every combination of halves of the first two, and last from the best
 //! end found so far on the whole curves. The best of all ends stands.
 //!
+//! With airmode disabled, where less thrust is asked for than roll = pitch = 0 needs, the least thrust that these need is
+//! searched for first in the same way, since it is what is allowed then.
+//!
 //! Ends are compared by their priorities, bounds first, but so that no more of one is given up for all of the next than [`NEXT`]:
 //! two optima whose roll and pitch differ by rounding may differ by all of the thrust. Where the request changes and
 //! another optimum becomes the best the efforts jump, as any choice by these priorities must.
 
 use crate::chord::{Chord, Sets};
-use crate::desaturation::{Outcome, prioritise, single_rotor};
+use crate::desaturation::{Airmode, Outcome, REQUEST_LIMIT, prioritise, single_rotor};
 use crate::homotopy::Scratch;
 use crate::{Quantity, Tables};
 
@@ -62,6 +65,12 @@ impl Outcome {
         BEYOND * beyond + first + NEXT * (second + NEXT * third)
     }
 
+    /// True where the thrust asked for is enough.
+    fn is_allowed(&self) -> bool {
+        let [.., thrust] = self.wanted;
+        self.is_within() && self.ceiling <= thrust
+    }
+
     fn is_within(&self) -> bool {
         self.beyond < WITHIN
     }
@@ -76,6 +85,8 @@ struct Search<'s, 't, P, I, S> {
     tables: &'s Tables<'t, P, I, S>,
     request: [f32; 4],
     factors: [f32; 2],
+    /// As in [`prioritise`].
+    ceiling: Option<f32>,
 }
 
 /// Finds attainable efforts (`[f, Q]` at the reference voltage, in the scratch) that serve `request` (`[roll,
@@ -86,43 +97,88 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
     factors: [f32; 2],
     scratch: &mut [Scratch],
 ) {
-    let search = Search {
+    let mut search = Search {
         tables,
         request,
         factors,
+        ceiling: None,
     };
     let singles = scratch
         .iter()
         .filter(|scratch| scratch.rotors.is_single())
         .count();
     if singles == 0 {
-        search.round(scratch, None);
+        search.round(scratch);
         return;
-    }
-    search.draw(scratch, 0, 0);
-    let mut best = search.settle(scratch, ROUNDS, None);
-    if best.outcome.is_delivered() {
-        return;
-    }
-    for scratch in scratch.iter_mut() {
-        scratch.best = scratch.efforts;
     }
     let halvings = if singles == 1 { HALVINGS } else { 1 };
-    for combination in 0..1 << HALVINGS {
-        search.draw(scratch, halvings, combination);
-        search.improve(scratch, ROUNDS_OF_PARTS, &mut best);
-    }
     search.draw(scratch, 0, 0);
-    for scratch in scratch.iter_mut() {
-        search.touch(scratch, scratch.best[0]);
+    let mut first = search.settle(scratch, ROUNDS, None);
+    if first.outcome.is_delivered() {
+        return;
     }
-    search.improve(scratch, ROUNDS, &mut best);
+    keep(scratch);
+    search.ceiling = Some(first.outcome.ceiling);
+    if tables.desaturation.airmode == Airmode::Disabled && !first.outcome.is_allowed() {
+        let [.., yaw, _] = request;
+        let lowest = Search {
+            request: [0.0, 0.0, yaw, -REQUEST_LIMIT],
+            ceiling: Some(REQUEST_LIMIT),
+            ..search
+        };
+        lowest.draw(scratch, 0, 0);
+        let mut floor = lowest.settle(scratch, ROUNDS, None);
+        keep(scratch);
+        lowest.search(scratch, halvings, &mut floor);
+        search.ceiling = Some(floor.outcome.thrust);
+        // From there: roll = pitch = 0, if nothing better is found.
+        let [along, _, _, thrust] = first.outcome.wanted;
+        first = floor;
+        let [.., yaw_short] = floor.outcome.short;
+        first.outcome.short = [along, (floor.outcome.thrust - thrust).abs(), yaw_short];
+        search.touch_efforts(scratch);
+        search.improve(scratch, ROUNDS, &mut first);
+    }
+    search.search(scratch, halvings, &mut first);
+}
+
+/// Keeps the efforts as those of the best end.
+fn keep(scratch: &mut [Scratch]) {
     for scratch in scratch.iter_mut() {
-        scratch.efforts = scratch.best;
+        scratch.best = scratch.efforts;
     }
 }
 
 impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
+    /// Rounds on parts of the curves, then from the best end; leaves its efforts in the scratch.
+    fn search(&self, scratch: &mut [Scratch], halvings: u32, best: &mut End) {
+        for combination in 0..1 << HALVINGS {
+            let rounds = if best.outcome.is_within() {
+                ROUNDS_OF_PARTS
+            } else {
+                ROUNDS
+            };
+            self.draw(scratch, halvings, combination);
+            self.improve(scratch, rounds, best);
+        }
+        for scratch in scratch.iter_mut() {
+            scratch.efforts = scratch.best;
+        }
+        self.touch_efforts(scratch);
+        self.improve(scratch, ROUNDS, best);
+        for scratch in scratch.iter_mut() {
+            scratch.efforts = scratch.best;
+        }
+    }
+
+    /// Whole curves, their lines drawn where the units are.
+    fn touch_efforts(&self, scratch: &mut [Scratch]) {
+        self.draw(scratch, 0, 0);
+        for scratch in scratch.iter_mut() {
+            self.touch(scratch, scratch.efforts[0]);
+        }
+    }
+
     /// Chords of the curves; of curves halved so often only of one part each, `combination` says which: its bits are those
     /// of all parts in turn. Once [`HALVINGS`] are used up, curves are whole.
     fn draw(&self, scratch: &mut [Scratch], halvings: u32, combination: u32) {
@@ -159,18 +215,23 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
         let end = self.settle(scratch, rounds, Some(best));
         if end.touches && (!best.touches || end.outcome.cost() < best.outcome.cost()) {
             *best = end;
-            for scratch in scratch.iter_mut() {
-                scratch.best = scratch.efforts;
-            }
+            keep(scratch);
         }
     }
 
     /// The steps with the lines as they are drawn.
-    fn round(&self, scratch: &mut [Scratch], ceiling: Option<f32>) -> Outcome {
+    fn round(&self, scratch: &mut [Scratch]) -> Outcome {
         let sets = Sets {
             both: self.tables.attainable,
         };
-        prioritise(self.tables, &sets, self.request, self.factors, ceiling, scratch)
+        prioritise(
+            self.tables,
+            &sets,
+            self.request,
+            self.factors,
+            self.ceiling,
+            scratch,
+        )
     }
 
     /// At most `rounds` of them, fewer where the end will not be better than `best`.
@@ -178,10 +239,9 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
     fn settle(&self, scratch: &mut [Scratch], rounds: u32, best: Option<&End>) -> End {
         let tables = self.tables;
         let hopeless = best.map(|best| best.outcome.cost() + HOPELESS);
-        let ceiling = best.map(|best| best.outcome.ceiling);
         let mut round = 0;
         loop {
-            let outcome = self.round(scratch, ceiling);
+            let outcome = self.round(scratch);
             round += 1;
             let least = if round < TRIED {
                 outcome.short[0]
