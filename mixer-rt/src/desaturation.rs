@@ -79,8 +79,8 @@ pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
 /// What the steps came to, in rows.
 #[derive(Clone, Copy)]
 pub(crate) struct Outcome {
-    /// How far out of bounds: roll and pitch across the request, yaw, thrust. More than rounding only where not even
-    /// roll = pitch = 0 is attainable.
+    /// How far out of bounds: roll and pitch across the request or against it, yaw, thrust. More than rounding only where
+    /// not even roll = pitch = 0 is attainable.
     pub(crate) beyond: f32,
     /// How far from the request, in the order of priority.
     pub(crate) short: [f32; 3],
@@ -144,7 +144,10 @@ pub(crate) fn prioritise<P, I, S>(
     };
     let [second, third] = order(airmode);
     Outcome {
-        beyond: short(ACROSS) + yaw.distance(reached[YAW]) + thrust.distance(reached[THRUST]),
+        beyond: short(ACROSS)
+            + Bounds::at(0.0).including(wanted[ALONG]).distance(reached[ALONG])
+            + yaw.distance(reached[YAW])
+            + thrust.distance(reached[THRUST]),
         short: [short(ALONG), short(second), short(third)],
         ceiling: thrust.high,
         wanted,

@@ -35,7 +35,7 @@ const NEXT: f32 = 0.005;
 const BEYOND: f32 = 1e3;
 
 /// Rows beyond their bounds by less than this are within, but for rounding and what lines and curves are apart.
-const WITHIN: f32 = 1e-4;
+const WITHIN: f32 = 4e-4;
 
 /// An end that is worse by more than this after a round, or after [`TRIED`] of them, will not be the best. The lines
 /// of the first rounds are off their curves by about a tenth of that.

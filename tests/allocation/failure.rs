@@ -194,3 +194,17 @@ fn more_roll_and_pitch_is_found_than_next_to_none() {
         is_served(&frame, [roll, -29.111073, 0.0, 6.3159475], 16.42392, [0, 6]);
     }
 }
+
+/// Two rotors of two units leave next to no choice: yaw is missed by a bit, not roll turned against the request.
+#[test]
+fn roll_is_not_reversed_for_the_last_bit_of_yaw() {
+    let places = [
+        at([0.11161627293905381, -0.4204218152755296, 0.0], true),
+        at([0.054747908847903023, 0.42679751567294166, 0.0], false),
+    ];
+    let frame = compile(&places, "roll-pitch", 0.0);
+    for step in 0..10 {
+        let roll = 0.7 * step as f32;
+        is_served(&frame, [roll, 0.0, 0.0, 14.163997], 17.584852, [0, 2]);
+    }
+}
