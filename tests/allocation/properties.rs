@@ -4,9 +4,9 @@
 //! another seed. A failure shows the least layout and request that it could be brought to, as an airframe file and a
 //! wrench.
 
-use mixer_rt::{Health, SetpointError};
+use mixer_rt::{Axis, Health, SetpointError};
 use mixer_tests::optimum::{Oracle, change};
-use mixer_tests::request::{Frame, Request};
+use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::shortfall::Shortfall;
 use mixer_tests::soundness;
 use proptest::prelude::*;
@@ -19,6 +19,13 @@ const JUMP: f32 = 0.02;
 
 /// Times what the priorities force a throttle may move.
 const FORCED: f64 = 2.0;
+
+/// Share by which a barely attainable wrench is drawn inside to be attainable to the mixer, too: the polygons leave out up
+/// to half a percent of a unit's range of thrust or torque, which is twice that of the half of it on one side.
+const INSIDE: f32 = 0.01;
+
+/// Share of the authority by which an answer may miss the optimum over the mixer's own polygons: rounding.
+const OWN: f64 = 1e-3;
 
 /// Each layout takes a compilation, about 0.1 s.
 const LAYOUTS: u32 = 32;
@@ -71,6 +78,54 @@ fn sound(frame: &Frame, draw: &Draw) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// Fails where an axis is missed by more than the mixer's tolerance.
+fn delivered(frame: &Frame, request: &Request) -> Result<(), TestCaseError> {
+    let answer = request.mix(frame).expect("finite");
+    let served = frame.served();
+    for (index, axis) in Axis::ALL
+        .into_iter()
+        .enumerate()
+        .filter(|(index, _)| served[*index])
+    {
+        let missed = request.asked()[index] - answer.achieved[index];
+        let tolerance = frame.compiled.tables.tolerance.wrench[index];
+        prop_assert!(
+            missed.abs() <= f64::from(tolerance) * (1.0 + 1e-6),
+            "{} misses by {}: {:?} -> {:?}",
+            axis.name(),
+            missed,
+            request,
+            answer
+        );
+    }
+    Ok(())
+}
+
+/// Fails where more than [`INSIDE`] is missing of what is attainable, or more is given up for that than the priorities
+/// demand: where units have little to spare, half a percent of one axis may be worth a tenth of another. So the wrench
+/// that much nearer to that of half throttles must be delivered, and the answer be the optimum over the mixer's own
+/// polygons.
+fn little_is_missed(frame: &Frame, request: &Request, answer: &Answer) -> Result<(), TestCaseError> {
+    let halves = frame.physics.throttles(std::iter::repeat(0.5), request.health);
+    let middle = frame.physics.wrench(&halves, request.volts);
+    let mut inside = *request;
+    for (value, middle) in inside.wrench.iter_mut().zip(middle) {
+        *value += INSIDE * (middle as f32 - *value);
+    }
+    delivered(frame, &inside)?;
+    let oracle = Oracle::of_polygons(frame, request.volts, request.health);
+    let shortfall = Shortfall::of(answer, request, frame, &oracle)
+        .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
+    prop_assert!(
+        shortfall.is_none_or(|shortfall| shortfall.largest() <= OWN),
+        "{:?} of the polygons': {:?} -> {:?}",
+        shortfall,
+        request,
+        answer
+    );
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(config())]
 
@@ -92,8 +147,15 @@ proptest! {
             let answer = request.mix(frame).expect("finite");
             let factors = frame.physics.factors(request.volts);
             let oracle = Oracle::new(&frame.physics, frame.allocation(), factors, request.health);
-            let shortfall = Shortfall::of(&answer, &request, frame, &oracle)
-                .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
+            let of = |oracle: &Oracle| {
+                Shortfall::of(&answer, &request, frame, oracle)
+                    .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))
+            };
+            let mut shortfall = of(&oracle)?;
+            if shortfall.is_some_and(|shortfall| shortfall.misses()) {
+                // Perhaps not of what is attainable, but only of its convex hull.
+                shortfall = of(&Oracle::exact(&frame.physics, frame.allocation(), factors, request.health))?;
+            }
             prop_assert!(
                 shortfall.is_none_or(|shortfall| !shortfall.misses()),
                 "{:?}: {:?} -> {:?}", shortfall, request, answer
@@ -107,21 +169,12 @@ proptest! {
     fn attainable_wrenches_are_delivered(layout in layout(), draws in many(attainable_request(0.02, 0), 150)) {
         each(&layout, &draws, |frame, draw| {
             let request = draw.of(frame);
-            let answer = request.mix(frame).expect("finite");
-            let served = frame.served();
-            for (index, axis) in mixer_rt::Axis::ALL.into_iter().enumerate().filter(|(index, _)| served[*index]) {
-                let missed = request.asked()[index] - answer.achieved[index];
-                let tolerance = frame.compiled.tables.tolerance.wrench[index];
-                prop_assert!(
-                    missed.abs() <= f64::from(tolerance) * (1.0 + 1e-6),
-                    "{} misses by {}: {:?} -> {:?}", axis.name(), missed, request, answer
-                );
-            }
-            Ok(())
+            delivered(frame, &request)
         })?;
     }
 
-    /// The wrench of throttles at the ends of their range: the border of what is attainable.
+    /// The wrench of throttles at the ends of their range: the border of what is attainable. Where more than half a percent
+    /// of an axis is missed, the priorities have made that of less: see [`little_is_missed`].
     #[test]
     fn barely_attainable_wrenches_are_delivered_but_for_half_a_percent(
         layout in layout(),
@@ -130,9 +183,12 @@ proptest! {
         each(&layout, &draws, |frame, draw| {
             let request = draw.of(frame);
             let answer = request.mix(frame).expect("finite");
-            for axis in (0..4).filter(|&axis| frame.served()[axis]) {
+            let misses = (0..4).any(|axis| {
                 let missed = (request.asked()[axis] - answer.achieved[axis]).abs();
-                prop_assert!(missed <= 0.005 * frame.authority[axis], "axis {}: {:?} -> {:?}", axis, request, answer);
+                frame.served()[axis] && missed > 0.005 * frame.authority[axis]
+            });
+            if misses {
+                little_is_missed(frame, &request, &answer)?;
             }
             Ok(())
         })?;
@@ -181,7 +237,7 @@ proptest! {
                 // Channels beyond the frame's are no one's.
                 health: failed.iter().fold(Health::GOOD, |health, channel| health.with_failed(*channel)),
             };
-            let first_bad = mixer_rt::Axis::ALL.into_iter().zip(wrench).find(|(_, value)| !value.is_finite());
+            let first_bad = Axis::ALL.into_iter().zip(wrench).find(|(_, value)| !value.is_finite());
             let refusal = match first_bad {
                 Some((axis, _)) => Some(SetpointError::NonFinite(axis)),
                 None => (!volts.is_finite()).then_some(SetpointError::NonFiniteVoltage),

@@ -23,7 +23,12 @@ pub struct Shortfall {
 impl Shortfall {
     /// True where any priority falls short by more than [`ALLOWED`].
     pub fn misses(&self) -> bool {
-        self.torque > ALLOWED || self.yaw > ALLOWED || self.thrust > ALLOWED
+        self.largest() > ALLOWED
+    }
+
+    /// Of the priority that falls shortest.
+    pub fn largest(&self) -> f64 {
+        self.torque.max(self.yaw).max(self.thrust)
     }
 
     /// The larger of each.
