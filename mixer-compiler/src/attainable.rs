@@ -21,7 +21,7 @@ const COARSE: usize = 4;
 
 /// Share of the set's area that may be lost: little enough that what desaturation gives up for it is a few parts in a
 /// thousand.
-const LOSS: f64 = 6e-4;
+const LOSS: f64 = 3e-4;
 
 /// Share of the convex part's area that a convex polygon may lose, where no other is found.
 const CONVEX_LOSS: f64 = 1e-3;
@@ -63,7 +63,7 @@ impl Polygon {
             .or_else(|| within(&corners::seen_from(&border, middle), middle, LOSS))
             .or_else(|| within(&border, corners::deepest_view(&border), LOSS))
             .or_else(|| within(&convex, middle, CONVEX_LOSS))
-            .unwrap_or_else(|| (middle, convex.clone()));
+            .unwrap_or_else(|| (middle, corners::thinned(&convex)));
         let polygon = inset(&polygon);
         let newtons = |[f, q]: [f64; 2]| [f * scale[0], q * scale[1]];
         Polygon {

@@ -32,7 +32,7 @@ pub struct MixerTables {
     pub throttle: ThrottleRange,
     /// The voltage correction.
     pub voltage: Option<VoltageTable>,
-    /// Convex polygon inside the attainable set.
+    /// A polygon inside the attainable set.
     pub attainable: AttainableTable,
     /// Priorities of desaturation.
     pub desaturation: Desaturation,

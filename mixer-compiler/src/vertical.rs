@@ -104,14 +104,8 @@ pub(crate) fn table(
     // A reserve of yaw, or yaw before thrust, couples thrust and yaw: that takes concave sides.
     let coupled = allocation.yaw_reserve_nm > 0.0 || allocation.airmode == Airmode::RollPitchYaw;
     let outline = || outline::sides(&pair, thrust_n).map(&border);
-    let border = if coupled {
-        arcs
-    } else {
-        let loses_little = |border: &Border<SideTable>| {
-            attainable::lost_between(&pair, &border.sides, thrust_n) <= MOST_LOST
-        };
-        arcs.filter(loses_little).or_else(outline)
-    }?;
+    let arcs = arcs.filter(|border| attainable::lost_between(&pair, &border.sides, thrust_n) <= MOST_LOST);
+    let border = if coupled { arcs } else { arcs.or_else(outline) }?;
     let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
     let yaw_rounding_nm = (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32;
     let spins: Vec<f64> = (0..n).map(|i| matrix[(2, n + i)]).collect();

@@ -1,5 +1,5 @@
 //! Pairs whose attainable sets are not convex: made up ones, and the real maps of `MIXER_BENCH_DATA` in three bases. On
-//! an X8, where yaw may have several peaks along the null space of the thrusts, and on a Y6.
+//! an X8, where yaw may have several peaks along the null space of the thrusts, on a Y6, and on an X12.
 
 #[path = "../../cargo-mixer/tests/maps/mod.rs"]
 mod maps;
@@ -255,7 +255,7 @@ fn losses(compiled: &Compiled) -> String {
     let sides = compiled
         .lost_between_sides
         .map_or("none".to_owned(), |share| format!("{:.3} %", 100.0 * share));
-    format!("polygon loses {polygon:.3} % ({convexity:.3} % to convexity), sides {sides}")
+    format!("polygon loses {polygon:.3} % (a convex one {convexity:.3} %), sides {sides}")
 }
 
 fn hold(tally: &Tally) {

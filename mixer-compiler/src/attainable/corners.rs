@@ -142,6 +142,12 @@ impl Chain {
     }
 }
 
+/// Some of a convex polygon's corners, not too many.
+pub(super) fn thinned(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let stride = polygon.len().div_ceil(MOST_CORNERS).max(1);
+    polygon.iter().copied().step_by(stride).collect()
+}
+
 /// The polygon with every edge moved inwards by [`MARGIN`].
 pub(super) fn inset(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let n = polygon.len();

@@ -52,24 +52,24 @@ fn the_polygon_is_inside_the_set_and_loses_little() {
     let pairs = pairs();
     assert!(pairs.len() >= 8);
     for (name, pair) in pairs {
-        let part = Polygon::new(&pair);
-        let n = part.corners.len();
-        assert!(is_seen_from(&part.corners, part.centre), "{name}");
+        let polygon = Polygon::new(&pair);
+        let n = polygon.corners.len();
+        assert!(is_seen_from(&polygon.corners, polygon.centre), "{name}");
         for throttles in pair.border(2048) {
             let point = pair.efforts(throttles);
             // Seen from the centre through this edge.
-            let ends = part.corners.iter().cycle().skip(1);
-            let seen = part.corners.iter().zip(ends).any(|(&start, &end)| {
-                cross(part.centre, start, point) >= 0.0
-                    && cross(part.centre, point, end) > 0.0
+            let ends = polygon.corners.iter().cycle().skip(1);
+            let seen = polygon.corners.iter().zip(ends).any(|(&start, &end)| {
+                cross(polygon.centre, start, point) >= 0.0
+                    && cross(polygon.centre, point, end) > 0.0
                     && cross(start, end, point) > 0.0
             });
             assert!(!seen, "{name}: {point:?} of the border is inside the polygon");
         }
-        let lost = 1.0 - 0.5 * moments(&part.corners).0 / area(&pair);
-        let AreaLoss { total, convexity } = part.lost;
+        let lost = 1.0 - 0.5 * moments(&polygon.corners).0 / area(&pair);
+        let AreaLoss { total, convexity } = polygon.lost;
         println!(
-            "{name}: {n} corners, {:.4} % of the area lost, {:.4} % by convexity",
+            "{name}: {n} corners, {:.4} % of the area lost, a convex one {:.4} %",
             100.0 * lost,
             100.0 * convexity
         );
