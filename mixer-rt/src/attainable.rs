@@ -15,18 +15,11 @@
 //! projection that comes to the corner goes on along the other edge, from the same distance. `p` turns about the corner
 //! by the angle between the edges.
 
-use crate::{clamp, sqrt};
+mod edge;
 
-/// One edge of a [`AttainableSet`], in the set's own units: see [`AttainableSet::scale`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
-    /// The corner where it starts.
-    pub start: [f32; 2],
-    /// Unit vector towards its end.
-    pub along: [f32; 2],
-    /// Its length.
-    pub length: f32,
-}
+use crate::{clamp, sqrt};
+pub use edge::Edge;
+use edge::NO_EDGE;
 
 /// A set inside the attainable set at the reference voltage; at another voltage it is scaled by `[k_f, k_Q]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,12 +94,6 @@ impl Falls {
 
 /// Efforts that move by less than this on the whole way stand still.
 const STANDING: f32 = 3e-5;
-
-const NO_EDGE: Edge = Edge {
-    start: [0.0; 2],
-    along: [1.0, 0.0],
-    length: 0.0,
-};
 
 impl AttainableSet<'_> {
     #[inline]
@@ -299,7 +286,7 @@ impl AttainableSet<'_> {
                     let after = self.after(index);
                     (self.edge(index).length - point.at[0], after, after)
                 };
-                let (face, next) = if self.turn(corner) >= 0.0 {
+                let (face, next) = if self.turn(corner) > 0.0 || self.is_chord() {
                     (Face::Corner, corner)
                 } else if barred == Some((Face::Edge, next)) {
                     // Either edge leads to the other: the way goes inside.
@@ -448,34 +435,6 @@ impl AttainableSet<'_> {
             index,
             at: self.heights(index, from_corner),
         }
-    }
-}
-
-impl Edge {
-    #[inline]
-    fn relative(&self, point: [f32; 2]) -> [f32; 2] {
-        [point[0] - self.start[0], point[1] - self.start[1]]
-    }
-
-    /// The part of `vector` along the edge.
-    #[inline]
-    fn along(&self, vector: [f32; 2]) -> f32 {
-        vector[0] * self.along[0] + vector[1] * self.along[1]
-    }
-
-    /// The part of `vector` along the outward normal: the interior lies to the edge's left.
-    #[inline]
-    fn beyond(&self, vector: [f32; 2]) -> f32 {
-        vector[0] * self.along[1] - vector[1] * self.along[0]
-    }
-
-    /// The point at distance `s` from the start.
-    #[inline]
-    pub(crate) fn at(&self, s: f32) -> [f32; 2] {
-        [
-            self.start[0] + s * self.along[0],
-            self.start[1] + s * self.along[1],
-        ]
     }
 }
 

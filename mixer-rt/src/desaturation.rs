@@ -23,8 +23,9 @@
 //! steep. With rotors out there may be several optima: see [`crate::search`].
 
 use crate::chord::{Rotors, Sets};
-use crate::homotopy::{Homotopy, Scratch};
+use crate::homotopy::Homotopy;
 use crate::rows::{ACROSS, ALONG, Bounds, THRUST, YAW};
+use crate::scratch::Scratch;
 use crate::{Quantity, Tables, clamp};
 
 /// What desaturation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).

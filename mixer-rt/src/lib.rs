@@ -40,6 +40,7 @@ mod reference;
 mod rows;
 mod saturation;
 mod scalar;
+mod scratch;
 mod search;
 mod sqrt;
 mod table;
@@ -52,7 +53,6 @@ pub use attainable::{AttainableSet, Edge};
 pub use desaturation::{Airmode, Desaturation};
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
 pub use health::Health;
-pub use homotopy::Scratch;
 pub use inverse::{
     BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,
     Seeded, ThrottleRange, solve,
@@ -60,6 +60,7 @@ pub use inverse::{
 pub use mix::{Airframe, Mix, mix, mix_into, mix_with_health};
 pub use saturation::{Direction, Saturation};
 pub use scalar::Scalar;
+pub use scratch::Scratch;
 pub use sqrt::sqrt;
 pub use table::TableSeed;
 pub use tables::{Tables, Tolerance, Unit};

@@ -2,7 +2,7 @@
 
 use crate::chord::Rotors;
 use crate::desaturation::{is_bounded, limited, single_rotor};
-use crate::homotopy::Scratch;
+use crate::scratch::Scratch;
 use crate::search::desaturate;
 use crate::vertical::{Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;

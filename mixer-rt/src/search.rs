@@ -15,7 +15,7 @@
 
 use crate::chord::{Chord, Sets};
 use crate::desaturation::{Airmode, Outcome, REQUEST_LIMIT, prioritise, single_rotor};
-use crate::homotopy::Scratch;
+use crate::scratch::Scratch;
 use crate::{Quantity, Tables};
 
 /// Halvings of the curves in all: one curve is tried in quarters, two in halves.
