@@ -55,14 +55,14 @@ impl Polygon {
         let coarse: Vec<[f64; 2]> = border.iter().copied().step_by(COARSE).collect();
         let convex = convex_part(&coarse);
         let middle = centre(&convex);
-        let within = |border: &[[f64; 2]], centre, loss: f64| {
+        let from = |border: &[[f64; 2]], centre, loss: f64| {
             let corners = fewest_corners(border, centre, loss * whole)?;
             Some((centre, corners))
         };
-        let (centre, polygon) = within(&border, middle, LOSS)
-            .or_else(|| within(&corners::seen_from(&border, middle), middle, LOSS))
-            .or_else(|| within(&border, corners::deepest_view(&border), LOSS))
-            .or_else(|| within(&convex, middle, CONVEX_LOSS))
+        let (centre, polygon) = from(&border, middle, LOSS)
+            .or_else(|| from(&corners::seen_from(&border, middle), middle, LOSS))
+            .or_else(|| from(&border, corners::deepest_view(&border), LOSS))
+            .or_else(|| from(&convex, middle, CONVEX_LOSS))
             .unwrap_or_else(|| (middle, corners::thinned(&convex)));
         let polygon = inset(&polygon);
         let newtons = |[f, q]: [f64; 2]| [f * scale[0], q * scale[1]];

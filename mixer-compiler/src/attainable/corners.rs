@@ -10,7 +10,7 @@ const SHARP: f64 = 0.1;
 
 /// What a corner may be below the border, in units of the set's size or as shares of its distance from the centre: where
 /// the border bends inwards a corner on it would take chords outside.
-const DEPTHS: [f64; 3] = [0.0005, 0.0015, 0.004];
+const DEPTHS: [f64; 4] = [0.0005, 0.0015, 0.004, 0.012];
 
 /// Most corners; the indices of the mixer's table are bytes.
 const MOST_CORNERS: usize = 80;
