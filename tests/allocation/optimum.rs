@@ -1,13 +1,13 @@
 //! Answers against linear programs over the physical attainable sets, at any voltage and with rotors out.
 
 use mixer_rt::Health;
-use mixer_tests::frames::{self, AIRMODES, Options};
+use mixer_tests::frames::{self, AIRMODES, Options, Place};
 use mixer_tests::optimum::Oracle;
 use mixer_tests::random::Random;
-use mixer_tests::request::Frame;
+use mixer_tests::request::{Frame, Request};
 use mixer_tests::shortfall::Shortfall;
 
-use crate::REFERENCE_V;
+use crate::{REFERENCE_V, compile};
 
 #[derive(Default)]
 struct Judged {
@@ -148,6 +148,37 @@ fn any_frame_reaches_the_optimum() {
         "{} of {}",
         all.missed,
         all.requests
+    );
+}
+
+/// Rotors at the ends of their range and a reserve of yaw: the furthest yaw at the thrust asked is found although the
+/// limits of three units lie between z's start and its end.
+#[test]
+fn a_reserve_leaves_the_furthest_yaw_at_the_thrust_asked() {
+    let places = [
+        ([0.48937, 0.17845], true),
+        ([0.47084, 0.97186], false),
+        ([-0.63780, -0.22207], true),
+        ([-0.35040, -0.83699], false),
+    ]
+    .map(|([x, y], clockwise)| Place {
+        position: [x, y, 0.0],
+        axis: [0.0, 0.0, -1.0],
+        clockwise,
+    });
+    let frame = compile(&places, "disabled", 0.0985);
+    let request = Request {
+        wrench: [-2.740_897_7, 2.675_990_6, 0.599_748_85, 42.395_542],
+        volts: 12.8,
+        health: Health::GOOD,
+    };
+    let answer = request.mix(&frame).expect("finite");
+    let factors = frame.physics.factors(request.volts);
+    let oracle = Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
+    let shortfall = Shortfall::of(&answer, &request, &frame, &oracle).expect("solved");
+    assert!(
+        shortfall.is_some_and(|shortfall| shortfall.largest() < 1e-3),
+        "{shortfall:?}: {answer:?}"
     );
 }
 

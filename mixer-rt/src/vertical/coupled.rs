@@ -11,7 +11,7 @@
 
 use core::hint::black_box;
 
-use super::program::{Corner, Row};
+use super::program::{Corner, PARALLEL, Row};
 use super::{Efforts, MOST_UNITS, Request, Search, TorqueLimit, Vertical, rolled};
 use crate::{Airmode, clamp};
 
@@ -65,7 +65,7 @@ const ROUNDING: f32 = 1e-5;
 /// Y is known where it is within so many N, as in [`Coupling::scale`], of its tangents.
 const CLOSE: f32 = 2e-3;
 /// Rows that the programs take in at most, all together.
-const ROWS: u32 = 20;
+const ROWS: u32 = 18;
 /// .. and the first of them, which moves z alone.
 const FIRST_ROWS: u32 = 5;
 /// Thrusts for roll and pitch that count as none, N: their reciprocal is to be finite.
@@ -132,6 +132,25 @@ impl<S: TorqueLimit> Climb<'_, '_, S> {
         })
     }
 
+    /// Where z comes to the first limit in the direction of `sign`, and how much of it one of lean and of thrust take.
+    #[inline(always)]
+    fn end(&self, sign: f32) -> (f32, [f32; 2]) {
+        let [least, most] = self.range;
+        let mut end = FAR * most;
+        let mut binding = &[0.0, 0.0, 1.0];
+        for (state, way) in self.search.iter().zip(&self.ways) {
+            rolled();
+            let speed = sign * way[2];
+            let limit = if speed > 0.0 { most } else { least };
+            let room = (limit - state.from) / speed;
+            let binds = speed.abs() > PARALLEL && room < end;
+            end = if binds { room } else { end };
+            binding = if binds { way } else { binding };
+        }
+        let [lean, thrust, z] = *binding;
+        (sign * end, [lean / z, thrust / z])
+    }
+
     /// Y at the point that [`Climb::go`] has gone to; leaves the largest torques.
     #[inline(always)]
     fn tangent(&mut self) -> Tangent {
@@ -166,20 +185,12 @@ impl<S: TorqueLimit> Climb<'_, '_, S> {
         while self.rows > 0 {
             self.rows -= 1;
             let [first, thrust, z] = corner.at;
-            let (yaw, lean) = match level {
-                Some(level) => (level, first),
-                None => (first, 0.0),
-            };
+            let (yaw, lean) = level.map_or((first, 0.0), |level| (level, first));
             let point = [lean, thrust, z];
             if yaw < least {
                 break;
             }
-            let mut row = Row {
-                yaw: 0.0,
-                lean: 0.0,
-                rest: [0.0; 2],
-                excess: 0.0,
-            };
+            let mut row = Row::default();
             if yaw - cap > CLOSE {
                 row.yaw = 1.0;
                 row.excess = yaw - cap;
@@ -322,7 +333,10 @@ impl<S: TorqueLimit> Climb<'_, '_, S> {
         let far = FAR * self.range[1];
         let ([.., z], reached) = *found;
         let [lean, slopes @ ..] = start.slopes;
-        let mut corner = Corner::under(reached, lean, slopes, z, far);
+        // The loops for both signs as one.
+        let sign = black_box(if slopes[1] < 0.0 { -1.0 } else { 1.0 });
+        let (end, taken) = self.end(sign);
+        let mut corner = Corner::under(reached, lean, slopes, z, (sign, end, taken));
         let mut program = Program {
             held: 1,
             price: 0.0,

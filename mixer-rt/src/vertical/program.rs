@@ -4,7 +4,7 @@
 //! keeps it. The rows need not be known beforehand: tangents of a concave function are added where the corner comes to.
 
 /// `lead x[0] + rest x[1..]` may grow no further.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Row {
     /// Of the first unknown while that is the yaw.
     pub(super) yaw: f32,
@@ -35,23 +35,27 @@ pub(super) struct Corner {
 }
 
 /// A row that a way meets at less than this is as good as parallel to it.
-const PARALLEL: f32 = 1e-5;
+pub(super) const PARALLEL: f32 = 1e-5;
 
 fn product(a: &[f32; 3], b: &[f32; 3]) -> f32 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
 impl Corner {
-    /// Under the tangent `yaw <= at + slopes (x - start)`, with `x[1]` held and `x[2]` taken to where the yaw grows, as
-    /// far as `limit`.
-    pub(super) fn under(at: f32, lean: f32, slopes: [f32; 2], start: f32, limit: f32) -> Corner {
-        let sign = if slopes[1] < 0.0 { -1.0 } else { 1.0 };
-        let end = sign * limit;
+    /// Under the tangent `yaw <= at + slopes (x - start)`, with `x[1]` held and `x[2]` taken to its `end` in the direction
+    /// of `sign`, where the yaw grows. The end comes nearer by `taken` per lean and per `x[1]`.
+    pub(super) fn under(
+        at: f32,
+        lean: f32,
+        slopes: [f32; 2],
+        start: f32,
+        (sign, end, taken): (f32, f32, [f32; 2]),
+    ) -> Corner {
         Corner {
             at: [at + slopes[1] * (end - start), 0.0, end],
             edges: [
                 Edge {
-                    way: [slopes[0], 1.0, 0.0],
+                    way: [slopes[0] - slopes[1] * taken[1], 1.0, -taken[1]],
                     lean: 0.0,
                 },
                 Edge {
@@ -60,7 +64,7 @@ impl Corner {
                 },
                 Edge {
                     way: [sign * slopes[1], 0.0, sign],
-                    lean: 0.0,
+                    lean: sign * taken[0],
                 },
             ],
             leans: false,
