@@ -364,10 +364,14 @@ impl AttainableSet<'_> {
             (Face::Edge, Face::Interior) => self.edge(from.index).at(from.at[0]),
             (Face::Edge, Face::Edge) => {
                 let starts_here = self.after(from.index) == index;
-                [
-                    if starts_here { 0.0 } else { self.edge(index).length },
-                    from.at[1],
-                ]
+                let s = if starts_here { 0.0 } else { self.edge(index).length };
+                // What was pressed on one edge is not on another.
+                let away = if from.at[1] < f32::INFINITY {
+                    from.at[1]
+                } else {
+                    0.0
+                };
+                [s, away]
             }
             (Face::Edge, Face::Corner) => {
                 let away = from.at[1];
