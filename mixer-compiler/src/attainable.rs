@@ -19,9 +19,9 @@ const SAMPLES: usize = 512;
 /// Every so many of them make the convex part.
 const COARSE: usize = 4;
 
-/// Share of the set's area that may be lost: little enough that what desaturation gives up for it is a few parts in a
-/// thousand.
-const LOSS: f64 = 3e-4;
+/// Share of the set's area that may be lost. With less there are more corners at which the border bends inwards, and more
+/// requests whose path ends at a local optimum: of 10,431 on random frames 9 with 3e-4, 1 with this and with 6e-4.
+const LOSS: f64 = 5e-4;
 
 /// Share of the convex part's area that a convex polygon may lose, where no other is found.
 const CONVEX_LOSS: f64 = 1e-3;
