@@ -137,10 +137,10 @@ fn centre(polygon: &[[f64; 2]]) -> [f64; 2] {
     let (_, [f, q]) = moments(polygon);
     let depth = |point: [f64; 2]| {
         let ends = polygon.iter().cycle().skip(1);
-        let distances = polygon.iter().zip(ends).map(|(&start, &end)| {
-            let (df, dq) = (end[0] - start[0], end[1] - start[1]);
-            cross(start, end, point) / (df * df + dq * dq).sqrt()
-        });
+        let distances = polygon
+            .iter()
+            .zip(ends)
+            .map(|(&start, &end)| cross(start, end, point) / distance(start, end));
         distances.fold(f64::INFINITY, f64::min)
     };
     let level = [f, 0.0];

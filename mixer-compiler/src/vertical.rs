@@ -28,7 +28,7 @@ const ARC_TOLERANCE: f64 = 1e-3;
 /// Share of the attainable area that convexity may cost where the sides are arcs.
 const MOST_LOST_TO_CONVEXITY: f64 = 0.0025;
 
-/// .. and what arcs may cost in all, where polylines can take their place.
+/// .. and what arcs may cost in all.
 const MOST_LOST: f64 = 0.002;
 
 /// What an arc keeps from its edge for rounding, as a share of the largest torque.

@@ -20,8 +20,8 @@ const JUMP: f32 = 0.02;
 /// Times what the priorities force a throttle may move.
 const FORCED: f64 = 2.0;
 
-/// Share by which a barely attainable wrench is drawn inside to be attainable to the mixer, too: the polygons leave out up
-/// to half a percent of a unit's range of thrust or torque, which is twice that of the half of it on one side.
+/// Share by which a barely attainable wrench is drawn inside to be attainable to the mixer, too, whose polygons leave out a
+/// little at the border.
 const INSIDE: f32 = 0.01;
 
 /// Share of the authority by which an answer may miss the optimum over the mixer's own polygons: rounding.

@@ -77,8 +77,7 @@ impl Chain {
             .collect();
         let corners = candidates.iter().map(|&k| {
             let [before, here, after] = around(sharpest + k);
-            let length = distance(before, after);
-            let inwards = [(before[1] - after[1]) / length, (after[0] - before[0]) / length];
+            let inwards = inward_normal(before, after);
             let below = |depth: f64, way: [f64; 2]| [0, 1].map(|axis| here[axis] + depth * way[axis]);
             let to_centre = [centre[0] - here[0], centre[1] - here[1]];
             std::array::from_fn(|level| match level {
@@ -151,11 +150,7 @@ pub(super) fn thinned(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// The polygon with every edge moved inwards by [`MARGIN`].
 pub(super) fn inset(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let n = polygon.len();
-    let inwards = |k: usize| {
-        let (start, end) = (polygon[k % n], polygon[(k + 1) % n]);
-        let length = distance(start, end);
-        [(start[1] - end[1]) / length, (end[0] - start[0]) / length]
-    };
+    let inwards = |k: usize| inward_normal(polygon[k % n], polygon[(k + 1) % n]);
     (0..n)
         .map(|k| {
             let (before, after) = (inwards(k + n - 1), inwards(k));
@@ -163,6 +158,12 @@ pub(super) fn inset(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
             [0, 1].map(|axis| polygon[k][axis] + MARGIN * (before[axis] + after[axis]) / both)
         })
         .collect()
+}
+
+/// The unit normal, to the left, of the way from one point to another.
+fn inward_normal(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    let length = distance(from, to);
+    [(from[1] - to[1]) / length, (to[0] - from[0]) / length]
 }
 
 /// True where the straight ways from `centre` to a closed border, anticlockwise, are inside.
