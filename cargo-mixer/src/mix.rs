@@ -82,8 +82,8 @@ pub enum Stopped {
     Output(io::Error),
 }
 
-/// Mixes every row of `input` into `output` with the rotors that `health` leaves; bad rows go to `bad_line`. Returns their number. A reader of `output`
-/// that has seen enough ends the mixing without an error.
+/// Mixes every row of `input` into `output` with the rotors that `health` leaves; bad rows go to `bad_line`. Returns
+/// their number. A reader of `output` that has seen enough ends the mixing without an error.
 ///
 /// # Errors
 /// A header that is none, or input or output that fails.

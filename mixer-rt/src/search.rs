@@ -9,9 +9,9 @@
 //! With airmode disabled, where less thrust is asked for than roll = pitch = 0 needs, the least thrust that these need is
 //! searched for first in the same way, since it is what is allowed then.
 //!
-//! Ends are compared by their priorities, bounds first, but so that no more of one is given up for all of the next than [`NEXT`]:
-//! two optima whose roll and pitch differ by rounding may differ by all of the thrust. Where the request changes and
-//! another optimum becomes the best the efforts jump, as any choice by these priorities must.
+//! Ends are compared by their priorities, bounds first, but so that no more of one is given up for all of the next than
+//! [`NEXT`]: two optima whose roll and pitch differ by rounding may differ by all of the thrust. Where the request changes
+//! and another optimum becomes the best the efforts jump, as any choice by these priorities must.
 
 use crate::chord::{Chord, Sets};
 use crate::desaturation::{Airmode, Outcome, REQUEST_LIMIT, prioritise, single_rotor};
