@@ -58,6 +58,12 @@ pub(crate) struct Point {
 }
 
 impl Point {
+    /// True where it can leave its face no more.
+    pub(crate) fn is_pressed(&self) -> bool {
+        self.face != Face::Interior && self.at[1] == f32::INFINITY
+            || self.face == Face::Corner && self.at[0] == f32::INFINITY
+    }
+
     /// The face, and which one of its kind; any interior is the same.
     pub(crate) fn region(&self) -> (Face, u8) {
         (self.face, self.index)
@@ -94,6 +100,9 @@ impl Falls {
 
 /// Efforts that move by less than this on the whole way stand still.
 const STANDING: f32 = 3e-5;
+
+/// Hollows less deep than this, scaled, are none.
+const HOLLOW: f32 = 1e-3;
 
 impl AttainableSet<'_> {
     #[inline]
@@ -401,6 +410,20 @@ impl AttainableSet<'_> {
             _ => from.at,
         };
         *point = Point { face, index, at };
+    }
+
+    /// Where a point that is drawn in a direction is held back in a hollow: the corner furthest in that direction.
+    pub(crate) fn summit(&self, point: [f32; 2], direction: [f32; 2]) -> Option<[f32; 2]> {
+        let length = sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
+        let (mut summit, mut furthest) = (None, HOLLOW * length);
+        for edge in self.edges {
+            let [f, q] = edge.relative(point);
+            let height = -(f * direction[0] + q * direction[1]);
+            if height > furthest {
+                (summit, furthest) = (Some(edge.start), height);
+            }
+        }
+        summit
     }
 
     /// The edges that end and start at the corner of `index`.

@@ -20,7 +20,8 @@
 //! is a continuous function of the request: the attainable wrenches are a polytope, on which the nearest points
 //! above move continuously, and the efforts are the only ones nearest to a reference that give the wrench reached. How
 //! steep it is depends on the priorities: where a little less of one allows much more of the next, throttles are as
-//! steep. With rotors out there may be several optima: see [`crate::search`].
+//! steep. Of sets that bend inwards there may be several optima: see [`crate::hollows`], and [`crate::search`] with rotors
+//! out.
 
 use crate::chord::{Rotors, Sets};
 use crate::homotopy::Homotopy;
@@ -77,6 +78,9 @@ pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
     [roll * share, pitch * share, limit(yaw), limit(thrust)]
 }
 
+/// Ends that differ by less, in rows, are equally good.
+const MARGIN: f32 = 1e-4;
+
 /// What the steps came to, in rows.
 #[derive(Clone, Copy)]
 pub(crate) struct Outcome {
@@ -93,6 +97,29 @@ pub(crate) struct Outcome {
     pub(crate) thrust: f32,
 }
 
+impl Outcome {
+    /// True where this end is better in the order of priority.
+    pub(crate) fn is_better_than(&self, other: &Outcome) -> bool {
+        if self.is_within() != other.is_within() {
+            return self.is_within();
+        }
+        let pairs = self.short.iter().zip(other.short);
+        let mut differences = pairs.map(|(own, other)| other - own);
+        differences
+            .find(|difference| difference.abs() > MARGIN)
+            .is_some_and(|difference| difference > 0.0)
+    }
+}
+
+/// Another end of the steps, to be bettered with a unit starting elsewhere.
+#[derive(Clone, Copy)]
+pub(crate) struct Rival {
+    /// The unit that starts at its summit.
+    pub(crate) unit: usize,
+    /// How far from the request the end is, as in [`Outcome`]. Steps that come to be worse stop there.
+    pub(crate) short: [f32; 3],
+}
+
 /// The steps of the module's head, with straight lines for the curves of single rotors. `ceiling` is the largest thrust
 /// that is allowed beside the one asked, in its row; `None` where that is to be found.
 #[inline(never)]
@@ -102,6 +129,7 @@ pub(crate) fn prioritise<P, I, S>(
     request: [f32; 4],
     factors: [f32; 2],
     ceiling: Option<f32>,
+    rival: Option<Rival>,
     scratch: &mut [Scratch],
 ) -> Outcome {
     let Desaturation {
@@ -111,6 +139,11 @@ pub(crate) fn prioritise<P, I, S>(
     let reserved = clamp(request[YAW], -yaw_reserve_nm, yaw_reserve_nm);
     let mut homotopy = Homotopy::new(tables, sets, factors, request, scratch);
     homotopy.prepare(&request);
+    if let Some(Rival { unit, .. }) = rival {
+        homotopy.refer_to_summit(unit);
+    } else {
+        homotopy.look_for_summits();
+    }
     let wanted = homotopy.rows_of(request);
     let yaw = homotopy.bounds_of(YAW, Bounds::at(reserved).including(request[YAW]));
     let asked = if airmode == Airmode::Disabled {
@@ -130,7 +163,7 @@ pub(crate) fn prioritise<P, I, S>(
         low: 0.0,
         high: if ceiling.is_some() { wanted[ALONG] } else { 0.0 },
     };
-    let descent = descend(&mut homotopy, wanted, [level, yaw, thrust], airmode);
+    let descent = descend(&mut homotopy, wanted, [level, yaw, thrust], airmode, rival);
     if ceiling.is_none() {
         thrust.high = descent.ceiling;
     }
@@ -143,25 +176,24 @@ pub(crate) fn prioritise<P, I, S>(
         (Some(wanted), Some(reached)) => (wanted - reached).abs(),
         _ => 0.0,
     };
-    let [second, third] = order(airmode);
     Outcome {
         beyond: short(ACROSS)
             + Bounds::at(0.0).including(wanted[ALONG]).distance(reached[ALONG])
             + yaw.distance(reached[YAW])
             + thrust.distance(reached[THRUST]),
-        short: [short(ALONG), short(second), short(third)],
+        short: order(airmode).map(short),
         ceiling: thrust.high,
         wanted,
         thrust: reached[THRUST],
     }
 }
 
-/// The rows after roll and pitch in the order of priority.
-fn order(airmode: Airmode) -> [usize; 2] {
+/// The rows in the order of priority.
+fn order(airmode: Airmode) -> [usize; 3] {
     if airmode == Airmode::RollPitchYaw {
-        [YAW, THRUST]
+        [ALONG, YAW, THRUST]
     } else {
-        [THRUST, YAW]
+        [ALONG, THRUST, YAW]
     }
 }
 
@@ -180,13 +212,14 @@ fn descend(
     wanted: [f32; 4],
     [level, yaw, thrust]: [Bounds; 3],
     airmode: Airmode,
+    rival: Option<Rival>,
 ) -> Descent {
     const LEVEL: Bounds = Bounds::at(0.0);
     const WIDE: Bounds = Bounds {
         low: -REQUEST_LIMIT,
         high: REQUEST_LIMIT,
     };
-    if homotopy.follow_straight(&wanted) {
+    if rival.is_none() && homotopy.follow_straight(&wanted) {
         return Descent {
             ceiling: thrust.high,
             delivered: true,
@@ -204,16 +237,27 @@ fn descend(
     let [.., yaw, _] = homotopy.bounds();
     homotopy.bound(THRUST, thrust);
     homotopy.follow([level, LEVEL, yaw, thrust], false);
-    let [.., yaw, thrust] = homotopy.bounds();
-    homotopy.hold(ALONG);
-    let mut delivered = homotopy.follow([Bounds::at(wanted[ALONG]), LEVEL, yaw, thrust], true) >= 1.0;
-    for row in order(airmode) {
+    let [.., thrust] = homotopy.bounds();
+    let limits = rival.map_or([f32::INFINITY; 3], |rival| rival.short);
+    let mut delivered = true;
+    for (row, limit) in order(airmode).into_iter().zip(limits) {
         homotopy.hold(row);
         let mut target = homotopy.bounds();
+        if row == ALONG {
+            target[ACROSS] = LEVEL;
+        }
         if let (Some(target), Some(wanted)) = (target.get_mut(row), wanted.get(row)) {
             *target = Bounds::at(*wanted);
         }
-        delivered &= homotopy.follow(target, true) >= 1.0;
+        let is_reached = homotopy.follow(target, true) >= 1.0;
+        delivered &= is_reached;
+        let missed = |bounds: [Bounds; 4]| match (bounds.get(row), wanted.get(row)) {
+            (Some(bounds), Some(wanted)) => bounds.distance(*wanted),
+            _ => 0.0,
+        };
+        if !is_reached && missed(homotopy.bounds()) > limit + MARGIN {
+            break;
+        }
     }
     Descent {
         ceiling: thrust.high,

@@ -80,6 +80,8 @@ pub(crate) struct Homotopy<'h> {
     pub(crate) turned: Turned,
     pub(crate) rows: [Row; 4],
     pieces_left: u32,
+    /// Whether summits are noted: see [`crate::hollows`].
+    pub(crate) looks_for_summits: bool,
     /// The unit that has crossed a border last, and from where.
     pub(crate) left: Option<(usize, (Face, u8))>,
 }
@@ -126,6 +128,7 @@ impl<'h> Homotopy<'h> {
             turned: Turned::new(row_scale, request),
             rows: [Row::default(); 4],
             pieces_left: 0,
+            looks_for_summits: false,
             left: None,
         }
     }
@@ -319,7 +322,15 @@ impl<'h> Homotopy<'h> {
         let far = |speed: f32| if speed > PARALLEL { f32::INFINITY } else { 0.0 };
         for scratch in self.scratch.iter_mut() {
             let velocity = scratch.pair;
+            let direction = scratch.step(normal);
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
+                if self.looks_for_summits
+                    && !scratch.point.is_pressed()
+                    && direction.iter().any(|part| part.abs() > PARALLEL)
+                {
+                    let summit = set.summit(set.project(&scratch.point), direction);
+                    scratch.summit = scratch.summit.or(summit);
+                }
                 match scratch.point.face {
                     Face::Interior => {}
                     Face::Edge => set.shift(&mut scratch.point, [0.0, far(velocity[1])]),

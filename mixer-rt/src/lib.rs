@@ -31,6 +31,7 @@ mod chord;
 mod desaturation;
 mod forward;
 mod health;
+mod hollows;
 mod homotopy;
 mod inverse;
 mod linear;

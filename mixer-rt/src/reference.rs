@@ -80,6 +80,23 @@ impl Homotopy<'_> {
         }
     }
 
+    /// Has the ends of paths note the summits of units that are held back in hollows.
+    pub(crate) fn look_for_summits(&mut self) {
+        for scratch in self.scratch.iter_mut() {
+            scratch.summit = None;
+        }
+        self.looks_for_summits = true;
+    }
+
+    /// Keeps the unit's summit for its reference.
+    pub(crate) fn refer_to_summit(&mut self, unit: usize) {
+        if let Some(scratch) = self.scratch.get_mut(unit)
+            && let Some(summit) = scratch.summit
+        {
+            scratch.efforts = summit;
+        }
+    }
+
     /// Puts every unit where `multipliers` draw it from its reference. Roll and pitch across the request are held, the
     /// other rows as `others` says.
     pub(crate) fn place(&mut self, multipliers: &[f32; 4], others: RowState) {

@@ -14,7 +14,7 @@
 //! and another optimum becomes the best the efforts jump, as any choice by these priorities must.
 
 use crate::chord::{Chord, Sets};
-use crate::desaturation::{Airmode, Outcome, REQUEST_LIMIT, prioritise, single_rotor};
+use crate::desaturation::{Airmode, Outcome, REQUEST_LIMIT, Rival, prioritise, single_rotor};
 use crate::scratch::Scratch;
 use crate::{Quantity, Tables};
 
@@ -71,7 +71,7 @@ impl Outcome {
         self.is_within() && self.ceiling <= thrust
     }
 
-    fn is_within(&self) -> bool {
+    pub(crate) fn is_within(&self) -> bool {
         self.beyond < WITHIN
     }
 
@@ -81,7 +81,7 @@ impl Outcome {
 }
 
 /// A frame and what is asked of it.
-struct Search<'s, 't, P, I, S> {
+pub(crate) struct Search<'s, 't, P, I, S> {
     tables: &'s Tables<'t, P, I, S>,
     request: [f32; 4],
     factors: [f32; 2],
@@ -108,7 +108,10 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
         .filter(|scratch| scratch.rotors.is_single())
         .count();
     if singles == 0 {
-        search.round(scratch);
+        let outcome = search.round(scratch, None);
+        if !outcome.is_delivered() {
+            search.leave_hollows(scratch, outcome);
+        }
         return;
     }
     let halvings = if singles == 1 { HALVINGS } else { 1 };
@@ -143,7 +146,7 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
 }
 
 /// Keeps the efforts as those of the best end.
-fn keep(scratch: &mut [Scratch]) {
+pub(crate) fn keep(scratch: &mut [Scratch]) {
     for scratch in scratch.iter_mut() {
         scratch.best = scratch.efforts;
     }
@@ -220,7 +223,7 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
     }
 
     /// The steps with the lines as they are drawn.
-    fn round(&self, scratch: &mut [Scratch]) -> Outcome {
+    pub(crate) fn round(&self, scratch: &mut [Scratch], rival: Option<Rival>) -> Outcome {
         let sets = Sets {
             both: self.tables.attainable,
         };
@@ -230,6 +233,7 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
             self.request,
             self.factors,
             self.ceiling,
+            rival,
             scratch,
         )
     }
@@ -241,7 +245,7 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
         let hopeless = best.map(|best| best.outcome.cost() + HOPELESS);
         let mut round = 0;
         loop {
-            let outcome = self.round(scratch);
+            let outcome = self.round(scratch, None);
             round += 1;
             let least = if round < TRIED {
                 outcome.short[0]

@@ -142,13 +142,8 @@ fn any_frame_reaches_the_optimum() {
     }
     all.print("all");
     assert!(all.requests >= 1200);
-    // The paper's set bends inwards at one side: one request in some thousands comes to a local optimum.
-    assert!(
-        all.missed * 1000 <= all.requests,
-        "{} of {}",
-        all.missed,
-        all.requests
-    );
+    // With other seeds a request in ten thousand misses it.
+    assert_eq!(all.missed, 0);
 }
 
 /// Rotors at the ends of their range and a reserve of yaw: the furthest yaw at the thrust asked is found although the

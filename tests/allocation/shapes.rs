@@ -338,7 +338,5 @@ fn polygons_of_real_pairs_are_used() {
         saturate(&frame, &mut random, COUNT, &mut sum);
     }
     println!("{} pairs on an X12: {sum:?}", pairs.len());
-    // A path over sets that are not convex may end at another of two local optima next to a request.
-    assert!(1000 * sum.jumps <= sum.pairs, "{sum:?}");
-    hold(&Tally { jumps: 0, ..sum });
+    hold(&sum);
 }
