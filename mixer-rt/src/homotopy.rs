@@ -199,7 +199,7 @@ impl<'h> Homotopy<'h> {
         if let Some(row) = self.rows.get_mut(row)
             && row.state == RowState::Between
         {
-            row.bounds = bounds.including(row.value);
+            row.bounds = bounds.within(FAR).including(row.value);
         }
     }
 
@@ -219,10 +219,7 @@ impl<'h> Homotopy<'h> {
     /// Moves held rows and the bounds of slack rows straight towards `target`, as far as attainable; returns the
     /// share of the way that was made. `presses`: where the way has ended, what comes next stays there.
     pub(crate) fn follow(&mut self, target: [Bounds; 4], presses: bool) -> f32 {
-        let mut target = target.map(|Bounds { low, high }| Bounds {
-            low: crate::clamp(low, -FAR, FAR),
-            high: crate::clamp(high, -FAR, FAR),
-        });
+        let mut target = target.map(|target| target.within(FAR));
         if self
             .rows
             .iter()

@@ -5,7 +5,7 @@
 //! which may move. The multiplier of a slack row is zero between the bounds, >= 0 at the lower and <= 0 at the upper
 //! one (the conditions of Karush, Kuhn and Tucker).
 
-use crate::sqrt;
+use crate::{clamp, sqrt};
 
 /// Roll and pitch along the request, and across it.
 pub(crate) const ALONG: usize = 0;
@@ -26,6 +26,14 @@ impl Bounds {
         Bounds {
             low: value,
             high: value,
+        }
+    }
+
+    /// These bounds, none beyond -`far` or `far`.
+    pub(crate) fn within(self, far: f32) -> Self {
+        Bounds {
+            low: clamp(self.low, -far, far),
+            high: clamp(self.high, -far, far),
         }
     }
 
