@@ -165,10 +165,12 @@ impl Gram {
         }
     }
 
-    /// Solves `J x = b`. Where `J` is singular and `b` in its range, unknowns without a pivot are zero.
-    pub(crate) fn solve(&self, b: [f32; 4]) -> Solution {
+    /// Solves `J x = b`. Where `J` is singular and `b` in its range, unknowns without a pivot are zero. `terms`
+    /// gives the size of the numbers that `b` is a difference of, which have left rounding errors in it; 0 where it is
+    /// exact.
+    pub(crate) fn solve(&self, b: [f32; 4], terms: impl FnOnce() -> f32) -> Solution {
         self.substitute(b)
-            .map_or_else(|| self.orthogonalise(b), Solution::Regular)
+            .map_or_else(|| self.orthogonalise(b, terms()), Solution::Regular)
     }
 
     /// The solution where J is far from singular on the rows that have a part in it, which most often is so.
@@ -208,7 +210,7 @@ impl Gram {
 
     /// `J = C^T C` with `C = sqrt(D) L^T`, whose columns are orthogonalised, the longest that is left first: so a
     /// column that is a combination of others shows as one, however the rows of the wrench are ordered.
-    fn orthogonalise(&self, b: [f32; 4]) -> Solution {
+    fn orthogonalise(&self, b: [f32; 4], terms: f32) -> Solution {
         let roots = self.diagonal.map(sqrt);
         let mut columns = [[unknown_zero(); 4]; 4];
         for k in 0..4 {
@@ -222,7 +224,7 @@ impl Gram {
             .fold(0.0, |most: f32, b| if b.abs() > most { b.abs() } else { most });
         let mut pivots = [NO_PIVOT; 4];
         let mut left = [true; 4];
-        let (mut rest, mut size) = (b, [largest + 1.0; 4]);
+        let (mut rest, mut size) = (b, [largest + terms; 4]);
         // One after the other: four copies of the loop would be hardly faster.
         for pivot in black_box(pivots.as_mut_slice()) {
             let mut longest = (LEAST_ANGLE * LEAST_ANGLE, 4);
@@ -350,7 +352,7 @@ mod tests {
             [0.3, 0.4, -0.1, 0.2],
         ];
         let expected = [1.0, -2.0, 3.0, -4.0];
-        let Solution::Regular(x) = gram(&vectors).solve(times(&vectors, expected)) else {
+        let Solution::Regular(x) = gram(&vectors).solve(times(&vectors, expected), || 0.0) else {
             panic!("regular")
         };
         for (x, expected) in x.into_iter().zip(expected) {
@@ -362,7 +364,7 @@ mod tests {
     fn tells_directions_apart_that_the_squares_do_not() {
         let vectors = [[1.0, 0.0, 0.0, 0.0], [1.0, 1e-4, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
         let b = [0.0, 1e-4, 0.0, 0.0];
-        let Solution::Regular(x) = gram(&vectors).solve(b) else {
+        let Solution::Regular(x) = gram(&vectors).solve(b, || 0.0) else {
             panic!("regular")
         };
         // The efforts x g are what counts: -1 and 1.
@@ -375,15 +377,26 @@ mod tests {
     fn a_singular_system_gives_a_solution_or_a_direction() {
         let vectors = [[1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 2.0]];
         let b = [3.0, 3.0, 1.0, 2.0];
-        let Solution::Regular(x) = gram(&vectors).solve(b) else {
+        let Solution::Regular(x) = gram(&vectors).solve(b, || 0.0) else {
             panic!("consistent")
         };
         assert_eq!(times(&vectors, x), b);
         let b = [1.0, 0.0, 0.0, 0.0];
-        let Solution::Inconsistent(v) = gram(&vectors).solve(b) else {
+        let Solution::Inconsistent(v) = gram(&vectors).solve(b, || 0.0) else {
             panic!("inconsistent")
         };
         assert_eq!(times(&vectors, v), [0.0; 4]);
         assert!(v[0] > 0.0);
+    }
+
+    #[test]
+    fn a_short_way_out_of_the_range_is_told_from_rounding_errors() {
+        let vectors = [[1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 2.0]];
+        let b = [1e-6, 0.0, 0.0, 0.0];
+        assert!(matches!(
+            gram(&vectors).solve(b, || 0.0),
+            Solution::Inconsistent(_)
+        ));
+        assert!(matches!(gram(&vectors).solve(b, || 1.0), Solution::Regular(_)));
     }
 }

@@ -15,6 +15,9 @@ const MISSED: f32 = 2e-6;
 /// the rounding error, off what is missed.
 const REFINEMENTS: u32 = 3;
 
+/// The size of rows.
+const ROWS: f32 = 1.0;
+
 /// What ends a piece.
 enum Event {
     /// The path's end.
@@ -47,18 +50,18 @@ impl Homotopy<'_> {
         (moments, rows)
     }
 
-    /// Solves `J x = b` for the rows that are not slack.
+    /// Solves `J x = b` for the rows that are not slack. `drift` is that of the bounds where `b` is to follow it.
     #[inline]
-    fn solve(&self, factors: Option<&Factors>, b: &[f32; 4]) -> Solution {
+    fn solve(&self, factors: Option<&Factors>, b: &[f32; 4], drift: Option<&[Bounds; 4]>) -> Solution {
         match factors {
             Some(factors) => Solution::Regular(factors.solve(*b)),
-            None => self.solve_exactly(b),
+            None => self.solve_exactly(b, drift),
         }
     }
 
     /// [`Homotopy::solve`] where J is singular or nearly so.
     #[inline(never)]
-    fn solve_exactly(&self, b: &[f32; 4]) -> Solution {
+    fn solve_exactly(&self, b: &[f32; 4], drift: Option<&[Bounds; 4]>) -> Solution {
         let active = self.active();
         let mut gram = Gram::new();
         for scratch in self.scratch.iter() {
@@ -80,7 +83,14 @@ impl Homotopy<'_> {
                 gram.add(effect);
             }
         }
-        gram.solve(*b)
+        gram.solve(*b, || {
+            // Where there is nothing to make up for the way is exact, however short.
+            let is_drift = drift.is_some_and(|drift| {
+                let mut rows = self.rows.iter().zip(drift).zip(b);
+                rows.all(|((row, drift), b)| row.state == RowState::Between || *b == row.followed(drift))
+            });
+            if is_drift { 0.0 } else { ROWS }
+        })
     }
 
     /// Which rows are not slack.
@@ -146,7 +156,7 @@ impl Homotopy<'_> {
             };
         }
         let factors = moments.factors(self.active());
-        let (multipliers, moving) = match self.solve(factors.as_ref(), &way) {
+        let (multipliers, moving) = match self.solve(factors.as_ref(), &way, Some(drift)) {
             Solution::Regular(velocity) => (velocity, 1.0),
             Solution::Inconsistent(direction) => (direction, 0.0),
         };
@@ -173,7 +183,7 @@ impl Homotopy<'_> {
                     break;
                 }
                 worst = size;
-                let Solution::Regular(correction) = self.solve(factors.as_ref(), &missed) else {
+                let Solution::Regular(correction) = self.solve(factors.as_ref(), &missed, None) else {
                     break;
                 };
                 self.accelerate(&correction, moving, &mut speeds);

@@ -92,6 +92,14 @@ impl Row {
         }
     }
 
+    /// Of the `bounds`, the one that the row follows where it is not between them.
+    pub(crate) fn followed(&self, bounds: &Bounds) -> f32 {
+        match self.state {
+            RowState::AtHigh => bounds.high,
+            _ => bounds.low,
+        }
+    }
+
     /// At the bound that the multiplier's sign is of: between equal bounds either may have come about.
     pub(crate) fn choose_side(&mut self) {
         self.state = match self.state {
