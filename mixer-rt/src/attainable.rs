@@ -98,7 +98,7 @@ impl Falls {
     }
 }
 
-/// Efforts that move by less than this on the whole way stand still.
+/// Efforts inside the set that move by less than this on the whole way stand still.
 const STANDING: f32 = 3e-5;
 
 /// Hollows less deep than this, scaled, are none.
@@ -269,14 +269,14 @@ impl AttainableSet<'_> {
     }
 
     /// The first change of face of a point on its way along `limit` times `velocity` (in its own coordinates).
-    /// Velocities below `noise` outside the set count as none.
+    /// Velocities along an edge below `standing` and outside the set below `noise` count as none.
     #[inline]
     pub(crate) fn crossing(
         &self,
         point: &mut Point,
         velocity: [f32; 2],
         limit: f32,
-        noise: f32,
+        [standing, noise]: [f32; 2],
         barred: Option<(Face, u8)>,
     ) -> Option<Crossing> {
         let mut falls = Falls {
@@ -303,7 +303,7 @@ impl AttainableSet<'_> {
                 } else {
                     (Face::Edge, next)
                 };
-                falls.watch(height, -along.abs(), STANDING, face, next);
+                falls.watch(height, -along.abs(), standing, face, next);
                 if !self.is_chord() {
                     falls.watch(point.at[1], away, noise, Face::Interior, index);
                 }

@@ -55,7 +55,7 @@ const STILL_PIECES_PER_UNIT: u32 = 5;
 const SETTLED: f32 = 3e-5;
 
 /// Ways shorter than this, in rows, are rounding errors.
-pub(crate) const STANDING: f32 = 1e-6;
+const STANDING: f32 = 1e-6;
 
 /// A border from which the normal leads away by less than this counts as parallel to it.
 const PARALLEL: f32 = 1e-5;

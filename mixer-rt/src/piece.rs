@@ -1,15 +1,18 @@
 //! One affine piece of a path.
 
 use crate::attainable::{Crossing, Face};
-use crate::homotopy::{Homotopy, STANDING, significant};
+use crate::homotopy::{Homotopy, significant};
 use crate::linear::{Factors, Gram, Moments, Solution};
 use crate::rows::{Bounds, RowState};
 
 /// Velocities below this share of the multipliers' are rounding errors.
 const NOISE: f32 = 3e-7;
 
-/// What the efforts may miss of the way, as a share of it and beside that.
+/// What the efforts may miss of the way, as a share of it and beside that. Slack rows that move by less stand still.
 const MISSED: f32 = 2e-6;
+
+/// Efforts on edges that move by less stand still, in the same measure: more, since edges are almost dependent at times.
+const STANDING_ON_EDGE: f32 = 6e-5;
 
 /// Corrections of velocities that miss the way by more. Each takes the angle between almost dependent directions, over
 /// the rounding error, off what is missed.
@@ -173,9 +176,10 @@ impl Homotopy<'_> {
         }
         let mut speeds = [0.0; 4];
         self.accelerate(&multipliers, moving, &mut speeds);
+        let measure = way.iter().fold(1.0, |sum, way| sum + way.abs());
+        let bearable = MISSED * measure;
         if moving > 0.0 {
             // Multipliers that are large hide, in rounding, what the efforts miss of the way.
-            let bearable = way.iter().fold(MISSED, |sum, way| sum + MISSED * way.abs());
             let mut worst = f32::MAX;
             for _ in 0..REFINEMENTS {
                 let (missed, size) = self.missed(&way, &speeds);
@@ -189,6 +193,7 @@ impl Homotopy<'_> {
                 self.accelerate(&correction, moving, &mut speeds);
             }
         }
+        let still = [STANDING_ON_EDGE * measure, noise];
         // Of the faces, those outside first, which leave the ways inside shorter to look at.
         for outside in [true, false] {
             for (index, scratch) in self.scratch.iter_mut().enumerate() {
@@ -203,7 +208,7 @@ impl Homotopy<'_> {
                     Some((left, region)) if left == index && outside => Some(region),
                     _ => None,
                 };
-                if let Some(crossing) = set.crossing(&mut scratch.point, velocity, limit, noise, barred) {
+                if let Some(crossing) = set.crossing(&mut scratch.point, velocity, limit, still, barred) {
                     limit = crossing.share;
                     event = Some(Event::Face(index, crossing));
                 }
@@ -238,13 +243,13 @@ impl Homotopy<'_> {
                     falls(
                         row.value - row.bounds.low,
                         speed - moving * drift.low,
-                        STANDING,
+                        bearable,
                         RowState::AtLow,
                     );
                     falls(
                         row.bounds.high - row.value,
                         moving * drift.high - speed,
-                        STANDING,
+                        bearable,
                         RowState::AtHigh,
                     );
                 }

@@ -48,7 +48,7 @@ fn walk(set: &AttainableSet<'_>, target: [f32; 2]) -> Point {
     let mut left = [target[0] - set.centre[0], target[1] - set.centre[1]];
     for _ in 0..8 {
         let velocity = set.velocity(&point, left);
-        let share = match set.crossing(&mut point, velocity, 1.0, 0.0, None) {
+        let share = match set.crossing(&mut point, velocity, 1.0, [0.0; 2], None) {
             Some(crossing) => {
                 set.shift(&mut point, velocity.map(|v| crossing.share * v));
                 set.cross(&mut point, crossing);
@@ -103,7 +103,9 @@ fn a_projection_goes_on_around_a_notch() {
     let mut point = NOTCHED.locate([2.5, 0.5]);
     let [s, away] = point.at;
     let velocity = [2.0, 0.0];
-    let crossing = NOTCHED.crossing(&mut point, velocity, 1.0, 0.0, None).unwrap();
+    let crossing = NOTCHED
+        .crossing(&mut point, velocity, 1.0, [0.0; 2], None)
+        .unwrap();
     NOTCHED.shift(&mut point, velocity.map(|v| crossing.share * v));
     assert!(s + crossing.share * velocity[0] - 1.004_987_6 < 1e-6);
     NOTCHED.cross(&mut point, crossing);
@@ -111,12 +113,16 @@ fn a_projection_goes_on_around_a_notch() {
 
     let velocity = [-2.0, 0.0];
     let mut back = point;
-    let crossing = NOTCHED.crossing(&mut back, velocity, 1.0, 0.0, None).unwrap();
+    let crossing = NOTCHED
+        .crossing(&mut back, velocity, 1.0, [0.0; 2], None)
+        .unwrap();
     NOTCHED.cross(&mut back, crossing);
     assert_eq!(back.region(), (Face::Edge, 1));
 
     let barred = Some((Face::Edge, 1));
-    let crossing = NOTCHED.crossing(&mut point, velocity, 1.0, 0.0, barred).unwrap();
+    let crossing = NOTCHED
+        .crossing(&mut point, velocity, 1.0, [0.0; 2], barred)
+        .unwrap();
     NOTCHED.cross(&mut point, crossing);
     assert_eq!((point.face, point.at), (Face::Interior, [1.9, 1.0]));
 }
@@ -128,7 +134,9 @@ fn a_way_across_a_notch_leaves_the_set() {
     let mut point = NOTCHED.locate(from);
     assert_eq!(point.face, Face::Interior);
     let velocity = [0.0, 1.4];
-    let crossing = NOTCHED.crossing(&mut point, velocity, 1.0, 0.0, None).unwrap();
+    let crossing = NOTCHED
+        .crossing(&mut point, velocity, 1.0, [0.0; 2], None)
+        .unwrap();
     assert!((crossing.share - 0.1 / 1.4).abs() < 1e-6, "{crossing:?}");
 }
 
