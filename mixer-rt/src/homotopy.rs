@@ -47,8 +47,9 @@ const PIECES: u32 = 64;
 /// Pieces per unit of the way straight to a request: what is attainable has hardly ever needed more.
 const STRAIGHT_PIECES_PER_UNIT: u32 = 2;
 
-/// Pieces in a row, per unit, that make no way, after which rounding errors of the wrench are no longer made up for, and
-/// after as many more the path ends. More than five have only been seen where such errors turned units to and fro.
+/// Pieces in a row, per unit, that make no more way than rounding errors do, after which those of the wrench are no longer
+/// made up for, and after as many more the path ends. More than five have only been seen where such errors turned units or
+/// rows to and fro.
 const STILL_PIECES_PER_UNIT: u32 = 5;
 
 /// Rows nearer than this to where they are to be are there, once they are known to come no nearer.
@@ -235,6 +236,9 @@ impl<'h> Homotopy<'h> {
         for row in &mut self.rows {
             row.choose_side();
         }
+        let length = self.rows.iter().zip(&target).fold(0.0, |sum, (row, target)| {
+            sum + (target.low - row.bounds.low).abs() + (target.high - row.bounds.high).abs()
+        });
         let mut share = 0.0;
         let (mut still, mut settled) = (0, false);
         loop {
@@ -261,7 +265,11 @@ impl<'h> Homotopy<'h> {
                 self.stay();
                 return share;
             };
-            still = if made > 0.0 { 0 } else { still + 1 };
+            still = if significant(made * left * length) > 0.0 {
+                0
+            } else {
+                still + 1
+            };
             if still > self.units_times(STILL_PIECES_PER_UNIT) {
                 if settled {
                     self.stay();
