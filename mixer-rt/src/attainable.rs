@@ -137,7 +137,7 @@ impl AttainableSet<'_> {
 
     /// The position of the corner of `index`.
     #[inline]
-    fn corner(&self, index: u8) -> [f32; 2] {
+    pub(crate) fn corner(&self, index: u8) -> [f32; 2] {
         match self.edges.get(usize::from(index)) {
             Some(edge) => edge.start,
             None => {
@@ -412,15 +412,16 @@ impl AttainableSet<'_> {
         *point = Point { face, index, at };
     }
 
-    /// Where a point that is drawn in a direction is held back in a hollow: the corner furthest in that direction.
-    pub(crate) fn summit(&self, point: [f32; 2], direction: [f32; 2]) -> Option<[f32; 2]> {
+    /// Where a point that is drawn in a direction is held back in a hollow: the index of the corner furthest in that
+    /// direction.
+    pub(crate) fn summit(&self, point: [f32; 2], direction: [f32; 2]) -> Option<u8> {
         let length = sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
         let (mut summit, mut furthest) = (None, HOLLOW * length);
-        for edge in self.edges {
+        for (index, edge) in self.edges.iter().enumerate() {
             let [f, q] = edge.relative(point);
             let height = -(f * direction[0] + q * direction[1]);
             if height > furthest {
-                (summit, furthest) = (Some(edge.start), height);
+                (summit, furthest) = (Some(index as u8), height);
             }
         }
         summit

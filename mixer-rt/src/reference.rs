@@ -91,9 +91,10 @@ impl Homotopy<'_> {
     /// Keeps the unit's summit for its reference.
     pub(crate) fn refer_to_summit(&mut self, unit: usize) {
         if let Some(scratch) = self.scratch.get_mut(unit)
+            && let Some(set) = self.sets.of(scratch.rotors, &scratch.chord)
             && let Some(summit) = scratch.summit
         {
-            scratch.efforts = summit;
+            scratch.efforts = set.corner(summit);
         }
     }
 

@@ -19,8 +19,8 @@ pub struct Scratch {
     pub(crate) columns: [[f32; 4]; 2],
     /// p_i, scaled.
     pub(crate) point: Point,
-    /// Of a unit that is held back in a hollow of its set, where that reaches furthest, scaled.
-    pub(crate) summit: Option<[f32; 2]>,
+    /// Of a unit that is held back in a hollow of its set, the corner where that reaches furthest.
+    pub(crate) summit: Option<u8>,
     /// The velocity of p_i in its own coordinates.
     pub(crate) pair: [f32; 2],
 }
