@@ -249,13 +249,10 @@ fn descend(
         if let (Some(target), Some(wanted)) = (target.get_mut(row), wanted.get(row)) {
             *target = Bounds::at(*wanted);
         }
-        let is_reached = homotopy.follow(target, true) >= 1.0;
-        delivered &= is_reached;
-        let missed = |bounds: [Bounds; 4]| match (bounds.get(row), wanted.get(row)) {
-            (Some(bounds), Some(wanted)) => bounds.distance(*wanted),
-            _ => 0.0,
-        };
-        if !is_reached && missed(homotopy.bounds()) > limit + MARGIN {
+        delivered &= homotopy.follow(target, true) >= 1.0;
+        if let (Some(reached), Some(wanted)) = (homotopy.bounds().get(row), wanted.get(row))
+            && reached.distance(*wanted) > limit + MARGIN
+        {
             break;
         }
     }

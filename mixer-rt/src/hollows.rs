@@ -11,7 +11,7 @@
 use crate::Quantity;
 use crate::desaturation::{Outcome, Rival};
 use crate::scratch::Scratch;
-use crate::search::{Search, keep};
+use crate::search::{Search, keep, restore};
 
 impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
     /// Leaves the efforts of the best end in the scratch: the end of `best`, whose efforts and summits are there, or one that
@@ -32,8 +32,6 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
                 keep(scratch);
             }
         }
-        for scratch in scratch.iter_mut() {
-            scratch.efforts = scratch.best;
-        }
+        restore(scratch);
     }
 }

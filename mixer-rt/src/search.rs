@@ -152,6 +152,13 @@ pub(crate) fn keep(scratch: &mut [Scratch]) {
     }
 }
 
+/// Takes the efforts of the best end.
+pub(crate) fn restore(scratch: &mut [Scratch]) {
+    for scratch in scratch.iter_mut() {
+        scratch.efforts = scratch.best;
+    }
+}
+
 impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
     /// Rounds on parts of the curves, then from the best end; leaves its efforts in the scratch.
     fn search(&self, scratch: &mut [Scratch], halvings: u32, best: &mut End) {
@@ -164,14 +171,10 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
             self.draw(scratch, halvings, combination);
             self.improve(scratch, rounds, best);
         }
-        for scratch in scratch.iter_mut() {
-            scratch.efforts = scratch.best;
-        }
+        restore(scratch);
         self.touch_efforts(scratch);
         self.improve(scratch, ROUNDS, best);
-        for scratch in scratch.iter_mut() {
-            scratch.efforts = scratch.best;
-        }
+        restore(scratch);
     }
 
     /// Whole curves, their lines drawn where the units are.
