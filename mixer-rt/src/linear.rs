@@ -9,11 +9,13 @@ use core::hint::black_box;
 
 use crate::sqrt;
 
-/// A vector that differs from a combination of the others by less than this (vectors are of order one) adds nothing.
-const LEAST_ANGLE: f32 = 1e-6;
+/// A vector that differs from a combination of the others by less than this (vectors are of order one) adds nothing. It could
+/// move the wrench by as little only, and smaller angles give multipliers, their inverse square, whose rounding errors are
+/// larger than what they multiply.
+const LEAST_ANGLE: f32 = 1e-5;
 
 /// A right-hand side that misses the range of J by less than this share of what it is made of counts as within it.
-const CONSISTENT: f32 = 1e-5;
+const CONSISTENT: f32 = 4e-5;
 
 /// With a determinant beyond this (the diagonal of J is at most one) no angle is below 0.03.
 const FAR_FROM_SINGULAR: f32 = 1e-3;

@@ -169,6 +169,25 @@ fn yaw_stops_at_its_bound_where_multipliers_are_large() {
     }
 }
 
+/// At the least thrust two units in the middle of their sets can together give roll, pitch and thrust in almost the same
+/// proportions only. Multipliers of 1e13 told them apart, whose rounding errors were larger than the way.
+#[test]
+fn almost_dependent_units_at_the_least_thrust_do_not_turn_over() {
+    let places = [
+        place([-0.99745, 0.64098, 0.01165], [0.0, 0.0], true),
+        place([-0.56068, -0.22889, 0.0], [0.0, 0.0], false),
+        place([0.13261, -0.35474, -0.02534], [0.06676, -0.00454], false),
+        place([0.61207, -0.03359, 0.0], [0.02284, -0.0339], false),
+        place([0.26615, 0.47837, -0.0182], [0.14203, -0.099], false),
+    ];
+    let frame = compile(&places, "disabled", 0.0);
+    for step in 0..40 {
+        let scale = 1.0 + 1e-4 * step as f32;
+        let wrench = [60.52357, 178.06795, -6.6948543, 18.819588].map(|value| scale * value);
+        stays(&frame, wrench, 14.734208, 3);
+    }
+}
+
 /// At the end of roll and pitch rounding errors of the wrench cannot be made up for: trying to turned two units to and
 /// fro until the pieces ran out, and what was left of yaw was lost.
 #[test]
