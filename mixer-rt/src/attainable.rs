@@ -16,6 +16,7 @@
 //! by the angle between the edges.
 
 mod edge;
+mod hollow;
 
 use crate::{clamp, sqrt};
 pub use edge::Edge;
@@ -100,9 +101,6 @@ impl Falls {
 
 /// Efforts inside the set that move by less than this on the whole way stand still.
 const STANDING: f32 = 3e-5;
-
-/// Hollows less deep than this, scaled, are none.
-const HOLLOW: f32 = 1e-3;
 
 impl AttainableSet<'_> {
     #[inline]
@@ -410,21 +408,6 @@ impl AttainableSet<'_> {
             _ => from.at,
         };
         *point = Point { face, index, at };
-    }
-
-    /// Where a point that is drawn in a direction is held back in a hollow: the index of the corner furthest in that
-    /// direction.
-    pub(crate) fn summit(&self, point: [f32; 2], direction: [f32; 2]) -> Option<u8> {
-        let length = sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
-        let (mut summit, mut furthest) = (None, HOLLOW * length);
-        for (index, edge) in self.edges.iter().enumerate() {
-            let [f, q] = edge.relative(point);
-            let height = -(f * direction[0] + q * direction[1]);
-            if height > furthest {
-                (summit, furthest) = (Some(index as u8), height);
-            }
-        }
-        summit
     }
 
     /// The edges that end and start at the corner of `index`.

@@ -114,8 +114,10 @@ impl Outcome {
 /// Another end of the steps, to be bettered with a unit starting elsewhere.
 #[derive(Clone, Copy)]
 pub(crate) struct Rival {
-    /// The unit that starts at its summit.
+    /// The unit that starts elsewhere, ..
     pub(crate) unit: usize,
+    /// .. at this corner of its set.
+    pub(crate) corner: u8,
     /// How far from the request the end is, as in [`Outcome`]. Steps that come to be worse stop there.
     pub(crate) short: [f32; 3],
 }
@@ -139,10 +141,10 @@ pub(crate) fn prioritise<P, I, S>(
     let reserved = clamp(request[YAW], -yaw_reserve_nm, yaw_reserve_nm);
     let mut homotopy = Homotopy::new(tables, sets, factors, request, scratch);
     homotopy.prepare(&request);
-    if let Some(Rival { unit, .. }) = rival {
-        homotopy.refer_to_summit(unit);
+    if let Some(Rival { unit, corner, .. }) = rival {
+        homotopy.refer_to_corner(unit, corner);
     } else {
-        homotopy.look_for_summits();
+        homotopy.look_for_hollows();
     }
     let wanted = homotopy.rows_of(request);
     let yaw = homotopy.bounds_of(YAW, Bounds::at(reserved).including(request[YAW]));

@@ -3,8 +3,8 @@
 //! Where a unit's attainable set bends inwards, in a hollow, an end of the steps need not be the best. It is if no unit is
 //! held back in a hollow: the multipliers that end a step are the normal of a plane that touches the attainable wrenches,
 //! and if they draw every unit to where its set reaches furthest in their direction, then no attainable wrench is beyond
-//! that plane. So for every unit that is held back the steps are taken anew with that unit starting where its set does
-//! reach furthest, at its summit, and the best of all ends stands.
+//! that plane. So for every unit that is held back the steps are taken anew with that unit starting at either end of its
+//! hollow, one of which is where its set does reach furthest, and the best of all ends stands.
 //!
 //! Where the request changes and another optimum becomes the best the efforts jump, as any choice of the best must.
 
@@ -14,22 +14,23 @@ use crate::scratch::Scratch;
 use crate::search::{Search, keep, restore};
 
 impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
-    /// Leaves the efforts of the best end in the scratch: the end of `best`, whose efforts and summits are there, or one that
+    /// Leaves the efforts of the best end in the scratch: the end of `best`, whose efforts and hollows are there, or one that
     /// another unit's start leads to.
     pub(crate) fn leave_hollows(&self, scratch: &mut [Scratch], mut best: Outcome) {
         keep(scratch);
         for unit in 0..scratch.len() {
-            if scratch.get(unit).is_none_or(|scratch| scratch.summit.is_none()) {
-                continue;
-            }
-            let rival = Rival {
-                unit,
-                short: best.short,
-            };
-            let outcome = self.round(scratch, Some(rival));
-            if outcome.is_better_than(&best) {
-                best = outcome;
-                keep(scratch);
+            let hollow = scratch.get(unit).map_or([None; 2], |scratch| scratch.hollow);
+            for corner in hollow.into_iter().flatten() {
+                let rival = Rival {
+                    unit,
+                    corner,
+                    short: best.short,
+                };
+                let outcome = self.round(scratch, Some(rival));
+                if outcome.is_better_than(&best) {
+                    best = outcome;
+                    keep(scratch);
+                }
             }
         }
         restore(scratch);

@@ -81,8 +81,8 @@ pub(crate) struct Homotopy<'h> {
     pub(crate) turned: Turned,
     pub(crate) rows: [Row; 4],
     pieces_left: u32,
-    /// Whether summits are noted: see [`crate::hollows`].
-    pub(crate) looks_for_summits: bool,
+    /// Whether hollows are noted: see [`crate::hollows`].
+    pub(crate) looks_for_hollows: bool,
     /// The unit that has crossed a border last, and from where.
     pub(crate) left: Option<(usize, (Face, u8))>,
 }
@@ -129,7 +129,7 @@ impl<'h> Homotopy<'h> {
             turned: Turned::new(row_scale, request),
             rows: [Row::default(); 4],
             pieces_left: 0,
-            looks_for_summits: false,
+            looks_for_hollows: false,
             left: None,
         }
     }
@@ -329,12 +329,12 @@ impl<'h> Homotopy<'h> {
             let velocity = scratch.pair;
             let direction = scratch.step(normal);
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
-                if self.looks_for_summits
+                if self.looks_for_hollows
+                    && scratch.hollow == [None; 2]
                     && !scratch.point.is_pressed()
                     && direction.iter().any(|part| part.abs() > PARALLEL)
                 {
-                    let summit = set.summit(set.project(&scratch.point), direction);
-                    scratch.summit = scratch.summit.or(summit);
+                    scratch.hollow = set.hollow(&scratch.point, direction);
                 }
                 match scratch.point.face {
                     Face::Interior => {}

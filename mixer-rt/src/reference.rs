@@ -80,21 +80,20 @@ impl Homotopy<'_> {
         }
     }
 
-    /// Has the ends of paths note the summits of units that are held back in hollows.
-    pub(crate) fn look_for_summits(&mut self) {
+    /// Has the ends of paths note the hollows that hold units back, if no rotor is out: else no one asks for them.
+    pub(crate) fn look_for_hollows(&mut self) {
         for scratch in self.scratch.iter_mut() {
-            scratch.summit = None;
+            scratch.hollow = [None; 2];
         }
-        self.looks_for_summits = true;
+        self.looks_for_hollows = !self.scratch.iter().any(|scratch| scratch.rotors.is_single());
     }
 
-    /// Keeps the unit's summit for its reference.
-    pub(crate) fn refer_to_summit(&mut self, unit: usize) {
+    /// Keeps a corner of the unit's set for its reference.
+    pub(crate) fn refer_to_corner(&mut self, unit: usize, corner: u8) {
         if let Some(scratch) = self.scratch.get_mut(unit)
             && let Some(set) = self.sets.of(scratch.rotors, &scratch.chord)
-            && let Some(summit) = scratch.summit
         {
-            scratch.efforts = set.corner(summit);
+            scratch.efforts = set.corner(corner);
         }
     }
 

@@ -19,8 +19,8 @@ pub struct Scratch {
     pub(crate) columns: [[f32; 4]; 2],
     /// p_i, scaled.
     pub(crate) point: Point,
-    /// Of a unit that is held back in a hollow of its set, the corner where that reaches furthest.
-    pub(crate) summit: Option<u8>,
+    /// Of a unit that is held back in a hollow of its set, the corners at the hollow's ends.
+    pub(crate) hollow: [Option<u8>; 2],
     /// The velocity of p_i in its own coordinates.
     pub(crate) pair: [f32; 2],
 }
@@ -35,7 +35,7 @@ impl Default for Scratch {
             chord: Chord::default(),
             columns: [[zero; 4]; 2],
             point: Point::default(),
-            summit: None,
+            hollow: [None; 2],
             pair: [zero; 2],
         }
     }

@@ -33,13 +33,27 @@ const NOTCHED: AttainableSet<'static> = AttainableSet {
     ],
 };
 
+/// A square with a hollow in its right side, whose ground is the edge of index 2.
+const HOLLOWED: AttainableSet<'static> = AttainableSet {
+    scale: [1.0, 1.0],
+    centre: [1.0, 1.0],
+    edges: &[
+        edge([0.0, 0.0], [1.0, 0.0], 2.0),
+        edge([2.0, 0.0], [-0.196_116_14, 0.980_580_7], 0.509_902),
+        edge([1.9, 0.5], [0.0, 1.0], 1.0),
+        edge([1.9, 1.5], [0.196_116_14, 0.980_580_7], 0.509_902),
+        edge([2.0, 2.0], [-1.0, 0.0], 2.0),
+        edge([0.0, 2.0], [0.0, -1.0], 2.0),
+    ],
+};
+
 #[test]
-fn a_point_drawn_out_of_a_hollow_is_told_the_summit() {
-    let out = [1.0, 0.1];
-    assert_eq!(NOTCHED.summit([1.9, 1.0], out), Some(3));
-    assert_eq!(NOTCHED.summit([2.0, 0.0], out), Some(3));
-    assert_eq!(NOTCHED.summit([2.0, 2.0], out), None);
-    assert_eq!(NOTCHED.summit([0.0, 0.5], [-3.0, 0.0]), None);
+fn a_point_drawn_out_of_a_hollow_is_told_its_ends() {
+    let hollow = |towards: [f32; 2], direction| HOLLOWED.hollow(&HOLLOWED.locate(towards), direction);
+    assert_eq!(hollow([2.0, 0.9], [1.0, 0.0]), [Some(1), Some(4)]);
+    assert_eq!(hollow([2.0, 0.3], [5.0, 1.0]), [None, Some(4)]);
+    assert_eq!(hollow([2.5, 2.5], [1.0, 0.1]), [None; 2]);
+    assert_eq!(hollow([-1.0, 0.5], [-3.0, 0.0]), [None; 2]);
 }
 
 /// Goes from the centre to `target` face by face.

@@ -1,0 +1,42 @@
+//! Hollows: where the border bends inwards.
+
+use crate::attainable::{AttainableSet, Face, Point};
+use crate::sqrt;
+
+/// Hollows less deep than this, scaled, are none.
+const HOLLOW: f32 = 1e-3;
+
+impl AttainableSet<'_> {
+    /// Of the hollow that holds back a point drawn in `direction` both ends: the corners up to which the border rises in that
+    /// direction, before the point and after it.
+    pub(crate) fn hollow(&self, point: &Point, direction: [f32; 2]) -> [Option<u8>; 2] {
+        let least = HOLLOW * sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
+        let from = self.project(point);
+        [false, true].map(|forwards| {
+            let next = |index| {
+                if forwards {
+                    self.after(index)
+                } else {
+                    self.before(index)
+                }
+            };
+            let mut index = point.index;
+            if forwards || point.face == Face::Corner {
+                index = next(index);
+            }
+            let (mut end, mut furthest) = (index, 0.0);
+            for _ in self.edges {
+                let [f, q] = self.corner(index);
+                let height = (f - from[0]) * direction[0] + (q - from[1]) * direction[1];
+                if height < furthest - least {
+                    break;
+                }
+                if height > furthest {
+                    (end, furthest) = (index, height);
+                }
+                index = next(index);
+            }
+            (furthest > least).then_some(end)
+        })
+    }
+}
