@@ -228,12 +228,12 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
 fn side(side: &SideTable) -> TokenStream {
     match side {
         SideTable::Arcs(side) => {
-            let corner = float(side.corner_n);
+            let (corner, chords) = (float(side.corner_n), vector(&side.chords));
             let arcs = side.arcs.iter().map(|arc| {
                 let [offset, slope, bend, shift] = [arc.offset, arc.slope, arc.bend, arc.shift].map(float);
                 quote!(::mixer_rt::Arc { offset: #offset, slope: #slope, bend: #bend, shift: #shift })
             });
-            quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*] })
+            quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*], chords: #chords })
         }
         SideTable::Polyline(knots) => {
             let knots = knots.iter().map(|knot| {

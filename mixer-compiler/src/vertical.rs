@@ -153,22 +153,23 @@ fn level_floor(sides: &[SideTable; 2], thrust_n: [f32; 2], spins: &[f64], roundi
 /// Both sides as arcs, where all edges have one.
 fn arcs(pair: &PairMap) -> Option<[SideTable; 2]> {
     let [low, high] = pair.range();
-    let edge = |from: [f64; 2], to: [f64; 2], side: f64| arc(pair, from, to, side);
-    let largest = Side {
-        corner_n: pair.efforts([low, high])[0] as f32,
-        arcs: [
-            edge([low, low], [low, high], 1.0)?,
-            edge([low, high], [high, high], 1.0)?,
-        ],
+    let side = |corner: [f64; 2], sign: f64| {
+        let edges = [([low, low], corner), (corner, [high, high])];
+        let [below, above] = edges.map(|(from, to)| arc(pair, from, to, sign));
+        Some(Side {
+            corner_n: pair.efforts(corner)[0] as f32,
+            arcs: [below?, above?],
+            chords: edges.map(|(from, to)| chord_slope(pair, from, to, sign) as f32),
+        })
     };
-    let least = Side {
-        corner_n: pair.efforts([high, low])[0] as f32,
-        arcs: [
-            edge([low, low], [high, low], -1.0)?,
-            edge([high, low], [high, high], -1.0)?,
-        ],
-    };
+    let (largest, least) = (side([low, high], 1.0)?, side([high, low], -1.0)?);
     Some([largest, least].map(SideTable::Arcs))
+}
+
+/// The slope of the chord of the edge from `from` to `to` for `sign` Q, N m per N.
+fn chord_slope(pair: &PairMap, from: [f64; 2], to: [f64; 2], sign: f64) -> f64 {
+    let [[f, q], [end_f, end_q]] = [from, to].map(|throttles| pair.efforts(throttles));
+    sign * (end_q - q) / (end_f - f)
 }
 
 /// Shares of C and C+, rounded.

@@ -188,6 +188,22 @@ fn almost_dependent_units_at_the_least_thrust_do_not_turn_over() {
     }
 }
 
+/// Yaw's reach is almost level about its top. The best of a few thrusts tried was now here and now there.
+#[test]
+fn thrusts_at_the_top_of_yaw_follow_the_request() {
+    let places = [
+        place([-0.1732779045895687, 0.46704046144175365, 0.0], [0.0, 0.0], true),
+        place([-0.2661062996467052, -0.2863855747353017, 0.0], [0.0, 0.0], false),
+        place([0.4090537239210572, -0.25784271204337017, 0.0], [0.0, 0.0], false),
+        place([0.16683821645627267, 0.14408695824634213, 0.0], [0.0, 0.0], true),
+    ];
+    let frame = compile(&places, "roll-pitch", 0.0);
+    for step in 0..200 {
+        let thrust = 57.75 + 5e-4 * step as f32;
+        stays(&frame, [-2.2284427, 0.60011536, -0.7385575, thrust], 14.414714, 3);
+    }
+}
+
 /// At the end of roll and pitch rounding errors of the wrench cannot be made up for: trying to turned two units to and
 /// fro until the pieces ran out, and what was left of yaw was lost.
 #[test]

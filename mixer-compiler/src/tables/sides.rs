@@ -30,7 +30,7 @@ impl SideTable {
 
     pub(super) fn floats(&self) -> usize {
         match self {
-            SideTable::Arcs(_) => 9,
+            SideTable::Arcs(_) => 11,
             // With the slice's address and length.
             SideTable::Polyline(knots) => 2 + 4 * knots.len(),
         }
@@ -71,6 +71,13 @@ impl TorqueLimit for SideView<'_> {
         match self {
             SideView::Arcs(side) => side.knots(),
             SideView::Polyline(side) => side.knots(),
+        }
+    }
+
+    fn arcs(&self) -> Option<&Side> {
+        match self {
+            SideView::Arcs(side) => side.arcs(),
+            SideView::Polyline(side) => side.arcs(),
         }
     }
 }

@@ -7,7 +7,7 @@
 
 use core::hint::black_box;
 
-use super::reach::{Reach, TorqueLimit, reach};
+use super::reach::{Side, TorqueLimit, reach};
 use super::{MOST_UNITS, Search, rolled};
 
 /// A knot of a side, and the line from it to the next.
@@ -50,6 +50,11 @@ impl TorqueLimit for Polyline<'_> {
     #[inline(always)]
     fn knots(&self) -> &[Knot] {
         self.0
+    }
+
+    #[inline(always)]
+    fn arcs(&self) -> Option<&Side> {
+        None
     }
 }
 
@@ -159,7 +164,7 @@ impl Peaks {
 /// The two highest peaks of Y within `range`.
 #[inline(always)]
 fn peaks<S: TorqueLimit>(search: &mut [Search<'_, S>], [low, high]: [f32; 2]) -> Peaks {
-    let Reach { yaw, by_z: mut slope } = reach(search, low);
+    let (mut yaw, mut slope) = (0.0, 0.0);
     let mut ahead = [Ahead {
         knots: &[],
         z: f32::MAX,
@@ -169,10 +174,12 @@ fn peaks<S: TorqueLimit>(search: &mut [Search<'_, S>], [low, high]: [f32; 2]) ->
     }; MOST_UNITS];
     for (ahead, state) in ahead.iter_mut().zip(search.iter()) {
         rolled();
+        let (f, knots) = (state.thrust(low), state.side.knots());
+        let (torque, by_thrust) = state.side.tangent(f);
+        (yaw, slope) = (yaw + torque, slope + by_thrust * state.along);
         if state.along == 0.0 {
             continue;
         }
-        let (f, knots) = (state.thrust(low), state.side.knots());
         let passed = knots.iter().take_while(|knot| knot.thrust_n <= f).count();
         let (below, above) = knots.split_at_checked(passed).unwrap_or_default();
         ahead.knots = if state.along > 0.0 { above } else { below };
@@ -243,26 +250,26 @@ fn peaks<S: TorqueLimit>(search: &mut [Search<'_, S>], [low, high]: [f32; 2]) ->
 #[inline(always)]
 pub(super) fn climb<S: TorqueLimit>(
     search: &mut [Search<'_, S>],
-    (mut z, mut here): (f32, Reach),
+    (mut z, mut here): (f32, f32),
     range: [f32; 2],
     wanted: f32,
     rounding: f32,
-) -> (f32, Reach) {
+) -> (f32, f32) {
     let (top_z, top) = peaks(search, range).choice(RIVALRY * rounding);
     let top = match top {
         Some(yaw) => yaw,
-        None => reach(search, top_z).yaw,
+        None => reach(search, top_z),
     };
     // Exact where Y is concave, beyond where it is not.
     let mut ahead = 1.0;
     for _ in 0..black_box(STEPS) {
-        let mut part = ahead * (wanted - here.yaw) / (top - here.yaw);
+        let mut part = ahead * (wanted - here) / (top - here);
         part = if part < 1.0 { part } else { 1.0 };
         // Between two peaks there may be less than here.
-        part = if here.yaw < top { part } else { 0.0 };
+        part = if here < top { part } else { 0.0 };
         z += part * (top_z - z);
         here = reach(search, z);
-        if here.yaw >= wanted {
+        if here >= wanted {
             break;
         }
         ahead = 2.0;

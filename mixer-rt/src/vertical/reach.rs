@@ -6,7 +6,7 @@
 
 use core::hint::black_box;
 
-use super::{Knot, Search};
+use super::{Knot, Search, rolled};
 use crate::Scalar;
 
 /// One side of the attainable set: the largest torque in one direction at every thrust.
@@ -16,6 +16,9 @@ pub trait TorqueLimit {
 
     /// Where the derivative changes, if it does so only at knots; none where the torque is a concave function.
     fn knots(&self) -> &[Knot];
+
+    /// The side where it is two arcs.
+    fn arcs(&self) -> Option<&Side>;
 }
 
 /// `offset + slope f + bend sqrt(f + shift)`: the image of one edge of the throttle box. Exact for the
@@ -44,13 +47,29 @@ impl Arc {
     }
 }
 
-/// A concave side.
+/// A side that is concave, or so nearly that it may be taken for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
     /// The thrust at the corner, N.
     pub corner_n: f32,
     /// The arcs below and above it.
     pub arcs: [Arc; 2],
+    /// Slopes of their chords, N m per N.
+    pub chords: [f32; 2],
+}
+
+impl Side {
+    /// The derivative at `f`, of the chord where an arc is convex: so it never grows with the thrust.
+    #[inline(always)]
+    fn slope(&self, f: f32) -> f32 {
+        let ([below, above], [rise, fall]) = (&self.arcs, self.chords);
+        let (arc, chord) = if f < self.corner_n {
+            (below, rise)
+        } else {
+            (above, fall)
+        };
+        if arc.bend < 0.0 { chord } else { arc.tangent(f).1 }
+    }
 }
 
 impl TorqueLimit for Side {
@@ -64,6 +83,11 @@ impl TorqueLimit for Side {
     #[inline(always)]
     fn knots(&self) -> &[Knot] {
         &[]
+    }
+
+    #[inline(always)]
+    fn arcs(&self) -> Option<&Side> {
+        Some(self)
     }
 }
 
@@ -114,15 +138,8 @@ impl<S: TorqueLimit> Border<S> {
     }
 }
 
-/// How far yaw reaches at a point of the units' way, and its derivative along the way.
-#[derive(Clone, Copy)]
-pub(super) struct Reach {
-    pub(super) yaw: f32,
-    pub(super) by_z: f32,
-}
-
-/// Steps of the search for the largest yaw: the tangents of a function of nearly straight pieces meet at its top.
-const TOP_STEPS: u32 = 3;
+/// Distance from a kink at which the growth to one side of it is taken, as a share of the range.
+const ASIDE: f32 = 1e-4;
 /// Steps of the retreat from a corner, each from the inside.
 const RETREAT_STEPS: u32 = 2;
 /// The same where yaw's reach is not concave.
@@ -130,51 +147,77 @@ const LONG_RETREAT_STEPS: u32 = 5;
 
 /// How far yaw reaches at `z` along the units' way; leaves the limits there.
 #[inline(never)]
-pub(super) fn reach<S: TorqueLimit>(search: &mut [Search<'_, S>], z: f32) -> Reach {
-    let mut reach = Reach { yaw: 0.0, by_z: 0.0 };
+pub(super) fn reach<S: TorqueLimit>(search: &mut [Search<'_, S>], z: f32) -> f32 {
+    let mut yaw = 0.0;
     for state in search {
-        let f = state.thrust(z);
-        let (torque, slope) = state.side.tangent(f);
-        state.limit = torque;
-        reach.yaw += torque;
-        reach.by_z += slope * state.along;
+        rolled();
+        state.limit = state.side.tangent(state.thrust(z)).0;
+        yaw += state.limit;
     }
-    reach
+    yaw
 }
 
-/// z within `range` and the yaw reached there, about the largest; the search starts at a z with its reach.
-#[inline(always)]
-pub(super) fn top<S: TorqueLimit>(
-    search: &mut [Search<'_, S>],
-    (start, here): (f32, Reach),
-    range: [f32; 2],
-) -> (f32, f32) {
-    let end = if here.by_z > 0.0 { range[1] } else { range[0] };
-    let (mut near, mut near_z) = (here, start);
-    let (mut far, mut far_z) = (reach(search, end), end);
-    let mut best = if far.yaw > near.yaw {
-        (far_z, far.yaw)
-    } else {
-        (near_z, near.yaw)
-    };
-    for _ in 0..black_box(TOP_STEPS) {
-        let turn = near.by_z - far.by_z;
-        // Still rising at the far end, or no turn to be seen.
-        if turn == 0.0 || (far.by_z > 0.0) == (here.by_z > 0.0) {
-            break;
-        }
-        let z = ((far.yaw - near.yaw) + (near.by_z * near_z - far.by_z * far_z)) / turn;
-        let middle = reach(search, z);
-        if middle.yaw > best.1 {
-            best = (z, middle.yaw);
-        }
-        if (middle.by_z > 0.0) == (here.by_z > 0.0) {
-            (near, near_z) = (middle, z);
-        } else {
-            (far, far_z) = (middle, z);
+/// By how much yaw's reach grows with z, where it is concave.
+#[inline(never)]
+fn growth<S: TorqueLimit>(search: &[Search<'_, S>], z: f32) -> f32 {
+    let mut growth = 0.0;
+    for state in search {
+        rolled();
+        if let Some(side) = state.side.arcs() {
+            growth += side.slope(state.thrust(z)) * state.along;
         }
     }
-    best
+    growth
+}
+
+/// z within the range where yaw reaches about furthest, seen from `start`.
+///
+/// There its growth changes sign: at a kink, where a unit is at its corner, or between two kinks, where the growth is
+/// continuous. So z is a continuous function of the units' way, as the best of some samples is not.
+#[inline(always)]
+pub(super) fn top<S: TorqueLimit>(search: &[Search<'_, S>], start: f32, [low, high]: [f32; 2]) -> f32 {
+    let here = growth(search, start);
+    let (ahead, end) = if here > 0.0 { (1.0, high) } else { (-1.0, low) };
+    // Yaw's reach grows ahead of the near point; after the far one it does not.
+    let (mut near, mut grows) = (start, ahead * here);
+    let mut far = end;
+    // To the side of a kink, of several at once, too.
+    let aside = ASIDE * ahead * (high - low);
+    for state in search {
+        rolled();
+        let Some(side) = state.side.arcs() else {
+            continue;
+        };
+        let kink = (side.corner_n - state.from) / state.along;
+        if (kink - near) * ahead > 0.0 && (far - kink) * ahead > 0.0 {
+            let after = ahead * growth(search, kink + aside);
+            if after > 0.0 {
+                (near, grows) = (kink + aside, after);
+            } else {
+                far = kink - aside;
+            }
+        }
+    }
+    let falls = ahead * growth(search, far);
+    if falls >= 0.0 {
+        // It grows up to the far point.
+        return far;
+    }
+    let z = level([near, grows], [far, falls]);
+    let middle = ahead * growth(search, z);
+    if middle >= 0.0 {
+        level([z, middle], [far, falls])
+    } else {
+        level([near, grows], [z, middle])
+    }
+}
+
+/// Where a line through two points of the growth, at least zero and below zero, is zero; at the latter where the growth is infinite.
+#[inline(always)]
+fn level([near, grows]: [f32; 2], [far, falls]: [f32; 2]) -> f32 {
+    let part = grows / (grows - falls);
+    let part = if part < 1.0 { part } else { 1.0 };
+    near + part * (far - near)
 }
 
 /// Where, seen from the start of the units' way, yaw last reaches `needed`, from the inside; it reaches `reached` at 1.
@@ -187,7 +230,7 @@ pub(super) fn reach_from_inside<S: TorqueLimit>(
     is_concave: bool,
 ) -> (f32, f32) {
     let mut outside = reached - needed;
-    let mut inside = reach(search, 0.0).yaw - needed;
+    let mut inside = reach(search, 0.0) - needed;
     // Where yaw's reach is concave on the way, a straight line between a point inside and one outside crosses zero
     // inside. Else it may do so outside, by less and less: a point inside that stays counts half (Illinois).
     let (mut inside_at, mut outside_at, mut at) = (0.0, 1.0, 0.0);
@@ -199,7 +242,7 @@ pub(super) fn reach_from_inside<S: TorqueLimit>(
     for _ in 0..black_box(steps) {
         let inner = if inside > 0.0 { inside } else { 0.0 };
         at = inside_at + inner / (inner - outside) * (outside_at - inside_at);
-        reached = reach(search, at).yaw;
+        reached = reach(search, at);
         if reached >= needed {
             (inside, inside_at) = (reached - needed, at);
         } else {

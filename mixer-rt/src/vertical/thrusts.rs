@@ -63,20 +63,25 @@ impl<S: TorqueLimit> Vertical<'_, S> {
         let mut z = range.nearest();
         let mut here = reach(search, z);
         // On the zonotope's border z has no room.
-        let is_short = attainable && here.yaw < wanted && high > low;
+        let is_short = attainable && here < wanted && high > low;
         if is_short && !self.border.is_concave() {
             (z, here) = climb(search, (z, here), [low, high], wanted, self.yaw_rounding_nm);
         } else if is_short {
-            let (top_z, top) = top(search, (z, here), [low, high]);
-            let part = (wanted - here.yaw) / (top - here.yaw);
-            // Not a number where there is nothing to gain.
+            let top_z = top(search, z, [low, high]);
+            let gain = reach(search, top_z) - here;
+            let gain = if gain > self.yaw_rounding_nm {
+                gain
+            } else {
+                self.yaw_rounding_nm
+            };
+            let part = (wanted - here) / gain;
             let part = if part < 1.0 { part } else { 1.0 };
             z += part * (top_z - z);
             here = reach(search, z);
         }
-        if here.yaw < -self.yaw_rounding_nm {
+        if here < -self.yaw_rounding_nm {
             // From the inside, so it is zero or a little more.
-            let (_, at) = self.retreat(search, z, here.yaw, 0.0, middle);
+            let (_, at) = self.retreat(search, z, here, 0.0, middle);
             if self.border.is_concave() {
                 return (0.0, at);
             }
@@ -86,13 +91,13 @@ impl<S: TorqueLimit> Vertical<'_, S> {
             let NullRange { low, high, .. } = self.null_range(search, &drawn, direction);
             z *= at;
             here = reach(search, z);
-            if here.yaw < wanted && high > low {
+            if here < wanted && high > low {
                 z = clamp(z, low, high);
                 (z, here) = climb(search, (z, here), [low, high], wanted, self.yaw_rounding_nm);
             }
-            return (if here.yaw > 0.0 { here.yaw } else { 0.0 }, z);
+            return (if here > 0.0 { here } else { 0.0 }, z);
         }
-        (here.yaw, z)
+        (here, z)
     }
 
     /// Starts at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to where the facets allow them if

@@ -49,7 +49,7 @@ impl<S: TorqueLimit> Vertical<'_, S> {
                 state.turn = -state.turn;
                 state.side = self.border.side(state.turn);
             }
-            reached = -reach(search, z).yaw;
+            reached = -reach(search, z);
             if reached - wanted > self.yaw_rounding_nm {
                 (reached, z) = self.retreat(search, z, -reached, -wanted, middle_n);
                 reached = -reached;
