@@ -7,7 +7,9 @@
 //! 3. If that is short of what comes before roll and pitch, their share is the largest that leaves as much.
 //!
 //! Each is a linear program with the limits of the thrusts and the tangents of Y as rows, and starts where the one
-//! before ends.
+//! before ends. Its end is made a continuous function of the request: coupled/average.rs.
+
+mod average;
 
 use core::hint::black_box;
 
@@ -65,7 +67,7 @@ const ROUNDING: f32 = 1e-5;
 /// Y is known where it is within so many N, as in [`Coupling::scale`], of its tangents.
 const CLOSE: f32 = 2e-3;
 /// Rows that the programs take in at most, all together.
-const ROWS: u32 = 18;
+const ROWS: u32 = 20;
 /// .. and the first of them, which moves z alone.
 const FIRST_ROWS: u32 = 5;
 /// Thrusts for roll and pitch that count as none, N: their reciprocal is to be finite.
@@ -125,10 +127,10 @@ impl<S: TorqueLimit> Climb<'_, '_, S> {
             state.limit = f;
         }
         worst.map(|(sign, [lean, thrust, z])| Row {
-            yaw: 0.0,
             lean: sign * lean,
             rest: [sign * thrust, sign * z],
             excess,
+            ..Row::default()
         })
     }
 
@@ -192,11 +194,9 @@ impl<S: TorqueLimit> Climb<'_, '_, S> {
             }
             let mut row = Row::default();
             if yaw - cap > CLOSE {
-                row.yaw = 1.0;
-                row.excess = yaw - cap;
+                (row.yaw, row.excess) = (1.0, yaw - cap);
             } else if thrust - self.limit > ROUNDING * self.range[1] {
-                row.rest[0] = 1.0;
-                row.excess = thrust - self.limit;
+                (row.rest[0], row.excess) = (1.0, thrust - self.limit);
             } else {
                 if let Some(limit) = self.go(point)
                     && corner.keep(&limit, held, price)
@@ -211,9 +211,13 @@ impl<S: TorqueLimit> Climb<'_, '_, S> {
                     break;
                 }
                 *best = (point, tangent.yaw);
+                if row.excess <= CLOSE || self.rows == 0 {
+                    self.approach_average(corner, program, &tangent, row.excess, best);
+                }
                 if row.excess <= CLOSE {
                     break;
                 }
+                row.point = Some(point);
                 let [by_lean, by_thrust, by_z] = tangent.slopes;
                 row.yaw = 1.0;
                 row.lean = -by_lean;
@@ -250,14 +254,11 @@ impl<S: TorqueLimit> Vertical<'_, S> {
         let [clockwise, anticlockwise] = &coupling.floors_n;
         let floors = if direction < 0.0 { anticlockwise } else { clockwise };
         let limits = vertical.thrust_limits(airmode, request.thrust, floor(floors, reserved / most));
+        let yaw_first = airmode == Airmode::RollPitchYaw;
+        let goal = if yaw_first { wanted } else { reserved };
         let needs = Needs {
             wanted: coupling.scale * wanted,
-            goal: coupling.scale
-                * if airmode == Airmode::RollPitchYaw {
-                    wanted
-                } else {
-                    reserved
-                },
+            goal: coupling.scale * goal,
             reserved: coupling.scale * reserved,
         };
         let found = vertical.coupled_thrusts(coupling, request, limits, search, direction, needs);
@@ -392,8 +393,7 @@ fn floor(floors: &[f32; SEGMENTS + 1], share: f32) -> f32 {
     let [mut at, ..] = *floors;
     let mut left = SEGMENTS as f32 * share;
     for (from, to) in floors.iter().zip(floors.iter().skip(1)) {
-        let part = clamp(left, 0.0, 1.0);
-        at += part * (to - from);
+        at += clamp(left, 0.0, 1.0) * (to - from);
         left -= 1.0;
     }
     at

@@ -14,6 +14,8 @@ pub(super) struct Row {
     pub(super) rest: [f32; 2],
     /// By how much the corner breaks the row.
     pub(super) excess: f32,
+    /// Of a tangent, where it touches: lean, then the other two.
+    pub(super) point: Option<[f32; 3]>,
 }
 
 /// What belongs to one row of the corner.
@@ -23,6 +25,8 @@ struct Edge {
     way: [f32; 3],
     /// The row's [`Row::lean`].
     lean: f32,
+    /// The row's [`Row::point`].
+    point: Option<[f32; 3]>,
 }
 
 /// The best point that keeps three rows.
@@ -57,14 +61,17 @@ impl Corner {
                 Edge {
                     way: [slopes[0] - slopes[1] * taken[1], 1.0, -taken[1]],
                     lean: 0.0,
+                    point: None,
                 },
                 Edge {
                     way: [1.0, 0.0, 0.0],
                     lean: -lean,
+                    point: Some([0.0, 0.0, start]),
                 },
                 Edge {
                     way: [sign * slopes[1], 0.0, sign],
                     lean: sign * taken[0],
+                    point: None,
                 },
             ],
             leans: false,
@@ -74,6 +81,24 @@ impl Corner {
     /// How fast the best yaw grows with `x[1]`, which has been held.
     pub(super) fn slope(&self) -> f32 {
         self.edges[0].way[0]
+    }
+
+    /// The average of the points where the corner's tangents touch, by what they are worth to the goal
+    /// `x[0] - price x[1]`, and what they are worth together; none where fewer than two rows are tangents.
+    pub(super) fn average(&self, price: f32) -> Option<([f32; 3], f32)> {
+        let (mut sum, mut together, mut tangents) = ([0.0; 3], 0.0, 0);
+        for edge in &self.edges {
+            let Some(point) = edge.point else { continue };
+            tangents += 1;
+            let worth = edge.way[0] - price * edge.way[1];
+            if worth > 0.0 {
+                together += worth;
+                for (sum, at) in sum.iter_mut().zip(point) {
+                    *sum += worth * at;
+                }
+            }
+        }
+        (tangents > 1 && together > PARALLEL).then(|| (sum.map(|sum| sum / together), together))
     }
 
     /// Lets go of `x[1]`, as far as `limit` in the direction of `sign`.
@@ -142,7 +167,7 @@ impl Corner {
         let Some(edge) = self.edges.get_mut(leaving) else {
             return false;
         };
-        edge.lean = row.lean;
+        (edge.lean, edge.point) = (row.lean, row.point);
         for along in &mut edge.way {
             *along /= rate_of;
         }
