@@ -27,9 +27,14 @@ fn all_rotors(wrench: [f32; 4], volts: f32) -> Request {
 
 /// Changes one axis by 1e-4 of it: no throttle moves by more than 0.02.
 fn stays(frame: &Frame, wrench: [f32; 4], volts: f32, axis: usize) {
-    let request = all_rotors(wrench, volts);
-    let mut near = request;
-    near.wrench[axis] *= 1.0 + 1e-4;
+    let mut near = wrench;
+    near[axis] *= 1.0 + 1e-4;
+    stays_from(frame, [wrench, near], volts);
+}
+
+/// No throttle moves by more than 0.02 between the two.
+fn stays_from(frame: &Frame, wrenches: [[f32; 4]; 2], volts: f32) {
+    let [request, near] = wrenches.map(|wrench| all_rotors(wrench, volts));
     let [answer, moved] = [request, near].map(|request| request.mix(frame).expect("finite"));
     let change = answer.change(&moved);
     assert!(change <= 0.02, "{change}: {answer:?}, then {moved:?}");
@@ -229,4 +234,54 @@ fn yaw_at_the_end_of_roll_and_pitch_is_that_of_the_neighbours() {
             next.achieved
         );
     }
+}
+
+/// Yaw before thrust, near where more thrust no longer gives enough yaw: tangents close to the curve met far from where
+/// those of the neighbours did.
+#[test]
+fn thrust_that_is_raised_for_yaw_is_that_of_the_neighbours() {
+    let vertical = [0.0, 0.0];
+    let two = [
+        place(
+            [0.08045815872592928, -0.5446812515962998, -0.010997355174080606],
+            vertical,
+            true,
+        ),
+        place(
+            [0.041497299820631696, 0.451931191780185, -0.018408256467154504],
+            vertical,
+            false,
+        ),
+    ];
+    let frame = compile(&two, "roll-pitch-yaw", 0.0);
+    stays(&frame, [5.2688546, 1.7014203, 0.1936149, 25.275908], 13.364779, 2);
+    let four = [
+        place(
+            [0.172657243594735, -0.392833751134333, 0.040224886687419026],
+            vertical,
+            true,
+        ),
+        place(
+            [0.2704681809472166, 0.2280741309513553, 0.02518340824237809],
+            vertical,
+            false,
+        ),
+        place(
+            [-0.42293126464233805, 0.5173876855197429, -0.019592730251341797],
+            vertical,
+            true,
+        ),
+        place(
+            [-0.25545969167194255, 0.005587797819636572, -0.0052334743065118325],
+            vertical,
+            true,
+        ),
+    ];
+    let frame = compile(&four, "roll-pitch-yaw", 0.0);
+    let request = [-10.909966, -12.981039, 0.36018226, 71.88535];
+    stays_from(
+        &frame,
+        [request, request.map(|value| value * (1.0 + 1e-4))],
+        14.7306,
+    );
 }
