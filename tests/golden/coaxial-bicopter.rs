@@ -348,6 +348,7 @@ pub mod coaxial_bicopter {
                                 shift: -12.295612,
                             },
                         ],
+                        chords: [0.018686578, -0.017579883],
                     },
                     ::mixer_rt::Side {
                         corner_n: 15.445115,
@@ -365,6 +366,7 @@ pub mod coaxial_bicopter {
                                 shift: -14.908358,
                             },
                         ],
+                        chords: [0.0143977795, -0.022841537],
                     },
                 ],
                 chord: [-0.0013334816, -0.000026889076],
