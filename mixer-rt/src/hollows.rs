@@ -20,10 +20,10 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
         keep(scratch);
         for unit in 0..scratch.len() {
             let hollow = scratch.get(unit).map_or([None; 2], |scratch| scratch.hollow);
-            for corner in hollow.into_iter().flatten() {
+            for above in hollow.into_iter().flatten() {
                 let rival = Rival {
                     unit,
-                    corner,
+                    corner: above.get() - 1,
                     short: best.short,
                 };
                 let outcome = self.round(scratch, Some(rival));

@@ -1,5 +1,7 @@
 //! What a unit keeps while its efforts are being found.
 
+use core::num::NonZeroU8;
+
 use crate::attainable::Point;
 use crate::chord::{Chord, Rotors};
 use crate::linear::unknown_zero;
@@ -19,8 +21,8 @@ pub struct Scratch {
     pub(crate) columns: [[f32; 4]; 2],
     /// p_i, scaled.
     pub(crate) point: Point,
-    /// Of a unit that is held back in a hollow of its set, the corners at the hollow's ends.
-    pub(crate) hollow: [Option<u8>; 2],
+    /// Of a unit that is held back in a hollow of its set, one more than the indices of the corners at the hollow's ends.
+    pub(crate) hollow: [Option<NonZeroU8>; 2],
     /// The velocity of p_i in its own coordinates.
     pub(crate) pair: [f32; 2],
 }

@@ -1,5 +1,7 @@
 //! Hollows: where the border bends inwards.
 
+use core::num::NonZeroU8;
+
 use crate::attainable::{AttainableSet, Face, Point};
 use crate::sqrt;
 
@@ -8,8 +10,8 @@ const HOLLOW: f32 = 1e-3;
 
 impl AttainableSet<'_> {
     /// Of the hollow that holds back a point drawn in `direction` both ends: the corners up to which the border rises in that
-    /// direction, before the point and after it.
-    pub(crate) fn hollow(&self, point: &Point, direction: [f32; 2]) -> [Option<u8>; 2] {
+    /// direction, before the point and after it; one more than their indices.
+    pub(crate) fn hollow(&self, point: &Point, direction: [f32; 2]) -> [Option<NonZeroU8>; 2] {
         let least = HOLLOW * sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
         let from = self.project(point);
         [false, true].map(|forwards| {
@@ -36,7 +38,11 @@ impl AttainableSet<'_> {
                 }
                 index = next(index);
             }
-            (furthest > least).then_some(end)
+            if furthest > least {
+                NonZeroU8::MIN.checked_add(end)
+            } else {
+                None
+            }
         })
     }
 }

@@ -49,7 +49,10 @@ const HOLLOWED: AttainableSet<'static> = AttainableSet {
 
 #[test]
 fn a_point_drawn_out_of_a_hollow_is_told_its_ends() {
-    let hollow = |towards: [f32; 2], direction| HOLLOWED.hollow(&HOLLOWED.locate(towards), direction);
+    let hollow = |towards: [f32; 2], direction| {
+        let ends = HOLLOWED.hollow(&HOLLOWED.locate(towards), direction);
+        ends.map(|end| end.map(|above| above.get() - 1))
+    };
     assert_eq!(hollow([2.0, 0.9], [1.0, 0.0]), [Some(1), Some(4)]);
     assert_eq!(hollow([2.0, 0.3], [5.0, 1.0]), [None, Some(4)]);
     assert_eq!(hollow([2.5, 2.5], [1.0, 0.1]), [None; 2]);
