@@ -142,7 +142,7 @@ fn any_frame_reaches_the_optimum() {
     }
     all.print("all");
     assert!(all.requests >= 1200);
-    // With other seeds a request in three thousand misses it: the README says by how much.
+    // With other seeds a request in two thousand misses it: the README says by how much.
     assert_eq!(all.missed, 0);
 }
 

@@ -7,7 +7,7 @@
 //! 3. If that is short of what comes before roll and pitch, their share is the largest that leaves as much.
 //!
 //! Each is a linear program with the limits of the thrusts and the tangents of Y as rows, and starts where the one
-//! before ends. Its end is made a continuous function of the request: coupled/average.rs.
+//! before ends. A last step keeps its end near those of neighbouring requests: coupled/average.rs.
 
 mod average;
 

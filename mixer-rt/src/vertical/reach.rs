@@ -1,8 +1,9 @@
 //! How far yaw reaches: Y(f) = sum max(s_i Q_i) over the attainable torques.
 //!
 //! A unit's attainable set has two sides, Q_min(f) and Q_max(f). Where these are concave so is Y along any straight way of
-//! thrusts. They are then two arcs each that meet in a corner: the images of the four edges of the throttle box. Else they
-//! are polylines: vertical/polyline.rs.
+//! thrusts. They are then two arcs each that meet in a corner: the images of the four edges of the throttle box. An arc may
+//! bend a little the other way: to find the top of Y its chord then says how steep it is. Other sides are polylines:
+//! vertical/polyline.rs.
 
 use core::hint::black_box;
 

@@ -1,4 +1,4 @@
-//! The last step of a climb, so that neighbouring requests whose programs end with other tangents end at the same point.
+//! The last step of a climb, so that neighbouring requests whose programs end with other tangents end near each other.
 //!
 //! Where Y is smooth the corner of the last tangents may be far from the best point although Y is within CLOSE of them:
 //! for a quadratic Y, the tangents at two points meet in the middle between these, wherever the best point is. The
