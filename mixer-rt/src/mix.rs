@@ -315,4 +315,11 @@ pub trait Airframe {
     /// # Errors
     /// As [`mix`].
     fn mix(setpoint: &Wrench, voltage_v: f32) -> Result<Self::Mix, SetpointError>;
+
+    /// As [`mix_with_health`].
+    ///
+    /// # Errors
+    /// As [`mix`].
+    fn mix_with_health(setpoint: &Wrench, voltage_v: f32, health: Health)
+    -> Result<Self::Mix, SetpointError>;
 }
