@@ -88,6 +88,12 @@ impl Airframe {
         name::type_(&self.name)
     }
 
+    /// The module and the type by which code refers to the airframe of a file that is refused: after the file's `name` where
+    /// that can be read and used, else after the file itself.
+    pub fn names_if_refused(source: &Source) -> [String; 2] {
+        name::if_refused(source)
+    }
+
     /// Number of rotors, twice that of the units.
     pub fn rotors(&self) -> usize {
         2 * self.units.len()

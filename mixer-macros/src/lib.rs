@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use mixer_compiler::Source;
+use mixer_compiler::airframe::Airframe;
 use proc_macro::TokenStream;
 use proc_macro2::{Ident, Span};
 use quote::{quote, quote_spanned};
@@ -18,7 +19,7 @@ use syn::LitStr;
 /// of the calling file. The crate that calls the macro depends on `mixer-rt` too.
 ///
 /// ```
-/// use mixer_rt::{Airframe, SetpointError, Wrench};
+/// use mixer_rt::{Airframe, Health, SetpointError, Wrench};
 ///
 /// mixer_macros::airframe!("../airframes/isae-x8.toml");
 ///
@@ -33,6 +34,11 @@ use syn::LitStr;
 ///     setpoints.iter().map(|setpoint| A::mix(setpoint, voltage_v)).collect()
 /// }
 /// assert_eq!(mix_all::<isae_x8::IsaeX8>(&[setpoint], 15.2)?, [mix]);
+///
+/// // With the rotor on channel 3 out; its throttle is zero.
+/// let health = Health::GOOD.with_failed(3);
+/// let limped = isae_x8::IsaeX8::mix_with_health(&setpoint, 15.2, health)?;
+/// assert_eq!(limped.throttle[3], 0.0);
 /// # Ok(())
 /// # }
 /// ```
@@ -49,22 +55,21 @@ pub fn airframe(input: TokenStream) -> TokenStream {
 }
 
 fn expand(literal: &LitStr) -> proc_macro2::TokenStream {
-    let given = PathBuf::from(literal.value());
-    let path = match find(&given, literal.span()) {
+    let refused = |source: &Source, message: String| refusal(source, &message, literal.span());
+    let given = Source::new(literal.value(), "");
+    let path = match find(Path::new(&given.name), literal.span()) {
         Ok(path) => path,
-        Err(message) => return refusal(&given, &message, literal.span()),
+        Err(message) => return refused(&given, message),
     };
-    let tokens = fs::read(&path)
-        .map_err(|error| format!("{}: {error}", path.display()))
-        .and_then(|bytes| {
-            let source =
-                Source::from_bytes(literal.value(), bytes).map_err(|faults| faults.compile_error())?;
-            mixer_compiler::compile(&source).map_err(|faults| faults.compile_error())
-        })
-        .map_or_else(
-            |message| refusal(&given, &message, literal.span()),
-            |compiled| compiled.tokens(),
-        );
+    let tokens = match fs::read(&path) {
+        Err(error) => refused(&given, format!("{}: {error}", path.display())),
+        Ok(bytes) => Source::from_bytes(literal.value(), bytes)
+            .and_then(|source| mixer_compiler::compile(&source))
+            .map_or_else(
+                |faults| refused(faults.source(), faults.compile_error()),
+                |compiled| compiled.tokens(),
+            ),
+    };
     // Makes the file an input of the build: rustc compiles again when it changes, from a refusal as well.
     let tracked = path.to_string_lossy();
     quote! {
@@ -97,39 +102,32 @@ fn find(given: &Path, span: Span) -> Result<PathBuf, String> {
 }
 
 /// The error at the path literal, and a module of the expected name so that no further errors hide it.
-fn refusal(given: &Path, message: &str, span: Span) -> proc_macro2::TokenStream {
-    let stem = given.file_stem().unwrap_or_default().to_string_lossy();
-    let module: String = stem
-        .chars()
-        .map(|c| {
-            if c.is_ascii_alphanumeric() {
-                c.to_ascii_lowercase()
-            } else {
-                '_'
+fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStream {
+    let [module, mixer] = Airframe::names_if_refused(source).map(|name| Ident::new(&name, Span::call_site()));
+    let parameters = quote!(_: &::mixer_rt::Wrench, _: f32);
+    let result = quote!(::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError>);
+    let skeleton = quote! {
+        pub mod #module {
+            pub const UNITS: usize = 0;
+            pub const CHANNELS: usize = 0;
+            pub struct #mixer;
+            impl ::mixer_rt::Airframe for #mixer {
+                const NAME: &'static str = "";
+                type Mix = ::mixer_rt::Mix<CHANNELS>;
+                fn mix(#parameters) -> #result {
+                    ::core::unreachable!()
+                }
+                fn mix_with_health(#parameters, _: ::mixer_rt::Health) -> #result {
+                    ::core::unreachable!()
+                }
             }
-        })
-        .collect();
-    let skeleton = syn::parse_str::<Ident>(&module).map(|module| {
-        quote! {
-            pub mod #module {
-                pub const UNITS: usize = 0;
-                pub const CHANNELS: usize = 0;
-                pub fn mix(
-                    _: &::mixer_rt::Wrench,
-                    _: f32,
-                ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-                    ::core::unreachable!()
-                }
-                pub fn mix_with_health(
-                    _: &::mixer_rt::Wrench,
-                    _: f32,
-                    _: ::mixer_rt::Health,
-                ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-                    ::core::unreachable!()
-                }
+            pub fn mix(#parameters) -> #result {
+                ::core::unreachable!()
+            }
+            pub fn mix_with_health(#parameters, _: ::mixer_rt::Health) -> #result {
+                ::core::unreachable!()
             }
         }
-    });
-    let skeleton = skeleton.unwrap_or_default();
+    };
     quote_spanned! { span => ::core::compile_error!(#message); #skeleton }
 }

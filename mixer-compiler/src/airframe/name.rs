@@ -1,8 +1,11 @@
 //! Names that can be a Rust module, a Rust type and a file at once.
 
+use std::path::Path;
+
 use toml::Spanned;
 
 use crate::diagnostic::{Code, Diagnostic, quoted};
+use crate::source::Source;
 
 /// Longest name, in characters.
 const LONGEST: usize = 64;
@@ -38,6 +41,19 @@ pub(super) fn type_(name: &str) -> String {
         }
     }
     type_name
+}
+
+/// As [`Airframe::names_if_refused`](super::Airframe::names_if_refused).
+pub(super) fn if_refused(source: &Source) -> [String; 2] {
+    let legal = |name: &str| check(&Spanned::new(0..0, name.to_string()), &mut Vec::new());
+    let keys = source.text.parse::<toml::Table>().ok();
+    let stated = keys.as_ref().and_then(|keys| legal(keys.get("name")?.as_str()?));
+    let name = stated.unwrap_or_else(|| {
+        let stem = Path::new(&source.name).file_stem().unwrap_or_default();
+        let name = mended(&stem.to_string_lossy());
+        legal(&name).unwrap_or_else(|| format!("{name}-x8"))
+    });
+    [module(&name), type_(&name)]
 }
 
 /// Lower-case letters and digits in parts joined by single `-` or `_`, from a letter on.
@@ -115,6 +131,16 @@ mod tests {
         );
         assert_eq!((module("y6_b").as_str(), type_("y6_b").as_str()), ("y6_b", "Y6B"));
         assert_ne!(type_("x-1-1"), type_("x-11"));
+    }
+
+    #[test]
+    fn refused_files_are_named_after_their_airframe_or_themselves() {
+        let names = |text: &str| if_refused(&Source::new("frames/My Y6.toml", text));
+        assert_eq!(names("name = \"big-x8\"\nthrottle = 7"), ["big_x8", "BigX8"]);
+        for unreadable in ["", "name = 8", "name = \"type\"", "name = \"big-x8\"\nthrottle ="] {
+            assert_eq!(names(unreadable), ["my_y6", "MyY6"], "{unreadable}");
+        }
+        assert_eq!(if_refused(&Source::new("type.toml", "")), ["type_x8", "TypeX8"]);
     }
 
     #[test]
