@@ -7,7 +7,7 @@
 
 use core::hint::black_box;
 
-use super::{Knot, Search, rolled};
+use super::{Knot, MOST_UNITS, Search, rolled};
 use crate::Scalar;
 
 /// One side of the attainable set: the largest torque in one direction at every thrust.
@@ -63,13 +63,13 @@ impl Side {
     /// The derivative at `f`, of the chord where an arc is convex: so it never grows with the thrust.
     #[inline(always)]
     fn slope(&self, f: f32) -> f32 {
-        let ([below, above], [rise, fall]) = (&self.arcs, self.chords);
-        let (arc, chord) = if f < self.corner_n {
-            (below, rise)
-        } else {
-            (above, fall)
-        };
-        if arc.bend < 0.0 { chord } else { arc.tangent(f).1 }
+        let ([below, above], [rise, fall]) = (&self.arcs, &self.chords);
+        let is_below = f < self.corner_n;
+        let arc = if is_below { below } else { above };
+        if arc.bend >= 0.0 {
+            return arc.tangent(f).1;
+        }
+        if is_below { *rise } else { *fall }
     }
 }
 
@@ -140,7 +140,7 @@ impl<S: TorqueLimit> Border<S> {
 }
 
 /// Distance from a kink at which the growth to one side of it is taken, as a share of the range.
-const ASIDE: f32 = 1e-4;
+const ASIDE: f32 = 2e-5;
 /// Steps of the retreat from a corner, each from the inside.
 const RETREAT_STEPS: u32 = 2;
 /// The same where yaw's reach is not concave.
@@ -151,7 +151,6 @@ const LONG_RETREAT_STEPS: u32 = 5;
 pub(super) fn reach<S: TorqueLimit>(search: &mut [Search<'_, S>], z: f32) -> f32 {
     let mut yaw = 0.0;
     for state in search {
-        rolled();
         state.limit = state.side.tangent(state.thrust(z)).0;
         yaw += state.limit;
     }
@@ -163,7 +162,6 @@ pub(super) fn reach<S: TorqueLimit>(search: &mut [Search<'_, S>], z: f32) -> f32
 fn growth<S: TorqueLimit>(search: &[Search<'_, S>], z: f32) -> f32 {
     let mut growth = 0.0;
     for state in search {
-        rolled();
         if let Some(side) = state.side.arcs() {
             growth += side.slope(state.thrust(z)) * state.along;
         }
@@ -177,48 +175,81 @@ fn growth<S: TorqueLimit>(search: &[Search<'_, S>], z: f32) -> f32 {
 /// continuous. So z is a continuous function of the units' way, as the best of some samples is not.
 #[inline(always)]
 pub(super) fn top<S: TorqueLimit>(search: &[Search<'_, S>], start: f32, [low, high]: [f32; 2]) -> f32 {
-    let here = growth(search, start);
-    let (ahead, end) = if here > 0.0 { (1.0, high) } else { (-1.0, low) };
-    // Yaw's reach grows ahead of the near point; after the far one it does not.
-    let (mut near, mut grows) = (start, ahead * here);
-    let mut far = end;
-    // To the side of a kink, of several at once, too.
-    let aside = ASIDE * ahead * (high - low);
-    for state in search {
+    let mut kinks = [low; MOST_UNITS];
+    for (kink, state) in black_box(kinks.as_mut_slice()).iter_mut().zip(search) {
         rolled();
-        let Some(side) = state.side.arcs() else {
-            continue;
-        };
-        let kink = (side.corner_n - state.from) / state.along;
-        if (kink - near) * ahead > 0.0 && (far - kink) * ahead > 0.0 {
-            let after = ahead * growth(search, kink + aside);
-            if after > 0.0 {
-                (near, grows) = (kink + aside, after);
-            } else {
-                far = kink - aside;
-            }
+        if let Some(side) = state.side.arcs() {
+            *kink = (side.corner_n - state.from) / state.along;
         }
     }
-    let falls = ahead * growth(search, far);
+    let [a, b, c, d] = kinks;
+    let ([a, b], [c, d]) = (ordered([a, b]), ordered([c, d]));
+    let ([a, c], [b, d]) = (ordered([a, c]), ordered([b, d]));
+    let [b, c] = ordered([b, c]);
+    // The start among them: the two largest may be in any order.
+    let [a, e] = ordered([a, start]);
+    let [b, e] = ordered([b, e]);
+    let [c, e] = ordered([c, e]);
+    let mut bracket = Bracket {
+        near: low,
+        grows: 0.0,
+        far: high,
+        aside: ASIDE * (high - low),
+    };
+    // In this order three growths tell at most, with that at the near end.
+    bracket.split(search, c);
+    let others = if c <= bracket.near { [e, d] } else { [a, b] };
+    for &kink in black_box(others.as_slice()) {
+        bracket.split(search, kink);
+    }
+    let Bracket {
+        near, mut grows, far, ..
+    } = bracket;
+    if near == low {
+        grows = growth(search, low);
+        if !(grows > 0.0 && far > low) {
+            return low;
+        }
+    }
+    let falls = growth(search, far);
     if falls >= 0.0 {
         // It grows up to the far point.
         return far;
     }
-    let z = level([near, grows], [far, falls]);
-    let middle = ahead * growth(search, z);
-    if middle >= 0.0 {
-        level([z, middle], [far, falls])
-    } else {
-        level([near, grows], [z, middle])
+    // Ridders' method: with the growth in the middle it finds the zero of any line times an exponential function.
+    let middle = 0.5 * (near + far);
+    let growth = growth(search, middle);
+    middle + (far - middle) * (growth / (growth * growth - grows * falls).root())
+}
+
+/// Yaw's reach grows after the near point, by `grows`; after the far one it does not.
+struct Bracket {
+    near: f32,
+    grows: f32,
+    far: f32,
+    /// To the side of a kink, of several at once, too.
+    aside: f32,
+}
+
+impl Bracket {
+    /// Ends at the kink if it is within.
+    #[inline(always)]
+    fn split<S: TorqueLimit>(&mut self, search: &[Search<'_, S>], kink: f32) {
+        if kink > self.near && kink < self.far {
+            let after = growth(search, kink + self.aside);
+            if after > 0.0 {
+                (self.near, self.grows) = (kink + self.aside, after);
+            } else {
+                self.far = kink - self.aside;
+            }
+        }
     }
 }
 
-/// Where a line through two points of the growth, at least zero and below zero, is zero; at the latter where the growth is infinite.
+/// The smaller first.
 #[inline(always)]
-fn level([near, grows]: [f32; 2], [far, falls]: [f32; 2]) -> f32 {
-    let part = grows / (grows - falls);
-    let part = if part < 1.0 { part } else { 1.0 };
-    near + part * (far - near)
+fn ordered([a, b]: [f32; 2]) -> [f32; 2] {
+    if a > b { [b, a] } else { [a, b] }
 }
 
 /// Where, seen from the start of the units' way, yaw last reaches `needed`, from the inside; it reaches `reached` at 1.

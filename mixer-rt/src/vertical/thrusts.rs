@@ -68,16 +68,20 @@ impl<S: TorqueLimit> Vertical<'_, S> {
             (z, here) = climb(search, (z, here), [low, high], wanted, self.yaw_rounding_nm);
         } else if is_short {
             let top_z = top(search, z, [low, high]);
-            let gain = reach(search, top_z) - here;
+            let most = reach(search, top_z);
+            let gain = most - here;
             let gain = if gain > self.yaw_rounding_nm {
                 gain
             } else {
                 self.yaw_rounding_nm
             };
             let part = (wanted - here) / gain;
-            let part = if part < 1.0 { part } else { 1.0 };
-            z += part * (top_z - z);
-            here = reach(search, z);
+            if part < 1.0 {
+                z += part * (top_z - z);
+                here = reach(search, z);
+            } else {
+                (z, here) = (top_z, most);
+            }
         }
         if here < -self.yaw_rounding_nm {
             // From the inside, so it is zero or a little more.
