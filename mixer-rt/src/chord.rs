@@ -6,7 +6,7 @@
 //! the ends to which the tangents lead in turn: there the secant between them takes their place.
 
 use crate::attainable::AttainableSet;
-use crate::{Edge, Pair, Quantity, sqrt};
+use crate::{Edge, Pair, Quantity, clamp, sqrt};
 
 /// Which rotors of a unit work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,6 +102,22 @@ impl Chord {
             edge: edge(low, high, scale),
             ..Chord::default()
         })
+    }
+
+    /// The part of it that lies within `reach` times its length of where its scaled thrust is `f`.
+    pub(crate) fn about(&self, f: f32, reach: f32) -> Self {
+        let [edge] = self.edge;
+        let at = (f - edge.start[0]) / edge.along[0];
+        let [low, high] =
+            [at - reach * edge.length, at + reach * edge.length].map(|s| clamp(s, 0.0, edge.length));
+        Chord {
+            edge: [Edge {
+                start: edge.at(low),
+                length: high - low,
+                ..edge
+            }],
+            ..*self
+        }
     }
 
     /// The tangent at a throttle, over the same range of thrust; `None` with both or no rotor. Where the thrust swings

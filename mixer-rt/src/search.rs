@@ -4,7 +4,8 @@
 //! meet ([`crate::chord`]). What is found so is an optimum among the efforts near by; a curve is not convex, so there may
 //! be a better one elsewhere. Where something is left to be wished for, the rounds are therefore begun anew on every
 //! quarter of the curve, or with several curves on every combination of halves of the first two, and last from the best
-//! end found so far on the whole curves. The best of all ends stands.
+//! end found so far: on the whole curves, then on ever shorter parts of them about it, since from line to line a unit may
+//! step to and fro over an optimum between. The best of all ends stands.
 //!
 //! With airmode disabled, where less thrust is asked for than roll = pitch = 0 needs, the least thrust that these need is
 //! searched for first in the same way, since it is what is allowed then.
@@ -21,9 +22,18 @@ use crate::{Quantity, Tables};
 /// Halvings of the curves in all: one curve is tried in quarters, two in halves.
 const HALVINGS: u32 = 2;
 
-/// Rounds at most from whole curves, and from parts: 12 + 4 x 6 + 12 at worst. Most ends are reached in one to four.
+/// Rounds at most from whole curves, and from parts: 12 + 4 x 6 + 12 at worst, and 36 more about the best end. Most ends are reached in one to four.
 const ROUNDS: u32 = 12;
 const ROUNDS_OF_PARTS: u32 = 6;
+
+/// Parts about the best end: their first reach to either side as a share of the curve, how much shorter the next one is where
+/// nothing was gained, the last reach, the least gain, parts at most, and rounds on each.
+const REACH: f32 = 0.25;
+const CLOSER: f32 = 0.25;
+const LEAST_REACH: f32 = 1e-3;
+const GAIN: f32 = 1e-6;
+const APPROACHES: u32 = 12;
+const ROUNDS_OF_APPROACH: u32 = 3;
 
 /// Share of the mixer's tolerance by which lines and curves may be apart.
 const TOUCHING: f32 = 0.25;
@@ -50,6 +60,7 @@ const DELIVERED: f32 = 1e-3;
 struct End {
     /// The lines meet their curves.
     touches: bool,
+    rounds: u32,
     outcome: Outcome,
 }
 
@@ -174,7 +185,38 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
         restore(scratch);
         self.touch_efforts(scratch);
         self.improve(scratch, ROUNDS, best);
+        self.approach(scratch, best);
         restore(scratch);
+    }
+
+    /// Rounds from the best end on ever shorter parts of the curves about it.
+    fn approach(&self, scratch: &mut [Scratch], best: &mut End) {
+        let [scale, _] = self.tables.attainable.scale;
+        let mut reach = REACH;
+        for _ in 0..APPROACHES {
+            restore(scratch);
+            self.touch_efforts(scratch);
+            for scratch in scratch.iter_mut().filter(|scratch| scratch.rotors.is_single()) {
+                scratch.chord = scratch.chord.about(scratch.efforts[0] / scale, reach);
+            }
+            let before = best.outcome.cost();
+            let rounds = self.improve(scratch, ROUNDS_OF_APPROACH, best);
+            if best.outcome.cost() < before - GAIN {
+                continue;
+            }
+            // Where the tangents move nothing, they do not on shorter parts.
+            reach *= CLOSER;
+            if reach < LEAST_REACH || rounds == 1 && self.is_at_best(scratch) {
+                break;
+            }
+        }
+    }
+
+    /// True where every single rotor gives the thrust that it has at the best end.
+    fn is_at_best(&self, scratch: &[Scratch]) -> bool {
+        let mut singles = scratch.iter().filter(|scratch| scratch.rotors.is_single());
+        let [tolerance, _] = self.tables.tolerance.efforts;
+        singles.all(|scratch| (scratch.efforts[0] - scratch.best[0]).abs() <= tolerance)
     }
 
     /// Whole curves, their lines drawn where the units are.
@@ -216,13 +258,14 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
         rotors.throttles(throttle)
     }
 
-    /// Rounds from the lines drawn; an end that is better takes the place of `best`.
-    fn improve(&self, scratch: &mut [Scratch], rounds: u32, best: &mut End) {
+    /// Rounds from the lines drawn; an end that is better takes the place of `best`. Returns how many they were.
+    fn improve(&self, scratch: &mut [Scratch], rounds: u32, best: &mut End) -> u32 {
         let end = self.settle(scratch, rounds, Some(best));
         if end.touches && (!best.touches || end.outcome.cost() < best.outcome.cost()) {
             *best = end;
             keep(scratch);
         }
+        end.rounds
     }
 
     /// The steps with the lines as they are drawn.
@@ -269,7 +312,11 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
             let mut off = off.iter().zip(tables.tolerance.wrench);
             let touches = off.all(|(off, tolerance)| *off <= TOUCHING * tolerance);
             if touches || round >= rounds || hopeless.is_some_and(|hopeless| least > hopeless) {
-                return End { touches, outcome };
+                return End {
+                    touches,
+                    rounds: round,
+                    outcome,
+                };
             }
         }
     }

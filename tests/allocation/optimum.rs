@@ -150,31 +150,87 @@ fn any_frame_reaches_the_optimum() {
 /// limits of three units lie between z's start and its end.
 #[test]
 fn a_reserve_leaves_the_furthest_yaw_at_the_thrust_asked() {
-    let places = [
+    let places = vertical([
         ([0.48937, 0.17845], true),
         ([0.47084, 0.97186], false),
         ([-0.63780, -0.22207], true),
         ([-0.35040, -0.83699], false),
-    ]
-    .map(|([x, y], clockwise)| Place {
-        position: [x, y, 0.0],
-        axis: [0.0, 0.0, -1.0],
-        clockwise,
-    });
+    ]);
     let frame = compile(&places, "disabled", 0.0985);
     let request = Request {
         wrench: [-2.740_897_7, 2.675_990_6, 0.599_748_85, 42.395_542],
         volts: 12.8,
         health: Health::GOOD,
     };
-    let answer = request.mix(&frame).expect("finite");
+    assert_reaches_the_optimum(&frame, &request);
+}
+
+/// Holds the mixer to a tenth of a percent.
+fn assert_reaches_the_optimum(frame: &Frame, request: &Request) {
+    let answer = request.mix(frame).expect("finite");
     let factors = frame.physics.factors(request.volts);
     let oracle = Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
-    let shortfall = Shortfall::of(&answer, &request, &frame, &oracle).expect("solved");
+    let shortfall = Shortfall::of(&answer, request, frame, &oracle).expect("solved");
     assert!(
         shortfall.is_some_and(|shortfall| shortfall.largest() < 1e-3),
         "{shortfall:?}: {answer:?}"
     );
+}
+
+/// Vertical units at `[x, y]`, m.
+fn vertical<const N: usize>(units: [([f64; 2], bool); N]) -> [Place; N] {
+    units.map(|([x, y], clockwise)| Place {
+        position: [x, y, 0.0],
+        axis: [0.0, 0.0, -1.0],
+        clockwise,
+    })
+}
+
+fn out(rotors: &[u8]) -> Health {
+    let rotors = rotors.iter();
+    rotors.fold(Health::GOOD, |health, rotor| health.with_failed(*rotor))
+}
+
+/// The tangents at either end of a part of the curve lead to the other end: the optimum is between.
+#[test]
+fn an_optimum_between_two_lines_of_single_rotors_is_found() {
+    let three = vertical([
+        ([-0.590_90, -0.288_36], true),
+        ([0.227_14, -0.211_63], false),
+        ([-0.147_04, 0.170_71], true),
+    ]);
+    let four = vertical([
+        ([-0.326_46, 0.374_40], true),
+        ([-0.005_81, -0.446_77], false),
+        ([0.276_09, -0.234_02], false),
+        ([0.175_84, 0.392_15], true),
+    ]);
+    let asked = [
+        (
+            three.as_slice(),
+            [-3.305_86, -4.858_14, -0.125_98, 17.230_64],
+            16.519_57,
+            [3, 5],
+        ),
+        (
+            four.as_slice(),
+            [-0.062_42, -4.878_13, -0.150_48, 78.059_69],
+            14.655_41,
+            [3, 4],
+        ),
+    ];
+    for (places, wrench, volts, rotors) in asked {
+        let frame = compile(places, "roll-pitch-yaw", 0.0);
+        let health = out(&rotors);
+        assert_reaches_the_optimum(
+            &frame,
+            &Request {
+                wrench,
+                volts,
+                health,
+            },
+        );
+    }
 }
 
 /// One or two rotors out, of different units or of the same.
