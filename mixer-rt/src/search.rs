@@ -8,7 +8,8 @@
 //! step to and fro over an optimum between. The best of all ends stands.
 //!
 //! With airmode disabled, where less thrust is asked for than roll = pitch = 0 needs, the least thrust that these need is
-//! searched for first in the same way, since it is what is allowed then.
+//! searched for first in the same way, since it is what is allowed then. Whether it is enough is not left to the lines of
+//! another end: with them roll = pitch = 0 may look attainable where it is not.
 //!
 //! Ends are compared by their priorities, bounds first, but so that no more of one is given up for all of the next than
 //! [`NEXT`]: two optima whose roll and pitch differ by rounding may differ by all of the thrust. Where the request changes
@@ -62,6 +63,13 @@ struct End {
     touches: bool,
     rounds: u32,
     outcome: Outcome,
+}
+
+impl End {
+    /// True where roll = pitch = 0, the request, needs no more than `thrust`.
+    fn is_level_at(&self, thrust: f32) -> bool {
+        self.touches && self.outcome.is_within() && self.outcome.thrust <= thrust
+    }
 }
 
 impl Outcome {
@@ -133,7 +141,7 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
     }
     keep(scratch);
     search.ceiling = Some(first.outcome.ceiling);
-    if tables.desaturation.airmode == Airmode::Disabled && !first.outcome.is_allowed() {
+    if tables.desaturation.airmode == Airmode::Disabled {
         let [.., yaw, _] = request;
         let lowest = Search {
             request: [0.0, 0.0, yaw, -REQUEST_LIMIT],
@@ -142,16 +150,18 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
         };
         lowest.draw(scratch, 0, 0);
         let mut floor = lowest.settle(scratch, ROUNDS, None);
-        keep(scratch);
-        lowest.search(scratch, halvings, &mut floor);
-        search.ceiling = Some(floor.outcome.thrust);
-        // From there: roll = pitch = 0, if nothing better is found.
         let [along, _, _, thrust] = first.outcome.wanted;
-        first = floor;
-        let [.., yaw_short] = floor.outcome.short;
-        first.outcome.short = [along, (floor.outcome.thrust - thrust).abs(), yaw_short];
-        search.touch_efforts(scratch);
-        search.improve(scratch, ROUNDS, &mut first);
+        if !(first.outcome.is_allowed() && floor.is_level_at(thrust)) {
+            keep(scratch);
+            lowest.search(scratch, halvings, &mut floor);
+            search.ceiling = Some(floor.outcome.thrust);
+            // From there: roll = pitch = 0, if nothing better is found.
+            first = floor;
+            let [.., yaw_short] = floor.outcome.short;
+            first.outcome.short = [along, (floor.outcome.thrust - thrust).abs(), yaw_short];
+            search.touch_efforts(scratch);
+            search.improve(scratch, ROUNDS, &mut first);
+        }
     }
     search.search(scratch, halvings, &mut first);
 }

@@ -233,6 +233,23 @@ fn an_optimum_between_two_lines_of_single_rotors_is_found() {
     }
 }
 
+/// Roll = pitch = 0 needs more thrust than is asked, which the lines of the first end do not show: that thrust is allowed.
+#[test]
+fn the_least_thrust_without_roll_and_pitch_is_that_of_the_curves() {
+    let places = vertical([
+        ([0.471_23, 0.394_49], true),
+        ([-0.435_10, 0.228_95], false),
+        ([-0.237_54, -0.349_03], true),
+        ([0.207_60, -0.166_76], false),
+    ]);
+    let request = Request {
+        wrench: [5.716_05, 8.292_02, 0.036_302, 6.636_47],
+        volts: 15.712_85,
+        health: out(&[2, 5]),
+    };
+    assert_reaches_the_optimum(&compile(&places, "disabled", 0.0), &request);
+}
+
 /// One or two rotors out, of different units or of the same.
 #[test]
 fn frames_with_rotors_out_reach_the_optimum() {
