@@ -5,6 +5,7 @@
 //! wrench.
 
 use mixer_rt::{Axis, Health, SetpointError};
+use mixer_tests::frames::Place;
 use mixer_tests::optimum::{Oracle, change};
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::shortfall::Shortfall;
@@ -12,6 +13,7 @@ use mixer_tests::soundness;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
+use crate::compile;
 use crate::layout::{Draw, Layout, any_request, attainable_request, layout, moderate_request};
 
 /// The largest change of a throttle where nothing forces more.
@@ -113,11 +115,19 @@ fn little_is_missed(frame: &Frame, request: &Request, answer: &Answer) -> Result
         *value += INSIDE * (middle as f32 - *value);
     }
     delivered(frame, &inside)?;
-    let oracle = Oracle::of_polygons(frame, request.volts, request.health);
-    let shortfall = Shortfall::of(answer, request, frame, &oracle)
-        .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
+    let of = |oracle: Oracle| {
+        Shortfall::of(answer, request, frame, &oracle)
+            .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))
+    };
+    let is_optimal =
+        |shortfall: Option<Shortfall>| shortfall.is_none_or(|shortfall| shortfall.largest() <= OWN);
+    let mut shortfall = of(Oracle::of_polygons(frame, request.volts, request.health))?;
+    if !is_optimal(shortfall) {
+        // Perhaps not of the polygons, but only of their convex hulls.
+        shortfall = of(Oracle::of_exact_polygons(frame, request.volts, request.health))?;
+    }
     prop_assert!(
-        shortfall.is_none_or(|shortfall| shortfall.largest() <= OWN),
+        is_optimal(shortfall),
         "{:?} of the polygons': {:?} -> {:?}",
         shortfall,
         request,
@@ -252,5 +262,45 @@ proptest! {
             }
             Ok(())
         })?;
+    }
+}
+
+/// Barely attainable, where what the polygons leave out is little of yaw or of (roll, pitch) and worth a percent of thrust, and
+/// where their convex hulls leave out less: the answer is the optimum over the polygons, which are what the mixer has.
+#[test]
+fn nothing_is_missed_that_only_the_hulls_of_the_polygons_have() {
+    let place = |position: [f64; 3], tilt: [f64; 2], clockwise| Place {
+        position,
+        axis: [tilt[0], tilt[1], -1.0],
+        clockwise,
+    };
+    let two = [
+        place([-0.63924, -0.14219, 0.0], [0.07334, -0.01800], true),
+        place([0.48277, 0.18332, 0.0], [0.0, -0.05576], false),
+    ];
+    let three = [
+        place([-0.15992, -0.02534, 0.0], [-0.03666, -0.07061], true),
+        place([0.22541, -0.13412, -0.03095], [-0.13222, -0.05980], false),
+        place([0.19395, 0.20133, 0.02447], [-0.10568, 0.14080], false),
+    ];
+    for (frame, shares) in [
+        (
+            compile(&two, "roll-pitch-yaw", 0.0),
+            vec![0.404_554_188, 0.0, 0.617_469_090, 1.0],
+        ),
+        (
+            compile(&three, "disabled", 0.0),
+            vec![1.0, 0.0, 0.0, 0.325_254_902, 0.359_750_873, 1.0],
+        ),
+    ] {
+        let throttles = frame.physics.throttles(shares.into_iter(), Health::GOOD);
+        let volts = 12.8;
+        let request = Request {
+            wrench: frame.physics.wrench(&throttles, volts).map(|value| value as f32),
+            volts,
+            health: Health::GOOD,
+        };
+        let answer = request.mix(&frame).expect("finite");
+        little_is_missed(&frame, &request, &answer).unwrap_or_else(|fault| panic!("{fault}"));
     }
 }

@@ -9,10 +9,13 @@
 //!   since on the convex hull a single unit would have 1.3 % more torque than it has, the paper's pair.
 //! * One rotor: a curve is left, which is anything but convex, as short arcs.
 //!
+//! In place of what is attainable the mixer's own polygons can be put, or their hulls: polygons.rs.
+//!
 //! The optimum over all choices of one piece per unit is found by branch and bound: a run of pieces is relaxed to the
 //! convex hull of all of them; the choice of runs that promises most is halved until single pieces are left.
 
 pub mod change;
+mod polygons;
 mod program;
 
 use microlp::Error;
@@ -20,7 +23,6 @@ use mixer_compiler::model::PairMap;
 use mixer_rt::{Airmode, Health};
 
 use crate::physics::Physics;
-use crate::request::Frame;
 use program::{Goal, Point, Program, Quantity, Ranges};
 
 /// Border points per edge of the throttle box.
@@ -133,30 +135,6 @@ impl Oracle {
             airmode: allocation.airmode,
             reserve: allocation.yaw_reserve_nm,
         }
-    }
-
-    /// The programs of a frame over the convex hulls of the polygons that its mixer has for the attainable sets of units
-    /// with both rotors.
-    pub fn of_polygons(frame: &Frame, volts: f32, health: Health) -> Self {
-        let factors = frame.physics.factors(volts);
-        let mut oracle = Oracle::new(&frame.physics, frame.allocation(), factors, health);
-        let corners = frame.compiled.tables.attainable.corners();
-        let n = oracle.sets.len();
-        let failed = |&channel: &usize| u8::try_from(channel).is_ok_and(|channel| health.has_failed(channel));
-        for (i, pieces) in oracle.sets.iter_mut().enumerate() {
-            if frame.physics.channels[i].iter().any(failed) {
-                continue;
-            }
-            let contribution = |corner: &[f32; 2]| {
-                let [f, q] = corner.map(f64::from);
-                std::array::from_fn(|axis| {
-                    frame.physics.matrix[(axis, i)] * factors[0] * f
-                        + frame.physics.matrix[(axis, n + i)] * factors[1] * q
-                })
-            };
-            *pieces = vec![corners.iter().map(contribution).collect()];
-        }
-        oracle
     }
 
     /// The optimum over all choices of pieces.
