@@ -23,7 +23,8 @@ use crate::{Quantity, Tables};
 /// Halvings of the curves in all: one curve is tried in quarters, two in halves.
 const HALVINGS: u32 = 2;
 
-/// Rounds at most from whole curves, and from parts: 12 + 4 x 6 + 12 at worst, and 36 more about the best end. Most ends are reached in one to four.
+/// Rounds at most from whole curves, and from parts: 12 + 4 x 6 + 12 at worst, and 36 more about the best end. Most ends
+/// are reached in one to four.
 const ROUNDS: u32 = 12;
 const ROUNDS_OF_PARTS: u32 = 6;
 

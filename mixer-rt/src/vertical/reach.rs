@@ -212,14 +212,15 @@ pub(super) fn top<S: TorqueLimit>(search: &[Search<'_, S>], start: f32, [low, hi
         }
     }
     let falls = growth(search, far);
-    if falls >= 0.0 {
+    if falls < 0.0 {
+        // Ridders' method: with the growth in the middle it finds the zero of any line times an exponential function.
+        let middle = 0.5 * (near + far);
+        let growth = growth(search, middle);
+        middle + (far - middle) * (growth / (growth * growth - grows * falls).root())
+    } else {
         // It grows up to the far point.
-        return far;
+        far
     }
-    // Ridders' method: with the growth in the middle it finds the zero of any line times an exponential function.
-    let middle = 0.5 * (near + far);
-    let growth = growth(search, middle);
-    middle + (far - middle) * (growth / (growth * growth - grows * falls).root())
 }
 
 /// Yaw's reach grows after the near point, by `grows`; after the far one it does not.
