@@ -282,7 +282,7 @@ fn frames_with_rotors_out_reach_the_optimum() {
     }
     all.print("all");
     assert!(all.requests >= 200);
-    // Curves are not convex: with other seeds one request in 700 comes to a local optimum.
+    // With other seeds a request in 400 misses it, mostly by what the polygon leaves out: the README says by how much.
     assert!(
         all.missed * 400 <= all.requests,
         "{} of {}",

@@ -28,6 +28,14 @@ pub mod single_pair {
         ) -> ::core::result::Result<Self::Mix, ::mixer_rt::SetpointError> {
             mix(setpoint, voltage_v)
         }
+        #[inline]
+        fn mix_with_health(
+            setpoint: &::mixer_rt::Wrench,
+            voltage_v: f32,
+            health: ::mixer_rt::Health,
+        ) -> ::core::result::Result<Self::Mix, ::mixer_rt::SetpointError> {
+            mix_with_health(setpoint, voltage_v, health)
+        }
     }
     /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage (V).
     ///
