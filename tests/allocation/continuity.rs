@@ -9,7 +9,7 @@ use mixer_tests::soundness;
 
 use crate::{REFERENCE_V, compile};
 
-fn place(position: [f64; 3], axis: [f64; 2], clockwise: bool) -> Place {
+pub(crate) fn place(position: [f64; 3], axis: [f64; 2], clockwise: bool) -> Place {
     Place {
         position,
         axis: [axis[0], axis[1], -1.0],

@@ -128,9 +128,7 @@ fn is_served(frame: &Frame, wrench: [f32; 4], volts: f32, out: [u8; 2]) {
     let request = Request {
         wrench,
         volts,
-        health: out
-            .iter()
-            .fold(Health::GOOD, |health, &channel| health.with_failed(channel)),
+        health: crate::out(&out),
     };
     let answer = request.mix(frame).expect("finite");
     let fault = soundness::fault(frame, &request, &answer).expect("solved");

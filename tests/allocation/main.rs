@@ -22,6 +22,7 @@ mod optimum;
 mod properties;
 mod shapes;
 
+use mixer_rt::Health;
 use mixer_tests::frames::{self, Options, Place};
 use mixer_tests::request::Frame;
 
@@ -35,6 +36,12 @@ fn regular_frames() -> [(&'static str, Vec<Place>); 4] {
         ("X10", frames::regular(5, 0.0)),
         ("X12", frames::regular(6, 30.0)),
     ]
+}
+
+/// With the rotors on these channels out.
+fn out(channels: &[u8]) -> Health {
+    let channels = channels.iter();
+    channels.fold(Health::GOOD, |health, channel| health.with_failed(*channel))
 }
 
 fn compile(places: &[Place], airmode: &'static str, yaw_reserve_nm: f64) -> Frame {

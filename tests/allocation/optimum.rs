@@ -7,7 +7,8 @@ use mixer_tests::random::Random;
 use mixer_tests::request::{Frame, Request};
 use mixer_tests::shortfall::Shortfall;
 
-use crate::{REFERENCE_V, compile};
+use crate::degenerate::at;
+use crate::{REFERENCE_V, compile, out};
 
 #[derive(Default)]
 struct Judged {
@@ -179,16 +180,7 @@ fn assert_reaches_the_optimum(frame: &Frame, request: &Request) {
 
 /// Vertical units at `[x, y]`, m.
 fn vertical<const N: usize>(units: [([f64; 2], bool); N]) -> [Place; N] {
-    units.map(|([x, y], clockwise)| Place {
-        position: [x, y, 0.0],
-        axis: [0.0, 0.0, -1.0],
-        clockwise,
-    })
-}
-
-fn out(rotors: &[u8]) -> Health {
-    let rotors = rotors.iter();
-    rotors.fold(Health::GOOD, |health, rotor| health.with_failed(*rotor))
+    units.map(|([x, y], clockwise)| at([x, y, 0.0], clockwise))
 }
 
 /// The tangents at either end of a part of the curve lead to the other end: the optimum is between.

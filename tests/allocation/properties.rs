@@ -5,7 +5,6 @@
 //! wrench.
 
 use mixer_rt::{Axis, Health, SetpointError};
-use mixer_tests::frames::Place;
 use mixer_tests::optimum::{Oracle, change};
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::shortfall::Shortfall;
@@ -13,8 +12,9 @@ use mixer_tests::soundness;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::compile;
+use crate::continuity::place;
 use crate::layout::{Draw, Layout, any_request, attainable_request, layout, moderate_request};
+use crate::{compile, out};
 
 /// The largest change of a throttle where nothing forces more.
 const JUMP: f32 = 0.02;
@@ -245,7 +245,7 @@ proptest! {
                 wrench,
                 volts,
                 // Channels beyond the frame's are no one's.
-                health: failed.iter().fold(Health::GOOD, |health, channel| health.with_failed(*channel)),
+                health: out(failed),
             };
             let first_bad = Axis::ALL.into_iter().zip(wrench).find(|(_, value)| !value.is_finite());
             let refusal = match first_bad {
@@ -269,11 +269,6 @@ proptest! {
 /// where their convex hulls leave out less: the answer is the optimum over the polygons, which are what the mixer has.
 #[test]
 fn nothing_is_missed_that_only_the_hulls_of_the_polygons_have() {
-    let place = |position: [f64; 3], tilt: [f64; 2], clockwise| Place {
-        position,
-        axis: [tilt[0], tilt[1], -1.0],
-        clockwise,
-    };
     let two = [
         place([-0.63924, -0.14219, 0.0], [0.07334, -0.01800], true),
         place([0.48277, 0.18332, 0.0], [0.0, -0.05576], false),

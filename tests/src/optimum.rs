@@ -103,8 +103,7 @@ impl Oracle {
         is_cut: bool,
     ) -> Self {
         let pair = &physics.pair;
-        let failed = |channel: usize| u8::try_from(channel).is_ok_and(|channel| health.has_failed(channel));
-        let n = physics.units();
+        let failed = |channel| is_out(health, channel);
         let sets = physics.channels.iter().enumerate().map(|(i, channels)| {
             let efforts = match channels.map(failed) {
                 [false, false] if is_cut => cells(pair),
@@ -113,13 +112,7 @@ impl Oracle {
                 [true, false] => arcs(pair, |lower| [0.0, lower]),
                 [true, true] => vec![vec![[0.0; 2]]],
             };
-            let contribution = |throttles: [f64; 2]| {
-                let [f, q] = pair.efforts(throttles);
-                std::array::from_fn(|axis| {
-                    physics.matrix[(axis, i)] * factors[0] * f
-                        + physics.matrix[(axis, n + i)] * factors[1] * q
-                })
-            };
+            let contribution = |throttles| physics.contribution(i, pair.efforts(throttles), factors);
             let pieces = efforts.into_iter();
             pieces
                 .map(|piece| piece.into_iter().map(contribution).collect())
@@ -299,6 +292,11 @@ impl Oracle {
             thrust_n,
         }))
     }
+}
+
+/// True where the rotor on this channel has failed.
+fn is_out(health: Health, channel: usize) -> bool {
+    u8::try_from(channel).is_ok_and(|channel| health.has_failed(channel))
 }
 
 /// The throttles among `border` (anticlockwise) whose efforts are corners of the convex hull of all.

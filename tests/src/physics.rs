@@ -61,15 +61,21 @@ impl Physics {
     /// `[roll, pitch, yaw, thrust]` (N m, N) that the units' efforts `[f, Q]` at the reference voltage give under the
     /// correction `factors`.
     pub fn wrench_of(&self, efforts: impl Iterator<Item = [f64; 2]>, factors: [f64; 2]) -> [f64; 4] {
-        let n = self.units();
         let mut wrench = [0.0; 4];
-        for (i, [f, q]) in efforts.enumerate() {
-            for (axis, wrench) in wrench.iter_mut().enumerate() {
-                *wrench +=
-                    self.matrix[(axis, i)] * factors[0] * f + self.matrix[(axis, n + i)] * factors[1] * q;
+        for (i, efforts) in efforts.enumerate() {
+            for (wrench, part) in wrench.iter_mut().zip(self.contribution(i, efforts, factors)) {
+                *wrench += part;
             }
         }
         wrench
+    }
+
+    /// What unit `i` contributes to that.
+    pub(crate) fn contribution(&self, i: usize, [f, q]: [f64; 2], factors: [f64; 2]) -> [f64; 4] {
+        let n = self.units();
+        std::array::from_fn(|axis| {
+            self.matrix[(axis, i)] * factors[0] * f + self.matrix[(axis, n + i)] * factors[1] * q
+        })
     }
 
     /// `[roll, pitch, yaw, thrust]` (N m, N) that throttles, one per output, give at a battery voltage.

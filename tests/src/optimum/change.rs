@@ -103,12 +103,9 @@ fn between(frame: &Frame, volts: f32, wrenches: [[f64; 4]; 2], answer: &Answer) 
             corners
                 .iter()
                 .map(|corner| {
-                    let [f, q] = corner.map(f64::from);
+                    let efforts @ [f, q] = corner.map(f64::from);
                     Corner {
-                        wrench: std::array::from_fn(|axis| {
-                            physics.matrix[(axis, i)] * factors[0] * f
-                                + physics.matrix[(axis, n + i)] * factors[1] * q
-                        }),
+                        wrench: physics.contribution(i, efforts, factors),
                         throttles: inverse.map(|[by_f, by_q]| by_f * f + by_q * q),
                     }
                 })

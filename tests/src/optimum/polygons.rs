@@ -2,7 +2,7 @@
 
 use mixer_rt::Health;
 
-use super::{Oracle, Pieces};
+use super::{Oracle, Pieces, is_out};
 use crate::request::Frame;
 
 impl Oracle {
@@ -39,18 +39,12 @@ fn over(
         .collect();
     let centre = [0, 1].map(|k| f64::from(attainable.centre[k]) * f64::from(attainable.scale[k]));
     let cut = cut(&corners, centre);
-    let n = oracle.sets.len();
-    let failed = |&channel: &usize| u8::try_from(channel).is_ok_and(|channel| health.has_failed(channel));
     for (i, pieces) in oracle.sets.iter_mut().enumerate() {
-        if frame.physics.channels[i].iter().any(failed) {
+        let channels = frame.physics.channels[i].iter();
+        if channels.copied().any(|channel| is_out(health, channel)) {
             continue;
         }
-        let contribution = |[f, q]: &[f64; 2]| {
-            std::array::from_fn(|axis| {
-                frame.physics.matrix[(axis, i)] * factors[0] * f
-                    + frame.physics.matrix[(axis, n + i)] * factors[1] * q
-            })
-        };
+        let contribution = |efforts: &[f64; 2]| frame.physics.contribution(i, *efforts, factors);
         *pieces = cut
             .iter()
             .map(|piece| piece.iter().map(contribution).collect())
