@@ -7,7 +7,7 @@ use crate::Compiled;
 use crate::tables::{
     AttainableTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable, SideTable, VerticalTable,
 };
-use mixer_rt::{BilinearSeed, CubicSeed, EightTermSeed, Facets, QuadraticSeed, TableSeed};
+use mixer_rt::{BilinearSeed, CubicSeed, EightTermSeed, Facets, QuadraticSeed, Steepness, TableSeed};
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -236,12 +236,17 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
 fn side(side: &SideTable) -> TokenStream {
     match side {
         SideTable::Arcs(side) => {
-            let (corner, chords) = (float(side.corner_n), vector(&side.chords));
+            let corner = float(side.corner_n);
             let arcs = side.arcs.iter().map(|arc| {
                 let [offset, slope, bend, shift] = [arc.offset, arc.slope, arc.bend, arc.shift].map(float);
-                quote!(::mixer_rt::Arc { offset: #offset, slope: #slope, bend: #bend, shift: #shift })
+                let steepness = steepness(&arc.steepness);
+                quote! {
+                    ::mixer_rt::Arc {
+                        offset: #offset, slope: #slope, bend: #bend, shift: #shift, steepness: #steepness
+                    }
+                }
             });
-            quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*], chords: #chords })
+            quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*] })
         }
         SideTable::Polyline(knots) => {
             let knots = knots.iter().map(|knot| {
@@ -254,6 +259,11 @@ fn side(side: &SideTable) -> TokenStream {
             quote!(::mixer_rt::Polyline(&[#(#knots),*]))
         }
     }
+}
+
+fn steepness(steepness: &Steepness) -> TokenStream {
+    let [slope, bend, shift] = [steepness.slope, steepness.bend, steepness.shift].map(float);
+    quote!(::mixer_rt::Steepness { slope: #slope, bend: #bend, shift: #shift })
 }
 
 fn attainable(set: &AttainableTable) -> TokenStream {

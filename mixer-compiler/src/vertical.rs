@@ -10,7 +10,7 @@ mod coupling;
 mod drawing;
 mod outline;
 
-use mixer_rt::{Airmode, Arc, Axis, Border, Facets, Side, VerticalUnit};
+use mixer_rt::{Airmode, Arc, Axis, Border, Facets, Side, Steepness, VerticalUnit};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::airframe::Airframe;
@@ -159,17 +159,10 @@ fn arcs(pair: &PairMap) -> Option<[SideTable; 2]> {
         Some(Side {
             corner_n: pair.efforts(corner)[0] as f32,
             arcs: [below?, above?],
-            chords: edges.map(|(from, to)| chord_slope(pair, from, to, sign) as f32),
         })
     };
     let (largest, least) = (side([low, high], 1.0)?, side([high, low], -1.0)?);
     Some([largest, least].map(SideTable::Arcs))
-}
-
-/// The slope of the chord of the edge from `from` to `to` for `sign` Q, N m per N.
-fn chord_slope(pair: &PairMap, from: [f64; 2], to: [f64; 2], sign: f64) -> f64 {
-    let [[f, q], [end_f, end_q]] = [from, to].map(|throttles| pair.efforts(throttles));
-    sign * (end_q - q) / (end_f - f)
 }
 
 /// Shares of C and C+, rounded.
@@ -269,11 +262,25 @@ fn arc(pair: &PairMap, from: [f64; 2], to: [f64; 2], sign: f64) -> Option<Arc> {
         return None;
     }
     let offset = coefficients[0] - (error + MARGIN * torque);
+    let [slope, bend] = [coefficients[1], coefficients[2]];
+    let steepness = if bend as f32 >= 0.0 {
+        [slope, 0.5 * bend, shift]
+    } else {
+        // Its chord's. The radicand is about 1 or more.
+        let rise = points[SAMPLES][1] - points[0][1];
+        [rise / span, 0.0, 1.0 - first]
+    };
+    let [steepness_slope, steepness_bend, steepness_shift] = steepness.map(|value| value as f32);
     Some(Arc {
         offset: offset as f32,
-        slope: coefficients[1] as f32,
-        bend: coefficients[2] as f32,
+        slope: slope as f32,
+        bend: bend as f32,
         shift: shift as f32,
+        steepness: Steepness {
+            slope: steepness_slope,
+            bend: steepness_bend,
+            shift: steepness_shift,
+        },
     })
 }
 

@@ -66,7 +66,7 @@ pub use sqrt::sqrt;
 pub use table::TableSeed;
 pub use tables::{Tables, Tolerance, Unit};
 pub use vertical::{
-    Arc, Border, Coupled, Coupling, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, TorqueLimit,
+    Arc, Border, Coupled, Coupling, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, Steepness, TorqueLimit,
     Vertical, VerticalUnit,
 };
 pub use voltage::{Voltage, VoltageLaw};

@@ -30,7 +30,7 @@ mod torques;
 pub use coupled::{Coupled, Coupling};
 pub use facets::Facets;
 pub use polyline::{Knot, Polyline};
-pub use reach::{Arc, Border, Side, TorqueLimit};
+pub use reach::{Arc, Border, Side, Steepness, TorqueLimit};
 
 use core::hint::black_box;
 

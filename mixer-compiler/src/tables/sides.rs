@@ -30,7 +30,7 @@ impl SideTable {
 
     pub(super) fn floats(&self) -> usize {
         match self {
-            SideTable::Arcs(_) => 11,
+            SideTable::Arcs(_) => 15,
             // With the slice's address and length.
             SideTable::Polyline(knots) => 2 + 4 * knots.len(),
         }

@@ -34,6 +34,8 @@ pub struct Arc {
     pub bend: f32,
     /// N.
     pub shift: f32,
+    /// How steep it is: never steeper at a larger thrust.
+    pub steepness: Steepness,
 }
 
 impl Arc {
@@ -48,6 +50,17 @@ impl Arc {
     }
 }
 
+/// `slope + bend / sqrt(f + shift)`: the derivative of an [`Arc`], or the slope of its chord where it is convex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steepness {
+    /// N m per N.
+    pub slope: f32,
+    /// N m per square root of N: half the arc's, or 0.
+    pub bend: f32,
+    /// N.
+    pub shift: f32,
+}
+
 /// A side that is concave, or so nearly that it may be taken for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
@@ -55,21 +68,16 @@ pub struct Side {
     pub corner_n: f32,
     /// The arcs below and above it.
     pub arcs: [Arc; 2],
-    /// Slopes of their chords, N m per N.
-    pub chords: [f32; 2],
 }
 
 impl Side {
-    /// The derivative at `f`, of the chord where an arc is convex: so it never grows with the thrust.
+    /// How steep it is at `f`.
     #[inline(always)]
     fn slope(&self, f: f32) -> f32 {
-        let ([below, above], [rise, fall]) = (&self.arcs, &self.chords);
-        let is_below = f < self.corner_n;
-        let arc = if is_below { below } else { above };
-        if arc.bend >= 0.0 {
-            return arc.tangent(f).1;
-        }
-        if is_below { *rise } else { *fall }
+        let [below, above] = &self.arcs;
+        let arc = if f < self.corner_n { below } else { above };
+        let Steepness { slope, bend, shift } = arc.steepness;
+        slope + bend / (f + shift).root()
     }
 }
 
