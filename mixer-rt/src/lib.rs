@@ -66,8 +66,8 @@ pub use sqrt::sqrt;
 pub use table::TableSeed;
 pub use tables::{Tables, Tolerance, Unit};
 pub use vertical::{
-    Arc, Border, Coupled, Coupling, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, Steepness, TorqueLimit,
-    Vertical, VerticalUnit,
+    Arc, Border, Coupled, Coupling, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, Steepness,
+    TorqueLimit, Vertical, VerticalUnit,
 };
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};

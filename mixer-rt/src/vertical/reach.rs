@@ -8,7 +8,7 @@
 use core::hint::black_box;
 
 use super::{Knot, MOST_UNITS, Search, rolled};
-use crate::Scalar;
+use crate::{Scalar, sqrt};
 
 /// One side of the attainable set: the largest torque in one direction at every thrust.
 pub trait TorqueLimit {
@@ -135,10 +135,9 @@ impl<S: TorqueLimit> Border<S> {
         [if a > b { a } else { b }, if c < d { c } else { d }]
     }
 
-    /// The least torque of a unit with `turn` in the direction looked at if it is above `p`.
+    /// The least torque of a unit with `turn` in the direction looked at if it is above `p`. The `chord` is the border's.
     #[inline(always)]
-    pub(super) fn least_above(&self, turn: f32, f: f32, p: f32) -> Option<f32> {
-        let [offset, slope] = self.chord;
+    pub(super) fn least_above(&self, [offset, slope]: [f32; 2], turn: f32, f: f32, p: f32) -> Option<f32> {
         if p >= turn * (offset + slope * f) {
             return None;
         }
@@ -184,7 +183,7 @@ fn growth<S: TorqueLimit>(search: &[Search<'_, S>], z: f32) -> f32 {
 #[inline(always)]
 pub(super) fn top<S: TorqueLimit>(search: &[Search<'_, S>], start: f32, [low, high]: [f32; 2]) -> f32 {
     let mut kinks = [low; MOST_UNITS];
-    for (kink, state) in black_box(kinks.as_mut_slice()).iter_mut().zip(search) {
+    for (kink, state) in kinks.iter_mut().zip(search) {
         rolled();
         if let Some(side) = state.side.arcs() {
             *kink = (side.corner_n - state.from) / state.along;
@@ -207,7 +206,7 @@ pub(super) fn top<S: TorqueLimit>(search: &[Search<'_, S>], start: f32, [low, hi
     // In this order three growths tell at most, with that at the near end.
     bracket.split(search, c);
     let others = if c <= bracket.near { [e, d] } else { [a, b] };
-    for &kink in black_box(others.as_slice()) {
+    for kink in others {
         bracket.split(search, kink);
     }
     let Bracket {
@@ -224,7 +223,7 @@ pub(super) fn top<S: TorqueLimit>(search: &[Search<'_, S>], start: f32, [low, hi
         // Ridders' method: with the growth in the middle it finds the zero of any line times an exponential function.
         let middle = 0.5 * (near + far);
         let growth = growth(search, middle);
-        middle + (far - middle) * (growth / (growth * growth - grows * falls).root())
+        middle + (far - middle) * (growth / sqrt(growth * growth - grows * falls))
     } else {
         // It grows up to the far point.
         far

@@ -63,7 +63,7 @@ impl<S: TorqueLimit> Vertical<'_, S> {
         let mut z = range.nearest();
         let mut here = reach(search, z);
         // On the zonotope's border z has no room.
-        let is_short = attainable && here < wanted && high > low;
+        let is_short = here < wanted && high > low && attainable;
         if is_short && !self.border.is_concave() {
             (z, here) = climb(search, (z, here), [low, high], wanted, self.yaw_rounding_nm);
         } else if is_short {
@@ -76,11 +76,12 @@ impl<S: TorqueLimit> Vertical<'_, S> {
                 self.yaw_rounding_nm
             };
             let part = (wanted - here) / gain;
+            here = most;
             if part < 1.0 {
                 z += part * (top_z - z);
                 here = reach(search, z);
             } else {
-                (z, here) = (top_z, most);
+                z = top_z;
             }
         }
         if here < -self.yaw_rounding_nm {
@@ -166,7 +167,7 @@ impl<S: TorqueLimit> Vertical<'_, S> {
 
     /// Draws the thrusts, now at `z` where yaw reaches `reached`, towards those of `middle_n` until it reaches `needed`.
     /// Returns how far it then reaches and where the thrusts are on their new way; leaves the limits.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn retreat(
         &self,
         search: &mut [Search<'_, S>],

@@ -29,20 +29,19 @@ impl<S: TorqueLimit> Vertical<'_, S> {
             return;
         }
         let share = self.torque_share * wanted;
+        let chord = self.border.chord;
         let mut given = 0.0;
-        let mut raised = false;
+        let mut upwards = 1.0;
         for (effort, state) in efforts.iter_mut().zip(search.iter()) {
             rolled();
             let mut p = if share < state.limit { share } else { state.limit };
-            if let Some(least) = self.border.least_above(state.turn, state.thrust(z), p) {
+            if let Some(least) = self.border.least_above(chord, state.turn, state.thrust(z), p) {
                 p = least;
-                raised = true;
             }
             effort.torque = p;
             given += p;
         }
-        let mut upwards = 1.0;
-        if raised && given - wanted > self.yaw_rounding_nm {
+        if given - wanted > self.yaw_rounding_nm {
             upwards = -1.0;
             for state in search.iter_mut() {
                 rolled();
@@ -56,11 +55,8 @@ impl<S: TorqueLimit> Vertical<'_, S> {
             }
         }
         let room = reached - given;
-        let part = if room == 0.0 {
-            0.0
-        } else {
-            clamp((wanted - given) / room, 0.0, 1.0)
-        };
+        // Zero where there is no room.
+        let part = clamp((wanted - given) / room, 0.0, 1.0);
         for (effort, state) in efforts.iter_mut().zip(search.iter()) {
             rolled();
             let p = effort.torque;
