@@ -102,6 +102,9 @@ impl Falls {
 /// Efforts inside the set that move by less than this on the whole way stand still.
 const STANDING: f32 = 3e-5;
 
+/// Efforts that come to be outside the set by less than this are still inside.
+const OUTSIDE: f32 = 3e-6;
+
 impl AttainableSet<'_> {
     #[inline]
     fn is_chord(&self) -> bool {
@@ -341,14 +344,14 @@ impl AttainableSet<'_> {
             let next = self.after(index);
             let far = left_of_way(self.corner(if forwards { next } else { index }));
             let is_passed = if forwards { far <= 0.0 } else { far >= 0.0 };
-            if !is_passed && self.edge(index).beyond(velocity) > 0.0 {
+            if !is_passed && self.edge(index).beyond(velocity) > STANDING {
                 break;
             }
             index = if forwards { next } else { self.before(index) };
         }
         point.index = index;
         let edge = self.edge(index);
-        if index != last || edge.beyond(edge.relative(end)) > STANDING {
+        if index != last || edge.beyond(edge.relative(end)) > OUTSIDE {
             let depth = -edge.beyond(edge.relative(from));
             falls.watch(depth, -edge.beyond(velocity), STANDING, Face::Edge, index);
         }

@@ -285,3 +285,43 @@ fn thrust_that_is_raised_for_yaw_is_that_of_the_neighbours() {
         14.7306,
     );
 }
+
+/// Efforts that ran along an edge, inside by less than rounding, left the set past its corner: unit 6 here.
+#[test]
+fn a_way_along_an_edge_ends_at_its_corner() {
+    let vertical = [0.0, 0.0];
+    let places = [
+        place(
+            [-0.399_277_348, 0.026_659_188_5, -0.026_432_204_6],
+            vertical,
+            true,
+        ),
+        place(
+            [-0.326_187_495, -0.598_793_991, -0.024_589_225_1],
+            vertical,
+            false,
+        ),
+        place(
+            [-0.011_433_536_3, -0.225_598_235, 0.049_552_606_9],
+            vertical,
+            true,
+        ),
+        place([0.157_250_132, -0.193_552, 0.027_194_859_4], vertical, true),
+        place(
+            [0.470_511_227, 0.043_934_434_5, -0.003_818_102_99],
+            vertical,
+            false,
+        ),
+        place([0.296_724_613, 0.514_939_953, -0.007_955_693_09], vertical, true),
+        place(
+            [0.006_147_258_93, 0.345_299_731, -0.030_611_593_8],
+            vertical,
+            true,
+        ),
+        place([-0.181_264_97, 0.213_630_604, -0.038_193_789_8], vertical, true),
+    ];
+    let frame = compile(&places, "disabled", 0.021_056_764_570_038_24);
+    let asked = [-8.184_928, 0.0, 0.017_735_07, -2.861_452_8];
+    stays(&frame, asked, 15.891_999, 3);
+    is_sound(&frame, asked, 15.891_999);
+}
