@@ -79,7 +79,7 @@ pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
 }
 
 /// Ends that differ by less, in rows, are equally good.
-const MARGIN: f32 = 1e-4;
+const MARGIN: f32 = 3e-6;
 
 /// What the steps came to, in rows.
 #[derive(Clone, Copy)]
