@@ -59,6 +59,15 @@ pub(crate) struct Point {
 }
 
 impl Point {
+    /// In a corner that it cannot leave.
+    pub(crate) fn pinned(corner: u8) -> Self {
+        Point {
+            face: Face::Corner,
+            index: corner,
+            at: [f32::INFINITY; 2],
+        }
+    }
+
     /// True where it can leave its face no more.
     pub(crate) fn is_pressed(&self) -> bool {
         self.face != Face::Interior && self.at[1] == f32::INFINITY

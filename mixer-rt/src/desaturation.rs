@@ -118,6 +118,8 @@ pub(crate) struct Rival {
     pub(crate) unit: usize,
     /// .. at this corner of its set.
     pub(crate) corner: u8,
+    /// Whether it stays there.
+    pub(crate) stays: bool,
     /// How far from the request the end is, as in [`Outcome`]. Steps that come to be worse stop there.
     pub(crate) short: [f32; 3],
 }
@@ -142,7 +144,7 @@ pub(crate) fn prioritise<P, I, S>(
     let mut homotopy = Homotopy::new(tables, sets, factors, request, scratch);
     homotopy.prepare(&request);
     if let Some(Rival { unit, corner, .. }) = rival {
-        homotopy.refer_to_corner(unit, corner);
+        homotopy.refer_beside_best(unit, corner);
     } else {
         homotopy.look_for_hollows();
     }
@@ -228,6 +230,9 @@ fn descend(
         };
     }
     homotopy.start();
+    if let Some(Rival { unit, corner, stays: true, .. }) = rival {
+        homotopy.pin(unit, corner);
+    }
     homotopy.bound(ALONG, level);
     homotopy.bound(YAW, yaw);
     homotopy.bound(THRUST, WIDE);

@@ -18,18 +18,22 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
     /// another unit's start leads to.
     pub(crate) fn leave_hollows(&self, scratch: &mut [Scratch], mut best: Outcome) {
         keep(scratch);
+        let others = self.under(best.ceiling);
         for unit in 0..scratch.len() {
             let hollow = scratch.get(unit).map_or([None; 2], |scratch| scratch.hollow);
             for above in hollow.into_iter().flatten() {
-                let rival = Rival {
-                    unit,
-                    corner: above.get() - 1,
-                    short: best.short,
-                };
-                let outcome = self.round(scratch, Some(rival));
-                if outcome.is_better_than(&best) {
-                    best = outcome;
-                    keep(scratch);
+                for stays in [true, false] {
+                    let rival = Rival {
+                        unit,
+                        corner: above.get() - 1,
+                        stays,
+                        short: best.short,
+                    };
+                    let outcome = others.round(scratch, Some(rival));
+                    if outcome.is_better_than(&best) {
+                        best = outcome;
+                        keep(scratch);
+                    }
                 }
             }
         }

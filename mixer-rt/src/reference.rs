@@ -88,12 +88,26 @@ impl Homotopy<'_> {
         self.looks_for_hollows = !self.scratch.iter().any(|scratch| scratch.rotors.is_single());
     }
 
-    /// Keeps a corner of the unit's set for its reference.
-    pub(crate) fn refer_to_corner(&mut self, unit: usize, corner: u8) {
-        if let Some(scratch) = self.scratch.get_mut(unit)
-            && let Some(set) = self.sets.of(scratch.rotors, &scratch.chord)
-        {
-            scratch.efforts = set.corner(corner);
+    /// Keeps the efforts of the best end for the references, and a corner of the unit's set for that of the unit.
+    pub(crate) fn refer_beside_best(&mut self, unit: usize, corner: u8) {
+        for (index, scratch) in self.scratch.iter_mut().enumerate() {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
+                scratch.efforts = if index == unit {
+                    set.corner(corner)
+                } else {
+                    [
+                        scratch.best[0] / set.scale[0],
+                        scratch.best[1] / set.scale[1],
+                    ]
+                };
+            }
+        }
+    }
+
+    /// Keeps a unit in its corner, come what may.
+    pub(crate) fn pin(&mut self, unit: usize, corner: u8) {
+        if let Some(scratch) = self.scratch.get_mut(unit) {
+            scratch.point = crate::attainable::Point::pinned(corner);
         }
     }
 

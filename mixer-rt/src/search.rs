@@ -182,6 +182,14 @@ pub(crate) fn restore(scratch: &mut [Scratch]) {
 }
 
 impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
+    /// The same with the largest thrust that is allowed known, in its row.
+    pub(crate) fn under(&self, ceiling: f32) -> Self {
+        Search {
+            ceiling: Some(ceiling),
+            ..*self
+        }
+    }
+
     /// Rounds on parts of the curves, then from the best end; leaves its efforts in the scratch.
     fn search(&self, scratch: &mut [Scratch], halvings: u32, best: &mut End) {
         for combination in 0..1 << HALVINGS {
