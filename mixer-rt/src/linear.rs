@@ -23,6 +23,9 @@ const FAR_FROM_SINGULAR: f32 = 1e-3;
 /// A pivot that is a smaller share of its diagonal entry is left to the factors that are updated vector by vector.
 const LEAST_PIVOT: f32 = 1e-3;
 
+/// The same of all pivots so far together: what a small one leaves of the next is known the less.
+const LEAST_PIVOTS: f32 = 1e-4;
+
 /// J itself: enough where it is far from singular, which most often is so.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moments {
@@ -62,6 +65,7 @@ impl Moments {
     pub(crate) fn factors(self, active: [bool; 4]) -> Option<Factors> {
         let mut rows = self.rows;
         let mut per_pivot = [0.0; 4];
+        let (mut pivots, mut least) = (1.0, LEAST_PIVOTS);
         for i in 0..4 {
             if !active[i] {
                 rows[i] = [0.0; 4];
@@ -81,7 +85,9 @@ impl Moments {
                 rows[i][j] = entry * per_pivot[j];
                 pivot -= entry * rows[i][j];
             }
-            if pivot <= LEAST_PIVOT * self.rows[i][i] {
+            let diagonal = self.rows[i][i];
+            (pivots, least) = (pivots * pivot, least * diagonal);
+            if pivot <= LEAST_PIVOT * diagonal || pivots <= least {
                 return None;
             }
             per_pivot[i] = 1.0 / pivot;

@@ -455,3 +455,33 @@ fn a_unit_is_kept_at_the_ends_of_its_hollow() {
     ];
     stays_from(&frame, asked, 12.895_046);
 }
+
+/// Units whose effects are dependent but for little, and more than one of them so: pitch comes without roll.
+#[test]
+fn roll_is_zero_where_units_are_nearly_dependent_twice() {
+    let vertical = [0.0, 0.0];
+    let places = [
+        place([0.469_856_979, 0.228_672_246, -0.028_753_355_2], vertical, true),
+        place([0.325_270_326, 1.409_876_54, 0.024_135_437], vertical, false),
+        place(
+            [-0.030_708_181_9, 0.049_607_582_3, -0.035_885_033_3],
+            vertical,
+            true,
+        ),
+        place(
+            [-0.227_044_217, -0.064_065_327_2, 0.046_926_189_1],
+            vertical,
+            true,
+        ),
+        place(
+            [-0.069_500_396_5, -0.612_765_229, -0.024_264_160_8],
+            vertical,
+            true,
+        ),
+        place([0.214_509_708, -0.247_487_286, -0.015_786_095], vertical, true),
+    ];
+    let frame = compile(&places, "disabled", 0.083_509_717_290_797_34);
+    let asked = [0.0, -8.859_887, 0.150_819_24, 53.21427];
+    is_sound(&frame, asked, 15.562_256);
+    stays(&frame, asked, 15.562_256, 2);
+}
