@@ -230,7 +230,13 @@ fn descend(
         };
     }
     homotopy.start();
-    if let Some(Rival { unit, corner, stays: true, .. }) = rival {
+    if let Some(Rival {
+        unit,
+        corner,
+        stays: true,
+        ..
+    }) = rival
+    {
         homotopy.pin(unit, corner);
     }
     homotopy.bound(ALONG, level);

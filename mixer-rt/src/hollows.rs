@@ -3,8 +3,9 @@
 //! Where a unit's attainable set bends inwards, in a hollow, an end of the steps need not be the best. It is if no unit is
 //! held back in a hollow: the multipliers that end a step are the normal of a plane that touches the attainable wrenches,
 //! and if they draw every unit to where its set reaches furthest in their direction, then no attainable wrench is beyond
-//! that plane. So for every unit that is held back the steps are taken anew with that unit starting at either end of its
-//! hollow, one of which is where its set does reach furthest, and the best of all ends stands.
+//! that plane. So for every unit that is held back the steps are taken anew with that unit at either end of its hollow, one of
+//! which is where its set does reach furthest: once it is kept there, then it only starts there, since it may belong on from there.
+//! The other units start where the best end so far has them. The best of all ends stands.
 //!
 //! Where the request changes and another optimum becomes the best the efforts jump, as any choice of the best must.
 

@@ -4,6 +4,7 @@
 //! nearest to either are the same. With tilted axes they are not. There the reference is between the two: the least-norm
 //! efforts where these are attainable, which makes them the result, and the centres where these are far from it.
 
+use crate::attainable::Point;
 use crate::homotopy::Homotopy;
 use crate::linear::Moments;
 use crate::rows::{ACROSS, Bounds, Row, RowState};
@@ -95,10 +96,7 @@ impl Homotopy<'_> {
                 scratch.efforts = if index == unit {
                     set.corner(corner)
                 } else {
-                    [
-                        scratch.best[0] / set.scale[0],
-                        scratch.best[1] / set.scale[1],
-                    ]
+                    [scratch.best[0] / set.scale[0], scratch.best[1] / set.scale[1]]
                 };
             }
         }
@@ -107,7 +105,7 @@ impl Homotopy<'_> {
     /// Keeps a unit in its corner, come what may.
     pub(crate) fn pin(&mut self, unit: usize, corner: u8) {
         if let Some(scratch) = self.scratch.get_mut(unit) {
-            scratch.point = crate::attainable::Point::pinned(corner);
+            scratch.point = Point::pinned(corner);
         }
     }
 
