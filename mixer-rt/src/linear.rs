@@ -10,9 +10,10 @@ use core::hint::black_box;
 use crate::sqrt;
 
 /// A vector that differs from a combination of the others by less than this (vectors are of order one) adds nothing. It could
-/// move the wrench by as little only, and smaller angles give multipliers, their inverse square, whose rounding errors are
-/// larger than what they multiply.
-const LEAST_ANGLE: f32 = 1e-5;
+/// move the wrench by as little only; but one priority given up by so little may have led the next to another end, so the angle
+/// is no larger than rounding asks for: smaller ones give multipliers, their inverse square, whose rounding errors are larger
+/// than what they multiply.
+const LEAST_ANGLE: f32 = 1.5e-6;
 
 /// A right-hand side that misses the range of J by less than this share of what it is made of counts as within it.
 const CONSISTENT: f32 = 4e-5;
