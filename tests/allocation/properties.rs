@@ -399,3 +399,25 @@ fn yaw_is_served_where_units_are_all_but_dependent() {
         );
     }
 }
+
+/// A ten-millionth of roll and pitch is worth a tenth of a percent of thrust here, which is not for the oracle to take.
+#[test]
+fn the_optimum_gives_up_nothing_of_roll_and_pitch_for_thrust() {
+    let three = [
+        place(
+            [-0.259_897_257_956, -0.417_253_956_1, 0.0],
+            [-0.144_622_61, 0.0],
+            true,
+        ),
+        place([0.049_971_994_351, -0.001_673_254_482, 0.0], [0.0, 0.0], false),
+        place([-0.094_147_665_147, 0.176_454_575_308, 0.0], [0.0, 0.0], false),
+    ];
+    let frame = compile(&three, "disabled", 0.0);
+    let request = Request {
+        wrench: [3.393_982_6, -5.685_069, -0.801_756_44, 44.120_895],
+        volts: 13.055_011,
+        health: Health::GOOD,
+    };
+    let answer = request.mix(&frame).expect("finite");
+    little_is_missed(&frame, &request, &answer).unwrap_or_else(|fault| panic!("{fault}"));
+}
