@@ -8,11 +8,15 @@ use crate::sqrt;
 /// Hollows less deep than this, scaled, are none.
 const HOLLOW: f32 = 1e-3;
 
+/// The border may fall by this much, scaled, before it rises: from one end of a hollow it falls before it rises to the other.
+const FALL: f32 = 5e-3;
+
 impl AttainableSet<'_> {
     /// Of the hollow that holds back a point drawn in `direction` both ends: the corners up to which the border rises in that
-    /// direction, before the point and after it; one more than their indices.
+    /// direction, but for falls of [`FALL`], before the point and after it; one more than their indices.
     pub(crate) fn hollow(&self, point: &Point, direction: [f32; 2]) -> [Option<NonZeroU8>; 2] {
-        let least = HOLLOW * sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
+        let length = sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
+        let (least, fall) = (HOLLOW * length, FALL * length);
         let from = self.project(point);
         [false, true].map(|forwards| {
             let next = |index| {
@@ -30,7 +34,7 @@ impl AttainableSet<'_> {
             for _ in self.edges {
                 let [f, q] = self.corner(index);
                 let height = (f - from[0]) * direction[0] + (q - from[1]) * direction[1];
-                if height < furthest - least {
+                if height < furthest - fall {
                     break;
                 }
                 if height > furthest {
