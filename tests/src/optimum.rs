@@ -264,10 +264,20 @@ impl Oracle {
         request: [f64; 4],
         given: Option<(f64, Option<f64>)>,
     ) -> Result<Option<Optimum>, Error> {
+        match self.allowed(request)? {
+            Some(ranges) => self.optimum_within(request, ranges, given),
+            None => Ok(None),
+        }
+    }
+
+    /// [`Oracle::optimum_given`] with yaw and thrust in these ranges.
+    fn optimum_within(
+        &self,
+        request: [f64; 4],
+        mut ranges: Ranges,
+        given: Option<(f64, Option<f64>)>,
+    ) -> Result<Option<Optimum>, Error> {
         let direction = [request[0], request[1]];
-        let Some(mut ranges) = self.allowed(request)? else {
-            return Ok(None);
-        };
         let Some(highest) = self.highest_share(direction, ranges)? else {
             return Ok(None);
         };

@@ -2,6 +2,7 @@
 
 use microlp::{ComparisonOp, Error, OptimizationDirection, Problem, SolveOutcome, Variable};
 use mixer_rt::{Airmode, Health};
+use nalgebra::{Matrix2, Vector2};
 
 use super::{Optimum, Oracle};
 use crate::request::{Answer, Frame, Request};
@@ -47,6 +48,42 @@ pub fn forced(frame: &Frame, requests: [&Request; 2], answer: &Answer) -> Result
     Ok(Some(forced.max(between(frame, volts, wrenches, answer)?)))
 }
 
+/// True where two answers to requests at one voltage, all rotors working, are optima that lie apart, so that any choice of the best
+/// must jump: each is the best over the mixer's own polygons, but for rounding, and half way between the throttles of the two nothing
+/// is as good for either request.
+///
+/// # Errors
+/// The solver gave up.
+pub fn parted(frame: &Frame, requests: [&Request; 2], answers: [&Answer; 2]) -> Result<bool, Error> {
+    let volts = requests[0].volts;
+    let throttles = answers.map(|answer| answer.throttle.iter().copied().map(f64::from).collect::<Vec<_>>());
+    let pairs = throttles[0].iter().zip(&throttles[1]);
+    let middle: Vec<f64> = pairs.map(|(a, b)| a.midpoint(*b)).collect();
+    let reach = 0.25 * f64::from(answers[0].change(answers[1]));
+    let near = |throttles: &[f64]| Oracle::of_polygons_near(frame, throttles, volts, reach);
+    let exact = Oracle::of_exact_polygons(frame, volts, Health::GOOD);
+    let between = near(&middle);
+    for (request, throttles) in requests.into_iter().zip(&throttles) {
+        let asked = served(frame, request);
+        let Some(ranges) = exact.allowed(asked)? else {
+            return Ok(false);
+        };
+        let of = |oracle: &Oracle| oracle.optimum_within(asked, ranges, None);
+        let (Some(best), Some(own)) = (of(&exact)?, of(&near(throttles))?) else {
+            return Ok(false);
+        };
+        if best.is_better_than(&own, frame, asked, ROUNDING) {
+            return Ok(false);
+        }
+        if let Some(between) = of(&between)?
+            && !own.is_better_than(&between, frame, asked, OFF)
+        {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
 /// The request's axes that are served.
 fn served(frame: &Frame, request: &Request) -> [f64; 4] {
     let mut asked = request.asked();
@@ -77,6 +114,29 @@ fn given_up(frame: &Frame, asked: [f64; 4], optimum: &Optimum) -> [(f64, Option<
 }
 
 impl Optimum {
+    /// True where it is better than another by more than `margin`, a share of the authority, in the order of priority.
+    fn is_better_than(&self, other: &Optimum, frame: &Frame, asked: [f64; 4], margin: f64) -> bool {
+        let short = |optimum: &Optimum| {
+            let wrench = optimum.wrench(asked);
+            let [roll, pitch, yaw, thrust] = std::array::from_fn(|axis| {
+                if frame.served()[axis] {
+                    (wrench[axis] - asked[axis]).abs() / frame.authority[axis]
+                } else {
+                    0.0
+                }
+            });
+            match frame.allocation().airmode {
+                Airmode::RollPitchYaw => [roll.max(pitch), yaw, thrust],
+                Airmode::Disabled | Airmode::RollPitch => [roll.max(pitch), thrust, yaw],
+            }
+        };
+        let pairs = short(self).into_iter().zip(short(other));
+        let mut differences = pairs.map(|(own, other): (f64, f64)| other - own);
+        differences
+            .find(|difference| difference.abs() > margin)
+            .is_some_and(|difference| difference > 0.0)
+    }
+
     /// Its wrench, `[roll, pitch, yaw, thrust]`, for what has been asked.
     fn wrench(&self, asked: [f64; 4]) -> [f64; 4] {
         [
@@ -88,6 +148,11 @@ impl Optimum {
     }
 }
 
+/// The derivative of a unit's efforts by its throttles.
+pub(super) fn by_throttles(frame: &Frame, throttles: [f64; 2]) -> Matrix2<f64> {
+    Matrix2::from(frame.physics.pair.jacobian(throttles)).transpose()
+}
+
 /// The least possible largest change of a throttle between efforts that give the two wrenches.
 fn between(frame: &Frame, volts: f32, wrenches: [[f64; 4]; 2], answer: &Answer) -> Result<f64, Error> {
     let physics = &frame.physics;
@@ -97,16 +162,14 @@ fn between(frame: &Frame, volts: f32, wrenches: [[f64; 4]; 2], answer: &Answer) 
     let sets: Vec<Vec<Corner>> = (0..n)
         .map(|i| {
             let at = physics.channels[i].map(|channel| f64::from(answer.throttle[channel]));
-            let [[fu, fl], [qu, ql]] = physics.pair.jacobian(at);
-            let det = fu * ql - fl * qu;
-            let inverse = [[ql / det, -fl / det], [-qu / det, fu / det]];
+            let by_efforts = by_throttles(frame, at).try_inverse().unwrap_or_default();
             corners
                 .iter()
                 .map(|corner| {
-                    let efforts @ [f, q] = corner.map(f64::from);
+                    let efforts = corner.map(f64::from);
                     Corner {
                         wrench: physics.contribution(i, efforts, factors),
-                        throttles: inverse.map(|[by_f, by_q]| by_f * f + by_q * q),
+                        throttles: (by_efforts * Vector2::from(efforts)).into(),
                     }
                 })
                 .collect()
