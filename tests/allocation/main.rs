@@ -5,6 +5,7 @@
 //! | `delivery.rs` | wrenches of random throttles: delivered |
 //! | `optimum.rs` | linear programs: no priority short by 1 % of its authority |
 //! | `continuity.rs` | requests near which throttles or what is delivered once jumped: answered as their neighbours are |
+//! | `jumps.rs` | throttles that jump from a request to its neighbour: those that must; others are counted |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
 //! | `degenerate.rs` | numbers that no controller sends |
@@ -17,6 +18,7 @@ mod degenerate;
 mod delivery;
 mod failure;
 mod finite;
+mod jumps;
 mod layout;
 mod optimum;
 mod properties;
@@ -36,6 +38,14 @@ fn regular_frames() -> [(&'static str, Vec<Place>); 4] {
         ("X10", frames::regular(5, 0.0)),
         ("X12", frames::regular(6, 30.0)),
     ]
+}
+
+/// The number that an environment variable is set to, else `default`.
+fn number(variable: &str, default: u64) -> u64 {
+    let set = std::env::var(variable);
+    set.map_or(default, |text| {
+        text.parse().unwrap_or_else(|_| panic!("{variable} is a number"))
+    })
 }
 
 /// With the rotors on these channels out.

@@ -8,7 +8,7 @@ use mixer_tests::request::{Frame, Request};
 use mixer_tests::shortfall::Shortfall;
 
 use crate::degenerate::at;
-use crate::{REFERENCE_V, compile, out};
+use crate::{REFERENCE_V, compile, number, out};
 
 #[derive(Default)]
 struct Judged {
@@ -80,8 +80,7 @@ impl Judged {
 
 /// Random numbers from a fixed seed; `MIXER_SEED` sets another.
 fn random(seed: u64) -> Random {
-    let other = std::env::var("MIXER_SEED").ok().map(|text| text.parse());
-    Random(other.map_or(seed, |other| other.expect("MIXER_SEED is a number")))
+    Random(number("MIXER_SEED", seed))
 }
 
 /// An irregular frame that can hover, for about each that is asked for.

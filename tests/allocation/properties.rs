@@ -5,7 +5,7 @@
 //! wrench.
 
 use mixer_rt::{Axis, Health, SetpointError};
-use mixer_tests::optimum::{Oracle, change};
+use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::shortfall::Shortfall;
 use mixer_tests::soundness;
@@ -13,14 +13,9 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use crate::continuity::place;
+use crate::jumps::{self, Motion, neighbours};
 use crate::layout::{Draw, Layout, any_request, attainable_request, layout, moderate_request};
 use crate::{compile, out};
-
-/// The largest change of a throttle where nothing forces more.
-const JUMP: f32 = 0.02;
-
-/// Times what the priorities force a throttle may move.
-const FORCED: f64 = 2.0;
 
 /// Share by which a barely attainable wrench is drawn inside to be attainable to the mixer, too, whose polygons leave out a
 /// little at the border.
@@ -204,35 +199,17 @@ proptest! {
         })?;
     }
 
-    /// A relative change of 1e-4 of one axis, or of all, moves no throttle by more than 0.02, but where the priorities
-    /// themselves force it: then by no more than [`FORCED`] times what they force, or from one optimum to another that is apart
-    /// from it, as any choice of the best must ([`change::parted`]).
+    /// A relative change of 1e-4 of one axis, or of all, moves no throttle by more than 0.02, but where it must: [`Motion`].
     #[test]
-    fn throttles_are_continuous_in_the_request(
-        layout in layout(),
-        draws in many((moderate_request(0), 0..5_usize), 300),
-    ) {
-        each(&layout, &draws, |frame, (draw, moved)| {
-            let request = draw.of(frame);
-            let mut near = request;
-            for (axis, value) in near.wrench.iter_mut().enumerate() {
-                if *moved == 4 || *moved == axis {
-                    *value *= 1.0 + 1e-4;
-                }
+    fn throttles_are_continuous_in_the_request(layout in layout(), pairs in many(neighbours(), 300)) {
+        each(&layout, &pairs, |frame, pair| {
+            let [request, near] = jumps::of(frame, pair);
+            let motion = Motion::between(frame, &request, &near)
+                .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
+            match motion {
+                Motion::Small | Motion::Forced | Motion::Parted => Ok(()),
+                Motion::Jump(said) => Err(TestCaseError::fail(said)),
             }
-            let [answer, moved] = [request, near].map(|request| request.mix(frame).expect("finite"));
-            let change = answer.change(&moved);
-            if change > JUMP {
-                let requests = [&request, &near];
-                let failed = |error| TestCaseError::fail(format!("the oracle on {request:?}: {error}"));
-                let forced = change::forced(frame, requests, &answer).map_err(failed)?;
-                prop_assert!(
-                    forced.is_some_and(|forced| f64::from(change) <= FORCED * forced)
-                        || change::parted(frame, requests, [&answer, &moved]).map_err(failed)?,
-                    "{}, {:?} of it forced: {:?} -> {:?}, then {:?} -> {:?}", change, forced, request, answer, near, moved
-                );
-            }
-            Ok(())
         })?;
     }
 

@@ -1,0 +1,112 @@
+//! Throttles that jump from a request to its neighbour: which of them must, and how often others do.
+//!
+//! `MIXER_SEED=2 PROPTEST_CASES=400 cargo test --release -p mixer-tests --test allocation jumps -- --nocapture` counts them on 400
+//! random frames, 250 pairs of neighbours each.
+
+use microlp::Error;
+use mixer_tests::optimum::change;
+use mixer_tests::request::{Frame, Request};
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+
+use crate::layout::{Draw, layout, moderate_request};
+use crate::number;
+
+/// The largest change of a throttle where nothing forces more.
+const JUMP: f32 = 0.02;
+
+/// Times what the priorities force a throttle may move.
+const FORCED: f64 = 2.0;
+
+/// Pairs of neighbours per frame.
+const PAIRS: usize = 250;
+
+/// How throttles move from a request to its neighbour.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Motion {
+    /// By no more than [`JUMP`].
+    Small,
+    /// By no more than [`FORCED`] times what the priorities themselves force.
+    Forced,
+    /// From one optimum to another that is apart from it, as any choice of the best must: [`change::parted`].
+    Parted,
+    /// In no such way; said in words.
+    Jump(String),
+}
+
+impl Motion {
+    /// From `request` to `near`.
+    ///
+    /// # Errors
+    /// The oracle's solver gave up.
+    pub(crate) fn between(frame: &Frame, request: &Request, near: &Request) -> Result<Motion, Error> {
+        let requests = [request, near];
+        let [answer, moved] = requests.map(|request| request.mix(frame).expect("finite"));
+        let change = answer.change(&moved);
+        if change <= JUMP {
+            return Ok(Motion::Small);
+        }
+        let forced = change::forced(frame, requests, &answer)?;
+        if forced.is_some_and(|forced| f64::from(change) <= FORCED * forced) {
+            return Ok(Motion::Forced);
+        }
+        if change::parted(frame, requests, [&answer, &moved])? {
+            return Ok(Motion::Parted);
+        }
+        Ok(Motion::Jump(format!(
+            "{change}, {forced:?} of it forced: {request:?} -> {answer:?}, then {near:?} -> {moved:?}"
+        )))
+    }
+}
+
+/// A request and which axis changes to the next one, by 1e-4 of it: 4 for all.
+pub(crate) fn neighbours() -> impl Strategy<Value = (Draw, usize)> {
+    (moderate_request(0), 0..5_usize)
+}
+
+/// The request and its neighbour.
+pub(crate) fn of(frame: &Frame, (draw, moved): &(Draw, usize)) -> [Request; 2] {
+    let request = draw.of(frame);
+    let mut near = request;
+    for (axis, value) in near.wrench.iter_mut().enumerate() {
+        if *moved == 4 || *moved == axis {
+            *value *= 1.0 + 1e-4;
+        }
+    }
+    [request, near]
+}
+
+#[test]
+fn few_throttles_jump() {
+    let mut seed = [0; 32];
+    seed[..8].copy_from_slice(&number("MIXER_SEED", 1).to_le_bytes());
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
+    let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
+    let (mut small, mut forced, mut parted, mut jumps) = (0, 0, 0, 0);
+    for index in 0..number("PROPTEST_CASES", 32) {
+        let layout = layout().new_tree(&mut runner).expect("drawn").current();
+        let pairs = prop::collection::vec(neighbours(), PAIRS);
+        let pairs = pairs.new_tree(&mut runner).expect("drawn").current();
+        let Some(frame) = layout.frame() else { continue };
+        for pair in &pairs {
+            let [request, near] = of(&frame, pair);
+            match Motion::between(&frame, &request, &near).expect("solved") {
+                Motion::Small => small += 1,
+                Motion::Forced => forced += 1,
+                Motion::Parted => parted += 1,
+                Motion::Jump(said) => {
+                    println!("frame {index}, {said}{layout:?}");
+                    jumps += 1;
+                }
+            }
+        }
+    }
+    println!(
+        "of {} pairs throttles jump in {jumps} where nothing forces it, in {parted} from one optimum to another, in {forced} as forced",
+        small + forced + parted + jumps
+    );
+    assert!(small >= 5000);
+    // With other seeds some four pairs in a million do: the README says which.
+    assert_eq!(jumps, 0);
+}
