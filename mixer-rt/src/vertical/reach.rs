@@ -73,7 +73,7 @@ pub struct Side {
 impl Side {
     /// How steep it is at `f`.
     #[inline(always)]
-    fn slope(&self, f: f32) -> f32 {
+    pub(super) fn slope(&self, f: f32) -> f32 {
         let [below, above] = &self.arcs;
         let arc = if f < self.corner_n { below } else { above };
         let Steepness { slope, bend, shift } = arc.steepness;
