@@ -66,9 +66,9 @@ pub const COUNTED: Counted = Counted {
         Frames {
             kind: Kind::Coupled,
             units: 4,
-            attainable_mean: [1105, 1145],
-            saturated_mean: [3060, 3616],
-            worst: [9318, 13000],
+            attainable_mean: [1111, 1151],
+            saturated_mean: [3150, 3798],
+            worst: [9773, 13959],
         },
         Frames {
             kind: Kind::Path,
