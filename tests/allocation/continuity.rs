@@ -485,3 +485,20 @@ fn roll_is_zero_where_units_are_nearly_dependent_twice() {
     is_sound(&frame, asked, 15.562_256);
     stays(&frame, asked, 15.562_256, 2);
 }
+
+/// Beyond an arc that bends inwards, steep next to its corner, there is a better optimum: a tenth more yaw.
+#[test]
+fn yaw_before_thrust_is_sought_beyond_the_corner_of_an_arc() {
+    let places = [
+        place([-0.223_426_36, 0.117_127_738, 0.016_183_296_2], [0.0, 0.0], true),
+        place([-1.201_111_6, -0.739_704_851, 0.029_156_309_4], [0.0, 0.0], false),
+        place([0.184_773_267, -0.181_960_25, -0.042_793_344_3], [0.0, 0.0], true),
+        place([0.218_328_997, 0.328_736_178, 0.012_996_860_5], [0.0, 0.0], false),
+    ];
+    let frame = compile(&places, "roll-pitch-yaw", 0.087_178_825_8);
+    let asked = [
+        [8.221_909, -8.720_171, 1.368_497_1, 28.906_958],
+        [8.221_909, -8.720_171, 1.368_497_1, 28.909_85],
+    ];
+    stays_from(&frame, asked, 15.639_441_5);
+}
