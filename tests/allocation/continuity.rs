@@ -17,7 +17,7 @@ pub(crate) fn place(position: [f64; 3], axis: [f64; 2], clockwise: bool) -> Plac
     }
 }
 
-fn all_rotors(wrench: [f32; 4], volts: f32) -> Request {
+pub(crate) fn all_rotors(wrench: [f32; 4], volts: f32) -> Request {
     Request {
         wrench,
         volts,
@@ -26,14 +26,14 @@ fn all_rotors(wrench: [f32; 4], volts: f32) -> Request {
 }
 
 /// Changes one axis by 1e-4 of it: no throttle moves by more than 0.02.
-fn stays(frame: &Frame, wrench: [f32; 4], volts: f32, axis: usize) {
+pub(crate) fn stays(frame: &Frame, wrench: [f32; 4], volts: f32, axis: usize) {
     let mut near = wrench;
     near[axis] *= 1.0 + 1e-4;
     stays_from(frame, [wrench, near], volts);
 }
 
 /// No throttle moves by more than 0.02 between the two.
-fn stays_from(frame: &Frame, wrenches: [[f32; 4]; 2], volts: f32) {
+pub(crate) fn stays_from(frame: &Frame, wrenches: [[f32; 4]; 2], volts: f32) {
     let [request, near] = wrenches.map(|wrench| all_rotors(wrench, volts));
     let [answer, moved] = [request, near].map(|request| request.mix(frame).expect("finite"));
     let change = answer.change(&moved);
@@ -324,136 +324,6 @@ fn a_way_along_an_edge_ends_at_its_corner() {
     let asked = [-8.184_928, 0.0, 0.017_735_07, -2.861_452_8];
     stays(&frame, asked, 15.891_999, 3);
     is_sound(&frame, asked, 15.891_999);
-}
-
-/// Two ends of nearly the same thrust, 5 mN apart: the better one is taken on either side.
-#[test]
-fn the_better_of_two_ends_is_taken_however_near_they_are() {
-    let places = [
-        place(
-            [0.322_281_083, 0.000_921_156_823, 0.005_068_003_1],
-            [0.114_420_621, 0.021_362_212_7],
-            true,
-        ),
-        place(
-            [-0.071_072_912_7, 0.684_815_632, 0.035_549_688_8],
-            [0.145_688_152, -0.064_160_678_8],
-            false,
-        ),
-        place(
-            [-0.447_129_336, 0.228_946_704, -0.005_400_376_53],
-            [0.098_378_018_8, 0.018_534_458_2],
-            false,
-        ),
-        place(
-            [-0.253_497_759, -0.190_387_724, -0.038_073_957],
-            [-0.081_999_908_7, 0.089_072_549_7],
-            false,
-        ),
-        place(
-            [0.259_693_227, -0.323_793_981, 0.044_241_880_8],
-            [0.049_016_881_6, 0.047_480_674_6],
-            true,
-        ),
-    ];
-    let frame = compile(&places, "roll-pitch", 0.0);
-    let asked = [
-        [-7.329_782_5, -6.673_715_6, -1.399_513_1, 81.529_785],
-        [-7.330_515_4, -6.674_383, -1.399_653_1, 81.53794],
-    ];
-    stays_from(&frame, asked, 14.115_237);
-}
-
-/// The unit in a hollow belongs to one end of it, but where it only starts there its path leads back into the hollow.
-#[test]
-fn a_unit_is_kept_at_the_ends_of_its_hollow() {
-    let six = [
-        place(
-            [-0.427_819_87, -0.475_779_917, 0.033_710_532_2],
-            [0.108_574_095, -0.112_156_061],
-            true,
-        ),
-        place(
-            [0.011_508_884_5, -0.351_591_836, -0.013_426_778_8],
-            [0.055_895_699_3, -0.117_152_252],
-            false,
-        ),
-        place(
-            [0.581_979_36, -0.109_028_281, -0.025_123_306_7],
-            [0.138_196_941, -0.133_612_871],
-            true,
-        ),
-        place(
-            [0.319_570_297, 0.322_193_095, -0.043_238_207_2],
-            [-0.091_521_735_3, 0.130_356_032],
-            false,
-        ),
-        place(
-            [-0.020_042_491_6, 0.303_668_765, 0.000_821_665_582],
-            [0.084_912_968_9, -0.135_218_416],
-            false,
-        ),
-        place(
-            [-0.461_667_125, 0.058_524_500_3, -0.043_709_614_2],
-            [0.141_354_175, -0.133_157_859],
-            true,
-        ),
-    ];
-    let frame = compile(&six, "roll-pitch-yaw", 0.050_839_438_447_737_355);
-    stays(
-        &frame,
-        [-3.699_548_7, 12.160_891, 1.678_315_2, 40.764_973],
-        14.223_189,
-        1,
-    );
-    let eight = [
-        place(
-            [-0.535_486_275, -0.013_050_253_5, -0.003_230_175_06],
-            [0.146_420_058, -0.001_222_130_27],
-            true,
-        ),
-        place(
-            [-0.212_131_508, -0.201_192_663, -0.042_296_830_8],
-            [0.143_847_849, -0.095_891_104_4],
-            false,
-        ),
-        place(
-            [-0.097_841_493_7, -0.456_033_433, -0.031_732_673_8],
-            [-0.101_765_865, -0.039_114_555_1],
-            false,
-        ),
-        place(
-            [0.420_087_151, -0.521_629_225, 0.003_691_283_18],
-            [0.065_804_940_9, -0.137_784_722],
-            true,
-        ),
-        place(
-            [0.455_576_032, -0.042_843_686, 0.000_381_070_976],
-            [-0.094_182_980_2, -0.096_246_090_5],
-            false,
-        ),
-        place(
-            [0.466_930_732, 0.405_767_315, -0.046_031_487_9],
-            [0.085_330_647_9, -0.088_048_912_4],
-            true,
-        ),
-        place(
-            [0.131_995_492, 0.347_567_254, 0.038_765_375_1],
-            [-0.035_594_975, 0.115_146_453],
-            false,
-        ),
-        place(
-            [-0.286_777_172, 0.260_247_546, -0.029_671_769_7],
-            [0.017_050_162_2, 0.141_802_734],
-            true,
-        ),
-    ];
-    let frame = compile(&eight, "roll-pitch-yaw", 0.0);
-    let asked = [
-        [0.0, -2.352_420_3, 1.126_618_7, 194.24454],
-        [0.0, -2.352_655_6, 1.126_731_4, 194.26396],
-    ];
-    stays_from(&frame, asked, 12.895_046);
 }
 
 /// Units whose effects are dependent but for little, and more than one of them so: pitch comes without roll.

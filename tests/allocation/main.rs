@@ -5,9 +5,11 @@
 //! | `delivery.rs` | wrenches of random throttles: delivered |
 //! | `optimum.rs` | linear programs: no priority short by 1 % of its authority |
 //! | `continuity.rs` | requests near which throttles or what is delivered once jumped: answered as their neighbours are |
+//! | `hollows.rs` | the same where attainable sets bend inwards |
 //! | `jumps.rs` | throttles that jump from a request to its neighbour: those that must; others are counted |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
+//! | `polygons.rs` | the optimum over the mixer's own polygons, where what these leave out decides |
 //! | `degenerate.rs` | numbers that no controller sends |
 //! | `shapes.rs` | the same on attainable sets that are not convex, real ones with `MIXER_BENCH_DATA` |
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
@@ -18,9 +20,11 @@ mod degenerate;
 mod delivery;
 mod failure;
 mod finite;
+mod hollows;
 mod jumps;
 mod layout;
 mod optimum;
+mod polygons;
 mod properties;
 mod shapes;
 

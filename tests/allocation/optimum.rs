@@ -5,7 +5,7 @@ use mixer_tests::frames::{self, AIRMODES, Options, Place};
 use mixer_tests::optimum::Oracle;
 use mixer_tests::random::Random;
 use mixer_tests::request::{Frame, Request};
-use mixer_tests::shortfall::Shortfall;
+use mixer_tests::shortfall::{ALLOWED, Shortfall};
 
 use crate::degenerate::at;
 use crate::{REFERENCE_V, compile, number, out};
@@ -29,17 +29,12 @@ impl Judged {
             let mut request = frame.draw(random, 0.6, volts);
             request.health = health;
             let answer = request.mix(frame).expect("finite");
-            let Some(mut shortfall) = Shortfall::of(&answer, &request, frame, &oracle).expect("solved")
-            else {
+            let exact = || Oracle::exact(&frame.physics, frame.allocation(), factors, health);
+            let shortfall = Shortfall::beyond_hulls(&answer, &request, frame, ALLOWED, &oracle, exact);
+            let Some(shortfall) = shortfall.expect("solved") else {
                 self.void += 1;
                 continue;
             };
-            if shortfall.misses() {
-                // Perhaps not of what is attainable, but only of its convex hull.
-                let exact = Oracle::exact(&frame.physics, frame.allocation(), factors, health);
-                let exact = Shortfall::of(&answer, &request, frame, &exact).expect("solved");
-                shortfall = exact.unwrap_or(shortfall);
-            }
             self.requests += 1;
             self.worst = self.worst.max(shortfall);
             if shortfall.misses() {

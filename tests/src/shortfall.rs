@@ -107,4 +107,24 @@ impl Shortfall {
         }
         Ok(Some(shortfall))
     }
+
+    /// [`Shortfall::of`] against `hulls`, and where that is more than `allowed` against `sets`: what is missing may be what only
+    /// the convex hulls of the sets have.
+    ///
+    /// # Errors
+    /// As [`Shortfall::of`].
+    pub fn beyond_hulls(
+        answer: &Answer,
+        request: &Request,
+        frame: &Frame,
+        allowed: f64,
+        hulls: &Oracle,
+        sets: impl FnOnce() -> Oracle,
+    ) -> Result<Option<Shortfall>, Error> {
+        let of_hulls = Shortfall::of(answer, request, frame, hulls)?;
+        if of_hulls.is_none_or(|shortfall| shortfall.largest() <= allowed) {
+            return Ok(of_hulls);
+        }
+        Ok(Shortfall::of(answer, request, frame, &sets())?.or(of_hulls))
+    }
 }

@@ -1,0 +1,230 @@
+//! What the mixer's own polygons allow: answers are the optimum over them where what the polygons leave out decides.
+
+use microlp::Error;
+use mixer_rt::{Axis, Health};
+use mixer_tests::optimum::Oracle;
+use mixer_tests::request::{Answer, Frame, Request};
+use mixer_tests::shortfall::Shortfall;
+use proptest::prelude::*;
+
+use crate::compile;
+use crate::continuity::{all_rotors, place};
+
+/// Share by which a barely attainable wrench is drawn inside to be attainable to the mixer, too, whose polygons leave out a
+/// little at the border.
+const INSIDE: f32 = 0.01;
+
+/// Share of the authority by which an answer may miss the optimum over the mixer's own polygons: rounding.
+const OWN: f64 = 1e-3;
+
+/// Fails where an axis is missed by more than the mixer's tolerance.
+pub(crate) fn delivered(frame: &Frame, request: &Request) -> Result<(), TestCaseError> {
+    let answer = request.mix(frame).expect("finite");
+    let served = frame.served();
+    for (index, axis) in Axis::ALL
+        .into_iter()
+        .enumerate()
+        .filter(|(index, _)| served[*index])
+    {
+        let missed = request.asked()[index] - answer.achieved[index];
+        let tolerance = frame.compiled.tables.tolerance.wrench[index];
+        prop_assert!(
+            missed.abs() <= f64::from(tolerance) * (1.0 + 1e-6),
+            "{} misses by {}: {:?} -> {:?}",
+            axis.name(),
+            missed,
+            request,
+            answer
+        );
+    }
+    Ok(())
+}
+
+/// Fails where more than [`INSIDE`] is missing of what is attainable, or more is given up for that than the priorities
+/// demand: where units have little to spare, half a percent of one axis may be worth a tenth of another. So the wrench
+/// that much nearer to that of half throttles must be delivered, and the answer be the optimum over the mixer's own
+/// polygons.
+pub(crate) fn little_is_missed(
+    frame: &Frame,
+    request: &Request,
+    answer: &Answer,
+) -> Result<(), TestCaseError> {
+    let halves = frame.physics.throttles(std::iter::repeat(0.5), request.health);
+    let middle = frame.physics.wrench(&halves, request.volts);
+    let mut inside = *request;
+    for (value, middle) in inside.wrench.iter_mut().zip(middle) {
+        *value += INSIDE * (middle as f32 - *value);
+    }
+    delivered(frame, &inside)?;
+    let shortfall = shortfall(frame, request, answer)
+        .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
+    prop_assert!(
+        shortfall.is_none_or(|shortfall| shortfall.largest() <= OWN),
+        "{:?} of the polygons': {:?} -> {:?}",
+        shortfall,
+        request,
+        answer
+    );
+    Ok(())
+}
+
+/// Against the optimum over the mixer's own polygons.
+fn shortfall(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<Shortfall>, Error> {
+    let [hulls, exact] = [Oracle::of_polygons, Oracle::of_exact_polygons]
+        .map(|oracle| move || oracle(frame, request.volts, request.health));
+    Shortfall::beyond_hulls(answer, request, frame, OWN, &hulls(), exact)
+}
+
+/// The answer is the optimum over the mixer's own polygons.
+pub(crate) fn assert_is_optimal(frame: &Frame, wrench: [f32; 4], volts: f32) {
+    let request = all_rotors(wrench, volts);
+    let answer = request.mix(frame).expect("finite");
+    let shortfall = shortfall(frame, &request, &answer).expect("solved");
+    assert!(
+        shortfall.is_some_and(|shortfall| shortfall.largest() <= OWN),
+        "{shortfall:?}: {answer:?}"
+    );
+}
+
+/// [`little_is_missed`] of a request with all rotors.
+fn assert_little_is_missed(frame: &Frame, wrench: [f32; 4], volts: f32) {
+    let request = all_rotors(wrench, volts);
+    let answer = request.mix(frame).expect("finite");
+    little_is_missed(frame, &request, &answer).unwrap_or_else(|fault| panic!("{fault}"));
+}
+
+/// Barely attainable, where what the polygons leave out is little of yaw or of (roll, pitch) and worth a percent of thrust, and
+/// where their convex hulls leave out less: the answer is the optimum over the polygons, which are what the mixer has.
+#[test]
+fn nothing_is_missed_that_only_the_hulls_of_the_polygons_have() {
+    let two = [
+        place([-0.63924, -0.14219, 0.0], [0.07334, -0.01800], true),
+        place([0.48277, 0.18332, 0.0], [0.0, -0.05576], false),
+    ];
+    let three = [
+        place([-0.15992, -0.02534, 0.0], [-0.03666, -0.07061], true),
+        place([0.22541, -0.13412, -0.03095], [-0.13222, -0.05980], false),
+        place([0.19395, 0.20133, 0.02447], [-0.10568, 0.14080], false),
+    ];
+    for (frame, shares) in [
+        (
+            compile(&two, "roll-pitch-yaw", 0.0),
+            vec![0.404_554_188, 0.0, 0.617_469_090, 1.0],
+        ),
+        (
+            compile(&three, "disabled", 0.0),
+            vec![1.0, 0.0, 0.0, 0.325_254_902, 0.359_750_873, 1.0],
+        ),
+    ] {
+        let throttles = frame.physics.throttles(shares.into_iter(), Health::GOOD);
+        let volts = 12.8;
+        let wrench = frame.physics.wrench(&throttles, volts).map(|value| value as f32);
+        assert_little_is_missed(&frame, wrench, volts);
+    }
+}
+
+/// The units that are not at corners can together give all but the same wrenches: what roll and pitch gain by telling them apart is
+/// as little as rounding, what yaw loses where they are not told apart is more than a percent.
+#[test]
+fn yaw_is_served_where_units_are_all_but_dependent() {
+    let five = [
+        place(
+            [-0.05765831, -0.25156966, -0.04199732],
+            [0.07774938, 0.03916135],
+            true,
+        ),
+        place(
+            [0.25997197, -0.16623774, -0.02521311],
+            [-0.01667376, -0.07180378],
+            false,
+        ),
+        place(
+            [0.41603721, 0.20852045, 0.01564486],
+            [-0.01331326, -0.02349470],
+            true,
+        ),
+        place(
+            [-0.05483321, 0.45301068, 0.01359283],
+            [0.06630826, -0.07497497],
+            true,
+        ),
+        place(
+            [-0.49935372, 0.16076363, -0.01812808],
+            [-0.07605438, -0.03041751],
+            false,
+        ),
+    ];
+    let eight = [
+        place(
+            [0.28638235, 0.51017202, -0.02616863],
+            [0.05606949, 0.04446046],
+            true,
+        ),
+        place(
+            [-0.08540948, 0.30771637, 0.02352849],
+            [0.03775874, 0.05813704],
+            false,
+        ),
+        place(
+            [-0.29181423, 0.12800551, -0.04772641],
+            [-0.00306600, 0.00096930],
+            true,
+        ),
+        place(
+            [-0.66178603, -0.08149608, 0.03182107],
+            [-0.01386754, 0.06534881],
+            false,
+        ),
+        place(
+            [-0.09983987, -0.33462786, -0.04088692],
+            [-0.02963568, 0.04582441],
+            false,
+        ),
+        place(
+            [0.04523658, -0.38500399, 0.04694180],
+            [0.05724209, -0.04516663],
+            true,
+        ),
+        place(
+            [0.50855832, -0.23916334, 0.00066031],
+            [-0.03729668, -0.07629784],
+            true,
+        ),
+        place(
+            [0.40893997, 0.10214931, 0.03488488],
+            [0.01401430, -0.05654245],
+            true,
+        ),
+    ];
+    for (frame, wrench, volts) in [
+        (
+            compile(&five, "disabled", 0.03),
+            [-5.018_381_6, 2.208_331, -0.604_422_75, 10.451_086],
+            14.8,
+        ),
+        (
+            compile(&eight, "disabled", 0.0),
+            [25.043_081, 15.385_539, -1.829_544_4, 94.597_56],
+            14.766_66,
+        ),
+    ] {
+        assert_is_optimal(&frame, wrench, volts);
+    }
+}
+
+/// A ten-millionth of roll and pitch is worth a tenth of a percent of thrust here, which is not for the oracle to take.
+#[test]
+fn the_optimum_gives_up_nothing_of_roll_and_pitch_for_thrust() {
+    let three = [
+        place(
+            [-0.259_897_257_956, -0.417_253_956_1, 0.0],
+            [-0.144_622_61, 0.0],
+            true,
+        ),
+        place([0.049_971_994_351, -0.001_673_254_482, 0.0], [0.0, 0.0], false),
+        place([-0.094_147_665_147, 0.176_454_575_308, 0.0], [0.0, 0.0], false),
+    ];
+    let frame = compile(&three, "disabled", 0.0);
+    let asked = [3.393_982_6, -5.685_069, -0.801_756_44, 44.120_895];
+    assert_little_is_missed(&frame, asked, 13.055_011);
+}
