@@ -74,10 +74,10 @@ impl TorqueLimit for SideView<'_> {
         }
     }
 
-    fn arcs(&self) -> Option<&Side> {
+    fn corner_n(&self) -> Option<f32> {
         match self {
-            SideView::Arcs(side) => side.arcs(),
-            SideView::Polyline(side) => side.arcs(),
+            SideView::Arcs(side) => side.corner_n(),
+            SideView::Polyline(side) => side.corner_n(),
         }
     }
 }

@@ -161,9 +161,7 @@ impl<S: TorqueLimit> Climb<'_, '_, S> {
         for (state, way) in self.search.iter_mut().zip(&self.ways) {
             rolled();
             let f = state.limit;
-            let (torque, by_thrust) = state.side.tangent(f);
-            // Of an arc that bends inwards the chord's: its own would cut off what lies beyond.
-            let slope = state.side.arcs().map_or(by_thrust, |side| side.slope(f));
+            let (torque, slope) = state.side.tangent(f);
             state.limit = torque;
             yaw += torque;
             for (sum, way) in slopes.iter_mut().zip(way) {

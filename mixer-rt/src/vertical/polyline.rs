@@ -7,7 +7,7 @@
 
 use core::hint::black_box;
 
-use super::reach::{Side, TorqueLimit, reach};
+use super::reach::{TorqueLimit, reach};
 use super::{MOST_UNITS, Search, rolled};
 
 /// A knot of a side, and the line from it to the next.
@@ -53,7 +53,7 @@ impl TorqueLimit for Polyline<'_> {
     }
 
     #[inline(always)]
-    fn arcs(&self) -> Option<&Side> {
+    fn corner_n(&self) -> Option<f32> {
         None
     }
 }

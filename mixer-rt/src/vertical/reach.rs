@@ -12,14 +12,15 @@ use crate::{Scalar, sqrt};
 
 /// One side of the attainable set: the largest torque in one direction at every thrust.
 pub trait TorqueLimit {
-    /// The torque at the thrust `f`, and its derivative.
+    /// The torque at the thrust `f`, and how steep it is there: its derivative, or the slope of an arc's chord where the arc
+    /// is convex, whose own slope would cut off what lies beyond.
     fn tangent(&self, f: f32) -> (f32, f32);
 
     /// Where the derivative changes, if it does so only at knots; none where the torque is a concave function.
     fn knots(&self) -> &[Knot];
 
-    /// The side where it is two arcs.
-    fn arcs(&self) -> Option<&Side>;
+    /// The thrust (N) at the corner of a side that is two arcs, which then is concave or taken for it.
+    fn corner_n(&self) -> Option<f32>;
 }
 
 /// `offset + slope f + bend sqrt(f + shift)`: the image of one edge of the throttle box. Exact for the
@@ -39,14 +40,10 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// The torque at the thrust `f` and its derivative.
+    /// The torque at the thrust `f`.
     #[inline(always)]
-    pub(super) fn tangent(&self, f: f32) -> (f32, f32) {
-        let root = (f + self.shift).root();
-        (
-            (self.offset + self.slope * f) + self.bend * root,
-            self.slope + 0.5 * self.bend / root,
-        )
+    fn torque(&self, f: f32) -> f32 {
+        (self.offset + self.slope * f) + self.bend * (f + self.shift).root()
     }
 }
 
@@ -61,6 +58,13 @@ pub struct Steepness {
     pub shift: f32,
 }
 
+impl Steepness {
+    #[inline(always)]
+    fn at(&self, f: f32) -> f32 {
+        self.slope + self.bend / (f + self.shift).root()
+    }
+}
+
 /// A side that is concave, or so nearly that it may be taken for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
@@ -70,23 +74,12 @@ pub struct Side {
     pub arcs: [Arc; 2],
 }
 
-impl Side {
-    /// How steep it is at `f`.
-    #[inline(always)]
-    pub(super) fn slope(&self, f: f32) -> f32 {
-        let [below, above] = &self.arcs;
-        let arc = if f < self.corner_n { below } else { above };
-        let Steepness { slope, bend, shift } = arc.steepness;
-        slope + bend / (f + shift).root()
-    }
-}
-
 impl TorqueLimit for Side {
     #[inline(always)]
     fn tangent(&self, f: f32) -> (f32, f32) {
         let [below, above] = &self.arcs;
         let arc = if f < self.corner_n { below } else { above };
-        arc.tangent(f)
+        (arc.torque(f), arc.steepness.at(f))
     }
 
     #[inline(always)]
@@ -95,8 +88,8 @@ impl TorqueLimit for Side {
     }
 
     #[inline(always)]
-    fn arcs(&self) -> Option<&Side> {
-        Some(self)
+    fn corner_n(&self) -> Option<f32> {
+        Some(self.corner_n)
     }
 }
 
@@ -117,7 +110,7 @@ impl<S: TorqueLimit> Border<S> {
     #[inline(always)]
     pub(crate) fn is_concave(&self) -> bool {
         let [largest, least] = &self.sides;
-        largest.knots().is_empty() && least.knots().is_empty()
+        largest.corner_n().is_some() && least.corner_n().is_some()
     }
 
     /// The side in which a unit with `turn`, the yaw per torque in the direction looked at, gives most.
@@ -169,9 +162,7 @@ pub(super) fn reach<S: TorqueLimit>(search: &mut [Search<'_, S>], z: f32) -> f32
 fn growth<S: TorqueLimit>(search: &[Search<'_, S>], z: f32) -> f32 {
     let mut growth = 0.0;
     for state in search {
-        if let Some(side) = state.side.arcs() {
-            growth += side.slope(state.thrust(z)) * state.along;
-        }
+        growth += state.side.tangent(state.thrust(z)).1 * state.along;
     }
     growth
 }
@@ -185,8 +176,8 @@ pub(super) fn top<S: TorqueLimit>(search: &[Search<'_, S>], start: f32, [low, hi
     let mut kinks = [low; MOST_UNITS];
     for (kink, state) in kinks.iter_mut().zip(search) {
         rolled();
-        if let Some(side) = state.side.arcs() {
-            *kink = (side.corner_n - state.from) / state.along;
+        if let Some(corner_n) = state.side.corner_n() {
+            *kink = (corner_n - state.from) / state.along;
         }
     }
     let [a, b, c, d] = kinks;
