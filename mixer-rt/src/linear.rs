@@ -65,6 +65,7 @@ impl Moments {
     #[inline(always)]
     pub(crate) fn factors(self, active: [bool; 4]) -> Option<Factors> {
         let mut rows = self.rows;
+        let diagonals = [rows[0][0], rows[1][1], rows[2][2], rows[3][3]];
         let mut per_pivot = [0.0; 4];
         let (mut pivots, mut least) = (1.0, LEAST_PIVOTS);
         for i in 0..4 {
@@ -86,7 +87,7 @@ impl Moments {
                 rows[i][j] = entry * per_pivot[j];
                 pivot -= entry * rows[i][j];
             }
-            let diagonal = self.rows[i][i];
+            let diagonal = diagonals[i];
             (pivots, least) = (pivots * pivot, least * diagonal);
             if pivot <= LEAST_PIVOT * diagonal || pivots <= least {
                 return None;
@@ -177,7 +178,7 @@ impl Gram {
     /// Solves `J x = b`. Where `J` is singular and `b` in its range, unknowns without a pivot are zero. `terms`
     /// gives the size of the numbers that `b` is a difference of, which have left rounding errors in it; 0 where it is
     /// exact.
-    pub(crate) fn solve(&self, b: [f32; 4], terms: impl FnOnce() -> f32) -> Solution {
+    pub(crate) fn solve(&mut self, b: [f32; 4], terms: impl FnOnce() -> f32) -> Solution {
         self.substitute(b)
             .map_or_else(|| self.orthogonalise(b, terms()), Solution::Regular)
     }
@@ -219,13 +220,15 @@ impl Gram {
 
     /// `J = C^T C` with `C = sqrt(D) L^T`, whose columns are orthogonalised, the longest that is left first: so a
     /// column that is a combination of others shows as one, however the rows of the wrench are ordered.
-    fn orthogonalise(&self, b: [f32; 4], terms: f32) -> Solution {
-        let roots = self.diagonal.map(sqrt);
-        let mut columns = [[unknown_zero(); 4]; 4];
+    fn orthogonalise(&mut self, b: [f32; 4], terms: f32) -> Solution {
+        // Of C, in the place of L.
+        let Gram { diagonal, columns } = self;
         for k in 0..4 {
-            columns[k][k] = roots[k];
-            for (column, value) in columns.iter_mut().zip(self.columns[k]).skip(k + 1) {
-                column[k] = roots[k] * value;
+            let root = sqrt(diagonal[k]);
+            columns[k][k] = root;
+            for j in k + 1..4 {
+                columns[j][k] = root * columns[k][j];
+                columns[k][j] = 0.0;
             }
         }
         let largest = b

@@ -29,6 +29,18 @@ enum Event {
     Row(usize, RowState),
 }
 
+/// How a piece sets out.
+struct Motion {
+    /// 1, or 0 where only the multipliers move.
+    moving: f32,
+    /// Velocities of the multipliers, ..
+    multipliers: [f32; 4],
+    /// .. and of the rows.
+    speeds: [f32; 4],
+    /// The size of the way.
+    measure: f32,
+}
+
 impl Homotopy<'_> {
     /// J and the rows of the present efforts.
     #[inline]
@@ -142,58 +154,22 @@ impl Homotopy<'_> {
         (missed, largest)
     }
 
-    /// One piece of the path towards `drift` from the present bounds. Returns the share made, `None` where there is
-    /// no way on; `presses`: what comes next then stays there.
-    pub(crate) fn piece(&mut self, drift: &[Bounds; 4], presses: bool) -> Option<f32> {
-        let (moments, wrench) = self.survey();
-        // What rounding has done so far is made up for on the way.
-        let mut way = [0.0; 4];
-        for (((way, row), drift), wrench) in way.iter_mut().zip(&mut self.rows).zip(drift).zip(wrench) {
-            *way = match row.state {
-                RowState::Between => {
-                    row.value = wrench;
-                    0.0
-                }
-                RowState::AtHigh => drift.high + significant(row.value - wrench),
-                RowState::AtLow | RowState::Held => drift.low + significant(row.value - wrench),
-            };
-        }
-        let factors = moments.factors(self.active());
-        let (multipliers, moving) = match self.solve(factors.as_ref(), &way, Some(drift)) {
-            Solution::Regular(velocity) => (velocity, 1.0),
-            Solution::Inconsistent(direction) => (direction, 0.0),
-        };
+    /// The share of a motion after which it ends, and what ends it; nothing may. The velocities of the efforts are in the scratch.
+    #[inline(always)]
+    fn first_event(&mut self, drift: &[Bounds; 4], motion: &Motion) -> (f32, Option<Event>) {
+        let Motion {
+            moving,
+            multipliers,
+            speeds,
+            measure,
+        } = *motion;
         let noise = NOISE * multipliers.iter().fold(0.0, |sum, v| sum + v.abs());
-
-        // The first event.
+        let (still, bearable) = ([STANDING_ON_EDGE * measure, noise], MISSED * measure);
         let (mut limit, mut event) = if moving > 0.0 {
             (1.0, Some(Event::Arrival))
         } else {
             (f32::MAX, None)
         };
-        for scratch in self.scratch.iter_mut() {
-            scratch.pair = [0.0; 2];
-        }
-        let mut speeds = [0.0; 4];
-        self.accelerate(&multipliers, moving, &mut speeds);
-        let measure = way.iter().fold(1.0, |sum, way| sum + way.abs());
-        let bearable = MISSED * measure;
-        if moving > 0.0 {
-            // Multipliers that are large hide, in rounding, what the efforts miss of the way.
-            let mut worst = f32::MAX;
-            for _ in 0..REFINEMENTS {
-                let (missed, size) = self.missed(&way, &speeds);
-                if size <= bearable || size > 0.5 * worst {
-                    break;
-                }
-                worst = size;
-                let Solution::Regular(correction) = self.solve(factors.as_ref(), &missed, None) else {
-                    break;
-                };
-                self.accelerate(&correction, moving, &mut speeds);
-            }
-        }
-        let still = [STANDING_ON_EDGE * measure, noise];
         // Of the faces, those outside first, which leave the ways inside shorter to look at.
         for outside in [true, false] {
             for (index, scratch) in self.scratch.iter_mut().enumerate() {
@@ -255,6 +231,58 @@ impl Homotopy<'_> {
                 }
             }
         }
+        (limit, event)
+    }
+
+    /// One piece of the path towards `drift` from the present bounds. Returns the share made, `None` where there is
+    /// no way on; `presses`: what comes next then stays there.
+    pub(crate) fn piece(&mut self, drift: &[Bounds; 4], presses: bool) -> Option<f32> {
+        let (moments, wrench) = self.survey();
+        // What rounding has done so far is made up for on the way.
+        let mut way = [0.0; 4];
+        for (((way, row), drift), wrench) in way.iter_mut().zip(&mut self.rows).zip(drift).zip(wrench) {
+            *way = match row.state {
+                RowState::Between => {
+                    row.value = wrench;
+                    0.0
+                }
+                RowState::AtHigh => drift.high + significant(row.value - wrench),
+                RowState::AtLow | RowState::Held => drift.low + significant(row.value - wrench),
+            };
+        }
+        let factors = moments.factors(self.active());
+        let (multipliers, moving) = match self.solve(factors.as_ref(), &way, Some(drift)) {
+            Solution::Regular(velocity) => (velocity, 1.0),
+            Solution::Inconsistent(direction) => (direction, 0.0),
+        };
+        for scratch in self.scratch.iter_mut() {
+            scratch.pair = [0.0; 2];
+        }
+        let mut speeds = [0.0; 4];
+        self.accelerate(&multipliers, moving, &mut speeds);
+        let measure = way.iter().fold(1.0, |sum, way| sum + way.abs());
+        if moving > 0.0 {
+            // Multipliers that are large hide, in rounding, what the efforts miss of the way.
+            let mut worst = f32::MAX;
+            for _ in 0..REFINEMENTS {
+                let (missed, size) = self.missed(&way, &speeds);
+                if size <= MISSED * measure || size > 0.5 * worst {
+                    break;
+                }
+                worst = size;
+                let Solution::Regular(correction) = self.solve(factors.as_ref(), &missed, None) else {
+                    break;
+                };
+                self.accelerate(&correction, moving, &mut speeds);
+            }
+        }
+        let motion = Motion {
+            moving,
+            multipliers,
+            speeds,
+            measure,
+        };
+        let (limit, event) = self.first_event(drift, &motion);
         let Some(event) = event else {
             if presses {
                 self.press(&multipliers);

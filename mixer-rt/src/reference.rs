@@ -133,6 +133,7 @@ impl Homotopy<'_> {
 
     /// Puts every unit where the efforts would be nearest to the references if none were limited, all rows held. False
     /// where these, limited, miss `wanted` by far.
+    #[inline(never)]
     pub(crate) fn place_near(&mut self, wanted: &[f32; 4]) -> bool {
         self.place(&[0.0; 4], RowState::Held);
         let (moments, rows) = self.survey();
