@@ -78,7 +78,7 @@ pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
     [roll * share, pitch * share, limit(yaw), limit(thrust)]
 }
 
-/// Ends that differ by less, in rows, are equally good.
+/// Ends that differ by less, in rows, and by less than what they are out of bounds, are equally good.
 const MARGIN: f32 = 3e-6;
 
 /// What the steps came to, in rows.
@@ -103,10 +103,12 @@ impl Outcome {
         if self.is_within() != other.is_within() {
             return self.is_within();
         }
+        // What was gained by leaving the bounds was not gained.
+        let margin = MARGIN + self.beyond + other.beyond;
         let pairs = self.short.iter().zip(other.short);
         let mut differences = pairs.map(|(own, other)| other - own);
         differences
-            .find(|difference| difference.abs() > MARGIN)
+            .find(|difference| difference.abs() > margin)
             .is_some_and(|difference| difference > 0.0)
     }
 }
@@ -171,11 +173,12 @@ pub(crate) fn prioritise<P, I, S>(
     if ceiling.is_none() {
         thrust.high = descent.ceiling;
     }
-    homotopy.write_efforts();
+    homotopy.keep_efforts();
     let reached = homotopy.actual();
     if descent.delivered {
         homotopy.ease(&request);
     }
+    homotopy.unscale_efforts();
     let short = |row: usize| match (wanted.get(row), reached.get(row)) {
         (Some(wanted), Some(reached)) => (wanted - reached).abs(),
         _ => 0.0,
@@ -211,6 +214,7 @@ struct Descent {
 
 /// The steps of the module's head, one path each. `wanted` in rows; `level` is where roll and pitch along the request
 /// are at first, `yaw` and `thrust` are where these rows may be.
+#[inline(always)]
 fn descend(
     homotopy: &mut Homotopy<'_>,
     wanted: [f32; 4],

@@ -64,9 +64,13 @@ const PARALLEL: f32 = 1e-5;
 /// No row reaches this: rows have unit length, efforts are of order one.
 const FAR: f32 = 16.0;
 
-/// The last part of the way to the end of what is attainable on which efforts are eased into those at the end. The longer
-/// it is, the less steep, and the more often the way to the end is looked at.
-const EASE: f32 = 0.02;
+/// The last part of the way to the end of what is attainable on which efforts are eased into those at the end, as a share of
+/// the way, or of the request where that is longer: a request changes by a share of itself. The longer the part is, the less
+/// steep, and the more often the way to the end is looked at.
+const EASE: f32 = 0.03;
+
+/// Efforts that easing leaves further outside the attainable set than this, scaled, are not attainable.
+const EASED_OUT: f32 = 1e-5;
 
 /// Least-norm efforts nearer to the attainable set than this, scaled, leave less to easing.
 const LEAST_NORM_NEAR: f32 = 0.05;
@@ -204,16 +208,23 @@ impl<'h> Homotopy<'h> {
         }
     }
 
-    /// Writes the efforts, N and N m at the reference voltage, into the scratch.
-    pub(crate) fn write_efforts(&mut self) {
+    /// Keeps the efforts, scaled, in the scratch.
+    pub(crate) fn keep_efforts(&mut self) {
         for scratch in self.scratch.iter_mut() {
             scratch.efforts = match self.sets.of(scratch.rotors, &scratch.chord) {
-                Some(set) => {
-                    let [f, q] = set.project(&scratch.point);
-                    [f * set.scale[0], q * set.scale[1]]
-                }
+                Some(set) => set.project(&scratch.point),
                 None => [0.0; 2],
             };
+        }
+    }
+
+    /// Turns the efforts in the scratch into N and N m at the reference voltage.
+    pub(crate) fn unscale_efforts(&mut self) {
+        for scratch in self.scratch.iter_mut() {
+            if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
+                let [f, q] = scratch.efforts;
+                scratch.efforts = [f * set.scale[0], q * set.scale[1]];
+            }
         }
     }
 
@@ -285,10 +296,12 @@ impl<'h> Homotopy<'h> {
     /// Near the end of what is attainable, eases the efforts of `request`, which has been reached, into those at the end.
     ///
     /// The efforts nearest to the reference are steep where several edges are almost dependent: with the last bit of
-    /// what is attainable they cross whole edges. At the end itself there is no choice. So on the last [`EASE`] of the
+    /// what is attainable they cross whole edges. At the end itself there is no choice. So on the last part, [`EASE`], of the
     /// ray from the wrench of the sets' centres through that of the request the efforts go over into straight ones between
     /// the centres and the ray's end, which give the same wrench. Efforts that are all but least norm stay, since where
     /// they are just attainable these are the result.
+    ///
+    /// Between two efforts a set that bends inwards may be left out: then the nearest efforts that are attainable.
     pub(crate) fn ease(&mut self, request: &[f32; 4]) {
         let mut centre = [0.0; 4];
         for scratch in self.scratch.iter() {
@@ -298,26 +311,43 @@ impl<'h> Homotopy<'h> {
         }
         self.refill();
         let mut beyond = self.bounds();
+        let (mut size, mut way) = (0.0, 0.0);
+        for (wrench, centre) in beyond.iter().zip(centre) {
+            size += wrench.low.abs();
+            way += (wrench.low - centre).abs();
+        }
+        // A way that is next to nothing has no direction; all of it once more is far enough.
+        let part = if way > EASE * size {
+            crate::clamp(EASE * size / way, EASE, 1.0)
+        } else {
+            1.0
+        };
         for (beyond, centre) in beyond.iter_mut().zip(centre) {
-            *beyond = Bounds::at(beyond.low + EASE * (beyond.low - centre));
+            *beyond = Bounds::at(beyond.low + part * (beyond.low - centre));
         }
         let share = self.follow(beyond, false);
         if share >= 1.0 {
             return;
         }
-        let inwards = 1.0 / (1.0 + share * EASE);
+        let inwards = 1.0 / (1.0 + share * part);
         let straight =
             (1.0 - share) * crate::clamp(self.least_norm_distance(request) / LEAST_NORM_NEAR, 0.0, 1.0);
+        let mut furthest = 0.0;
         for scratch in self.scratch.iter_mut() {
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let end = set.project(&scratch.point);
-                for (((effort, end), centre), scale) in
-                    scratch.efforts.iter_mut().zip(end).zip(set.centre).zip(set.scale)
-                {
-                    let on_ray = scale * (centre + inwards * (end - centre));
-                    *effort += straight * (on_ray - *effort);
+                for ((effort, end), centre) in scratch.efforts.iter_mut().zip(end).zip(set.centre) {
+                    *effort += straight * (centre + inwards * (end - centre) - *effort);
                 }
+                let distance = set.distance(scratch.efforts);
+                furthest = if distance > furthest { distance } else { furthest };
             }
+        }
+        if furthest > EASED_OUT {
+            self.place(&[0.0; 4], RowState::Held);
+            self.refill();
+            self.follow(self.rows_of(*request).map(Bounds::at), false);
+            self.keep_efforts();
         }
     }
 

@@ -100,13 +100,19 @@ impl Row {
         }
     }
 
-    /// At the bound that the multiplier's sign is of: between equal bounds either may have come about.
+    /// At the bound that the multiplier's sign is of. Between equal bounds either may have come about; else only rounding makes
+    /// it the other's, and the row is at none.
     pub(crate) fn choose_side(&mut self) {
-        self.state = match self.state {
+        let other = match self.state {
             RowState::AtLow if self.multiplier < 0.0 => RowState::AtHigh,
             RowState::AtHigh if self.multiplier > 0.0 => RowState::AtLow,
-            state => state,
+            _ => return,
         };
+        if self.bounds.low == self.bounds.high {
+            self.state = other;
+        } else {
+            (self.state, self.multiplier) = (RowState::Between, 0.0);
+        }
     }
 
     /// Held where it is.
