@@ -177,7 +177,7 @@ impl Gram {
 
     /// Solves `J x = b`. Where `J` is singular and `b` in its range, unknowns without a pivot are zero. `terms`
     /// gives the size of the numbers that `b` is a difference of, which have left rounding errors in it; 0 where it is
-    /// exact.
+    /// exact. The factors may be used up.
     pub(crate) fn solve(&mut self, b: [f32; 4], terms: impl FnOnce() -> f32) -> Solution {
         self.substitute(b)
             .map_or_else(|| self.orthogonalise(b, terms()), Solution::Regular)
@@ -226,6 +226,7 @@ impl Gram {
         for k in 0..4 {
             let root = sqrt(diagonal[k]);
             columns[k][k] = root;
+            #[expect(clippy::needless_range_loop, reason = "an entry of two columns")]
             for j in k + 1..4 {
                 columns[j][k] = root * columns[k][j];
                 columns[k][j] = 0.0;
