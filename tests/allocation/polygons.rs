@@ -1,6 +1,5 @@
 //! What the mixer's own polygons allow: answers are the optimum over them where what the polygons leave out decides.
 
-use microlp::Error;
 use mixer_rt::{Axis, Health};
 use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Answer, Frame, Request};
@@ -56,7 +55,9 @@ pub(crate) fn little_is_missed(
         *value += INSIDE * (middle as f32 - *value);
     }
     delivered(frame, &inside)?;
-    let shortfall = shortfall(frame, request, answer)
+    let [hulls, exact] = [Oracle::of_polygons, Oracle::of_exact_polygons]
+        .map(|oracle| move || oracle(frame, request.volts, request.health));
+    let shortfall = Shortfall::beyond_hulls(answer, request, frame, OWN, &hulls(), exact)
         .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
     prop_assert!(
         shortfall.is_none_or(|shortfall| shortfall.largest() <= OWN),
@@ -68,18 +69,17 @@ pub(crate) fn little_is_missed(
     Ok(())
 }
 
-/// Against the optimum over the mixer's own polygons.
-fn shortfall(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<Shortfall>, Error> {
-    let [hulls, exact] = [Oracle::of_polygons, Oracle::of_exact_polygons]
-        .map(|oracle| move || oracle(frame, request.volts, request.health));
-    Shortfall::beyond_hulls(answer, request, frame, OWN, &hulls(), exact)
-}
-
-/// The answer is the optimum over the mixer's own polygons.
-pub(crate) fn assert_is_optimal(frame: &Frame, wrench: [f32; 4], volts: f32) {
+/// Holds the answer to the optimum by `oracle`: over the mixer's own polygons, or, which is more, over their convex hulls.
+pub(crate) fn assert_is_optimal(
+    frame: &Frame,
+    wrench: [f32; 4],
+    volts: f32,
+    oracle: fn(&Frame, f32, Health) -> Oracle,
+) {
     let request = all_rotors(wrench, volts);
     let answer = request.mix(frame).expect("finite");
-    let shortfall = shortfall(frame, &request, &answer).expect("solved");
+    let oracle = oracle(frame, volts, request.health);
+    let shortfall = Shortfall::of(&answer, &request, frame, &oracle).expect("solved");
     assert!(
         shortfall.is_some_and(|shortfall| shortfall.largest() <= OWN),
         "{shortfall:?}: {answer:?}"
@@ -208,7 +208,7 @@ fn yaw_is_served_where_units_are_all_but_dependent() {
             14.766_66,
         ),
     ] {
-        assert_is_optimal(&frame, wrench, volts);
+        assert_is_optimal(&frame, wrench, volts, Oracle::of_polygons);
     }
 }
 
