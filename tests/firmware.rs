@@ -11,7 +11,7 @@ use mixer_tests::{airframes, digest, evaluators, golden, overhead};
 
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 512;
-/// Below the caller's frame, any airframe: those that desaturate along a path of wrenches need more, the X12 2,248.
+/// Below the caller's frame, any airframe: those that desaturate along a path of wrenches need more, the X12 2,256.
 const ANY_STACK_LIMIT_BYTES: u64 = 2304;
 /// Code and tables of [`REFERENCE`].
 const SIZE_LIMIT_BYTES: u64 = 6 * 1024;

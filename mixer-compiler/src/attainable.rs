@@ -19,8 +19,8 @@ const SAMPLES: usize = 512;
 /// Every so many of them make the convex part.
 const COARSE: usize = 4;
 
-/// Share of the set's area that may be lost. With less there are more corners at which the border bends inwards, hence more
-/// local optima: of 14,591 requests to random frames 1 misses the optimum by more than 1 %, and with 3e-4 it is 7.
+/// Share of the set's area that may be lost. With less, optima are missed by less, but there are more corners at which the
+/// border bends inwards, hence more places where efforts jump: the README counts both.
 const LOSS: f64 = 5e-4;
 
 /// Share of the convex part's area that a convex polygon may lose, where no other is found.

@@ -78,7 +78,7 @@ pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
     [roll * share, pitch * share, limit(yaw), limit(thrust)]
 }
 
-/// Ends that differ by less, in rows, and by less than what they are out of bounds, are equally good.
+/// Ends that differ by less, in rows, beside what one is further out of bounds, are equally good.
 const MARGIN: f32 = 3e-6;
 
 /// What the steps came to, in rows.
@@ -103,13 +103,18 @@ impl Outcome {
         if self.is_within() != other.is_within() {
             return self.is_within();
         }
-        // What was gained by leaving the bounds was not gained.
-        let margin = MARGIN + self.beyond + other.beyond;
+        // What was gained by being further out of bounds was not gained.
+        let further = self.beyond - other.beyond;
+        let (better, worse) = if further > 0.0 {
+            (MARGIN + further, MARGIN)
+        } else {
+            (MARGIN, MARGIN - further)
+        };
         let pairs = self.short.iter().zip(other.short);
-        let mut differences = pairs.map(|(own, other)| other - own);
-        differences
-            .find(|difference| difference.abs() > margin)
-            .is_some_and(|difference| difference > 0.0)
+        let mut gains = pairs.map(|(own, other)| other - own);
+        gains
+            .find(|gain| *gain > better || *gain < -worse)
+            .is_some_and(|gain| gain > 0.0)
     }
 }
 

@@ -332,18 +332,17 @@ impl<'h> Homotopy<'h> {
         let inwards = 1.0 / (1.0 + share * part);
         let straight =
             (1.0 - share) * crate::clamp(self.least_norm_distance(request) / LEAST_NORM_NEAR, 0.0, 1.0);
-        let mut furthest = 0.0;
+        let mut is_attainable = true;
         for scratch in self.scratch.iter_mut() {
             if let Some(set) = self.sets.of(scratch.rotors, &scratch.chord) {
                 let end = set.project(&scratch.point);
                 for ((effort, end), centre) in scratch.efforts.iter_mut().zip(end).zip(set.centre) {
                     *effort += straight * (centre + inwards * (end - centre) - *effort);
                 }
-                let distance = set.distance(scratch.efforts);
-                furthest = if distance > furthest { distance } else { furthest };
+                is_attainable &= set.distance(scratch.efforts) <= EASED_OUT;
             }
         }
-        if furthest > EASED_OUT {
+        if !is_attainable {
             self.place(&[0.0; 4], RowState::Held);
             self.refill();
             self.follow(self.rows_of(*request).map(Bounds::at), false);

@@ -166,3 +166,42 @@ fn the_other_end_of_a_hollow_is_tried_from_its_end() {
     let asked = [-76.422_33, 38.121_5, 17.874_983, 33.795_4];
     assert_is_optimal(&frame, asked, 13.684_681, Oracle::of_exact_polygons);
 }
+
+/// Both ends are out of bounds by rounding, which counts only by as much as it is more at one than at the other.
+#[test]
+fn ends_as_far_out_of_bounds_are_told_apart() {
+    let five = [
+        place(
+            [0.337_342_411, -1.221_925_91, 0.024_267_014_2],
+            [0.145_471_87, 0.100_274_999],
+            true,
+        ),
+        place(
+            [0.907_998_459, -0.312_553_271, -0.023_375_281_2],
+            [-0.102_177_052, -0.041_181_356_9],
+            false,
+        ),
+        place(
+            [0.196_694_635, 0.340_797_102, 0.002_205_876_77],
+            [0.009_446_593_96, 0.145_467_236],
+            true,
+        ),
+        place(
+            [-0.094_380_787_7, 0.238_354_429, 0.048_366_633_4],
+            [0.060_292_900_4, 0.039_350_655_3],
+            true,
+        ),
+        place(
+            [-0.608_115_8, -0.312_300_001, -0.035_007_603_5],
+            [0.016_512_18, -0.038_245_841_9],
+            false,
+        ),
+    ];
+    let frame = compile(&five, "roll-pitch", 0.0);
+    stays(
+        &frame,
+        [20.091_745, 13.541_574_5, 1.188_025_5, 66.501_77],
+        12.8,
+        0,
+    );
+}
