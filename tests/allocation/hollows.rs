@@ -3,7 +3,7 @@
 use mixer_tests::optimum::Oracle;
 
 use crate::compile;
-use crate::continuity::{place, stays, stays_from};
+use crate::continuity::{all_rotors, place, stays, stays_from};
 use crate::polygons::assert_is_optimal;
 
 /// Two ends of nearly the same thrust, 5 mN apart: the better one is taken on either side.
@@ -164,7 +164,7 @@ fn the_other_end_of_a_hollow_is_tried_from_its_end() {
     ];
     let frame = compile(&four, "roll-pitch", 0.0);
     let asked = [-76.422_33, 38.121_5, 17.874_983, 33.795_4];
-    assert_is_optimal(&frame, asked, 13.684_681, Oracle::of_exact_polygons);
+    assert_is_optimal(&frame, &all_rotors(asked, 13.684_681), Oracle::of_exact_polygons);
 }
 
 /// Both ends are out of bounds by rounding, which counts only by as much as it is more at one than at the other.

@@ -8,6 +8,7 @@ use mixer_tests::request::{Frame, Request};
 use mixer_tests::shortfall::{ALLOWED, Shortfall};
 
 use crate::degenerate::at;
+use crate::polygons::assert_is_optimal;
 use crate::{REFERENCE_V, compile, number, out};
 
 #[derive(Default)]
@@ -162,16 +163,12 @@ fn a_reserve_leaves_the_furthest_yaw_at_the_thrust_asked() {
     assert_reaches_the_optimum(&frame, &request);
 }
 
-/// Holds the mixer to a tenth of a percent.
+/// Holds the mixer to a tenth of a percent of what is physically attainable.
 fn assert_reaches_the_optimum(frame: &Frame, request: &Request) {
-    let answer = request.mix(frame).expect("finite");
-    let factors = frame.physics.factors(request.volts);
-    let oracle = Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
-    let shortfall = Shortfall::of(&answer, request, frame, &oracle).expect("solved");
-    assert!(
-        shortfall.is_some_and(|shortfall| shortfall.largest() < 1e-3),
-        "{shortfall:?}: {answer:?}"
-    );
+    assert_is_optimal(frame, request, |frame, volts, health| {
+        let factors = frame.physics.factors(volts);
+        Oracle::exact(&frame.physics, frame.allocation(), factors, health)
+    });
 }
 
 /// Vertical units at `[x, y]`, m.
