@@ -6,6 +6,7 @@
 //! the ends to which the tangents lead in turn: there the secant between them takes their place.
 
 use crate::attainable::AttainableSet;
+use crate::hull::Hull;
 use crate::{Edge, Pair, Quantity, clamp, sqrt};
 
 /// Which rotors of a unit work.
@@ -29,6 +30,15 @@ impl Rotors {
         }
     }
 
+    /// Of a Jacobian over both throttles, what the one that works changes.
+    #[inline]
+    pub(crate) fn derivative(self, jacobian: [[f32; 2]; 2]) -> [f32; 2] {
+        jacobian.map(|[by_upper, by_lower]| match self {
+            Rotors::Upper => by_upper,
+            _ => by_lower,
+        })
+    }
+
     /// True where one of them works.
     #[inline]
     pub(crate) fn is_single(self) -> bool {
@@ -49,6 +59,8 @@ enum Kind {
     Tangent,
     /// In the direction of a swing.
     Secant,
+    /// Through its ends, with the hull of this index in its place.
+    Hull(u8),
 }
 
 /// The line that stands for the curve of a single rotor, scaled.
@@ -76,16 +88,21 @@ impl Default for Chord {
     }
 }
 
-/// The edge from `low` to `high`, both `[f, Q]` in N and N m, scaled.
-fn edge(low: [f32; 2], high: [f32; 2], scale: [f32; 2]) -> [Edge; 1] {
-    let start = [low[0] / scale[0], low[1] / scale[1]];
-    let vector = [high[0] / scale[0] - start[0], high[1] / scale[1] - start[1]];
+/// The edge between two scaled points.
+pub(crate) fn edge(start: [f32; 2], end: [f32; 2]) -> Edge {
+    let vector = [end[0] - start[0], end[1] - start[1]];
     let length = sqrt(vector[0] * vector[0] + vector[1] * vector[1]);
-    [Edge {
+    Edge {
         start,
         along: vector.map(|part| part / length),
         length,
-    }]
+    }
+}
+
+/// The edge from `low` to `high`, both `[f, Q]` in N and N m.
+fn scaled_edge(low: [f32; 2], high: [f32; 2], scale: [f32; 2]) -> [Edge; 1] {
+    let scaled = |[f, q]: [f32; 2]| [f / scale[0], q / scale[1]];
+    [edge(scaled(low), scaled(high))]
 }
 
 impl Chord {
@@ -99,9 +116,17 @@ impl Chord {
         let low = pair.efforts(rotors.throttles(range[0])?);
         let high = pair.efforts(rotors.throttles(range[1])?);
         Some(Chord {
-            edge: edge(low, high, scale),
+            edge: scaled_edge(low, high, scale),
             ..Chord::default()
         })
+    }
+
+    /// The same with the hull of this index in its place.
+    pub(crate) fn hulled(&self, index: u8) -> Self {
+        Chord {
+            kind: Kind::Hull(index),
+            ..*self
+        }
     }
 
     /// The part of it that lies within `reach` times its length of where its scaled thrust is `f`.
@@ -130,12 +155,13 @@ impl Chord {
         throttle: f32,
     ) -> Option<Self> {
         let ([f, q], jacobian) = pair.efforts_and_jacobian(rotors.throttles(throttle)?);
-        let [f_by, q_by] = jacobian.map(|[by_upper, by_lower]| match rotors {
-            Rotors::Upper => by_upper,
-            _ => by_lower,
-        });
+        let [f_by, q_by] = rotors.derivative(jacobian);
         let way = [f - self.meeting[0], q - self.meeting[1]];
-        let step = if self.kind == Kind::Chord { 0.0 } else { way[0] };
+        let step = if matches!(self.kind, Kind::Chord | Kind::Hull(_)) {
+            0.0
+        } else {
+            way[0]
+        };
         let swings = step * self.step < 0.0 && step.abs() > SWING * self.step.abs();
         let (kind, slope) = match self.kind {
             Kind::Secant => {
@@ -150,7 +176,7 @@ impl Chord {
         let high = low + scale[0] * (along[0] * length);
         let at = |thrust: f32| [thrust, q + slope * (thrust - f)];
         Some(Chord {
-            edge: edge(at(low), at(high), scale),
+            edge: scaled_edge(at(low), at(high), scale),
             kind,
             meeting: [f, q],
             step,
@@ -162,19 +188,25 @@ impl Chord {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sets<'a> {
     pub(crate) both: AttainableSet<'a>,
+    /// In the place of curves.
+    pub(crate) hulls: &'a [Hull],
 }
 
 impl Sets<'_> {
     /// The set of a unit with its `chord`; `None` where neither rotor works.
     #[inline]
     pub(crate) fn of<'s>(&'s self, rotors: Rotors, chord: &'s Chord) -> Option<AttainableSet<'s>> {
+        let scale = self.both.scale;
         match rotors {
             Rotors::Both => Some(self.both),
-            Rotors::Upper | Rotors::Lower => Some(AttainableSet {
-                scale: self.both.scale,
-                centre: chord.edge[0].at(0.5 * chord.edge[0].length),
-                edges: &chord.edge,
-            }),
+            Rotors::Upper | Rotors::Lower => match chord.kind {
+                Kind::Hull(index) => Some(self.hulls.get(usize::from(index))?.set(scale)),
+                _ => Some(AttainableSet {
+                    scale,
+                    centre: chord.edge[0].at(0.5 * chord.edge[0].length),
+                    edges: &chord.edge,
+                }),
+            },
             Rotors::None => None,
         }
     }

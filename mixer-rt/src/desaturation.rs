@@ -100,15 +100,21 @@ pub(crate) struct Outcome {
 impl Outcome {
     /// True where this end is better in the order of priority.
     pub(crate) fn is_better_than(&self, other: &Outcome) -> bool {
+        self.is_better_by(MARGIN, other)
+    }
+
+    /// True where the first priority in which this end and another differ by more than `margin` is served better by this
+    /// one.
+    pub(crate) fn is_better_by(&self, margin: f32, other: &Outcome) -> bool {
         if self.is_within() != other.is_within() {
             return self.is_within();
         }
         // What was gained by being further out of bounds was not gained.
         let further = self.beyond - other.beyond;
         let (better, worse) = if further > 0.0 {
-            (MARGIN + further, MARGIN)
+            (margin + further, margin)
         } else {
-            (MARGIN, MARGIN - further)
+            (margin, margin - further)
         };
         let pairs = self.short.iter().zip(other.short);
         let mut gains = pairs.map(|(own, other)| other - own);

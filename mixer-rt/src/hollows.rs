@@ -30,7 +30,7 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
                         stays,
                         short: best.short,
                     };
-                    let outcome = others.round(scratch, Some(rival));
+                    let outcome = others.round(scratch, &[], Some(rival));
                     if outcome.is_better_than(&best) {
                         best = outcome;
                         keep(scratch);

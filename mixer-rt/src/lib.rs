@@ -33,6 +33,7 @@ mod forward;
 mod health;
 mod hollows;
 mod homotopy;
+mod hull;
 mod inverse;
 mod linear;
 mod mix;

@@ -2,10 +2,11 @@
 //!
 //! The line that stands for a single rotor's curve is drawn again wherever the unit has come to, until line and curve
 //! meet ([`crate::chord`]). What is found so is an optimum among the efforts near by; a curve is not convex, so there may
-//! be a better one elsewhere. Where something is left to be wished for, the rounds are therefore begun anew on every
-//! quarter of the curve, or with several curves on every combination of halves of the first two, and last from the best
-//! end found so far: on the whole curves, then on ever shorter parts of them about it, since from line to line a unit may
-//! step to and fro over an optimum between. The best of all ends stands.
+//! be a better one elsewhere. Where something is left to be wished for, one round is therefore taken on hulls about the
+//! curves ([`crate::hull`]): if even these give nothing better, there is no better end. Otherwise the rounds are begun anew
+//! where the hulls have led, then on every quarter of the curve, or with several curves on every combination of halves of
+//! the first two, and last from the best end found so far: on the whole curves, then on ever shorter parts of them about
+//! it, since from line to line a unit may step to and fro over an optimum between. The best of all ends stands.
 //!
 //! With airmode disabled, where less thrust is asked for than roll = pitch = 0 needs, the least thrust that these need is
 //! searched for first in the same way, since it is what is allowed then. Whether it is enough is not left to the lines of
@@ -17,16 +18,22 @@
 
 use crate::chord::{Chord, Sets};
 use crate::desaturation::{Airmode, Outcome, REQUEST_LIMIT, Rival, prioritise, single_rotor};
+use crate::hull::{Bend, Hull};
 use crate::scratch::Scratch;
 use crate::{Quantity, Tables};
 
 /// Halvings of the curves in all: one curve is tried in quarters, two in halves.
 const HALVINGS: u32 = 2;
 
-/// Rounds at most from whole curves, and from parts: 12 + 4 x 6 + 12 at worst, and 36 more about the best end. Most ends
-/// are reached in one to four.
+/// Rounds at most from whole curves, and from parts or where hulls have led: 12 + 1 + 6 + 4 x 6 + 12 at worst, and 36 more
+/// about the best end. Most ends are reached in one to four.
 const ROUNDS: u32 = 12;
 const ROUNDS_OF_PARTS: u32 = 6;
+
+/// Curves that hulls are drawn about at most. The best end is as good as theirs if that is better by no more than this in
+/// the first priority in which they differ, in rows: 0.1 % of the X8's authority.
+const HULLS: usize = 2;
+const AS_GOOD: f32 = 2e-3;
 
 /// Parts about the best end: their first reach to either side as a share of the curve, how much shorter the next one is where
 /// nothing was gained, the last reach, the least gain, parts at most, and rounds on each.
@@ -128,7 +135,7 @@ pub(crate) fn desaturate<P: Quantity, I, S>(
         .filter(|scratch| scratch.rotors.is_single())
         .count();
     if singles == 0 {
-        let outcome = search.round(scratch, None);
+        let outcome = search.round(scratch, &[], None);
         if !outcome.is_delivered() {
             search.leave_hollows(scratch, outcome);
         }
@@ -190,8 +197,20 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
         }
     }
 
-    /// Rounds on parts of the curves, then from the best end; leaves its efforts in the scratch.
+    /// Unless the best end is known to be the best: rounds from where hulls lead, on parts of the curves, then from the best
+    /// end. Leaves its efforts in the scratch.
     fn search(&self, scratch: &mut [Scratch], halvings: u32, best: &mut End) {
+        restore(scratch);
+        let hulled = self.round_on_hulls(scratch);
+        if best.touches && hulled.is_some_and(|hulled| !hulled.is_better_by(AS_GOOD, &best.outcome)) {
+            restore(scratch);
+            return;
+        }
+        if hulled.is_some() {
+            self.touch_efforts(scratch);
+            self.improve(scratch, ROUNDS_OF_PARTS, best);
+        }
+        let on_whole_curves = best.outcome.cost();
         for combination in 0..1 << HALVINGS {
             let rounds = if best.outcome.is_within() {
                 ROUNDS_OF_PARTS
@@ -201,11 +220,37 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
             self.draw(scratch, halvings, combination);
             self.improve(scratch, rounds, best);
         }
-        restore(scratch);
-        self.touch_efforts(scratch);
-        self.improve(scratch, ROUNDS, best);
+        if !best.touches || best.outcome.cost() < on_whole_curves {
+            restore(scratch);
+            self.touch_efforts(scratch);
+            self.improve(scratch, ROUNDS, best);
+        }
         self.approach(scratch, best);
         restore(scratch);
+    }
+
+    /// The steps on hulls about the curves, close to them where the units are; `None` where a curve has none.
+    #[inline(never)]
+    fn round_on_hulls(&self, scratch: &mut [Scratch]) -> Option<Outcome> {
+        let tables = self.tables;
+        let range = [tables.throttle.min, tables.throttle.max];
+        self.draw(scratch, 0, 0);
+        let mut hulls = [Hull::default(); HULLS];
+        let mut singles = scratch.iter_mut().filter(|scratch| scratch.rotors.is_single());
+        for (hull, index) in hulls.iter_mut().zip(0..) {
+            let Some(scratch) = singles.next() else { break };
+            let (rotors, scale) = (scratch.rotors, tables.attainable.scale);
+            let throttle = single_rotor(tables, rotors, scratch.efforts[0])?;
+            match hull.draw(&tables.pair, range, rotors, scale, throttle) {
+                Bend::None => {}
+                Bend::OneWay => scratch.chord = scratch.chord.hulled(index),
+                Bend::BothWays => return None,
+            }
+        }
+        if singles.next().is_some() {
+            return None;
+        }
+        Some(self.round(scratch, &hulls, None))
     }
 
     /// Rounds from the best end on ever shorter parts of the curves about it.
@@ -288,9 +333,10 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
     }
 
     /// The steps with the lines as they are drawn.
-    pub(crate) fn round(&self, scratch: &mut [Scratch], rival: Option<Rival>) -> Outcome {
+    pub(crate) fn round(&self, scratch: &mut [Scratch], hulls: &[Hull], rival: Option<Rival>) -> Outcome {
         let sets = Sets {
             both: self.tables.attainable,
+            hulls,
         };
         prioritise(
             self.tables,
@@ -310,7 +356,7 @@ impl<P: Quantity, I, S> Search<'_, '_, P, I, S> {
         let hopeless = best.map(|best| best.outcome.cost() + HOPELESS);
         let mut round = 0;
         loop {
-            let outcome = self.round(scratch, None);
+            let outcome = self.round(scratch, &[], None);
             round += 1;
             let least = if round < TRIED {
                 outcome.short[0]
