@@ -11,10 +11,15 @@ use crate::firmware::{Toolchain, Variant};
 use crate::image::Image;
 use crate::root;
 
+/// [`Subject::mixer`] with rotors out.
+const ONE_OUT: &str = "one-rotor-out";
+const TWO_OUT: &str = "two-rotors-out";
+
 /// A mixer of an airframe.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
-    /// `coaxial`, or a baseline: `conventional`, `sequential`, `wls`.
+    /// `coaxial`; the same with one or two rotors out, at random channels: `one-rotor-out`, `two-rotors-out`; or a
+    /// baseline: `conventional`, `sequential`, `wls`.
     pub mixer: String,
     /// A file of `airframes/`, or one of `examples/firmware/build/frames.rs`.
     pub airframe: String,
@@ -33,10 +38,14 @@ impl Subject {
             cfgs: vec!["airframe".into(), format!("airframe={:?}", self.airframe)],
             features: Vec::new(),
         };
-        if self.mixer != "coaxial" {
-            variant
-                .cfgs
-                .extend(["baseline".into(), format!("baseline={:?}", self.mixer)]);
+        match self.mixer.as_str() {
+            "coaxial" => {}
+            ONE_OUT => variant.cfgs.push("rotors_out=\"1\"".into()),
+            TWO_OUT => variant.cfgs.push("rotors_out=\"2\"".into()),
+            baseline => {
+                let baseline = ["baseline".into(), format!("baseline={baseline:?}")];
+                variant.cfgs.extend(baseline);
+            }
         }
         if self.mixer == "wls" {
             variant.features.push("wls-alloc");
@@ -45,20 +54,25 @@ impl Subject {
     }
 }
 
-/// The subjects that every run of the tests compares: all airframes, and the baselines of `mixer-rt` on the X8.
+/// The subjects that every run of the tests compares: all airframes, and on the X8 the baselines of `mixer-rt` and one
+/// rotor out.
 pub fn compared(airframes: &[String]) -> Vec<Subject> {
     let airframes = airframes.iter().map(|airframe| Subject::new("coaxial", airframe));
-    let baselines = ["conventional", "sequential"].map(|mixer| Subject::new(mixer, "isae-x8"));
-    airframes.chain(baselines).collect()
+    let others = ["conventional", "sequential", ONE_OUT].map(|mixer| Subject::new(mixer, "isae-x8"));
+    airframes.chain(others).collect()
 }
 
-/// All subjects: those compared, the baselines on other frames, regular frames of 1 to 8 units, the X8 with five
+/// All subjects: those compared, two rotors out, the baselines and rotors out on other frames, regular frames of 1 to 8 units, the X8 with five
 /// tolerances and with other priorities, and a Y6 and an X8 whose attainable sets are not convex.
 pub fn all(airframes: &[String]) -> Vec<Subject> {
     let mut subjects = compared(airframes);
     subjects.push(Subject::new("wls", "isae-x8"));
     for airframe in ["px4-y6", "px4-x12"] {
         subjects.extend(["conventional", "sequential", "wls"].map(|mixer| Subject::new(mixer, airframe)));
+    }
+    subjects.push(Subject::new(TWO_OUT, "isae-x8"));
+    for airframe in ["px4-y6", "px4-x12"] {
+        subjects.extend([ONE_OUT, TWO_OUT].map(|mixer| Subject::new(mixer, airframe)));
     }
     subjects.extend((1..=8).map(|units| Subject::new("coaxial", &format!("regular-{units}"))));
     let tolerances = ["0.1", "0.01", "0.004", "2e-4", "3e-5"];

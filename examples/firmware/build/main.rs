@@ -83,6 +83,7 @@ fn generate() -> Result<(), String> {
     println!(
         "cargo::rustc-check-cfg=cfg(baseline, values(none(), \"conventional\", \"sequential\", \"wls\"))"
     );
+    println!("cargo::rustc-check-cfg=cfg(rotors_out, values(\"1\", \"2\"))");
     println!("cargo::rustc-check-cfg=cfg(million)");
     println!("cargo::rustc-check-cfg=cfg(panic_path)");
     Ok(())

@@ -8,10 +8,12 @@
 mod mixture;
 mod random;
 mod requests;
+mod rotors_out;
 
 pub use mixture::Mixture;
 pub use random::Random;
 pub use requests::{Kind, Requests};
+pub use rotors_out::RotorsOut;
 
 /// Half-widths and limits of the setpoints to draw.
 #[derive(Clone, Copy, Debug)]

@@ -49,7 +49,12 @@ fn step() {
         yaw_nm: read(2),
         thrust_n: read(3),
     };
-    match subject::mix(&setpoint, read(4)) {
+    let health = match subject::ROTORS_OUT {
+        0 => mixer_rt::Health::GOOD,
+        // The channels of rotors that the vehicle has found out.
+        _ => mixer_rt::Health::GOOD.with_failed(read(11).to_bits() as u8),
+    };
+    match subject::mix(&setpoint, read(4), health) {
         #[cfg(baseline)]
         Ok((throttle, within)) => {
             for (offset, throttle) in throttle.iter().enumerate() {

@@ -22,8 +22,9 @@ const TIMER: *mut u32 = 0x4000_0000 as *mut u32;
 /// Length of the stretch that [`Counter::new`] checks itself with.
 pub const NOPS: u32 = 100;
 
-/// A mixer behind the C calling convention, so that assembly can call it: setpoint, where to write the result, voltage.
-pub type Mixer = unsafe extern "C" fn(*const Wrench, *mut (), f32);
+/// A mixer behind the C calling convention, so that assembly can call it: setpoint (`T`, whatever else it is asked by),
+/// where to write the result, voltage.
+pub type Mixer<T = Wrench> = unsafe extern "C" fn(*const T, *mut (), f32);
 
 /// The timer, running, with the cost of a measurement known.
 pub struct Counter {
@@ -85,8 +86,9 @@ impl Counter {
     /// # Safety
     ///
     /// `output` must be what `mix` writes its result to.
-    pub unsafe fn count(&self, mix: Mixer, setpoint: &Wrench, output: *mut (), voltage_v: f32) -> u32 {
-        // SAFETY: the timer may be read at any time; the caller answers for `output`.
+    pub unsafe fn count<T>(&self, mix: Mixer<T>, setpoint: &T, output: *mut (), voltage_v: f32) -> u32 {
+        let (mix, setpoint) = (mix as *const (), (&raw const *setpoint).cast());
+        // SAFETY: the timer may be read at any time; the setpoint is what `mix` takes, and the caller answers for `output`.
         let ticks = unsafe { ticks_of_call(mix, setpoint, output, self.current, voltage_v) };
         instructions(ticks).saturating_sub(self.overhead)
     }
@@ -97,11 +99,11 @@ impl Counter {
     }
 }
 
-/// Reads the timer at `current`, mixes, reads again; returns the difference.
+/// Reads the timer at `current`, calls `mix`, reads again; returns the difference.
 #[unsafe(naked)]
 unsafe extern "C" fn ticks_of_call(
-    mix: Mixer,
-    setpoint: *const Wrench,
+    mix: *const (),
+    setpoint: *const (),
     output: *mut (),
     current: *const u32,
     voltage_v: f32,

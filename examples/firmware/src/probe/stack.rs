@@ -2,8 +2,6 @@
 
 use core::arch::naked_asm;
 
-use mixer_rt::Wrench;
-
 use crate::Mixer;
 
 /// Depth that is painted, bytes. Far deeper than any mixer may go.
@@ -17,7 +15,8 @@ const PAINT: u32 = 0x7fc0_5ac4;
 /// # Safety
 ///
 /// `output` must be what `mix` writes its result to, and no interrupt may be enabled.
-pub unsafe fn high_water(mix: Mixer, setpoint: &Wrench, output: *mut (), voltage_v: f32) -> usize {
+pub unsafe fn high_water<T>(mix: Mixer<T>, setpoint: &T, output: *mut (), voltage_v: f32) -> usize {
+    let (mix, setpoint) = (mix as *const (), (&raw const *setpoint).cast());
     // SAFETY: paints free memory, far above the lower end of the 4 MiB of RAM; the caller answers for the rest.
     let top = unsafe { painted_call(mix, setpoint, output, voltage_v) };
     let mut at = top - PAINTED;
@@ -28,11 +27,11 @@ pub unsafe fn high_water(mix: Mixer, setpoint: &Wrench, output: *mut (), voltage
     top - at
 }
 
-/// Paints below its own frame, mixes, and returns where that frame ends: the stack pointer at the call.
+/// Paints below its own frame, calls `mix`, and returns where that frame ends: the stack pointer at the call.
 #[unsafe(naked)]
 unsafe extern "C" fn painted_call(
-    mix: Mixer,
-    setpoint: *const Wrench,
+    mix: *const (),
+    setpoint: *const (),
     output: *mut (),
     voltage_v: f32,
 ) -> usize {

@@ -1,6 +1,6 @@
 //! The mixers of `mixer_rt::baselines`.
 
-use mixer_rt::{SetpointError, Wrench};
+use mixer_rt::{Health, SetpointError, Wrench};
 
 use super::{ISOLATED, airframe};
 
@@ -11,7 +11,7 @@ pub(crate) type Mixed = Result<([f32; airframe::CHANNELS], bool), SetpointError>
 pub(crate) fn prepare() {}
 
 #[inline(always)]
-pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32) -> Mixed {
+pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32, _: Health) -> Mixed {
     let mut throttle = [0.0; airframe::CHANNELS];
     #[cfg(baseline = "conventional")]
     let within = ISOLATED.conventional(setpoint, voltage_v, &mut throttle)?;

@@ -1,5 +1,6 @@
 //! The mixer that an image measures: one airframe's, `--cfg airframe --cfg airframe="<name>"`, or what flight stacks do
-//! with that airframe, in addition `--cfg baseline --cfg baseline="conventional"`, `"sequential"` or `"wls"`.
+//! with that airframe, in addition `--cfg baseline --cfg baseline="conventional"`, `"sequential"` or `"wls"`. With
+//! `--cfg rotors_out="1"` or `"2"` the airframe's mixer is asked with so many rotors out.
 
 #[cfg(not(baseline))]
 mod coaxial;
@@ -14,5 +15,14 @@ pub(crate) use coaxial::*;
 pub(crate) use isolated::*;
 #[cfg(baseline = "wls")]
 pub(crate) use wls::*;
+
+/// Rotors that are out in every request.
+pub(crate) const ROTORS_OUT: u32 = if cfg!(rotors_out = "1") {
+    1
+} else if cfg!(rotors_out = "2") {
+    2
+} else {
+    0
+};
 
 include!(concat!(env!("OUT_DIR"), "/subject.rs"));

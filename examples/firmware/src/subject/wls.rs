@@ -8,7 +8,7 @@ use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 
 use mixer_rt::baselines::ThrustCurve;
-use mixer_rt::{SetpointError, Wrench, sqrt};
+use mixer_rt::{Health, SetpointError, Wrench, sqrt};
 use wls_alloc::wls::ControlAllocator;
 use wls_alloc::{ExitCode, MatA, VecN};
 
@@ -65,7 +65,7 @@ pub(crate) fn prepare() {
 }
 
 #[inline(always)]
-pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32) -> Mixed {
+pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32, _: Health) -> Mixed {
     // SAFETY: prepared before the first mix; one thread.
     let State {
         allocator,

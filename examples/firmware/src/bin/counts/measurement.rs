@@ -3,25 +3,40 @@
 use core::mem::MaybeUninit;
 
 use cortex_m_semihosting::hprintln;
-use mixer_rt::Wrench;
+use mixer_rt::{Health, Wrench};
+use mixer_setpoints::RotorsOut;
 use probe::Counter;
 
 use crate::search::Search;
 use crate::subject::{self, Mixed};
 use crate::{ATTAINABLE, SATURATED};
 
-/// A wrench and the battery's voltage.
+/// Where the sequence of the rotors that are out starts.
+const SEED: u64 = 9;
+
+/// A wrench, which rotors are out, and the battery's voltage.
 #[derive(Clone, Copy)]
 pub(crate) struct Request {
     /// Roll, pitch, yaw (N m), thrust (N).
     pub(crate) wrench: [f32; 4],
+    pub(crate) health: Health,
     /// V.
     pub(crate) voltage_v: f32,
 }
 
-/// Requests as the build script has written them.
+impl Request {
+    /// Asks for nothing.
+    pub(crate) const NOTHING: Request = Request {
+        wrench: [0.0; 4],
+        health: Health::GOOD,
+        voltage_v: 0.0,
+    };
+}
+
+/// Requests as the build script has written them, to as many rotors less as the subject is asked with.
 pub(crate) fn requests(bytes: &'static [u8]) -> impl Iterator<Item = Request> {
-    bytes.chunks_exact(20).map(|row| {
+    let healths = RotorsOut::new(SEED, subject::airframe::CHANNELS, subject::ROTORS_OUT);
+    bytes.chunks_exact(20).zip(healths).map(|(row, health)| {
         let mut values = [0.0; 5];
         for (value, bytes) in values.iter_mut().zip(row.chunks_exact(4)) {
             let mut word = [0; 4];
@@ -31,17 +46,29 @@ pub(crate) fn requests(bytes: &'static [u8]) -> impl Iterator<Item = Request> {
         let [roll, pitch, yaw, thrust, voltage_v] = values;
         Request {
             wrench: [roll, pitch, yaw, thrust],
+            health,
             voltage_v,
         }
     })
 }
 
+/// What a mixer is asked by, beside the voltage.
+struct Asked {
+    setpoint: Wrench,
+    health: Health,
+}
+
 /// # Safety
 ///
-/// `setpoint` is valid to read, `output` to write a [`Mixed`].
-unsafe extern "C" fn mix(setpoint: *const Wrench, output: *mut (), voltage_v: f32) {
+/// `asked` is valid to read, `output` to write a [`Mixed`].
+unsafe extern "C" fn mix(asked: *const Asked, output: *mut (), voltage_v: f32) {
     // SAFETY: the caller's promise.
-    unsafe { output.cast::<Mixed>().write(subject::mix(&*setpoint, voltage_v)) }
+    unsafe {
+        let Asked { setpoint, health } = &*asked;
+        output
+            .cast::<Mixed>()
+            .write(subject::mix(setpoint, voltage_v, *health))
+    }
 }
 
 /// What the requests of one set cost.
@@ -65,10 +92,7 @@ impl Tally {
             worst: 0,
             median: 0,
             stack: 0,
-            dearest: Request {
-                wrench: [0.0; 4],
-                voltage_v: 0.0,
-            },
+            dearest: Request::NOTHING,
             refused: 0,
         }
     }
@@ -76,19 +100,22 @@ impl Tally {
     /// Mixes `request`, once for the instructions, which it returns, and once for the stack.
     pub(crate) fn measure(&mut self, counter: &Counter, request: &Request) -> u32 {
         let [roll_nm, pitch_nm, yaw_nm, thrust_n] = request.wrench;
-        let setpoint = Wrench {
-            roll_nm,
-            pitch_nm,
-            yaw_nm,
-            thrust_n,
+        let asked = Asked {
+            setpoint: Wrench {
+                roll_nm,
+                pitch_nm,
+                yaw_nm,
+                thrust_n,
+            },
+            health: request.health,
         };
         let mut output = MaybeUninit::<Mixed>::uninit();
         let pointer = output.as_mut_ptr().cast();
         // SAFETY: the output is of the type that `mix` writes, which it does in every call; no interrupt is enabled.
         let (instructions, stack, mixed) = unsafe {
             (
-                counter.count(mix, &setpoint, pointer, request.voltage_v),
-                probe::high_water(mix, &setpoint, pointer, request.voltage_v),
+                counter.count(mix, &asked, pointer, request.voltage_v),
+                probe::high_water(mix, &asked, pointer, request.voltage_v),
                 output.assume_init(),
             )
         };

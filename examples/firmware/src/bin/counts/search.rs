@@ -23,13 +23,9 @@ pub(crate) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub(crate) fn new(counter: &'a Counter) -> Self {
-        let nothing = Request {
-            wrench: [0.0; 4],
-            voltage_v: 0.0,
-        };
         Search {
             counter,
-            pool: [(0, nothing); POOL],
+            pool: [(0, Request::NOTHING); POOL],
         }
     }
 
