@@ -4,6 +4,7 @@
 #![allow(missing_docs)]
 
 use mixer_compiler::cost::COUNTED;
+use mixer_setpoints::Digest;
 use mixer_tests::counts::{self, Row};
 use mixer_tests::firmware::{Toolchain, Variant};
 use mixer_tests::image::Image;
@@ -99,20 +100,14 @@ fn mixers_are_small_and_cannot_panic() {
         "bytes added to an image\n{:<29} {:>8} {:>8} {:>8}",
         "airframe", "code", "tables", "sum"
     );
-    let rotors = [("", None), (", rotors out", Some("rotors_out=\"1\""))];
     let airframes = airframes().expect("airframes");
-    for (airframe, (out, cfg)) in airframes
+    for (airframe, rotors_out) in airframes
         .iter()
-        .flat_map(|airframe| rotors.map(|rotors| (airframe, rotors)))
+        .flat_map(|airframe| [(airframe, 0), (airframe, 1)])
     {
-        let mut variant = Variant {
-            cfgs: vec!["airframe".into(), format!("airframe={airframe:?}")],
-            features: Vec::new(),
-        };
-        variant.cfgs.extend(cfg.map(str::to_owned));
-        let image = size_image(&toolchain, &variant);
+        let image = size_image(&toolchain, &Variant::of_airframe(airframe, rotors_out));
         let (code, tables) = (image.code - empty.code, image.tables - empty.tables);
-        let subject = format!("{airframe}{out}");
+        let subject = format!("{airframe}{}", if rotors_out == 0 { "" } else { ", rotors out" });
         println!("{subject:<29} {code:>8} {tables:>8} {:>8}", code + tables);
 
         assert!(code > 100, "{subject}: the mixer is not in the image");
@@ -123,7 +118,7 @@ fn mixers_are_small_and_cannot_panic() {
             [""; 0],
             "{subject}: soft float or a copy loop"
         );
-        if airframe == REFERENCE && cfg.is_none() {
+        if airframe == REFERENCE && rotors_out == 0 {
             assert!(
                 code + tables <= SIZE_LIMIT_BYTES,
                 "{airframe}: over {SIZE_LIMIT_BYTES} bytes"
@@ -201,21 +196,13 @@ fn random_setpoints_have_the_same_bits_as_on_the_host() {
     let mut faults = Vec::new();
     for airframe in airframes().expect("airframes") {
         let million = millions.split(',').any(|name| name == airframe || name == "all");
-        let all_turning = if million { 1_000_000 } else { 100_000 };
         let compiled = golden::compile(&airframe).unwrap_or_else(|e| panic!("{e}"));
         for rotors_out in [0, 1, 2] {
-            let mut variant = Variant {
-                cfgs: vec!["airframe".into(), format!("airframe={airframe:?}")],
-                features: Vec::new(),
-            };
+            let mut variant = Variant::of_airframe(&airframe, rotors_out);
             if million {
                 variant.cfgs.push("million".into());
             }
-            let mut count = all_turning;
-            if rotors_out > 0 {
-                variant.cfgs.push(format!("rotors_out=\"{rotors_out}\""));
-                count /= 50;
-            }
+            let count = Digest::setpoints(million, rotors_out);
             let printed = toolchain
                 .run_uncounted("digest", &variant)
                 .unwrap_or_else(|e| panic!("{e}"));

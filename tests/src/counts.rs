@@ -34,18 +34,16 @@ impl Subject {
     }
 
     fn variant(&self) -> Variant {
-        let mut variant = Variant {
-            cfgs: vec!["airframe".into(), format!("airframe={:?}", self.airframe)],
-            features: Vec::new(),
+        let rotors_out = match self.mixer.as_str() {
+            ONE_OUT => 1,
+            TWO_OUT => 2,
+            _ => 0,
         };
-        match self.mixer.as_str() {
-            "coaxial" => {}
-            ONE_OUT => variant.cfgs.push("rotors_out=\"1\"".into()),
-            TWO_OUT => variant.cfgs.push("rotors_out=\"2\"".into()),
-            baseline => {
-                let baseline = ["baseline".into(), format!("baseline={baseline:?}")];
-                variant.cfgs.extend(baseline);
-            }
+        let mut variant = Variant::of_airframe(&self.airframe, rotors_out);
+        if rotors_out == 0 && self.mixer != "coaxial" {
+            variant
+                .cfgs
+                .extend(["baseline".into(), format!("baseline={:?}", self.mixer)]);
         }
         if self.mixer == "wls" {
             variant.features.push("wls-alloc");
@@ -62,8 +60,8 @@ pub fn compared(airframes: &[String]) -> Vec<Subject> {
     airframes.chain(others).collect()
 }
 
-/// All subjects: those compared, two rotors out, the baselines and rotors out on other frames, regular frames of 1 to 8 units, the X8 with five
-/// tolerances and with other priorities, and a Y6 and an X8 whose attainable sets are not convex.
+/// All subjects: those compared, two rotors out, the baselines and rotors out on other frames, regular frames of 1 to 8
+/// units, the X8 with five tolerances and with other priorities, and a Y6 and an X8 whose attainable sets are not convex.
 pub fn all(airframes: &[String]) -> Vec<Subject> {
     let mut subjects = compared(airframes);
     subjects.push(Subject::new("wls", "isae-x8"));

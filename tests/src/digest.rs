@@ -4,18 +4,15 @@ use mixer_compiler::Compiled;
 use mixer_rt::{Scratch, Wrench};
 use mixer_setpoints::{Digest, Mixture, RotorsOut};
 
-/// Where the sequence of setpoints starts; the `digest` image has the same.
-pub const SEED: u64 = 17;
-
 /// Digest after each tenth of `count` setpoints with `rotors_out`, as the `digest` image prints them.
-pub fn of(compiled: &Compiled, count: u32, rotors_out: u32) -> Vec<u64> {
+pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
     let tables = compiled.tables.view();
-    let healths = RotorsOut::new(SEED, 2 * tables.units.len(), rotors_out);
-    let mut setpoints = Mixture::new(&tables, SEED).zip(healths);
+    let healths = RotorsOut::new(Digest::SEED, 2 * tables.units.len(), rotors_out);
+    let mut setpoints = Mixture::new(&tables, Digest::SEED).zip(healths);
     let mut digest = Digest::new();
     let mut tenths = Vec::new();
     for _ in 0..10 {
-        for (setpoint, health) in setpoints.by_ref().take(count as usize / 10) {
+        for (setpoint, health) in setpoints.by_ref().take(count / 10) {
             let wrench = Wrench::from_array(setpoint.wrench);
             let mut scratch = vec![Scratch::default(); tables.units.len()];
             let mut throttle = vec![tables.throttle.min; 2 * tables.units.len()];

@@ -26,6 +26,18 @@ pub struct Variant {
 }
 
 impl Variant {
+    /// An airframe's mixer (`examples/firmware/src/subject`), asked with `rotors_out`: 0, 1 or 2.
+    pub fn of_airframe(airframe: &str, rotors_out: u32) -> Self {
+        let mut cfgs = vec!["airframe".into(), format!("airframe={airframe:?}")];
+        if rotors_out > 0 {
+            cfgs.push(format!("rotors_out=\"{rotors_out}\""));
+        }
+        Variant {
+            cfgs,
+            features: Vec::new(),
+        }
+    }
+
     /// With one configuration flag.
     pub fn with(cfg: &str) -> Self {
         Variant {

@@ -1,7 +1,7 @@
 //! The edges of an attainable set.
 
 /// One edge of an [`AttainableSet`](crate::AttainableSet), in the set's own units: see its `scale`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// The corner where it starts.
     pub start: [f32; 2],

@@ -93,6 +93,20 @@ impl Iterator for Setpoints {
 pub struct Digest(u64);
 
 impl Digest {
+    /// Where the sequences of setpoints and of rotors out start whose digests are compared.
+    pub const SEED: u64 = 17;
+
+    /// How many setpoints are compared: a hundred thousand, or a `million`; with rotors out, which takes longer, a
+    /// fiftieth of that.
+    pub const fn setpoints(million: bool, rotors_out: u32) -> usize {
+        let all_turning = if million { 1_000_000 } else { 100_000 };
+        if rotors_out == 0 {
+            all_turning
+        } else {
+            all_turning / 50
+        }
+    }
+
     /// Of nothing.
     pub const fn new() -> Self {
         Digest(0xcbf2_9ce4_8422_2325)

@@ -1,6 +1,6 @@
-//! Mixes a hundred thousand random setpoints, with `--cfg million` a million, and prints the digest of all results
-//! after each tenth; with rotors out it mixes a fiftieth of that. The host computes the same; see `tests/src/digest.rs`.
-//! Which mixer and how many rotors out: see `src/subject`.
+//! Mixes random setpoints, as many as `Digest::setpoints` says (`--cfg million` for a million), and prints the digest of all
+//! results after each tenth. The host computes the same; see `tests/src/digest.rs`. Which mixer and how many rotors out: see
+//! `src/subject`.
 #![no_std]
 #![no_main]
 
@@ -16,20 +16,11 @@ fn run() -> bool {
     use mixer_rt::Wrench;
     use mixer_setpoints::{Digest, Mixture, RotorsOut};
 
-    const SEED: u64 = 17;
-    const ALL_TURNING: usize = if cfg!(million) { 1_000_000 } else { 100_000 };
-    const COUNT: usize = if subject::ROTORS_OUT == 0 {
-        ALL_TURNING
-    } else {
-        ALL_TURNING / 50
-    };
+    const COUNT: usize = Digest::setpoints(cfg!(million), subject::ROTORS_OUT);
 
     subject::prepare();
-    let mut setpoints = Mixture::new(&subject::airframe::TABLES, SEED).zip(RotorsOut::new(
-        SEED,
-        subject::airframe::CHANNELS,
-        subject::ROTORS_OUT,
-    ));
+    let healths = RotorsOut::new(Digest::SEED, subject::airframe::CHANNELS, subject::ROTORS_OUT);
+    let mut setpoints = Mixture::new(&subject::airframe::TABLES, Digest::SEED).zip(healths);
     let mut digest = Digest::new();
     for _ in 0..10 {
         for (setpoint, health) in setpoints.by_ref().take(COUNT / 10) {

@@ -99,14 +99,8 @@ impl Tally {
 
     /// Mixes `request`, once for the instructions, which it returns, and once for the stack.
     pub(crate) fn measure(&mut self, counter: &Counter, request: &Request) -> u32 {
-        let [roll_nm, pitch_nm, yaw_nm, thrust_n] = request.wrench;
         let asked = Asked {
-            setpoint: Wrench {
-                roll_nm,
-                pitch_nm,
-                yaw_nm,
-                thrust_n,
-            },
+            setpoint: Wrench::from_array(request.wrench),
             health: request.health,
         };
         let mut output = MaybeUninit::<Mixed>::uninit();
