@@ -1,16 +1,13 @@
-//! A polygon inside the attainable set of one unit, which desaturation works with.
+//! A small convex polygon inside the attainable set of one unit, which the general path allocates over.
 //!
-//! The set's border is the image of the throttle box's border, since the forward map is injective. The polygon has the
-//! fewest corners, on the border or close below it, with which hardly any of the area is lost. It need not be convex,
-//! but all of it is seen from one point: of a set that no point sees as a whole, the part that its centre sees.
+//! The set's border is the image of the throttle box's border, since the forward map is injective. The polygon starts as
+//! the largest convex part of the set. Then corners are dropped, each time the one that loses least area.
 
 mod convex;
-mod corners;
 
 use crate::model::PairMap;
 use crate::tables::{AttainableTable, SideTable};
 use convex::convex_part;
-use corners::{fewest_corners, inset};
 
 /// Border points per edge of the box. Where the border bends inwards it leaves the chords of its points by the square of
 /// their distance, at corners of the paper's set by 1e-6 of its size.
@@ -19,19 +16,20 @@ const SAMPLES: usize = 512;
 /// Every so many of them make the convex part.
 const COARSE: usize = 4;
 
-/// Share of the set's area that may be lost. With less, optima are missed by less, but there are more corners at which the
-/// border bends inwards, hence more places where efforts jump: the README counts both.
-const LOSS: f64 = 5e-4;
+/// Corners at most: the work of the general path grows with them. Shares of the area that may be lost by dropping one: with
+/// all corners the general path gives 0.5 % more yaw.
+const MOST_CORNERS: usize = 8;
+const LOSS: f64 = 1.5e-3;
 
-/// Share of the convex part's area that a convex polygon may lose, where no other is found.
-const CONVEX_LOSS: f64 = 1e-3;
+/// Drawn in towards the centre by this share, for rounding.
+const MARGIN: f64 = 1e-5;
 
 /// Shares of the attainable set's area that are outside the polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaLoss {
     /// In all.
     pub total: f64,
-    /// What any convex polygon would lose, of many corners.
+    /// Outside the convex part.
     pub convexity: f64,
 }
 
@@ -40,7 +38,7 @@ pub struct AreaLoss {
 pub(crate) struct Polygon {
     /// Corners `[f, Q]` (N, N m), anticlockwise.
     pub(crate) corners: Vec<[f64; 2]>,
-    /// A point that sees all of it.
+    /// A point well inside.
     centre: [f64; 2],
     scale: [f64; 2],
     pub(crate) lost: AreaLoss,
@@ -54,17 +52,11 @@ impl Polygon {
         let whole = border_area(&border);
         let coarse: Vec<[f64; 2]> = border.iter().copied().step_by(COARSE).collect();
         let convex = convex_part(&coarse);
-        let middle = centre(&convex);
-        let from = |border: &[[f64; 2]], centre, loss: f64| {
-            let corners = fewest_corners(border, centre, loss * whole)?;
-            Some((centre, corners))
-        };
-        let (centre, polygon) = from(&border, middle, LOSS)
-            .or_else(|| from(&corners::seen_from(&border, middle), middle, LOSS))
-            .or_else(|| from(&border, corners::deepest_view(&border), LOSS))
-            .or_else(|| from(&convex, middle, CONVEX_LOSS))
-            .unwrap_or_else(|| (middle, corners::thinned(&convex)));
-        let polygon = inset(&polygon);
+        let centre = centre(&convex);
+        let polygon: Vec<[f64; 2]> = fewer_corners(&convex, LOSS * whole)
+            .into_iter()
+            .map(|corner| [0, 1].map(|k| corner[k] + MARGIN * (centre[k] - corner[k])))
+            .collect();
         let newtons = |[f, q]: [f64; 2]| [f * scale[0], q * scale[1]];
         Polygon {
             lost: AreaLoss {
@@ -81,6 +73,24 @@ impl Polygon {
     pub(crate) fn table(&self) -> AttainableTable {
         AttainableTable::new(&self.corners, self.scale, self.centre)
     }
+}
+
+/// The polygon with the corners dropped that lose least, down to [`MOST_CORNERS`] and on while one loses no more than
+/// `allowed` of twice the area.
+fn fewer_corners(polygon: &[[f64; 2]], allowed: f64) -> Vec<[f64; 2]> {
+    let mut corners = polygon.to_vec();
+    while corners.len() > 3 {
+        let n = corners.len();
+        let loss = |k: usize| cross(corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]);
+        let Some(least) = (0..n).min_by(|&a, &b| loss(a).total_cmp(&loss(b))) else {
+            break;
+        };
+        if n <= MOST_CORNERS && loss(least) > allowed {
+            break;
+        }
+        corners.remove(least);
+    }
+    corners
 }
 
 fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {

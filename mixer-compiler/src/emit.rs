@@ -145,6 +145,15 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let (min, max) = (float(tables.throttle.min), float(tables.throttle.max));
     let voltage = voltage(tables);
     let attainable = attainable(&tables.attainable);
+    let rows = vector(&tables.rows);
+    let level = match &tables.level {
+        None => quote!(::core::option::Option::None),
+        Some(level) => {
+            let thrust = vector(&level.thrust);
+            let efforts = level.efforts.iter().map(|efforts| matrix(efforts));
+            quote!(::core::option::Option::Some(::mixer_rt::Level { thrust: #thrust, efforts: &[#(#efforts),*] }))
+        }
+    };
     let shortcut = shortcut(tables.shortcut.as_ref());
     let limits = &tables.desaturation;
     let airmode = identifier(&format!("{:?}", limits.airmode));
@@ -159,6 +168,8 @@ fn tables(tables: &MixerTables) -> TokenStream {
             throttle: ::mixer_rt::ThrottleRange { min: #min, max: #max },
             voltage: #voltage,
             attainable: #attainable,
+            rows: #rows,
+            level: #level,
             desaturation: ::mixer_rt::Desaturation {
                 airmode: ::mixer_rt::Airmode::#airmode,
                 yaw_reserve_nm: #reserve,
@@ -268,11 +279,12 @@ fn steepness(steepness: &Steepness) -> TokenStream {
 
 fn attainable(set: &AttainableTable) -> TokenStream {
     let (scale, centre) = (vector(&set.scale), vector(&set.centre));
-    let edges = set.edges.iter().map(|edge| {
-        let (start, along, length) = (vector(&edge.start), vector(&edge.along), float(edge.length));
-        quote!(::mixer_rt::Edge { start: #start, along: #along, length: #length })
+    let corners = set.corners.iter().map(|corner| {
+        let (at, bound) = (vector(&corner.at), float(corner.bound));
+        let (edge, before) = (vector(&corner.edge), vector(&corner.before));
+        quote!(::mixer_rt::Corner { at: #at, edge: #edge, before: #before, bound: #bound })
     });
-    quote!(::mixer_rt::AttainableSet { scale: #scale, centre: #centre, edges: &[#(#edges),*] })
+    quote!(::mixer_rt::AttainableSet { scale: #scale, centre: #centre, corners: &[#(#corners),*] })
 }
 
 /// The static type of the tables.

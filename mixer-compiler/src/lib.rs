@@ -106,6 +106,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
     let in_polygon = hover::thrust_range(&airframe, &tables)?;
+    tables.set_level(in_polygon);
     tables.shortcut = vertical::table(&airframe, &effectiveness, lost_area.convexity, in_polygon);
     let thrust_range_n = hover::delivered_range(&airframe, &tables, in_polygon);
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);

@@ -2,7 +2,7 @@
 
 mod refusal;
 
-use mixer_rt::{Desaturation, Tolerance};
+use mixer_rt::{Axis, Desaturation, Tolerance};
 
 use crate::airframe::Airframe;
 use crate::attainable::{AreaLoss, Polygon};
@@ -150,6 +150,8 @@ fn assemble(
         throttle: tables::throttle_table(airframe),
         voltage,
         attainable: polygon.table(),
+        rows: rows(airframe, effectiveness, pair),
+        level: None,
         desaturation: Desaturation {
             airmode: airframe.allocation.airmode,
             yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,
@@ -167,6 +169,32 @@ fn assemble(
     );
     tables.tolerance.efforts = [0, 1].map(|k| ((allowed[k] + rounding[k]) as f32).next_up());
     tables
+}
+
+/// Units over authority per axis at the reference voltage, roll and pitch alike; 0 on axes that are not served.
+fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [f32; 4] {
+    let scale = pair.scale();
+    let n = airframe.units.len();
+    let authority: [f64; 4] = std::array::from_fn(|axis| {
+        let row = effectiveness.matrix.row(axis);
+        let sum: f64 = (0..n)
+            .map(|i| row[i].abs() * scale[0] + row[n + i].abs() * scale[1])
+            .sum();
+        if airframe.allocation.controls(Axis::ALL[axis]) {
+            sum
+        } else {
+            0.0
+        }
+    });
+    let level = authority[0].max(authority[1]);
+    std::array::from_fn(|axis| {
+        let size = if axis < 2 { level } else { authority[axis] };
+        if authority[axis] > 0.0 {
+            (n as f64 / size) as f32
+        } else {
+            0.0
+        }
+    })
 }
 
 /// What the tolerances of all units add up to on each axis, with the rounding of f32 sums of full efforts.

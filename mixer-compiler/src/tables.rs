@@ -7,9 +7,9 @@ mod inverse;
 mod sides;
 
 use mixer_rt::{
-    AttainableSet, Biquadratic, Border, Coupling, Cubic, Desaturation, Edge, Facets, Health, Pair, Quantity,
-    Quartic, Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit, Vertical,
-    VerticalUnit, Voltage, VoltageLaw, Wrench,
+    AttainableSet, Biquadratic, Border, Corner, Coupling, Cubic, Desaturation, Facets, Health, Level, Pair,
+    Quantity, Quartic, Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit,
+    Vertical, VerticalUnit, Voltage, VoltageLaw, Wrench,
 };
 
 use crate::airframe::{Airframe, Basis};
@@ -34,12 +34,25 @@ pub struct MixerTables {
     pub voltage: Option<VoltageTable>,
     /// A polygon inside the attainable set.
     pub attainable: AttainableTable,
+    /// Rows of the general path per N m and N: [`mixer_rt::Tables::rows`].
+    pub rows: [f32; 4],
+    /// Level flight.
+    pub level: Option<LevelTable>,
     /// Priorities of desaturation.
     pub desaturation: Desaturation,
     /// A shorter way to desaturate, where the layout allows one.
     pub shortcut: Option<VerticalTable>,
     /// What the mixer may miss.
     pub tolerance: Tolerance,
+}
+
+/// Level flight with all rotors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelTable {
+    /// Least and middling thrust, rows.
+    pub thrust: [f32; 2],
+    /// Efforts per unit at these, N and N m.
+    pub efforts: Vec<[[f32; 2]; 2]>,
 }
 
 /// The attainable set.
@@ -49,29 +62,23 @@ pub struct AttainableTable {
     pub scale: [f32; 2],
     /// A point well inside, scaled.
     pub centre: [f32; 2],
-    /// The edges, anticlockwise, scaled.
-    pub edges: Vec<Edge>,
+    /// The corners, anticlockwise, scaled.
+    pub corners: Vec<Corner>,
 }
 
 impl AttainableTable {
-    /// Rounds a polygon `[f, Q]` (N, N m), anticlockwise, that is seen whole from `centre`.
+    /// Rounds a convex polygon `[f, Q]` (N, N m), anticlockwise, and a point inside.
     pub fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
-        let scaled = |[f, q]: [f64; 2]| [f / scale[0], q / scale[1]];
-        let ends = vertices.iter().cycle().skip(1);
-        let edges = vertices.iter().zip(ends).map(|(&start, &end)| {
-            let (start, end) = (scaled(start), scaled(end));
-            let vector = [end[0] - start[0], end[1] - start[1]];
-            let length = (vector[0] * vector[0] + vector[1] * vector[1]).sqrt();
-            Edge {
-                start: start.map(|x| x as f32),
-                along: vector.map(|x| (x / length) as f32),
-                length: length as f32,
-            }
+        let scaled = |[f, q]: [f64; 2]| [(f / scale[0]) as f32, (q / scale[1]) as f32];
+        let n = vertices.len();
+        let corners = (0..n).map(|k| {
+            let [before, at, next] = [n - 1, 0, 1].map(|step| scaled(vertices[(k + step) % n]));
+            Corner::between(before, at, next)
         });
         AttainableTable {
             scale: scale.map(|x| x as f32),
-            centre: scaled(centre).map(|x| x as f32),
-            edges: edges.collect(),
+            centre: scaled(centre),
+            corners: corners.collect(),
         }
     }
 
@@ -80,14 +87,14 @@ impl AttainableTable {
         AttainableSet {
             scale: self.scale,
             centre: self.centre,
-            edges: &self.edges,
+            corners: &self.corners,
         }
     }
 
     /// The corners `[f, Q]`, N and N m.
     pub fn corners(&self) -> Vec<[f32; 2]> {
-        let corner = |edge: &Edge| [edge.start[0] * self.scale[0], edge.start[1] * self.scale[1]];
-        self.edges.iter().map(corner).collect()
+        let corner = |corner: &Corner| [corner.at[0] * self.scale[0], corner.at[1] * self.scale[1]];
+        self.corners.iter().map(corner).collect()
     }
 }
 
@@ -201,6 +208,11 @@ impl MixerTables {
             throttle: self.throttle,
             voltage: self.voltage.as_ref().map(VoltageTable::view),
             attainable: self.attainable.view(),
+            rows: self.rows,
+            level: self.level.as_ref().map(|level| Level {
+                thrust: level.thrust,
+                efforts: &level.efforts,
+            }),
             desaturation: self.desaturation,
             shortcut: self.shortcut.as_ref().map(|table| (table.view(), table.coupling)),
             tolerance: self.tolerance,
@@ -238,6 +250,24 @@ impl MixerTables {
         Ok((throttle, achieved, saturation))
     }
 
+    /// Tells the general path what level flight is between the least and the largest thrust in N.
+    pub(crate) fn set_level(&mut self, [least, most]: [f32; 2]) {
+        let mut scratch = vec![Scratch::default(); self.units.len()];
+        let thrust = [least, 0.5 * (least + most)];
+        let [at_least, at_middle] = thrust.map(|thrust| {
+            mixer_rt::level_efforts(&self.view(), thrust, &mut scratch);
+            scratch.iter().map(Scratch::efforts).collect::<Vec<_>>()
+        });
+        let efforts = at_least
+            .into_iter()
+            .zip(at_middle)
+            .map(|(least, middle)| [least, middle]);
+        self.level = Some(LevelTable {
+            thrust: thrust.map(|thrust| thrust * self.rows[3]),
+            efforts: efforts.collect(),
+        });
+    }
+
     /// Bytes of the tables in flash: four per number, one per channel.
     pub fn bytes(&self) -> usize {
         let floats = self.units.len() * 16
@@ -245,7 +275,9 @@ impl MixerTables {
             + self.inverse.floats()
             + 2 // throttle range
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
-            + 4 + 5 * self.attainable.edges.len()
+            + 4 + 7 * self.attainable.corners.len()
+            + 4 // rows
+            + self.level.as_ref().map_or(0, |level| 2 + 4 * level.efforts.len())
             + self.shortcut.as_ref().map_or(0, VerticalTable::floats)
             + 2 // desaturation
             + 6; // tolerance

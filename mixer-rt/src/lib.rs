@@ -12,7 +12,7 @@
 //!   -> throttles of every unit       inverse of (f, Q)(u, l)                  inverse.rs, forward.rs
 //!   -> if a unit cannot: desaturate  within the attainable set, by priority
 //!        up to four vertical units     in closed form                         vertical.rs
-//!        any frame, dead rotors        along paths of wrenches                desaturation.rs, homotopy.rs
+//!        any frame, rotors out         a bounded dual simplex method          general.rs
 //!   -> achieved wrench               M (k_f f(u, l), k_Q Q(u, l))             mix.rs
 //! ```
 //!
@@ -27,23 +27,15 @@
 mod attainable;
 #[cfg(feature = "baselines")]
 pub mod baselines;
-mod chord;
 mod desaturation;
 mod forward;
+mod general;
 mod health;
-mod hollows;
-mod homotopy;
-mod hull;
 mod inverse;
-mod linear;
 mod mix;
-mod piece;
-mod reference;
-mod rows;
+mod rotors;
 mod saturation;
 mod scalar;
-mod scratch;
-mod search;
 mod sqrt;
 mod table;
 mod tables;
@@ -51,9 +43,10 @@ mod vertical;
 mod voltage;
 mod wrench;
 
-pub use attainable::{AttainableSet, Edge};
+pub use attainable::{AttainableSet, Corner};
 pub use desaturation::{Airmode, Desaturation};
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
+pub use general::{Scratch, level_efforts};
 pub use health::Health;
 pub use inverse::{
     BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,
@@ -62,16 +55,22 @@ pub use inverse::{
 pub use mix::{Airframe, Mix, mix, mix_into, mix_with_health};
 pub use saturation::{Direction, Saturation};
 pub use scalar::Scalar;
-pub use scratch::Scratch;
 pub use sqrt::sqrt;
 pub use table::TableSeed;
-pub use tables::{Tables, Tolerance, Unit};
+pub use tables::{Level, Tables, Tolerance, Unit};
 pub use vertical::{
     Arc, Border, Coupled, Coupling, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, Steepness,
     TorqueLimit, Vertical, VerticalUnit,
 };
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
+
+/// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take three times the code
+/// and are hardly faster.
+#[inline(always)]
+fn rolled() {
+    core::hint::black_box(());
+}
 
 /// `x` limited to `[low, high]`; `low` where `x` is NaN. (`f32::clamp` has a panic path.)
 #[inline(always)]

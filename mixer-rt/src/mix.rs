@@ -1,9 +1,9 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
-use crate::chord::Rotors;
-use crate::desaturation::{is_bounded, limited, single_rotor};
-use crate::scratch::Scratch;
-use crate::search::desaturate;
+use crate::desaturation::{is_bounded, limited};
+use crate::general::{Scratch, allocate};
+use crate::rolled;
+use crate::rotors::Rotors;
 use crate::vertical::{Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;
 use crate::{Axis, Desaturation, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};
@@ -47,19 +47,21 @@ pub fn mix_with_health<const UNITS: usize, const CHANNELS: usize, P: Quantity, I
     health: Health,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let desaturated = |request, factors, throttle: &mut [f32]| {
-        let mut scratch = [Scratch::default(); UNITS];
-        desaturated(tables, request, factors, health, &mut scratch, throttle)
+    let (achieved, saturation) = match (tables.shortcut.vertical(), health.is_good()) {
+        (Some(vertical), true) => mix_vertical(tables, vertical, setpoint, voltage_v, &mut throttle)?,
+        _ => {
+            let mut scratch = [Scratch::default(); UNITS];
+            mix_units(
+                tables,
+                tables.units,
+                setpoint,
+                voltage_v,
+                health,
+                &mut scratch,
+                &mut throttle,
+            )?
+        }
     };
-    let (achieved, saturation) = mix_units(
-        tables,
-        tables.units,
-        setpoint,
-        voltage_v,
-        health,
-        &mut throttle,
-        desaturated,
-    )?;
     Ok(Mix {
         throttle,
         achieved,
@@ -81,14 +83,15 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
     scratch: &mut [Scratch],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
+    if let (Some(vertical), true) = (tables.shortcut.vertical(), health.is_good()) {
+        return mix_vertical(tables, vertical, setpoint, voltage_v, throttle);
+    }
     let units = tables.units.get(..scratch.len()).unwrap_or(tables.units);
-    let desaturated = |request, factors, throttle: &mut [f32]| {
-        desaturated(tables, request, factors, health, scratch, throttle)
-    };
-    mix_units(tables, units, setpoint, voltage_v, health, throttle, desaturated)
+    let scratch = scratch.get_mut(..units.len()).unwrap_or_default();
+    mix_units(tables, units, setpoint, voltage_v, health, scratch, throttle)
 }
 
-/// [`mix_into`] with `desaturated` for what least norm does not deliver.
+/// [`mix_into`] for `units`.
 #[inline(always)]
 fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
     tables: &Tables<'_, P, I, S>,
@@ -96,57 +99,33 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
     setpoint: &Wrench,
     voltage_v: f32,
     health: Health,
+    scratch: &mut [Scratch],
     throttle: &mut [f32],
-    desaturated: impl FnOnce([f32; 4], [f32; 2], &mut [f32]) -> [f32; 4],
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    if let (Some(vertical), true) = (tables.shortcut.vertical(), health.is_good()) {
-        return mix_vertical(tables, vertical, setpoint, voltage_v, throttle);
-    }
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
-    let per_factor = factors.map(|factor| 1.0 / factor);
-
-    let mut achieved = [0.0; 4];
-    let mut delivered = true;
-    for unit in units {
-        let [f, q] = unit.efforts(&bounded);
-        let efforts = [f * per_factor[0], q * per_factor[1]];
-        let rotors = rotors(unit.channels, health);
-        let given = invert(tables, unit, rotors, efforts, throttle);
-        delivered &= is_within(given, efforts, tables.tolerance.efforts);
-        unit.add_wrench(given, factors, &mut achieved);
+    for (unit, scratch) in units.iter().zip(scratch.iter_mut()) {
+        scratch.rotors = Rotors::of(unit.channels, health);
     }
-    if !delivered {
-        achieved = desaturated(bounded, factors, throttle);
+    allocate(tables, bounded, factors, scratch);
+    let mut achieved = [0.0; 4];
+    for (unit, scratch) in units.iter().zip(scratch) {
+        rolled();
+        let throttles = match scratch.rotors {
+            Rotors::Both => tables
+                .inverse
+                .throttles(&tables.pair, &tables.throttle, scratch.efforts),
+            Rotors::None => [0.0; 2],
+            single => single.invert(&tables.pair, &tables.throttle, scratch.efforts[0]),
+        };
+        write(unit.channels, throttles, throttle);
+        unit.add_wrench(tables.pair.efforts(throttles), factors, &mut achieved);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
     Ok((
         Wrench::from_array(achieved),
         saturation.with_voltage_clamped(clamped),
     ))
-}
-
-/// Writes the throttles that serve `request` in the order of priority; returns the wrench `[roll, pitch, yaw, thrust]`
-/// that they give.
-#[inline(always)]
-fn desaturated<P: Quantity, I: Inverse<P>, S: Shortcut>(
-    tables: &Tables<'_, P, I, S>,
-    request: [f32; 4],
-    factors: [f32; 2],
-    health: Health,
-    scratch: &mut [Scratch],
-    throttle: &mut [f32],
-) -> [f32; 4] {
-    for (unit, scratch) in tables.units.iter().zip(scratch.iter_mut()) {
-        scratch.rotors = rotors(unit.channels, health);
-    }
-    desaturate(tables, request, factors, scratch);
-    let mut achieved = [0.0; 4];
-    for (unit, scratch) in tables.units.iter().zip(scratch) {
-        let given = invert(tables, unit, scratch.rotors, scratch.efforts, throttle);
-        unit.add_wrench(given, factors, &mut achieved);
-    }
-    achieved
 }
 
 /// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's proof each unit
@@ -263,16 +242,6 @@ fn at_reference([roll, pitch, yaw, thrust]: [f32; 4], [per_thrust, per_torque]: 
     }
 }
 
-#[inline(always)]
-fn rotors([upper, lower]: [u8; 2], health: Health) -> Rotors {
-    match (health.has_failed(upper), health.has_failed(lower)) {
-        (false, false) => Rotors::Both,
-        (false, true) => Rotors::Upper,
-        (true, false) => Rotors::Lower,
-        (true, true) => Rotors::None,
-    }
-}
-
 /// True where efforts are those `wanted` within `tolerance`.
 #[inline(always)]
 fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
@@ -282,25 +251,6 @@ fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
         within &= missed <= tolerance && missed >= -tolerance;
     }
     within
-}
-
-/// Writes a unit's throttles for its `efforts` and returns the efforts that they give.
-#[inline(always)]
-fn invert<P: Quantity, I: Inverse<P>, S>(
-    tables: &Tables<'_, P, I, S>,
-    unit: &Unit,
-    rotors: Rotors,
-    efforts: [f32; 2],
-    throttle: &mut [f32],
-) -> [f32; 2] {
-    let throttles = match rotors {
-        Rotors::Both => tables.inverse.throttles(&tables.pair, &tables.throttle, efforts),
-        rotors => single_rotor(tables, rotors, efforts[0])
-            .and_then(|throttle| rotors.throttles(throttle))
-            .unwrap_or([0.0, 0.0]),
-    };
-    write(unit.channels, throttles, throttle);
-    tables.pair.efforts(throttles)
 }
 
 /// An airframe's mixer as a type, for code that is generic over airframes. The compiler implements it.

@@ -34,13 +34,6 @@ impl Unit {
             }
         }
     }
-
-    /// True where thrust gives no yaw and torque nothing but yaw.
-    #[inline(always)]
-    pub(crate) fn is_vertical(&self) -> bool {
-        let [[.., thrust_yaw, _], [torque_roll, torque_pitch, _, torque_thrust]] = self.effectiveness;
-        [thrust_yaw, torque_roll, torque_pitch, torque_thrust] == [0.0; 4]
-    }
 }
 
 /// What the inverse map may miss; beyond it something has been given up.
@@ -50,6 +43,15 @@ pub struct Tolerance {
     pub efforts: [f32; 2],
     /// Of the wrench `[roll, pitch, yaw, thrust]`: what those errors add up to, with rounding.
     pub wrench: [f32; 4],
+}
+
+/// Level flight with all rotors: what the general path retreats to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level<'a> {
+    /// The least thrust without roll, pitch and yaw, and a middling one, in rows.
+    pub thrust: [f32; 2],
+    /// Per unit the efforts `[f, Q]` at these, N and N m at the reference voltage.
+    pub efforts: &'a [[[f32; 2]; 2]],
 }
 
 /// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator of its inverse, `S`
@@ -68,6 +70,11 @@ pub struct Tables<'a, P, I, S = NoShortcut> {
     pub voltage: Option<Voltage<'a>>,
     /// A polygon inside the attainable set.
     pub attainable: AttainableSet<'a>,
+    /// Rows of the general path per N m of roll, pitch and yaw and per N of thrust: units over authority at the reference
+    /// voltage, roll and pitch alike; 0 on axes that the airframe does not serve.
+    pub rows: [f32; 4],
+    /// Level flight.
+    pub level: Option<Level<'a>>,
     /// What is given up when a unit cannot follow.
     pub desaturation: Desaturation,
     /// A shorter way to desaturate while all rotors work.

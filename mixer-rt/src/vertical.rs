@@ -214,13 +214,6 @@ impl<'a, S> Search<'a, S> {
     }
 }
 
-/// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take three times the code
-/// and are hardly faster.
-#[inline(always)]
-fn rolled() {
-    black_box(());
-}
-
 impl<S: TorqueLimit> Vertical<'_, S> {
     /// Writes the least-norm efforts of `request`; true only where all are attainable.
     #[inline(always)]

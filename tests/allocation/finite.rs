@@ -114,6 +114,8 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         throttle: view.throttle,
         voltage: view.voltage,
         attainable: view.attainable,
+        rows: view.rows,
+        level: view.level,
         desaturation: view.desaturation,
         shortcut: view.shortcut,
         tolerance: view.tolerance,

@@ -14,7 +14,8 @@ mod average;
 use core::hint::black_box;
 
 use super::program::{Corner, PARALLEL, Row};
-use super::{Efforts, MOST_UNITS, Request, Search, TorqueLimit, Vertical, rolled};
+use super::{Efforts, MOST_UNITS, Request, Search, TorqueLimit, Vertical};
+use crate::rolled;
 use crate::{Airmode, clamp};
 
 /// Segments of [`Coupling::floors_n`].

@@ -6,7 +6,8 @@
 
 use core::hint::black_box;
 
-use super::{Vertical, rolled};
+use super::Vertical;
+use crate::rolled;
 
 /// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <= high` for a slope,
 /// without the thrust for a wall.

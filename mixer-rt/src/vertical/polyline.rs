@@ -8,7 +8,8 @@
 use core::hint::black_box;
 
 use super::reach::{TorqueLimit, reach};
-use super::{MOST_UNITS, Search, rolled};
+use super::{MOST_UNITS, Search};
+use crate::rolled;
 
 /// A knot of a side, and the line from it to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,8 @@
 
 use core::hint::black_box;
 
-use super::{Knot, MOST_UNITS, Search, rolled};
+use super::{Knot, MOST_UNITS, Search};
+use crate::rolled;
 use crate::{Scalar, sqrt};
 
 /// One side of the attainable set: the largest torque in one direction at every thrust.

@@ -6,8 +6,9 @@
 
 use super::polyline::climb;
 use super::reach::{reach, reach_from_inside, top};
-use super::{Request, Search, TorqueLimit, Vertical, VerticalUnit, rolled};
+use super::{Request, Search, TorqueLimit, Vertical, VerticalUnit};
 use crate::clamp;
+use crate::rolled;
 
 impl VerticalUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.

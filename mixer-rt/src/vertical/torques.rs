@@ -4,8 +4,9 @@
 //! All in the direction of yaw, p_i = s_i Q_i: the least-norm p_i are alike, yaw / n.
 
 use super::reach::reach;
-use super::{Effort, Search, TorqueLimit, Vertical, rolled};
+use super::{Effort, Search, TorqueLimit, Vertical};
 use crate::clamp;
+use crate::rolled;
 
 impl<S: TorqueLimit> Vertical<'_, S> {
     /// Writes the efforts: the thrusts found, and the torques that come nearest the yaw `wanted` >= 0 in its direction,
