@@ -20,7 +20,6 @@ use serde::Serialize;
 
 use crate::Compiled;
 use crate::evaluator::Evaluator;
-use crate::tables::SideTable;
 
 pub use counted::COUNTED;
 
@@ -33,10 +32,6 @@ pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
 pub enum Kind {
     /// Vertical axes and little freedom: a few cases, each solved at once.
     ClosedForm,
-    /// The same between sides that bend inwards: yaw may have several peaks.
-    Bent,
-    /// The same where priorities couple thrust and yaw: linear programs in a few unknowns.
-    Coupled,
     /// Any other layout: face by face along a path of wrenches.
     Path,
 }
@@ -45,8 +40,6 @@ impl Kind {
     /// The kind of a compiled airframe.
     pub fn of(compiled: &Compiled) -> Kind {
         match &compiled.tables.shortcut {
-            Some(table) if table.coupling.is_some() => Kind::Coupled,
-            Some(table) if matches!(table.border.sides[0], SideTable::Polyline(_)) => Kind::Bent,
             Some(_) => Kind::ClosedForm,
             None => Kind::Path,
         }
@@ -56,8 +49,6 @@ impl Kind {
     pub fn description(self) -> &'static str {
         match self {
             Kind::ClosedForm => "in closed form",
-            Kind::Bent => "in closed form, between sides that bend inwards",
-            Kind::Coupled => "in closed form, thrust and yaw together",
             Kind::Path => "along a path of wrenches",
         }
     }
@@ -108,7 +99,7 @@ impl Counted {
     /// The overhead of requests that least norm delivers.
     pub fn delivered(&self, kind: Kind) -> Overhead {
         match kind {
-            Kind::ClosedForm | Kind::Bent | Kind::Coupled => self.closed_form,
+            Kind::ClosedForm => self.closed_form,
             Kind::Path => self.path,
         }
     }

@@ -40,7 +40,6 @@ use diagnostic::{Diagnostic, Diagnostics};
 use effectiveness::Effectiveness;
 use evaluator::Evaluator;
 use injectivity::Injectivity;
-use model::PairMap;
 use proc_macro2::TokenStream;
 use proof::Certificate;
 use residual::Residual;
@@ -106,13 +105,9 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
     let in_polygon = hover::thrust_range(&airframe, &tables)?;
-    tables.shortcut = vertical::table(&airframe, &effectiveness, lost_area.convexity, in_polygon);
+    let (shortcut, lost_between_sides) = vertical::table(&airframe, &effectiveness).unzip();
+    tables.shortcut = shortcut;
     let thrust_range_n = hover::delivered_range(&airframe, &tables, in_polygon);
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-    let lost_between_sides = tables
-        .shortcut
-        .as_ref()
-        .map(|table| attainable::lost_between(&pair, &table.border.sides, table.thrust_n));
     Ok(Compiled {
         source_name: source.name.clone(),
         airframe,

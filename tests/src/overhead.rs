@@ -48,7 +48,7 @@ impl Sample {
     pub fn quantities(&self) -> &'static [Quantity] {
         match self.kind {
             Kind::ClosedForm => &[Quantity::Delivered, Quantity::Attainable],
-            Kind::Bent | Kind::Coupled | Kind::Path => &[Quantity::Delivered],
+            Kind::Path => &[Quantity::Delivered],
         }
     }
 
@@ -79,8 +79,8 @@ impl Sample {
     fn factors(&self, quantity: Quantity) -> [f64; PARAMETERS] {
         let mut factors = [0.0; PARAMETERS];
         let overhead = match (self.kind, quantity) {
-            (Kind::ClosedForm | Kind::Bent | Kind::Coupled, Quantity::Delivered) => CLOSED_FORM,
-            (Kind::ClosedForm | Kind::Bent | Kind::Coupled, Quantity::Attainable) => CLOSED_FORM_MEAN,
+            (Kind::ClosedForm, Quantity::Delivered) => CLOSED_FORM,
+            (Kind::ClosedForm, Quantity::Attainable) => CLOSED_FORM_MEAN,
             (Kind::Path, _) => PATH,
         };
         factors[overhead] = 1.0;
@@ -180,10 +180,7 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
         (1e3 * errors.fold(0.0, f64::max)).ceil() / 1e3
     };
     let errors = [
-        error(
-            &[Kind::ClosedForm, Kind::Bent, Kind::Coupled],
-            Quantity::Delivered,
-        ),
+        error(&[Kind::ClosedForm], Quantity::Delivered),
         error(&[Kind::ClosedForm], Quantity::Attainable),
         error(&[Kind::Path], Quantity::Delivered),
     ];
@@ -197,7 +194,7 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
 fn ranges(samples: &[Sample]) -> Vec<Frames> {
     let mut all: Vec<Frames> = Vec::new();
     let largest = samples.iter().map(|sample| sample.units).max().unwrap_or(0);
-    for kind in [Kind::ClosedForm, Kind::Bent, Kind::Coupled, Kind::Path] {
+    for kind in [Kind::ClosedForm, Kind::Path] {
         for units in 1..=largest {
             let alike = || {
                 let alike = samples

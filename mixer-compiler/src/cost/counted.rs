@@ -50,27 +50,6 @@ pub const COUNTED: Counted = Counted {
             worst: [2329, 2780],
         },
         Frames {
-            kind: Kind::Bent,
-            units: 3,
-            attainable_mean: [1024, 1024],
-            saturated_mean: [1877, 1877],
-            worst: [4441, 4441],
-        },
-        Frames {
-            kind: Kind::Bent,
-            units: 4,
-            attainable_mean: [1156, 1156],
-            saturated_mean: [2304, 2304],
-            worst: [11090, 11090],
-        },
-        Frames {
-            kind: Kind::Coupled,
-            units: 4,
-            attainable_mean: [1111, 1151],
-            saturated_mean: [3150, 3798],
-            worst: [9773, 13959],
-        },
-        Frames {
             kind: Kind::Path,
             units: 5,
             attainable_mean: [2686, 2686],
