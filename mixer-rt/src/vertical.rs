@@ -178,24 +178,20 @@ impl Vertical<'_> {
         let share = self.torque_share * request.yaw;
         let wrench = [request.roll, request.pitch, request.thrust];
         let [idle, full] = self.thrust_n;
-        let mut beyond = -f32::MAX;
+        let mut attained = Attained::Yes;
         for (unit, effort) in self.units.iter().zip(efforts) {
             effort.thrust = unit.thrust(&wrench);
             effort.torque = unit.spin * share;
             let [middle, half] = self.border.torques(effort.thrust);
             let outside = (effort.torque - middle).abs() - half;
-            beyond = if outside > beyond { outside } else { beyond };
-            if effort.thrust < idle || effort.thrust > full {
-                beyond = f32::MAX;
+            if outside > self.border.lost_nm || effort.thrust < idle || effort.thrust > full {
+                return Attained::No;
+            }
+            if outside > 0.0 {
+                attained = Attained::Perhaps;
             }
         }
-        if beyond <= 0.0 {
-            Attained::Yes
-        } else if beyond <= self.border.lost_nm {
-            Attained::Perhaps
-        } else {
-            Attained::No
-        }
+        attained
     }
 
     /// The wrench of attainable efforts at the voltage's `[k_f, k_Q]`.

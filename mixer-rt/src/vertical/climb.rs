@@ -8,8 +8,9 @@
 use super::{Border, MOST_UNITS, Outline, Search, Vertical, rolled};
 
 /// The knots of one unit's side that are ahead.
-#[derive(Clone, Copy, Default)]
-struct Ahead {
+#[derive(Clone, Copy)]
+struct Ahead<'a> {
+    outline: &'a Outline,
     /// How far away the next one is, in z.
     next: f32,
     /// By how much less yaw grows beyond it, N m per unit of z.
@@ -24,14 +25,17 @@ struct Ahead {
     start: f32,
 }
 
-impl Ahead {
-    /// To the knot at `index`.
+impl Ahead<'_> {
+    /// To the knot at `index`; none where the unit stays.
     #[inline(always)]
-    fn look(&mut self, outline: &Outline) {
-        (self.next, self.drop) = match outline.knots.get(self.index) {
-            Some(knot) => ((knot.thrust_n - self.start) * self.per_n, knot.drop * self.speed),
-            None => (f32::MAX, 0.0),
-        };
+    fn look(&mut self) {
+        self.next = f32::MAX;
+        if let Some(knot) = self.outline.knots.get(self.index)
+            && self.speed > 0.0
+        {
+            self.next = (knot.thrust_n - self.start) * self.per_n;
+            self.drop = knot.drop * self.speed;
+        }
         self.index = self.index.wrapping_add(self.step);
     }
 }
@@ -47,51 +51,53 @@ impl Border<'_> {
 
 impl Vertical<'_> {
     /// z within `[low, high]` where yaw of the sign `sign` reaches furthest by the coarse sides, seen from `start`.
-    #[inline(always)]
-    pub(super) fn top(&self, search: &[Search], sign: f32, start: f32, [low, high]: [f32; 2]) -> f32 {
-        for (direction, end) in [(1.0, high - start), (-1.0, start - low)] {
-            let way = self.ascent(search, sign, start, direction, end);
-            if way > 0.0 {
-                return start + direction * way;
-            }
-        }
-        start
-    }
-
-    /// How far yaw grows from `start` in one direction of z, at most to `end`.
     #[inline(never)]
-    fn ascent(&self, search: &[Search], sign: f32, start: f32, direction: f32, end: f32) -> f32 {
-        let mut ahead = [Ahead::default(); MOST_UNITS];
+    pub(super) fn top(&self, search: &[Search], sign: f32, start: f32, [low, high]: [f32; 2]) -> f32 {
+        let none = Ahead {
+            outline: &self.border.outlines[0],
+            next: f32::MAX,
+            drop: 0.0,
+            index: 0,
+            step: 1,
+            per_n: 0.0,
+            speed: 0.0,
+            start: 0.0,
+        };
+        let mut ahead = [none; MOST_UNITS];
         let mut growth = 0.0;
         for ((unit, state), ahead) in self.units.iter().zip(search).zip(&mut ahead) {
             rolled();
-            let outline = self.border.outline(sign * unit.spin);
-            let (speed, f) = (direction * state.along, state.thrust(start));
-            *ahead = Ahead {
-                next: f32::MAX,
-                per_n: direction * unit.per_null,
-                speed: speed.abs(),
-                start: f,
-                ..Ahead::default()
-            };
-            let mut slope = outline.slope;
-            let mut passed = 0usize;
-            for knot in &outline.knots {
+            ahead.outline = self.border.outline(sign * unit.spin);
+            ahead.start = state.thrust(start);
+            let mut slope = ahead.outline.slope;
+            for knot in &ahead.outline.knots {
                 rolled();
-                if knot.thrust_n < f || (knot.thrust_n == f && speed > 0.0) {
-                    slope -= knot.drop;
-                    passed += 1;
+                if knot.thrust_n > ahead.start {
+                    break;
                 }
+                slope -= knot.drop;
+                ahead.index += 1;
             }
-            growth += slope * speed;
-            (ahead.index, ahead.step) = if speed > 0.0 {
-                (passed, 1)
-            } else {
-                (passed.wrapping_sub(1), usize::MAX)
-            };
-            if speed != 0.0 {
-                ahead.look(outline);
+            growth += slope * unit.null;
+        }
+        // Towards more thrust a unit passes the knots above it, towards less those below it, one just met included.
+        let direction = if growth < 0.0 { -1.0 } else { 1.0 };
+        growth *= direction;
+        let end = if direction < 0.0 {
+            start - low
+        } else {
+            high - start
+        };
+        for (unit, ahead) in self.units.iter().zip(&mut ahead) {
+            rolled();
+            let speed = direction * unit.null;
+            ahead.per_n = direction * unit.per_null;
+            ahead.speed = speed.abs();
+            if speed < 0.0 {
+                ahead.index = ahead.index.wrapping_sub(1);
+                ahead.step = usize::MAX;
             }
+            ahead.look();
         }
         // Growth that is rounding only is none.
         let level = self.yaw_rounding_nm / self.thrust_n[1];
@@ -100,19 +106,19 @@ impl Vertical<'_> {
             rolled();
             way = end;
             let mut nearest = None;
-            for (unit, ahead) in self.units.iter().zip(&mut ahead) {
+            for ahead in &mut ahead {
                 rolled();
                 if ahead.next < way {
                     way = ahead.next;
-                    nearest = Some((unit, ahead));
+                    nearest = Some(ahead);
                 }
             }
-            let Some((unit, ahead)) = nearest else {
+            let Some(ahead) = nearest else {
                 break;
             };
             growth -= ahead.drop;
-            ahead.look(self.border.outline(sign * unit.spin));
+            ahead.look();
         }
-        way
+        start + direction * way
     }
 }

@@ -9,10 +9,10 @@ use crate::clamp;
 use core::hint::black_box;
 
 /// Steps towards the furthest yaw, ..
-const CLIMBS: u32 = 3;
+const CLIMBS: u32 = 2;
 
 /// .. and towards the middle. Each is twice as long as a straight line asks for, but for the first.
-const RETREATS: u32 = 3;
+const RETREATS: u32 = 2;
 
 /// In yaw that counts as none: what z's way must gain to be gone in full. A way of less gain is gone in part, so that
 /// z does not jump where the gain vanishes. Costs up to a quarter of it, 0.02 % of the yaw.
@@ -67,7 +67,7 @@ impl Vertical<'_> {
         [ceiling, middle]: [f32; 2],
         search: &mut [Search],
     ) -> f32 {
-        let NullRange { low, high, .. } = self.within_facets(request, ceiling, search);
+        let (NullRange { low, high, .. }, has_room) = self.within_facets(request, ceiling, search);
         let mut z = NullRange::nearest(low, high);
         let reach = self.reach(search, z);
         // The limit of yaw that the request violates, if any.
@@ -80,7 +80,7 @@ impl Vertical<'_> {
         };
         let wanted = sign * request.yaw;
         let mut here = furthest(reach, sign);
-        if high > low {
+        if has_room && high > low {
             (z, here) = self.climb(search, sign, (z, here), [low, high], wanted);
         }
         // Beyond zero yaw is reversed, beyond the request it is exceeded.
@@ -129,13 +129,13 @@ impl Vertical<'_> {
     }
 
     /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to where the facets allow
-    /// them if need be. Leaves the units' way, z.
+    /// them if need be: then z has no room. Leaves the units' way, z.
     #[inline(always)]
-    fn within_facets(&self, request: &Request, ceiling: f32, search: &mut [Search]) -> NullRange {
+    fn within_facets(&self, request: &Request, ceiling: f32, search: &mut [Search]) -> (NullRange, bool) {
         let wrench = [request.roll, request.pitch, request.thrust];
         let range = self.null_range(search, &wrench);
         if range.is_attainable() {
-            return range;
+            return (range, true);
         }
         let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
         let wrench = [
@@ -143,7 +143,7 @@ impl Vertical<'_> {
             share * request.pitch,
             clamp(request.thrust, low, high),
         ];
-        self.null_range(search, &wrench)
+        (self.null_range(search, &wrench), false)
     }
 
     /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range.
