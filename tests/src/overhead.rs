@@ -102,7 +102,12 @@ const PARAMETERS: usize = 7;
 /// # Errors
 /// An airframe that is not there, is refused, or has an evaluator that has not been counted.
 pub fn samples(rows: &[Row]) -> Result<Vec<Sample>, String> {
-    let measured = measured::all();
+    let mut measured = measured::all();
+    let airframes = crate::airframes().map_err(|error| format!("airframes/: {error}"))?;
+    measured.extend(airframes.iter().filter_map(|name| {
+        let text = std::fs::read_to_string(root().join(format!("airframes/{name}.toml"))).ok()?;
+        measured::y6(name, &text)
+    }));
     let coaxial = rows.iter().filter(|row| row.subject.mixer == "coaxial");
     coaxial
         .map(|row| {
