@@ -177,14 +177,13 @@ impl Vertical<'_> {
     pub(crate) fn least_norm(&self, request: &Request, efforts: &mut Efforts) -> Attained {
         let share = self.torque_share * request.yaw;
         let wrench = [request.roll, request.pitch, request.thrust];
-        let [idle, full] = self.thrust_n;
         let mut attained = Attained::Yes;
         for (unit, effort) in self.units.iter().zip(efforts) {
             effort.thrust = unit.thrust(&wrench);
             effort.torque = unit.spin * share;
             let [middle, half] = self.border.torques(effort.thrust);
             let outside = (effort.torque - middle).abs() - half;
-            if outside > self.border.lost_nm || effort.thrust < idle || effort.thrust > full {
+            if outside > self.border.lost_nm {
                 return Attained::No;
             }
             if outside > 0.0 {
@@ -220,8 +219,8 @@ impl Vertical<'_> {
         let search = search.get_mut(..self.units.len()).unwrap_or_default();
         let (vertical, efforts, search) = black_box((self, efforts.as_mut_slice(), search));
         let limits = vertical.thrust_limits(airmode, request.thrust);
-        let z = vertical.attainable_thrusts(request, limits, search);
-        vertical.torques(search, efforts, request.yaw, z);
+        let found = vertical.attainable_thrusts(request, limits, search);
+        vertical.torques(search, efforts, request.yaw, found);
     }
 
     /// The most thrust that may be given, and a thrust well inside below it, N.

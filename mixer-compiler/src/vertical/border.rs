@@ -96,7 +96,8 @@ pub(super) fn border(pair: &PairMap) -> Option<(BorderTable, f64)> {
     Some((table, 1.0 - area / whole_area(pair)))
 }
 
-/// The knots as `mixer-rt` reads them, the last one as a cell without an end.
+/// The knots as `mixer-rt` reads them. The last cell goes on as the one before it, so that half the width is negative beyond
+/// the largest thrust, as it is before the first cell.
 fn cells(knots: &[Knot], torque: f64) -> Vec<Cell> {
     let rounded: Vec<[f32; 2]> = knots
         .iter()
@@ -105,15 +106,17 @@ fn cells(knots: &[Knot], torque: f64) -> Vec<Cell> {
             [0.5 * (largest - least), half].map(|x| (torque * x) as f32)
         })
         .collect();
-    let ends = rounded.iter().skip(1).chain(rounded.last());
-    rounded
-        .iter()
-        .zip(ends)
-        .map(|(start, end)| Cell {
-            middle: [start[0], end[0] - start[0]],
-            half: [start[1], end[1] - start[1]],
-        })
-        .collect()
+    let cell = |start: [f32; 2], [from, to]: [[f32; 2]; 2]| Cell {
+        middle: [start[0], to[0] - from[0]],
+        half: [start[1], to[1] - from[1]],
+    };
+    let mut cells: Vec<Cell> = rounded
+        .windows(2)
+        .map(|ends| cell(ends[0], [ends[0], ends[1]]))
+        .collect();
+    let last = rounded.len() - 1;
+    cells.push(cell(rounded[last], [rounded[last - 1], rounded[last]]));
+    cells
 }
 
 impl Sides {

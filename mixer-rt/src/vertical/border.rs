@@ -58,7 +58,7 @@ pub struct Border<'a> {
     pub corners_n: [f32; 2],
     /// Grids of cells before, between and beyond these.
     pub grids: [Grid; 3],
-    /// Their cells, in the order of the thrust, and one more for the largest thrust.
+    /// Their cells, in the order of the thrust, and one more from the largest thrust on.
     pub cells: &'a [Cell],
     /// Coarse Q_max(f), and -Q_min(f).
     pub outlines: [Outline; 2],
@@ -67,7 +67,8 @@ pub struct Border<'a> {
 }
 
 impl Border<'_> {
-    /// Middle and half the width of the attainable torques at the thrust `f`, N m.
+    /// Middle and half the width of the attainable torques at the thrust `f`, N m; the latter is negative where `f` is not
+    /// attainable.
     #[inline(always)]
     pub fn torques(&self, f: f32) -> [f32; 2] {
         let [first, second] = self.corners_n;
@@ -79,7 +80,7 @@ impl Border<'_> {
         let place = grid.offset + f * grid.per_n;
         let index = place as u32;
         let Some(cell) = self.cells.get(index as usize) else {
-            return [0.0, 0.0];
+            return [0.0, -f32::MAX];
         };
         let part = place - index as f32;
         let [middle, half] = [cell.middle, cell.half].map(|[start, more]| start + part * more);

@@ -11,8 +11,8 @@ use core::hint::black_box;
 /// Steps towards the furthest yaw, ..
 const CLIMBS: u32 = 2;
 
-/// .. and towards the middle. Each is twice as long as a straight line asks for, but for the first.
-const RETREATS: u32 = 2;
+/// .. and towards the middle. All but the first are twice as long as a straight line asks for.
+const RETREATS: u32 = 3;
 
 /// In yaw that counts as none: what z's way must gain to be gone in full. A way of less gain is gone in part, so that
 /// z does not jump where the gain vanishes. Costs up to a quarter of it, 0.02 % of the yaw.
@@ -27,29 +27,6 @@ impl VerticalUnit {
     }
 }
 
-/// The z that leave all thrusts attainable; from `high` to `low` where there are none.
-#[derive(Clone, Copy)]
-struct NullRange {
-    low: f32,
-    high: f32,
-    /// False where a thrust that N does not change is out of its range.
-    others: bool,
-}
-
-impl NullRange {
-    /// True where some z leaves all thrusts attainable.
-    #[inline(always)]
-    fn is_attainable(&self) -> bool {
-        self.low <= self.high && self.others
-    }
-
-    /// The z nearest zero.
-    #[inline(always)]
-    fn nearest(low: f32, high: f32) -> f32 {
-        clamp(0.0, low, if high > low { high } else { low })
-    }
-}
-
 /// How far yaw of the sign `sign` reaches.
 #[inline(always)]
 fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
@@ -59,57 +36,61 @@ fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
 impl Vertical<'_> {
     /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach the request if from any. Where yaw
     /// would be reversed or exceeded they are drawn towards those of the thrust `middle`. Returns where they are on the
-    /// units' way, and leaves what yaw each unit gives there.
+    /// units' way and the least and most yaw there, and leaves what each unit gives of it.
     #[inline(always)]
     pub(super) fn attainable_thrusts(
         &self,
         request: &Request,
         [ceiling, middle]: [f32; 2],
         search: &mut [Search],
-    ) -> f32 {
-        let (NullRange { low, high, .. }, has_room) = self.within_facets(request, ceiling, search);
-        let mut z = NullRange::nearest(low, high);
-        let reach = self.reach(search, z);
+    ) -> (f32, [f32; 2]) {
+        let ([low, high], has_room) = self.within_facets(request, ceiling, search);
+        let mut z = clamp(0.0, low, if high > low { high } else { low });
+        let mut reach = self.reach(search, z);
         // The limit of yaw that the request violates, if any.
         let sign = if request.yaw > reach[1] {
             1.0
         } else if request.yaw < reach[0] {
             -1.0
         } else {
-            return z;
+            return (z, reach);
         };
         let wanted = sign * request.yaw;
-        let mut here = furthest(reach, sign);
         if has_room && high > low {
-            (z, here) = self.climb(search, sign, (z, here), [low, high], wanted);
+            (z, reach) = self.climb(search, sign, (z, reach), [low, high], wanted);
         }
         // Beyond zero yaw is reversed, beyond the request it is exceeded.
         let needed = if wanted < 0.0 { wanted } else { 0.0 };
-        if needed - here > self.yaw_rounding_nm {
-            z = self.retreat(search, sign, (z, here), needed, middle);
+        if needed - furthest(reach, sign) > self.yaw_rounding_nm {
+            (z, reach) = self.retreat(search, sign, (z, reach), needed, middle);
         }
-        z
+        (z, reach)
     }
 
-    /// Moves z from a point where yaw reaches less than `wanted` towards where it reaches furthest within `range`. Returns z
-    /// and how far yaw reaches there, and leaves what each unit gives.
+    /// Moves z from a point where yaw does not reach `wanted` towards where it reaches furthest within `range`. Returns z and
+    /// the least and most yaw there, and leaves what each unit gives of it.
     #[inline(always)]
     fn climb(
         &self,
         search: &mut [Search],
         sign: f32,
-        (mut z, mut here): (f32, f32),
+        (mut z, mut reach): (f32, [f32; 2]),
         range: [f32; 2],
         wanted: f32,
-    ) -> (f32, f32) {
+    ) -> (f32, [f32; 2]) {
         let top = self.top(search, sign, z, range);
         if top == z {
-            return (z, here);
+            return (z, reach);
         }
-        let most = furthest(self.reach(search, top), sign);
+        let at_top = self.reach(search, top);
+        let most = furthest(at_top, sign);
         let whole = GAIN * self.yaw_rounding_nm;
+        if most <= wanted && most - furthest(reach, sign) >= whole {
+            return (top, at_top);
+        }
         let mut ahead = 1.0;
         for _ in 0..black_box(CLIMBS) {
+            let here = furthest(reach, sign);
             let gain = most - here;
             let mut part = if gain > 0.0 {
                 ahead * (wanted - here) / gain
@@ -119,63 +100,51 @@ impl Vertical<'_> {
             part = if part < 1.0 { part } else { 1.0 };
             part *= if gain < whole { gain / whole } else { 1.0 };
             z += part * (top - z);
-            here = furthest(self.reach(search, z), sign);
+            reach = self.reach(search, z);
+            let here = furthest(reach, sign);
             if here >= wanted || here >= most {
                 break;
             }
             ahead = 2.0;
         }
-        (z, here)
+        (z, reach)
     }
 
     /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to where the facets allow
-    /// them if need be: then z has no room. Leaves the units' way, z.
+    /// them; false where that changes them, so that z has no room. Leaves the units' way, z.
     #[inline(always)]
-    fn within_facets(&self, request: &Request, ceiling: f32, search: &mut [Search]) -> (NullRange, bool) {
-        let wrench = [request.roll, request.pitch, request.thrust];
-        let range = self.null_range(search, &wrench);
-        if range.is_attainable() {
-            return (range, true);
-        }
+    fn within_facets(&self, request: &Request, ceiling: f32, search: &mut [Search]) -> ([f32; 2], bool) {
         let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
-        let wrench = [
-            share * request.roll,
-            share * request.pitch,
-            clamp(request.thrust, low, high),
-        ];
-        (self.null_range(search, &wrench), false)
+        let thrust = clamp(request.thrust, low, high);
+        let wrench = [share * request.roll, share * request.pitch, thrust];
+        let has_room = share == 1.0 && thrust == request.thrust;
+        (self.null_range(search, &wrench), has_room)
     }
 
-    /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range.
-    #[inline(never)]
-    fn null_range(&self, search: &mut [Search], wrench: &[f32; 3]) -> NullRange {
-        let [least, most] = self.thrust_n;
-        let mut range = NullRange {
-            low: -f32::MAX,
-            high: f32::MAX,
-            others: true,
-        };
+    /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range: from more to
+    /// less where rounding leaves none.
+    #[inline(always)]
+    fn null_range(&self, search: &mut [Search], wrench: &[f32; 3]) -> [f32; 2] {
+        let (mut low, mut high) = (-f32::MAX, f32::MAX);
         for (unit, state) in self.units.iter().zip(search) {
             rolled();
             let f = unit.thrust(wrench);
             (state.from, state.along) = (f, unit.null);
-            if unit.per_null == 0.0 {
-                range.others &= f >= least && f <= most;
-                continue;
+            if unit.per_null != 0.0 {
+                let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
+                low = if from > low { from } else { low };
+                high = if to < high { to } else { high };
             }
-            let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
-            range.low = if from > range.low { from } else { range.low };
-            range.high = if to < range.high { to } else { range.high };
         }
-        if range.high == f32::MAX {
+        if high == f32::MAX {
             // There is no null space.
-            (range.low, range.high) = (0.0, 0.0);
+            return [0.0, 0.0];
         }
-        range
+        [low, high]
     }
 
-    /// Draws the thrusts, now at `z` where yaw reaches `reached`, towards those of `middle_n` until it reaches `needed`.
-    /// Returns where they are on their new way, and leaves what yaw each unit gives there.
+    /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, towards those of `middle_n` until it reaches it.
+    /// Returns where they are on their new way and the least and most yaw there, and leaves what each unit gives of it.
     ///
     /// A straight line from the middle crosses `needed` inside where the sides are concave: then a second one from there
     /// is nearer. Where they are not it may cross outside, by little: then the steps go inwards.
@@ -184,32 +153,31 @@ impl Vertical<'_> {
         &self,
         search: &mut [Search],
         sign: f32,
-        (z, reached): (f32, f32),
+        (z, mut reach): (f32, [f32; 2]),
         needed: f32,
         middle_n: f32,
-    ) -> f32 {
+    ) -> (f32, [f32; 2]) {
         for (unit, state) in self.units.iter().zip(search.iter_mut()) {
             rolled();
             let thrust = state.thrust(z);
             state.from = unit.allocation[2] * middle_n;
             state.along = thrust - state.from;
         }
-        let outside = reached - needed;
+        let outside = furthest(reach, sign) - needed;
         let inside = furthest(self.reach(search, 0.0), sign) - needed;
         let inside = if inside > 0.0 { inside } else { 0.0 };
         let mut at = inside / (inside - outside);
-        let mut here = furthest(self.reach(search, at), sign) - needed;
-        if here > 0.0 {
-            at += (1.0 - at) * here / (here - outside);
-            here = furthest(self.reach(search, at), sign) - needed;
-        }
-        for _ in 0..black_box(RETREATS) {
-            if here >= 0.0 {
-                break;
+        for step in 0..black_box(RETREATS) {
+            reach = self.reach(search, at);
+            let here = furthest(reach, sign) - needed;
+            if here < 0.0 {
+                at *= clamp(1.0 + 2.0 * here / (inside - here), 0.0, 1.0);
+            } else if step == 0 {
+                at += (1.0 - at) * here / (here - outside);
+            } else {
+                return (at, reach);
             }
-            at *= clamp(1.0 + 2.0 * here / (inside - here), 0.0, 1.0);
-            here = furthest(self.reach(search, at), sign) - needed;
         }
-        at
+        (at, self.reach(search, at))
     }
 }

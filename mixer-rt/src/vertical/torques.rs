@@ -7,15 +7,16 @@ use super::{Effort, Search, Vertical, rolled};
 use crate::clamp;
 
 impl Vertical<'_> {
-    /// Writes the efforts: the thrusts at `z` of the units' way, and the torques within what the units give there that come
-    /// nearest the `yaw`.
+    /// Writes the efforts: the thrusts at `z` of the units' way, and the torques that come nearest the `yaw` within what the
+    /// units give there, which is `reach` in all.
     #[inline(always)]
-    pub(super) fn torques(&self, search: &[Search], efforts: &mut [Effort], yaw: f32, z: f32) {
-        let mut reach = [0.0, 0.0];
-        for state in search {
-            rolled();
-            reach = [reach[0] + state.least, reach[1] + state.most];
-        }
+    pub(super) fn torques(
+        &self,
+        search: &[Search],
+        efforts: &mut [Effort],
+        yaw: f32,
+        (z, reach): (f32, [f32; 2]),
+    ) {
         let yaw = clamp(yaw, reach[0], reach[1]);
         let share = self.torque_share * yaw;
         let mut given = 0.0;
