@@ -315,6 +315,24 @@ fn the_model_of_a_mix_is_that_of_the_counts() {
     }
 }
 
+/// No request of any set takes more than the bound that the compiler states, which is not more than twice the worst.
+#[test]
+fn bounds_hold_what_was_counted() {
+    let (_, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
+    let samples = overhead::samples(&held).unwrap_or_else(|e| panic!("{e}"));
+    for sample in samples {
+        let sets = ["attainable_worst", "saturated_worst", "searched_worst"];
+        let worst = sets.map(|set| sample.row.get(set)).into_iter().fold(0, u64::max);
+        let Some(bound) = sample.bound else { continue };
+        println!("{}: {worst} of {bound}", sample.airframe);
+        assert!(
+            worst <= u64::from(bound) && u64::from(bound) <= 2 * worst,
+            "{}: {worst} counted, at most {bound} stated",
+            sample.airframe
+        );
+    }
+}
+
 /// As a share of what was counted.
 const MODEL_ERROR: f64 = 0.1;
 

@@ -9,9 +9,10 @@
 //!
 //! instructions, the median over attainable requests. The overheads are fitted to whole mixers, counted request by
 //! request in QEMU, apart for the [`Kind`]s of mixers; for those in closed form the mean over attainable requests is
-//! modelled likewise. Any other request costs what was counted on frames of that kind and size; there is no model of
-//! it, the ranges are quoted.
+//! modelled likewise. Any other request in closed form costs at most what its code does at most (`cost/bound.rs`); for the general
+//! path the ranges of what was counted are quoted.
 
+mod bound;
 mod counted;
 
 use std::fmt;
@@ -153,7 +154,9 @@ pub struct Cost {
     pub attainable_error: Option<f64>,
     /// How the mixer desaturates.
     pub desaturation: Kind,
-    /// What other requests cost on counted frames of this kind and about this size.
+    /// The most that any request takes, by what the code does at most; `None` where no bound is stated.
+    pub bound_instructions: Option<u32>,
+    /// Without a bound: what other requests cost on counted frames of this kind and about this size.
     pub counted: Vec<Frames>,
     /// Bytes of the inverse map's own constants.
     pub inverse_bytes: usize,
@@ -167,6 +170,7 @@ impl Cost {
         let basis = compiled.airframe.pair.basis;
         let units = compiled.airframe.units.len();
         let kind = Kind::of(compiled);
+        let bound_instructions = bound::bound(compiled);
         let all = |one: Option<u32>| one.map(|one| one * units as u32);
         let inverse_instructions = compiled.evaluator.instructions(basis);
         let inverse_cycles = compiled.evaluator.cost(basis);
@@ -183,6 +187,7 @@ impl Cost {
                 .and_then(|overhead| mix(compiled, compiled.evaluator, overhead)),
             attainable_error: COUNTED.attainable(kind).map(|overhead| overhead.error),
             desaturation: kind,
+            bound_instructions,
             counted: COUNTED.near(kind, units),
             inverse_bytes: 4 * compiled.tables.inverse.floats(),
             table_bytes: compiled.tables.bytes(),
@@ -242,6 +247,13 @@ impl fmt::Display for Cost {
                 f,
                 "                about {attainable} in the mean of attainable requests; off by {:.1} % at most",
                 100.0 * error
+            )?;
+        }
+        if let Some(bound) = self.bound_instructions {
+            writeln!(
+                f,
+                "  any request   at most {bound}, desaturation {}: the sum of what the code does at most",
+                self.desaturation.description()
             )?;
         }
         for frames in &self.counted {

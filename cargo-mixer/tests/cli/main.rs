@@ -78,7 +78,7 @@ fn check_prints_the_key_lines() {
         "\ncost            Cortex-M4F, counted in QEMU",
         "\n  inverse       ",
         "\n  mix           about ",
-        "\n  saturated     counted with 4 units, desaturation in closed form: mean ",
+        "\n  any request   at most ",
         "\ncompiled in ",
     ] {
         assert!(

@@ -22,34 +22,6 @@ pub const COUNTED: Counted = Counted {
     },
     frames: &[
         Frames {
-            kind: Kind::ClosedForm,
-            units: 1,
-            attainable_mean: [323, 377],
-            saturated_mean: [574, 633],
-            worst: [1103, 1157],
-        },
-        Frames {
-            kind: Kind::ClosedForm,
-            units: 2,
-            attainable_mean: [689, 689],
-            saturated_mean: [1057, 1057],
-            worst: [1882, 1882],
-        },
-        Frames {
-            kind: Kind::ClosedForm,
-            units: 3,
-            attainable_mean: [909, 910],
-            saturated_mean: [1494, 1509],
-            worst: [2291, 2296],
-        },
-        Frames {
-            kind: Kind::ClosedForm,
-            units: 4,
-            attainable_mean: [903, 1353],
-            saturated_mean: [1607, 2059],
-            worst: [2329, 2780],
-        },
-        Frames {
             kind: Kind::Path,
             units: 5,
             attainable_mean: [2686, 2686],
