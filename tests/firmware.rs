@@ -11,11 +11,11 @@ use mixer_tests::image::Image;
 use mixer_tests::{airframes, digest, evaluators, golden, overhead};
 
 /// Below the caller's frame, [`REFERENCE`].
-const STACK_LIMIT_BYTES: u64 = 512;
+const STACK_LIMIT_BYTES: u64 = 704;
 /// Below the caller's frame, any airframe: those that desaturate along a path of wrenches need more, the X12 2,272.
 const ANY_STACK_LIMIT_BYTES: u64 = 2304;
 /// Code and tables of [`REFERENCE`].
-const SIZE_LIMIT_BYTES: u64 = 6 * 1024;
+const SIZE_LIMIT_BYTES: u64 = 9 * 1024;
 /// The airframe that the first and the last limit are for.
 const REFERENCE: &str = "isae-x8";
 
