@@ -90,7 +90,7 @@ fn every_map_compiles_close_to_its_fold() {
                     started.elapsed().as_millis(),
                     compiled.evaluator.name(),
                     100.0 * compiled.lost_area.total,
-                    compiled.tables.attainable.edges.len()
+                    compiled.tables.attainable.corners.len()
                 );
                 assert!(
                     compiled.certificate.holds() && compiled.certificate.agrees(&compiled.residual),

@@ -6,7 +6,7 @@
 mod convex;
 
 use crate::model::PairMap;
-use crate::tables::{AttainableTable, SideTable};
+use crate::tables::AttainableTable;
 use convex::convex_part;
 
 /// Border points per edge of the box. Where the border bends inwards it leaves the chords of its points by the square of
@@ -122,24 +122,6 @@ pub(crate) fn border_area(border: &[[f64; 2]]) -> f64 {
     let every_other: Vec<[f64; 2]> = border.iter().copied().step_by(2).collect();
     let (fine, coarse) = (moments(border).0, moments(&every_other).0);
     fine + (fine - coarse) / 3.0
-}
-
-/// Share of the attainable set's area that is not between its sides, `thrust_n` being where these begin and end.
-pub(crate) fn lost_between(pair: &PairMap, sides: &[SideTable; 2], thrust_n: [f32; 2]) -> f64 {
-    const STEPS: usize = 2000;
-    let border: Vec<[f64; 2]> = pair
-        .border(SAMPLES)
-        .into_iter()
-        .map(|throttles| pair.efforts(throttles))
-        .collect();
-    let [least, most] = thrust_n.map(f64::from);
-    let width = (most - least) / STEPS as f64;
-    let between = |k: usize| {
-        let f = least + width * k as f64;
-        sides.iter().map(|side| side.torque(f)).sum::<f64>()
-    };
-    let twice: f64 = (0..STEPS).map(|k| width * (between(k) + between(k + 1))).sum();
-    1.0 - twice / border_area(&border)
 }
 
 /// The centroid, with Q = 0 where that is as well inside: then bare thrust needs no torque.

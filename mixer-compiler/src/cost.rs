@@ -9,9 +9,10 @@
 //!
 //! instructions, the median over attainable requests. The overheads are fitted to whole mixers, counted request by
 //! request in QEMU, apart for the [`Kind`]s of mixers; for those in closed form the mean over attainable requests is
-//! modelled likewise. Any other request costs what was counted on frames of that kind and size; there is no model of
-//! it, the ranges are quoted.
+//! modelled likewise. Any other request in closed form costs at most what its code does at most (`cost/bound.rs`); for the general
+//! path the ranges of what was counted are quoted.
 
+mod bound;
 mod counted;
 
 use std::fmt;
@@ -20,7 +21,6 @@ use serde::Serialize;
 
 use crate::Compiled;
 use crate::evaluator::Evaluator;
-use crate::tables::SideTable;
 
 pub use counted::COUNTED;
 
@@ -33,10 +33,6 @@ pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
 pub enum Kind {
     /// Vertical axes and little freedom: a few cases, each solved at once.
     ClosedForm,
-    /// The same between sides that bend inwards: yaw may have several peaks.
-    Bent,
-    /// The same where priorities couple thrust and yaw: linear programs in a few unknowns.
-    Coupled,
     /// Any other layout: face by face along a path of wrenches.
     Path,
 }
@@ -45,8 +41,6 @@ impl Kind {
     /// The kind of a compiled airframe.
     pub fn of(compiled: &Compiled) -> Kind {
         match &compiled.tables.shortcut {
-            Some(table) if table.coupling.is_some() => Kind::Coupled,
-            Some(table) if matches!(table.border.sides[0], SideTable::Polyline(_)) => Kind::Bent,
             Some(_) => Kind::ClosedForm,
             None => Kind::Path,
         }
@@ -56,8 +50,6 @@ impl Kind {
     pub fn description(self) -> &'static str {
         match self {
             Kind::ClosedForm => "in closed form",
-            Kind::Bent => "in closed form, between sides that bend inwards",
-            Kind::Coupled => "in closed form, thrust and yaw together",
             Kind::Path => "along a path of wrenches",
         }
     }
@@ -108,7 +100,7 @@ impl Counted {
     /// The overhead of requests that least norm delivers.
     pub fn delivered(&self, kind: Kind) -> Overhead {
         match kind {
-            Kind::ClosedForm | Kind::Bent | Kind::Coupled => self.closed_form,
+            Kind::ClosedForm => self.closed_form,
             Kind::Path => self.path,
         }
     }
@@ -162,7 +154,9 @@ pub struct Cost {
     pub attainable_error: Option<f64>,
     /// How the mixer desaturates.
     pub desaturation: Kind,
-    /// What other requests cost on counted frames of this kind and about this size.
+    /// The most that any request takes, by what the code does at most; `None` where no bound is stated.
+    pub bound_instructions: Option<u32>,
+    /// Without a bound: what other requests cost on counted frames of this kind and about this size.
     pub counted: Vec<Frames>,
     /// Bytes of the inverse map's own constants.
     pub inverse_bytes: usize,
@@ -176,6 +170,7 @@ impl Cost {
         let basis = compiled.airframe.pair.basis;
         let units = compiled.airframe.units.len();
         let kind = Kind::of(compiled);
+        let bound_instructions = bound::bound(compiled);
         let all = |one: Option<u32>| one.map(|one| one * units as u32);
         let inverse_instructions = compiled.evaluator.instructions(basis);
         let inverse_cycles = compiled.evaluator.cost(basis);
@@ -192,6 +187,7 @@ impl Cost {
                 .and_then(|overhead| mix(compiled, compiled.evaluator, overhead)),
             attainable_error: COUNTED.attainable(kind).map(|overhead| overhead.error),
             desaturation: kind,
+            bound_instructions,
             counted: COUNTED.near(kind, units),
             inverse_bytes: 4 * compiled.tables.inverse.floats(),
             table_bytes: compiled.tables.bytes(),
@@ -251,6 +247,13 @@ impl fmt::Display for Cost {
                 f,
                 "                about {attainable} in the mean of attainable requests; off by {:.1} % at most",
                 100.0 * error
+            )?;
+        }
+        if let Some(bound) = self.bound_instructions {
+            writeln!(
+                f,
+                "  any request   at most {bound}, desaturation {}: the sum of what the code does at most",
+                self.desaturation.description()
             )?;
         }
         for frames in &self.counted {

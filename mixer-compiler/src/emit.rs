@@ -5,9 +5,10 @@ use quote::quote;
 
 use crate::Compiled;
 use crate::tables::{
-    AttainableTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable, SideTable, VerticalTable,
+    AttainableTable, BorderTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable,
+    VerticalTable,
 };
-use mixer_rt::{BilinearSeed, CubicSeed, EightTermSeed, Facets, QuadraticSeed, Steepness, TableSeed};
+use mixer_rt::{BilinearSeed, CubicSeed, EightTermSeed, Facets, QuadraticSeed, TableSeed};
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -203,7 +204,6 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
             }
         }
     });
-    let sides = table.border.sides.iter().map(side);
     let facets = |facets: &[Facets]| {
         let facets = facets.iter().map(|facets| {
             let (normal, bounds) = (vector(&facets.normal), vector(&facets.bounds));
@@ -211,18 +211,17 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
         });
         quote!(&[#(#facets),*])
     };
-    let (thrust, chord) = (vector(&table.thrust_n), vector(&table.border.chord));
-    let quadrangle = matrix(&table.border.quadrangle);
+    let (thrust, border) = (vector(&table.thrust_n), border(&table.border));
     let (slopes, walls) = (facets(&table.slopes), facets(&table.walls));
     let (share, complete) = (float(table.torque_share()), table.complete);
     let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
     let rounding = float(table.yaw_rounding_nm);
-    let vertical = quote! {
-        ::mixer_rt::Vertical {
+    quote! {
+        &::mixer_rt::Vertical {
             units: &[#(#units),*],
             complete: #complete,
             thrust_n: #thrust,
-            border: ::mixer_rt::Border { sides: [#(#sides),*], chord: #chord, quadrangle: #quadrangle },
+            border: #border,
             slopes: #slopes,
             walls: #walls,
             torque_share: #share,
@@ -230,51 +229,37 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
             thrust_middle_n: #middle,
             yaw_rounding_nm: #rounding,
         }
-    };
-    let Some(coupling) = &table.coupling else {
-        return quote!(&#vertical);
-    };
-    let (scale, most) = (float(coupling.scale), vector(&coupling.most_yaw_nm));
-    let floors = matrix(&coupling.floors_n);
+    }
+}
+
+fn border(table: &BorderTable) -> TokenStream {
+    let corners = vector(&table.corners_n);
+    let grids = table.grids.iter().map(|grid| {
+        let [offset, per_n] = [grid.offset, grid.per_n].map(float);
+        quote!(::mixer_rt::Grid { offset: #offset, per_n: #per_n })
+    });
+    let cells = table.cells.iter().map(|cell| {
+        let (middle, half) = (vector(&cell.middle), vector(&cell.half));
+        quote!(::mixer_rt::Cell { middle: #middle, half: #half })
+    });
+    let outlines = table.outlines.iter().map(|outline| {
+        let slope = float(outline.slope);
+        let knots = outline.knots.iter().map(|knot| {
+            let [thrust, drop] = [knot.thrust_n, knot.drop].map(float);
+            quote!(::mixer_rt::Knot { thrust_n: #thrust, drop: #drop })
+        });
+        quote!(::mixer_rt::Outline { slope: #slope, knots: [#(#knots),*] })
+    });
+    let lost = float(table.lost_nm);
     quote! {
-        &::mixer_rt::Coupled {
-            vertical: #vertical,
-            coupling: ::mixer_rt::Coupling { scale: #scale, most_yaw_nm: #most, floors_n: #floors },
+        ::mixer_rt::Border {
+            corners_n: #corners,
+            grids: [#(#grids),*],
+            cells: &[#(#cells),*],
+            outlines: [#(#outlines),*],
+            lost_nm: #lost,
         }
     }
-}
-
-fn side(side: &SideTable) -> TokenStream {
-    match side {
-        SideTable::Arcs(side) => {
-            let corner = float(side.corner_n);
-            let arcs = side.arcs.iter().map(|arc| {
-                let [offset, slope, bend, shift] = [arc.offset, arc.slope, arc.bend, arc.shift].map(float);
-                let steepness = steepness(&arc.steepness);
-                quote! {
-                    ::mixer_rt::Arc {
-                        offset: #offset, slope: #slope, bend: #bend, shift: #shift, steepness: #steepness
-                    }
-                }
-            });
-            quote!(::mixer_rt::Side { corner_n: #corner, arcs: [#(#arcs),*] })
-        }
-        SideTable::Polyline(knots) => {
-            let knots = knots.iter().map(|knot| {
-                let [thrust, torque, slope, bend] =
-                    [knot.thrust_n, knot.torque_nm, knot.slope, knot.bend].map(float);
-                quote! {
-                    ::mixer_rt::Knot { thrust_n: #thrust, torque_nm: #torque, slope: #slope, bend: #bend }
-                }
-            });
-            quote!(::mixer_rt::Polyline(&[#(#knots),*]))
-        }
-    }
-}
-
-fn steepness(steepness: &Steepness) -> TokenStream {
-    let [slope, bend, shift] = [steepness.slope, steepness.bend, steepness.shift].map(float);
-    quote!(::mixer_rt::Steepness { slope: #slope, bend: #bend, shift: #shift })
 }
 
 fn attainable(set: &AttainableTable) -> TokenStream {
@@ -299,17 +284,11 @@ fn tables_type(tables: &MixerTables) -> TokenStream {
             ..
         } => seeded_type(seed.type_name(), *steps, *residuals),
     };
-    let Some(table) = &tables.shortcut else {
-        return quote!(::mixer_rt::Tables<'static, #basis, #inverse>);
-    };
-    let way = match (&table.coupling, &table.border.sides[0]) {
-        (Some(_), _) => quote!(::mixer_rt::Coupled<'static>),
-        (None, SideTable::Arcs(_)) => quote!(::mixer_rt::Vertical<'static>),
-        (None, SideTable::Polyline(_)) => {
-            quote!(::mixer_rt::Vertical<'static, ::mixer_rt::Polyline<'static>>)
-        }
-    };
-    quote!(::mixer_rt::Tables<'static, #basis, #inverse, &'static #way>)
+    let way = tables
+        .shortcut
+        .as_ref()
+        .map(|_| quote!(, &'static ::mixer_rt::Vertical<'static>));
+    quote!(::mixer_rt::Tables<'static, #basis, #inverse #way>)
 }
 
 fn seeded_type(seed: &str, steps: u8, residuals: u8) -> TokenStream {

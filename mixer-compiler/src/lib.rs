@@ -8,7 +8,6 @@ pub mod attainable;
 pub mod bernstein;
 #[cfg(feature = "format")]
 pub mod build_script;
-mod chain;
 pub mod cost;
 pub mod diagnostic;
 pub mod effectiveness;
@@ -40,7 +39,6 @@ use diagnostic::{Diagnostic, Diagnostics};
 use effectiveness::Effectiveness;
 use evaluator::Evaluator;
 use injectivity::Injectivity;
-use model::PairMap;
 use proc_macro2::TokenStream;
 use proof::Certificate;
 use residual::Residual;
@@ -107,13 +105,9 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     } = selection::select(&airframe, &effectiveness, voltage)?;
     let in_polygon = hover::thrust_range(&airframe, &tables)?;
     tables.set_level(in_polygon);
-    tables.shortcut = vertical::table(&airframe, &effectiveness, lost_area.convexity, in_polygon);
+    let (shortcut, lost_between_sides) = vertical::table(&airframe, &effectiveness).unzip();
+    tables.shortcut = shortcut;
     let thrust_range_n = hover::delivered_range(&airframe, &tables, in_polygon);
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-    let lost_between_sides = tables
-        .shortcut
-        .as_ref()
-        .map(|table| attainable::lost_between(&pair, &table.border.sides, table.thrust_n));
     Ok(Compiled {
         source_name: source.name.clone(),
         airframe,

@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use crate::Compiled;
 use crate::cost::Cost;
-use crate::tables::SideTable;
 
 /// `cargo mixer check --json`, but for the time taken.
 #[derive(Clone, Debug, Serialize)]
@@ -251,15 +250,13 @@ impl Report<'_> {
         )?;
         let mut polygon = "desaturation";
         if let Some(lost) = summary.attainable_area_lost_in_closed_form {
-            let shape = match tables.shortcut.as_ref().map(|table| &table.border.sides) {
-                Some([SideTable::Polyline(upper), SideTable::Polyline(lower)]) => {
-                    format!("polylines of {} and {} knots", upper.len(), lower.len())
-                }
-                _ => "two arcs on either side".to_owned(),
-            };
+            let cells = tables
+                .shortcut
+                .as_ref()
+                .map_or(0, |table| table.border.cells.len() - 1);
             writeln!(
                 f,
-                "desaturation    in closed form between {shape}, which leave out {:.3} % of its area",
+                "desaturation    in closed form between sides of {cells} cells, which leave out {:.3} % of its area",
                 100.0 * lost
             )?;
             polygon = "  rotors out";

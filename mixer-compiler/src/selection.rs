@@ -80,7 +80,6 @@ fn choose(
                 &polygon,
                 voltage.cloned(),
                 inverse,
-                &correction,
             ),
         };
         // The grid of the fit is part of the set: what fails there, fails.
@@ -92,9 +91,11 @@ fn choose(
             if residual.within(tolerance) {
                 let certificate = proof::prove(airframe, &pair, &tables, &correction, &mut residual, false);
                 if certificate.holds() && certificate.agrees(&residual) {
+                    let tolerance =
+                        proven(airframe, effectiveness, &pair, &tables, &correction, &certificate);
                     return Ok(Selected {
                         evaluator,
-                        tables,
+                        tables: MixerTables { tolerance, ..tables },
                         lost_area: polygon.lost,
                         residual,
                         certificate,
@@ -113,9 +114,10 @@ fn choose(
     let mut residual = Residual::over_set(&pair, &tables);
     let certificate = proof::prove(airframe, &pair, &tables, &correction, &mut residual, true);
     if certificate.holds() && certificate.agrees(&residual) {
+        let tolerance = proven(airframe, effectiveness, &pair, &tables, &correction, &certificate);
         return Ok(Selected {
             evaluator,
-            tables,
+            tables: MixerTables { tolerance, ..tables },
             lost_area: polygon.lost,
             residual,
             certificate,
@@ -140,11 +142,9 @@ fn assemble(
     polygon: &Polygon,
     voltage: Option<VoltageTable>,
     inverse: InverseTable,
-    correction: &Correction,
 ) -> MixerTables {
-    let units = tables::unit_tables(airframe, effectiveness);
-    let mut tables = MixerTables {
-        units,
+    MixerTables {
+        units: tables::unit_tables(airframe, effectiveness),
         pair: tables::pair_table(airframe),
         inverse,
         throttle: tables::throttle_table(airframe),
@@ -159,16 +159,9 @@ fn assemble(
         shortcut: None,
         tolerance: Tolerance {
             efforts: [0.0; 2],
-            wrench: wrench_tolerance(airframe, effectiveness, pair),
+            wrench: [0.0; 4],
         },
-    };
-    // The mixer compares what it computes, not what is: a request that is delivered must not look missed.
-    let (allowed, rounding) = (
-        tolerance_at_reference(airframe, correction),
-        proof::rounding(airframe, &tables, correction),
-    );
-    tables.tolerance.efforts = [0, 1].map(|k| ((allowed[k] + rounding[k]) as f32).next_up());
-    tables
+    }
 }
 
 /// Units over authority per axis at the reference voltage, roll and pitch alike; 0 on axes that are not served.
@@ -197,15 +190,33 @@ fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [
     })
 }
 
-/// What the tolerances of all units add up to on each axis, with the rounding of f32 sums of full efforts.
-fn wrench_tolerance(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [f32; 4] {
+/// What the mixer may miss where it delivers: what is proven, not what the file allows, so that every shortage is flagged.
+fn proven(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    pair: &PairMap,
+    tables: &MixerTables,
+    correction: &Correction,
+    certificate: &Certificate,
+) -> Tolerance {
+    // The mixer compares what it computes, not what is: a request that is delivered must not look missed.
+    let rounding = proof::rounding(airframe, tables, correction);
+    Tolerance {
+        efforts: [0, 1].map(|k| ((certificate.reference[k] + rounding[k]) as f32).next_up()),
+        wrench: wrench_tolerance(airframe, effectiveness, pair, certificate.stated),
+    }
+}
+
+/// What the units' misses `stated` add up to on each axis, with the rounding of f32 sums of full efforts.
+fn wrench_tolerance(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    pair: &PairMap,
+    stated: [f64; 2],
+) -> [f32; 4] {
     const ROUNDING: f64 = 4e-6;
     let (scale, factors) = (pair.scale(), voltage::largest_factors(airframe));
     let n = airframe.units.len();
-    let stated = [
-        airframe.inverse.thrust_tolerance_n,
-        airframe.inverse.torque_tolerance_nm,
-    ];
     let allowed: [f64; 2] = std::array::from_fn(|k| stated[k] + ROUNDING * scale[k] * factors[k]);
     std::array::from_fn(|axis| {
         let row = effectiveness.matrix.row(axis);

@@ -3,21 +3,21 @@
 //! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the generated Rust
 //! holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs `mixer-rt` itself on them.
 
+mod border;
 mod inverse;
-mod sides;
 
 use mixer_rt::{
-    AttainableSet, Biquadratic, Border, Corner, Coupling, Cubic, Desaturation, Facets, Health, Level, Pair,
-    Quantity, Quartic, Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit,
-    Vertical, VerticalUnit, Voltage, VoltageLaw, Wrench,
+    AttainableSet, Biquadratic, Corner, Cubic, Desaturation, Facets, Health, Level, Pair, Quantity, Quartic,
+    Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit, Vertical,
+    VerticalUnit, Voltage, VoltageLaw, Wrench,
 };
 
 use crate::airframe::{Airframe, Basis};
 use crate::effectiveness::Effectiveness;
 use crate::voltage::TabulatedLaw;
 
+pub use border::BorderTable;
 pub use inverse::{InverseTable, SeedTable};
-pub use sides::{SideTable, SideView};
 
 /// The tables of one airframe.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +108,7 @@ pub struct VerticalTable {
     /// Least and largest thrust of a unit, N.
     pub thrust_n: [f32; 2],
     /// The attainable torques of a unit.
-    pub border: Border<SideTable>,
+    pub border: BorderTable,
     /// Facets of the attainable (roll, pitch, thrust) whose normals have the thrust component 1.
     pub slopes: Vec<Facets>,
     /// Facets whose normals have no thrust component.
@@ -119,22 +119,16 @@ pub struct VerticalTable {
     pub thrust_middle_n: f32,
     /// Yaw that counts as none, N m.
     pub yaw_rounding_nm: f32,
-    /// What priorities need that couple thrust and yaw.
-    pub coupling: Option<Coupling>,
 }
 
 impl VerticalTable {
     /// The table as `mixer-rt` reads it.
-    pub fn view(&self) -> Vertical<'_, SideView<'_>> {
+    pub fn view(&self) -> Vertical<'_> {
         Vertical {
             units: &self.units,
             complete: self.complete,
             thrust_n: self.thrust_n,
-            border: Border {
-                sides: self.border.sides.each_ref().map(SideTable::view),
-                chord: self.border.chord,
-                quadrangle: self.border.quadrangle,
-            },
+            border: self.border.view(),
             slopes: &self.slopes,
             walls: &self.walls,
             torque_share: self.torque_share(),
@@ -150,11 +144,8 @@ impl VerticalTable {
     }
 
     fn floats(&self) -> usize {
-        // Range, border, share, floor, middle and rounding beside the units and facets.
-        let sides: usize = self.border.sides.iter().map(SideTable::floats).sum();
-        2 + (sides + 10) + 4 + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
-            // Scale, yaws and floors.
-            + self.coupling.map_or(0, |coupling| 1 + 2 + 2 * coupling.floors_n[0].len())
+        // Range, share, floor, middle and rounding beside the border, the units and the facets.
+        2 + 4 + self.border.floats() + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
     }
 }
 
@@ -192,15 +183,12 @@ pub enum LawTable {
     Points(Vec<[f32; 2]>),
 }
 
-/// The shorter way to desaturate, where there is one, as `mixer-rt` reads it.
-pub type AnyShortcut<'a> = Option<(Vertical<'a, SideView<'a>>, Option<Coupling>)>;
-
 /// What [`MixerTables::mix`] gives: throttle per channel, achieved wrench, saturation.
 pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
     /// The tables as `mixer-rt` reads them.
-    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, AnyShortcut<'_>> {
+    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<Vertical<'_>>> {
         Tables {
             units: &self.units,
             pair: self.pair,
@@ -214,7 +202,7 @@ impl MixerTables {
                 efforts: &level.efforts,
             }),
             desaturation: self.desaturation,
-            shortcut: self.shortcut.as_ref().map(|table| (table.view(), table.coupling)),
+            shortcut: self.shortcut.as_ref().map(VerticalTable::view),
             tolerance: self.tolerance,
         }
     }

@@ -58,10 +58,7 @@ pub use scalar::Scalar;
 pub use sqrt::sqrt;
 pub use table::TableSeed;
 pub use tables::{Level, Tables, Tolerance, Unit};
-pub use vertical::{
-    Arc, Border, Coupled, Coupling, Facets, Knot, NoShortcut, Polyline, Shortcut, Side, Steepness,
-    TorqueLimit, Vertical, VerticalUnit,
-};
+pub use vertical::{Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortcut, Vertical, VerticalUnit};
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
 

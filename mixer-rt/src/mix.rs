@@ -4,9 +4,9 @@ use crate::desaturation::{is_bounded, limited};
 use crate::general::{Scratch, allocate};
 use crate::rolled;
 use crate::rotors::Rotors;
-use crate::vertical::{Efforts, Request, Shortcut, Vertical};
+use crate::vertical::{Attained, Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;
-use crate::{Axis, Desaturation, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};
+use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};
 
 /// What a mix gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,9 +131,9 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
 /// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's proof each unit
 /// gives them within the tolerance.
 #[inline(always)]
-fn mix_vertical<P: Quantity, I: Inverse<P>, S: Shortcut>(
+fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     tables: &Tables<'_, P, I, S>,
-    vertical: &Vertical<'_, S::Side>,
+    vertical: &Vertical<'_>,
     setpoint: &Wrench,
     voltage_v: f32,
     throttle: &mut [f32],
@@ -142,12 +142,11 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S: Shortcut>(
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let per_factor = factors.map(|factor| 1.0 / factor);
     let at_reference = at_reference(bounded, per_factor);
+    let airmode = tables.desaturation.airmode;
     let mut efforts = Efforts::default();
-    let mut delivered = vertical.least_norm(&at_reference, &mut efforts);
-    // Beyond what is known of a set that is not convex only the inverse map tells.
-    let mut is_tried = !delivered && !vertical.border.is_concave();
-    if !delivered && !is_tried {
-        desaturate_vertical(tables, vertical, per_factor[1], &at_reference, &mut efforts);
+    let mut attained = vertical.least_norm(&at_reference, &mut efforts);
+    if attained == Attained::No {
+        vertical.desaturate(airmode, &at_reference, &mut efforts);
     }
     loop {
         let mut is_near = true;
@@ -156,47 +155,22 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S: Shortcut>(
             let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, wanted);
             write(unit.channels, throttles, throttle);
             [effort.thrust, effort.torque] = tables.pair.efforts(throttles);
-            if is_tried {
-                is_near = is_within([effort.thrust, effort.torque], wanted, tables.tolerance.efforts);
-                if !is_near {
-                    break;
-                }
+            if attained == Attained::Perhaps {
+                is_near &= is_within([effort.thrust, effort.torque], wanted, tables.tolerance.efforts);
             }
         }
-        if !is_tried || is_near {
-            delivered |= is_tried;
+        if is_near {
             break;
         }
-        is_tried = false;
-        desaturate_vertical(tables, vertical, per_factor[1], &at_reference, &mut efforts);
+        attained = Attained::No;
+        vertical.desaturate(airmode, &at_reference, &mut efforts);
     }
     let achieved = vertical.wrench(&efforts, factors);
     let mut saturation = Saturation::NONE;
-    if !(delivered && vertical.complete) {
+    if attained == Attained::No || !vertical.complete {
         saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
     }
     Ok((achieved, saturation.with_voltage_clamped(clamped)))
-}
-
-/// Writes attainable efforts that serve `request` in the order of priority. `per_torque` is 1 / k_Q.
-#[inline(always)]
-fn desaturate_vertical<P, I, S: Shortcut>(
-    tables: &Tables<'_, P, I, S>,
-    vertical: &Vertical<'_, S::Side>,
-    per_torque: f32,
-    request: &Request,
-    efforts: &mut Efforts,
-) {
-    let Desaturation {
-        airmode,
-        yaw_reserve_nm,
-    } = tables.desaturation;
-    match tables.shortcut.coupling() {
-        None => vertical.desaturate(airmode, request, efforts),
-        Some(coupling) => {
-            vertical.desaturate_coupled(coupling, airmode, yaw_reserve_nm * per_torque, request, efforts);
-        }
-    }
 }
 
 /// The setpoint as `[roll, pitch, yaw, thrust]`, and the same within what is looked at.

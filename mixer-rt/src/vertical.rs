@@ -7,30 +7,28 @@
 //! ```text
 //! 1. w within the zonotope of the thrusts in [a, b]^n                          vertical/facets.rs
 //! 2. f = C+ w + z N, N the null space of C, with z as near zero as can be      vertical/thrusts.rs
-//! 3. z where yaw reaches furthest, if it does not reach the request            vertical/reach.rs, polyline.rs
+//! 3. z towards where yaw reaches furthest, if it does not reach the request    vertical/climb.rs
 //! 4. the torques within [Q_min(f), Q_max(f)]                                   vertical/torques.rs
 //! ```
+//!
+//! Step 3 chooses by a coarse concave description of Q_max and -Q_min ([`Outline`]); all others, and what is given in the
+//! end, follow a fine one that lies inside the attainable set ([`Border`]).
 //!
 //! Near a corner of the zonotope yaw may not even reach zero (with all rotors at the ceiling every unit has the
 //! torque Q(1, 1)). There the thrusts are drawn towards the middle until it does: thrust, roll and pitch give way
 //! together, by less than the corner's torque is worth.
 //!
-//! Where yaw comes before thrust, or a reserve of it before roll and pitch, the problems are not apart, and linear
-//! programs take the place of 2 and 3: vertical/coupled.rs. An airframe's tables hold what these need or do not, and then
-//! their code is not linked.
+//! Every loop is over units, facets, or knots, or has a fixed number of steps. Where yaw comes before thrust, or a reserve
+//! of it before roll and pitch, the problems are not apart, and the general way serves the airframe.
 
-mod coupled;
+mod border;
+mod climb;
 mod facets;
-mod polyline;
-mod program;
-mod reach;
 mod thrusts;
 mod torques;
 
-pub use coupled::{Coupled, Coupling};
+pub use border::{Border, Cell, Grid, Knot, Outline};
 pub use facets::Facets;
-pub use polyline::{Knot, Polyline};
-pub use reach::{Arc, Border, Side, Steepness, TorqueLimit};
 
 use core::hint::black_box;
 
@@ -60,7 +58,7 @@ pub struct VerticalUnit {
 
 /// What a frame with vertical axes and up to four units needs. All at the reference voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertical<'a, S = Side> {
+pub struct Vertical<'a> {
     /// The units, in the order of the airframe file.
     pub units: &'a [VerticalUnit],
     /// True where the airframe serves all axes: then an attainable request is what the efforts give.
@@ -68,7 +66,7 @@ pub struct Vertical<'a, S = Side> {
     /// Least and largest thrust of a unit, N.
     pub thrust_n: [f32; 2],
     /// The attainable torques of a unit.
-    pub border: Border<S>,
+    pub border: Border<'a>,
     /// Facets of the attainable (roll, pitch, thrust) whose normals have the thrust component 1.
     pub slopes: &'a [Facets],
     /// Facets whose normals have no thrust component.
@@ -83,28 +81,17 @@ pub struct Vertical<'a, S = Side> {
     pub yaw_rounding_nm: f32,
 }
 
-/// What an airframe's tables know about a shorter way than the homotopy.
+/// What an airframe's tables know about a shorter way than the general one.
 pub trait Shortcut {
-    /// What the sides of its attainable set are.
-    type Side: TorqueLimit;
-
     /// The shorter way, where there is one.
-    fn vertical(&self) -> Option<&Vertical<'_, Self::Side>>;
-
-    /// What it needs where the priorities couple thrust and yaw.
-    #[inline(always)]
-    fn coupling(&self) -> Option<&Coupling> {
-        None
-    }
+    fn vertical(&self) -> Option<&Vertical<'_>>;
 }
 
-/// No shorter way: tilted axes or more than four units.
+/// No shorter way: tilted axes, more than four units, or priorities that couple thrust and yaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoShortcut;
 
 impl Shortcut for NoShortcut {
-    type Side = Side;
-
     #[inline(always)]
     fn vertical(&self) -> Option<&Vertical<'_>> {
         None
@@ -112,41 +99,18 @@ impl Shortcut for NoShortcut {
 }
 
 /// By reference, so that an image whose rotors never fail holds this table and not the rest.
-impl<S: TorqueLimit> Shortcut for &Vertical<'_, S> {
-    type Side = S;
-
+impl Shortcut for &Vertical<'_> {
     #[inline(always)]
-    fn vertical(&self) -> Option<&Vertical<'_, S>> {
+    fn vertical(&self) -> Option<&Vertical<'_>> {
         Some(self)
     }
 }
 
-impl Shortcut for &Coupled<'_> {
-    type Side = Side;
-
+/// Any of these, where it is known at run time only.
+impl Shortcut for Option<Vertical<'_>> {
     #[inline(always)]
     fn vertical(&self) -> Option<&Vertical<'_>> {
-        Some(&self.vertical)
-    }
-
-    #[inline(always)]
-    fn coupling(&self) -> Option<&Coupling> {
-        Some(&self.coupling)
-    }
-}
-
-/// Any of these, where it is known at run time only.
-impl<S: TorqueLimit> Shortcut for Option<(Vertical<'_, S>, Option<Coupling>)> {
-    type Side = S;
-
-    #[inline(always)]
-    fn vertical(&self) -> Option<&Vertical<'_, S>> {
-        self.as_ref().map(|(vertical, _)| vertical)
-    }
-
-    #[inline(always)]
-    fn coupling(&self) -> Option<&Coupling> {
-        self.as_ref().and_then(|(_, coupling)| coupling.as_ref())
+        self.as_ref()
     }
 }
 
@@ -171,42 +135,28 @@ pub(crate) struct Effort {
 /// The efforts of all units.
 pub(crate) type Efforts = [Effort; MOST_UNITS];
 
+/// Whether efforts are attainable.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Attained {
+    Yes,
+    /// They are nearer the border than the tables tell: the inverse map knows.
+    Perhaps,
+    No,
+}
+
 /// What is kept of a unit while its efforts are being found.
-struct Search<'a, S> {
-    /// Yaw per torque in the direction looked at, 1 or -1.
-    turn: f32,
-    /// The side of the attainable set in that direction.
-    side: &'a S,
-    /// The largest torque in that direction, N m.
-    limit: f32,
+#[derive(Clone, Copy, Default)]
+struct Search {
     /// A straight way of thrusts: where it starts, N, ..
     from: f32,
     /// .. and where to, N per unit of the way.
     along: f32,
+    /// Least and most yaw that the unit gives at the point of the way looked at, N m.
+    least: f32,
+    most: f32,
 }
 
-impl<S> Clone for Search<'_, S> {
-    #[inline(always)]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<S> Copy for Search<'_, S> {}
-
-impl<'a, S> Search<'a, S> {
-    /// Before anything is known.
-    #[inline(always)]
-    fn new(border: &'a Border<S>) -> Self {
-        Search {
-            turn: 0.0,
-            side: &border.sides[0],
-            limit: 0.0,
-            from: 0.0,
-            along: 0.0,
-        }
-    }
-
+impl Search {
     /// The thrust at `z` along the way, N.
     #[inline(always)]
     fn thrust(&self, z: f32) -> f32 {
@@ -214,21 +164,26 @@ impl<'a, S> Search<'a, S> {
     }
 }
 
-impl<S: TorqueLimit> Vertical<'_, S> {
-    /// Writes the least-norm efforts of `request`; true only where all are attainable.
+impl Vertical<'_> {
+    /// Writes the least-norm efforts of `request`, and tells whether all are attainable.
     #[inline(always)]
-    pub(crate) fn least_norm(&self, request: &Request, efforts: &mut Efforts) -> bool {
+    pub(crate) fn least_norm(&self, request: &Request, efforts: &mut Efforts) -> Attained {
         let share = self.torque_share * request.yaw;
-        let [along, against] = [share, -share].map(|q| self.border.thrusts_at(q));
         let wrench = [request.roll, request.pitch, request.thrust];
-        let mut attainable = true;
+        let mut attained = Attained::Yes;
         for (unit, effort) in self.units.iter().zip(efforts) {
             effort.thrust = unit.thrust(&wrench);
             effort.torque = unit.spin * share;
-            let [least, most] = if unit.spin > 0.0 { along } else { against };
-            attainable = attainable && effort.thrust >= least && effort.thrust <= most;
+            let [middle, half] = self.border.torques(effort.thrust);
+            let outside = (effort.torque - middle).abs() - half;
+            if outside > self.border.lost_nm {
+                return Attained::No;
+            }
+            if outside > 0.0 {
+                attained = Attained::Perhaps;
+            }
         }
-        attainable
+        attained
     }
 
     /// The wrench of attainable efforts at the voltage's `[k_f, k_Q]`.
@@ -253,22 +208,20 @@ impl<S: TorqueLimit> Vertical<'_, S> {
     #[inline(never)]
     pub(crate) fn desaturate(&self, airmode: Airmode, request: &Request, efforts: &mut Efforts) {
         // So that nothing is known about how often the loops run: see `rolled`.
-        let mut search = [Search::new(&self.border); MOST_UNITS];
+        let mut search = [Search::default(); MOST_UNITS];
         let search = search.get_mut(..self.units.len()).unwrap_or_default();
         let (vertical, efforts, search) = black_box((self, efforts.as_mut_slice(), search));
-        let direction = if request.yaw < 0.0 { -1.0 } else { 1.0 };
-        let wanted = direction * request.yaw;
-        let limits = vertical.thrust_limits(airmode, request.thrust, vertical.thrust_floor_n);
-        let found = vertical.attainable_thrusts(request, limits, search, direction, wanted);
-        let [_, middle] = limits;
-        vertical.torques(search, efforts, wanted, found, middle);
+        let limits = vertical.thrust_limits(airmode, request.thrust);
+        let found = vertical.attainable_thrusts(request, limits, search);
+        vertical.torques(search, efforts, request.yaw, found);
     }
 
     /// The most thrust that may be given, and a thrust well inside below it, N.
     #[inline(always)]
-    fn thrust_limits(&self, airmode: Airmode, asked: f32, floor: f32) -> [f32; 2] {
+    fn thrust_limits(&self, airmode: Airmode, asked: f32) -> [f32; 2] {
         let mut ceiling = f32::MAX;
         if airmode == Airmode::Disabled {
+            let floor = self.thrust_floor_n;
             ceiling = if asked > floor { asked } else { floor };
         }
         let middle = self.thrust_middle_n;

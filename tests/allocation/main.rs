@@ -12,6 +12,7 @@
 //! | `polygons.rs` | the optimum over the mixer's own polygons, where what these leave out decides |
 //! | `degenerate.rs` | numbers that no controller sends |
 //! | `shapes.rs` | the same on attainable sets that are not convex, real ones with `MIXER_BENCH_DATA` |
+//! | `flags.rs` | attainable yaw is delivered without a flag, and shortages are flagged |
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
 #![allow(missing_docs)]
 
@@ -20,6 +21,7 @@ mod degenerate;
 mod delivery;
 mod failure;
 mod finite;
+mod flags;
 mod hollows;
 mod jumps;
 mod layout;

@@ -61,7 +61,8 @@ pub fn compared(airframes: &[String]) -> Vec<Subject> {
 }
 
 /// All subjects: those compared, two rotors out, the baselines and rotors out on other frames, regular frames of 1 to 8
-/// units, the X8 with five tolerances and with other priorities, and a Y6 and an X8 whose attainable sets are not convex.
+/// units, the X8 with five tolerances and with other priorities, a Y6 and an X8 whose attainable sets are not convex, and
+/// Y6s with the pairs of the X8s.
 pub fn all(airframes: &[String]) -> Vec<Subject> {
     let mut subjects = compared(airframes);
     subjects.push(Subject::new("wls", "isae-x8"));
@@ -78,6 +79,8 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
     let priorities = ["roll-pitch-yaw", "reserve-0.1", "roll-pitch-yaw-reserve-0.1"];
     let others = priorities.into_iter().chain(["bent-3", "bent-4"]);
     subjects.extend(others.map(|airframe| Subject::new("coaxial", airframe)));
+    let pairs = airframes.iter().filter_map(|name| name.strip_prefix("x8-"));
+    subjects.extend(pairs.map(|pair| Subject::new("coaxial", &format!("y6-{pair}"))));
     subjects
 }
 

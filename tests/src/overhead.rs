@@ -8,7 +8,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::cost::{Counted, Frames, Kind, Overhead};
+use mixer_compiler::cost::{Cost, Counted, Frames, Kind, Overhead};
 use nalgebra::{DMatrix, DVector};
 
 use crate::counts::Row;
@@ -30,6 +30,8 @@ pub struct Sample {
     pub voltage: bool,
     /// Instructions of its evaluator, one unit.
     pub inverse: u32,
+    /// The most instructions of any request, where the compiler states a bound.
+    pub bound: Option<u32>,
     /// What was counted.
     pub row: Row,
 }
@@ -48,7 +50,7 @@ impl Sample {
     pub fn quantities(&self) -> &'static [Quantity] {
         match self.kind {
             Kind::ClosedForm => &[Quantity::Delivered, Quantity::Attainable],
-            Kind::Bent | Kind::Coupled | Kind::Path => &[Quantity::Delivered],
+            Kind::Path => &[Quantity::Delivered],
         }
     }
 
@@ -79,8 +81,8 @@ impl Sample {
     fn factors(&self, quantity: Quantity) -> [f64; PARAMETERS] {
         let mut factors = [0.0; PARAMETERS];
         let overhead = match (self.kind, quantity) {
-            (Kind::ClosedForm | Kind::Bent | Kind::Coupled, Quantity::Delivered) => CLOSED_FORM,
-            (Kind::ClosedForm | Kind::Bent | Kind::Coupled, Quantity::Attainable) => CLOSED_FORM_MEAN,
+            (Kind::ClosedForm, Quantity::Delivered) => CLOSED_FORM,
+            (Kind::ClosedForm, Quantity::Attainable) => CLOSED_FORM_MEAN,
             (Kind::Path, _) => PATH,
         };
         factors[overhead] = 1.0;
@@ -102,7 +104,12 @@ const PARAMETERS: usize = 7;
 /// # Errors
 /// An airframe that is not there, is refused, or has an evaluator that has not been counted.
 pub fn samples(rows: &[Row]) -> Result<Vec<Sample>, String> {
-    let measured = measured::all();
+    let mut measured = measured::all();
+    let airframes = crate::airframes().map_err(|error| format!("airframes/: {error}"))?;
+    measured.extend(airframes.iter().filter_map(|name| {
+        let text = std::fs::read_to_string(root().join(format!("airframes/{name}.toml"))).ok()?;
+        measured::y6(name, &text)
+    }));
     let coaxial = rows.iter().filter(|row| row.subject.mixer == "coaxial");
     coaxial
         .map(|row| {
@@ -125,6 +132,7 @@ fn sample(compiled: &Compiled, row: &Row) -> Option<Sample> {
         units,
         voltage: compiled.airframe.voltage.is_some(),
         inverse: one,
+        bound: Cost::new(compiled).bound_instructions,
         row: row.clone(),
     })
 }
@@ -180,10 +188,7 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
         (1e3 * errors.fold(0.0, f64::max)).ceil() / 1e3
     };
     let errors = [
-        error(
-            &[Kind::ClosedForm, Kind::Bent, Kind::Coupled],
-            Quantity::Delivered,
-        ),
+        error(&[Kind::ClosedForm], Quantity::Delivered),
         error(&[Kind::ClosedForm], Quantity::Attainable),
         error(&[Kind::Path], Quantity::Delivered),
     ];
@@ -193,41 +198,40 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
     Ok(counted)
 }
 
-/// Ranges over the frames of each kind and size, closed form first, by size.
+/// Ranges over the frames of each size that no bound is stated for.
 fn ranges(samples: &[Sample]) -> Vec<Frames> {
     let mut all: Vec<Frames> = Vec::new();
     let largest = samples.iter().map(|sample| sample.units).max().unwrap_or(0);
-    for kind in [Kind::ClosedForm, Kind::Bent, Kind::Coupled, Kind::Path] {
-        for units in 1..=largest {
-            let alike = || {
-                let alike = samples
-                    .iter()
-                    .filter(|sample| sample.kind == kind && sample.units == units);
-                alike.map(|sample| &sample.row)
-            };
-            let range = |value: &dyn Fn(&Row) -> u64| {
-                let values = || alike().map(|row| u32::try_from(value(row)).unwrap_or(u32::MAX));
-                Some([values().min()?, values().max()?])
-            };
-            let mean = |set: &'static str| move |row: &Row| row.mean(set).round() as u64;
-            let worst = |row: &Row| {
-                let sets = ["attainable_worst", "saturated_worst", "searched_worst"];
-                sets.map(|set| row.get(set)).into_iter().fold(0, u64::max)
-            };
-            let ranges = (
-                range(&mean("attainable")),
-                range(&mean("saturated")),
-                range(&worst),
-            );
-            if let (Some(attainable_mean), Some(saturated_mean), Some(worst)) = ranges {
-                all.push(Frames {
-                    kind,
-                    units,
-                    attainable_mean,
-                    saturated_mean,
-                    worst,
-                });
-            }
+    let kind = Kind::Path;
+    for units in 1..=largest {
+        let alike = || {
+            let alike = samples
+                .iter()
+                .filter(|sample| sample.kind == kind && sample.units == units);
+            alike.map(|sample| &sample.row)
+        };
+        let range = |value: &dyn Fn(&Row) -> u64| {
+            let values = || alike().map(|row| u32::try_from(value(row)).unwrap_or(u32::MAX));
+            Some([values().min()?, values().max()?])
+        };
+        let mean = |set: &'static str| move |row: &Row| row.mean(set).round() as u64;
+        let worst = |row: &Row| {
+            let sets = ["attainable_worst", "saturated_worst", "searched_worst"];
+            sets.map(|set| row.get(set)).into_iter().fold(0, u64::max)
+        };
+        let ranges = (
+            range(&mean("attainable")),
+            range(&mean("saturated")),
+            range(&worst),
+        );
+        if let (Some(attainable_mean), Some(saturated_mean), Some(worst)) = ranges {
+            all.push(Frames {
+                kind,
+                units,
+                attainable_mean,
+                saturated_mean,
+                worst,
+            });
         }
     }
     all

@@ -44,6 +44,12 @@ pub fn facts(cost: &Cost) -> String {
             format!("about {attainable} instructions; off by {error} % at most"),
         ));
     }
+    if let Some(bound) = cost.bound_instructions {
+        facts.push((
+            "Any request",
+            format!("at most {bound} instructions, the sum of what the code does at most"),
+        ));
+    }
     for frames in &cost.counted {
         facts.push(("Other requests", others(frames)));
     }

@@ -23,7 +23,13 @@ pub(crate) fn assert_cost(page: Node<'_, '_>, compiled: &Compiled) {
     let rows: Vec<Vec<String>> = named(section, "tr").map(cells).collect();
 
     let cost = Cost::new(compiled);
-    assert!(!cost.counted.is_empty(), "{name}: no counted frames");
+    if let Some(bound) = cost.bound_instructions {
+        assert!(
+            text.contains(&format!("at most {bound} instructions")),
+            "{name}: no {bound}"
+        );
+        assert!(cost.attainable_instructions < Some(bound), "{name}: {cost:?}");
+    }
     for frames in &cost.counted {
         let worst = range(frames.worst);
         assert!(text.contains(&worst), "{name}: no {worst}");

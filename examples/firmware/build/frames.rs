@@ -39,7 +39,8 @@ torque_exponent = 1.75
 "#;
 
 /// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N, with yaw before thrust, and
-/// with a reserve of yaw; a Y6 and an X8 whose attainable sets are not convex.
+/// with a reserve of yaw; a Y6 and an X8 with a made-up pair whose attainable set bends inwards. The Y6s with the pairs of
+/// `airframes/x8-*.toml` are those of [`y6`].
 pub(crate) fn all() -> Vec<(String, String)> {
     let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(PAIR, units, "")));
     let tolerances = [
@@ -70,6 +71,16 @@ pub(crate) fn all() -> Vec<(String, String)> {
     });
     let bent = [3, 4].map(|units| (format!("bent-{units}"), regular(BENT, units, "")));
     sizes.chain(tolerances).chain(priorities).chain(bent).collect()
+}
+
+/// A Y6 with the pair of an X8 with a short `[layout]`, and its name; `None` for other airframes.
+pub(crate) fn y6(name: &str, text: &str) -> Option<(String, String)> {
+    let pair = name.strip_prefix("x8-")?;
+    let text = text.replace(
+        "units = 4\nfirst_angle_deg = 45.0",
+        "units = 3\nfirst_angle_deg = 60.0",
+    );
+    Some((format!("y6-{pair}"), text.replace(name, NAME)))
 }
 
 /// One unit lies ahead, two lie abreast.

@@ -61,7 +61,11 @@ fn generate() -> Result<(), String> {
     for name in &airframes {
         measured.push(Measured::read(name, path_of(name))?);
     }
-    for (name, text) in frames::all() {
+    let y6 = |name: &String| {
+        let text = fs::read_to_string(path_of(name)).ok()?;
+        frames::y6(name, &text)
+    };
+    for (name, text) in frames::all().into_iter().chain(airframes.iter().filter_map(y6)) {
         let file = format!("{name}.toml");
         write(&file, &text)?;
         measured.push(Measured::read(&name, out.join(file))?);

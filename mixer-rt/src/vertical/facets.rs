@@ -26,7 +26,7 @@ const ROUNDING: f32 = 4e-6;
 /// Steps of the search for the largest rho: at most one per facet, hardly ever more than two.
 const STEPS: u32 = 6;
 
-impl<S> Vertical<'_, S> {
+impl Vertical<'_> {
     /// The largest share of (roll, pitch) up to 1 that some thrust of at most `ceiling` allows, and the thrusts
     /// that it allows.
     #[inline(always)]

@@ -1,14 +1,22 @@
 //! The thrusts: f = C+ w + z N.
 //!
-//! Where z has room and yaw does not reach the request, z is moved to where Y, the furthest yaw, is largest. Y is
-//! concave, so the part `(yaw - Y(0)) / (Y(z) - Y(0))` of the way is enough, and the thrusts are a Lipschitz function of
-//! the request, which they would not be if z were moved just far enough. Where Y is not concave see vertical/polyline.rs.
+//! Where z has room and yaw does not reach the request, z moves towards where yaw reaches furthest, only the part
+//! `(yaw - Y(0)) / (Y(z) - Y(0))` of the way. So the thrusts are a Lipschitz function of the request, which they would
+//! not be if z were moved just far enough. Y is nearly concave: where that part is not enough, two more steps mend it.
 
-use super::polyline::climb;
-use super::reach::{reach, reach_from_inside, top};
-use super::{Request, Search, TorqueLimit, Vertical, VerticalUnit};
-use crate::clamp;
-use crate::rolled;
+use super::{Request, Search, Vertical, VerticalUnit};
+use crate::{clamp, rolled};
+use core::hint::black_box;
+
+/// Steps towards the furthest yaw, ..
+const CLIMBS: u32 = 2;
+
+/// .. and towards the middle. All but the first are twice as long as a straight line asks for.
+const RETREATS: u32 = 3;
+
+/// In yaw that counts as none: what z's way must gain to be gone in full. A way of less gain is gone in part, so that
+/// z does not jump where the gain vanishes. Costs up to a quarter of it, 0.02 % of the yaw.
+const GAIN: f32 = 100.0;
 
 impl VerticalUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
@@ -19,170 +27,157 @@ impl VerticalUnit {
     }
 }
 
-/// The z that leave all thrusts attainable; from `high` to `low` where there are none.
-#[derive(Clone, Copy)]
-pub(super) struct NullRange {
-    low: f32,
-    high: f32,
-    /// False where a thrust that N does not change is out of its range.
-    others: bool,
+/// How far yaw of the sign `sign` reaches.
+#[inline(always)]
+fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
+    if sign < 0.0 { -least } else { most }
 }
 
-impl NullRange {
-    /// True where some z leaves all thrusts attainable.
+impl Vertical<'_> {
+    /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach the request if from any. Where yaw
+    /// would be reversed or exceeded they are drawn towards those of the thrust `middle`. Returns where they are on the
+    /// units' way and the least and most yaw there, and leaves what each unit gives of it.
     #[inline(always)]
-    fn is_attainable(&self) -> bool {
-        self.low <= self.high && self.others
-    }
-
-    /// The z nearest zero.
-    #[inline(always)]
-    pub(super) fn nearest(&self) -> f32 {
-        clamp(
-            0.0,
-            self.low,
-            if self.high > self.low { self.high } else { self.low },
-        )
-    }
-}
-
-impl<S: TorqueLimit> Vertical<'_, S> {
-    /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach `wanted` in its `direction` if from
-    /// any. Where it cannot even reach zero they are drawn towards those of the thrust `middle`. Returns how far yaw
-    /// reaches, and where they are on the units' way.
-    #[inline(always)]
-    pub(super) fn attainable_thrusts<'a>(
-        &'a self,
+    pub(super) fn attainable_thrusts(
+        &self,
         request: &Request,
         [ceiling, middle]: [f32; 2],
-        search: &mut [Search<'a, S>],
-        direction: f32,
-        wanted: f32,
-    ) -> (f32, f32) {
-        let (wrench, range, attainable) = self.within_facets(request, ceiling, search, direction);
-        let NullRange { low, high, .. } = range;
-        let mut z = range.nearest();
-        let mut here = reach(search, z);
-        // On the zonotope's border z has no room.
-        let is_short = here < wanted && high > low && attainable;
-        if is_short && !self.border.is_concave() {
-            (z, here) = climb(search, (z, here), [low, high], wanted, self.yaw_rounding_nm);
-        } else if is_short {
-            let top_z = top(search, z, [low, high]);
-            let most = reach(search, top_z);
-            let gain = most - here;
-            let gain = if gain > self.yaw_rounding_nm {
-                gain
-            } else {
-                self.yaw_rounding_nm
-            };
-            let part = (wanted - here) / gain;
-            here = most;
-            if part < 1.0 {
-                z += part * (top_z - z);
-                here = reach(search, z);
-            } else {
-                z = top_z;
-            }
-        }
-        if here < -self.yaw_rounding_nm {
-            // From the inside, so it is zero or a little more.
-            let (_, at) = self.retreat(search, z, here, 0.0, middle);
-            if self.border.is_concave() {
-                return (0.0, at);
-            }
-            // z has some room there, and yaw may gain much from it.
-            let drawn = wrench.map(|part| at * part);
-            let drawn = [drawn[0], drawn[1], drawn[2] + (1.0 - at) * middle];
-            let NullRange { low, high, .. } = self.null_range(search, &drawn, direction);
-            z *= at;
-            here = reach(search, z);
-            if here < wanted && high > low {
-                z = clamp(z, low, high);
-                (z, here) = climb(search, (z, here), [low, high], wanted, self.yaw_rounding_nm);
-            }
-            return (if here > 0.0 { here } else { 0.0 }, z);
-        }
-        (here, z)
-    }
-
-    /// Starts at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to where the facets allow them if
-    /// need be. Returns these, z's range, and true where there was no need.
-    #[inline(always)]
-    pub(super) fn within_facets<'a>(
-        &'a self,
-        request: &Request,
-        ceiling: f32,
-        search: &mut [Search<'a, S>],
-        direction: f32,
-    ) -> ([f32; 3], NullRange, bool) {
-        let mut wrench = [request.roll, request.pitch, request.thrust];
-        let mut range = self.null_range(search, &wrench, direction);
-        let attainable = range.is_attainable();
-        if !attainable {
-            let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
-            wrench = [
-                share * request.roll,
-                share * request.pitch,
-                clamp(request.thrust, low, high),
-            ];
-            range = self.null_range(search, &wrench, direction);
-        }
-        (wrench, range, attainable)
-    }
-
-    /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range.
-    #[inline(never)]
-    fn null_range<'a>(
-        &'a self,
-        search: &mut [Search<'a, S>],
-        wrench: &[f32; 3],
-        direction: f32,
-    ) -> NullRange {
-        let [least, most] = self.thrust_n;
-        let mut range = NullRange {
-            low: -f32::MAX,
-            high: f32::MAX,
-            others: true,
+        search: &mut [Search],
+    ) -> (f32, [f32; 2]) {
+        let ([low, high], has_room) = self.within_facets(request, ceiling, search);
+        let mut z = clamp(0.0, low, if high > low { high } else { low });
+        let mut reach = self.reach(search, z);
+        // The limit of yaw that the request violates, if any.
+        let sign = if request.yaw > reach[1] {
+            1.0
+        } else if request.yaw < reach[0] {
+            -1.0
+        } else {
+            return (z, reach);
         };
+        let wanted = sign * request.yaw;
+        if has_room && high > low {
+            (z, reach) = self.climb(search, sign, (z, reach), [low, high], wanted);
+        }
+        // Beyond zero yaw is reversed, beyond the request it is exceeded.
+        let needed = if wanted < 0.0 { wanted } else { 0.0 };
+        if needed - furthest(reach, sign) > self.yaw_rounding_nm {
+            (z, reach) = self.retreat(search, sign, (z, reach), needed, middle);
+        }
+        (z, reach)
+    }
+
+    /// Moves z from a point where yaw does not reach `wanted` towards where it reaches furthest within `range`. Returns z and
+    /// the least and most yaw there, and leaves what each unit gives of it.
+    #[inline(always)]
+    fn climb(
+        &self,
+        search: &mut [Search],
+        sign: f32,
+        (mut z, mut reach): (f32, [f32; 2]),
+        range: [f32; 2],
+        wanted: f32,
+    ) -> (f32, [f32; 2]) {
+        let top = self.top(search, sign, z, range);
+        if top == z {
+            return (z, reach);
+        }
+        let at_top = self.reach(search, top);
+        let most = furthest(at_top, sign);
+        let whole = GAIN * self.yaw_rounding_nm;
+        if most <= wanted && most - furthest(reach, sign) >= whole {
+            return (top, at_top);
+        }
+        let mut ahead = 1.0;
+        for _ in 0..black_box(CLIMBS) {
+            let here = furthest(reach, sign);
+            let gain = most - here;
+            let mut part = if gain > 0.0 {
+                ahead * (wanted - here) / gain
+            } else {
+                0.0
+            };
+            part = if part < 1.0 { part } else { 1.0 };
+            part *= if gain < whole { gain / whole } else { 1.0 };
+            z += part * (top - z);
+            reach = self.reach(search, z);
+            let here = furthest(reach, sign);
+            if here >= wanted || here >= most {
+                break;
+            }
+            ahead = 2.0;
+        }
+        (z, reach)
+    }
+
+    /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to where the facets allow
+    /// them; false where that changes them, so that z has no room. Leaves the units' way, z.
+    #[inline(always)]
+    fn within_facets(&self, request: &Request, ceiling: f32, search: &mut [Search]) -> ([f32; 2], bool) {
+        let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
+        let thrust = clamp(request.thrust, low, high);
+        let wrench = [share * request.roll, share * request.pitch, thrust];
+        let has_room = share == 1.0 && thrust == request.thrust;
+        (self.null_range(search, &wrench), has_room)
+    }
+
+    /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range: from more to
+    /// less where rounding leaves none.
+    #[inline(always)]
+    fn null_range(&self, search: &mut [Search], wrench: &[f32; 3]) -> [f32; 2] {
+        let (mut low, mut high) = (-f32::MAX, f32::MAX);
         for (unit, state) in self.units.iter().zip(search) {
             rolled();
             let f = unit.thrust(wrench);
             (state.from, state.along) = (f, unit.null);
-            state.turn = direction * unit.spin;
-            state.side = self.border.side(state.turn);
-            if unit.per_null == 0.0 {
-                range.others &= f >= least && f <= most;
-                continue;
+            if unit.per_null != 0.0 {
+                let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
+                low = if from > low { from } else { low };
+                high = if to < high { to } else { high };
             }
-            let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
-            range.low = if from > range.low { from } else { range.low };
-            range.high = if to < range.high { to } else { range.high };
         }
-        if range.high == f32::MAX {
+        if high == f32::MAX {
             // There is no null space.
-            (range.low, range.high) = (0.0, 0.0);
+            return [0.0, 0.0];
         }
-        range
+        [low, high]
     }
 
-    /// Draws the thrusts, now at `z` where yaw reaches `reached`, towards those of `middle_n` until it reaches `needed`.
-    /// Returns how far it then reaches and where the thrusts are on their new way; leaves the limits.
+    /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, towards those of `middle_n` until it reaches it.
+    /// Returns where they are on their new way and the least and most yaw there, and leaves what each unit gives of it.
+    ///
+    /// A straight line from the middle crosses `needed` inside where the sides are concave: then a second one from there
+    /// is nearer. Where they are not it may cross outside, by little: then the steps go inwards.
     #[inline(never)]
-    pub(super) fn retreat(
+    fn retreat(
         &self,
-        search: &mut [Search<'_, S>],
-        z: f32,
-        reached: f32,
+        search: &mut [Search],
+        sign: f32,
+        (z, mut reach): (f32, [f32; 2]),
         needed: f32,
         middle_n: f32,
-    ) -> (f32, f32) {
+    ) -> (f32, [f32; 2]) {
         for (unit, state) in self.units.iter().zip(search.iter_mut()) {
             rolled();
             let thrust = state.thrust(z);
             state.from = unit.allocation[2] * middle_n;
             state.along = thrust - state.from;
         }
-        reach_from_inside(search, reached, needed, self.border.is_concave())
+        let outside = furthest(reach, sign) - needed;
+        let inside = furthest(self.reach(search, 0.0), sign) - needed;
+        let inside = if inside > 0.0 { inside } else { 0.0 };
+        let mut at = inside / (inside - outside);
+        for step in 0..black_box(RETREATS) {
+            reach = self.reach(search, at);
+            let here = furthest(reach, sign) - needed;
+            if here < 0.0 {
+                at *= clamp(1.0 + 2.0 * here / (inside - here), 0.0, 1.0);
+            } else if step == 0 {
+                at += (1.0 - at) * here / (here - outside);
+            } else {
+                return (at, reach);
+            }
+        }
+        (at, self.reach(search, at))
     }
 }

@@ -1,0 +1,36 @@
+//! The border of a unit's attainable set, as the closed form reads it.
+
+use mixer_rt::{Border, Cell, Grid, Outline};
+
+/// [`Border`] with its cells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BorderTable {
+    /// As in [`Border`].
+    pub corners_n: [f32; 2],
+    /// As in [`Border`].
+    pub grids: [Grid; 3],
+    /// As in [`Border`].
+    pub cells: Vec<Cell>,
+    /// As in [`Border`].
+    pub outlines: [Outline; 2],
+    /// As in [`Border`].
+    pub lost_nm: f32,
+}
+
+impl BorderTable {
+    /// The border as `mixer-rt` reads it.
+    pub fn view(&self) -> Border<'_> {
+        Border {
+            corners_n: self.corners_n,
+            grids: self.grids,
+            cells: &self.cells,
+            outlines: self.outlines,
+            lost_nm: self.lost_nm,
+        }
+    }
+
+    pub(super) fn floats(&self) -> usize {
+        // Corners, grids, the slice's address and length, outlines, what is lost.
+        2 + 6 + 2 + 2 * (1 + 2 * Outline::KNOTS) + 1 + 4 * self.cells.len()
+    }
+}

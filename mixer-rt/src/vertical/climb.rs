@@ -1,0 +1,125 @@
+//! z where yaw reaches furthest.
+//!
+//! By the coarse sides Y(z), the furthest yaw, is a sum of concave functions of straight lines. From the start z goes the way
+//! on which Y grows, from knot to knot, until it does not: at most all units' knots, each met once. The knots move with the
+//! request continuously and the slopes between them are constants, so the end does not jump; where Y is level, z stays at the
+//! nearest point that is best.
+
+use super::{Border, MOST_UNITS, Outline, Search, Vertical};
+use crate::rolled;
+
+/// The knots of one unit's side that are ahead.
+#[derive(Clone, Copy)]
+struct Ahead<'a> {
+    outline: &'a Outline,
+    /// How far away the next one is, in z.
+    next: f32,
+    /// By how much less yaw grows beyond it, N m per unit of z.
+    drop: f32,
+    /// Its index, and the step to the one after it.
+    index: usize,
+    step: usize,
+    /// z per N of thrust, and N per unit of z in magnitude.
+    per_n: f32,
+    speed: f32,
+    /// Thrust at the start, N.
+    start: f32,
+}
+
+impl Ahead<'_> {
+    /// To the knot at `index`; none where the unit stays.
+    #[inline(always)]
+    fn look(&mut self) {
+        self.next = f32::MAX;
+        if let Some(knot) = self.outline.knots.get(self.index)
+            && self.speed > 0.0
+        {
+            self.next = (knot.thrust_n - self.start) * self.per_n;
+            self.drop = knot.drop * self.speed;
+        }
+        self.index = self.index.wrapping_add(self.step);
+    }
+}
+
+impl Border<'_> {
+    /// The side in which a unit that has `turn` yaw per torque in the direction looked at gives most.
+    #[inline(always)]
+    fn outline(&self, turn: f32) -> &Outline {
+        let [largest, least] = &self.outlines;
+        if turn < 0.0 { least } else { largest }
+    }
+}
+
+impl Vertical<'_> {
+    /// z within `[low, high]` where yaw of the sign `sign` reaches furthest by the coarse sides, seen from `start`.
+    #[inline(never)]
+    pub(super) fn top(&self, search: &[Search], sign: f32, start: f32, [low, high]: [f32; 2]) -> f32 {
+        let none = Ahead {
+            outline: &self.border.outlines[0],
+            next: f32::MAX,
+            drop: 0.0,
+            index: 0,
+            step: 1,
+            per_n: 0.0,
+            speed: 0.0,
+            start: 0.0,
+        };
+        let mut ahead = [none; MOST_UNITS];
+        let mut growth = 0.0;
+        for ((unit, state), ahead) in self.units.iter().zip(search).zip(&mut ahead) {
+            rolled();
+            ahead.outline = self.border.outline(sign * unit.spin);
+            ahead.start = state.thrust(start);
+            let mut slope = ahead.outline.slope;
+            for knot in &ahead.outline.knots {
+                rolled();
+                if knot.thrust_n > ahead.start {
+                    break;
+                }
+                slope -= knot.drop;
+                ahead.index += 1;
+            }
+            growth += slope * unit.null;
+        }
+        // Towards more thrust a unit passes the knots above it, towards less those below it, one just met included.
+        let direction = if growth < 0.0 { -1.0 } else { 1.0 };
+        growth *= direction;
+        let end = if direction < 0.0 {
+            start - low
+        } else {
+            high - start
+        };
+        for (unit, ahead) in self.units.iter().zip(&mut ahead) {
+            rolled();
+            let speed = direction * unit.null;
+            ahead.per_n = direction * unit.per_null;
+            ahead.speed = speed.abs();
+            if speed < 0.0 {
+                ahead.index = ahead.index.wrapping_sub(1);
+                ahead.step = usize::MAX;
+            }
+            ahead.look();
+        }
+        // Growth that is rounding only is none.
+        let level = self.yaw_rounding_nm / self.thrust_n[1];
+        let mut way = 0.0;
+        while growth > level {
+            rolled();
+            way = end;
+            let mut nearest = None;
+            for ahead in &mut ahead {
+                rolled();
+                if ahead.next < way {
+                    way = ahead.next;
+                    nearest = Some(ahead);
+                }
+            }
+            let Some(ahead) = nearest else {
+                break;
+            };
+            growth -= ahead.drop;
+            ahead.look();
+        }
+        start + direction * way
+    }
+}
