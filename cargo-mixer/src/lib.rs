@@ -57,8 +57,18 @@ fn remark(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{message}");
 }
 
-/// Reads and compiles an airframe file.
+/// Reads and compiles an airframe file; its warnings go to stderr.
 fn compile(path: &Path) -> Result<Compiled, Refusal> {
+    let compiled = compile_quietly(path)?;
+    if !compiled.warnings.is_empty() {
+        // Each begins with `warning[..]` itself.
+        remark(&compiled.warnings);
+    }
+    Ok(compiled)
+}
+
+/// Reads and compiles an airframe file.
+fn compile_quietly(path: &Path) -> Result<Compiled, Refusal> {
     let name = path.display().to_string();
     let bytes = fs::read(path).map_err(|error| Refusal::Unreadable(format!("{name}: {error}")))?;
     let source = Source::from_bytes(name, bytes).map_err(Refusal::Faulty)?;

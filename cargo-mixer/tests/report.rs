@@ -73,6 +73,21 @@ fn named<'a, 'd>(node: Node<'a, 'd>, tag: &'static str) -> impl Iterator<Item = 
 }
 
 #[test]
+fn pages_show_warnings() {
+    let list = |page: &str| {
+        let document = parsed(page);
+        let lists: Vec<Node> = named(document.root(), "ul").collect();
+        lists
+            .iter()
+            .map(|list| named(*list, "li").count())
+            .collect::<Vec<_>>()
+    };
+    let warned = compiled(&root().join("mixer-compiler/tests/warnings/tolerance-wide.toml"));
+    assert_eq!(list(&page(&Study::new(&warned, None), None)), [2]);
+    assert!(list(&page(&Study::new(&x8(), None), None)).is_empty());
+}
+
+#[test]
 fn pages_are_well_formed_and_complete() {
     // The fixtures have tilted axes, other bases, other evaluators and voltage laws.
     for compiled in airframes().into_iter().chain(folder("tests/fixtures")) {

@@ -43,6 +43,8 @@ pub struct Airframe {
     pub inverse: Inverse,
     /// Controlled axes and priorities.
     pub allocation: Allocation,
+    /// `layout.first_angle_deg` as written, which the units no longer tell.
+    pub(crate) first_angle_deg: Option<f64>,
     places: Places,
 }
 
@@ -170,6 +172,10 @@ fn check(spec: Spec, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         units,
         inverse: inverse?,
         allocation: allocation?,
+        first_angle_deg: spec
+            .layout
+            .and_then(|layout| layout.first_angle_deg)
+            .map(Spanned::into_inner),
         places,
     })
 }

@@ -1,4 +1,4 @@
-//! Faults in an airframe file: what is wrong, where, by how much, and what would mend it.
+//! Faults in an airframe file and warnings of it: what is wrong, where, by how much, and what would mend it.
 
 mod code;
 mod wording;
@@ -10,7 +10,7 @@ use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
-pub use self::code::Code;
+pub use self::code::{Code, Severity};
 pub(crate) use self::wording::{any_of, nearest, number, quoted, rounded};
 use crate::source::{BYTE_ORDER_MARK, Source};
 
@@ -64,7 +64,7 @@ impl Diagnostic {
     }
 }
 
-/// All faults of one airframe file, in the order of their places.
+/// All faults of one airframe file, or all warnings, in the order of their places.
 ///
 /// Its `Display` is what the macro, the build-script helper and the command line show:
 ///
@@ -139,10 +139,52 @@ impl Diagnostics {
             .map(|span| self.source.place(span.start).column)
     }
 
-    /// The faults for machines, in the same order.
-    pub fn records(&self) -> Vec<Record> {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.faults.is_empty()
+    }
+
+    /// Every diagnostic on one line, for logs that show no more: `x8.toml:4:7: warning[MIX303]: message; help`.
+    pub fn lines(&self) -> Vec<String> {
         self.faults
             .iter()
+            .map(|fault| {
+                let severity = match fault.code.severity() {
+                    Severity::Error => "error",
+                    Severity::Warning => "warning",
+                };
+                let help = match fault.help.as_str() {
+                    "" => String::new(),
+                    help => format!("; {help}"),
+                };
+                let place = self.written_place(fault);
+                format!("{place}: {severity}[{}]: {}{help}", fault.code, fault.message)
+            })
+            .collect()
+    }
+
+    /// `x8.toml:4:7`, or the file alone.
+    fn written_place(&self, fault: &Diagnostic) -> String {
+        match (self.line(fault), self.column(fault)) {
+            (Some(line), Some(column)) => format!("{}:{line}:{column}", self.source.name),
+            _ => self.source.name.clone(),
+        }
+    }
+
+    /// The faults for machines, in the same order.
+    pub fn records(&self) -> Vec<Record> {
+        self.records_where(|_| true)
+    }
+
+    /// Those of one severity for machines, in the same order.
+    pub fn records_of(&self, severity: Severity) -> Vec<Record> {
+        self.records_where(|fault| fault.code.severity() == severity)
+    }
+
+    fn records_where(&self, is_wanted: impl Fn(&Diagnostic) -> bool) -> Vec<Record> {
+        self.faults
+            .iter()
+            .filter(|fault| is_wanted(fault))
             .map(|fault| Record {
                 code: fault.code.to_string(),
                 file: self.source.name.clone(),
@@ -159,22 +201,27 @@ impl Diagnostics {
     /// The text for `compile_error!`. Editors show its first line alone, so that line says where and what;
     /// all faults follow as in `Display`.
     pub fn compile_error(&self) -> String {
-        let Some(first) = self.faults.first() else {
+        let mut errors = self
+            .faults
+            .iter()
+            .filter(|fault| fault.code.severity() == Severity::Error);
+        let Some(first) = errors.next() else {
             return format!("{}: refused", self.source.name);
         };
-        let place = match (self.line(first), self.column(first)) {
-            (Some(line), Some(column)) => format!("{}:{line}:{column}", self.source.name),
-            _ => self.source.name.clone(),
-        };
-        let others = match self.faults.len() {
-            1 => String::new(),
-            count => format!(" (first of {count} faults)"),
+        let place = self.written_place(first);
+        let others = match errors.count() {
+            0 => String::new(),
+            others => format!(" (first of {} faults)", others + 1),
         };
         format!("{place}: {}{others}\n\n{self}", first.message)
     }
 
     fn render(&self, fault: &Diagnostic) -> String {
-        let title = Level::ERROR
+        let level = match fault.code.severity() {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let title = level
             .primary_title(fault.message.as_str())
             .id(fault.code.to_string());
         let mut group = match &fault.span {

@@ -1,6 +1,7 @@
 //! The command line from outside: outputs, exit status, streaming.
 
 mod mix;
+mod warnings;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
