@@ -71,6 +71,8 @@ catalogue! {
     VoltageNotOne = 104,
     /// Voltage points that do not ascend or do not cover the voltage range.
     VoltagePoints = 105,
+    /// A voltage law that multiplies thrust or torque beyond any pack.
+    VoltageTooLarge = 106,
     /// An output channel that two rotors share.
     DuplicateChannel = 110,
     /// An output channel beyond the number of rotors, which leaves another without a rotor.
