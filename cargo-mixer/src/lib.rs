@@ -54,7 +54,20 @@ fn complain(message: impl Display) -> ExitCode {
 
 /// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as in `2>&1 | head`.)
 fn remark(message: impl Display) {
-    let _ = writeln!(io::stderr().lock(), "{message}");
+    let _ = writeln!(io::stderr().lock(), "{}", printable(&message.to_string()));
+}
+
+/// Text without the control characters that a file name may bring to a terminal; lines and tabs stay.
+fn printable(text: &str) -> String {
+    let is_plain = |c: char| !c.is_control() || matches!(c, '\n' | '\t');
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            c if is_plain(c) => shown.push(c),
+            c => shown.extend(c.escape_default()),
+        }
+    }
+    shown
 }
 
 /// Reads and compiles an airframe file; its warnings go to stderr.
@@ -69,7 +82,7 @@ fn compile(path: &Path) -> Result<Compiled, Refusal> {
 
 /// Reads and compiles an airframe file.
 fn compile_quietly(path: &Path) -> Result<Compiled, Refusal> {
-    let name = path.display().to_string();
+    let name = printable(&path.display().to_string());
     let bytes = fs::read(path).map_err(|error| Refusal::Unreadable(format!("{name}: {error}")))?;
     let source = Source::from_bytes(name, bytes).map_err(Refusal::Faulty)?;
     mixer_compiler::compile(&source).map_err(Refusal::Faulty)

@@ -48,3 +48,32 @@ fn json_lists_warnings() {
     assert!(!refused["errors"].as_array().unwrap().is_empty());
     assert_eq!(refused["warnings"], Value::Array(Vec::new()));
 }
+
+/// A file name is the user's, the terminal, too.
+#[cfg(unix)]
+#[test]
+fn control_characters_of_names_do_not_reach_the_terminal() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("control");
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("a\u{1b}[2Jb.toml");
+    for text in [
+        std::fs::read_to_string(root().join(HIGH_IDLE)).unwrap(),
+        "name = 1".to_owned(),
+        String::new(),
+    ] {
+        std::fs::write(&path, &text).unwrap();
+        let output = run(&["check", path.to_str().unwrap()]);
+        for shown in [stdout(&output), stderr(&output)] {
+            assert!(!shown.contains('\u{1b}'), "{shown:?}");
+        }
+        assert!(
+            stderr(&output).contains("a\\u{1b}[2Jb.toml"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    std::fs::remove_file(&path).unwrap();
+    let output = run(&["check", path.to_str().unwrap()]);
+    assert_status(&output, 1);
+    assert!(!stderr(&output).contains('\u{1b}'));
+}
