@@ -32,6 +32,7 @@ mod selection;
 pub mod source;
 pub mod spec;
 pub mod tables;
+pub mod vehicle;
 mod vertical;
 pub mod voltage;
 

@@ -8,6 +8,7 @@ mod geometry;
 mod limits;
 mod pair;
 mod supply;
+mod vehicle;
 
 use crate::airframe::Airframe;
 use crate::diagnostic::Diagnostic;
@@ -38,11 +39,13 @@ const RULES: &[Rule] = &[
     geometry::radians,
     geometry::centre_of_gravity,
     geometry::channels,
+    geometry::many_units,
     supply::single_cell,
     supply::exponents,
     supply::factors,
     limits::tolerances,
     limits::yaw_reserve,
+    vehicle::hover,
 ];
 
 /// Everything in an airframe that compiles which is plausibly a mistake.

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::Compiled;
 use crate::cost::Cost;
 use crate::tables::SideTable;
+use crate::vehicle::Hover;
 
 /// `cargo mixer check --json`, but for the time taken.
 #[derive(Clone, Debug, Serialize)]
@@ -54,6 +55,8 @@ pub struct Summary {
     pub attainable_area_lost_in_closed_form: Option<f64>,
     /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque, N.
     pub thrust_range_n: [f32; 2],
+    /// The vehicle in hover; null where the file has no mass.
+    pub hover: Option<Hover>,
     /// What it costs on the target.
     pub cost: Cost,
 }
@@ -112,6 +115,7 @@ impl Summary {
             attainable_area_lost_to_convexity: compiled.lost_area.convexity,
             attainable_area_lost_in_closed_form: compiled.lost_between_sides,
             thrust_range_n: compiled.thrust_range_n,
+            hover: Hover::new(compiled),
             cost: Cost::new(compiled),
         }
     }
@@ -277,6 +281,9 @@ impl Report<'_> {
         )?;
         let [floor, ceiling] = summary.thrust_range_n;
         writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;
+        if let Some(hover) = &summary.hover {
+            write!(f, "{hover}")?;
+        }
         match &airframe.voltage {
             None => writeln!(f, "voltage         no correction"),
             Some(voltage) => {

@@ -121,6 +121,8 @@ catalogue! {
     Radians = 311,
     /// A centre of gravity so far off that most of the thrust cannot be used.
     CentreOfGravity = 312,
+    /// More units than the counted costs are of.
+    ManyUnits = 313,
     /// A supply of one cell for rotors that need more.
     SingleCell = 320,
     /// A voltage law whose power of the voltage no propeller follows.
@@ -131,6 +133,12 @@ catalogue! {
     WideTolerance = 330,
     /// A yaw reserve that the units cannot hold at any thrust.
     YawReserveBeyond = 331,
+    /// A vehicle that is too heavy to hover.
+    TooHeavy = 340,
+    /// A vehicle that rises at idle.
+    FloatsAtIdle = 341,
+    /// A vehicle that hovers with little thrust left.
+    HoversHigh = 342,
 }
 
 impl Code {

@@ -2,6 +2,7 @@
 
 use super::Facts;
 use crate::airframe::Axis;
+use crate::cost::COUNTED;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 
 /// Longest plausible arm per root of a unit's largest thrust, m / sqrt(N). Thrust grows with the square of the diameter and
@@ -178,5 +179,32 @@ pub(super) fn channels(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
         ),
         "upper rotor first",
         format!("if they are exchanged, write [{lower}, {upper}]"),
+    ));
+}
+
+/// More units than costs are known for.
+pub(super) fn many_units(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    let airframe = facts.airframe;
+    let counted = COUNTED
+        .frames
+        .iter()
+        .map(|frames| frames.units)
+        .max()
+        .unwrap_or(0);
+    let units = airframe.units.len();
+    if units <= counted {
+        return;
+    }
+    let key = if airframe.states("layout.units") {
+        "layout.units".to_owned()
+    } else {
+        format!("unit[{counted}]")
+    };
+    found.push(airframe.diagnostic(
+        Code::ManyUnits,
+        &key,
+        format!("{units} units are more than the {counted} up to which a mix's instructions are counted"),
+        "",
+        "measure the longest mix on your target before you rely on a deadline",
     ));
 }
