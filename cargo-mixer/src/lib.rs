@@ -14,6 +14,7 @@ use mixer_compiler::{Compiled, Source};
 pub mod check;
 pub mod expand;
 pub mod file;
+pub mod golden;
 pub mod identify;
 pub mod mix;
 pub mod report;

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, expand, identify, mix, report, sweep};
+use cargo_mixer::{check, expand, golden, identify, mix, report, sweep};
 use clap::{Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -23,6 +23,7 @@ enum Command {
     Check(check::CheckArgs),
     Mix(mix::MixArgs),
     Expand(expand::ExpandArgs),
+    Golden(golden::GoldenArgs),
     Identify(Box<identify::IdentifyArgs>),
     Report(report::ReportArgs),
     Sweep(sweep::SweepArgs),
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Mix(args) => mix::run(&args),
         Command::Expand(args) => expand::run(&args),
+        Command::Golden(args) => golden::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Sweep(args) => sweep::run(&args),
