@@ -173,6 +173,9 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     if !after.injective {
         let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
         throttle.min = raised(&after, &map, &label, &mut warnings)?;
+    } else {
+        let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
+        throttle.min = clear_of_fold(&map, throttle, &mut warnings);
     }
     let [thrust_fit, torque_fit] = fits;
     judge_quality(&thrust_fit, &torque_fit, &mut warnings);
@@ -271,7 +274,27 @@ fn one_pair(
     Ok(())
 }
 
-/// The idle of a map that is not proven injective over its box: the least one, rounded up to 0.005.
+/// The idle over the least one at which the map can be inverted. Right at that the inverse bends without bound, and no
+/// tolerance is met.
+const CLEAR: f64 = 1.03;
+
+/// The idle of a map that can be inverted over its box: the box's, or a little more where that is next to a fold.
+fn clear_of_fold(map: &ForwardMap, throttle: ThrottleBox, warnings: &mut Vec<String>) -> f64 {
+    let least = map.least_idle(throttle.max).unwrap_or(0.0);
+    if throttle.min >= CLEAR * least {
+        return throttle.min;
+    }
+    let Some(min) = fold::round_idle(map, CLEAR * least, throttle.max) else {
+        return throttle.min;
+    };
+    warnings.push(format!(
+        "throttle.min is raised from {} to {min}: the map folds right below, at {least:.4}",
+        throttle.min
+    ));
+    min
+}
+
+/// The idle of a map that is not proven injective over its box: a little over the least one, rounded up to 0.005.
 fn raised(
     fold: &Fold,
     map: &ForwardMap,
@@ -280,7 +303,7 @@ fn raised(
 ) -> Result<f64, Refusal> {
     let [u, l] = fold.least_det_at;
     let least_det = fold.least_det;
-    let rounded = |least: f64| fold::round_idle(map, least, fold.commanded.max);
+    let rounded = |least: f64| fold::round_idle(map, CLEAR * least, fold.commanded.max);
     let Some((least, min)) = fold.least_idle.and_then(|least| Some((least, rounded(least)?))) else {
         return Err(Refusal::of(
             label(),
