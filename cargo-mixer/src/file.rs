@@ -44,6 +44,20 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
     done.map_err(|error| fault(&error))
 }
 
+/// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to lose.
+///
+/// # Errors
+/// A regular file of that name.
+pub fn not_there(path: &Path, force: bool) -> Result<(), String> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_file() && !force => Err(format!(
+            "{} is there already: --force overwrites it",
+            path.display()
+        )),
+        _ => Ok(()),
+    }
+}
+
 fn place(temporary: &Path, replaced: &Path, text: &str, found: Option<&Metadata>) -> io::Result<()> {
     let mut file = File::create(temporary)?;
     if let Some(found) = found {

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, expand, golden, identify, mix, report, sweep};
+use cargo_mixer::{check, expand, golden, identify, mix, new, report, sweep};
 use clap::{Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -25,6 +25,7 @@ enum Command {
     Expand(expand::ExpandArgs),
     Golden(golden::GoldenArgs),
     Identify(Box<identify::IdentifyArgs>),
+    New(new::NewArgs),
     Report(report::ReportArgs),
     Sweep(sweep::SweepArgs),
 }
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Command::Expand(args) => expand::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Identify(args) => identify::run(&args),
+        Command::New(args) => new::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Sweep(args) => sweep::run(&args),
     }

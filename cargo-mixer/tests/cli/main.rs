@@ -2,6 +2,7 @@
 
 mod golden;
 mod mix;
+mod new;
 mod warnings;
 
 use std::io::Write;
