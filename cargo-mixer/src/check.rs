@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::checklist::Checklist;
 use mixer_compiler::cost::Cost;
 use mixer_compiler::diagnostic::{Record, Severity};
 use mixer_compiler::report::{Report, Summary};
@@ -61,7 +62,8 @@ pub fn run(args: &CheckArgs) -> ExitCode {
                 json(&mut out, &success)
             } else {
                 let (report, cost) = (Report(&compiled), Cost::new(&compiled));
-                writeln!(out, "{report}{cost}compiled in     {compile_ms:.0} ms")
+                let list = Checklist(&compiled);
+                writeln!(out, "{report}{cost}{list}compiled in     {compile_ms:.0} ms")
             };
             match crate::output(written.and_then(|()| out.flush())) {
                 Err(status) => status,

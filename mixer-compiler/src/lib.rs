@@ -9,6 +9,7 @@ pub mod bernstein;
 #[cfg(feature = "format")]
 pub mod build_script;
 mod chain;
+pub mod checklist;
 pub mod cost;
 pub mod diagnostic;
 pub mod effectiveness;

@@ -82,6 +82,8 @@ fn check_prints_the_key_lines() {
         "\n  inverse       ",
         "\n  mix           about ",
         "\n  saturated     counted with 4 units, desaturation in closed form: mean ",
+        "\non the bench    propellers off, ",
+        "\n  +yaw           raises outputs 4, 6, 1, 3 (nose right)\n",
         "\ncompiled in ",
     ] {
         assert!(
