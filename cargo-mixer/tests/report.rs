@@ -16,6 +16,8 @@ use roxmltree::{Document, Node, ParsingOptions};
 mod browser;
 #[path = "report/cost.rs"]
 mod cost;
+#[path = "report/doubts.rs"]
+mod doubts;
 #[path = "report/mixers.rs"]
 mod mixers;
 #[path = "report/pictures.rs"]

@@ -15,6 +15,7 @@ use super::refusal::Refusal;
 use super::robust::{self, Outlier};
 use super::voltage::Voltage;
 
+mod doubts;
 mod placed;
 
 /// What the user decides about the fit.
@@ -97,6 +98,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         Some(wished) => beyond(wished, measured, &mut warnings),
         None => inside(measured),
     };
+    doubts::coverage(measured, throttle_box, &mut warnings);
     if throttle_box.min >= throttle_box.max {
         return Err(Refusal::of(
             label(),
@@ -143,7 +145,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         fit(&design, &thrust, throttle_box),
         fit(&design, &torque, throttle_box),
     ];
-    one_pair(basis, &points, throttle_box, &fits)?;
+    one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
 
     let of =
         |fits: &[Fit; 2]| fold::examine(basis, &fits[0].coefficients, &fits[1].coefficients, throttle_box);
@@ -168,6 +170,9 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
             judge(&design, &thrust, &found.thrust, throttle_box),
             judge(&design, &torque, &found.torque, throttle_box),
         ];
+        if let Some(cost) = &cost {
+            doubts::costly_constraint(cost, &points, &fits[1], &mut warnings);
+        }
     }
     let after = if cost.is_some() { of(&fits) } else { fold.clone() };
     if !after.injective {
@@ -229,12 +234,13 @@ fn beyond(wished: ThrottleBox, measured: [[f64; 2]; 2], warnings: &mut Vec<Strin
     wished
 }
 
-/// Refuses files that each fit well but not together.
+/// Refuses files that each fit well but not together, and warns of those that do not fit as well.
 fn one_pair(
     basis: Basis,
     points: &[Placed],
     throttle_box: ThrottleBox,
     fits: &[Fit; 2],
+    warnings: &mut Vec<String>,
 ) -> Result<(), Refusal> {
     let mut files: Vec<&str> = points.iter().map(|p| p.file).collect();
     files.dedup();
@@ -270,6 +276,9 @@ fn one_pair(
             ),
             "files of one pair at one spacing; run each pair by itself",
         ));
+    }
+    if n == points.len() {
+        doubts::joined_files(&files, [together, apart], fits[0].full_scale, warnings);
     }
     Ok(())
 }

@@ -72,7 +72,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
         let _ = write!(html, "<a href=\"#{anchor}\">{title}</a> ");
     }
     html.push_str("</nav>\n");
-    html.push_str(&warnings(study));
+    html.push_str(&warnings(study, bench));
     html.push_str(&table::summary(study));
 
     for (anchor, title) in SECTIONS {
@@ -107,9 +107,10 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
 }
 
 /// What is plausibly a mistake; nothing where there is none.
-fn warnings(study: &Study<'_>) -> String {
+fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
     let records = study.compiled.warnings.records();
-    if records.is_empty() {
+    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(study.compiled));
+    if records.is_empty() && doubts.is_empty() {
         return String::new();
     }
     let mut html = String::from("<ul class=\"warnings\">\n");
@@ -124,6 +125,9 @@ fn warnings(study: &Study<'_>) -> String {
             escaped(&record.message),
             escaped(&record.help)
         );
+    }
+    for doubt in doubts {
+        let _ = writeln!(html, "<li><b>Warning:</b> {}.</li>", escaped(&doubt));
     }
     html.push_str("</ul>\n");
     html
