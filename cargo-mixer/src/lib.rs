@@ -12,6 +12,7 @@ use mixer_compiler::diagnostic::Diagnostics;
 use mixer_compiler::{Compiled, Source};
 
 pub mod check;
+pub mod compare;
 pub mod expand;
 pub mod file;
 pub mod frame;

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, expand, golden, identify, mix, new, report, sweep};
+use cargo_mixer::{check, compare, expand, golden, identify, mix, new, report, sweep};
 use clap::{Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -21,6 +21,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Check(check::CheckArgs),
+    Compare(compare::CompareArgs),
     Mix(mix::MixArgs),
     Expand(expand::ExpandArgs),
     Golden(golden::GoldenArgs),
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         .map(|(_, word)| word);
     match Arguments::parse_from(arguments).command {
         Command::Check(args) => check::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Mix(args) => mix::run(&args),
         Command::Expand(args) => expand::run(&args),
         Command::Golden(args) => golden::run(&args),

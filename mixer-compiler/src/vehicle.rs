@@ -78,7 +78,8 @@ impl Hover {
 }
 
 impl HoverAt {
-    fn new(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Self {
+    /// What is left beside a thrust of `weight_n` N at a voltage, V; any where the airframe ignores it.
+    pub fn new(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Self {
         let tables = &compiled.tables;
         // Throttles where all of the wrench is delivered.
         let mix = |wrench: [f64; 4]| {

@@ -1,5 +1,6 @@
 //! The command line from outside: outputs, exit status, streaming.
 
+mod compare;
 mod golden;
 mod mix;
 mod new;
