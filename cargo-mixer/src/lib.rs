@@ -22,6 +22,7 @@ pub mod mix;
 pub mod new;
 pub mod report;
 pub mod setpoints;
+pub mod shell;
 pub mod sweep;
 
 /// The exit status for a bad input.

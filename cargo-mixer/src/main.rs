@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, compare, expand, golden, identify, mix, new, report, sweep};
-use clap::{Parser, Subcommand};
+use cargo_mixer::{check, compare, expand, golden, identify, mix, new, report, shell, sweep};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
 #[derive(Parser)]
@@ -29,6 +29,8 @@ enum Command {
     New(new::NewArgs),
     Report(report::ReportArgs),
     Sweep(sweep::SweepArgs),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 fn main() -> ExitCode {
@@ -47,5 +49,7 @@ fn main() -> ExitCode {
         Command::New(args) => new::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Completions(args) => shell::completions(&args, Arguments::command()),
+        Command::Man(args) => shell::man(&args, &Arguments::command()),
     }
 }

@@ -4,6 +4,7 @@ mod compare;
 mod golden;
 mod mix;
 mod new;
+mod shell;
 mod warnings;
 
 use std::io::Write;
