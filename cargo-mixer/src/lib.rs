@@ -3,7 +3,7 @@
 //! Exit status 0, 1 for a bad input, 2 for bad usage; errors go to stderr.
 
 use std::fmt::Display;
-use std::io::Write;
+use std::io::{IsTerminal as _, Write};
 use std::path::Path;
 use std::process::ExitCode;
 use std::{fs, io};
@@ -43,8 +43,7 @@ impl Refusal {
         match self {
             Refusal::Unreadable(message) => complain(message),
             Refusal::Faulty(diagnostics) => {
-                // Each begins with `error[..]` itself.
-                remark(diagnostics);
+                show(diagnostics);
                 ExitCode::from(BAD_INPUT)
             }
         }
@@ -60,6 +59,17 @@ fn complain(message: impl Display) -> ExitCode {
 /// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as in `2>&1 | head`.)
 fn remark(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(&message.to_string()));
+}
+
+/// Shows faults or warnings on stderr; each begins with `error[..]` or `warning[..]` itself. In colours on a terminal, unless
+/// `NO_COLOR` is set (no-color.org).
+fn show(diagnostics: &Diagnostics) {
+    let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    if wanted && io::stderr().is_terminal() {
+        let _ = writeln!(io::stderr().lock(), "{}", diagnostics.coloured());
+    } else {
+        remark(diagnostics);
+    }
 }
 
 /// Text without the control characters that a file name may bring to a terminal; lines and tabs stay.
@@ -79,8 +89,7 @@ fn printable(text: &str) -> String {
 fn compile(path: &Path) -> Result<Compiled, Refusal> {
     let compiled = compile_quietly(path)?;
     if !compiled.warnings.is_empty() {
-        // Each begins with `warning[..]` itself.
-        remark(&compiled.warnings);
+        show(&compiled.warnings);
     }
     Ok(compiled)
 }

@@ -56,7 +56,7 @@ pub(crate) fn write(path: &std::path::Path, text: &str) -> ExitCode {
     let source = Source::new(crate::printable(&path.display().to_string()), text);
     match mixer_compiler::compile(&source) {
         Err(faults) => return Refusal::Faulty(faults).report(),
-        Ok(compiled) if !compiled.warnings.is_empty() => crate::remark(&compiled.warnings),
+        Ok(compiled) if !compiled.warnings.is_empty() => crate::show(&compiled.warnings),
         Ok(_) => {}
     }
     match crate::file::write(path, text) {

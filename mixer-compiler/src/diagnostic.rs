@@ -236,7 +236,29 @@ impl Diagnostics {
         format!("{place}: {}{others}\n\n{self}", first.message)
     }
 
-    fn render(&self, fault: &Diagnostic, place: Option<Place>) -> String {
+    /// What `Display` shows, in the colours of a terminal.
+    pub fn coloured(&self) -> String {
+        self.shown(&Renderer::styled().decor_style(DecorStyle::Ascii))
+    }
+
+    fn shown(&self, renderer: &Renderer) -> String {
+        let shown: Vec<String> = self
+            .placed()
+            .take(MOST_SHOWN)
+            .map(|(fault, place)| self.render(fault, place, renderer))
+            .collect();
+        let mut text = shown.join("\n\n");
+        match self.faults.len().checked_sub(MOST_SHOWN) {
+            None | Some(0) => {}
+            Some(others) if self.faults.len() < MOST_FAULTS => {
+                text.push_str(&format!("\n\n{others} more faults are not shown"));
+            }
+            Some(_) => text.push_str("\n\nmore faults are not shown, and the rest of the file is not read"),
+        }
+        text
+    }
+
+    fn render(&self, fault: &Diagnostic, place: Option<Place>, renderer: &Renderer) -> String {
         let level = match fault.code.severity() {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
@@ -255,7 +277,7 @@ impl Diagnostics {
         if !fault.help.is_empty() {
             group = group.element(Level::HELP.message(fault.help.as_str()));
         }
-        Renderer::plain().decor_style(DecorStyle::Ascii).render(&[group])
+        renderer.render(&[group])
     }
 
     /// The line of a fault; `None` where it is too long to be read.
@@ -304,22 +326,7 @@ impl Diagnostics {
 
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, (fault, place)) in self.placed().take(MOST_SHOWN).enumerate() {
-            if index > 0 {
-                write!(f, "\n\n")?;
-            }
-            f.write_str(&self.render(fault, place))?;
-        }
-        match self.faults.len().checked_sub(MOST_SHOWN) {
-            None | Some(0) => Ok(()),
-            Some(others) if self.faults.len() < MOST_FAULTS => {
-                write!(f, "\n\n{others} more faults are not shown")
-            }
-            Some(_) => write!(
-                f,
-                "\n\nmore faults are not shown, and the rest of the file is not read"
-            ),
-        }
+        f.write_str(&self.shown(&Renderer::plain().decor_style(DecorStyle::Ascii)))
     }
 }
 

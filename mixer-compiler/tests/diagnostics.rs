@@ -157,6 +157,25 @@ fn records_serialise_for_machines() {
     );
 }
 
+/// Colours change nothing of the text.
+#[test]
+fn colours_are_only_colours() {
+    for name in ["many-faults", "wide-characters", "control-characters"] {
+        let faults = refuse(name).unwrap();
+        let (mut plain, mut escape) = (String::new(), false);
+        for c in faults.coloured().chars() {
+            match c {
+                '\u{1b}' => escape = true,
+                'm' if escape => escape = false,
+                _ if escape => {}
+                _ => plain.push(c),
+            }
+        }
+        assert_eq!(plain, faults.to_string(), "{name}");
+        assert_ne!(faults.coloured(), faults.to_string(), "{name}");
+    }
+}
+
 /// A file that is no airframe at all does not flood the terminal; the records still hold everything.
 #[test]
 fn faults_by_the_thousand_are_counted() {
