@@ -1,9 +1,9 @@
 //! Every airframe compiles to its golden outputs, byte for byte.
 #![allow(missing_docs)]
 
-use std::collections::BTreeSet;
-use std::fs;
+use std::collections::BTreeMap;
 
+use cargo_mixer::golden::compare;
 use mixer_rt::Wrench;
 use mixer_tests::vectors::{self, Kind};
 use mixer_tests::{airframes, golden};
@@ -13,41 +13,12 @@ const MEND: &str =
 
 #[test]
 fn airframes_compile_to_their_golden_outputs() {
-    let mut faults = Vec::new();
-    let mut expected = BTreeSet::new();
+    let mut outputs = BTreeMap::new();
     for name in airframes().expect("airframes/") {
-        for (file, content) in golden::outputs(&name).unwrap_or_else(|e| panic!("{e}")) {
-            match fs::read_to_string(golden::folder().join(&file)) {
-                Ok(held) if held == content => {}
-                Ok(held) => {
-                    let place = held
-                        .lines()
-                        .zip(content.lines())
-                        .position(|(held, now)| held != now);
-                    let line = place.unwrap_or_else(|| held.lines().count().min(content.lines().count()));
-                    faults.push(format!(
-                        "{file}:{}: was `{}`, is `{}`",
-                        line + 1,
-                        held.lines().nth(line).unwrap_or(""),
-                        content.lines().nth(line).unwrap_or("")
-                    ));
-                }
-                Err(error) => faults.push(format!("{file}: {error}")),
-            }
-            expected.insert(file);
-        }
+        outputs.extend(golden::outputs(&name).unwrap_or_else(|e| panic!("{e}")));
     }
-    for entry in fs::read_dir(golden::folder()).expect("tests/golden/") {
-        let file = entry
-            .expect("tests/golden/")
-            .file_name()
-            .to_string_lossy()
-            .into_owned();
-        if !expected.contains(&file) {
-            faults.push(format!("{file}: an orphan, no airframe of that name"));
-        }
-    }
-    assert!(faults.is_empty(), "{}\n{MEND}", faults.join("\n"));
+    let differences = compare::differences(&golden::folder(), &outputs).unwrap_or_else(|e| panic!("{e}"));
+    assert!(differences.is_empty(), "{}\n{MEND}", differences.join("\n"));
 }
 
 /// The same text gives the same bytes, also in one process and whatever was compiled before.

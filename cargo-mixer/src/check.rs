@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
+use mixer_compiler::Compiled;
+use mixer_compiler::checklist::Checklist;
 use mixer_compiler::cost::Cost;
-use mixer_compiler::diagnostic::Record;
+use mixer_compiler::diagnostic::{Record, Severity};
 use mixer_compiler::report::{Report, Summary};
 use serde::Serialize;
 
@@ -20,6 +22,9 @@ pub struct CheckArgs {
     /// Print JSON; faults are then listed under "errors" on stdout as well as on stderr
     #[arg(long)]
     json: bool,
+    /// Exit with status 1 where there is a warning
+    #[arg(long)]
+    deny_warnings: bool,
 }
 
 /// The JSON of a good file.
@@ -27,6 +32,8 @@ pub struct CheckArgs {
 struct Success {
     #[serde(flatten)]
     summary: Summary,
+    /// What is plausibly a mistake and yet compiles.
+    warnings: Vec<Record>,
     /// Time of the whole compilation, ms.
     compile_ms: f64,
 }
@@ -35,6 +42,7 @@ struct Success {
 #[derive(Serialize)]
 struct Failure {
     errors: Vec<Record>,
+    warnings: Vec<Record>,
 }
 
 /// Runs the command.
@@ -44,30 +52,52 @@ pub fn run(args: &CheckArgs) -> ExitCode {
     let compile_ms = start.elapsed().as_secs_f64() * 1e3;
     let mut out = stdout().lock();
     match result {
-        Ok(compiled) if args.json => crate::finish(json(
-            &mut out,
-            &Success {
-                summary: Summary::new(&compiled),
-                compile_ms,
-            },
-        )),
-        Ok(compiled) => crate::finish(writeln!(
-            out,
-            "{}{}compiled in     {compile_ms:.0} ms",
-            Report(&compiled),
-            Cost::new(&compiled)
-        )),
-        Err(refusal) => {
-            let records = match &refusal {
-                Refusal::Faulty(diagnostics) => diagnostics.records(),
-                Refusal::Unreadable(message) => vec![unreadable(&args.airframe, message)],
+        Ok(compiled) => {
+            let written = if args.json {
+                let success = Success {
+                    summary: Summary::new(&compiled),
+                    warnings: compiled.warnings.records(),
+                    compile_ms,
+                };
+                json(&mut out, &success)
+            } else {
+                let (report, cost) = (Report(&compiled), Cost::new(&compiled));
+                let list = Checklist(&compiled);
+                writeln!(out, "{report}{cost}{list}compiled in     {compile_ms:.0} ms")
             };
+            match crate::output(written.and_then(|()| out.flush())) {
+                Err(status) => status,
+                Ok(()) if args.deny_warnings && !compiled.warnings.is_empty() => denied(&compiled),
+                Ok(()) => ExitCode::SUCCESS,
+            }
+        }
+        Err(refusal) => {
             if args.json {
-                crate::finish(json(&mut out, &Failure { errors: records }));
+                let failure = match &refusal {
+                    Refusal::Faulty(diagnostics) => Failure {
+                        errors: diagnostics.records_of(Severity::Error),
+                        warnings: diagnostics.records_of(Severity::Warning),
+                    },
+                    Refusal::Unreadable(message) => Failure {
+                        errors: vec![unreadable(&args.airframe, message)],
+                        warnings: Vec::new(),
+                    },
+                };
+                crate::finish(json(&mut out, &failure));
             }
             refusal.report()
         }
     }
+}
+
+/// Refuses a good file for its warnings.
+fn denied(compiled: &Compiled) -> ExitCode {
+    let count = compiled.warnings.faults().len();
+    crate::complain(format_args!(
+        "{}: {count} {}, and --deny-warnings is given",
+        compiled.source_name,
+        if count == 1 { "warning" } else { "warnings" }
+    ))
 }
 
 /// The record of a file that cannot be read: it has no place and no code.

@@ -1,21 +1,27 @@
 //! Writing files.
 
 use std::fmt::Display;
-use std::fs::{self, File};
-use std::io::Write as _;
-use std::path::Path;
+use std::fs::{self, File, Metadata};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
 
-/// Writes the whole file or none of it: a temporary file beside it, flushed to the disk, takes its name. A link to a
-/// file stays a link. What is no regular file, as a device or a pipe, is written to and stays what it is.
+/// Most links that are followed to a file, as by the kernel.
+const MOST_LINKS: usize = 40;
+
+/// Writes the whole file or none of it: a temporary file beside it, flushed to the disk, takes its name and its
+/// permissions. A link stays a link, one to no file yet gets its file. A file with several names keeps them: it is written
+/// to in place, once the temporary file has shown that there is room. What is no regular file, as a device or a pipe, is
+/// written to and stays what it is.
 ///
 /// # Errors
 /// What cannot be written, by its path, and why.
 pub fn write(path: &Path, text: &str) -> Result<(), String> {
     let fault = |reason: &dyn Display| format!("{}: {reason}", path.display());
-    let replaced = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    match fs::metadata(path) {
-        Ok(found) if found.is_dir() => return Err(fault(&"is a folder; name a file in it")),
-        Ok(found) if !found.is_file() => {
+    let replaced = target(path).map_err(|error| fault(&error))?;
+    let found = fs::metadata(&replaced).ok();
+    match &found {
+        Some(found) if found.is_dir() => return Err(fault(&"is a folder; name a file in it")),
+        Some(found) if !found.is_file() => {
             let written = File::options().write(true).open(path);
             return written
                 .and_then(|mut file| file.write_all(text.as_bytes()))
@@ -23,22 +29,76 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
         }
         _ => {}
     }
-    let (Some(folder), Some(name)) = (replaced.parent(), replaced.file_name()) else {
+    let (Some(folder), Some(_)) = (replaced.parent(), replaced.file_name()) else {
         return Err(fault(&"names no file"));
     };
     if !folder.as_os_str().is_empty() && !folder.is_dir() {
         return Err(fault(&format_args!("there is no folder {}", folder.display())));
     }
-    let temporary = folder.join(format!(".{}.{}", name.to_string_lossy(), std::process::id()));
-    let written = File::create(&temporary).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
-        file.sync_all()
-    });
-    let done = written.and_then(|()| fs::rename(&temporary, &replaced));
+    // A name of its own: with the file's in it, it could be longer than names may be.
+    let temporary = folder.join(format!(".cargo-mixer.{}", std::process::id()));
+    let done = place(&temporary, &replaced, text, found.as_ref());
     if done.is_err() {
         let _ = fs::remove_file(&temporary);
     }
     done.map_err(|error| fault(&error))
+}
+
+/// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to lose.
+///
+/// # Errors
+/// A regular file of that name.
+pub fn not_there(path: &Path, force: bool) -> Result<(), String> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_file() && !force => Err(format!(
+            "{} is there already: --force overwrites it",
+            path.display()
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn place(temporary: &Path, replaced: &Path, text: &str, found: Option<&Metadata>) -> io::Result<()> {
+    let mut file = File::create(temporary)?;
+    if let Some(found) = found {
+        // Before the text is in it: what was for few eyes stays so.
+        file.set_permissions(found.permissions())?;
+    }
+    file.write_all(text.as_bytes())?;
+    file.sync_all()?;
+    if !found.is_some_and(has_other_names) {
+        return fs::rename(temporary, replaced);
+    }
+    let mut file = File::options().write(true).truncate(true).open(replaced)?;
+    file.write_all(text.as_bytes())?;
+    file.sync_all()?;
+    fs::remove_file(temporary)
+}
+
+#[cfg(unix)]
+fn has_other_names(found: &Metadata) -> bool {
+    std::os::unix::fs::MetadataExt::nlink(found) > 1
+}
+
+#[cfg(not(unix))]
+fn has_other_names(_: &Metadata) -> bool {
+    false
+}
+
+/// The file behind links, whether it is there or not.
+fn target(path: &Path) -> io::Result<PathBuf> {
+    if let Ok(file) = path.canonicalize() {
+        return Ok(file);
+    }
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&path) {
+            // Relative to the link's folder; an absolute one replaces it.
+            Ok(next) => path = path.parent().unwrap_or(Path::new("")).join(next),
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::Error::other("a circle of links"))
 }
 
 #[cfg(test)]
@@ -83,6 +143,40 @@ mod tests {
         );
         assert!(write(Path::new(""), "").is_err());
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_a_file_is_stays() {
+        use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, symlink};
+
+        let folder = folder("stays");
+        let [secret, other, dangling, circle] =
+            ["secret.csv", "other.csv", "dangling.csv", "circle.csv"].map(|name| folder.join(name));
+        fs::write(&secret, "before").unwrap();
+        fs::set_permissions(&secret, fs::Permissions::from_mode(0o600)).unwrap();
+        write(&secret, "after").unwrap();
+        assert_eq!(fs::metadata(&secret).unwrap().mode() & 0o777, 0o600);
+
+        fs::hard_link(&secret, &other).unwrap();
+        write(&secret, "again").unwrap();
+        assert_eq!(fs::read_to_string(&other).unwrap(), "again");
+        assert_eq!(fs::metadata(&other).unwrap().nlink(), 2);
+
+        symlink("made.csv", &dangling).unwrap();
+        write(&dangling, "made").unwrap();
+        assert!(fs::symlink_metadata(&dangling).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(folder.join("made.csv")).unwrap(), "made");
+
+        symlink("circle.csv", &circle).unwrap();
+        let refused = write(&circle, "").unwrap_err();
+        assert!(refused.ends_with("a circle of links"), "{refused}");
+
+        let long = folder.join("a".repeat(255));
+        write(&long, "long").unwrap();
+        assert_eq!(fs::read_to_string(&long).unwrap(), "long");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 6);
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -8,6 +8,7 @@ use std::io::{Write as _, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use crate::frame::FrameArgs;
 use clap::{Args, ValueEnum};
 use mixer_compiler::airframe::Basis;
 
@@ -56,6 +57,12 @@ pub struct IdentifyArgs {
     /// Write the tables here, whole or not at all; `-` for standard output (the report then goes to standard error).
     #[arg(short, long, value_name = "PAIR.toml")]
     pub output: Option<PathBuf>,
+    /// Overwrite the output if it is there
+    #[arg(long)]
+    pub force: bool,
+    /// Write a whole airframe of this frame, not the tables alone
+    #[command(flatten)]
+    pub frame: Option<FrameArgs>,
     /// Print everything as JSON in place of the report.
     #[arg(long)]
     pub json: bool,
@@ -174,6 +181,9 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
         complain(message);
         return Err(ExitCode::from(BAD_USAGE));
     }
+    if let Some(path) = file {
+        crate::file::not_there(path, args.force).map_err(complain)?;
+    }
     let identified = identify(&args.files, &args.settings()).map_err(|refusals| {
         for refusal in refusals {
             complain(refusal);
@@ -183,7 +193,15 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     for row in identified.files.iter().flat_map(|f| &f.refused_rows) {
         remark(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
     }
-    let fragment = fragment::text(&identified);
+    let fragment = match &args.frame {
+        None => fragment::text(&identified),
+        Some(frame) => frame
+            .airframe(file, &fragment::tables(&identified))
+            .map_err(|message| {
+                complain(message);
+                ExitCode::from(BAD_USAGE)
+            })?,
+    };
     let report = if args.json {
         serde_json::to_string_pretty(&identified).map_err(complain)?
     } else {
@@ -197,6 +215,12 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     };
     output(writeln!(stdout().lock(), "{out}"))?;
     match file {
+        Some(path) if args.frame.is_some() => {
+            let status = crate::new::write(path, &fragment);
+            if status != ExitCode::SUCCESS {
+                return Err(status);
+            }
+        }
         Some(path) => {
             crate::file::write(path, &fragment).map_err(complain)?;
             remark(format_args!("wrote {}", path.display()));

@@ -3,7 +3,7 @@
 //! Exit status 0, 1 for a bad input, 2 for bad usage; errors go to stderr.
 
 use std::fmt::Display;
-use std::io::Write;
+use std::io::{IsTerminal as _, Write};
 use std::path::Path;
 use std::process::ExitCode;
 use std::{fs, io};
@@ -12,12 +12,17 @@ use mixer_compiler::diagnostic::Diagnostics;
 use mixer_compiler::{Compiled, Source};
 
 pub mod check;
+pub mod compare;
 pub mod expand;
 pub mod file;
+pub mod frame;
+pub mod golden;
 pub mod identify;
 pub mod mix;
+pub mod new;
 pub mod report;
 pub mod setpoints;
+pub mod shell;
 pub mod sweep;
 
 /// The exit status for a bad input.
@@ -38,8 +43,7 @@ impl Refusal {
         match self {
             Refusal::Unreadable(message) => complain(message),
             Refusal::Faulty(diagnostics) => {
-                // Each begins with `error[..]` itself.
-                remark(diagnostics);
+                show(diagnostics);
                 ExitCode::from(BAD_INPUT)
             }
         }
@@ -54,12 +58,45 @@ fn complain(message: impl Display) -> ExitCode {
 
 /// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as in `2>&1 | head`.)
 fn remark(message: impl Display) {
-    let _ = writeln!(io::stderr().lock(), "{message}");
+    let _ = writeln!(io::stderr().lock(), "{}", printable(&message.to_string()));
+}
+
+/// Shows faults or warnings on stderr; each begins with `error[..]` or `warning[..]` itself. In colours on a terminal, unless
+/// `NO_COLOR` is set (no-color.org).
+fn show(diagnostics: &Diagnostics) {
+    let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    if wanted && io::stderr().is_terminal() {
+        let _ = writeln!(io::stderr().lock(), "{}", diagnostics.coloured());
+    } else {
+        remark(diagnostics);
+    }
+}
+
+/// Text without the control characters that a file name may bring to a terminal; lines and tabs stay.
+fn printable(text: &str) -> String {
+    let is_plain = |c: char| !c.is_control() || matches!(c, '\n' | '\t');
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            c if is_plain(c) => shown.push(c),
+            c => shown.extend(c.escape_default()),
+        }
+    }
+    shown
+}
+
+/// Reads and compiles an airframe file; its warnings go to stderr.
+fn compile(path: &Path) -> Result<Compiled, Refusal> {
+    let compiled = compile_quietly(path)?;
+    if !compiled.warnings.is_empty() {
+        show(&compiled.warnings);
+    }
+    Ok(compiled)
 }
 
 /// Reads and compiles an airframe file.
-fn compile(path: &Path) -> Result<Compiled, Refusal> {
-    let name = path.display().to_string();
+fn compile_quietly(path: &Path) -> Result<Compiled, Refusal> {
+    let name = printable(&path.display().to_string());
     let bytes = fs::read(path).map_err(|error| Refusal::Unreadable(format!("{name}: {error}")))?;
     let source = Source::from_bytes(name, bytes).map_err(Refusal::Faulty)?;
     mixer_compiler::compile(&source).map_err(Refusal::Faulty)

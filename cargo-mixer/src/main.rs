@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, expand, identify, mix, report, sweep};
-use clap::{Parser, Subcommand};
+use cargo_mixer::{check, compare, expand, golden, identify, mix, new, report, shell, sweep};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
 #[derive(Parser)]
@@ -21,11 +21,16 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Check(check::CheckArgs),
+    Compare(compare::CompareArgs),
     Mix(mix::MixArgs),
     Expand(expand::ExpandArgs),
+    Golden(golden::GoldenArgs),
     Identify(Box<identify::IdentifyArgs>),
+    New(new::NewArgs),
     Report(report::ReportArgs),
     Sweep(sweep::SweepArgs),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 fn main() -> ExitCode {
@@ -36,10 +41,15 @@ fn main() -> ExitCode {
         .map(|(_, word)| word);
     match Arguments::parse_from(arguments).command {
         Command::Check(args) => check::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Mix(args) => mix::run(&args),
         Command::Expand(args) => expand::run(&args),
+        Command::Golden(args) => golden::run(&args),
         Command::Identify(args) => identify::run(&args),
+        Command::New(args) => new::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Completions(args) => shell::completions(&args, Arguments::command()),
+        Command::Man(args) => shell::man(&args, &Arguments::command()),
     }
 }

@@ -1,16 +1,17 @@
 //! `cargo mixer mix`: setpoints in, throttles out, on the very tables that the macro emits.
 
 use std::fmt::Write as _;
-use std::io::{self, BufWriter, Read, Write, stdin, stdout};
-use std::path::PathBuf;
+use std::fs::File;
+use std::io::{self, BufWriter, IsTerminal as _, Read, Write, stdin, stdout};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
 use mixer_rt::Health;
 
-use crate::setpoints::{BadLine, HeaderError, Setpoints};
+use crate::setpoints::{BadLine, HEADER, HeaderError, Setpoints};
 
-/// Mixes setpoints: CSV on stdin to CSV on stdout, row by row
+/// Mixes setpoints: CSV to CSV, from stdin to stdout row by row
 ///
 /// In:  a header and rows of roll_nm,pitch_nm,yaw_nm,thrust_n and, if there is one, voltage_v, in any order. Without
 ///      voltage_v the reference voltage is taken.
@@ -26,8 +27,16 @@ use crate::setpoints::{BadLine, HeaderError, Setpoints};
 pub struct MixArgs {
     /// The airframe file
     airframe: PathBuf,
-    /// The rotor at this output is out; for several, again
-    #[arg(long, value_name = "CHANNEL")]
+    /// The setpoints; without a file, or as `-`, those of stdin
+    setpoints: Option<PathBuf>,
+    /// The file to write, whole or not at all [default: stdout, row by row]
+    #[arg(short, long, value_name = "THROTTLES.csv")]
+    output: Option<PathBuf>,
+    /// Overwrite the file if it is there
+    #[arg(long)]
+    force: bool,
+    /// The rotor at this output is out; several with commas between
+    #[arg(long, value_name = "CHANNEL", value_delimiter = ',')]
     failed: Vec<u8>,
 }
 
@@ -54,20 +63,65 @@ pub fn run(args: &MixArgs) -> ExitCode {
         .failed
         .iter()
         .fold(Health::GOOD, |health, channel| health.with_failed(*channel));
-    let bad_line = |BadLine { line, message }| crate::complain(format_args!("stdin:{line}: {message}"));
-    match mix(
-        &compiled,
-        health,
-        stdin().lock(),
-        BufWriter::new(stdout().lock()),
-        bad_line,
-    ) {
+    let (input, name) = match input(args.setpoints.as_deref()) {
+        Ok(input) => input,
+        Err(message) => return crate::complain(message),
+    };
+    if let Some(Err(message)) = args
+        .output
+        .as_deref()
+        .map(|path| crate::file::not_there(path, args.force))
+    {
+        return crate::complain(message);
+    }
+    let bad_line = |BadLine { line, message }| crate::complain(format_args!("{name}:{line}: {message}"));
+    let mixed = match &args.output {
+        None => mix(
+            &compiled,
+            health,
+            input,
+            BufWriter::new(stdout().lock()),
+            bad_line,
+        ),
+        Some(path) => {
+            let mut rows = Vec::new();
+            let mixed = mix(&compiled, health, input, &mut rows, bad_line);
+            if mixed.is_ok()
+                && let Err(message) = crate::file::write(path, &String::from_utf8_lossy(&rows))
+            {
+                return crate::complain(message);
+            }
+            mixed
+        }
+    };
+    match mixed {
         Ok(0) => ExitCode::SUCCESS,
         Ok(1) => crate::complain("1 bad row is left out"),
         Ok(bad) => crate::complain(format_args!("{bad} bad rows are left out")),
         Err(Stopped::Header(bad)) => bad_line(bad),
-        Err(Stopped::Input(error)) => crate::complain(format_args!("stdin: {error}")),
+        Err(Stopped::Input(error)) => crate::complain(format_args!("{name}: {error}")),
         Err(Stopped::Output(error)) => crate::finish(Err(error)),
+    }
+}
+
+/// Where the setpoints come from, with its name in messages.
+fn input(path: Option<&Path>) -> Result<(Box<dyn Read>, String), String> {
+    match path.filter(|path| *path != Path::new("-")) {
+        None => {
+            if stdin().is_terminal() {
+                crate::remark(format_args!(
+                    "waiting for setpoints, a header and rows of {HEADER}; end with Ctrl-D"
+                ));
+            }
+            Ok((Box::new(stdin()), "stdin".to_owned()))
+        }
+        Some(path) => {
+            let name = path.display().to_string();
+            match File::open(path) {
+                Ok(file) => Ok((Box::new(file), name)),
+                Err(error) => Err(format!("{name}: {error}")),
+            }
+        }
     }
 }
 

@@ -57,6 +57,9 @@ pub fn run(args: &ReportArgs) -> ExitCode {
             Err(refusal) => return crate::complain(refusal),
         },
     };
+    for doubt in bench.iter().flat_map(|bench| bench.doubts(&compiled)) {
+        crate::remark(format_args!("warning: {doubt}"));
+    }
     let study = Study::new(&compiled, args.thrust);
     let page = page::page(&study, bench.as_ref());
     match crate::file::write(&args.output, &page) {

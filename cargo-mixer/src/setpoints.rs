@@ -11,7 +11,7 @@ use mixer_rt::Wrench;
 /// The columns that must be there, in the order of [`Wrench::to_array`].
 const REQUIRED: [&str; 4] = ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n"];
 const VOLTAGE: &str = "voltage_v";
-const HEADER: &str = "roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v]";
+pub(crate) const HEADER: &str = "roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v]";
 /// Columns that a header can have before it is refused for its first unknown or repeated one.
 const MOST_COLUMNS: usize = 64;
 

@@ -16,6 +16,8 @@ use roxmltree::{Document, Node, ParsingOptions};
 mod browser;
 #[path = "report/cost.rs"]
 mod cost;
+#[path = "report/doubts.rs"]
+mod doubts;
 #[path = "report/mixers.rs"]
 mod mixers;
 #[path = "report/pictures.rs"]
@@ -70,6 +72,21 @@ fn parsed(page: &str) -> Document<'_> {
 fn named<'a, 'd>(node: Node<'a, 'd>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'd>> {
     node.descendants()
         .filter(move |node| node.tag_name().name() == tag)
+}
+
+#[test]
+fn pages_show_warnings() {
+    let list = |page: &str| {
+        let document = parsed(page);
+        let lists: Vec<Node> = named(document.root(), "ul").collect();
+        lists
+            .iter()
+            .map(|list| named(*list, "li").count())
+            .collect::<Vec<_>>()
+    };
+    let warned = compiled(&root().join("mixer-compiler/tests/warnings/tolerance-wide.toml"));
+    assert_eq!(list(&page(&Study::new(&warned, None), None)), [2]);
+    assert!(list(&page(&Study::new(&x8(), None), None)).is_empty());
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod inverse;
 mod name;
 mod pair;
 mod unit;
+mod vehicle;
 mod voltage;
 
 use std::ops::Range;
@@ -16,6 +17,7 @@ pub use self::inverse::{EVALUATORS, HIGHEST_DEGREE, Inverse, Method};
 pub use self::pair::{Basis, Pair, Spin};
 pub(crate) use self::unit::FARTHEST_M;
 pub use self::unit::{MOST_UNITS, Unit};
+pub use self::vehicle::Vehicle;
 pub use self::voltage::{Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, any_of, nearest, number, quoted};
 use crate::layout;
@@ -43,6 +45,10 @@ pub struct Airframe {
     pub inverse: Inverse,
     /// Controlled axes and priorities.
     pub allocation: Allocation,
+    /// The vehicle; `None` where the file does not have it.
+    pub vehicle: Option<Vehicle>,
+    /// `layout.first_angle_deg` as written, which the units no longer tell.
+    pub(crate) first_angle_deg: Option<f64>,
     places: Places,
 }
 
@@ -151,6 +157,8 @@ fn check(spec: Spec, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
             allocation::check(table, faults)
         });
 
+    let vehicle = spec.vehicle.as_ref().map(|table| vehicle::check(table, faults));
+
     let units = units?;
     let mut places = spec.places;
     if let Some(layout) = &spec.layout {
@@ -170,6 +178,14 @@ fn check(spec: Spec, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         units,
         inverse: inverse?,
         allocation: allocation?,
+        vehicle: match vehicle {
+            Some(vehicle) => Some(vehicle?),
+            None => None,
+        },
+        first_angle_deg: spec
+            .layout
+            .and_then(|layout| layout.first_angle_deg)
+            .map(Spanned::into_inner),
         places,
     })
 }

@@ -1,4 +1,4 @@
-//! Faults in an airframe file: what is wrong, where, by how much, and what would mend it.
+//! Faults in an airframe file and warnings of it: what is wrong, where, by how much, and what would mend it.
 
 mod code;
 mod wording;
@@ -10,9 +10,9 @@ use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
-pub use self::code::Code;
+pub use self::code::{Code, Severity};
 pub(crate) use self::wording::{any_of, nearest, number, quoted, rounded};
-use crate::source::{BYTE_ORDER_MARK, Source};
+use crate::source::{BYTE_ORDER_MARK, Place, Source};
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl Diagnostic {
     }
 }
 
-/// All faults of one airframe file, in the order of their places.
+/// All faults of one airframe file, or all warnings, in the order of their places.
 ///
 /// Its `Display` is what the macro, the build-script helper and the command line show:
 ///
@@ -81,10 +81,18 @@ impl Diagnostic {
 pub struct Diagnostics {
     source: Source,
     faults: Vec<Diagnostic>,
+    /// Where each fault is.
+    places: Vec<Option<Place>>,
 }
 
 /// Faults that are shown. Nobody reads more at once, and a file that is no airframe at all may have thousands.
 const MOST_SHOWN: usize = 100;
+
+/// Faults after which a file is not read on: it is no airframe, and reading should not take long.
+pub(crate) const MOST_FAULTS: usize = 1000;
+
+/// Longest line that is shown, bytes. Of a longer one its place is told alone.
+const LONGEST_LINE: usize = 4096;
 
 /// One fault for machines: `cargo mixer check --json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -113,7 +121,15 @@ impl Diagnostics {
         // Stable: faults of one place stay in the order in which the stages found them.
         faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
         faults.dedup();
-        Self { source, faults }
+        let offsets = faults
+            .iter()
+            .map(|fault| fault.span.as_ref().map(|span| span.start));
+        let places = source.places(offsets);
+        Self {
+            source,
+            faults,
+            places,
+        }
     }
 
     /// The file that the faults are in.
@@ -128,26 +144,72 @@ impl Diagnostics {
 
     /// Line of a fault, from 1.
     pub fn line(&self, fault: &Diagnostic) -> Option<usize> {
-        fault.span.as_ref().map(|span| self.source.place(span.start).line)
+        Some(self.place(fault)?.line)
     }
 
     /// Column of a fault in characters, from 1.
     pub fn column(&self, fault: &Diagnostic) -> Option<usize> {
-        fault
-            .span
-            .as_ref()
-            .map(|span| self.source.place(span.start).column)
+        Some(self.place(fault)?.column)
+    }
+
+    fn place(&self, fault: &Diagnostic) -> Option<Place> {
+        fault.span.as_ref().map(|span| self.source.place(span.start))
+    }
+
+    /// The faults with their places.
+    fn placed(&self) -> impl Iterator<Item = (&Diagnostic, Option<Place>)> {
+        self.faults.iter().zip(self.places.iter().copied())
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.faults.is_empty()
+    }
+
+    /// Every diagnostic on one line, for logs that show no more: `x8.toml:4:7: warning[MIX303]: message; help`.
+    pub fn lines(&self) -> Vec<String> {
+        self.placed()
+            .map(|(fault, place)| {
+                let severity = match fault.code.severity() {
+                    Severity::Error => "error",
+                    Severity::Warning => "warning",
+                };
+                let help = match fault.help.as_str() {
+                    "" => String::new(),
+                    help => format!("; {help}"),
+                };
+                let place = self.written(place);
+                format!("{place}: {severity}[{}]: {}{help}", fault.code, fault.message)
+            })
+            .collect()
+    }
+
+    /// `x8.toml:4:7`, or the file alone.
+    fn written(&self, place: Option<Place>) -> String {
+        match place {
+            Some(Place { line, column }) => format!("{}:{line}:{column}", self.source.name),
+            None => self.source.name.clone(),
+        }
     }
 
     /// The faults for machines, in the same order.
     pub fn records(&self) -> Vec<Record> {
-        self.faults
-            .iter()
-            .map(|fault| Record {
+        self.records_where(|_| true)
+    }
+
+    /// Those of one severity for machines, in the same order.
+    pub fn records_of(&self, severity: Severity) -> Vec<Record> {
+        self.records_where(|fault| fault.code.severity() == severity)
+    }
+
+    fn records_where(&self, is_wanted: impl Fn(&Diagnostic) -> bool) -> Vec<Record> {
+        self.placed()
+            .filter(|(fault, _)| is_wanted(fault))
+            .map(|(fault, place)| Record {
                 code: fault.code.to_string(),
                 file: self.source.name.clone(),
-                line: self.line(fault),
-                column: self.column(fault),
+                line: place.map(|place| place.line),
+                column: place.map(|place| place.column),
                 key: fault.key.clone(),
                 message: fault.message.clone(),
                 label: fault.label.clone(),
@@ -159,82 +221,112 @@ impl Diagnostics {
     /// The text for `compile_error!`. Editors show its first line alone, so that line says where and what;
     /// all faults follow as in `Display`.
     pub fn compile_error(&self) -> String {
-        let Some(first) = self.faults.first() else {
+        let mut errors = self
+            .faults
+            .iter()
+            .filter(|fault| fault.code.severity() == Severity::Error);
+        let Some(first) = errors.next() else {
             return format!("{}: refused", self.source.name);
         };
-        let place = match (self.line(first), self.column(first)) {
-            (Some(line), Some(column)) => format!("{}:{line}:{column}", self.source.name),
-            _ => self.source.name.clone(),
-        };
-        let others = match self.faults.len() {
-            1 => String::new(),
-            count => format!(" (first of {count} faults)"),
+        let place = self.written(self.place(first));
+        let others = match errors.count() {
+            0 => String::new(),
+            others => format!(" (first of {} faults)", others + 1),
         };
         format!("{place}: {}{others}\n\n{self}", first.message)
     }
 
-    fn render(&self, fault: &Diagnostic) -> String {
-        let title = Level::ERROR
+    /// What `Display` shows, in the colours of a terminal.
+    pub fn coloured(&self) -> String {
+        self.shown(&Renderer::styled().decor_style(DecorStyle::Ascii))
+    }
+
+    fn shown(&self, renderer: &Renderer) -> String {
+        let shown: Vec<String> = self
+            .placed()
+            .take(MOST_SHOWN)
+            .map(|(fault, place)| self.render(fault, place, renderer))
+            .collect();
+        let mut text = shown.join("\n\n");
+        match self.faults.len().checked_sub(MOST_SHOWN) {
+            None | Some(0) => {}
+            Some(others) if self.faults.len() < MOST_FAULTS => {
+                text.push_str(&format!("\n\n{others} more faults are not shown"));
+            }
+            Some(_) => text.push_str("\n\nmore faults are not shown, and the rest of the file is not read"),
+        }
+        text
+    }
+
+    fn render(&self, fault: &Diagnostic, place: Option<Place>, renderer: &Renderer) -> String {
+        let level = match fault.code.severity() {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let title = level
             .primary_title(fault.message.as_str())
             .id(fault.code.to_string());
-        let mut group = match &fault.span {
-            Some(span) => title.element(self.snippet(span, &fault.label)),
-            None => title.element(Origin::path(self.source.name.as_str())),
+        let origin = || Origin::path(self.source.name.as_str());
+        let mut group = match (&fault.span, place) {
+            (Some(span), Some(place)) => match self.snippet(span, place, &fault.label) {
+                Some(snippet) => title.element(snippet),
+                None => title.element(origin().line(place.line).char_column(place.column)),
+            },
+            _ => title.element(origin()),
         };
         if !fault.help.is_empty() {
             group = group.element(Level::HELP.message(fault.help.as_str()));
         }
-        Renderer::plain().decor_style(DecorStyle::Ascii).render(&[group])
+        renderer.render(&[group])
     }
 
+    /// The line of a fault; `None` where it is too long to be read.
     fn snippet<'a>(
         &'a self,
         span: &Range<usize>,
+        place: Place,
         label: &'a str,
-    ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
-        // The mark would be printed and counted as a character.
-        let (text, skipped) = match self.source.text.strip_prefix(BYTE_ORDER_MARK) {
-            Some(text) => (text, BYTE_ORDER_MARK.len_utf8()),
-            None => (self.source.text.as_str(), 0),
-        };
+    ) -> Option<Snippet<'a, annotate_snippets::Annotation<'a>>> {
+        let text = self.source.text.as_str();
         let start = self.source.boundary(span.start);
-        let mut end = self.source.boundary(span.end).max(start);
-        // One line is enough to find the place, and a caret across lines would push the label away from it.
-        if let Some(length) = self.source.text[start..end].find(['\r', '\n']) {
-            end = start + length;
+        let (before, after) = text.split_at(start);
+        // The line alone: the renderer goes through all that it is given.
+        let mut line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let mut line_end = after.find('\n').map_or(text.len(), |length| start + length);
+        if text.get(start..line_end)?.ends_with('\r') {
+            line_end -= 1;
         }
+        if line_end - line_start > LONGEST_LINE {
+            return None;
+        }
+        // The mark would be printed and counted as a character.
+        if before.get(line_start..)?.starts_with(BYTE_ORDER_MARK) {
+            line_start += BYTE_ORDER_MARK.len_utf8();
+        }
+        // One line is enough to find the place, and a caret across lines would push the label away from it.
+        let rest = text.get(start..line_end)?;
+        let visible = rest.find('\r').unwrap_or(rest.len());
+        let mut end = self.source.boundary(span.end).clamp(start, start + visible);
         // A caret needs a character to stand under, where the line has one.
-        let next = self.source.text[start..]
-            .chars()
-            .next()
-            .filter(|next| !matches!(next, '\r' | '\n'));
-        if let (true, Some(next)) = (start == end, next) {
+        if let (true, Some(next)) = (start == end && visible > 0, rest.chars().next()) {
             end += next.len_utf8();
         }
-        let span = start.saturating_sub(skipped)..end.saturating_sub(skipped);
-        let caret = AnnotationKind::Primary.span(span);
-        Snippet::source(text)
-            .path(self.source.name.as_str())
-            .annotation(if label.is_empty() {
-                caret
-            } else {
-                caret.label(label)
-            })
+        let caret =
+            AnnotationKind::Primary.span(start.saturating_sub(line_start)..end.saturating_sub(line_start));
+        let snippet = Snippet::source(text.get(line_start..line_end)?)
+            .line_start(place.line)
+            .path(self.source.name.as_str());
+        Some(snippet.annotation(if label.is_empty() {
+            caret
+        } else {
+            caret.label(label)
+        }))
     }
 }
 
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, fault) in self.faults.iter().take(MOST_SHOWN).enumerate() {
-            if index > 0 {
-                write!(f, "\n\n")?;
-            }
-            f.write_str(&self.render(fault))?;
-        }
-        match self.faults.len().checked_sub(MOST_SHOWN) {
-            None | Some(0) => Ok(()),
-            Some(others) => write!(f, "\n\n{others} more faults are not shown"),
-        }
+        f.write_str(&self.shown(&Renderer::plain().decor_style(DecorStyle::Ascii)))
     }
 }
 

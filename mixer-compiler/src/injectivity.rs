@@ -235,7 +235,8 @@ pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>>
             "pair.torque_nm",
             "det J is negative over the throttle box: this torque falls where the lower rotor speeds up",
             "signed for the other rotor",
-            "torque counts positive where the lower rotor outweighs the upper: negate every coefficient of torque_nm",
+            "torque counts positive where the lower rotor outweighs the upper: negate every coefficient of torque_nm; if the \
+             columns of the two rotors were exchanged, exchange u and l in both polynomials instead",
         ),
         Fold::NotGlobal => airframe.diagnostic(
             Code::NotInjective,

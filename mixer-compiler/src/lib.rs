@@ -8,6 +8,7 @@ pub mod attainable;
 pub mod bernstein;
 #[cfg(feature = "format")]
 pub mod build_script;
+pub mod checklist;
 pub mod cost;
 pub mod diagnostic;
 pub mod effectiveness;
@@ -22,6 +23,7 @@ pub mod inversion;
 pub mod isolated;
 mod layout;
 pub mod model;
+mod plausible;
 pub mod polynomial;
 pub mod proof;
 pub mod report;
@@ -30,6 +32,7 @@ mod selection;
 pub mod source;
 pub mod spec;
 pub mod tables;
+pub mod vehicle;
 mod vertical;
 pub mod voltage;
 
@@ -74,15 +77,21 @@ pub struct Compiled {
     pub lost_between_sides: Option<f64>,
     /// What is emitted.
     pub tables: MixerTables,
+    /// What is plausibly a mistake and yet compiles.
+    pub warnings: Diagnostics,
 }
 
 /// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> proof -> tables.
 ///
 /// # Errors
-/// All faults that were found. Faults of the file itself end the compilation; later stages report together.
+/// All faults that were found, and with faults of later stages the warnings, one of which may be why. Faults of the file itself end the compilation; later stages report together. Warnings
+/// are no faults: they are in [`Compiled::warnings`].
 pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
     let airframe = Airframe::read(source)?;
-    compile_airframe(source, airframe).map_err(|faults| Diagnostics::new(source.clone(), faults))
+    compile_airframe(source, airframe.clone()).map_err(|mut faults| {
+        faults.extend(plausible::warnings_of_refused(&airframe));
+        Diagnostics::new(source.clone(), faults)
+    })
 }
 
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
@@ -90,8 +99,9 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     let effectiveness = keep(Effectiveness::new(&airframe), &mut faults);
     let invertible = keep(injectivity::prove(&airframe), &mut faults);
     let voltage = keep(voltage::tabulate(&airframe), &mut faults);
-    let (Some(effectiveness), Some((injectivity, least_idle)), Some(voltage)) =
-        (effectiveness, invertible, voltage)
+    let tolerances = keep(plausible::tolerances(&airframe), &mut faults);
+    let (Some(effectiveness), Some((injectivity, least_idle)), Some(voltage), Some(())) =
+        (effectiveness, invertible, voltage, tolerances)
     else {
         return Err(faults);
     };
@@ -108,8 +118,10 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     let (shortcut, lost_between_sides) = vertical::table(&airframe, &effectiveness).unzip();
     tables.shortcut = shortcut;
     let thrust_range_n = hover::delivered_range(&airframe, &tables, in_polygon);
+    let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);
     Ok(Compiled {
         source_name: source.name.clone(),
+        warnings: Diagnostics::new(source.clone(), warnings),
         airframe,
         effectiveness,
         injectivity,

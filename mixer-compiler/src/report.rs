@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::Compiled;
 use crate::cost::Cost;
+use crate::vehicle::Hover;
 
 /// `cargo mixer check --json`, but for the time taken.
 #[derive(Clone, Debug, Serialize)]
@@ -53,6 +54,8 @@ pub struct Summary {
     pub attainable_area_lost_in_closed_form: Option<f64>,
     /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque, N.
     pub thrust_range_n: [f32; 2],
+    /// The vehicle in hover; null where the file has no mass.
+    pub hover: Option<Hover>,
     /// What it costs on the target.
     pub cost: Cost,
 }
@@ -111,6 +114,7 @@ impl Summary {
             attainable_area_lost_to_convexity: compiled.lost_area.convexity,
             attainable_area_lost_in_closed_form: compiled.lost_between_sides,
             thrust_range_n: compiled.thrust_range_n,
+            hover: Hover::new(compiled),
             cost: Cost::new(compiled),
         }
     }
@@ -176,7 +180,11 @@ impl fmt::Display for Report<'_> {
             Some(_) => "; without `mix_with_health` only what the closed form reads is linked",
             None => "",
         };
-        writeln!(f, "tables          {} bytes{linked}", summary.table_bytes)
+        writeln!(f, "tables          {} bytes{linked}", summary.table_bytes)?;
+        for line in compiled.warnings.lines() {
+            writeln!(f, "{line}")?;
+        }
+        Ok(())
     }
 }
 
@@ -270,6 +278,9 @@ impl Report<'_> {
         )?;
         let [floor, ceiling] = summary.thrust_range_n;
         writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;
+        if let Some(hover) = &summary.hover {
+            write!(f, "{hover}")?;
+        }
         match &airframe.voltage {
             None => writeln!(f, "voltage         no correction"),
             Some(voltage) => {

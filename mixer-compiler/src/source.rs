@@ -73,6 +73,33 @@ impl Source {
         }
     }
 
+    /// The places of ascending byte offsets, in one pass over the text; those of descending ones are found each by itself.
+    pub(crate) fn places(&self, offsets: impl Iterator<Item = Option<usize>>) -> Vec<Option<Place>> {
+        let mut counted = 0;
+        let mut place = Place { line: 1, column: 1 };
+        let mut next = |offset: usize| {
+            let offset = self.boundary(offset);
+            let Some(between) = self.text.get(counted..offset) else {
+                return self.place(offset);
+            };
+            for c in between.chars() {
+                match c {
+                    '\n' => {
+                        place = Place {
+                            line: place.line + 1,
+                            column: 1,
+                        };
+                    }
+                    BYTE_ORDER_MARK => {}
+                    _ => place.column += 1,
+                }
+            }
+            counted = offset;
+            place
+        };
+        offsets.map(|offset| offset.map(&mut next)).collect()
+    }
+
     /// The nearest character boundary at or before `offset`.
     pub(crate) fn boundary(&self, offset: usize) -> usize {
         let mut offset = offset.min(self.text.len());

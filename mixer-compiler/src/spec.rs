@@ -52,6 +52,8 @@ pub struct Spec {
     pub inverse: Option<Inverse>,
     /// `[allocation]`
     pub allocation: Option<Allocation>,
+    /// `[vehicle]`
+    pub vehicle: Option<Vehicle>,
     /// Where every key is.
     pub places: Places,
 }
@@ -168,6 +170,13 @@ pub struct Allocation {
     pub yaw_reserve_nm: Option<Spanned<f64>>,
 }
 
+/// `[vehicle]`
+#[derive(Clone, Debug)]
+pub struct Vehicle {
+    /// `mass_kg`
+    pub mass_kg: Option<Spanned<f64>>,
+}
+
 impl Spec {
     /// Reads the file and notes all faults of its shape: syntax, unknown and missing keys, wrong types and lengths,
     /// numbers that are not finite. `None` where the text is not TOML or empty, so that nothing more can be said of it.
@@ -201,8 +210,18 @@ impl Spec {
             units: file.tables("unit", keys::UNIT, Unit::read),
             inverse: file.table("inverse", keys::INVERSE, Inverse::read),
             allocation: file.table("allocation", keys::ALLOCATION, Allocation::read),
+            vehicle: file.table("vehicle", keys::VEHICLE, Vehicle::read),
             places,
         })
+    }
+}
+
+impl Vehicle {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require(&["mass_kg"]);
+        Self {
+            mass_kg: fields.read("mass_kg"),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::time::Instant;
 
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::source::Source;
@@ -209,5 +210,32 @@ fn extremes_are_refused_without_panic() {
     ];
     for text in texts {
         read(&text).unwrap();
+    }
+}
+
+/// What is no airframe at all is refused in a time that grows with its length: the square took 7 to 60 s of each.
+#[test]
+fn long_files_are_refused_soon() {
+    let join = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+    let strings = vec!["\"1.0\""; 40_000].join(", ");
+    let texts = [
+        join(20_000, &|k| format!("0.{k:05},0.5,{k}.25,0.01\n")),
+        join(30_000, &|k| format!("key{k} = {k}\n")),
+        join(40_000, &|_| "a = 1\n".to_owned()),
+        join(40_000, &|k| format!("key{k} = 1\na = 1\n")),
+        format!("[pair]\nbasis = \"cubic\"\nthrust_n = [{strings}]\n"),
+    ];
+    for text in texts {
+        let start = Instant::now();
+        let faults = Airframe::read(&Source::new("any.toml", text.as_str())).unwrap_err();
+        assert!(!faults.to_string().is_empty() && !faults.records().is_empty());
+        let seconds = start.elapsed().as_secs_f64();
+        let beginning: String = text.chars().take(30).collect();
+        println!(
+            "{:.2} MB in {seconds:.2} s: {beginning:?}",
+            1e-6 * text.len() as f64
+        );
+        // 0.2 to 0.9 s when measured without optimisation; other tests run beside this one.
+        assert!(seconds < 5.0, "{seconds} s: {beginning:?}");
     }
 }

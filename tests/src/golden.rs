@@ -3,9 +3,9 @@
 //! `<name>.rs` is the generated Rust, `<name>.report.txt` the report, `<name>.vectors.csv` setpoints with the bits
 //! that the mixer gives. They are written by `cargo run -p mixer-tests --bin bless` only.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use cargo_mixer::golden::table;
 use mixer_compiler::report::Report;
 use mixer_compiler::{Compiled, Source};
 
@@ -35,27 +35,9 @@ pub fn outputs(name: &str) -> Result<Vec<(String, String)>, String> {
     Ok(vec![
         (format!("{name}.report.txt"), Report(&compiled).to_string()),
         (format!("{name}.rs"), compiled.rust()),
-        (format!("{name}.vectors.csv"), vector_table(&compiled)),
+        (
+            format!("{name}.vectors.csv"),
+            table::healthy(&compiled, &vectors::setpoints(&compiled)),
+        ),
     ])
-}
-
-/// All setpoints with what the mixer makes of them, floats as the hexadecimal digits of their bits.
-fn vector_table(compiled: &Compiled) -> String {
-    let mut table = String::from("roll_nm,pitch_nm,yaw_nm,thrust_n,voltage_v");
-    for channel in 0..compiled.airframe.rotors() {
-        let _ = write!(table, ",throttle_{channel}");
-    }
-    table.push_str(",achieved_roll_nm,achieved_pitch_nm,achieved_yaw_nm,achieved_thrust_n,saturation\n");
-    for (setpoint, voltage_v) in vectors::setpoints(compiled) {
-        // Vectors are finite, so the mixer takes them; one that it refused would be missed by the test on counts.
-        let Ok((throttle, achieved, saturation)) = compiled.tables.mix(&setpoint, voltage_v) else {
-            continue;
-        };
-        let floats = setpoint.to_array().into_iter().chain([voltage_v]).chain(throttle);
-        for value in floats.chain(achieved.to_array()) {
-            let _ = write!(table, "0x{:08x},", value.to_bits());
-        }
-        let _ = writeln!(table, "{}", saturation.bits());
-    }
-    table
 }

@@ -12,11 +12,18 @@ use super::voltage::{Estimate, Exponent, Voltage};
 pub fn text(identified: &Identified) -> String {
     let mut out = String::new();
     // Writing to a String cannot fail; the results are dropped.
-    let _ = write_fragment(&mut out, identified);
+    let _ = write_instructions(&mut out, identified).and_then(|()| write_tables(&mut out, identified));
     out
 }
 
-fn write_fragment(out: &mut String, id: &Identified) -> std::fmt::Result {
+/// The same for a file that has the rest of an airframe.
+pub fn tables(identified: &Identified) -> String {
+    let mut out = format!("# Identified by {}.", identified.generator);
+    let _ = write_tables(&mut out, identified);
+    out
+}
+
+fn write_instructions(out: &mut String, id: &Identified) -> std::fmt::Result {
     writeln!(
         out,
         "# Identified by {}. To make an airframe of it, add at the top",
@@ -27,8 +34,11 @@ fn write_fragment(out: &mut String, id: &Identified) -> std::fmt::Result {
     writeln!(out, "#   [[unit]]")?;
     writeln!(out, "#   position_m = [x, y, 0.0]    # forward, right, down")?;
     writeln!(out, "#   upper_spin = \"cw\"           # seen from above")?;
-    writeln!(out, "#   channels = [upper, lower]   # outputs")?;
-    writeln!(out, "#\n# Data:")?;
+    write!(out, "#   channels = [upper, lower]   # outputs")
+}
+
+fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
+    writeln!(out, "\n#\n# Data:")?;
     for file in &id.files {
         writeln!(out, "#   {}", file.file)?;
         writeln!(out, "#     {}", provenance(file))?;

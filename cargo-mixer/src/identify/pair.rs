@@ -15,6 +15,7 @@ use super::refusal::Refusal;
 use super::robust::{self, Outlier};
 use super::voltage::Voltage;
 
+mod doubts;
 mod placed;
 
 /// What the user decides about the fit.
@@ -97,6 +98,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         Some(wished) => beyond(wished, measured, &mut warnings),
         None => inside(measured),
     };
+    doubts::coverage(measured, throttle_box, &mut warnings);
     if throttle_box.min >= throttle_box.max {
         return Err(Refusal::of(
             label(),
@@ -143,7 +145,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         fit(&design, &thrust, throttle_box),
         fit(&design, &torque, throttle_box),
     ];
-    one_pair(basis, &points, throttle_box, &fits)?;
+    one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
 
     let of =
         |fits: &[Fit; 2]| fold::examine(basis, &fits[0].coefficients, &fits[1].coefficients, throttle_box);
@@ -168,11 +170,17 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
             judge(&design, &thrust, &found.thrust, throttle_box),
             judge(&design, &torque, &found.torque, throttle_box),
         ];
+        if let Some(cost) = &cost {
+            doubts::costly_constraint(cost, &points, &fits[1], &mut warnings);
+        }
     }
     let after = if cost.is_some() { of(&fits) } else { fold.clone() };
     if !after.injective {
         let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
         throttle.min = raised(&after, &map, &label, &mut warnings)?;
+    } else {
+        let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
+        throttle.min = clear_of_fold(&map, throttle, &mut warnings);
     }
     let [thrust_fit, torque_fit] = fits;
     judge_quality(&thrust_fit, &torque_fit, &mut warnings);
@@ -226,12 +234,13 @@ fn beyond(wished: ThrottleBox, measured: [[f64; 2]; 2], warnings: &mut Vec<Strin
     wished
 }
 
-/// Refuses files that each fit well but not together.
+/// Refuses files that each fit well but not together, and warns of those that do not fit as well.
 fn one_pair(
     basis: Basis,
     points: &[Placed],
     throttle_box: ThrottleBox,
     fits: &[Fit; 2],
+    warnings: &mut Vec<String>,
 ) -> Result<(), Refusal> {
     let mut files: Vec<&str> = points.iter().map(|p| p.file).collect();
     files.dedup();
@@ -268,10 +277,33 @@ fn one_pair(
             "files of one pair at one spacing; run each pair by itself",
         ));
     }
+    if n == points.len() {
+        doubts::joined_files(&files, [together, apart], fits[0].full_scale, warnings);
+    }
     Ok(())
 }
 
-/// The idle of a map that is not proven injective over its box: the least one, rounded up to 0.005.
+/// The idle over the least one at which the map can be inverted. Right at that the inverse bends without bound, and no
+/// tolerance is met.
+const CLEAR: f64 = 1.03;
+
+/// The idle of a map that can be inverted over its box: the box's, or a little more where that is next to a fold.
+fn clear_of_fold(map: &ForwardMap, throttle: ThrottleBox, warnings: &mut Vec<String>) -> f64 {
+    let least = map.least_idle(throttle.max).unwrap_or(0.0);
+    if throttle.min >= CLEAR * least {
+        return throttle.min;
+    }
+    let Some(min) = fold::round_idle(map, CLEAR * least, throttle.max) else {
+        return throttle.min;
+    };
+    warnings.push(format!(
+        "throttle.min is raised from {} to {min}: the map folds right below, at {least:.4}",
+        throttle.min
+    ));
+    min
+}
+
+/// The idle of a map that is not proven injective over its box: a little over the least one, rounded up to 0.005.
 fn raised(
     fold: &Fold,
     map: &ForwardMap,
@@ -280,7 +312,7 @@ fn raised(
 ) -> Result<f64, Refusal> {
     let [u, l] = fold.least_det_at;
     let least_det = fold.least_det;
-    let rounded = |least: f64| fold::round_idle(map, least, fold.commanded.max);
+    let rounded = |least: f64| fold::round_idle(map, CLEAR * least, fold.commanded.max);
     let Some((least, min)) = fold.least_idle.and_then(|least| Some((least, rounded(least)?))) else {
         return Err(Refusal::of(
             label(),

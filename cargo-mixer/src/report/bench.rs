@@ -57,7 +57,13 @@ pub struct BenchPoints {
     pub refused: Vec<String>,
     /// Whether the points were brought to the reference voltage.
     pub corrected: bool,
+    /// Points that were measured at voltages outside the airframe's range.
+    pub outside_voltage: usize,
 }
+
+/// Largest misfit of a bench of the airframe's own pair, rms over the model's largest effort, of thrust and of torque. Maps of
+/// the pair itself have up to 0.03 and 0.08, those of other pairs 0.1 and more of one of them.
+const LARGEST_MISFIT: [f64; 2] = [0.06, 0.12];
 
 /// What remains between model and points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,6 +124,10 @@ impl BenchPoints {
             let k = match voltage {
                 Some(voltage) if point.voltage.is_finite() => {
                     self.corrected = true;
+                    let [lowest, highest] = voltage.range_v;
+                    if !(lowest..=highest).contains(&point.voltage) {
+                        self.outside_voltage += 1;
+                    }
                     [
                         voltage.thrust_factor(point.voltage),
                         voltage.torque_factor(point.voltage),
@@ -137,6 +147,38 @@ impl BenchPoints {
             .extend(refused.map(|row| format!("{}:{}: {}", row.file, row.line, row.reason)));
         self.files.push(bench.file);
         Ok(())
+    }
+
+    /// Why these files may not be of the airframe's pair; empty where nothing speaks against them.
+    pub fn doubts(&self, compiled: &Compiled) -> Vec<String> {
+        let airframe = &compiled.airframe;
+        let scale = PairMap::new(&airframe.pair, &airframe.throttle).scale();
+        let mut doubts = Vec::new();
+        for (effort, largest) in Effort::BOTH.into_iter().zip(LARGEST_MISFIT) {
+            let Some(misfit) = self.misfit(effort) else {
+                continue;
+            };
+            let share = misfit.rms / scale[effort as usize];
+            if share > largest {
+                doubts.push(format!(
+                    "the model misses the bench\u{2019}s {} by {} {} rms, {:.0} % of its largest: the bench is of another \
+                     pair, or upper and lower are exchanged",
+                    ["thrust", "torque"][effort as usize],
+                    significant(misfit.rms, 3),
+                    effort.unit(),
+                    100.0 * share
+                ));
+            }
+        }
+        if let (true, Some(voltage)) = (self.outside_voltage > 0, &airframe.voltage) {
+            let [low, high] = voltage.range_v;
+            doubts.push(format!(
+                "{} of {} bench points were measured outside the airframe\u{2019}s {low} to {high} V",
+                self.outside_voltage,
+                self.points.len()
+            ));
+        }
+        doubts
     }
 
     /// What remains in thrust or in torque; `None` without points.

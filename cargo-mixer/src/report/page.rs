@@ -72,6 +72,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
         let _ = write!(html, "<a href=\"#{anchor}\">{title}</a> ");
     }
     html.push_str("</nav>\n");
+    html.push_str(&warnings(study, bench));
     html.push_str(&table::summary(study));
 
     for (anchor, title) in SECTIONS {
@@ -102,6 +103,33 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
         "<script type=\"application/json\" id=\"model\">{}</script>\n<script>//<![CDATA[\n{SCRIPT}//]]></script>\n</body>\n</html>",
         model(study, &errors)
     );
+    html
+}
+
+/// What is plausibly a mistake; nothing where there is none.
+fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
+    let records = study.compiled.warnings.records();
+    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(study.compiled));
+    if records.is_empty() && doubts.is_empty() {
+        return String::new();
+    }
+    let mut html = String::from("<ul class=\"warnings\">\n");
+    for record in records {
+        let line = record
+            .line
+            .map_or_else(String::new, |line| format!(", line {line}"));
+        let _ = writeln!(
+            html,
+            "<li><b>Warning {}{line}:</b> {}. {}.</li>",
+            record.code,
+            escaped(&record.message),
+            escaped(&record.help)
+        );
+    }
+    for doubt in doubts {
+        let _ = writeln!(html, "<li><b>Warning:</b> {}.</li>", escaped(&doubt));
+    }
+    html.push_str("</ul>\n");
     html
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use mixer_compiler::front::Alternative;
 use mixer_compiler::report::{Summary, rounded_up};
+use mixer_compiler::vehicle::Hover;
 
 use super::bench::BenchPoints;
 use super::comparison::{Answer, Comparison};
@@ -112,7 +113,43 @@ pub fn summary(study: &Study<'_>) -> String {
                 }),
         ),
     ];
-    facts_table(&facts)
+    let hover = summary.hover.iter().flat_map(hover);
+    facts_table(&facts.into_iter().chain(hover).collect::<Vec<_>>())
+}
+
+/// The vehicle in hover.
+fn hover(hover: &Hover) -> Vec<(&'static str, String)> {
+    let carried = (
+        "Vehicle",
+        format!(
+            "{} kg, {} N; the largest bare thrust is {} times that",
+            shortest(hover.mass_kg),
+            fixed(hover.weight_n, 1),
+            fixed(hover.thrust_over_weight, 2)
+        ),
+    );
+    let at = hover.at.iter().map(|at| {
+        let volts = at
+            .voltage_v
+            .map_or_else(String::new, |volts| format!("At {} V: ", shortest(volts)));
+        let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
+            return ("Hover", format!("{volts}the weight is not carried"));
+        };
+        let margins: Vec<String> = at
+            .margins
+            .iter()
+            .map(|margin| {
+                let [least, largest] = margin.torque_nm.map(|torque| fixed(torque, 2));
+                format!("{} {least} to {largest} N m", margin.axis)
+            })
+            .collect();
+        let throttles = format!("throttle {} upper, {} lower", fixed(upper, 3), fixed(lower, 3));
+        (
+            "Hover",
+            format!("{volts}{throttles}; left are {}", margins.join(", ")),
+        )
+    });
+    [carried].into_iter().chain(at).collect()
 }
 
 /// Places, spins and outputs of the units.

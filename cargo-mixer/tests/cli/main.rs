@@ -1,6 +1,11 @@
 //! The command line from outside: outputs, exit status, streaming.
 
+mod compare;
+mod golden;
 mod mix;
+mod new;
+mod shell;
+mod warnings;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -79,6 +84,8 @@ fn check_prints_the_key_lines() {
         "\n  inverse       ",
         "\n  mix           about ",
         "\n  any request   at most ",
+        "\non the bench    propellers off, ",
+        "\n  +yaw           raises outputs 4, 6, 1, 3 (nose right)\n",
         "\ncompiled in ",
     ] {
         assert!(

@@ -1,6 +1,7 @@
 //! `cargo mixer mix`: rows in, rows out.
 
 use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
@@ -200,4 +201,34 @@ fn a_reader_that_has_seen_enough_is_no_fault() {
     writer.join().unwrap();
     assert_status(&output, 0);
     assert_eq!(&first, b"throttle");
+}
+
+#[test]
+fn mix_takes_files() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mix-files");
+    std::fs::create_dir_all(&folder).unwrap();
+    let [setpoints, throttles] = ["setpoints.csv", "throttles.csv"].map(|name| folder.join(name));
+    let _ = std::fs::remove_file(&throttles);
+    let input = format!("{HEADER}\n0,0,0,40\n0.5,0,0.1,31.4\n");
+    std::fs::write(&setpoints, &input).unwrap();
+    let [setpoints, throttles] = [&setpoints, &throttles].map(|path| path.to_str().unwrap());
+    let streamed = run_with(&["mix", X8, "--failed", "0,4"], input.as_bytes());
+    assert_status(&streamed, 0);
+    let output = run_with(&["mix", X8, setpoints, "--failed", "0,4", "-o", throttles], b"");
+    assert_status(&output, 0);
+    assert_eq!(std::fs::read(throttles).unwrap(), streamed.stdout);
+    // Not over a file that is there, and nothing of a bad header.
+    assert_status(&run_with(&["mix", X8, setpoints, "-o", throttles], b""), 1);
+    std::fs::write(setpoints, "roll\n0\n").unwrap();
+    let output = run_with(&["mix", X8, setpoints, "-o", throttles, "--force"], b"");
+    assert_status(&output, 1);
+    assert!(
+        stderr(&output).contains("setpoints.csv:1: no column"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(std::fs::read(throttles).unwrap(), streamed.stdout);
+    let output = run_with(&["mix", X8, "none.csv"], b"");
+    assert_status(&output, 1);
+    assert!(stderr(&output).contains("none.csv"), "{}", stderr(&output));
 }

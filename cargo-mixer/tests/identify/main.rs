@@ -2,6 +2,7 @@
 
 mod bench_data;
 mod command;
+mod doubts;
 mod formats;
 mod refusals;
 mod sweep;

@@ -108,6 +108,14 @@ impl Spin {
         }
     }
 
+    /// The sense in words.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Spin::Cw => "clockwise",
+            Spin::Ccw => "counter-clockwise",
+        }
+    }
+
     /// The other sense.
     #[must_use]
     pub fn reversed(self) -> Spin {

@@ -112,6 +112,12 @@ fn position(
         // No negative zeros: they would show in the generated code.
         return Some(position.map(|x| x + 0.0));
     }
+    // The root of a sum of squares may overflow where the coordinates do not.
+    let distance = if distance.is_finite() {
+        distance
+    } else {
+        position.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
+    };
     let [x, y, z] = position.map(|x| number(x / 1000.0));
     faults.push(
         Diagnostic::new(

@@ -2,6 +2,7 @@
 //! reference voltage.
 
 mod check;
+mod largest;
 mod least;
 
 pub(super) use self::check::check;

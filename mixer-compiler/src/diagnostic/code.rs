@@ -1,4 +1,4 @@
-//! The catalogue of faults.
+//! The catalogue of faults and warnings.
 
 use std::fmt;
 
@@ -8,7 +8,8 @@ macro_rules! catalogue {
         /// it can be searched for and scripts can rely on it.
         ///
         /// Below 100: the file is not in the form of an airframe file. From 100: a value cannot be an airframe's.
-        /// From 200: the airframe is sound in itself, but no mixer can be made of it.
+        /// From 200: the airframe is sound in itself, but no mixer can be made of it. From 300: warnings; the airframe
+        /// compiles, but a value is hardly the one that was meant.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
         pub enum Code {
@@ -27,6 +28,15 @@ macro_rules! catalogue {
             }
         }
     };
+}
+
+/// What a diagnostic means for the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// The file is refused.
+    Error,
+    /// The file is compiled; a value is hardly the one that was meant.
+    Warning,
 }
 
 catalogue! {
@@ -61,6 +71,8 @@ catalogue! {
     VoltageNotOne = 104,
     /// Voltage points that do not ascend or do not cover the voltage range.
     VoltagePoints = 105,
+    /// A voltage law that multiplies thrust or torque beyond any pack.
+    VoltageTooLarge = 106,
     /// An output channel that two rotors share.
     DuplicateChannel = 110,
     /// An output channel beyond the number of rotors, which leaves another without a rotor.
@@ -92,9 +104,53 @@ catalogue! {
     Hover = 204,
     /// A voltage law that cannot be tabulated to the tolerance.
     VoltageTable = 205,
+    /// A tolerance above a tenth of a unit's largest effort.
+    ToleranceAbsurd = 206,
+
+    /// Thrust and torque in a ratio that no propeller has: one of them is in another unit.
+    PairUnits = 300,
+    /// The upper and the lower rotor look exchanged.
+    RotorsExchanged = 301,
+    /// Both rotors together give more thrust than the sum of each alone, which no coaxial pair does.
+    NotCoaxial = 302,
+    /// An idle at which a large share of the thrust is always on.
+    HighIdle = 303,
+    /// An arm far longer than the thrust makes plausible.
+    LongArm = 310,
+    /// An angle that looks like radians.
+    Radians = 311,
+    /// A centre of gravity so far off that most of the thrust cannot be used.
+    CentreOfGravity = 312,
+    /// More units than the counted costs are of.
+    ManyUnits = 313,
+    /// A supply of one cell for rotors that need more.
+    SingleCell = 320,
+    /// A voltage law whose power of the voltage no propeller follows.
+    VoltageExponent = 321,
+    /// A voltage law that leaves little of thrust or torque, or multiplies it, within the voltage range.
+    VoltageFactor = 322,
+    /// A tolerance above a hundredth of a unit's largest effort.
+    WideTolerance = 330,
+    /// A yaw reserve that the units cannot hold at any thrust.
+    YawReserveBeyond = 331,
+    /// A vehicle that is too heavy to hover.
+    TooHeavy = 340,
+    /// A vehicle that rises at idle.
+    FloatsAtIdle = 341,
+    /// A vehicle that hovers with little thrust left.
+    HoversHigh = 342,
 }
 
 impl Code {
+    /// Whether the code refuses the file or warns of it.
+    pub fn severity(self) -> Severity {
+        if self.number() < 300 {
+            Severity::Error
+        } else {
+            Severity::Warning
+        }
+    }
+
     /// The number in `MIX014`.
     pub fn number(self) -> u16 {
         self as u16

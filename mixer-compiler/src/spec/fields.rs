@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::keys::{self, Key, Shape};
 use super::value::{Item, Read, place_of};
-use crate::diagnostic::{Code, Diagnostic, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, MOST_FAULTS, nearest, quoted};
 
 /// One table of the file while it is read.
 pub(crate) struct Fields<'a, 'f> {
@@ -18,6 +18,8 @@ pub(crate) struct Fields<'a, 'f> {
     path: String,
     /// Where to point for what the table lacks.
     place: Range<usize>,
+    /// Which keys the unknown ones are likely to be meant for, and where these are.
+    meant: Vec<(&'static str, Range<usize>)>,
     faults: &'f mut Vec<Diagnostic>,
 }
 
@@ -30,16 +32,22 @@ impl<'a, 'f> Fields<'a, 'f> {
         place: Range<usize>,
         faults: &'f mut Vec<Diagnostic>,
     ) -> Self {
-        let fields = Self {
+        let mut fields = Self {
             table,
             shape,
             path,
             place,
+            meant: Vec::new(),
             faults,
         };
         for key in fields.table.keys() {
+            if fields.faults.len() >= MOST_FAULTS {
+                break;
+            }
             if fields.shape.key(key.get_ref()).is_none() {
-                let fault = fields.unknown(key);
+                let near = fields.nearest(key.get_ref());
+                fields.meant.extend(near.map(|name| (name, key.span())));
+                let fault = fields.unknown(key, near);
                 fields.faults.push(fault);
             }
         }
@@ -136,10 +144,14 @@ impl<'a, 'f> Fields<'a, 'f> {
 
     /// Place of a key, if the table has it, or what is likely to be meant for it.
     pub(crate) fn key_place(&self, name: &str) -> Option<Range<usize>> {
-        let is_meant = |key: &str| self.shape.key(key).is_none() && self.nearest(key) == Some(name);
-        let written = self.table.get_key_value(name).map(|(key, _)| key);
-        let meant = || self.table.keys().find(|key| is_meant(key.get_ref()));
-        written.or_else(meant).map(Spanned::span)
+        let written = self.table.get_key_value(name).map(|(key, _)| key.span());
+        let meant = || {
+            self.meant
+                .iter()
+                .find(|(meant, _)| *meant == name)
+                .map(|(_, place)| place.clone())
+        };
+        written.or_else(meant)
     }
 
     /// Reports a fault of the table as a whole.
@@ -197,14 +209,20 @@ impl<'a, 'f> Fields<'a, 'f> {
             .help(help)
     }
 
-    fn unknown(&self, key: &Spanned<Cow<'a, str>>) -> Diagnostic {
+    fn unknown(&self, key: &Spanned<Cow<'a, str>>, near: Option<&'static str>) -> Diagnostic {
         let name = key.get_ref();
         let (here, shape) = match self.shape.header {
             "" => ("at the top of the file".to_string(), "the file".to_string()),
             header => (format!("in `{header}`"), format!("`{header}`")),
         };
         let home = keys::ALL.iter().find(|shape| shape.key(name).is_some());
-        let (label, help) = match (self.nearest(name), home) {
+        // What is spelt as a key of another table is that key, unless this table lacks one that is nearly spelt so.
+        let near = near.filter(|near| home.is_none() || !self.table.contains_key(*near));
+        let elsewhere = keys::ALL.iter().find_map(|shape| {
+            let names = shape.keys.iter().map(|key| key.name);
+            Some((shape.header, nearest(name, names)?))
+        });
+        let (label, help) = match (near, home) {
             (Some(near), _) => (
                 format!("did you mean `{near}`?"),
                 format!("rename it `{near}`, or remove it"),
@@ -218,6 +236,20 @@ impl<'a, 'f> Fields<'a, 'f> {
                 format!("belongs in `{}`", home.header),
                 format!("move it under `{}`", home.header),
             ),
+            (None, None) if elsewhere.is_some() => {
+                let (header, near) = elsewhere.unwrap_or_default();
+                let (belongs, place) = match header {
+                    "" => (
+                        "at the top".to_owned(),
+                        "above the first `[table]` of the file".to_owned(),
+                    ),
+                    header => (format!("in `{header}`"), format!("under `{header}`")),
+                };
+                (
+                    format!("did you mean `{near}`, which belongs {belongs}?"),
+                    format!("rename it `{near}` and move it {place}, or remove it"),
+                )
+            }
             (None, None) => {
                 let known: Vec<_> = self.shape.keys.iter().map(|key| key.name).collect();
                 (

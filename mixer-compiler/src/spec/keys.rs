@@ -41,6 +41,7 @@ pub(crate) const FILE: Shape = shape! { "":
     "unit" => "[[unit]]",
     "inverse" => "[inverse]",
     "allocation" => "[allocation]",
+    "vehicle" => "[vehicle]",
 };
 
 pub(crate) const THROTTLE: Shape = shape! { "[throttle]":
@@ -95,5 +96,11 @@ pub(crate) const ALLOCATION: Shape = shape! { "[allocation]":
     "yaw_reserve_nm" => "yaw_reserve_nm = 0.05",
 };
 
+pub(crate) const VEHICLE: Shape = shape! { "[vehicle]":
+    "mass_kg" => "mass_kg = 3.2",
+};
+
 /// Every table, to tell where a misplaced key belongs.
-pub(crate) const ALL: &[Shape] = &[FILE, THROTTLE, PAIR, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION];
+pub(crate) const ALL: &[Shape] = &[
+    FILE, THROTTLE, PAIR, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION, VEHICLE,
+];

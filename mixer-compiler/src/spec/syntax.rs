@@ -11,16 +11,29 @@ use crate::source::Source;
 /// What the parser says of a key that is there twice; the rest of the file is read all the same.
 const DUPLICATE: &str = "duplicate key";
 
+/// Faults of the TOML itself that are noted. What follows the first ones mostly follows from them, and a file of another
+/// kind has one on every line.
+const MOST: usize = 100;
+
 /// Parses the text and notes its faults. `None` where they leave the values in doubt.
 pub(super) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Option<DeTable<'a>> {
     let (table, mut errors) = DeTable::parse_recoverable(&source.text);
     let table = table.into_inner();
     let sound = errors.iter().all(|error| error.message() == DUPLICATE);
+    let mut long_values = Vec::new();
+    if !errors.is_empty() {
+        note_long_values(&table, &source.text, &mut long_values);
+    }
 
     errors.sort_by_key(start);
+    // Lines are counted on from error to error: from the start for each it would take the square of the text's length.
+    let (mut line, mut counted) = (1, 0);
     let mut last_line = 0;
+    let mut noted = 0;
     for error in &errors {
-        let line = source.place(start(error)).line;
+        let offset = source.boundary(start(error));
+        line += newlines(&source.text, counted..offset);
+        counted = offset;
         // The parser goes on within the line and within an array that is never closed, and trips over the
         // consequences of the first fault; a table that is there twice repeats its keys line by line. Those are no
         // further faults of the user's.
@@ -30,7 +43,8 @@ pub(super) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
             continue;
         }
         faults.push(diagnostic(source, error));
-        if within_lines(&table, &source.text, start(error)) {
+        noted += 1;
+        if noted == MOST || long_values.iter().any(|value| within(value, offset)) {
             break;
         }
     }
@@ -41,23 +55,49 @@ fn start(error: &Error) -> usize {
     error.span().map_or(0, |span| span.start)
 }
 
-/// Whether `offset` is in a value of several lines, after its first.
-fn within_lines(table: &DeTable<'_>, text: &str, offset: usize) -> bool {
-    let breaks_before = |span: Range<usize>| {
-        span.contains(&offset)
-            && text
-                .get(span.start..offset)
-                .is_some_and(|before| before.contains('\n'))
+fn newlines(text: &str, range: Range<usize>) -> usize {
+    let bytes = text.as_bytes().get(range).unwrap_or_default();
+    bytes.iter().filter(|byte| **byte == b'\n').count()
+}
+
+/// A value of several lines.
+struct LongValue {
+    span: Range<usize>,
+    /// The end of its first line.
+    first_line_end: usize,
+}
+
+/// Whether `offset` is in the value, after its first line.
+fn within(value: &LongValue, offset: usize) -> bool {
+    value.span.contains(&offset) && offset > value.first_line_end
+}
+
+/// Every value of several lines, tables aside.
+fn note_long_values(table: &DeTable<'_>, text: &str, found: &mut Vec<LongValue>) {
+    let mut note = |span: Range<usize>| {
+        let first_line = text.get(span.clone()).and_then(|value| value.find('\n'));
+        found.extend(first_line.map(|length| LongValue {
+            first_line_end: span.start + length,
+            span,
+        }));
     };
-    table.iter().any(|(_, value)| {
+    let mut tables = Vec::new();
+    for (_, value) in table {
         match value.get_ref() {
-        DeValue::Table(table) => within_lines(table, text, offset),
-        DeValue::Array(elements) => breaks_before(value.span()) || elements.iter().any(|element| {
-            matches!(element.get_ref(), DeValue::Table(table) if within_lines(table, text, offset))
-        }),
-        _ => breaks_before(value.span()),
+            DeValue::Table(table) => tables.push(table),
+            DeValue::Array(elements) => {
+                note(value.span());
+                tables.extend(elements.iter().filter_map(|element| match element.get_ref() {
+                    DeValue::Table(table) => Some(table),
+                    _ => None,
+                }));
+            }
+            _ => note(value.span()),
+        }
     }
-    })
+    for table in tables {
+        note_long_values(table, text, found);
+    }
 }
 
 fn diagnostic(source: &Source, error: &Error) -> Diagnostic {

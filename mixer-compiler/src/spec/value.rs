@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::keys::Key;
-use crate::diagnostic::{Code, Diagnostic, quoted};
+use crate::diagnostic::{Code, Diagnostic, MOST_FAULTS, quoted};
 
 /// A value while it is read.
 pub(crate) struct Item<'a> {
@@ -158,6 +158,9 @@ impl<T: Read> Read for Vec<Spanned<T>> {
         };
         let mut values = Vec::with_capacity(elements.len());
         for (index, element) in elements.iter().enumerate() {
+            if faults.len() >= MOST_FAULTS {
+                break;
+            }
             let element = item.element(index, element);
             values.extend(T::read(&element, faults).map(|value| Spanned::new(element.place, value)));
         }

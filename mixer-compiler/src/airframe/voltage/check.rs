@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
+use super::largest::not_too_large;
 use super::least::{LEAST_FACTOR, below_least};
 use super::{Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic, any_of, number, rounded};
@@ -20,6 +21,10 @@ const HIGHEST_DEGREE: usize = 8;
 
 /// Below this, nothing turns.
 const LEAST_V: f64 = 0.1;
+
+/// Least distance of two voltages over the higher one, of the range's ends and of neighbouring points: in single precision
+/// their difference is then true to a thousandth.
+const LEAST_STEP: f64 = 1e-4;
 
 /// Above this, millivolts were meant.
 const LARGEST_V: f64 = 1000.0;
@@ -39,9 +44,9 @@ pub(in crate::airframe) fn check(voltage: &spec::Voltage, faults: &mut Vec<Diagn
 
 /// Reference and range once they are sound.
 #[derive(Clone, Copy)]
-struct Supply {
-    reference_v: f64,
-    range_v: [f64; 2],
+pub(super) struct Supply {
+    pub(super) reference_v: f64,
+    pub(super) range_v: [f64; 2],
 }
 
 fn supply(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Supply> {
@@ -57,6 +62,18 @@ fn supply(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Suppl
             ))
             .label("expected [lowest, highest]")
             .help("write the pack's voltage under load when empty, then when full"),
+        );
+        return None;
+    }
+    if high - low < LEAST_STEP * high {
+        let (least, high) = (rounded(LEAST_STEP * high * 1000.0), number(high));
+        faults.push(
+            fault(format!(
+                "the voltage range up to {high} V is {} mV wide",
+                rounded((range.get_ref()[1].get_ref() - low) * 1000.0)
+            ))
+            .label(format!("expected {least} mV at least"))
+            .help("write the pack's voltage under load when empty, then when full, or leave `[voltage]` out"),
         );
         return None;
     }
@@ -167,6 +184,7 @@ fn exponent(
             faults.push(too_small(key, field.span(), k, low).help("raise the lower end of `range_v`"));
             return None;
         }
+        not_too_large(key, field.span(), &law, supply, faults)?;
         return Some(law);
     }
     faults.push(
@@ -219,6 +237,7 @@ fn polynomial(
     }
     let law = VoltageLaw::Polynomial(coefficients);
     one_at_reference(key, field.span(), &law, "coefficient", supply, faults)?;
+    not_too_large(key, field.span(), &law, supply, faults)?;
     Some(law)
 }
 
@@ -238,8 +257,28 @@ fn points(
     let [low, high] = supply.range_v;
     for (index, (&[volts, k], written)) in points.iter().zip(field.get_ref()).enumerate() {
         if let Some(&[previous, _]) = index.checked_sub(1).and_then(|index| points.get(index))
-            && volts <= previous
+            && volts - previous < LEAST_STEP * volts
         {
+            if volts > previous {
+                faults.push(
+                    fault(
+                        Code::VoltagePoints,
+                        written.span(),
+                        format!(
+                            "{} V and {} V are {} mV apart",
+                            number(previous),
+                            number(volts),
+                            rounded((volts - previous) * 1000.0)
+                        ),
+                    )
+                    .label(format!(
+                        "expected {} mV at least",
+                        rounded(LEAST_STEP * volts * 1000.0)
+                    ))
+                    .help("keep one of the two: between them the law would be a jump"),
+                );
+                continue;
+            }
             let (volts, previous) = (number(volts), number(previous));
             faults.push(
                 fault(
@@ -288,6 +327,7 @@ fn points(
     }
     let law = VoltageLaw::Points(points);
     one_at_reference(key, field.span(), &law, "factor", supply, faults)?;
+    not_too_large(key, field.span(), &law, supply, faults)?;
     Some(law)
 }
 

@@ -1,0 +1,194 @@
+//! Regular frames, written as the rest of an airframe file: name, `[layout]`, and what else there is to fill in.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use clap::ValueEnum;
+
+/// A frame of coaxial pairs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Frame {
+    /// Four pairs in an X.
+    X8,
+    /// Three pairs, two in front.
+    Y6,
+    /// Six pairs, two in front.
+    X12,
+    /// Two pairs abreast; pitch is left to servos or a tail.
+    Bicopter,
+    /// One pair on a stand.
+    Single,
+}
+
+/// `--frame`, `--arm`, `--name`.
+#[derive(clap::Args, Clone, Debug)]
+pub struct FrameArgs {
+    /// The frame
+    // Not required by itself: `identify` writes the tables alone without it, `new` misses it all the same.
+    #[arg(long, value_enum, required = false)]
+    pub frame: Frame,
+    /// Distance of every pair from the centre of gravity, m; not for a single pair
+    #[arg(long, value_name = "METRE", value_parser = arm, requires = "frame")]
+    pub arm: Option<f64>,
+    /// Name of the airframe [default: that of the output file]
+    #[arg(long, requires = "frame")]
+    pub name: Option<String>,
+}
+
+fn arm(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(arm) if arm > 0.0 && arm.is_finite() => Ok(arm),
+        _ => Err(format!("{text:?} is not a positive number of metres")),
+    }
+}
+
+/// Where the first pair is, how many there are, and what they serve.
+struct Shape {
+    units: usize,
+    first_angle_deg: f64,
+    first: &'static str,
+    spins: &'static str,
+    axes: Option<&'static str>,
+    description: &'static str,
+}
+
+impl Frame {
+    fn shape(self) -> Shape {
+        let shape = |units, first_angle_deg, first, spins, axes, description| Shape {
+            units,
+            first_angle_deg,
+            first,
+            spins,
+            axes,
+            description,
+        };
+        let (alternate, alike) = ("they alternate", "all turn alike");
+        match self {
+            Frame::X8 => shape(4, 45.0, "front right", alternate, None, "X8: four coaxial pairs"),
+            Frame::Y6 => shape(3, 60.0, "front right", alike, None, "Y6: three coaxial pairs"),
+            Frame::X12 => shape(6, 30.0, "front right", alternate, None, "X12: six coaxial pairs"),
+            Frame::Bicopter => shape(
+                2,
+                90.0,
+                "right",
+                alternate,
+                Some("axes = [\"roll\", \"yaw\", \"thrust\"]  # two units have no lever arm in pitch"),
+                "Two coaxial pairs abreast, pitch left to servos or a tail",
+            ),
+            Frame::Single => shape(
+                1,
+                0.0,
+                "",
+                "",
+                Some("axes = [\"yaw\", \"thrust\"]          # one unit has no lever arms"),
+                "One coaxial pair on a stand",
+            ),
+        }
+    }
+}
+
+impl FrameArgs {
+    /// A whole airframe file around `tables`, which are `[throttle]`, `[pair]` and, if there is one, `[voltage]`.
+    ///
+    /// # Errors
+    /// An arm that is missing, or one too many.
+    pub fn airframe(&self, output: Option<&Path>, tables: &str) -> Result<String, String> {
+        let Shape {
+            description, axes, ..
+        } = self.frame.shape();
+        let mut text = format!(
+            "name = \"{}\"\ndescription = \"{description}\"\n\n",
+            self.name(output)
+        );
+        text.push_str(tables.trim());
+        text.push_str("\n\n");
+        text.push_str(&self.layout()?);
+        let _ = write!(
+            text,
+            "\n# [vehicle]                            # then `check` says the throttles in hover and what is left there\n\
+             # mass_kg = 3.2                        # take-off mass, battery and payload included\n\
+             \n[inverse]                              # what one unit may miss, at any voltage\n\
+             thrust_tolerance_n = 0.01\n\
+             torque_tolerance_nm = 1e-4\n\
+             \n[allocation]\n\
+             airmode = \"disabled\"                   # or \"roll-pitch\", \"roll-pitch-yaw\", with PX4's meaning\n"
+        );
+        if let Some(axes) = axes {
+            let _ = writeln!(text, "{axes}");
+        }
+        Ok(text)
+    }
+
+    /// The name that is given, or that of the output, or that of the frame.
+    fn name(&self, output: Option<&Path>) -> String {
+        let stem = output
+            .and_then(Path::file_stem)
+            .map(|stem| stem.to_string_lossy());
+        let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+        let usable =
+            |stem: &str| stem.starts_with(|c: char| c.is_ascii_lowercase()) && stem.chars().all(plain);
+        match (&self.name, stem) {
+            (Some(name), _) => name.clone(),
+            (None, Some(stem)) if usable(&stem) => stem.into_owned(),
+            _ => {
+                let frame = self.frame.to_possible_value();
+                format!("my-{}", frame.as_ref().map_or("frame", |frame| frame.get_name()))
+            }
+        }
+    }
+
+    /// `[layout]`, of a single pair its `[[unit]]`.
+    fn layout(&self) -> Result<String, String> {
+        let Shape {
+            units,
+            first_angle_deg,
+            first,
+            spins,
+            ..
+        } = self.frame.shape();
+        let arm = match (units, self.arm) {
+            (1, Some(_)) => return Err("--arm: a single pair has none".to_owned()),
+            (1, None) => {
+                return Ok("[[unit]]\n\
+                           position_m = [0.0, 0.0, 0.0]           # forward, right, down from the centre of gravity\n\
+                           upper_spin = \"cw\"                      # seen from above\n\
+                           channels = [0, 1]                      # outputs of the upper and of the lower rotor\n"
+                    .to_owned());
+            }
+            (_, None) => {
+                return Err(
+                    "--arm METRE is missing: the distance of every pair from the centre of gravity"
+                        .to_owned(),
+                );
+            }
+            (_, Some(arm)) => arm,
+        };
+        let channels: Vec<String> = (0..units).map(|k| format!("[{k}, {}]", units + k)).collect();
+        let mut text =
+            String::from("# The units in a circle, clockwise from the first as seen from above.\n[layout]\n");
+        for (value, comment) in [
+            (
+                format!("arm_m = {arm:?}"),
+                "from the centre of gravity to each mast",
+            ),
+            (format!("units = {units}"), "pairs of rotors"),
+            (
+                format!("first_angle_deg = {first_angle_deg:?}"),
+                &format!("of the first unit, clockwise from the nose: {first}"),
+            ),
+            (
+                "first_spin = \"cw\"".to_owned(),
+                &format!("of the first unit's upper rotor, seen from above; {spins}"),
+            ),
+        ] {
+            let _ = writeln!(text, "{value:<38} # {comment}");
+        }
+        let _ = writeln!(
+            text,
+            "channels = [{}]\n{:<38} # outputs of the upper and of the lower rotor of each",
+            channels.join(", "),
+            ""
+        );
+        Ok(text)
+    }
+}

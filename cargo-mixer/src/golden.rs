@@ -1,0 +1,121 @@
+//! `cargo mixer golden`: what an airframe compiles to, held in files and compared.
+//!
+//! An airframe has four of them: `NAME.rs`, the generated Rust; `NAME.report.txt`, the report; `NAME.vectors.csv`,
+//! setpoints with the bits that the mixer gives; `NAME.rotors-out.csv`, the same with rotors out.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use mixer_compiler::Compiled;
+use mixer_compiler::report::Report;
+
+pub mod compare;
+pub mod table;
+pub mod vectors;
+
+/// Writes golden outputs of airframes, or compares them with those that were written
+///
+/// Per airframe: NAME.rs (the generated Rust), NAME.report.txt, NAME.vectors.csv (setpoints with the bits of throttles,
+/// achieved wrench and saturation) and NAME.rotors-out.csv (the same with rotors out). Keep the folder under version
+/// control and run the command with --check in your tests.
+#[derive(clap::Args, Debug)]
+pub struct GoldenArgs {
+    /// The airframe files
+    #[arg(required = true, value_name = "AIRFRAME.toml")]
+    airframes: Vec<PathBuf>,
+    /// The folder of the outputs
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Compare and write nothing; status 1 where an output differs, is missing or belongs to no airframe
+    #[arg(long)]
+    check: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &GoldenArgs) -> ExitCode {
+    let outputs = match all_outputs(&args.airframes) {
+        Ok(outputs) => outputs,
+        Err(status) => return status,
+    };
+    let done = if args.check {
+        check(&args.output, &outputs)
+    } else {
+        write(&args.output, &outputs)
+    };
+    done.unwrap_or_else(crate::complain)
+}
+
+/// The outputs of all airframes by file name. Everything is compiled before anything is written.
+fn all_outputs(airframes: &[PathBuf]) -> Result<BTreeMap<String, String>, ExitCode> {
+    let mut outputs = BTreeMap::new();
+    let mut of_name: BTreeMap<String, &PathBuf> = BTreeMap::new();
+    for path in airframes {
+        let compiled = crate::compile(path).map_err(|refusal| refusal.report())?;
+        let name = &compiled.airframe.name;
+        if let Some(other) = of_name.insert(name.clone(), path) {
+            return Err(crate::complain(format_args!(
+                "{} and {} are both named {name}: golden outputs are named after the airframe",
+                other.display(),
+                path.display()
+            )));
+        }
+        outputs.extend(self::outputs(&compiled));
+    }
+    Ok(outputs)
+}
+
+/// The golden outputs of one airframe: file name and content.
+pub fn outputs(compiled: &Compiled) -> [(String, String); 4] {
+    let name = &compiled.airframe.name;
+    let vectors = vectors::healthy(compiled);
+    let rotors_out = vectors::rotors_out(compiled, &vectors);
+    [
+        (format!("{name}.rs"), compiled.rust()),
+        (format!("{name}.report.txt"), Report(compiled).to_string()),
+        (format!("{name}.vectors.csv"), table::healthy(compiled, &vectors)),
+        (
+            format!("{name}.rotors-out.csv"),
+            table::rotors_out(compiled, &rotors_out),
+        ),
+    ]
+}
+
+fn write(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<ExitCode, String> {
+    fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut written = 0;
+    for (file, content) in outputs {
+        let path = folder.join(file);
+        if fs::read_to_string(&path).ok().as_ref() != Some(content) {
+            crate::file::write(&path, content)?;
+            crate::remark(format_args!("wrote {}", path.display()));
+            written += 1;
+        }
+    }
+    if written == 0 {
+        crate::remark(format_args!("{}: nothing has changed", folder.display()));
+    }
+    for orphan in compare::orphans(folder, outputs)? {
+        crate::remark(format_args!(
+            "{} belongs to none of these airframes: remove it",
+            folder.join(orphan).display()
+        ));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn check(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<ExitCode, String> {
+    let differences = compare::differences(folder, outputs)?;
+    if differences.is_empty() {
+        return Ok(ExitCode::SUCCESS);
+    }
+    for difference in &differences {
+        crate::remark(format_args!("{}", folder.join(difference).display()));
+    }
+    Err(format!(
+        "{} of {} golden outputs differ; if that is meant, run the command without --check and look at what changes",
+        differences.len(),
+        outputs.len()
+    ))
+}

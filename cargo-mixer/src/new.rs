@@ -1,0 +1,69 @@
+//! `cargo mixer new`: a complete airframe file to begin with.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use mixer_compiler::Source;
+
+use crate::Refusal;
+use crate::frame::FrameArgs;
+
+/// Writes a complete, commented airframe file of a regular frame
+///
+/// Without --pair it has the pair of the ISAE X8 (Chebbi et al. 2020) for you to replace: `cargo mixer identify` makes yours
+/// of a bench file.
+#[derive(clap::Args, Debug)]
+pub struct NewArgs {
+    #[command(flatten)]
+    frame: FrameArgs,
+    /// `[throttle]`, `[pair]` and `[voltage]`, as `cargo mixer identify -o` writes them
+    #[arg(long, value_name = "PAIR.toml")]
+    pair: Option<PathBuf>,
+    /// The airframe file to write
+    #[arg(short, long, value_name = "AIRFRAME.toml")]
+    output: PathBuf,
+    /// Overwrite the file if it is there
+    #[arg(long)]
+    force: bool,
+}
+
+/// The pair that stands in for the user's own.
+const STAND_IN: &str = include_str!("new/stand-in.toml");
+
+/// Runs the command.
+pub fn run(args: &NewArgs) -> ExitCode {
+    if let Err(message) = crate::file::not_there(&args.output, args.force) {
+        return crate::complain(message);
+    }
+    let tables = match &args.pair {
+        None => STAND_IN.to_owned(),
+        Some(path) => match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) => return crate::complain(format_args!("{}: {error}", path.display())),
+        },
+    };
+    match args.frame.airframe(Some(&args.output), &tables) {
+        Ok(text) => write(&args.output, &text),
+        Err(message) => {
+            crate::complain(message);
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Writes an airframe file that compiles; one that does not is refused with its faults, and nothing is written.
+pub(crate) fn write(path: &std::path::Path, text: &str) -> ExitCode {
+    let source = Source::new(crate::printable(&path.display().to_string()), text);
+    match mixer_compiler::compile(&source) {
+        Err(faults) => return Refusal::Faulty(faults).report(),
+        Ok(compiled) if !compiled.warnings.is_empty() => crate::show(&compiled.warnings),
+        Ok(_) => {}
+    }
+    match crate::file::write(path, text) {
+        Ok(()) => {
+            crate::remark(format_args!("wrote {}", path.display()));
+            ExitCode::SUCCESS
+        }
+        Err(message) => crate::complain(message),
+    }
+}

@@ -1,0 +1,166 @@
+//! The first hour: a whole airframe from `new` and from `identify --frame`.
+
+use std::fs;
+
+use super::*;
+
+fn path(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("new");
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(name);
+    let _ = fs::remove_file(&path);
+    path.to_str().unwrap().to_owned()
+}
+
+/// A bench file of the paper's pair: a grid of 10 x 10 throttles.
+fn bench(name: &str) -> String {
+    let thrust = [
+        5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363,
+    ];
+    let torque = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720];
+    let mut text = "upper,lower,thrust_n,torque_nm\n".to_owned();
+    for k in 0..100 {
+        let [u, l] = [k / 10, k % 10].map(|step| 0.1 + 0.1 * f64::from(step));
+        let terms = [u * u * l * l, u * u * l, u * u, u * l * l, u * l, u, l * l, l];
+        let value = |of: [f64; 8]| of.iter().zip(terms).map(|(c, term)| c * term).sum::<f64>();
+        text += &format!("{u:.1},{l:.1},{:.4},{:.5}\n", value(thrust), value(torque));
+    }
+    let path = path(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn new_frames_are_accepted_without_a_warning() {
+    for (frame, arm, rotors) in [
+        ("x8", Some("0.45"), 8),
+        ("y6", Some("0.5"), 6),
+        ("x12", Some("1"), 12),
+        ("bicopter", Some("0.45"), 4),
+        ("single", None, 2),
+    ] {
+        let file = path(&format!("my-{frame}.toml"));
+        let mut arguments = vec!["new", "--frame", frame, "-o", &file];
+        arguments.extend(arm.into_iter().flat_map(|arm| ["--arm", arm]));
+        let output = run(&arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let checked = run(&["check", "--json", "--deny-warnings", &file]);
+        assert_status(&checked, 0);
+        let summary: Value = serde_json::from_slice(&checked.stdout).unwrap();
+        assert_eq!(summary["name"], format!("my-{frame}"));
+        assert_eq!(summary["rotors"], rotors);
+        for line in fs::read_to_string(&file).unwrap().lines() {
+            assert!(line.chars().count() <= 110, "{line}");
+        }
+    }
+}
+
+/// The frames are those of `airframes/`, which are PX4's.
+#[test]
+fn new_frames_have_the_geometry_of_px4() {
+    let units = |path: &str| {
+        let text = fs::read_to_string(path).unwrap();
+        let airframe =
+            mixer_compiler::airframe::Airframe::read(&mixer_compiler::Source::new(path, text)).unwrap();
+        let mut units: Vec<_> = airframe
+            .units
+            .iter()
+            .map(|unit| {
+                (
+                    unit.position_m.map(|x| (1e3 * x).round() as i64),
+                    unit.upper_spin.name(),
+                )
+            })
+            .collect();
+        units.sort();
+        units
+    };
+    for (frame, arm, known) in [
+        ("y6", "0.5", "airframes/px4-y6.toml"),
+        ("x8", "0.45", "airframes/isae-x8.toml"),
+        ("bicopter", "0.45", "airframes/coaxial-bicopter.toml"),
+    ] {
+        let file = path(&format!("px4-{frame}.toml"));
+        run(&["new", "--frame", frame, "--arm", arm, "-o", &file]);
+        assert_eq!(
+            units(&file),
+            units(root().join(known).to_str().unwrap()),
+            "{frame}"
+        );
+    }
+}
+
+#[test]
+fn new_overwrites_only_by_force() {
+    let file = path("kept.toml");
+    fs::write(&file, "mine").unwrap();
+    let arguments = ["new", "--frame", "single", "-o", &file];
+    let output = run(&arguments);
+    assert_status(&output, 1);
+    assert!(
+        stderr(&output).ends_with("is there already: --force overwrites it\n"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
+    let forced: Vec<&str> = arguments.into_iter().chain(["--force"]).collect();
+    assert_eq!(run(&forced).status.code(), Some(0));
+    assert!(
+        fs::read_to_string(&file)
+            .unwrap()
+            .starts_with("name = \"kept\"\n")
+    );
+}
+
+#[test]
+fn new_refuses_what_check_would() {
+    let (pair, file) = (path("bad-pair.toml"), path("bad.toml"));
+    fs::write(&pair, "[throttle]\nmin = 0.05\nmax = 1\n").unwrap();
+    let output = run(&[
+        "new", "--frame", "x8", "--arm", "0.45", "--pair", &pair, "-o", &file,
+    ]);
+    assert_status(&output, 1);
+    assert!(stderr(&output).contains("error[MIX003]"), "{}", stderr(&output));
+    assert!(!Path::new(&file).exists());
+    for arguments in [
+        &["new", "--frame", "x8", "-o", &file][..],
+        &["new", "--frame", "single", "--arm", "1", "-o", &file],
+        &["new", "-o", &file],
+    ] {
+        assert_status(&run(arguments), 2);
+    }
+}
+
+#[test]
+fn identify_writes_a_whole_airframe() {
+    let (bench, pair, file) = (bench("map.csv"), path("pair.toml"), path("my-frame.toml"));
+    let output = run(&["identify", &bench, "--frame", "x8", "--arm", "0.45", "-o", &file]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_status(&run(&["check", "--deny-warnings", &file]), 0);
+    let text = fs::read_to_string(&file).unwrap();
+    for part in [
+        "name = \"my-frame\"",
+        "# Identified by cargo mixer identify",
+        "map.csv",
+        "arm_m = 0.45",
+    ] {
+        assert!(text.contains(part), "no {part:?} in {text}");
+    }
+    assert!(!text.contains("To make an airframe of it"), "{text}");
+    // The tables alone and `new` come to the same.
+    assert_eq!(run(&["identify", &bench, "-o", &pair]).status.code(), Some(0));
+    let other = path("other.toml");
+    let output = run(&[
+        "new", "--frame", "x8", "--arm", "0.45", "--pair", &pair, "--name", "my-frame", "-o", &other,
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let values = |file: &str| fs::read_to_string(file).unwrap().parse::<toml::Table>().unwrap();
+    assert_eq!(values(&file), values(&other));
+    // Nothing is overwritten by accident.
+    assert_status(&run(&["identify", &bench, "-o", &pair]), 1);
+    assert_eq!(
+        run(&["identify", &bench, "-o", &pair, "--force"]).status.code(),
+        Some(0)
+    );
+    assert_status(&run(&["identify", &bench, "--arm", "0.45"]), 2);
+}

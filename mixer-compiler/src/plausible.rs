@@ -1,0 +1,96 @@
+//! Values that are possible and yet hardly meant: warnings, one rule each, all collected.
+//!
+//! A rule compares a value with what propellers, frames and packs are like. Its limits are chosen so that no file in
+//! `airframes/` warns and none of the fits of real bench maps does (`MIXER_BENCH_DATA=.. cargo nextest run -p
+//! cargo-mixer maps_warn`), while the mistakes that it is for lie far outside: a wrong unit is a factor of four at least.
+
+mod geometry;
+mod limits;
+mod pair;
+mod supply;
+mod vehicle;
+
+use crate::airframe::Airframe;
+use crate::diagnostic::Diagnostic;
+use crate::effectiveness::Effectiveness;
+use crate::model::PairMap;
+
+/// What the rules read.
+struct Facts<'a> {
+    airframe: &'a Airframe,
+    /// `None` where the airframe is refused.
+    effectiveness: Option<&'a Effectiveness>,
+    map: PairMap,
+    /// Largest thrust (N) and largest absolute torque (N m) of one unit at the reference voltage.
+    scale: [f64; 2],
+    /// Least and largest bare thrust at the reference voltage, N; `None` where the airframe is refused.
+    thrust_range_n: Option<[f64; 2]>,
+}
+
+/// A rule adds what it has against an airframe.
+type Rule = fn(&Facts<'_>, &mut Vec<Diagnostic>);
+
+const RULES: &[Rule] = &[
+    pair::units,
+    pair::slopes,
+    pair::sum_of_rotors,
+    pair::idle,
+    geometry::arms,
+    geometry::radians,
+    geometry::centre_of_gravity,
+    geometry::channels,
+    geometry::many_units,
+    supply::single_cell,
+    supply::exponents,
+    supply::factors,
+    limits::tolerances,
+    limits::yaw_reserve,
+    vehicle::hover,
+];
+
+/// Everything in an airframe that compiles which is plausibly a mistake.
+pub(crate) fn warnings(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    thrust_range_n: [f32; 2],
+) -> Vec<Diagnostic> {
+    apply(airframe, Some(effectiveness), Some(thrust_range_n.map(f64::from)))
+}
+
+/// Everything in an airframe that no mixer can be made of which is plausibly a mistake: it may be why.
+pub(crate) fn warnings_of_refused(airframe: &Airframe) -> Vec<Diagnostic> {
+    apply(airframe, None, None)
+}
+
+fn apply(
+    airframe: &Airframe,
+    effectiveness: Option<&Effectiveness>,
+    thrust_range_n: Option<[f64; 2]>,
+) -> Vec<Diagnostic> {
+    let map = PairMap::new(&airframe.pair, &airframe.throttle);
+    let facts = Facts {
+        airframe,
+        effectiveness,
+        scale: map.scale(),
+        map,
+        thrust_range_n,
+    };
+    let mut found = Vec::new();
+    // A map without thrust or torque has faults enough.
+    if !facts.scale.iter().all(|effort| *effort > 0.0) {
+        return found;
+    }
+    for rule in RULES {
+        rule(&facts, &mut found);
+    }
+    found
+}
+
+/// Refuses tolerances that leave nothing to meet.
+///
+/// # Errors
+/// A tolerance above a tenth of a unit's largest effort.
+pub(crate) fn tolerances(airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
+    let faults = limits::absurd_tolerances(airframe);
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
+}

@@ -1,0 +1,155 @@
+//! Rules on the pair's map and its idle.
+
+use super::Facts;
+use crate::diagnostic::{Code, Diagnostic, number, rounded};
+
+/// The range of Q over the largest f of one unit, m: 0.016 to 0.034 on maps of 11 to 22 inch. It is about the propeller's
+/// diameter over 17, so that these limits stand for 4 to 40 inch. The nearest unit that may be mistaken, pounds of force,
+/// is a factor of 4.4 away.
+const RATIO_M: [f64; 2] = [0.005, 0.065];
+
+/// Largest thrust of one unit that is taken for newtons. Beyond it both may be in gram-force.
+const LARGEST_THRUST_N: f64 = 2000.0;
+
+/// Units that benches record, with their size in N and in N m.
+const THRUST_UNITS: [(&str, f64); 3] = [("gf", 0.009_806_65), ("kgf", 9.806_65), ("lbf", 4.448_222)];
+const TORQUE_UNITS: [(&str, f64); 5] = [
+    ("N mm", 0.001),
+    ("N cm", 0.01),
+    ("kgf m", 9.806_65),
+    ("gf cm", 9.806_65e-5),
+    ("lbf in", 0.112_984_8),
+];
+
+/// Thrust over torque tells the units of both.
+pub(super) fn units(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    let border: Vec<[f64; 2]> = facts
+        .map
+        .border(32)
+        .into_iter()
+        .map(|at| facts.map.efforts(at))
+        .collect();
+    let torques = border.iter().map(|[_, q]| *q);
+    let span = torques.clone().fold(f64::NEG_INFINITY, f64::max) - torques.fold(f64::INFINITY, f64::min);
+    let thrust = facts.scale[0];
+    let ratio = span / thrust;
+    let [low, high] = RATIO_M;
+    if (low..=high).contains(&ratio) {
+        if thrust > LARGEST_THRUST_N {
+            found.push(facts.airframe.diagnostic(
+                Code::PairUnits,
+                "pair.thrust_n",
+                format!("one unit gives up to {} N", rounded(thrust)),
+                "expected newtons",
+                "if thrust and torque were in gf and gf m, multiply all coefficients by 0.00980665",
+            ));
+        }
+        return;
+    }
+    // Too much torque for the thrust: the thrust is in a larger unit, or the torque in a smaller one.
+    let plausible = |ratio: f64| (low..=high).contains(&ratio);
+    let thrusts = THRUST_UNITS
+        .iter()
+        .filter(|(_, newtons)| plausible(ratio / newtons))
+        .map(|(unit, newtons)| format!("thrust_n is in {unit} (multiply by {})", number(*newtons)));
+    let torques = TORQUE_UNITS
+        .iter()
+        .filter(|(_, newton_metres)| plausible(ratio * newton_metres))
+        .map(|(unit, size)| format!("torque_nm is in {unit} (multiply by {})", number(*size)));
+    let candidates: Vec<String> = thrusts.chain(torques).collect();
+    let help = if candidates.is_empty() {
+        "check the units of thrust_n (N) and of torque_nm (N m)".to_owned()
+    } else {
+        format!("it would be plausible if {}", candidates.join(", or "))
+    };
+    found.push(facts.airframe.diagnostic(
+        Code::PairUnits,
+        if candidates.iter().any(|text| text.starts_with("thrust")) {
+            "pair.thrust_n"
+        } else {
+            "pair.torque_nm"
+        },
+        format!(
+            "the torque of one unit spans {} N m at {} N of thrust, a ratio of {} m; propellers of 4 to 40 inch have {} \
+             to {} m",
+            rounded(span),
+            rounded(thrust),
+            rounded(ratio),
+            number(low),
+            number(high)
+        ),
+        "in another unit?",
+        help,
+    ));
+}
+
+/// Torque falls with the upper throttle and rises with the lower one. Where both are exchanged, det J is negative and the
+/// file is refused. The corner of the fold tells nothing: real maps fold at (full, idle), the paper's at (idle, full).
+pub(super) fn slopes(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    let [low, high] = facts.map.range();
+    let torque = |u, l| facts.map.efforts([u, l])[1];
+    let by_upper = torque(high, low) - torque(low, low);
+    let by_lower = torque(low, high) - torque(low, low);
+    let is_refused = facts.effectiveness.is_none();
+    if is_refused || (by_upper < 0.0 && by_lower > 0.0) {
+        return;
+    }
+    found.push(facts.airframe.diagnostic(
+        Code::RotorsExchanged,
+        "pair.torque_nm",
+        format!(
+            "from idle to full the upper throttle changes the torque by {} N m, the lower one by {} N m",
+            rounded(by_upper),
+            rounded(by_lower)
+        ),
+        "expected a fall by the upper rotor, a rise by the lower one",
+        "check which rotor is the upper one (identify --swap exchanges them) and the sign of the torque",
+    ));
+}
+
+/// The wake costs thrust: both rotors give less than the sum of each alone. On real maps the share is 0.77 to 0.92.
+pub(super) fn sum_of_rotors(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    let [low, high] = facts.map.range();
+    let thrust = |u, l| facts.map.efforts([u, l])[0];
+    let both = thrust(high, high);
+    let alone = thrust(high, low) + thrust(low, high);
+    if both <= alone {
+        return;
+    }
+    found.push(facts.airframe.diagnostic(
+        Code::NotCoaxial,
+        "pair.thrust_n",
+        format!(
+            "both rotors at full throttle give {} N, each alone {} N and {} N, the other at idle",
+            rounded(both),
+            rounded(thrust(high, low)),
+            rounded(thrust(low, high))
+        ),
+        "more than the sum",
+        "in a wake the sum falls; check the order of the coefficients, which that of the basis fixes",
+    ));
+}
+
+/// Largest share of a unit's thrust that is on at idle. A map that was measured from a throttle of 0.4 on has 0.26 there.
+const IDLE_SHARE: f64 = 0.28;
+
+/// A high idle leaves little thrust to control with.
+pub(super) fn idle(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    let [low, _] = facts.map.range();
+    let floor = facts.map.efforts([low, low])[0];
+    let share = floor / facts.scale[0];
+    if share <= IDLE_SHARE {
+        return;
+    }
+    found.push(facts.airframe.diagnostic(
+        Code::HighIdle,
+        "throttle.min",
+        format!(
+            "at idle one unit gives {} N, {:.0} % of its largest thrust",
+            rounded(floor),
+            100.0 * share
+        ),
+        "always on",
+        "an idle is typically 0.05 to 0.15; measure the pair from there on",
+    ));
+}

@@ -1,0 +1,138 @@
+//! Airframe files that are accepted and yet hardly meant, and what their users are told.
+//!
+//! `warnings/NAME.toml` is such a file, `NAME.txt` the warnings that the compiler has of it. `MIXER_BLESS=1 cargo test
+//! -p mixer-compiler --test warnings` writes the texts anew; read the difference before committing it.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mixer_compiler::Source;
+use mixer_compiler::diagnostic::{Code, Diagnostics, Severity};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/warnings")
+}
+
+/// The names of all files of `folder` with this extension.
+fn names(folder: &Path, extension: &str) -> BTreeSet<String> {
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    files
+        .filter(|path| path.extension().is_some_and(|found| found == extension))
+        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_string())
+        .collect()
+}
+
+/// The warnings of a file that compiles.
+#[track_caller]
+fn warnings(folder: &Path, name: &str) -> Diagnostics {
+    let text = fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
+    match mixer_compiler::compile(&Source::new(format!("{name}.toml"), text)) {
+        Ok(compiled) => compiled.warnings,
+        Err(faults) => panic!("{name} is refused\n{faults}"),
+    }
+}
+
+#[test]
+fn mistakes_are_warned_of_in_the_words_agreed() {
+    let bless = std::env::var_os("MIXER_BLESS").is_some_and(|value| value == "1");
+    let mut complaints = String::new();
+    let files = names(&folder(), "toml");
+    for name in &files {
+        let told = format!("{}\n", warnings(&folder(), name));
+        let golden = folder().join(format!("{name}.txt"));
+        if bless {
+            fs::write(&golden, &told).unwrap();
+        }
+        let agreed = fs::read_to_string(&golden).unwrap_or_default();
+        if agreed != told {
+            writeln!(complaints, "{name}.txt: agreed\n{agreed}\ntold\n{told}").unwrap();
+        }
+    }
+    for orphan in names(&folder(), "txt").difference(&files) {
+        writeln!(complaints, "{orphan}.txt has no {orphan}.toml").unwrap();
+    }
+    assert!(complaints.is_empty(), "\n{complaints}");
+}
+
+/// Every warning says where, how much and what to do, and every code of a warning has a file.
+#[test]
+fn warnings_are_complete() {
+    let mut shown = BTreeSet::new();
+    for name in names(&folder(), "toml") {
+        let warnings = warnings(&folder(), &name);
+        assert!(!warnings.is_empty(), "{name}: no warning");
+        for (warning, record) in warnings.faults().iter().zip(warnings.records()) {
+            shown.insert(warning.code);
+            assert_eq!(warning.code.severity(), Severity::Warning, "{name}");
+            assert!(
+                record.line.is_some() && record.column.is_some(),
+                "{name}: {record:?}"
+            );
+            assert!(
+                !record.key.is_empty() && !record.help.is_empty(),
+                "{name}: {record:?}"
+            );
+            assert!(
+                record.message.contains(|c: char| c.is_ascii_digit()),
+                "{name}: {record:?}"
+            );
+            for text in [&record.message, &record.label, &record.help] {
+                assert!(!text.contains('\n') && !text.ends_with('.'), "{name}: {text:?}");
+            }
+        }
+    }
+    let unseen: Vec<_> = Code::ALL
+        .iter()
+        .filter(|code| code.severity() == Severity::Warning && !shown.contains(code))
+        .collect();
+    assert!(unseen.is_empty(), "no file gives {unseen:?}");
+}
+
+/// One mistake, one warning: what follows from it is not told a second time.
+#[test]
+fn a_mistake_has_one_code() {
+    for name in names(&folder(), "toml") {
+        let codes: BTreeSet<Code> = warnings(&folder(), &name)
+            .faults()
+            .iter()
+            .map(|warning| warning.code)
+            .collect();
+        assert_eq!(codes.len(), 1, "{name}: {codes:?}");
+    }
+}
+
+#[test]
+fn the_project_s_airframes_have_none() {
+    let airframes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../airframes");
+    for name in names(&airframes, "toml") {
+        let warnings = warnings(&airframes, &name);
+        assert!(warnings.is_empty(), "{warnings}");
+    }
+}
+
+#[test]
+fn every_warning_is_documented() {
+    let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/warnings.md");
+    let text = fs::read_to_string(document).unwrap();
+    for code in Code::ALL
+        .iter()
+        .filter(|code| code.severity() == Severity::Warning)
+    {
+        assert!(
+            text.contains(&format!("\n| {code} | ")),
+            "{code} is not in docs/warnings.md"
+        );
+    }
+}
+
+#[test]
+fn lines_are_for_logs() {
+    let lines = warnings(&folder(), "idle-high").lines();
+    assert_eq!(lines.len(), 1);
+    assert!(
+        lines[0].starts_with("idle-high.toml:5:7: warning[MIX303]: at idle one unit gives "),
+        "{lines:?}"
+    );
+}
