@@ -73,6 +73,14 @@ pub use vertical::{
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
 
+/// The text of this crate by path, for `cargo mixer library`, which compiles it for another target.
+#[cfg(feature = "sources")]
+pub static SOURCES: Sources = include_dir::include_dir!("$CARGO_MANIFEST_DIR/src");
+
+/// Type of [`SOURCES`].
+#[cfg(feature = "sources")]
+pub type Sources = include_dir::Dir<'static>;
+
 /// `x` limited to `[low, high]`; `low` where `x` is NaN. (`f32::clamp` has a panic path.)
 #[inline(always)]
 fn clamp(x: f32, low: f32, high: f32) -> f32 {
