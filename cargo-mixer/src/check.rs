@@ -11,6 +11,7 @@ use mixer_compiler::report::{Report, Summary};
 use serde::Serialize;
 
 use crate::Refusal;
+use crate::stack::Stack;
 
 /// Validates and compiles an airframe file and prints what came of it
 #[derive(clap::Args, Debug)]
@@ -27,6 +28,8 @@ pub struct CheckArgs {
 struct Success {
     #[serde(flatten)]
     summary: Summary,
+    #[serde(flatten)]
+    stack: Stack,
     /// Time of the whole compilation, ms.
     compile_ms: f64,
 }
@@ -48,14 +51,16 @@ pub fn run(args: &CheckArgs) -> ExitCode {
             &mut out,
             &Success {
                 summary: Summary::new(&compiled),
+                stack: Stack::new(&compiled),
                 compile_ms,
             },
         )),
         Ok(compiled) => crate::finish(writeln!(
             out,
-            "{}{}compiled in     {compile_ms:.0} ms",
+            "{}{}{}compiled in     {compile_ms:.0} ms",
             Report(&compiled),
-            Cost::new(&compiled)
+            Cost::new(&compiled),
+            Stack::new(&compiled)
         )),
         Err(refusal) => {
             let records = match &refusal {

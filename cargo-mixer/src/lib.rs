@@ -19,6 +19,7 @@ pub mod library;
 pub mod mix;
 pub mod report;
 pub mod setpoints;
+pub mod stack;
 pub mod sweep;
 
 /// The exit status for a bad input.
