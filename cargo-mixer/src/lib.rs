@@ -15,6 +15,7 @@ pub mod check;
 pub mod expand;
 pub mod file;
 pub mod identify;
+pub mod import;
 pub mod library;
 pub mod mix;
 pub mod report;

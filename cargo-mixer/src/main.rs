@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, expand, identify, library, mix, report, sweep};
+use cargo_mixer::{check, expand, identify, import, library, mix, report, sweep};
 use clap::{Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -24,6 +24,7 @@ enum Command {
     Mix(mix::MixArgs),
     Expand(expand::ExpandArgs),
     Identify(Box<identify::IdentifyArgs>),
+    Import(import::ImportArgs),
     Library(library::LibraryArgs),
     Report(report::ReportArgs),
     Sweep(sweep::SweepArgs),
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
         Command::Mix(args) => mix::run(&args),
         Command::Expand(args) => expand::run(&args),
         Command::Identify(args) => identify::run(&args),
+        Command::Import(args) => import::run(&args),
         Command::Library(args) => library::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Sweep(args) => sweep::run(&args),
