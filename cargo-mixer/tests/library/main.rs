@@ -1,5 +1,6 @@
 //! `cargo mixer library` from outside: its objects in C and C++ programs, on the host and on a Cortex-M4F in QEMU.
 
+mod example;
 mod program;
 mod refusals;
 
