@@ -25,7 +25,7 @@ use parameters::Parameters;
 /// Makes an airframe file of a flight stack's parameters
 ///
 /// FILE is a parameter file of PX4 1.13 or later (CA_ROTOR*, as QGroundControl saves it) or of ArduPilot (FRAME_CLASS,
-/// FRAME_TYPE, MOT_*), or PX4's geometry files ([[rotors]]; those of two layers together, the upper one first).
+/// FRAME_TYPE, MOT_*), or PX4's geometry files (tables `rotors`; those of two layers together, the upper one first).
 ///
 /// PX4:       two rotors in one place are a unit, the one with the smaller z is the upper; KM > 0 turns counter-clockwise;
 ///            tilted axes are kept.

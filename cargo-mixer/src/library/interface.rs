@@ -55,7 +55,15 @@ pub unsafe extern \"C\" fn {function}(setpoint: *const Wrench, voltage_v: f32, {
             let mixer_rt::Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }} = mix.achieved;
             let achieved = Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }};
             let saturation = u32::from(mix.saturation.bits());
-            unsafe {{ out.write(Mix {{ throttle: mix.throttle, achieved, saturation }}) }};
+            unsafe {{
+                let throttle = (&raw mut (*out).throttle).cast::<f32>();
+                for (channel, value) in mix.throttle.iter().enumerate() {{
+                    // Volatile: a copy of many words would be a call of memcpy.
+                    throttle.add(channel).write_volatile(*value);
+                }}
+                (*out).achieved = achieved;
+                (*out).saturation = saturation;
+            }}
             0
         }}
         Err(SetpointError::NonFinite(axis)) => 1 + axis as c_int,

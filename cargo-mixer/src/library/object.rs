@@ -29,7 +29,16 @@ const SOFT_FLOAT: &[&str] = &[
     "__aeabi_uidivmod",
 ];
 
-/// Whether the object has `function` as its only global symbol and needs nothing of others.
+/// Copying and filling, which a compiler may call in any C program: frames of more than 16 units need it.
+const MEMORY: &[&str] = &[
+    "memcpy",
+    "memset",
+    "__aeabi_memclr4",
+    "__aeabi_memcpy4",
+    "__aeabi_memset4",
+];
+
+/// Whether the object has `function` as its only global symbol and needs nothing that a C program might lack.
 pub(super) fn check(bytes: &[u8], function: &str) -> Result<(), String> {
     let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
     if file.format() != BinaryFormat::Elf {
@@ -38,7 +47,8 @@ pub(super) fn check(bytes: &[u8], function: &str) -> Result<(), String> {
     let (mut undefined, mut global) = (Vec::new(), Vec::new());
     for symbol in file.symbols() {
         let name = symbol.name().map_err(|error| error.to_string())?;
-        if symbol.is_undefined() && !name.is_empty() && !SOFT_FLOAT.contains(&name) {
+        let is_known = name.is_empty() || SOFT_FLOAT.contains(&name) || MEMORY.contains(&name);
+        if symbol.is_undefined() && !is_known {
             undefined.push(name);
         } else if symbol.is_global() && !symbol.is_undefined() {
             global.push(name);

@@ -102,7 +102,7 @@ fn is_pair(unit: &Unit, frame: &Value, motors: &Value) -> bool {
     let [x, y] = [unit.position_m[0], unit.position_m[1]];
     let is_there = match upper["angle_deg"].as_f64() {
         Some(angle) => {
-            let turn = (y.atan2(x).to_degrees() - angle).rem_euclid(360.0);
+            let turn = (libm::atan2(y, x).to_degrees() - angle).rem_euclid(360.0);
             turn.min(360.0 - turn) < 0.1
         }
         // Roll is positive to the left, pitch to the front; a factor of 0 is on the axis.
