@@ -29,12 +29,16 @@ const SOFT_FLOAT: &[&str] = &[
     "__aeabi_uidivmod",
 ];
 
-/// Copying and filling, which a compiler may call in any C program: frames of more than 16 units need it.
+/// Copying and filling, which a compiler may call in any C program: frames of more than 16 units and a Cortex-M0 with
+/// rotors out need it.
 const MEMORY: &[&str] = &[
     "memcpy",
     "memset",
+    "__aeabi_memclr",
     "__aeabi_memclr4",
+    "__aeabi_memcpy",
     "__aeabi_memcpy4",
+    "__aeabi_memset",
     "__aeabi_memset4",
 ];
 
