@@ -13,6 +13,7 @@ use mixer_compiler::report::{Report, Summary};
 use serde::Serialize;
 
 use crate::Refusal;
+use crate::stack::Stack;
 
 /// Validates and compiles an airframe file and prints what came of it
 #[derive(clap::Args, Debug)]
@@ -34,6 +35,8 @@ struct Success {
     summary: Summary,
     /// What is plausibly a mistake and yet compiles.
     warnings: Vec<Record>,
+    #[serde(flatten)]
+    stack: Stack,
     /// Time of the whole compilation, ms.
     compile_ms: f64,
 }
@@ -56,14 +59,18 @@ pub fn run(args: &CheckArgs) -> ExitCode {
             let written = if args.json {
                 let success = Success {
                     summary: Summary::new(&compiled),
+                    stack: Stack::new(&compiled),
                     warnings: compiled.warnings.records(),
                     compile_ms,
                 };
                 json(&mut out, &success)
             } else {
                 let (report, cost) = (Report(&compiled), Cost::new(&compiled));
-                let list = Checklist(&compiled);
-                writeln!(out, "{report}{cost}{list}compiled in     {compile_ms:.0} ms")
+                let (list, stack) = (Checklist(&compiled), Stack::new(&compiled));
+                writeln!(
+                    out,
+                    "{report}{cost}{stack}{list}compiled in     {compile_ms:.0} ms"
+                )
             };
             match crate::output(written.and_then(|()| out.flush())) {
                 Err(status) => status,

@@ -18,11 +18,14 @@ pub mod file;
 pub mod frame;
 pub mod golden;
 pub mod identify;
+pub mod import;
+pub mod library;
 pub mod mix;
 pub mod new;
 pub mod report;
 pub mod setpoints;
 pub mod shell;
+pub mod stack;
 pub mod sweep;
 
 /// The exit status for a bad input.

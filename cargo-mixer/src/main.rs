@@ -2,7 +2,9 @@
 
 use std::process::ExitCode;
 
-use cargo_mixer::{check, compare, expand, golden, identify, mix, new, report, shell, sweep};
+use cargo_mixer::{
+    check, compare, expand, golden, identify, import, library, mix, new, report, shell, sweep,
+};
 use clap::{CommandFactory, Parser, Subcommand};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -27,6 +29,8 @@ enum Command {
     Golden(golden::GoldenArgs),
     Identify(Box<identify::IdentifyArgs>),
     New(new::NewArgs),
+    Import(import::ImportArgs),
+    Library(library::LibraryArgs),
     Report(report::ReportArgs),
     Sweep(sweep::SweepArgs),
     Completions(shell::CompletionsArgs),
@@ -47,6 +51,8 @@ fn main() -> ExitCode {
         Command::Golden(args) => golden::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::New(args) => new::run(&args),
+        Command::Import(args) => import::run(&args),
+        Command::Library(args) => library::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Completions(args) => shell::completions(&args, Arguments::command()),

@@ -23,6 +23,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let tables_type = tables_type(&compiled.tables);
     let units = Literal::usize_unsuffixed(compiled.tables.units.len());
     let channels = Literal::usize_unsuffixed(2 * compiled.tables.units.len());
+    let [roll, pitch, yaw, thrust] = compiled.scale().to_array().map(float);
     quote! {
         #module_doc
         #[allow(dead_code, unreachable_pub)]
@@ -31,6 +32,13 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             pub const UNITS: usize = #units;
             /// Number of output channels, two per unit.
             pub const CHANNELS: usize = #channels;
+            /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
+            pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench {
+                roll_nm: #roll,
+                pitch_nm: #pitch,
+                yaw_nm: #yaw,
+                thrust_n: #thrust,
+            };
 
             #mixer_doc
             #[derive(Clone, Copy, Debug, Default)]

@@ -28,6 +28,7 @@ pub mod polynomial;
 pub mod proof;
 pub mod report;
 pub mod residual;
+mod scale;
 mod selection;
 pub mod source;
 pub mod spec;
@@ -142,6 +143,11 @@ fn keep<T>(result: Result<T, Vec<Diagnostic>>, faults: &mut Vec<Diagnostic>) -> 
 }
 
 impl Compiled {
+    /// Wrench that one unit of a normalised setpoint asks for: `SCALE` of the generated module.
+    pub fn scale(&self) -> mixer_rt::Wrench {
+        scale::scale(&self.airframe, &self.effectiveness)
+    }
+
     /// The generated Rust as tokens: one module.
     pub fn tokens(&self) -> TokenStream {
         emit::module(self)

@@ -62,6 +62,14 @@ pub use vertical::{Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortc
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
 
+/// The text of this crate by path, for `cargo mixer library`, which compiles it for another target.
+#[cfg(feature = "sources")]
+pub static SOURCES: Sources = include_dir::include_dir!("$CARGO_MANIFEST_DIR/src");
+
+/// Type of [`SOURCES`].
+#[cfg(feature = "sources")]
+pub type Sources = include_dir::Dir<'static>;
+
 /// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take three times the code
 /// and are hardly faster.
 #[inline(always)]

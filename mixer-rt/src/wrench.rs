@@ -32,6 +32,26 @@ impl Wrench {
             thrust_n,
         }
     }
+
+    /// The wrench of a flight stack's normalised setpoint `[roll, pitch, yaw, thrust]`, torques in [-1, 1] and thrust in
+    /// [0, 1], positive as in [`Wrench`]. `scale` is the `SCALE` of the generated module: thrust 1 is all rotors at full
+    /// throttle, a torque of 1 what PX4's normalised effectiveness makes of it on this frame.
+    ///
+    /// ```
+    /// # use mixer_rt::Wrench;
+    /// const SCALE: Wrench = Wrench { roll_nm: 22.0, pitch_nm: 22.0, yaw_nm: 1.7, thrust_n: 99.0 };
+    /// let hover = Wrench::from_normalised([0.0, 0.5, 0.0, 0.5], &SCALE);
+    /// assert_eq!((hover.pitch_nm, hover.thrust_n), (11.0, 49.5));
+    /// ```
+    #[inline]
+    pub fn from_normalised([roll, pitch, yaw, thrust]: [f32; 4], scale: &Wrench) -> Self {
+        Self {
+            roll_nm: roll * scale.roll_nm,
+            pitch_nm: pitch * scale.pitch_nm,
+            yaw_nm: yaw * scale.yaw_nm,
+            thrust_n: thrust * scale.thrust_n,
+        }
+    }
 }
 
 /// An axis of the [`Wrench`].

@@ -16,6 +16,13 @@ pub mod coaxial_bicopter {
     pub const UNITS: usize = 2;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 4;
+    /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
+    pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench {
+        roll_nm: 15.774796,
+        pitch_nm: 0.0,
+        yaw_nm: 0.866016,
+        thrust_n: 49.5754,
+    };
     /// The mixer of `coaxial-bicopter` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct CoaxialBicopter;

@@ -18,6 +18,13 @@ pub mod isae_x8 {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
+    /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
+    pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench {
+        roll_nm: 22.309067,
+        pitch_nm: 22.309067,
+        yaw_nm: 1.732032,
+        thrust_n: 99.1508,
+    };
     /// The mixer of `isae-x8` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct IsaeX8;

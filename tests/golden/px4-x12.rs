@@ -20,6 +20,13 @@ pub mod px4_x12 {
     pub const UNITS: usize = 6;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 12;
+    /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
+    pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench {
+        roll_nm: 60.71719,
+        pitch_nm: 60.71719,
+        yaw_nm: 2.598048,
+        thrust_n: 148.7262,
+    };
     /// The mixer of `px4-x12` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct Px4X12;

@@ -17,6 +17,13 @@ pub mod px4_y6 {
     pub const UNITS: usize = 3;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 6;
+    /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
+    pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench {
+        roll_nm: 15.178859,
+        pitch_nm: 15.178859,
+        yaw_nm: 1.299024,
+        thrust_n: 74.3631,
+    };
     /// The mixer of `px4-y6` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct Px4Y6;

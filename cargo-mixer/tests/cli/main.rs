@@ -86,6 +86,9 @@ fn check_prints_the_key_lines() {
         "\n  any request   at most ",
         "\non the bench    propellers off, ",
         "\n  +yaw           raises outputs 4, 6, 1, 3 (nose right)\n",
+        "\nnormalised      one unit is 22.3091 N m roll, 22.3091 N m pitch, 1.7320 N m yaw, 99.151 N thrust\n",
+        "\n  PX4           THR_MDL_FAC 0, MC_BAT_SCALE_EN 0, MPC_THR_HOVER 0.0989 per kg of the vehicle\n",
+        "\n  ArduPilot     MOT_THST_EXPO 0, MOT_SPIN_MIN 0.1, MOT_SPIN_MAX 1, MOT_BAT_VOLT_MAX 0, MOT_BAT_VOLT_MIN 0\n",
         "\ncompiled in ",
     ] {
         assert!(
@@ -109,6 +112,10 @@ fn check_json_has_the_documented_keys() {
     assert!(summary["evaluator"].is_string());
     assert!(summary["table_bytes"].as_u64().unwrap() > 0);
     assert!(summary["compile_ms"].as_f64().unwrap() > 0.0);
+    let thrust_n = summary["normalised"]["thrust_n"].as_f64().unwrap();
+    assert!((thrust_n - 99.1508).abs() < 1e-3, "{thrust_n}");
+    assert_eq!(summary["px4"][0]["name"], "THR_MDL_FAC");
+    assert_eq!(summary["ardupilot"][1]["value"], 0.1);
     let cost = &summary["cost"];
     assert_eq!(cost["target"], "Cortex-M4F, counted in QEMU");
     assert_eq!(cost["desaturation"], "closed-form");

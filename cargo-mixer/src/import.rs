@@ -1,0 +1,159 @@
+//! `cargo mixer import`: an airframe file from a flight stack's parameters.
+//!
+//! ```text
+//! PX4's CA_ROTOR*, ArduPilot's FRAME_*, PX4's geometry files           parameters.rs
+//!   -> rotors: channel, place, axis, spin                              px4.rs, ardupilot.rs, geometry.rs
+//!   -> units: two rotors in one place, which is on top                 pairs.rs
+//!   -> the airframe file, with what the parameters do not say named    text.rs
+//! ```
+
+mod ardupilot;
+mod geometry;
+mod pairs;
+mod parameters;
+mod px4;
+mod text;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use mixer_compiler::airframe::Spin;
+
+use parameters::Parameters;
+
+/// Makes an airframe file of a flight stack's parameters
+///
+/// FILE is a parameter file of PX4 1.13 or later (CA_ROTOR*, as QGroundControl saves it) or of ArduPilot (FRAME_CLASS,
+/// FRAME_TYPE, MOT_*), or PX4's geometry files (tables `rotors`; those of two layers together, the upper one first).
+///
+/// PX4:       two rotors in one place are a unit, the one with the smaller z is the upper; KM > 0 turns counter-clockwise;
+///            tilted axes are kept.
+/// ArduPilot: the table of the frame gives angles, spins and layers; --arm gives their distance, which the file lacks.
+///
+/// What the parameters do not say is named on stderr and in the file.
+#[derive(clap::Args, Debug)]
+#[command(verbatim_doc_comment)]
+pub struct ImportArgs {
+    /// The parameter file, or geometry files
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The pair's model: what `cargo mixer identify` writes, or another airframe file
+    #[arg(long, value_name = "FILE")]
+    pair: Option<PathBuf>,
+    /// Distance of the units from the centre, m: ArduPilot's files do not have it
+    #[arg(long, value_name = "METRES")]
+    arm: Option<f64>,
+    /// The outputs, from 0, of the upper rotors: where the file does not say which they are, or says it wrongly
+    #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
+    upper: Vec<usize>,
+    /// Name of the airframe
+    #[arg(long)]
+    name: Option<String>,
+    /// The airframe file to write
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Overwrites it
+    #[arg(long)]
+    force: bool,
+}
+
+/// A rotor of a flight stack.
+#[derive(Clone, Debug, PartialEq)]
+struct Rotor {
+    /// Output, from 0.
+    channel: usize,
+    /// Forward, right, down, m.
+    position_m: [f64; 3],
+    /// Direction of the thrust, a unit vector.
+    axis: [f64; 3],
+    /// Seen from above.
+    spin: Spin,
+}
+
+/// Two rotors in one place.
+#[derive(Clone, Debug, PartialEq)]
+struct Unit {
+    position_m: [f64; 3],
+    axis: [f64; 3],
+    upper_spin: Spin,
+    /// Of the upper and of the lower rotor.
+    channels: [usize; 2],
+}
+
+/// What a flight stack's files say.
+#[derive(Debug, Default)]
+struct Imported {
+    /// The stack and the frame, for people.
+    origin: String,
+    rotors: Vec<Rotor>,
+    /// Least and largest throttle.
+    throttle: Option<[f64; 2]>,
+    /// The battery's range, V.
+    range_v: Option<[f64; 2]>,
+    /// What is assumed, or not said.
+    notes: Vec<String>,
+}
+
+/// Runs the command.
+pub fn run(args: &ImportArgs) -> ExitCode {
+    match import(args) {
+        Ok(notes) => {
+            for note in notes {
+                crate::remark(format_args!("note: {note}"));
+            }
+            ExitCode::SUCCESS
+        }
+        Err(message) => crate::complain(message),
+    }
+}
+
+/// Writes the airframe file; what its user has to know of it.
+fn import(args: &ImportArgs) -> Result<Vec<String>, String> {
+    if args.output.exists() && !args.force {
+        return Err(format!(
+            "{} is there already; --force overwrites it",
+            args.output.display()
+        ));
+    }
+    let mut imported = read(args)?;
+    let units = pairs::pair(&imported.rotors, &args.upper)?;
+    let pair = match &args.pair {
+        Some(path) => Some(read_text(path)?),
+        None => None,
+    };
+    let text = text::airframe(args, &mut imported, &units, pair.as_deref())?;
+    crate::file::write(&args.output, &text)?;
+    Ok(imported.notes)
+}
+
+fn read(args: &ImportArgs) -> Result<Imported, String> {
+    let mut texts = Vec::new();
+    for path in &args.files {
+        texts.push((path.display().to_string(), read_text(path)?));
+    }
+    if texts.iter().any(|(_, text)| geometry::is_geometry(text)) {
+        return geometry::read(&texts);
+    }
+    let [(name, text)] = &texts[..] else {
+        return Err(
+            "one parameter file makes one airframe; only PX4's geometry files come by layer".to_owned(),
+        );
+    };
+    let parameters = Parameters::read(name, text)?;
+    if parameters.has("CA_ROTOR_COUNT") || parameters.has("CA_ROTOR0_PX") {
+        px4::read(&parameters)
+    } else if parameters.has("FRAME_CLASS") {
+        ardupilot::read(&parameters, args.arm)
+    } else {
+        Err(format!(
+            "{name}: no rotors: neither CA_ROTOR_COUNT and CA_ROTOR0_PX.. (PX4 1.13 or later) nor FRAME_CLASS (ArduPilot) \
+             among its {} parameters",
+            parameters.count()
+        ))
+    }
+}
+
+fn read_text(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}

@@ -1,0 +1,149 @@
+//! ArduPilot's coaxial frames: `FRAME_CLASS`, `FRAME_TYPE`, and the motors' table of each (`AP_MotorsMatrix`).
+
+use mixer_compiler::airframe::Spin;
+
+use super::parameters::Parameters;
+use super::{Imported, Rotor};
+
+use Layer::{Lower, Upper};
+use Spin::{Ccw, Cw};
+
+/// Of a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Layer {
+    Upper,
+    Lower,
+}
+
+/// A motor: degrees clockwise from the nose, spin, layer.
+type Motor = (f64, Spin, Layer);
+
+/// Half the distance of two layers, m: any will do, the units lie between them.
+const LAYER_M: f64 = 0.05;
+
+/// A frame's motors, from motor 1 on.
+#[rustfmt::skip]
+fn motors(class: usize, kind: usize) -> Option<(&'static str, Vec<Motor>)> {
+    let cross = |first: f64, spins: [Spin; 2]| {
+        let [a, b] = spins;
+        vec![
+            (first, a, Upper), (first - 90.0, b, Upper), (first + 180.0, a, Upper), (first + 90.0, b, Upper),
+            (first - 90.0, a, Lower), (first, b, Lower), (first + 90.0, a, Lower), (first + 180.0, b, Lower),
+        ]
+    };
+    let betaflight = |a: Spin, b: Spin| vec![
+        (135.0, a, Upper), (45.0, b, Upper), (-135.0, b, Upper), (-45.0, a, Upper),
+        (135.0, b, Lower), (45.0, a, Lower), (-135.0, a, Lower), (-45.0, b, Lower),
+    ];
+    let around = |first: f64, step: f64, spins: &[Spin]| {
+        let arms = spins.iter().zip(0..);
+        arms.flat_map(|(spin, arm)| {
+            let angle = first + step * f64::from(arm);
+            [(angle, *spin, Upper), (angle, spin.reversed(), Lower)]
+        })
+        .collect()
+    };
+    let found = match (class, kind) {
+        (4, 0) => ("octaquad plus", cross(0.0, [Ccw, Cw])),
+        (4, 1) => ("octaquad X", cross(45.0, [Ccw, Cw])),
+        (4, 2) => ("octaquad V", cross(45.0, [Ccw, Cw])),
+        (4, 3) => ("octaquad H", cross(45.0, [Cw, Ccw])),
+        (4, 12) => ("octaquad X, Betaflight's order", betaflight(Cw, Ccw)),
+        (4, 14) => ("octaquad X, clockwise order", around(45.0, 90.0, &[Ccw, Cw, Ccw, Cw])),
+        (4, 18) => ("octaquad X, Betaflight's order, reversed", betaflight(Ccw, Cw)),
+        (5, 10) => ("Y6B", around(60.0, 120.0, &[Cw, Cw, Cw])),
+        (5, 11) => ("Y6F", vec![
+            (180.0, Ccw, Upper), (60.0, Ccw, Upper), (-60.0, Ccw, Upper),
+            (180.0, Cw, Lower), (60.0, Cw, Lower), (-60.0, Cw, Lower),
+        ]),
+        // Every other type is the default.
+        (5, _) => ("Y6A", vec![
+            (60.0, Ccw, Lower), (-60.0, Cw, Upper), (-60.0, Ccw, Lower),
+            (180.0, Cw, Lower), (60.0, Cw, Upper), (180.0, Ccw, Upper),
+        ]),
+        (12, 0) => ("dodecahexa plus", around(0.0, 60.0, &[Ccw, Cw, Ccw, Cw, Ccw, Cw])),
+        (12, 1) => ("dodecahexa X", around(30.0, 60.0, &[Ccw, Cw, Ccw, Cw, Ccw, Cw])),
+        _ => return None,
+    };
+    Some(found)
+}
+
+/// ArduPilot's defaults.
+const SPIN_MIN: f64 = 0.15;
+const SPIN_MAX: f64 = 0.95;
+
+pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported, String> {
+    let file = parameters.file();
+    let class = parameters.whole("FRAME_CLASS").unwrap_or(0);
+    let kind = parameters.whole("FRAME_TYPE");
+    if class != 5 && kind.is_none() {
+        return Err(format!("{file}: FRAME_TYPE is not a whole number, or is missing"));
+    }
+    let kind = kind.unwrap_or(1);
+    let Some((name, motors)) = motors(class, kind) else {
+        return Err(match (class, kind) {
+            (4, 20 | 21) => format!(
+                "{file}: FRAME_TYPE {kind}: both rotors of an arm turn the same way; the mixer is for pairs that \
+                 contra-rotate"
+            ),
+            _ => format!(
+                "{file}: FRAME_CLASS {class}, FRAME_TYPE {kind} is no frame of coaxial pairs: those are FRAME_CLASS 4 \
+                 (octaquad: types 0 to 3, 12, 14, 18), 5 (Y6) and 12 (dodecahexa: types 0, 1)"
+            ),
+        });
+    };
+    let arm = match arm {
+        Some(arm) if arm > 0.0 && arm.is_finite() => arm,
+        Some(arm) => return Err(format!("--arm {arm}: metres from the centre to a pair, above 0")),
+        None => {
+            return Err(format!(
+                "{file}: {name}: ArduPilot's parameters do not have the length of the arms: --arm METRES, from the centre to a \
+                 pair"
+            ));
+        }
+    };
+    let rotors = motors
+        .iter()
+        .zip(0..)
+        .map(|((angle, spin, layer), channel)| Rotor {
+            channel,
+            position_m: place(arm, *angle, *layer),
+            axis: [0.0, 0.0, -1.0],
+            spin: *spin,
+        });
+    let mut notes = vec![format!(
+        "arms of {arm} m at equal angles are assumed, and the upper rotors of ArduPilot's table; --upper says otherwise"
+    )];
+    if (class, kind) == (4, 2) {
+        notes.push("ArduPilot's V gives the front rotors less yaw; the angles of its arms are not among its parameters".to_owned());
+    }
+    Ok(Imported {
+        origin: format!("ArduPilot, {name} (FRAME_CLASS {class}, FRAME_TYPE {kind})"),
+        rotors: rotors.collect(),
+        throttle: Some([
+            parameters.or("MOT_SPIN_MIN", SPIN_MIN),
+            parameters.or("MOT_SPIN_MAX", SPIN_MAX),
+        ]),
+        range_v: battery(parameters),
+        notes,
+    })
+}
+
+/// Forward, right, down.
+fn place(arm: f64, angle_deg: f64, layer: Layer) -> [f64; 3] {
+    let angle = angle_deg.to_radians();
+    // To a tenth of a millimetre; nobody measures an arm better.
+    let rounded = |x: f64| (x * 1e4).round() / 1e4 + 0.0;
+    let down = if layer == Upper { -LAYER_M } else { LAYER_M };
+    [
+        rounded(arm * libm::cos(angle)),
+        rounded(arm * libm::sin(angle)),
+        down,
+    ]
+}
+
+/// The range that ArduPilot corrects for; 0 switches it off.
+fn battery(parameters: &Parameters) -> Option<[f64; 2]> {
+    let [low, high] = ["MOT_BAT_VOLT_MIN", "MOT_BAT_VOLT_MAX"].map(|key| parameters.get(key));
+    Some([low?, high?]).filter(|[low, high]| *low > 0.0 && low < high)
+}

@@ -1,0 +1,58 @@
+//! PX4's geometry files: `[[rotors]]` with `position`, `direction` and `axis`.
+
+use mixer_compiler::airframe::Spin;
+use toml::{Table, Value};
+
+use super::{Imported, Rotor};
+
+/// Whether a text is such a file.
+pub(super) fn is_geometry(text: &str) -> bool {
+    text.lines().any(|line| line.trim() == "[[rotors]]")
+}
+
+/// The rotors of all files in their order.
+pub(super) fn read(files: &[(String, String)]) -> Result<Imported, String> {
+    let mut imported = Imported::default();
+    for (file, text) in files {
+        let table: Table = text.parse().map_err(|error| format!("{file}: {error}"))?;
+        let rotors = table.get("rotors").and_then(Value::as_array);
+        for (rotor, index) in rotors.into_iter().flatten().zip(0..) {
+            let axis = vector(rotor.get("axis"))
+                .or_else(|| vector(table.get("rotor_default")?.get("axis")))
+                .unwrap_or([0.0, 0.0, -1.0]);
+            let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let fault = |what: &str| format!("{file}: rotor {index}: {what}");
+            if length == 0.0 {
+                return Err(fault("its axis is 0"));
+            }
+            imported.rotors.push(Rotor {
+                channel: imported.rotors.len(),
+                position_m: vector(rotor.get("position"))
+                    .ok_or_else(|| fault("`position` is no array of three numbers"))?,
+                axis: axis.map(|x| x / length),
+                spin: match rotor.get("direction").and_then(Value::as_str) {
+                    Some("CW") => Spin::Cw,
+                    Some("CCW") => Spin::Ccw,
+                    _ => return Err(fault("`direction` is neither \"CW\" nor \"CCW\"")),
+                },
+            });
+        }
+    }
+    imported.origin = format!("{} rotors of PX4's geometry", imported.rotors.len());
+    imported
+        .notes
+        .push("PX4's geometry files are of an arm of 1: check the positions, in metres".to_owned());
+    Ok(imported)
+}
+
+fn vector(value: Option<&Value>) -> Option<[f64; 3]> {
+    let values = value?.as_array()?.iter().map(|value| match value {
+        Value::Float(x) => Some(*x),
+        Value::Integer(x) => Some(*x as f64),
+        _ => None,
+    });
+    let values: Option<Vec<f64>> = values.collect();
+    <[f64; 3]>::try_from(values?)
+        .ok()
+        .filter(|values| values.iter().all(|x| x.is_finite()))
+}

@@ -1,0 +1,189 @@
+//! Rotors to units: two on one axis, which contra-rotate.
+
+use super::{Rotor, Unit};
+
+/// Rotors whose axes are nearer than this are a pair, m.
+const SAME_AXIS_M: f64 = 5e-3;
+
+/// Cosine of the angle under which axes are parallel: a degree.
+const PARALLEL: f64 = 0.999_85;
+
+/// Layers nearer than this are one, m.
+const SAME_LAYER_M: f64 = 1e-4;
+
+/// The units by their upper rotors' channels. `upper` names the upper rotors where it is not empty.
+pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, String> {
+    if let Some(channel) = upper
+        .iter()
+        .find(|channel| !rotors.iter().any(|rotor| rotor.channel == **channel))
+    {
+        return Err(format!(
+            "--upper {channel}: the outputs are 0 to {}",
+            rotors.len().max(1) - 1
+        ));
+    }
+    let mut units = Vec::new();
+    let mut paired = vec![false; rotors.len()];
+    for (index, rotor) in rotors.iter().enumerate() {
+        let mut partners = rotors
+            .iter()
+            .enumerate()
+            .filter(|(other, rotor2)| *other != index && is_on_axis(rotor, rotor2));
+        let partner = match (partners.next(), partners.next()) {
+            (Some(partner), None) => partner,
+            (None, _) => {
+                let [x, y, _] = rotor.position_m;
+                return Err(format!(
+                    "rotor {} at ({x}, {y}) m is alone: a coaxial pair is two rotors in one place, one above the other",
+                    rotor.channel
+                ));
+            }
+            (Some((_, first)), Some((_, second))) => {
+                return Err(format!(
+                    "rotors {}, {} and {} are in one place: a coaxial pair is two",
+                    rotor.channel, first.channel, second.channel
+                ));
+            }
+        };
+        if paired[index] || paired[partner.0] {
+            continue;
+        }
+        (paired[index], paired[partner.0]) = (true, true);
+        units.push(unit(rotor, partner.1, upper)?);
+    }
+    units.sort_by_key(|unit| unit.channels[0]);
+    Ok(units)
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// How far `other` is along the rotor's axis, towards its thrust.
+fn along(rotor: &Rotor, other: &Rotor) -> f64 {
+    let apart: [f64; 3] = std::array::from_fn(|k| other.position_m[k] - rotor.position_m[k]);
+    dot(apart, rotor.axis)
+}
+
+fn is_on_axis(rotor: &Rotor, other: &Rotor) -> bool {
+    let apart: [f64; 3] = std::array::from_fn(|k| other.position_m[k] - rotor.position_m[k]);
+    let along = dot(apart, rotor.axis);
+    let beside = (dot(apart, apart) - along * along).max(0.0).sqrt();
+    beside < SAME_AXIS_M && dot(rotor.axis, other.axis) > PARALLEL
+}
+
+fn unit(rotor: &Rotor, other: &Rotor, upper: &[usize]) -> Result<Unit, String> {
+    let [a, b] = [rotor, other].map(|rotor| rotor.channel);
+    let higher = along(rotor, other);
+    let other_is_upper = match (upper.contains(&a), upper.contains(&b)) {
+        (true, true) => {
+            return Err(format!(
+                "--upper: rotors {a} and {b} are one pair, which has one upper rotor"
+            ));
+        }
+        (true, false) => false,
+        (false, true) => true,
+        (false, false) if !upper.is_empty() => {
+            return Err(format!(
+                "--upper names neither rotor {a} nor {b}, which are a pair"
+            ));
+        }
+        (false, false) if higher.abs() < SAME_LAYER_M => {
+            return Err(format!(
+                "rotors {a} and {b} are at one height: which is on top? --upper CHANNELS names all upper rotors"
+            ));
+        }
+        (false, false) => higher > 0.0,
+    };
+    if rotor.spin == other.spin {
+        return Err(format!(
+            "rotors {a} and {b} both turn {}: the mixer is for pairs that contra-rotate",
+            rotor.spin.name()
+        ));
+    }
+    let (upper, lower) = if other_is_upper {
+        (other, rotor)
+    } else {
+        (rotor, other)
+    };
+    Ok(Unit {
+        // To a hundredth of a millimetre: the middle of two numbers in single precision.
+        position_m: std::array::from_fn(|k| {
+            (0.5e5 * (upper.position_m[k] + lower.position_m[k])).round() / 1e5 + 0.0
+        }),
+        axis: upper.axis,
+        upper_spin: upper.spin,
+        channels: [upper.channel, lower.channel],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use mixer_compiler::airframe::Spin;
+
+    use super::*;
+
+    fn rotor(channel: usize, position_m: [f64; 3], spin: Spin) -> Rotor {
+        Rotor {
+            channel,
+            position_m,
+            axis: [0.0, 0.0, -1.0],
+            spin,
+        }
+    }
+
+    #[test]
+    fn pairs_are_found_and_refused() {
+        let upper = rotor(3, [0.1, 0.2, -0.05], Spin::Cw);
+        let lower = rotor(1, [0.1, 0.2, 0.03], Spin::Ccw);
+        let units = pair(&[lower.clone(), upper.clone()], &[]).unwrap();
+        assert_eq!((units[0].channels, units[0].upper_spin), ([3, 1], Spin::Cw));
+        assert_eq!(units[0].position_m, [0.1, 0.2, -0.01]);
+        let swapped = pair(&[lower.clone(), upper.clone()], &[1]).unwrap();
+        assert_eq!((swapped[0].channels, swapped[0].upper_spin), ([1, 3], Spin::Ccw));
+
+        let level = rotor(3, [0.1, 0.2, 0.03], Spin::Cw);
+        let alike = rotor(3, [0.1, 0.2, -0.05], Spin::Ccw);
+        let third = rotor(4, [0.1, 0.2, 0.1], Spin::Cw);
+        for (rotors, upper, message) in [
+            (
+                vec![lower.clone(), level],
+                vec![],
+                "rotors 1 and 3 are at one height",
+            ),
+            (vec![lower.clone(), alike], vec![], "rotors 1 and 3 both turn ccw"),
+            (vec![lower.clone()], vec![], "rotor 1 at (0.1, 0.2) m is alone"),
+            (
+                vec![lower.clone(), upper.clone(), third],
+                vec![],
+                "rotors 1, 3 and 4 are in one place",
+            ),
+            (
+                vec![lower.clone(), upper.clone()],
+                vec![1, 3],
+                "--upper: rotors 1 and 3 are one pair",
+            ),
+            (vec![lower, upper], vec![7], "--upper 7"),
+        ] {
+            assert!(
+                pair(&rotors, &upper).unwrap_err().starts_with(message),
+                "{message}"
+            );
+        }
+    }
+
+    #[test]
+    fn tilted_pairs_lie_along_their_axis() {
+        let axis = [0.6, 0.0, -0.8];
+        let place = |along: f64| [0.3 + 0.6 * along, 0.0, -0.8 * along];
+        let rotors = [(0, 0.05, Spin::Cw), (1, -0.05, Spin::Ccw)].map(|(channel, along, spin)| Rotor {
+            axis,
+            ..rotor(channel, place(along), spin)
+        });
+        let units = pair(&rotors, &[]).unwrap();
+        assert_eq!(
+            (units[0].channels, units[0].position_m, units[0].axis),
+            ([0, 1], [0.3, 0.0, 0.0], axis)
+        );
+    }
+}

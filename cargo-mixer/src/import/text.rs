@@ -1,0 +1,179 @@
+//! The airframe file.
+
+use std::fmt::Write as _;
+
+use toml::{Table, Value};
+
+use super::{ImportArgs, Imported, Unit};
+
+/// Idle where nothing says one.
+const IDLE: f64 = 0.1;
+
+/// Median over many motors and propellers measured at two voltages.
+const EXPONENT: f64 = 1.75;
+
+/// Tables of a pair's file that an airframe takes over; `[throttle]` is made of both files.
+const TAKEN: &[&str] = &["pair", "voltage", "inverse", "allocation", "vehicle"];
+
+/// The text, and the notes on it in `imported`.
+pub(super) fn airframe(
+    args: &ImportArgs,
+    imported: &mut Imported,
+    units: &[Unit],
+    pair: Option<&str>,
+) -> Result<String, String> {
+    let pair_file = args
+        .pair
+        .as_ref()
+        .map(|path| path.display().to_string())
+        .unwrap_or_default();
+    let table: Table = match pair {
+        Some(text) => text.parse().map_err(|error| format!("{pair_file}: {error}"))?,
+        None => Table::new(),
+    };
+    if pair.is_some() && !table.contains_key("pair") {
+        return Err(format!("{pair_file}: no [pair] in it"));
+    }
+    let [min, max] = throttle(imported, &table);
+    let voltage = voltage(imported, &table);
+    if pair.is_none() {
+        imported.notes.push(
+            "no parameter describes the pair: `cargo mixer identify` makes [pair] of bench data; --pair takes it in".to_owned(),
+        );
+    }
+
+    let mut out = String::new();
+    let name = args.name.clone().unwrap_or_else(|| default_name(units.len()));
+    let files: Vec<String> = args
+        .files
+        .iter()
+        .filter_map(|file| Some(file.file_name()?.to_string_lossy().into_owned()))
+        .collect();
+    // Writing to a String cannot fail; the results are dropped.
+    let _ = writeln!(out, "name = {}", Value::String(name));
+    let _ = writeln!(out, "description = {}\n", Value::String(imported.origin.clone()));
+    let _ = writeln!(
+        out,
+        "# Imported by cargo mixer {} from {}.",
+        env!("CARGO_PKG_VERSION"),
+        files.join(", ")
+    );
+    for note in &imported.notes {
+        let _ = writeln!(out, "# * {note}.");
+    }
+    let _ = writeln!(out, "\n[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}");
+    match pair {
+        Some(text) => out += &sections(text),
+        None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
+    }
+    for (index, unit) in units.iter().enumerate() {
+        let [x, y, z] = unit.position_m;
+        let [upper, lower] = unit.channels;
+        let _ = writeln!(out, "[[unit]]                               # {index}");
+        let _ = writeln!(out, "position_m = [{x:?}, {y:?}, {z:?}]");
+        if unit.axis != [0.0, 0.0, -1.0] {
+            let [x, y, z] = unit.axis;
+            let _ = writeln!(out, "axis = [{x:?}, {y:?}, {z:?}]");
+        }
+        let _ = writeln!(out, "upper_spin = \"{}\"", unit.upper_spin.name());
+        let _ = writeln!(out, "channels = [{upper}, {lower}]");
+        if index + 1 < units.len() {
+            out.push('\n');
+        }
+    }
+    Ok(out)
+}
+
+/// Both files' ranges: the pair's model is known in its own alone.
+fn throttle(imported: &mut Imported, pair: &Table) -> [f64; 2] {
+    let of_pair = pair.get("throttle").and_then(Value::as_table);
+    let number = |key| of_pair.and_then(|table| table.get(key)).and_then(number);
+    match (imported.throttle, number("min"), number("max")) {
+        (Some([min, max]), low, high) => {
+            let (least, most) = (low.unwrap_or(min).max(min), high.unwrap_or(max).min(max));
+            if [least, most] != [min, max] {
+                imported.notes.push(format!(
+                    "the stack's throttles {min} to {max} are narrowed to the pair's: set MOT_SPIN_MIN to {least}, MOT_SPIN_MAX \
+                     to {most}"
+                ));
+            }
+            [least, most]
+        }
+        (None, low, high) => [low.unwrap_or(IDLE), high.unwrap_or(1.0)],
+    }
+}
+
+/// `[voltage]` where the pair's file has none: in comments, since the bench's voltage is not known.
+fn voltage(imported: &mut Imported, pair: &Table) -> String {
+    let Some([low, high]) = imported.range_v else {
+        return String::new();
+    };
+    let range: [f64; 2] = [low, high].map(|volts| (volts * 100.0).round() / 100.0);
+    if pair.contains_key("voltage") {
+        imported.notes.push(format!(
+            "the stack's battery is {:?} to {:?} V: compare with range_v of [voltage]",
+            range[0], range[1]
+        ));
+        return String::new();
+    }
+    imported.notes.push(
+        "[voltage] is in comments: the voltage at which the pair was measured is not among the parameters"
+            .to_owned(),
+    );
+    format!(
+        "# [voltage]                            # reference_v: of the bench; exponents: a median\n# reference_v = \n\
+         # range_v = {range:?}\n# thrust_exponent = {EXPONENT}\n# torque_exponent = {EXPONENT}\n\n"
+    )
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| Some(value.as_integer()? as f64))
+}
+
+fn default_name(units: usize) -> String {
+    match units {
+        3 => "imported-y6".to_owned(),
+        units => format!("imported-x{}", 2 * units),
+    }
+}
+
+/// The tables of a pair's file that are taken over, as they stand there with their comments.
+fn sections(text: &str) -> String {
+    let mut out = String::new();
+    let mut taken = false;
+    for line in text.lines() {
+        if let Some(header) = header(line) {
+            let root = header.split('.').next().unwrap_or_default().trim();
+            taken = TAKEN.contains(&root);
+        }
+        if taken {
+            out += line;
+            out.push('\n');
+        }
+    }
+    let text = out.trim_end();
+    format!("{text}\n\n")
+}
+
+/// Name of the table that begins in this line.
+fn header(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    let inner = line.strip_prefix("[[").or_else(|| line.strip_prefix('['))?;
+    let (name, _) = inner.split_once(']')?;
+    let bare = |c: char| c.is_ascii_alphanumeric() || "_-. ".contains(c);
+    (name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(bare)).then_some(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_taken_with_their_comments() {
+        let text = "# top\nname = \"a\"\n[throttle]\nmin = 0.1\n[pair] # bench\nthrust_n = [\n  [1.0, 2.0],\n]\n\
+                    [pair.lower_out]\nx = 1\n[[unit]]\nposition_m = 1\n[voltage]\nv = 1\n";
+        let expected =
+            "[pair] # bench\nthrust_n = [\n  [1.0, 2.0],\n]\n[pair.lower_out]\nx = 1\n[voltage]\nv = 1\n\n";
+        assert_eq!(sections(text), expected);
+    }
+}

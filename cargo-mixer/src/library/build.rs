@@ -1,0 +1,172 @@
+//! Compiles the runtime with a C interface into one object: three runs of rustc in a folder of their own.
+
+use std::fs;
+use std::io::{self, IsTerminal as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use super::toolchain::{Core, Toolchain};
+
+/// As the firmware's profile has it. The bits of a mix depend on none of these.
+const CODE: &[&str] = &[
+    "--cap-lints=allow",
+    "-Copt-level=3",
+    "-Cpanic=abort",
+    "-Ccodegen-units=1",
+    "-Cforce-unwind-tables=no",
+];
+
+/// Older `no_std` crates name it; nothing of it is used.
+const BUILTINS: &str = "#![feature(compiler_builtins)]\n#![compiler_builtins]\n#![no_std]\n";
+
+/// A folder with the runtime compiled for the target; it is removed when dropped.
+pub(super) struct Build<'a> {
+    toolchain: &'a Toolchain,
+    folder: PathBuf,
+}
+
+impl<'a> Build<'a> {
+    /// Compiles the runtime, and `core` where it has to be.
+    pub(super) fn new(toolchain: &'a Toolchain) -> Result<Self, String> {
+        let build = Build {
+            toolchain,
+            folder: temporary_folder()?,
+        };
+        if let Core::Sources(core) = &toolchain.core {
+            build.core(core)?;
+        }
+        build.extract(&mixer_rt::SOURCES)?;
+        build.compile(
+            "mixer_rt",
+            &build.folder.join("mixer-rt/lib.rs"),
+            "rlib",
+            &["link"],
+        )?;
+        Ok(build)
+    }
+
+    pub(super) fn target(&self) -> &str {
+        &self.toolchain.target
+    }
+
+    /// The object of a crate that exports C functions.
+    pub(super) fn object(&self, name: &str, rust: &str) -> Result<Vec<u8>, String> {
+        let source = self.folder.join(format!("{name}.rs"));
+        fs::write(&source, rust).map_err(|error| fault(&source, &error))?;
+        // Link-time optimisation leaves one object, in which only the interface is global. It is run only where something
+        // is linked, here an archive with the compiler's own helpers, of which nothing is used.
+        self.compile(name, &source, "staticlib", &["obj", "link"])?;
+        let object = self.folder.join(format!("{name}.o"));
+        fs::read(&object).map_err(|error| fault(&object, &error))
+    }
+
+    /// `core` from its sources.
+    fn core(&self, core: &Path) -> Result<(), String> {
+        if io::stderr().is_terminal() {
+            crate::remark(format_args!(
+                "compiling core for {} from its sources, half a minute or so",
+                self.target()
+            ));
+        }
+        let manifest = core.join("Cargo.toml");
+        let manifest = fs::read_to_string(&manifest).map_err(|error| fault(&manifest, &error))?;
+        let edition = manifest
+            .lines()
+            .find_map(|line| line.strip_prefix("edition = \"")?.strip_suffix('"'))
+            .unwrap_or("2024");
+        let mut command = self.rustc("core", &core.join("src/lib.rs"), "rlib", &["link"]);
+        command.args(["--edition", edition]);
+        run(command)?;
+        let builtins = self.folder.join("compiler_builtins.rs");
+        fs::write(&builtins, BUILTINS).map_err(|error| fault(&builtins, &error))?;
+        self.compile("compiler_builtins", &builtins, "rlib", &["link"])
+    }
+
+    /// Writes the runtime's sources.
+    fn extract(&self, sources: &mixer_rt::Sources) -> Result<(), String> {
+        let folder = self.folder.join("mixer-rt");
+        fs::create_dir(&folder).map_err(|error| fault(&folder, &error))?;
+        sources.extract(&folder).map_err(|error| fault(&folder, &error))
+    }
+
+    fn compile(&self, name: &str, source: &Path, kind: &str, emit: &[&str]) -> Result<(), String> {
+        let mut command = self.rustc(name, source, kind, emit);
+        command.args(["--edition", "2024"]);
+        if let Core::Sources(_) = self.toolchain.core {
+            command.arg("--extern").arg(self.library("core"));
+        }
+        if kind == "staticlib" {
+            command.arg("-Clto=fat");
+            command.arg("--extern").arg(self.library("mixer_rt"));
+        }
+        run(command)
+    }
+
+    /// `rustc` with what every run has.
+    fn rustc(&self, name: &str, source: &Path, kind: &str, emit: &[&str]) -> Command {
+        let mut command = Command::new(&self.toolchain.rustc);
+        command.args(["--crate-name", name, "--crate-type", kind]);
+        command.arg(format!("--emit={}", emit.join(",")));
+        command.arg("--target").arg(self.target());
+        command
+            .arg("-L")
+            .arg(&self.folder)
+            .arg("--out-dir")
+            .arg(&self.folder);
+        // Wherever it was compiled, the same bytes.
+        let mut remapped = self.folder.clone().into_os_string();
+        remapped.push("=.");
+        command.arg("--remap-path-prefix").arg(remapped);
+        command.args(CODE).arg(source);
+        if let Core::Sources(_) = self.toolchain.core {
+            // `core` is written in the language of the next releases.
+            command.env("RUSTC_BOOTSTRAP", "1");
+        }
+        command
+    }
+
+    /// `name=path` of a library that this build made.
+    fn library(&self, name: &str) -> std::ffi::OsString {
+        let mut library = std::ffi::OsString::from(format!("{name}="));
+        library.push(self.folder.join(format!("lib{name}.rlib")));
+        library
+    }
+}
+
+impl Drop for Build<'_> {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// A folder that was not there before.
+fn temporary_folder() -> Result<PathBuf, String> {
+    let name = format!("cargo-mixer-library-{}", std::process::id());
+    let mut attempt = 0;
+    loop {
+        let folder = std::env::temp_dir().join(format!("{name}-{attempt}"));
+        match fs::create_dir(&folder) {
+            Ok(()) => return Ok(folder),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < 100 => attempt += 1,
+            Err(error) => return Err(fault(&folder, &error)),
+        }
+    }
+}
+
+fn fault(path: &Path, error: &io::Error) -> String {
+    format!("{}: {error}", path.display())
+}
+
+/// Runs to the end; the compiler's own words where it fails.
+fn run(mut command: Command) -> Result<(), String> {
+    let program = command.get_program().to_owned();
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| fault(Path::new(&program), &error))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    Err(format!("{} failed:\n{}", program.display(), said.trim_end()))
+}

@@ -1,0 +1,164 @@
+//! The object: what it must and must not name, and the archive around it.
+
+use object::{BinaryFormat, Object, ObjectSymbol};
+
+/// Arithmetic in software: the run-time ABI of the Arm architecture, and what GCC and Clang add to it. Every C compiler for
+/// a core without a floating-point unit brings them along.
+const SOFT_FLOAT: &[&str] = &[
+    "__clzsi2",
+    "__aeabi_fadd",
+    "__aeabi_fcmpeq",
+    "__aeabi_fcmpge",
+    "__aeabi_fcmpgt",
+    "__aeabi_fcmple",
+    "__aeabi_fcmplt",
+    "__aeabi_fcmpun",
+    "__aeabi_fdiv",
+    "__aeabi_fmul",
+    "__aeabi_frsub",
+    "__aeabi_fsub",
+    "__aeabi_f2iz",
+    "__aeabi_f2uiz",
+    "__aeabi_i2f",
+    "__aeabi_ui2f",
+    "__aeabi_ul2f",
+    "__aeabi_lmul",
+    "__aeabi_llsl",
+    "__aeabi_llsr",
+    "__aeabi_uidiv",
+    "__aeabi_uidivmod",
+];
+
+/// Copying and filling, which a compiler may call in any C program: frames of more than 16 units and a Cortex-M0 with
+/// rotors out need it.
+const MEMORY: &[&str] = &[
+    "memcpy",
+    "memset",
+    "__aeabi_memclr",
+    "__aeabi_memclr4",
+    "__aeabi_memcpy",
+    "__aeabi_memcpy4",
+    "__aeabi_memset",
+    "__aeabi_memset4",
+];
+
+/// Whether the object has `function` as its only global symbol and needs nothing that a C program might lack.
+pub(super) fn check(bytes: &[u8], function: &str) -> Result<(), String> {
+    let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
+    if file.format() != BinaryFormat::Elf {
+        return Err("is no ELF file; libraries are made for bare metal and Linux".to_owned());
+    }
+    let (mut undefined, mut global) = (Vec::new(), Vec::new());
+    for symbol in file.symbols() {
+        let name = symbol.name().map_err(|error| error.to_string())?;
+        let is_known = name.is_empty() || SOFT_FLOAT.contains(&name) || MEMORY.contains(&name);
+        if symbol.is_undefined() && !is_known {
+            undefined.push(name);
+        } else if symbol.is_global() && !symbol.is_undefined() {
+            global.push(name);
+        }
+    }
+    if !undefined.is_empty() {
+        return Err(format!("needs {}", undefined.join(", ")));
+    }
+    if global != [function] {
+        return Err(format!("defines {}, not {function} alone", global.join(", ")));
+    }
+    Ok(())
+}
+
+/// A static library as GNU's and LLVM's linkers read it, its index of `functions` (one per member) included. Without
+/// times, owners or folders: the same objects give the same bytes.
+pub(super) fn archive(members: &[(String, Vec<u8>)], functions: &[String]) -> Result<Vec<u8>, String> {
+    let too_large = |_| "the library is over 4 GB".to_owned();
+    // Names that do not fit a member's header stand in a member of their own, by their places in it.
+    let mut long_names = String::new();
+    let names: Vec<String> = members
+        .iter()
+        .map(|(name, _)| {
+            if name.len() < NAME {
+                return format!("{name}/");
+            }
+            let place = long_names.len();
+            long_names += &format!("{name}/\n");
+            format!("/{place}")
+        })
+        .collect();
+
+    let index_bytes = 4 + functions.iter().map(|name| 4 + name.len() + 1).sum::<usize>();
+    let mut offset = MAGIC.len() + member_bytes(index_bytes);
+    if !long_names.is_empty() {
+        offset += member_bytes(long_names.len());
+    }
+    let mut index = u32::try_from(functions.len())
+        .map_err(too_large)?
+        .to_be_bytes()
+        .to_vec();
+    for (_, bytes) in members {
+        index.extend(u32::try_from(offset).map_err(too_large)?.to_be_bytes());
+        offset += member_bytes(bytes.len());
+    }
+    for name in functions {
+        index.extend(name.bytes());
+        index.push(0);
+    }
+
+    let mut archive = MAGIC.to_vec();
+    append(&mut archive, "/", &index);
+    if !long_names.is_empty() {
+        append(&mut archive, "//", long_names.as_bytes());
+    }
+    for ((_, bytes), name) in members.iter().zip(&names) {
+        append(&mut archive, name, bytes);
+    }
+    Ok(archive)
+}
+
+const MAGIC: &[u8] = b"!<arch>\n";
+/// Length of a member's header.
+const HEADER: usize = 60;
+/// Length of the name in it, the `/` at its end included.
+const NAME: usize = 16;
+
+/// A member with its header and padding.
+fn member_bytes(bytes: usize) -> usize {
+    HEADER + bytes.next_multiple_of(2)
+}
+
+fn append(archive: &mut Vec<u8>, name: &str, bytes: &[u8]) {
+    let size = bytes.len();
+    archive.extend(format!("{name:<16}{:<12}{:<6}{:<6}{:<8}{size:<10}`\n", 0, 0, 0, 644).bytes());
+    archive.extend(bytes);
+    if size % 2 == 1 {
+        archive.push(b'\n');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn archives_have_an_index_and_long_names() {
+        let members = [
+            ("a.o".to_owned(), vec![1, 2, 3]),
+            ("a_name_beyond_fifteen.o".to_owned(), vec![4, 5]),
+        ];
+        let functions = ["a_mix".to_owned(), "b".to_owned()];
+        let bytes = archive(&members, &functions).unwrap();
+        assert!(bytes.starts_with(b"!<arch>\n/               0 "));
+        // Magic; index of 20 bytes; names of 25; the members.
+        let first = 8 + (60 + 20) + (60 + 26);
+        assert_eq!(bytes[68..80], [0, 0, 0, 2, 0, 0, 0, first, 0, 0, 0, first + 64]);
+        assert!(bytes[usize::from(first)..].starts_with(b"a.o/ "));
+        assert!(bytes[usize::from(first) + 64..].starts_with(b"/0 "));
+        assert_eq!(bytes.len(), usize::from(first) + 64 + 62);
+    }
+
+    #[test]
+    fn objects_of_others_are_refused() {
+        let this_test = std::fs::read(std::env::current_exe().unwrap()).unwrap();
+        assert!(check(&this_test, "x_mix").unwrap_err().starts_with("needs "));
+        assert!(check(b"no object", "x_mix").is_err());
+    }
+}

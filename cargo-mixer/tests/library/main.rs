@@ -1,0 +1,178 @@
+//! `cargo mixer library` from outside: its objects in C and C++ programs, on the host and on a Cortex-M4F in QEMU.
+
+mod example;
+mod program;
+mod refusals;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use program::{Golden, HOST_COMPILERS};
+
+/// Mean and worst instructions of the X8's golden vectors through the C interface: the goals for the whole mix.
+const MEAN_LIMIT: u32 = 2_000;
+const WORST_LIMIT: u32 = 5_000;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// A folder of this test's own, empty; removed when dropped.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("cargo-mixer-{test}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    fn join(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// `cargo mixer library` in the project's folder.
+fn library(arguments: &[&str], output: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cargo-mixer"));
+    command.arg("library").args(arguments).arg("-o").arg(output);
+    command.current_dir(root()).stdin(Stdio::null());
+    command
+}
+
+#[track_caller]
+fn run(command: &mut Command) -> Output {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let output = command
+        .output()
+        .unwrap_or_else(|error| panic!("{program}: {error}; tests/run --install gets it"));
+    let said = String::from_utf8_lossy(&output.stderr);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{command:?}\n{printed}{said}");
+    output
+}
+
+/// Global symbols of an archive: `T name`, `U name`.
+fn symbols(archive: &Path) -> Vec<String> {
+    let output = run(Command::new("nm").args(["-g", "--no-sort"]).arg(archive));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let words = |line: &str| -> Option<String> {
+        let mut words = line.rsplit(' ');
+        let (name, kind) = (words.next()?, words.next()?);
+        (kind.len() == 1).then(|| format!("{kind} {name}"))
+    };
+    text.lines().filter_map(words).collect()
+}
+
+#[test]
+fn host_programs_have_the_golden_bits() {
+    let folder = Folder::new("host");
+    let golden = Golden::new();
+    golden.library(&[], &folder.0);
+    for module in &golden.modules {
+        let archive = folder.join(&format!("lib{module}.a"));
+        assert_eq!(symbols(&archive), [format!("T {module}_mix")]);
+    }
+    // Two airframes in one program, and three more.
+    for compiler in HOST_COMPILERS {
+        let program = folder.join("golden");
+        golden.build(compiler, &["host.c"], &folder.0, &program);
+        let output = run(&mut Command::new(&program));
+        golden.assert_same(&String::from_utf8(output.stdout).unwrap());
+    }
+}
+
+#[test]
+fn rotors_that_are_out_have_an_object_of_their_own() {
+    let folder = Folder::new("health");
+    run(&mut library(&["airframes/isae-x8.toml", "--health"], &folder.0));
+    let expected = ["T isae_x8_mix", "T isae_x8_mix_with_health"];
+    assert_eq!(symbols(&folder.join("libisae_x8.a")), expected);
+    for [driver, standard] in [["gcc", "-std=c99"], ["g++", "-std=c++17"]] {
+        let program = folder.join("selftest");
+        let mut command = Command::new(driver);
+        command.args([standard, "-Wall", "-Wextra", "-Werror", "-pedantic"]);
+        command.arg("-DISAE_X8_SELFTEST_MAIN");
+        if driver == "g++" {
+            command.args(["-x", "c++"]);
+        }
+        command.arg(folder.join("isae_x8_selftest.c"));
+        command.args(["-x", "none"]).arg(folder.join("libisae_x8.a"));
+        run(command.arg("-o").arg(&program));
+        let output = run(&mut Command::new(&program));
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.ends_with(" rows, 0 different\n"), "{text}");
+    }
+}
+
+#[test]
+fn the_same_airframe_gives_the_same_bytes() {
+    let [first, second, temporary] = ["first", "second", "temporary"].map(Folder::new);
+    let arguments = ["airframes/px4-y6.toml", "--health"];
+    run(&mut library(&arguments, &first.0));
+    run(library(&arguments, &second.0).env("TMPDIR", &temporary.0));
+    assert_eq!(temporary.names(), [""; 0], "nothing is left behind");
+    let expected = [
+        "coaxial_mixer.h",
+        "libpx4_y6.a",
+        "px4_y6.cmake",
+        "px4_y6.h",
+        "px4_y6_selftest.c",
+    ];
+    assert_eq!(first.names(), expected);
+    for name in first.names() {
+        let [first, second] = [&first, &second].map(|folder| fs::read(folder.join(&name)).unwrap());
+        assert!(first == second, "{name}");
+    }
+}
+
+/// The vectors that every airframe holds, through the C interface on the target.
+#[test]
+fn a_cortex_m4f_has_the_golden_bits() {
+    let folder = Folder::new("m4f");
+    let golden = Golden::new();
+    golden.library(&["--target", "thumbv7em-none-eabihf"], &folder.0);
+    for module in &golden.modules {
+        let archive = folder.join(&format!("lib{module}.a"));
+        assert_eq!(symbols(&archive), [format!("T {module}_mix")]);
+    }
+    for flags in program::TARGET_FLAGS {
+        let image = folder.join("golden.elf");
+        let script = format!("-T{}", program::source("board.ld").display());
+        let compiler: Vec<&str> = flags.iter().copied().chain([script.as_str()]).collect();
+        golden.build(&compiler, &["board.c"], &folder.0, &image);
+        let text = program::qemu(&image);
+        println!("{text}");
+        let lines = golden.assert_same(&text);
+        let [_, rows, _, sum, worst] = lines[golden.index("isae_x8")];
+        println!("isae_x8: mean {}, worst {worst} instructions", sum / rows);
+        assert!(
+            worst > 0 && worst <= WORST_LIMIT && sum / rows <= MEAN_LIMIT,
+            "{text}"
+        );
+    }
+
+    // The other float ABI is a clear error.
+    let mut soft = Command::new("arm-none-eabi-gcc");
+    soft.args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=soft", "-fsyntax-only"]);
+    let output = soft.arg(folder.join("isae_x8_selftest.c")).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("is for -mfloat-abi=hard"), "{said}");
+}
