@@ -45,11 +45,11 @@ use shortage::{RAY, shortages};
 use simplex::{Budget, Simplex};
 use unit::{Place, positive};
 
-/// Pivots at most.
-const PIVOTS: u8 = 16;
+/// Pivots of the general path at most.
+pub const PIVOTS: u8 = 16;
 
 /// Moves of units and shortages to other bounds at most.
-const FLIPS: u8 = 64;
+pub const FLIPS: u8 = 64;
 
 /// Rounds at most in which the curves of single rotors take the place of their chords.
 const ROUNDS: usize = 3;

@@ -46,7 +46,7 @@ mod wrench;
 pub use attainable::{AttainableSet, Corner};
 pub use desaturation::{Airmode, Desaturation};
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
-pub use general::{Scratch, level_efforts};
+pub use general::{FLIPS, PIVOTS, Scratch, level_efforts};
 pub use health::Health;
 pub use inverse::{
     BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,

@@ -77,7 +77,9 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
     let tolerances = ["0.1", "0.01", "0.004", "2e-4", "3e-5"];
     subjects.extend(tolerances.map(|tolerance| Subject::new("coaxial", &format!("tolerance-{tolerance}"))));
     let priorities = ["roll-pitch-yaw", "reserve-0.1", "roll-pitch-yaw-reserve-0.1"];
-    let others = priorities.into_iter().chain(["bent-3", "bent-4"]);
+    let others = priorities
+        .into_iter()
+        .chain(["bent-3", "bent-4", "tilted-4", "tilted-6", "tilted-8"]);
     subjects.extend(others.map(|airframe| Subject::new("coaxial", airframe)));
     let pairs = airframes.iter().filter_map(|name| name.strip_prefix("x8-"));
     subjects.extend(pairs.map(|pair| Subject::new("coaxial", &format!("y6-{pair}"))));

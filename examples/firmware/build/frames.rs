@@ -39,7 +39,8 @@ torque_exponent = 1.75
 "#;
 
 /// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N, with yaw before thrust, and
-/// with a reserve of yaw; a Y6 and an X8 with a made-up pair whose attainable set bends inwards. The Y6s with the pairs of
+/// with a reserve of yaw; a Y6 and an X8 with a made-up pair whose attainable set bends inwards; frames of 4, 6 and 8 units whose
+/// axes lean by 6 degrees along their circle, to and fro. The Y6s with the pairs of
 /// `airframes/x8-*.toml` are those of [`y6`].
 pub(crate) fn all() -> Vec<(String, String)> {
     let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(PAIR, units, "")));
@@ -70,7 +71,9 @@ pub(crate) fn all() -> Vec<(String, String)> {
         )
     });
     let bent = [3, 4].map(|units| (format!("bent-{units}"), regular(BENT, units, "")));
-    sizes.chain(tolerances).chain(priorities).chain(bent).collect()
+    let tilted = [4, 6, 8].map(|units| (format!("tilted-{units}"), tilted(units)));
+    let others = priorities.into_iter().chain(bent).chain(tilted);
+    sizes.chain(tolerances).chain(others).collect()
 }
 
 /// A Y6 with the pair of an X8 with a short `[layout]`, and its name; `None` for other airframes.
@@ -99,6 +102,28 @@ fn regular(pair: &str, units: u32, options: &str) -> String {
         1 => text.push_str("[allocation]\naxes = [\"yaw\", \"thrust\"]\n"),
         2 => text.push_str("[allocation]\naxes = [\"roll\", \"yaw\", \"thrust\"]\n"),
         _ => {}
+    }
+    text
+}
+
+/// Units on a circle of 0.45 m radius whose thrust axes lean along it, by turns to either side.
+fn tilted(units: u32) -> String {
+    const LEAN: f64 = 0.1;
+    let mut text = format!("name = {NAME:?}\n{PAIR}{VOLTAGE}");
+    for k in 0..units {
+        let angle = std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(units);
+        let (side, spin) = if k % 2 == 0 { (LEAN, "cw") } else { (-LEAN, "ccw") };
+        let (x, y) = (angle.cos(), angle.sin());
+        let _ = write!(
+            text,
+            "[[unit]]\nposition_m = [{:.6}, {:.6}, 0.0]\naxis = [{:.6}, {:.6}, -1.0]\nupper_spin = {spin:?}\nchannels = [{}, {}]\n",
+            0.45 * x,
+            0.45 * y,
+            -side * y,
+            side * x,
+            2 * k,
+            2 * k + 1
+        );
     }
     text
 }

@@ -39,6 +39,18 @@ const KNOT_UNIT: u32 = 7;
 /// The torques, one unit.
 const TORQUES: u32 = 40;
 
+/// The general path beside its pivots, and one unit in it.
+const GENERAL: u32 = 900;
+const GENERAL_UNIT: u32 = 330;
+
+/// A pivot of the simplex method, and one unit in it.
+const PIVOT: u32 = 800;
+const PIVOT_UNIT: u32 = 90;
+
+/// A move to another bound, and one unit in the search for the next.
+const FLIP: u32 = 90;
+const FLIP_UNIT: u32 = 8;
+
 /// The bound for a compiled airframe; `None` where there is none yet, or its evaluator has not been counted.
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.shortcut {
@@ -47,20 +59,34 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     }
 }
 
-/// The general path.
-fn general(_: &Compiled) -> Option<u32> {
-    None
+/// The general path with all rotors: least norm, the pivots and flips that are allowed, and what follows them.
+fn general(compiled: &Compiled) -> Option<u32> {
+    let basis = compiled.airframe.pair.basis;
+    let n = compiled.tables.units.len() as u32;
+    let unit = compiled.evaluator.instructions(basis)? + forward(basis) + GENERAL_UNIT;
+    let pivots = u32::from(mixer_rt::PIVOTS) * (PIVOT + n * PIVOT_UNIT);
+    let flips = u32::from(mixer_rt::FLIPS) * (FLIP + n * FLIP_UNIT);
+    let voltage = if compiled.airframe.voltage.is_some() {
+        PER_VOLTAGE
+    } else {
+        0
+    };
+    Some(GENERAL + voltage + n * unit + pivots + flips)
+}
+
+/// The forward map of one unit.
+fn forward(basis: Basis) -> u32 {
+    match basis {
+        Basis::Biquadratic | Basis::Cubic => 50,
+        Basis::Quartic => 75,
+    }
 }
 
 fn closed_form(compiled: &Compiled, table: &VerticalTable) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let evaluator = compiled.evaluator.instructions(basis)?;
     let n = table.units.len() as u32;
-    let forward = match basis {
-        Basis::Biquadratic | Basis::Cubic => 50,
-        Basis::Quartic => 75,
-    };
-    let inverses = n * (evaluator + forward);
+    let inverses = n * (evaluator + forward(basis));
     let reach = REACH + n * REACH_UNIT;
     let step = STEP + FACETS * table.slopes.len() as u32;
     let walls = STEP + FACETS * table.walls.len() as u32;
