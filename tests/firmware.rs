@@ -315,6 +315,13 @@ fn the_model_of_a_mix_is_that_of_the_counts() {
     }
 }
 
+#[test]
+fn the_page_of_costs_is_that_of_the_counts() {
+    let (compiler, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
+    let page = std::fs::read_to_string(counts::page()).expect("docs/costs.md");
+    assert_eq!(page, counts::document(&compiler, &held), "{MEND}");
+}
+
 /// No request of any set takes more than the bound that the compiler states, which is not more than twice the worst.
 #[test]
 fn bounds_hold_what_was_counted() {

@@ -9,8 +9,7 @@
 //!
 //! instructions, the median over attainable requests. The overheads are fitted to whole mixers, counted request by
 //! request in QEMU, apart for the [`Kind`]s of mixers; for those in closed form the mean over attainable requests is
-//! modelled likewise. Any other request in closed form costs at most what its code does at most (`cost/bound.rs`); for the general
-//! path the ranges of what was counted are quoted.
+//! modelled likewise. Any other request costs at most what the code does at most (`cost/bound.rs`).
 
 mod bound;
 mod counted;
@@ -33,8 +32,8 @@ pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
 pub enum Kind {
     /// Vertical axes and little freedom: a few cases, each solved at once.
     ClosedForm,
-    /// Any other layout: face by face along a path of wrenches.
-    Path,
+    /// Any other layout: a dual simplex method of bounded work.
+    General,
 }
 
 impl Kind {
@@ -42,7 +41,7 @@ impl Kind {
     pub fn of(compiled: &Compiled) -> Kind {
         match &compiled.tables.shortcut {
             Some(_) => Kind::ClosedForm,
-            None => Kind::Path,
+            None => Kind::General,
         }
     }
 
@@ -50,12 +49,15 @@ impl Kind {
     pub fn description(self) -> &'static str {
         match self {
             Kind::ClosedForm => "in closed form",
-            Kind::Path => "along a path of wrenches",
+            Kind::General => "by a bounded simplex method",
         }
     }
 }
 
-/// Overheads of all mixers beside the evaluators, and what saturated requests cost, from one set of counts.
+/// Units of the largest frames that were counted.
+pub const MOST_COUNTED_UNITS: usize = 8;
+
+/// Overheads of all mixers beside the evaluators, from one set of counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Counted {
     /// Instructions more with a voltage correction.
@@ -65,9 +67,7 @@ pub struct Counted {
     /// The mean over attainable requests of the same mixers, some of which least norm does not deliver.
     pub closed_form_mean: Overhead,
     /// Requests that least norm delivers, of all other mixers.
-    pub path: Overhead,
-    /// What frames of one kind and size cost, by kind and number of units.
-    pub frames: &'static [Frames],
+    pub general: Overhead,
 }
 
 /// Instructions beside the evaluators'.
@@ -81,27 +81,12 @@ pub struct Overhead {
     pub error: f64,
 }
 
-/// Counted frames of one kind and number of units: ranges `[least, largest]` over the frames, instructions per mix.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Frames {
-    /// How they desaturate.
-    pub kind: Kind,
-    /// Number of units of each.
-    pub units: usize,
-    /// Mean over wrenches that random throttles give, those included that least norm alone does not deliver.
-    pub attainable_mean: [u32; 2],
-    /// Mean over requests most of which are out of reach.
-    pub saturated_mean: [u32; 2],
-    /// The dearest request that was found.
-    pub worst: [u32; 2],
-}
-
 impl Counted {
     /// The overhead of requests that least norm delivers.
     pub fn delivered(&self, kind: Kind) -> Overhead {
         match kind {
             Kind::ClosedForm => self.closed_form,
-            Kind::Path => self.path,
+            Kind::General => self.general,
         }
     }
 
@@ -114,20 +99,6 @@ impl Counted {
     pub fn mix(&self, overhead: Overhead, units: usize, one: u32, voltage: bool) -> f64 {
         let voltage = if voltage { self.per_voltage } else { 0.0 };
         overhead.per_mix + units as f64 * (overhead.per_unit + f64::from(one)) + voltage
-    }
-
-    /// The counted frames of a kind with as many units; where there are none, those with the next fewer and the next more.
-    pub fn near(&self, kind: Kind, units: usize) -> Vec<Frames> {
-        let of_kind = || self.frames.iter().filter(|frames| frames.kind == kind);
-        let below = of_kind()
-            .filter(|frames| frames.units <= units)
-            .max_by_key(|frames| frames.units);
-        let above = of_kind()
-            .filter(|frames| frames.units >= units)
-            .min_by_key(|frames| frames.units);
-        let mut near: Vec<Frames> = below.into_iter().chain(above).copied().collect();
-        near.dedup();
-        near
     }
 }
 
@@ -156,8 +127,6 @@ pub struct Cost {
     pub desaturation: Kind,
     /// The most that any request takes, by what the code does at most; `None` where no bound is stated.
     pub bound_instructions: Option<u32>,
-    /// Without a bound: what other requests cost on counted frames of this kind and about this size.
-    pub counted: Vec<Frames>,
     /// Bytes of the inverse map's own constants.
     pub inverse_bytes: usize,
     /// Bytes of all tables.
@@ -188,7 +157,6 @@ impl Cost {
             attainable_error: COUNTED.attainable(kind).map(|overhead| overhead.error),
             desaturation: kind,
             bound_instructions,
-            counted: COUNTED.near(kind, units),
             inverse_bytes: 4 * compiled.tables.inverse.floats(),
             table_bytes: compiled.tables.bytes(),
         }
@@ -205,15 +173,6 @@ fn mix(compiled: &Compiled, evaluator: Evaluator, overhead: Overhead) -> Option<
     let one = evaluator.instructions(airframe.pair.basis)?;
     let sum = COUNTED.mix(overhead, airframe.units.len(), one, airframe.voltage.is_some());
     Some(sum.round() as u32)
-}
-
-/// A range of instructions, one number where its ends are the same.
-pub fn range([least, largest]: [u32; 2]) -> String {
-    if least == largest {
-        least.to_string()
-    } else {
-        format!("{least} to {largest}")
-    }
 }
 
 /// The lines of `check`.
@@ -256,61 +215,6 @@ impl fmt::Display for Cost {
                 self.desaturation.description()
             )?;
         }
-        for frames in &self.counted {
-            writeln!(
-                f,
-                "  saturated     counted with {} units, desaturation {}: mean {}, dearest found {}",
-                frames.units,
-                frames.kind.description(),
-                range(frames.saturated_mean),
-                range(frames.worst)
-            )?;
-        }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn neighbours_stand_for_sizes_that_were_not_counted() {
-        let frames = |kind, units| Frames {
-            kind,
-            units,
-            attainable_mean: [1, 2],
-            saturated_mean: [3, 4],
-            worst: [5, 6],
-        };
-        let none = Overhead {
-            per_mix: 0.0,
-            per_unit: 0.0,
-            error: 0.0,
-        };
-        let all = [(Kind::ClosedForm, 3), (Kind::Path, 2), (Kind::Path, 5)]
-            .map(|(kind, units)| frames(kind, units));
-        let counted = Counted {
-            per_voltage: 0.0,
-            closed_form: none,
-            closed_form_mean: none,
-            path: none,
-            frames: Box::leak(Box::new(all)),
-        };
-        let near = |kind, units| -> Vec<usize> {
-            let near = counted.near(kind, units);
-            near.iter().map(|frames| frames.units).collect()
-        };
-        assert_eq!(near(Kind::ClosedForm, 3), [3]);
-        assert_eq!(near(Kind::Path, 2), [2]);
-        assert_eq!(near(Kind::Path, 3), [2, 5]);
-        assert_eq!(near(Kind::Path, 9), [5]);
-        assert_eq!(near(Kind::Path, 1), [2]);
-    }
-
-    #[test]
-    fn ranges_of_one_number_are_one_number() {
-        assert_eq!(range([7, 7]), "7");
-        assert_eq!(range([7, 8]), "7 to 8");
     }
 }

@@ -162,37 +162,6 @@ fn bounds_come_before_roll_and_pitch() {
     }
 }
 
-/// The least thrust that roll = pitch = 0 needs lies where the first lines do not lead.
-#[test]
-fn the_least_thrust_is_looked_for_on_all_of_the_curves() {
-    let places = [
-        at([0.44596, -0.18442, 0.0], true),
-        at([0.30824, 0.60636, 0.0], false),
-        at([-0.52168, -0.11531, 0.0], false),
-    ];
-    let frame = compile(&places, "disabled", 0.0);
-    for step in 0..10 {
-        let pitch = -1.0 - 0.1 * step as f32;
-        is_served(&frame, [-0.1, pitch, -0.1, -1.0], 13.991586, [0, 2]);
-    }
-}
-
-/// Roll and pitch with the least thrust that they allow, where no lines serve roll = pitch = 0 as well.
-#[test]
-fn more_roll_and_pitch_is_found_than_next_to_none() {
-    let places = [
-        at([0.30593, 0.39302, 0.0], true),
-        at([-0.64935, 0.1387, 0.0], false),
-        at([-0.11789, -0.64072, 0.0], false),
-        at([0.39858, -0.01819, 0.0], true),
-    ];
-    let frame = compile(&places, "disabled", 0.043529776267484596);
-    for step in 0..10 {
-        let roll = 9.3 + 0.1 * step as f32;
-        is_served(&frame, [roll, -29.111073, 0.0, 6.3159475], 16.42392, [0, 6]);
-    }
-}
-
 /// Two rotors of two units leave next to no choice: yaw is missed by a bit, not roll turned against the request.
 #[test]
 fn roll_is_not_reversed_for_the_last_bit_of_yaw() {

@@ -181,8 +181,8 @@ fn evaluators_are_finite_far_outside_the_attainable_set() {
         if alternative.evaluator == "polynomial" {
             inverse.insert("degree".into(), 9.into());
         }
-        inverse.insert("thrust_tolerance_n".into(), 5.0.into());
-        inverse.insert("torque_tolerance_nm".into(), 0.1.into());
+        inverse.insert("thrust_tolerance_n".into(), 2.0.into());
+        inverse.insert("torque_tolerance_nm".into(), 0.02.into());
         airframe.insert("inverse".into(), inverse.into());
         let compiled = frames::compile_text(&airframe.to_string())
             .unwrap_or_else(|faults| panic!("{}: {faults}", alternative.evaluator));

@@ -45,13 +45,13 @@ fn yaw_next_to_the_furthest_is_delivered() {
     }
 }
 
-/// With a tolerance as large as the frame's thrust, which the map is far better than, a shortage of a tenth of the yaw is
+/// With a tolerance of nearly a tenth of a unit's efforts, which the map is far better than, a shortage is
 /// flagged all the same; so is one of requests far beyond any rotor.
 #[test]
 fn shortages_are_flagged_whatever_the_tolerance() {
     let places = frames::regular(4, 45.0);
     let text = frames::toml(&places, &[0, 1, 2, 3, 4, 5, 6, 7], frames::Options::default());
-    let text = format!("{text}[inverse]\nthrust_tolerance_n = 30.0\ntorque_tolerance_nm = 0.3\n");
+    let text = format!("{text}[inverse]\nthrust_tolerance_n = 2.0\ntorque_tolerance_nm = 0.02\n");
     let frame = Frame::new(frames::compile_text(&text).unwrap_or_else(|faults| panic!("{faults}")));
     for (index, axis) in Axis::ALL.into_iter().enumerate() {
         for beyond in [1.5, 1e5, 1e7, 1e30] {

@@ -5,17 +5,15 @@
 //! wrench.
 
 use mixer_rt::{Axis, SetpointError};
-use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Frame, Request};
-use mixer_tests::shortfall::{ALLOWED, Shortfall};
 use mixer_tests::soundness;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use crate::jumps::{self, Motion, neighbours};
-use crate::layout::{Draw, Layout, any_request, attainable_request, layout, moderate_request};
+use crate::layout::{Draw, Layout, any_request, attainable_request, layout};
 use crate::out;
-use crate::polygons::{delivered, little_is_missed};
+use crate::polygons::delivered;
 
 /// Each layout takes a compilation, about 0.1 s.
 const LAYOUTS: u32 = 32;
@@ -81,52 +79,12 @@ proptest! {
         each(&layout, &draws, sound)?;
     }
 
-    /// No priority is short by more than 1 % of its authority, whichever of the rotors work.
-    #[test]
-    fn answers_reach_the_optimum(layout in layout(), draws in many(moderate_request(2), 20)) {
-        each(&layout, &draws, |frame, draw| {
-            let request = draw.of(frame);
-            let answer = request.mix(frame).expect("finite");
-            let factors = frame.physics.factors(request.volts);
-            let [hulls, exact] = [Oracle::new, Oracle::exact]
-                .map(|oracle| move || oracle(&frame.physics, frame.allocation(), factors, request.health));
-            let shortfall = Shortfall::beyond_hulls(&answer, &request, frame, ALLOWED, &hulls(), exact)
-                .map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
-            prop_assert!(
-                shortfall.is_none_or(|shortfall| !shortfall.misses()),
-                "{:?}: {:?} -> {:?}", shortfall, request, answer
-            );
-            Ok(())
-        })?;
-    }
-
     /// The wrench of throttles that keep 2 % off the ends of their range.
     #[test]
     fn attainable_wrenches_are_delivered(layout in layout(), draws in many(attainable_request(0.02, 0), 150)) {
         each(&layout, &draws, |frame, draw| {
             let request = draw.of(frame);
             delivered(frame, &request)
-        })?;
-    }
-
-    /// The wrench of throttles at the ends of their range: the border of what is attainable. Where more than half a percent
-    /// of an axis is missed, the priorities have made that of less: see [`little_is_missed`].
-    #[test]
-    fn barely_attainable_wrenches_are_delivered_but_for_half_a_percent(
-        layout in layout(),
-        draws in many(attainable_request(0.0, 0), 150),
-    ) {
-        each(&layout, &draws, |frame, draw| {
-            let request = draw.of(frame);
-            let answer = request.mix(frame).expect("finite");
-            let misses = (0..4).any(|axis| {
-                let missed = (request.asked()[axis] - answer.achieved[axis]).abs();
-                frame.served()[axis] && missed > 0.005 * frame.authority[axis]
-            });
-            if misses {
-                little_is_missed(frame, &request, &answer)?;
-            }
-            Ok(())
         })?;
     }
 

@@ -235,3 +235,39 @@ pub fn held() -> Result<(String, Vec<Row>), String> {
         _ => Err(fault("not counts")),
     }
 }
+
+/// The page of all counts.
+pub fn page() -> PathBuf {
+    root().join("docs/costs.md")
+}
+
+/// The text of that page.
+pub fn document(compiler: &str, rows: &[Row]) -> String {
+    let mut text = format!(
+        "# Costs\n\nWritten by `cargo run -p mixer-tests --bin counts -- --fit` from `tests/counts.csv`. Instructions per mix on a \
+         Cortex-M4F, counted in QEMU with firmware of {compiler}; bytes of code, tables and stack of an image that holds this mixer only.\n\n\
+         * attainable: 2,000 wrenches that random throttles give, at random voltages\n\
+         * saturated: 2,000 requests up to four times the authority, one axis alone, on and beyond the border\n\
+         * worst: the most of these, and of a search for more\n\n\
+         Mixers: `coaxial` is this one, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (attainable: with all \
+         rotors); `conventional` (the paper's), `sequential` (after PX4) and `wls` (the crate `wls-alloc`) take rotors as isolated. Airframes are files of `airframes/`, \
+         `y6-*` with the pairs of the `x8-*`, and frames of `examples/firmware/build/frames.rs`.\n\n\
+         | mixer | airframe | attainable, mean | saturated, mean | worst | code | tables | stack |\n\
+         |---|---|---:|---:|---:|---:|---:|---:|\n"
+    );
+    for row in rows {
+        let worst = ["attainable_worst", "saturated_worst", "searched_worst"].map(|set| row.get(set));
+        text.push_str(&format!(
+            "| {} | {} | {:.0} | {:.0} | {} | {} | {} | {} |\n",
+            row.subject.mixer,
+            row.subject.airframe,
+            row.mean("attainable"),
+            row.mean("saturated"),
+            worst.into_iter().fold(0, u64::max),
+            row.get("code_b"),
+            row.get("tables_b"),
+            row.get("stack_b"),
+        ));
+    }
+    text
+}

@@ -3,12 +3,11 @@
 //! `mixer-compiler/src/cost/counted.rs` is written by `cargo run -p mixer-tests --bin counts -- --fit`, and with the
 //! counts themselves by `-- --bless`. It follows from them and from the evaluators' counts alone.
 
-use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::cost::{Cost, Counted, Frames, Kind, Overhead};
+use mixer_compiler::cost::{Cost, Counted, Kind, Overhead};
 use nalgebra::{DMatrix, DVector};
 
 use crate::counts::Row;
@@ -50,7 +49,7 @@ impl Sample {
     pub fn quantities(&self) -> &'static [Quantity] {
         match self.kind {
             Kind::ClosedForm => &[Quantity::Delivered, Quantity::Attainable],
-            Kind::Path => &[Quantity::Delivered],
+            Kind::General => &[Quantity::Delivered],
         }
     }
 
@@ -83,7 +82,7 @@ impl Sample {
         let overhead = match (self.kind, quantity) {
             (Kind::ClosedForm, Quantity::Delivered) => CLOSED_FORM,
             (Kind::ClosedForm, Quantity::Attainable) => CLOSED_FORM_MEAN,
-            (Kind::Path, _) => PATH,
+            (Kind::General, _) => GENERAL,
         };
         factors[overhead] = 1.0;
         factors[overhead + 1] = self.units as f64;
@@ -95,7 +94,7 @@ impl Sample {
 /// Places of the parameters, an overhead's per mix and then per unit.
 const CLOSED_FORM: usize = 0;
 const CLOSED_FORM_MEAN: usize = 2;
-const PATH: usize = 4;
+const GENERAL: usize = 4;
 const PER_VOLTAGE: usize = 6;
 const PARAMETERS: usize = 7;
 
@@ -137,7 +136,7 @@ fn sample(compiled: &Compiled, row: &Row) -> Option<Sample> {
     })
 }
 
-/// Least squares of the relative errors; the ranges of all that is not modelled.
+/// Least squares of the relative errors.
 ///
 /// # Errors
 /// Too few kinds of frames for the model's parameters.
@@ -176,8 +175,7 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
         per_voltage: tenths(PER_VOLTAGE),
         closed_form: overhead(CLOSED_FORM),
         closed_form_mean: overhead(CLOSED_FORM_MEAN),
-        path: overhead(PATH),
-        frames: Box::leak(ranges(samples).into_boxed_slice()),
+        general: overhead(GENERAL),
     };
     let error = |kinds: &[Kind], of: Quantity| {
         let errors = known
@@ -190,51 +188,12 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
     let errors = [
         error(&[Kind::ClosedForm], Quantity::Delivered),
         error(&[Kind::ClosedForm], Quantity::Attainable),
-        error(&[Kind::Path], Quantity::Delivered),
+        error(&[Kind::General], Quantity::Delivered),
     ];
     counted.closed_form.error = errors[0];
     counted.closed_form_mean.error = errors[1];
-    counted.path.error = errors[2];
+    counted.general.error = errors[2];
     Ok(counted)
-}
-
-/// Ranges over the frames of each size that no bound is stated for.
-fn ranges(samples: &[Sample]) -> Vec<Frames> {
-    let mut all: Vec<Frames> = Vec::new();
-    let largest = samples.iter().map(|sample| sample.units).max().unwrap_or(0);
-    let kind = Kind::Path;
-    for units in 1..=largest {
-        let alike = || {
-            let alike = samples
-                .iter()
-                .filter(|sample| sample.kind == kind && sample.units == units);
-            alike.map(|sample| &sample.row)
-        };
-        let range = |value: &dyn Fn(&Row) -> u64| {
-            let values = || alike().map(|row| u32::try_from(value(row)).unwrap_or(u32::MAX));
-            Some([values().min()?, values().max()?])
-        };
-        let mean = |set: &'static str| move |row: &Row| row.mean(set).round() as u64;
-        let worst = |row: &Row| {
-            let sets = ["attainable_worst", "saturated_worst", "searched_worst"];
-            sets.map(|set| row.get(set)).into_iter().fold(0, u64::max)
-        };
-        let ranges = (
-            range(&mean("attainable")),
-            range(&mean("saturated")),
-            range(&worst),
-        );
-        if let (Some(attainable_mean), Some(saturated_mean), Some(worst)) = ranges {
-            all.push(Frames {
-                kind,
-                units,
-                attainable_mean,
-                saturated_mean,
-                worst,
-            });
-        }
-    }
-    all
 }
 
 /// The file that holds the fit.
@@ -262,31 +221,15 @@ pub fn text(compiler: &str, counted: &Counted) -> String {
             "Overhead {{\n        per_mix: {per_mix:?},\n        per_unit: {per_unit:?},\n        error: {error:?},\n    }}"
         )
     };
-    let mut text = format!(
+    let text = format!(
         "//! Written by `cargo run -p mixer-tests --bin counts -- --fit` from `tests/counts.csv`; do not edit.\n\n\
-         use super::{{Counted, Frames, Kind, Overhead}};\n\n\
+         use super::{{Counted, Overhead}};\n\n\
          /// Firmware built by {compiler}.\n\
-         pub const COUNTED: Counted = Counted {{\n    per_voltage: {:?},\n    closed_form: {},\n    closed_form_mean: {},\n    path: {},\n    frames: &[\n",
+         pub const COUNTED: Counted = Counted {{\n    per_voltage: {:?},\n    closed_form: {},\n    closed_form_mean: {},\n    general: {},\n}};\n",
         counted.per_voltage,
         overhead(counted.closed_form),
         overhead(counted.closed_form_mean),
-        overhead(counted.path)
+        overhead(counted.general)
     );
-    for Frames {
-        kind,
-        units,
-        attainable_mean,
-        saturated_mean,
-        worst,
-    } in counted.frames
-    {
-        let _ = writeln!(
-            text,
-            "        Frames {{\n            kind: Kind::{kind:?},\n            units: {units},\n            \
-             attainable_mean: {attainable_mean:?},\n            saturated_mean: {saturated_mean:?},\n            \
-             worst: {worst:?},\n        }},"
-        );
-    }
-    text.push_str("    ],\n};\n");
     text
 }

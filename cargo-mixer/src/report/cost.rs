@@ -1,6 +1,6 @@
 //! Tables of what the airframe costs on the target.
 
-use mixer_compiler::cost::{Cost, Frames, range};
+use mixer_compiler::cost::Cost;
 use mixer_compiler::front::Alternative;
 
 use super::number::{escaped, fixed};
@@ -50,9 +50,6 @@ pub fn facts(cost: &Cost) -> String {
             format!("at most {bound} instructions, the sum of what the code does at most"),
         ));
     }
-    for frames in &cost.counted {
-        facts.push(("Other requests", others(frames)));
-    }
     facts.push((
         "Constants",
         format!(
@@ -61,22 +58,6 @@ pub fn facts(cost: &Cost) -> String {
         ),
     ));
     facts_table(&facts)
-}
-
-/// What requests cost on counted frames.
-fn others(frames: &Frames) -> String {
-    let units = match frames.units {
-        1 => "1 unit".to_owned(),
-        units => format!("{units} units"),
-    };
-    format!(
-        "counted with {units}, desaturating {}: {} instructions in the mean of random attainable wrenches, {} of requests most \
-         of which saturate, {} for the dearest found",
-        frames.kind.description(),
-        range(frames.attainable_mean),
-        range(frames.saturated_mean),
-        range(frames.worst)
-    )
 }
 
 /// All evaluators, in the order of their cost.

@@ -2,7 +2,7 @@
 
 use super::Facts;
 use crate::airframe::Axis;
-use crate::cost::COUNTED;
+use crate::cost::MOST_COUNTED_UNITS;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 
 /// Longest plausible arm per root of a unit's largest thrust, m / sqrt(N). Thrust grows with the square of the diameter and
@@ -185,12 +185,7 @@ pub(super) fn channels(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
 /// More units than costs are known for.
 pub(super) fn many_units(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     let airframe = facts.airframe;
-    let counted = COUNTED
-        .frames
-        .iter()
-        .map(|frames| frames.units)
-        .max()
-        .unwrap_or(0);
+    let counted = MOST_COUNTED_UNITS;
     let units = airframe.units.len();
     if units <= counted {
         return;

@@ -4,7 +4,7 @@
 //! cargo run -p mixer-tests --bin counts                      all subjects, as in the README
 //! cargo run -p mixer-tests --bin counts -- isae-x8 regular-3 only these airframes
 //! cargo run -p mixer-tests --bin counts -- --bless           all of them, and writes tests/counts.csv and what --fit does
-//! cargo run -p mixer-tests --bin counts -- --fit             counts nothing; fits the compiler's model to tests/counts.csv
+//! cargo run -p mixer-tests --bin counts -- --fit             counts nothing; from tests/counts.csv writes docs/costs.md and the compiler's model
 //! ```
 
 use std::process::ExitCode;
@@ -77,8 +77,11 @@ fn print() -> Result<(), String> {
     Ok(())
 }
 
-/// Fits the compiler's model to counts, writes it and says how well it does.
+/// Writes the page of counts, fits the compiler's model to them, writes it and says how well it does.
 fn fit(compiler: &str, rows: &[Row]) -> Result<(), String> {
+    let page = counts::page();
+    std::fs::write(&page, counts::document(compiler, rows))
+        .map_err(|error| format!("{}: {error}", page.display()))?;
     let samples = overhead::samples(rows)?;
     let counted = overhead::fit(&samples)?;
     overhead::write(compiler, &counted)?;
