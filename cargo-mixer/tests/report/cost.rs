@@ -1,7 +1,7 @@
 //! The page's costs are those of the compiler, and the whole mix holds its parts.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::cost::{Cost, range};
+use mixer_compiler::cost::Cost;
 use roxmltree::Node;
 
 use super::named;
@@ -29,12 +29,6 @@ pub(crate) fn assert_cost(page: Node<'_, '_>, compiled: &Compiled) {
             "{name}: no {bound}"
         );
         assert!(cost.attainable_instructions < Some(bound), "{name}: {cost:?}");
-    }
-    for frames in &cost.counted {
-        let worst = range(frames.worst);
-        assert!(text.contains(&worst), "{name}: no {worst}");
-        assert!(frames.attainable_mean[1] <= frames.saturated_mean[1], "{name}");
-        assert!(frames.saturated_mean[1] <= frames.worst[1], "{name}");
     }
     assert!(
         cost.delivered_error > 0.0 && cost.delivered_error < 0.2,
