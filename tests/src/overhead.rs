@@ -25,6 +25,8 @@ pub struct Sample {
     pub kind: Kind,
     /// Number of units.
     pub units: usize,
+    /// All thrust axes are vertical: then least norm delivers most wrenches that random throttles give.
+    pub vertical: bool,
     /// With a voltage correction.
     pub voltage: bool,
     /// Instructions of its evaluator, one unit.
@@ -49,7 +51,8 @@ impl Sample {
     pub fn quantities(&self) -> &'static [Quantity] {
         match self.kind {
             Kind::ClosedForm => &[Quantity::Delivered, Quantity::Attainable],
-            Kind::General => &[Quantity::Delivered],
+            Kind::General if self.vertical => &[Quantity::Delivered],
+            Kind::General => &[],
         }
     }
 
@@ -129,6 +132,7 @@ fn sample(compiled: &Compiled, row: &Row) -> Option<Sample> {
         airframe: row.subject.airframe.clone(),
         kind: Kind::of(compiled),
         units,
+        vertical: compiled.airframe.units.iter().all(|unit| unit.axis == [0.0, 0.0, -1.0]),
         voltage: compiled.airframe.voltage.is_some(),
         inverse: one,
         bound: Cost::new(compiled).bound_instructions,

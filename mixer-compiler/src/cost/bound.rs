@@ -44,8 +44,8 @@ const GENERAL: u32 = 900;
 const GENERAL_UNIT: u32 = 330;
 
 /// A pivot of the simplex method, and one unit in it.
-const PIVOT: u32 = 800;
-const PIVOT_UNIT: u32 = 90;
+const PIVOT: u32 = 1000;
+const PIVOT_UNIT: u32 = 120;
 
 /// A move to another bound, and one unit in the search for the next.
 const FLIP: u32 = 90;
