@@ -78,6 +78,9 @@ class Airframe:
             columns_q.append([-sign * ax, -sign * ay, -sign * az, 0.0])
             self.channels.append(unit["channels"])
         self.units = len(self.channels)
+        is_vertical = all(column[2] == 0.0 for column in columns_f)
+        yaw_first = self.airmode == "roll-pitch-yaw" or allocation.get("yaw_reserve_nm", 0.0) > 0.0
+        self.is_general = self.units > 4 or not is_vertical or yaw_first
         columns = columns_f + columns_q
         self.m = [[column[row] for column in columns] for row in range(4)]
         self.m_plus = self.pseudo_inverse()
@@ -230,8 +233,11 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation):
         for i in range(n):
             off = [abs(efforts[i] - wanted[i]), abs(efforts[n + i] - wanted[n + i])]
             # The general path knows a polygon inside the attainable set: next to the border its efforts are others.
-            room = [0.02 * abs(size) for size in airframe.efforts(airframe.high, airframe.high)] if n > 4 else [0.0, 0.0]
-            room[1] = 0.05 * room[0]
+            share = 0.02 if airframe.is_general else 0.0
+            room = [
+                share * airframe.efforts(airframe.high, airframe.high)[0],
+                share * abs(airframe.efforts(airframe.low, airframe.high)[1]),
+            ]
             if off[0] > airframe.tolerance[0] * 1.001 + room[0] or off[1] > airframe.tolerance[1] * 1.001 + room[1]:
                 faults.append(f"unit {i} is {off[0]:.3g} N, {off[1]:.3g} N m off its attainable least-norm efforts")
         # A torque asked on an axis that the airframe does not serve is missed and flagged, whatever is delivered.

@@ -132,7 +132,11 @@ fn sample(compiled: &Compiled, row: &Row) -> Option<Sample> {
         airframe: row.subject.airframe.clone(),
         kind: Kind::of(compiled),
         units,
-        vertical: compiled.airframe.units.iter().all(|unit| unit.axis == [0.0, 0.0, -1.0]),
+        vertical: compiled
+            .airframe
+            .units
+            .iter()
+            .all(|unit| unit.axis == [0.0, 0.0, -1.0]),
         voltage: compiled.airframe.voltage.is_some(),
         inverse: one,
         bound: Cost::new(compiled).bound_instructions,
