@@ -107,6 +107,10 @@ fn regular(pair: &str, units: u32, options: &str) -> String {
 }
 
 /// Units on a circle of 0.45 m radius whose thrust axes lean along it, by turns to either side.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "positions are written to a micrometre, which hides the last bits"
+)]
 fn tilted(units: u32) -> String {
     const LEAN: f64 = 0.1;
     let mut text = format!("name = {NAME:?}\n{PAIR}{VOLTAGE}");
