@@ -3,7 +3,7 @@
 //! | file | holds the mixer to |
 //! |---|---|
 //! | `delivery.rs` | wrenches of random throttles: delivered |
-//! | `optimum.rs` | linear programs: no priority short by 1 % of its authority |
+//! | `optimum.rs` | linear programs: few requests short by 1 % of any axis' authority |
 //! | `continuity.rs` | requests near which throttles or what is delivered once jumped: answered as their neighbours are |
 //! | `hollows.rs` | the same where attainable sets bend inwards |
 //! | `jumps.rs` | throttles that jump from a request to its neighbour: those that must; others are counted |
