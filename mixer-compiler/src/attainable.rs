@@ -16,8 +16,9 @@ const SAMPLES: usize = 512;
 /// Every so many of them make the convex part.
 const COARSE: usize = 4;
 
-/// Corners at most: the work of the general path grows with them. Shares of the area that may be lost by dropping one: with
-/// all corners the general path gives 0.5 % more yaw.
+/// Corners at most, and the share of the area that dropping one may lose below that. Corners cost time where efforts of least norm
+/// are held to the polygon; with 0.4 % instead 23 requests of 1,992 missed the optimum by more than 1 %, with this 16 (the test
+/// `any_frame_reaches_the_optimum`, the costs of shortages changed at the same time).
 const MOST_CORNERS: usize = 8;
 const LOSS: f64 = 1.5e-3;
 

@@ -5,12 +5,12 @@
 //! ```text
 //! yaw beyond the reserve   1          (airmode roll-pitch-yaw: 20)
 //! too little thrust       20          (1)
-//! roll and pitch         200
-//! the reserve of yaw    2000
+//! roll and pitch         400
 //! too much thrust       2000 disabled, 20 roll-pitch, 1 roll-pitch-yaw
+//! the reserve of yaw   10000
 //! ```
 //!
-//! A higher priority is given up where that gains more than 20 or 10 times as much of the next one. Roll and pitch are one
+//! A higher priority is given up where that gains more of the next one than these ratios. Roll and pitch are one
 //! shortage, along their request, so that their direction stays. A shortage runs from nothing to all that was asked for, so
 //! that nothing is reversed.
 

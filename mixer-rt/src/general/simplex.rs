@@ -16,7 +16,7 @@
 //! to its other bound instead, as long as the slot stays outside (long steps, Maros 2003). A slot that has no variable
 //! yet is artificial: its bounds are both zero.
 //!
-//! The start is lambda = 0: nothing has to be known about the frame or its health. Work is bounded by the numbers of pivots
+//! Any lambda may be the start: nothing has to be known about the frame or its health. Work is bounded by the numbers of pivots
 //! and of moves to other bounds that are allowed.
 
 use super::unit::{NEVER, Place, Scratch, corner, next, positive};
