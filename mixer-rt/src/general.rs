@@ -33,26 +33,25 @@ use core::hint::black_box;
 mod retreat;
 mod shortage;
 mod simplex;
-mod unit;
+mod variable;
 
-pub use unit::Scratch;
+pub use variable::Scratch;
 
-use crate::attainable::Corner;
 use crate::rotors::Rotors;
 use crate::tables::Tables;
 use crate::{Quantity, rolled};
-use shortage::{RAY, shortages};
-use simplex::{Budget, Simplex};
-use unit::{Place, positive};
+use shortage::RAY;
+use simplex::{Budget, SHORTAGES, Simplex};
+use variable::{Polygon, between, positive};
 
 /// Pivots of the general path at most.
 pub const PIVOTS: u8 = 16;
 
-/// Moves of units and shortages to other bounds at most.
+/// Moves of units and shortages to other corners at most.
 pub const FLIPS: u8 = 64;
 
 /// Rounds at most in which the curves of single rotors take the place of their chords.
-const ROUNDS: usize = 3;
+const ROUNDS: u8 = 3;
 
 const BUDGET: Budget = Budget {
     pivots: PIVOTS,
@@ -63,24 +62,19 @@ const BUDGET: Budget = Budget {
 /// request's side. Chosen for the fewest pivots (0.001 to 1 differ by less than a sixth).
 const AHEAD: f32 = 2e-2;
 
-/// Curves are met to this share of the largest torque.
+/// Curves are met to this share of the torque's scale.
 const TOUCHING: f32 = 1e-4;
 
-/// The polygon of a unit without rotors.
-const NOTHING: [Corner; 1] = [Corner {
-    at: [0.0; 2],
-    edge: [0.0; 2],
-    before: [0.0; 2],
-    bound: 0.0,
-}];
-
-/// A frame at one voltage, in rows.
-struct Frame<'a> {
-    /// Newtons and newton metres per unit of the scaled efforts.
-    scale: [f32; 2],
-    /// The polygons of units by their [`Rotors`], and a point inside each.
-    sets: [&'a [Corner]; 4],
-    centres: [[f32; 2]; 4],
+/// A frame at one voltage.
+struct Frame<'a, 't, P, I, S> {
+    tables: &'a Tables<'t, P, I, S>,
+    /// Rows per N m of roll, pitch and yaw and per N of thrust.
+    rows: [f32; 4],
+    /// `[k_f, k_Q]`.
+    factors: [f32; 2],
+    polygon: Polygon<'a>,
+    /// `[f, Q]` (N, N m at the reference voltage) per coordinate, by the [`Rotors`] of a unit.
+    efforts: [[[f32; 2]; 2]; 4],
 }
 
 /// Writes attainable efforts (`[f, Q]` at the reference voltage, N and N m, in the scratch) that serve `request` (`[roll,
@@ -88,214 +82,187 @@ struct Frame<'a> {
 #[inline(never)]
 pub(crate) fn allocate<P: Quantity, I, S>(
     tables: &Tables<'_, P, I, S>,
-    request: [f32; 4],
+    request: &[f32; 4],
     factors: [f32; 2],
     units: &mut [Scratch],
 ) {
     // With the tables known the compiler would write every loop over them out.
     let tables = black_box(tables);
-    let rows = per_row(tables, factors);
-    let is_whole = prepare(tables, &rows, &factors, units);
-    let set = &tables.attainable;
-    if is_whole && least_norm(tables, request, factors, units) {
-        return;
-    }
-    let chords = [Rotors::Upper, Rotors::Lower].map(|rotors| {
-        let [low, high] = rotors
-            .ends(&tables.pair, &tables.throttle)
-            .map(|[f, q]| [f / set.scale[0], q / set.scale[1]]);
-        [Corner::between(high, low, high), Corner::between(low, high, low)]
-    });
-    let middle = |[low, _]: [Corner; 2]| [0, 1].map(|k| low.at[k] + 0.5 * low.edge[k]);
-    let frame = Frame {
-        scale: set.scale,
-        sets: [set.corners, &chords[0], &chords[1], &NOTHING],
-        centres: [set.centre, middle(chords[0]), middle(chords[1]), [0.0; 2]],
-    };
-    let mut centre = [0.0; 4];
-    for unit in units.iter() {
-        rolled();
-        unit.subtract(
-            frame.centres[unit.rotors as usize & 3].map(|effort| -effort),
-            &mut centre,
-        );
-    }
-    let mut wanted = [0, 1, 2, 3].map(|k| request[k] * rows[k]);
-    let priorities = &tables.desaturation;
-    let reserve = priorities.yaw_reserve_nm * rows[2];
-    let mut simplex = Simplex::new(units, frame.sets, BUDGET);
-    let count = shortages(
-        &mut simplex.columns,
-        &mut wanted,
-        &centre,
-        simplex.units.len(),
-        priorities.airmode,
-        reserve,
-    );
-    let ahead = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] + centre[k]));
-    simplex.start(&wanted, ahead);
-    simplex.add_columns(count);
-    let mut is_solved = simplex.solve();
-    for _ in 0..ROUNDS {
-        if is_whole || !is_solved || !frame.bend(&mut simplex, tables) {
-            break;
-        }
-        is_solved = simplex.solve();
-    }
-    simplex.place_units();
-    let share = 1.0 / (1.0 + positive(simplex.value(RAY as u8)) * shortage::REACH);
-    let delivered = simplex.delivered(wanted, share);
-    for unit in simplex.units.iter_mut() {
-        rolled();
-        let centre = frame.centres[unit.rotors as usize & 3];
-        unit.efforts = [0, 1].map(|k| centre[k] + share * (unit.efforts[k] - centre[k]));
-    }
-    if !is_solved {
-        simplex.retreat(tables.level.as_ref().filter(|_| is_whole), wanted[3], set.scale);
-    }
-    if is_whole && is_solved {
-        draw_to_least_norm(tables, delivered, rows, factors, units);
+    let is_whole = units.iter().all(|unit| unit.rotors == Rotors::Both);
+    let frame = Frame::new(tables, factors, is_whole);
+    if !(is_whole && frame.towards_least_norm(request, units, true)) {
+        frame.programme(request, units, is_whole);
     }
     for unit in units.iter_mut() {
         rolled();
-        unit.efforts = [0, 1].map(|k| unit.efforts[k] * set.scale[k]);
+        let [first, second] = frame.efforts[unit.rotors as usize & 3];
+        unit.at = [0, 1].map(|k| first[k] * unit.at[0] + second[k] * unit.at[1]);
     }
 }
 
 /// The efforts of level flight at a thrust in N, for the compiler.
 pub fn level_efforts<P: Quantity, I, S>(tables: &Tables<'_, P, I, S>, thrust_n: f32, units: &mut [Scratch]) {
-    allocate(tables, [0.0, 0.0, 0.0, thrust_n], [1.0; 2], units);
-}
-
-/// Gives units their columns in `rows` per N m and N; true where all rotors work.
-#[inline(never)]
-fn prepare<P, I, S>(
-    tables: &Tables<'_, P, I, S>,
-    rows: &[f32; 4],
-    factors: &[f32; 2],
-    units: &mut [Scratch],
-) -> bool {
-    let mut is_whole = true;
-    for (unit, table) in units.iter_mut().zip(tables.units) {
-        rolled();
-        unit.columns = [0, 1].map(|k| {
-            let size = factors[k] * tables.attainable.scale[k];
-            [0, 1, 2, 3].map(|axis| table.effectiveness[k][axis] * (rows[axis] * size))
-        });
-        is_whole &= unit.rotors == Rotors::Both;
-        unit.place = Place::Corner;
-        unit.bend = 0.0;
+    for unit in units.iter_mut() {
+        unit.rotors = Rotors::Both;
     }
-    is_whole
+    allocate(tables, &[0.0, 0.0, 0.0, thrust_n], [1.0; 2], units);
 }
 
-/// Scaled efforts of least norm per wrench in N m and N.
-#[inline(always)]
-fn scaled(efforts: [f32; 2], per_effort: [f32; 2]) -> [f32; 2] {
-    [0, 1].map(|k| efforts[k] * per_effort[k])
-}
-
-/// Writes the efforts of least norm, N and N m; true where all are inside the polygon.
-#[inline(never)]
-fn least_norm<P, I, S>(
-    tables: &Tables<'_, P, I, S>,
-    request: [f32; 4],
-    factors: [f32; 2],
-    units: &mut [Scratch],
-) -> bool {
-    let set = &tables.attainable;
-    let per_factor = factors.map(|factor| 1.0 / factor);
-    let per_effort = [0, 1].map(|k| per_factor[k] / set.scale[k]);
-    for (unit, table) in units.iter_mut().zip(tables.units) {
-        rolled();
-        let efforts = table.efforts(&request);
-        unit.efforts = scaled(efforts, per_factor);
-        let scaled = scaled(efforts, per_effort);
-        for corner in set.corners {
-            rolled();
-            if corner.beyond(scaled) > 0.0 {
-                return false;
+impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
+    #[inline(always)]
+    fn new(tables: &'a Tables<'t, P, I, S>, [thrust, torque]: [f32; 2], is_whole: bool) -> Self {
+        let [roll, pitch, yaw, lift] = tables.rows;
+        let set = &tables.attainable;
+        let mut efforts = [[[0.0; 2]; 2]; 4];
+        efforts[Rotors::Both as usize] = [[set.scale[0], 0.0], [0.0, set.scale[1]]];
+        if !is_whole {
+            for rotors in [Rotors::Upper, Rotors::Lower] {
+                rolled();
+                let [low, high] = rotors.ends(&tables.pair, &tables.throttle);
+                efforts[rotors as usize] = [[high[0] - low[0], high[1] - low[1]], low];
             }
         }
-    }
-    true
-}
-
-/// Moves scaled efforts towards those of least norm for what is `delivered`, in rows, as far as all polygons allow.
-#[inline(never)]
-fn draw_to_least_norm<P, I, S>(
-    tables: &Tables<'_, P, I, S>,
-    delivered: [f32; 4],
-    rows: [f32; 4],
-    factors: [f32; 2],
-    units: &mut [Scratch],
-) {
-    let wrench = [0, 1, 2, 3].map(|k| {
-        if rows[k] > 0.0 {
-            delivered[k] / rows[k]
-        } else {
-            0.0
+        Frame {
+            tables,
+            rows: [roll / thrust, pitch / thrust, yaw / torque, lift / thrust],
+            factors: [thrust, torque],
+            polygon: Polygon {
+                corners: set.corners,
+                centre: set.centre,
+            },
+            efforts,
         }
-    });
-    let set = &tables.attainable;
-    let per_effort = [0, 1].map(|k| 1.0 / (factors[k] * set.scale[k]));
-    let mut share = 1.0;
-    for (unit, table) in units.iter_mut().zip(tables.units) {
-        rolled();
-        let target = scaled(table.efforts(&wrench), per_effort);
-        unit.rate = [0, 1].map(|k| target[k] - unit.efforts[k]);
-        for corner in set.corners {
+    }
+
+    /// Moves units towards the efforts of least norm for a wrench in N m and N, as far as all polygons allow; true where that is
+    /// all the way. With `from_centre` they start at the centre, and stay anywhere where it is not all the way.
+    #[inline(never)]
+    fn towards_least_norm(&self, wrench: &[f32; 4], units: &mut [Scratch], from_centre: bool) -> bool {
+        let scale = self.tables.attainable.scale;
+        let per_effort = [0, 1].map(|k| 1.0 / (self.factors[k] * scale[k]));
+        let mut share = 1.0;
+        for (unit, table) in units.iter_mut().zip(self.tables.units) {
             rolled();
-            let out = corner.outward(unit.rate);
-            if out > 0.0 {
-                let room = positive(-corner.beyond(unit.efforts));
-                if share * out > room {
-                    share = room / out;
+            if from_centre {
+                unit.at = self.polygon.centre;
+            }
+            let efforts = table.efforts(wrench);
+            unit.rate = [0, 1].map(|k| efforts[k] * per_effort[k] - unit.at[k]);
+            for corner in self.polygon.corners {
+                rolled();
+                let out = corner.outward(unit.rate);
+                if out > 0.0 {
+                    let room = positive(-corner.beyond(unit.at));
+                    if share * out > room {
+                        share = room / out;
+                        if from_centre {
+                            return false;
+                        }
+                    }
                 }
             }
         }
+        for unit in units.iter_mut() {
+            rolled();
+            unit.at = [0, 1].map(|k| unit.at[k] + share * unit.rate[k]);
+        }
+        share >= 1.0
     }
-    for unit in units.iter_mut() {
-        rolled();
-        unit.efforts = [0, 1].map(|k| unit.efforts[k] + share * unit.rate[k]);
-    }
-}
 
-/// Rows per N m and per N at `[k_f, k_Q]`.
-#[inline(always)]
-fn per_row<P, I, S>(tables: &Tables<'_, P, I, S>, [thrust, torque]: [f32; 2]) -> [f32; 4] {
-    let [roll, pitch, yaw, lift] = tables.rows;
-    [roll / thrust, pitch / thrust, yaw / torque, lift / thrust]
-}
-
-impl Frame<'_> {
-    /// Takes single rotors from their chords to their curves at the thrusts that they have come to; false where they were
-    /// there.
+    /// Gives units their columns and takes what they give at their centres from `centre`, in rows.
     #[inline(never)]
-    fn bend<P: Quantity, I, S>(&self, simplex: &mut Simplex<'_>, tables: &Tables<'_, P, I, S>) -> bool {
-        simplex.place_units();
-        let beyond = positive(simplex.value(RAY as u8)) * shortage::REACH;
-        let mut has_moved = false;
+    fn prepare(&self, units: &mut [Scratch], centre: &mut [f32; 4]) {
+        for (unit, table) in units.iter_mut().zip(self.tables.units) {
+            rolled();
+            let efforts = self.efforts[unit.rotors as usize & 3];
+            for (column, efforts) in unit.columns.iter_mut().zip(efforts) {
+                rolled();
+                *column = [0.0; 4];
+                table.add_wrench(efforts, self.factors, column);
+                for (part, row) in column.iter_mut().zip(self.rows) {
+                    *part *= row;
+                }
+            }
+            unit.extra = 0.0;
+            unit.subtract(self.polygon.inside(unit.rotors), centre);
+        }
+    }
+
+    /// The linear programme: writes the units' coordinates.
+    #[inline(never)]
+    fn programme(&self, request: &[f32; 4], units: &mut [Scratch], is_whole: bool) {
+        let tables = self.tables;
+        let mut centre = [0.0; 4];
+        self.prepare(units, &mut centre);
+        let mut wanted = [0, 1, 2, 3].map(|k| request[k] * self.rows[k]);
+        let mut shortages = Scratch::array::<SHORTAGES>();
+        let count = shortage::write(
+            &mut shortages,
+            &mut wanted,
+            &centre.map(|row| -row),
+            units.len(),
+            tables.desaturation.airmode,
+            tables.desaturation.yaw_reserve_nm * self.rows[2],
+        );
+        let ahead = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - centre[k]));
+        let mut simplex = Simplex::new(units, &mut shortages, self.polygon);
+        simplex.start(&wanted, &ahead, count, BUDGET);
+        let mut rounds = if is_whole { 0 } else { ROUNDS };
+        let (is_solved, share) = loop {
+            let is_solved = simplex.solve();
+            simplex.place();
+            let share = 1.0 / (1.0 + positive(simplex.shortages[RAY].at[0]) * shortage::REACH);
+            if rounds == 0 || !is_solved || !self.bend(&mut simplex, share) {
+                break (is_solved, share);
+            }
+            rounds -= 1;
+        };
         for unit in simplex.units.iter_mut() {
             rolled();
-            let kind = unit.rotors as usize & 3;
+            unit.at = between(self.polygon.inside(unit.rotors), unit.at, share);
+        }
+        if !is_solved {
+            let level = tables.level.as_ref().filter(|_| is_whole);
+            simplex.retreat(level, wanted[3], tables.attainable.scale);
+        } else if is_whole {
+            for (index, shortage) in shortages.iter().take(count).enumerate() {
+                rolled();
+                if index != RAY {
+                    shortage.subtract([share * shortage.at[0], 0.0], &mut wanted);
+                }
+            }
+            for (wanted, row) in wanted.iter_mut().zip(self.rows) {
+                *wanted = if row > 0.0 { *wanted / row } else { 0.0 };
+            }
+            self.towards_least_norm(&wanted, units, false);
+        }
+    }
+
+    /// Takes single rotors from their chords to their curves at the thrusts that they have come to when drawn back by `share`;
+    /// false where they were there.
+    #[inline(never)]
+    fn bend(&self, simplex: &mut Simplex<'_>, share: f32) -> bool {
+        let tables = self.tables;
+        let mut has_moved = false;
+        for (unit, table) in simplex.units.iter_mut().zip(tables.units) {
+            rolled();
             if !unit.rotors.is_single() {
                 continue;
             }
-            // Where the answer, drawn back from the ray, will be.
-            let centre = self.centres[kind];
-            let share = 1.0 / (1.0 + beyond);
-            let f = centre[0] + share * (unit.efforts[0] - centre[0]);
-            let [u, l] = unit
-                .rotors
-                .invert(&tables.pair, &tables.throttle, f * self.scale[0]);
-            let torque = tables.pair.torque.value(u, l) / self.scale[1];
-            let wanted = centre[1] + (torque - centre[1]) * (1.0 + beyond);
-            let change = wanted - unit.efforts[1];
-            if change.abs() > TOUCHING {
+            let [along, low] = self.efforts[unit.rotors as usize & 3];
+            let x = 0.5 + share * (unit.at[0] - 0.5);
+            let [f, chord] = [0, 1].map(|k| low[k] + x * along[k]);
+            let [u, l] = unit.rotors.invert(&tables.pair, &tables.throttle, f);
+            let extra = (tables.pair.torque.value(u, l) - chord) / share;
+            let change = extra - unit.extra;
+            if change.abs() > TOUCHING * tables.attainable.scale[1] {
                 has_moved = true;
-                unit.bend += change;
-                unit.subtract([0.0, change], &mut simplex.residual);
+                unit.extra = extra;
+                let mut wrench = [0.0; 4];
+                table.add_wrench([0.0, change], self.factors, &mut wrench);
+                for ((residual, part), row) in simplex.residual.iter_mut().zip(wrench).zip(self.rows) {
+                    *residual -= part * row;
+                }
             }
         }
         has_moved

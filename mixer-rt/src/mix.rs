@@ -50,7 +50,7 @@ pub fn mix_with_health<const UNITS: usize, const CHANNELS: usize, P: Quantity, I
     let (achieved, saturation) = match (tables.shortcut.vertical(), health.is_good()) {
         (Some(vertical), true) => mix_vertical(tables, vertical, setpoint, voltage_v, &mut throttle)?,
         _ => {
-            let mut scratch = [Scratch::default(); UNITS];
+            let mut scratch = Scratch::array::<UNITS>();
             mix_units(
                 tables,
                 tables.units,
@@ -107,16 +107,16 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
     for (unit, scratch) in units.iter().zip(scratch.iter_mut()) {
         scratch.rotors = Rotors::of(unit.channels, health);
     }
-    allocate(tables, bounded, factors, scratch);
+    allocate(tables, &bounded, factors, scratch);
     let mut achieved = [0.0; 4];
     for (unit, scratch) in units.iter().zip(scratch) {
         rolled();
         let throttles = match scratch.rotors {
             Rotors::Both => tables
                 .inverse
-                .throttles(&tables.pair, &tables.throttle, scratch.efforts),
+                .throttles(&tables.pair, &tables.throttle, scratch.at),
             Rotors::None => [0.0; 2],
-            single => single.invert(&tables.pair, &tables.throttle, scratch.efforts[0]),
+            single => single.invert(&tables.pair, &tables.throttle, scratch.at[0]),
         };
         write(unit.channels, throttles, throttle);
         unit.add_wrench(tables.pair.efforts(throttles), factors, &mut achieved);

@@ -1,8 +1,9 @@
 //! What is done where the budget of pivots has ended first: the answer is drawn towards level flight, which keeps all bounds.
 
 use super::shortage;
-use super::simplex::{Budget, Simplex, Slot};
-use super::unit::{Place, Scratch, positive};
+use super::simplex::{Budget, Holds, Simplex};
+use super::variable::{Scratch, between, positive};
+use crate::rotors::Rotors;
 use crate::tables::Level;
 use crate::{clamp, rolled};
 
@@ -13,71 +14,73 @@ const BUDGET: Budget = Budget { pivots: 8, flips: 32 };
 const MISSED: f32 = 1e-3;
 
 impl Simplex<'_> {
-    /// Draws the units' scaled efforts towards level flight at a thrust in rows, as little as puts all units into their polygons
-    /// and all shortages between nothing and all that was asked for.
+    /// Draws the coordinates of units towards level flight at a thrust in rows, as little as puts all units into their sets and
+    /// all shortages between nothing and all that was asked for.
     #[cold]
     #[inline(never)]
     pub(super) fn retreat(&mut self, level: Option<&Level<'_>>, thrust: f32, scale: [f32; 2]) {
-        let mut share = self.beyond_shortages();
+        let mut share = 0.0;
+        for (slot, value) in self.slots.iter().zip(self.values) {
+            if slot.holds == Holds::Artificial && value.abs() > MISSED {
+                share = 1.0;
+            }
+        }
+        for shortage in self.shortages.iter().take(self.count) {
+            rolled();
+            // In level flight a shortage is 1.
+            share = larger(share, beyond(shortage.at[0], 1.0));
+        }
         match level {
             Some(level) => level.write(thrust, scale, self.units),
             None => self.solve_level(thrust),
         }
         for unit in self.units.iter() {
             rolled();
-            let set = self.sets[unit.rotors as usize & 3];
-            for corner in set {
-                rolled();
-                let out = corner.beyond(unit.efforts);
-                if set.len() > 2 && out > 0.0 {
-                    let room = positive(-corner.beyond(unit.level));
-                    share = larger(share, out / (out + room));
-                }
+            if unit.rotors.is_single() {
+                share = larger(share, beyond(unit.at[0], unit.level[0]));
             }
-            if let [low, high] = set
-                && !(low.at[0]..=high.at[0]).contains(&unit.efforts[0])
-            {
-                share = 1.0;
+            if unit.rotors == Rotors::Both {
+                for corner in self.polygon.corners {
+                    rolled();
+                    let out = corner.beyond(unit.at);
+                    if out > 0.0 {
+                        let room = positive(-corner.beyond(unit.level));
+                        share = larger(share, out / (out + room));
+                    }
+                }
             }
         }
         for unit in self.units.iter_mut() {
             rolled();
-            unit.efforts = [0, 1].map(|k| unit.efforts[k] + share * (unit.level[k] - unit.efforts[k]));
+            unit.at = between(unit.at, unit.level, share);
         }
     }
 
-    /// The share of the way to level flight at which no shortage is negative: there they are 1.
-    fn beyond_shortages(&self) -> f32 {
-        let mut share = 0.0;
-        for (slot, value) in self.slots.iter().zip(self.values) {
-            rolled();
-            share = match slot {
-                Slot::Column(_) if value < 0.0 => larger(share, -value / (1.0 - value)),
-                Slot::Column(_) if value > 1.0 => 1.0,
-                Slot::Artificial if value.abs() > MISSED => 1.0,
-                _ => share,
-            };
-        }
-        share
-    }
-
-    /// Gives units their level efforts by the programme for thrust alone, in rows. Where not even that is solved, as with too few
-    /// rotors, they are what its budget leads to.
+    /// Gives units their level coordinates by the programme for thrust alone, in rows. Where not even that is solved, as with too
+    /// few rotors, they are what its budget leads to.
     fn solve_level(&mut self, thrust: f32) {
         for unit in self.units.iter_mut() {
             rolled();
-            (unit.place, unit.bend) = (Place::Corner, 0.0);
-            unit.level = unit.efforts;
+            unit.level = unit.at;
         }
-        self.budget = BUDGET;
-        self.start(&[0.0, 0.0, 0.0, thrust], [0.0; 4]);
-        self.add_columns(shortage::LEVEL);
+        self.start(&[0.0, 0.0, 0.0, thrust], &[0.0; 4], shortage::LEVEL, BUDGET);
         self.solve();
-        self.place_units();
+        self.place();
         for unit in self.units.iter_mut() {
             rolled();
-            (unit.efforts, unit.level) = (unit.level, unit.efforts);
+            (unit.at, unit.level) = (unit.level, unit.at);
         }
+    }
+}
+
+/// The share of the way from `x` to `level`, which is in [0, 1], at which x is as well.
+fn beyond(x: f32, level: f32) -> f32 {
+    if x < 0.0 {
+        -x / (level - x)
+    } else if x > 1.0 {
+        (x - 1.0) / (x - level)
+    } else {
+        0.0
     }
 }
 

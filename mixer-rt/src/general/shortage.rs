@@ -14,13 +14,14 @@
 //! shortage, along their request, so that their direction stays. A shortage runs from nothing to all that was asked for, so
 //! that nothing is reversed.
 
-use super::simplex::{COLUMNS, Column};
+use super::simplex::SHORTAGES;
+use super::variable::Scratch;
 use crate::{Airmode, clamp, sqrt};
 
-/// The columns of shortages of thrust, which come first: all that there are without roll, pitch and yaw.
+/// The shortages of thrust, which come first: all that there are without roll, pitch and yaw.
 pub(super) const LEVEL: usize = 2;
 
-/// The column along the ray, and the number of columns without a reserve of yaw.
+/// The shortage along the ray, and the number of shortages without a reserve of yaw.
 pub(super) const RAY: usize = 4;
 const WITHOUT_RESERVE: usize = 5;
 
@@ -49,8 +50,8 @@ const LEAST_WIDTH_OF_THRUST: f32 = 0.1;
 /// Writes the shortages of a request in rows, which is limited to what is looked at; returns how many there are. `centre` is
 /// what the units' centres give, `reserve` the yaw that is kept before roll and pitch, in rows.
 #[inline(never)]
-pub(super) fn shortages(
-    columns: &mut [Column; COLUMNS],
+pub(super) fn write(
+    shortages: &mut [Scratch; SHORTAGES],
     wanted: &mut [f32; 4],
     centre: &[f32; 4],
     units: usize,
@@ -107,8 +108,8 @@ pub(super) fn shortages(
         (ray, -REWARD * length),
         ([0.0, 0.0, sign * within, 0.0], RESERVE * within),
     ];
-    for (column, (rows, cost)) in columns.iter_mut().zip(values) {
-        (column.rows, column.cost) = (rows, cost);
+    for (shortage, (rows, cost)) in shortages.iter_mut().zip(values) {
+        (shortage.columns[0], shortage.extra) = (rows, cost);
     }
-    if reserve > 0.0 { COLUMNS } else { WITHOUT_RESERVE }
+    if reserve > 0.0 { SHORTAGES } else { WITHOUT_RESERVE }
 }

@@ -1,0 +1,302 @@
+//! One variable of the simplex method: a unit in its attainable polygon, or a shortage on its segment.
+//!
+//! A variable has two coordinates y in a convex set of at most eight corners, and gives the rows B y. For a unit with both
+//! rotors these are its scaled thrust and torque. A unit with one rotor, and a shortage, is on a segment: y = (x, 1) with x in
+//! [0, 1], where the second column of B is what it gives at x = 0.
+
+use core::hint::black_box;
+
+use crate::attainable::Corner;
+use crate::rolled;
+use crate::rotors::Rotors;
+
+/// No breakpoint: further than any dual step.
+pub(super) const NEVER: f32 = 1e9;
+
+/// Slopes below this are rounding.
+const LEAST_SLOPE: f32 = 1e-6;
+const LEAST_SLOPE_OF_EDGE: f32 = 1e-5;
+
+/// The segment of a shortage or a single rotor.
+const SEGMENT: [Corner; 2] = [
+    Corner {
+        at: [0.0, 1.0],
+        edge: [1.0, 0.0],
+        before: [-1.0, 0.0],
+        bound: 0.0,
+    },
+    Corner {
+        at: [1.0, 1.0],
+        edge: [-1.0, 0.0],
+        before: [1.0, 0.0],
+        bound: 0.0,
+    },
+];
+
+/// A point inside it.
+const MIDDLE: [f32; 2] = [0.5, 1.0];
+
+/// The set of a unit without rotors.
+const ORIGIN: [Corner; 1] = [Corner {
+    at: [0.0; 2],
+    edge: [0.0; 2],
+    before: [0.0; 2],
+    bound: 0.0,
+}];
+
+/// Where in its set a variable is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Place {
+    /// At a corner: no slot of the basis.
+    #[default]
+    Corner,
+    /// On the edge that leaves its corner: one slot.
+    Edge,
+    /// Anywhere: two slots.
+    Free,
+}
+
+/// The workspace of one unit, or of one shortage, while the general path runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scratch {
+    /// B: rows per coordinate.
+    pub(super) columns: [[f32; 4]; 2],
+    /// B^T lambda and a bias: what more of each coordinate is worth.
+    pub(super) gain: [f32; 2],
+    /// How the gain changes per unit of the dual step.
+    pub(super) rate: [f32; 2],
+    /// The coordinates; after [`allocate`](super::allocate) `[f, Q]`, N and N m at the reference voltage.
+    pub(crate) at: [f32; 2],
+    /// The coordinates without roll, pitch and yaw.
+    pub(super) level: [f32; 2],
+    /// The dual step at which the variable leaves its corner or its edge.
+    pub(super) breakpoint: f32,
+    /// Torque of a single rotor's curve beyond its chord, N m; the bias of a shortage, which is its cost.
+    pub(super) extra: f32,
+    pub(super) place: Place,
+    /// Index of its corner.
+    pub(super) corner: u8,
+    /// True where it leaves its corner along the corner's own edge, false along the edge before it.
+    pub(super) is_forward: bool,
+    /// The rotors of a unit; of a shortage the upper one, since it has a segment.
+    pub(crate) rotors: Rotors,
+}
+
+impl Default for Scratch {
+    #[inline(always)]
+    fn default() -> Self {
+        // Known zeros would be written by a call of memset, which a bare-metal target may not have.
+        let zero = black_box(0.0);
+        Scratch {
+            columns: [[zero; 4]; 2],
+            gain: [zero; 2],
+            rate: [zero; 2],
+            at: [zero; 2],
+            level: [zero; 2],
+            breakpoint: zero,
+            extra: zero,
+            place: Place::Corner,
+            corner: 0,
+            is_forward: false,
+            rotors: Rotors::Upper,
+        }
+    }
+}
+
+/// The polygon that units with both rotors have, and a point inside it.
+#[derive(Clone, Copy)]
+pub(super) struct Polygon<'a> {
+    pub(super) corners: &'a [Corner],
+    pub(super) centre: [f32; 2],
+}
+
+impl<'a> Polygon<'a> {
+    /// The corners of a variable's set.
+    #[inline(always)]
+    pub(super) fn set(&self, rotors: Rotors) -> &'a [Corner] {
+        match rotors {
+            Rotors::Both => self.corners,
+            Rotors::None => &ORIGIN,
+            _ => &SEGMENT,
+        }
+    }
+
+    /// A point inside it.
+    #[inline(always)]
+    pub(super) fn inside(&self, rotors: Rotors) -> [f32; 2] {
+        match rotors {
+            Rotors::Both => self.centre,
+            Rotors::None => [0.0; 2],
+            _ => MIDDLE,
+        }
+    }
+}
+
+/// The corner of this index; the origin beyond the last.
+#[inline(always)]
+pub(super) fn corner(set: &[Corner], index: u8) -> &Corner {
+    const NONE: &Corner = &ORIGIN[0];
+    set.get(usize::from(index)).unwrap_or(NONE)
+}
+
+/// The index after this one.
+#[inline(always)]
+pub(super) fn next(set: &[Corner], index: u8) -> u8 {
+    if usize::from(index) + 1 >= set.len() {
+        0
+    } else {
+        index + 1
+    }
+}
+
+/// The index before this one.
+#[inline(always)]
+fn before(set: &[Corner], index: u8) -> u8 {
+    if index == 0 {
+        set.len() as u8 - 1
+    } else {
+        index - 1
+    }
+}
+
+#[inline(always)]
+fn dot2(a: [f32; 2], b: [f32; 2]) -> f32 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+#[inline(always)]
+pub(super) fn dot(a: &[f32; 4], b: &[f32; 4]) -> f32 {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
+}
+
+/// `from` and a share of the way from there to `to`.
+#[inline(always)]
+pub(super) fn between(from: [f32; 2], to: [f32; 2], share: f32) -> [f32; 2] {
+    [0, 1].map(|k| from[k] + share * (to[k] - from[k]))
+}
+
+#[inline(always)]
+pub(super) fn positive(x: f32) -> f32 {
+    if x > 0.0 { x } else { 0.0 }
+}
+
+impl Scratch {
+    /// As many as are asked for.
+    #[inline(always)]
+    pub(crate) fn array<const COUNT: usize>() -> [Scratch; COUNT] {
+        core::array::from_fn(|_| Scratch::default())
+    }
+
+    /// The efforts `[f, Q]` that were found, N and N m at the reference voltage.
+    pub fn efforts(&self) -> [f32; 2] {
+        self.at
+    }
+
+    /// Takes what coordinates give from `rows`.
+    #[inline(never)]
+    pub(super) fn subtract(&self, [y0, y1]: [f32; 2], rows: &mut [f32; 4]) {
+        let [first, second] = &self.columns;
+        for ((row, first), second) in rows.iter_mut().zip(first).zip(second) {
+            *row -= first * y0 + second * y1;
+        }
+    }
+
+    /// B^T times rows.
+    #[inline(always)]
+    pub(super) fn transposed(&self, rows: &[f32; 4]) -> [f32; 2] {
+        [dot(&self.columns[0], rows), dot(&self.columns[1], rows)]
+    }
+
+    /// Moves to the corner with the largest gain.
+    pub(super) fn choose_corner(&mut self, set: &[Corner]) {
+        let mut best = f32::MIN;
+        for (index, corner) in (0u8..).zip(set) {
+            rolled();
+            let gain = dot2(self.gain, corner.at);
+            if gain > best {
+                best = gain;
+                self.corner = index;
+            }
+        }
+    }
+
+    /// Takes the last dual step and finds the breakpoint in a direction of lambda.
+    #[inline(always)]
+    pub(super) fn look_ahead(&mut self, set: &[Corner], last_step: f32, direction: &[f32; 4]) {
+        if self.rotors != Rotors::Both {
+            return self.look_ahead_on_segment(last_step, direction);
+        }
+        let rate = self.transposed(direction);
+        let gain = [0, 1].map(|k| self.gain[k] + last_step * self.rate[k]);
+        (self.gain, self.rate) = (gain, rate);
+        self.breakpoint = NEVER;
+        if self.place == Place::Free {
+            return;
+        }
+        let corner = corner(set, self.corner);
+        if self.place == Place::Edge {
+            let slope = -corner.outward(rate);
+            if slope > LEAST_SLOPE_OF_EDGE {
+                self.breakpoint = positive(corner.outward(gain)) / slope;
+            }
+            return;
+        }
+        let slope = dot2(corner.edge, rate);
+        if slope > LEAST_SLOPE {
+            self.breakpoint = positive(-dot2(corner.edge, gain)) / slope;
+            self.is_forward = true;
+        }
+        let slope = -dot2(corner.before, rate);
+        if slope > LEAST_SLOPE {
+            let breakpoint = positive(dot2(corner.before, gain)) / slope;
+            if breakpoint < self.breakpoint {
+                self.breakpoint = breakpoint;
+                self.is_forward = false;
+            }
+        }
+    }
+
+    /// As [`Scratch::look_ahead`].
+    #[inline(always)]
+    pub(super) fn look_ahead_on_segment(&mut self, last_step: f32, direction: &[f32; 4]) {
+        let rate = dot(&self.columns[0], direction);
+        let gain = self.gain[0] + last_step * self.rate[0];
+        (self.gain[0], self.rate[0], self.breakpoint) = (gain, rate, NEVER);
+        if self.place == Place::Edge {
+            return;
+        }
+        let (gain, slope) = if self.corner == 0 { (-gain, rate) } else { (gain, -rate) };
+        if slope > LEAST_SLOPE {
+            self.breakpoint = positive(gain) / slope;
+            self.is_forward = true;
+        }
+    }
+
+    /// The edge along which it leaves its corner: its index and its direction from here.
+    #[inline(always)]
+    pub(super) fn way(&self, set: &[Corner]) -> (u8, [f32; 2]) {
+        let corner = corner(set, self.corner);
+        if self.is_forward {
+            (self.corner, corner.edge)
+        } else {
+            (before(set, self.corner), corner.before.map(|part| -part))
+        }
+    }
+
+    /// Moves on to the corner at the end of its way, with the breakpoint after `step` there.
+    #[inline(always)]
+    pub(super) fn flip(&mut self, set: &[Corner], step: f32) {
+        self.corner = if self.is_forward {
+            next(set, self.corner)
+        } else {
+            before(set, self.corner)
+        };
+        let (_, way) = self.way(set);
+        let slope = dot2(way, self.rate);
+        self.breakpoint = NEVER;
+        if slope > LEAST_SLOPE {
+            let breakpoint = -dot2(way, self.gain) / slope;
+            self.breakpoint = if breakpoint > step { breakpoint } else { step };
+        }
+    }
+}
