@@ -155,14 +155,6 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let voltage = voltage(tables);
     let attainable = attainable(&tables.attainable);
     let rows = vector(&tables.rows);
-    let level = match &tables.level {
-        None => quote!(::core::option::Option::None),
-        Some(level) => {
-            let thrust = vector(&level.thrust);
-            let efforts = level.efforts.iter().map(|efforts| matrix(efforts));
-            quote!(::core::option::Option::Some(::mixer_rt::Level { thrust: #thrust, efforts: &[#(#efforts),*] }))
-        }
-    };
     let shortcut = shortcut(tables.shortcut.as_ref());
     let limits = &tables.desaturation;
     let airmode = identifier(&format!("{:?}", limits.airmode));
@@ -178,7 +170,6 @@ fn tables(tables: &MixerTables) -> TokenStream {
             voltage: #voltage,
             attainable: #attainable,
             rows: #rows,
-            level: #level,
             desaturation: ::mixer_rt::Desaturation {
                 airmode: ::mixer_rt::Airmode::#airmode,
                 yaw_reserve_nm: #reserve,

@@ -115,7 +115,6 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
     let in_polygon = hover::thrust_range(&airframe, &tables)?;
-    tables.set_level(in_polygon);
     let (shortcut, lost_between_sides) = vertical::table(&airframe, &effectiveness).unzip();
     tables.shortcut = shortcut;
     let thrust_range_n = hover::delivered_range(&airframe, &tables, in_polygon);

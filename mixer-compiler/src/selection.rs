@@ -151,7 +151,6 @@ fn assemble(
         voltage,
         attainable: polygon.table(),
         rows: rows(airframe, effectiveness, pair),
-        level: None,
         desaturation: Desaturation {
             airmode: airframe.allocation.airmode,
             yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,

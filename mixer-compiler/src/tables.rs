@@ -7,7 +7,7 @@ mod border;
 mod inverse;
 
 use mixer_rt::{
-    AttainableSet, Biquadratic, Corner, Cubic, Desaturation, Facets, Health, Level, Pair, Quantity, Quartic,
+    AttainableSet, Biquadratic, Corner, Cubic, Desaturation, Facets, Health, Pair, Quantity, Quartic,
     Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit, Vertical,
     VerticalUnit, Voltage, VoltageLaw, Wrench,
 };
@@ -36,23 +36,12 @@ pub struct MixerTables {
     pub attainable: AttainableTable,
     /// Rows of the general path per N m and N: [`mixer_rt::Tables::rows`].
     pub rows: [f32; 4],
-    /// Level flight.
-    pub level: Option<LevelTable>,
     /// Priorities of desaturation.
     pub desaturation: Desaturation,
     /// A shorter way to desaturate, where the layout allows one.
     pub shortcut: Option<VerticalTable>,
     /// What the mixer may miss.
     pub tolerance: Tolerance,
-}
-
-/// Level flight with all rotors.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LevelTable {
-    /// Least and middling thrust, rows.
-    pub thrust: [f32; 2],
-    /// Efforts per unit at these, N and N m.
-    pub efforts: Vec<[[f32; 2]; 2]>,
 }
 
 /// The attainable set.
@@ -197,10 +186,6 @@ impl MixerTables {
             voltage: self.voltage.as_ref().map(VoltageTable::view),
             attainable: self.attainable.view(),
             rows: self.rows,
-            level: self.level.as_ref().map(|level| Level {
-                thrust: level.thrust,
-                efforts: &level.efforts,
-            }),
             desaturation: self.desaturation,
             shortcut: self.shortcut.as_ref().map(VerticalTable::view),
             tolerance: self.tolerance,
@@ -238,24 +223,6 @@ impl MixerTables {
         Ok((throttle, achieved, saturation))
     }
 
-    /// Tells the general path what level flight is between the least and the largest thrust in N.
-    pub(crate) fn set_level(&mut self, [least, most]: [f32; 2]) {
-        let mut scratch = vec![Scratch::default(); self.units.len()];
-        let thrust = [least, 0.5 * (least + most)];
-        let [at_least, at_middle] = thrust.map(|thrust| {
-            mixer_rt::level_efforts(&self.view(), thrust, &mut scratch);
-            scratch.iter().map(Scratch::efforts).collect::<Vec<_>>()
-        });
-        let efforts = at_least
-            .into_iter()
-            .zip(at_middle)
-            .map(|(least, middle)| [least, middle]);
-        self.level = Some(LevelTable {
-            thrust: thrust.map(|thrust| thrust * self.rows[3]),
-            efforts: efforts.collect(),
-        });
-    }
-
     /// Bytes of the tables in flash: four per number, one per channel.
     pub fn bytes(&self) -> usize {
         let floats = self.units.len() * 16
@@ -265,7 +232,6 @@ impl MixerTables {
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
             + 4 + 7 * self.attainable.corners.len()
             + 4 // rows
-            + self.level.as_ref().map_or(0, |level| 2 + 4 * level.efforts.len())
             + self.shortcut.as_ref().map_or(0, VerticalTable::floats)
             + 2 // desaturation
             + 6; // tolerance

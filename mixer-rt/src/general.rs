@@ -13,7 +13,7 @@
 //! ```text
 //! 1. efforts of least norm; where they are inside all polygons they are the answer
 //! 2. the programme for the request; the curves of single rotors take the place of their chords
-//! 3. where the budget of pivots has ended first: towards level flight until all bounds are met ([`retreat`])
+//! 3. where the budget of pivots has ended first: the programme for level flight at the thrust asked
 //! 4. towards the efforts of least norm as far as the polygons allow
 //! ```
 //!
@@ -30,7 +30,6 @@
 
 use core::hint::black_box;
 
-mod retreat;
 mod shortage;
 mod simplex;
 mod variable;
@@ -39,7 +38,7 @@ pub use variable::Scratch;
 
 use crate::rotors::Rotors;
 use crate::tables::Tables;
-use crate::{Quantity, rolled};
+use crate::{Desaturation, Quantity, rolled};
 use shortage::RAY;
 use simplex::{Budget, SHORTAGES, Simplex};
 use variable::{Polygon, between, positive};
@@ -57,6 +56,9 @@ const BUDGET: Budget = Budget {
     pivots: PIVOTS,
     flips: FLIPS,
 };
+
+/// The same for level flight.
+const LEVEL_BUDGET: Budget = Budget { pivots: 8, flips: 32 };
 
 /// The multipliers at the start, per row of the request's distance from the centres: so units start at corners on the
 /// request's side. Chosen for the fewest pivots (0.001 to 1 differ by less than a sixth).
@@ -98,14 +100,6 @@ pub(crate) fn allocate<P: Quantity, I, S>(
         let [first, second] = frame.efforts[unit.rotors as usize & 3];
         unit.at = [0, 1].map(|k| first[k] * unit.at[0] + second[k] * unit.at[1]);
     }
-}
-
-/// The efforts of level flight at a thrust in N, for the compiler.
-pub fn level_efforts<P: Quantity, I, S>(tables: &Tables<'_, P, I, S>, thrust_n: f32, units: &mut [Scratch]) {
-    for unit in units.iter_mut() {
-        unit.rotors = Rotors::Both;
-    }
-    allocate(tables, &[0.0, 0.0, 0.0, thrust_n], [1.0; 2], units);
 }
 
 impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
@@ -183,26 +177,31 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
                     *part *= row;
                 }
             }
-            unit.extra = 0.0;
             unit.subtract(self.polygon.inside(unit.rotors), centre);
         }
     }
 
     /// The linear programme: writes the units' coordinates.
-    #[inline(never)]
+    #[inline(always)]
     fn programme(&self, request: &[f32; 4], units: &mut [Scratch], is_whole: bool) {
         let tables = self.tables;
         let mut centre = [0.0; 4];
         self.prepare(units, &mut centre);
         let mut wanted = [0, 1, 2, 3].map(|k| request[k] * self.rows[k]);
-        let mut shortages = Scratch::array::<SHORTAGES>();
+        let mut shortages = [Scratch::default(); SHORTAGES];
+        let centre = centre.map(|row| -row);
+        let Desaturation {
+            airmode,
+            yaw_reserve_nm,
+        } = tables.desaturation;
+        let reserve = yaw_reserve_nm * self.rows[2];
         let count = shortage::write(
             &mut shortages,
             &mut wanted,
-            &centre.map(|row| -row),
+            &centre,
             units.len(),
-            tables.desaturation.airmode,
-            tables.desaturation.yaw_reserve_nm * self.rows[2],
+            airmode,
+            reserve,
         );
         let ahead = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - centre[k]));
         let mut simplex = Simplex::new(units, &mut shortages, self.polygon);
@@ -222,8 +221,18 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             unit.at = between(self.polygon.inside(unit.rotors), unit.at, share);
         }
         if !is_solved {
-            let level = tables.level.as_ref().filter(|_| is_whole);
-            simplex.retreat(level, wanted[3], tables.attainable.scale);
+            shortage::write(
+                simplex.shortages,
+                &mut wanted,
+                &centre,
+                simplex.units.len(),
+                airmode,
+                reserve,
+            );
+            let level = [0.0, 0.0, 0.0, wanted[3]];
+            simplex.start(&level, &[0.0; 4], shortage::LEVEL, LEVEL_BUDGET);
+            simplex.solve();
+            simplex.place();
         } else if is_whole {
             for (index, shortage) in shortages.iter().take(count).enumerate() {
                 rolled();
@@ -254,10 +263,10 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             let [f, chord] = [0, 1].map(|k| low[k] + x * along[k]);
             let [u, l] = unit.rotors.invert(&tables.pair, &tables.throttle, f);
             let extra = (tables.pair.torque.value(u, l) - chord) / share;
-            let change = extra - unit.extra;
+            let change = extra - unit.rate[1];
             if change.abs() > TOUCHING * tables.attainable.scale[1] {
                 has_moved = true;
-                unit.extra = extra;
+                unit.rate[1] = extra;
                 let mut wrench = [0.0; 4];
                 table.add_wrench([0.0, change], self.factors, &mut wrench);
                 for ((residual, part), row) in simplex.residual.iter_mut().zip(wrench).zip(self.rows) {

@@ -46,7 +46,7 @@ mod wrench;
 pub use attainable::{AttainableSet, Corner};
 pub use desaturation::{Airmode, Desaturation};
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
-pub use general::{FLIPS, PIVOTS, Scratch, level_efforts};
+pub use general::{FLIPS, PIVOTS, Scratch};
 pub use health::Health;
 pub use inverse::{
     BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,
@@ -57,7 +57,7 @@ pub use saturation::{Direction, Saturation};
 pub use scalar::Scalar;
 pub use sqrt::sqrt;
 pub use table::TableSeed;
-pub use tables::{Level, Tables, Tolerance, Unit};
+pub use tables::{Tables, Tolerance, Unit};
 pub use vertical::{Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortcut, Vertical, VerticalUnit};
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};

@@ -50,7 +50,7 @@ pub fn mix_with_health<const UNITS: usize, const CHANNELS: usize, P: Quantity, I
     let (achieved, saturation) = match (tables.shortcut.vertical(), health.is_good()) {
         (Some(vertical), true) => mix_vertical(tables, vertical, setpoint, voltage_v, &mut throttle)?,
         _ => {
-            let mut scratch = Scratch::array::<UNITS>();
+            let mut scratch = [Scratch::default(); UNITS];
             mix_units(
                 tables,
                 tables.units,

@@ -45,15 +45,6 @@ pub struct Tolerance {
     pub wrench: [f32; 4],
 }
 
-/// Level flight with all rotors: what the general path retreats to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level<'a> {
-    /// The least thrust without roll, pitch and yaw, and a middling one, in rows.
-    pub thrust: [f32; 2],
-    /// Per unit the efforts `[f, Q]` at these, N and N m at the reference voltage.
-    pub efforts: &'a [[[f32; 2]; 2]],
-}
-
 /// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator of its inverse, `S`
 /// the shorter way to desaturate where there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,8 +64,6 @@ pub struct Tables<'a, P, I, S = NoShortcut> {
     /// Rows of the general path per N m of roll, pitch and yaw and per N of thrust: units over authority at the reference
     /// voltage, roll and pitch alike; 0 on axes that the airframe does not serve.
     pub rows: [f32; 4],
-    /// Level flight.
-    pub level: Option<Level<'a>>,
     /// What is given up when a unit cannot follow.
     pub desaturation: Desaturation,
     /// A shorter way to desaturate while all rotors work.

@@ -15,8 +15,8 @@
 //! that nothing is reversed.
 
 use super::simplex::SHORTAGES;
-use super::variable::Scratch;
-use crate::{Airmode, clamp, sqrt};
+use super::variable::{NEVER, Scratch};
+use crate::{Airmode, clamp, rolled, sqrt};
 
 /// The shortages of thrust, which come first: all that there are without roll, pitch and yaw.
 pub(super) const LEVEL: usize = 2;
@@ -109,7 +109,9 @@ pub(super) fn write(
         ([0.0, 0.0, sign * within, 0.0], RESERVE * within),
     ];
     for (shortage, (rows, cost)) in shortages.iter_mut().zip(values) {
-        (shortage.columns[0], shortage.extra) = (rows, cost);
+        rolled();
+        (shortage.columns[0], shortage.gain) = (rows, [-cost, 0.0]);
+        shortage.breakpoint = NEVER;
     }
     if reserve > 0.0 { SHORTAGES } else { WITHOUT_RESERVE }
 }

@@ -108,6 +108,35 @@ pub(super) struct Simplex<'a> {
     pub(super) budget: Budget,
 }
 
+/// Puts variables, whose gains are their bias, at the corners that the multipliers make best; takes what they give there from
+/// `residual`.
+#[inline(never)]
+fn put_at_corners(
+    variables: &mut [Scratch],
+    polygon: &Polygon<'_>,
+    multipliers: &[f32; 4],
+    residual: &mut [f32; 4],
+) {
+    for variable in variables {
+        rolled();
+        let worth = variable.transposed(multipliers);
+        variable.gain = [0, 1].map(|k| variable.gain[k] + worth[k]);
+        (variable.rate, variable.place) = ([0.0; 2], Place::Corner);
+        let set = polygon.set(variable.rotors);
+        variable.choose_corner(set);
+        variable.subtract(corner(set, variable.corner).at, residual);
+    }
+}
+
+/// Gives variables the coordinates of their corners.
+#[inline(never)]
+fn take_corners(variables: &mut [Scratch], polygon: &Polygon<'_>) {
+    for variable in variables {
+        rolled();
+        variable.at = corner(polygon.set(variable.rotors), variable.corner).at;
+    }
+}
+
 impl<'a> Simplex<'a> {
     /// The programme before [`Simplex::start`].
     #[inline(always)]
@@ -131,7 +160,7 @@ impl<'a> Simplex<'a> {
         }
     }
 
-    /// Starts with `count` shortages, the variables at the corners that `multipliers` put them at, and artificial slots.
+    /// Starts with the first `count` shortages, whose gains are their costs, the variables at the corners that `multipliers` put them at, and artificial slots.
     #[inline(never)]
     pub(super) fn start(&mut self, wanted: &[f32; 4], multipliers: &[f32; 4], count: usize, budget: Budget) {
         self.budget = budget;
@@ -147,20 +176,9 @@ impl<'a> Simplex<'a> {
             weyl += 0.618_034;
             weyl -= if weyl >= 1.0 { 1.0 } else { 0.0 };
         }
-        for variable in self.shortages.iter_mut() {
-            rolled();
-            (variable.gain, variable.breakpoint) = ([-variable.extra, 0.0], NEVER);
-        }
-        let (polygon, residual) = (self.polygon, &mut self.residual);
-        for variable in self.units.iter_mut().chain(self.shortages.iter_mut().take(count)) {
-            rolled();
-            let worth = variable.transposed(multipliers);
-            variable.gain = [0, 1].map(|k| variable.gain[k] + worth[k]);
-            (variable.rate, variable.place) = ([0.0; 2], Place::Corner);
-            let set = polygon.set(variable.rotors);
-            variable.choose_corner(set);
-            variable.subtract(corner(set, variable.corner).at, residual);
-        }
+        let shortages = self.shortages.get_mut(..count).unwrap_or_default();
+        put_at_corners(self.units, &self.polygon, multipliers, &mut self.residual);
+        put_at_corners(shortages, &self.polygon, multipliers, &mut self.residual);
     }
 
     /// Pivots until all slots are within their bounds; false where the budget ends first.
@@ -311,7 +329,8 @@ impl<'a> Simplex<'a> {
             rolled();
             unit.look_ahead(self.polygon.set(unit.rotors), self.step, direction);
         }
-        for shortage in self.shortages.iter_mut().take(self.count) {
+        let shortages = self.shortages.get_mut(..self.count).unwrap_or_default();
+        for shortage in shortages {
             rolled();
             shortage.look_ahead_on_segment(self.step, direction);
         }
@@ -362,7 +381,7 @@ impl<'a> Simplex<'a> {
     }
 
     /// One pivot.
-    #[inline(never)]
+    #[inline(always)]
     fn pivot(&mut self, leaving: &Leaving) {
         let (slot, direction) = self.release(leaving);
         self.look_ahead(&direction);
@@ -394,7 +413,8 @@ impl<'a> Simplex<'a> {
                     variable: entering as u8,
                 };
             }
-            self.variable(entering).subtract(way.map(|part| -part), &mut column);
+            self.variable(entering)
+                .subtract(way.map(|part| -part), &mut column);
         }
         for (multiplier, part) in self.multipliers.iter_mut().zip(direction) {
             rolled();
@@ -413,7 +433,11 @@ impl<'a> Simplex<'a> {
         let mut row = 0;
         for (k, (multiplier, rate)) in self.multipliers.iter().zip(direction).enumerate() {
             rolled();
-            let limit = if *rate > 0.0 { LARGEST_MULTIPLIER } else { -LARGEST_MULTIPLIER };
+            let limit = if *rate > 0.0 {
+                LARGEST_MULTIPLIER
+            } else {
+                -LARGEST_MULTIPLIER
+            };
             let room = positive((limit - multiplier) / rate);
             if *rate != 0.0 && room < self.step {
                 (self.step, row) = (room, k);
@@ -464,11 +488,8 @@ impl<'a> Simplex<'a> {
     /// Writes the coordinates of all variables.
     #[inline(never)]
     pub(super) fn place(&mut self) {
-        let polygon = self.polygon;
-        for variable in self.units.iter_mut().chain(self.shortages.iter_mut()) {
-            rolled();
-            variable.at = corner(polygon.set(variable.rotors), variable.corner).at;
-        }
+        take_corners(self.units, &self.polygon);
+        take_corners(self.shortages, &self.polygon);
         for (slot, value) in self.slots.into_iter().zip(self.values) {
             rolled();
             let (variable, set, _) = self.parts(usize::from(slot.variable));

@@ -63,16 +63,13 @@ pub struct Scratch {
     pub(super) columns: [[f32; 4]; 2],
     /// B^T lambda and a bias: what more of each coordinate is worth.
     pub(super) gain: [f32; 2],
-    /// How the gain changes per unit of the dual step.
+    /// How the gain changes per unit of the dual step. On a segment, which has no second gain, the second is the torque of a
+    /// single rotor's curve beyond its chord, N m.
     pub(super) rate: [f32; 2],
     /// The coordinates; after [`allocate`](super::allocate) `[f, Q]`, N and N m at the reference voltage.
     pub(crate) at: [f32; 2],
-    /// The coordinates without roll, pitch and yaw.
-    pub(super) level: [f32; 2],
     /// The dual step at which the variable leaves its corner or its edge.
     pub(super) breakpoint: f32,
-    /// Torque of a single rotor's curve beyond its chord, N m; the bias of a shortage, which is its cost.
-    pub(super) extra: f32,
     pub(super) place: Place,
     /// Index of its corner.
     pub(super) corner: u8,
@@ -92,9 +89,7 @@ impl Default for Scratch {
             gain: [zero; 2],
             rate: [zero; 2],
             at: [zero; 2],
-            level: [zero; 2],
             breakpoint: zero,
-            extra: zero,
             place: Place::Corner,
             corner: 0,
             is_forward: false,
@@ -181,12 +176,6 @@ pub(super) fn positive(x: f32) -> f32 {
 }
 
 impl Scratch {
-    /// As many as are asked for.
-    #[inline(always)]
-    pub(crate) fn array<const COUNT: usize>() -> [Scratch; COUNT] {
-        core::array::from_fn(|_| Scratch::default())
-    }
-
     /// The efforts `[f, Q]` that were found, N and N m at the reference voltage.
     pub fn efforts(&self) -> [f32; 2] {
         self.at
@@ -265,7 +254,11 @@ impl Scratch {
         if self.place == Place::Edge {
             return;
         }
-        let (gain, slope) = if self.corner == 0 { (-gain, rate) } else { (gain, -rate) };
+        let (gain, slope) = if self.corner == 0 {
+            (-gain, rate)
+        } else {
+            (gain, -rate)
+        };
         if slope > LEAST_SLOPE {
             self.breakpoint = positive(gain) / slope;
             self.is_forward = true;
