@@ -327,8 +327,7 @@ fn bounds_hold_what_was_counted() {
     let (_, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
     let samples = overhead::samples(&held).unwrap_or_else(|e| panic!("{e}"));
     for sample in samples {
-        let sets = ["attainable_worst", "saturated_worst", "searched_worst"];
-        let worst = sets.map(|set| sample.row.get(set)).into_iter().fold(0, u64::max);
+        let worst = sample.row.worst();
         let Some(bound) = sample.bound else { continue };
         println!("{}: {worst} of {bound}", sample.airframe);
         assert!(

@@ -153,6 +153,12 @@ impl Row {
         self.get(&format!("{set}_sum")) as f64 / self.get("requests") as f64
     }
 
+    /// The most instructions of any request of any set.
+    pub fn worst(&self) -> u64 {
+        let sets = ["attainable_worst", "saturated_worst", "searched_worst"];
+        sets.into_iter().map(|set| self.get(set)).max().unwrap_or(0)
+    }
+
     fn parse(line: &str) -> Option<Row> {
         let cells: Vec<&str> = line.split(',').collect();
         let [mixer, airframe, values @ ..] = &cells[..] else {
@@ -256,14 +262,13 @@ pub fn document(compiler: &str, rows: &[Row]) -> String {
          |---|---|---:|---:|---:|---:|---:|---:|\n"
     );
     for row in rows {
-        let worst = ["attainable_worst", "saturated_worst", "searched_worst"].map(|set| row.get(set));
         text.push_str(&format!(
             "| {} | {} | {:.0} | {:.0} | {} | {} | {} | {} |\n",
             row.subject.mixer,
             row.subject.airframe,
             row.mean("attainable"),
             row.mean("saturated"),
-            worst.into_iter().fold(0, u64::max),
+            row.worst(),
             row.get("code_b"),
             row.get("tables_b"),
             row.get("stack_b"),

@@ -44,7 +44,7 @@ struct Vectors {
 fn vectors(path: &Path) -> Result<Vectors, String> {
     let file = path.display();
     let text = fs::read_to_string(path).map_err(|e| {
-        format!("cannot read the golden vectors {file}: {e}; bless them first, see the README")
+        format!("cannot read the golden vectors {file}: {e}; `cargo xtask bless` writes them")
     })?;
     let mut lines = text.lines().enumerate();
     let header = lines.next().map_or("", |(_, line)| line);
