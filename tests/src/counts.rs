@@ -1,4 +1,4 @@
-//! What a mix costs on the target: instructions, counted one by one by the `counts` image of `examples/firmware`, and
+//! What a mix costs on the target: instructions, counted one by one by the `counts` image of `tests/firmware`, and
 //! bytes of code, tables and stack.
 //!
 //! `tests/counts.csv` holds a [`Row`] per [`Subject`]. It is written by `cargo run -p mixer-tests --bin counts -- --bless`
@@ -21,7 +21,7 @@ pub struct Subject {
     /// `coaxial`; the same with one or two rotors out, at random channels: `one-rotor-out`, `two-rotors-out`; or a
     /// baseline: `conventional`, `sequential`, `wls`.
     pub mixer: String,
-    /// A file of `airframes/`, or one of `examples/firmware/build/frames.rs`.
+    /// A file of `airframes/`, or one of `tests/firmware/build/frames.rs`.
     pub airframe: String,
 }
 
@@ -257,7 +257,7 @@ pub fn document(compiler: &str, rows: &[Row]) -> String {
          * worst: the most of these, and of a search for more\n\n\
          Mixers: `coaxial` is this one, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (attainable: with all \
          rotors); `conventional` (the paper's), `sequential` (after PX4) and `wls` (the crate `wls-alloc`) take rotors as isolated. Airframes are files of `airframes/`, \
-         `y6-*` with the pairs of the `x8-*`, and frames of `examples/firmware/build/frames.rs`.\n\n\
+         `y6-*` with the pairs of the `x8-*`, and frames of `tests/firmware/build/frames.rs`.\n\n\
          | mixer | airframe | attainable, mean | saturated, mean | worst | code | tables | stack |\n\
          |---|---|---:|---:|---:|---:|---:|---:|\n"
     );

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::counts::Row;
 use crate::{frames, golden, root};
 
-#[path = "../../examples/firmware/build/frames.rs"]
+#[path = "../firmware/build/frames.rs"]
 mod measured;
 
 /// A counted mixer with what its cost is modelled by.
