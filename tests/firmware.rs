@@ -148,7 +148,7 @@ fn evaluators_cost_what_the_compiler_believes() {
         for (counted, stated) in counted.iter().zip(stated) {
             assert!(
                 counted.abs_diff(stated) <= stated / 20,
-                "{name} takes {counted} instructions, mixer-compiler/src/evaluator/cost.rs says {stated}: run \
+                "{name} takes {counted} instructions, mixer-compiler/src/inverse/evaluator/cost.rs says {stated}: run \
                  `cargo run --release -p mixer-tests --bin evaluators`"
             );
         }

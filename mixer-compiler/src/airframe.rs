@@ -2,6 +2,7 @@
 
 mod allocation;
 mod inverse;
+mod layout;
 mod name;
 mod pair;
 mod unit;
@@ -19,9 +20,8 @@ pub(crate) use self::unit::FARTHEST_M;
 pub use self::unit::{MOST_UNITS, Unit};
 pub use self::vehicle::Vehicle;
 pub use self::voltage::{Voltage, VoltageLaw};
+use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, any_of, nearest, number, quoted};
-use crate::layout;
-use crate::source::Source;
 use crate::spec::{self, Places, Spec};
 
 /// An airframe whose values are checked, in SI units. Made by [`Airframe::read`] alone, so that the ranges stated

@@ -1,6 +1,7 @@
 //! Faults in an airframe file and warnings of it: what is wrong, where, by how much, and what would mend it.
 
 mod code;
+pub mod source;
 mod wording;
 
 use std::fmt;
@@ -12,7 +13,7 @@ use serde::Serialize;
 
 pub use self::code::{Code, Severity};
 pub(crate) use self::wording::{any_of, nearest, number, quoted, rounded};
-use crate::source::{BYTE_ORDER_MARK, Place, Source};
+use crate::diagnostic::source::{BYTE_ORDER_MARK, Place, Source};
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -12,6 +12,7 @@ mod bend;
 mod cell;
 mod correction;
 mod expansion;
+pub(crate) mod residual;
 mod table;
 mod taylor;
 
@@ -19,7 +20,7 @@ use std::collections::BinaryHeap;
 
 use crate::airframe::Airframe;
 use crate::model::PairMap;
-use crate::residual::Residual;
+use crate::proof::residual::Residual;
 use crate::tables::MixerTables;
 use cell::{Cell, Subject};
 use expansion::Monomials;

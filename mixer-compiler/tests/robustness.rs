@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
+use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::source::Source;
 use proptest::prelude::*;
 
 /// Reads the text and, if it is bad, goes through everything that a user may be shown of it.

@@ -1,8 +1,8 @@
 //! The vehicle in hover.
 
+use mixer_compiler::hover::{GRAVITY, Hover};
 use mixer_compiler::model::PairMap;
 use mixer_compiler::report::{Report, Summary};
-use mixer_compiler::vehicle::{GRAVITY, Hover};
 use mixer_compiler::{Compiled, Source, compile};
 
 fn x8(vehicle: &str) -> Compiled {

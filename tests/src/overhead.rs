@@ -1,6 +1,6 @@
 //! The compiler's model of what a mix costs, fitted to `tests/counts.csv`.
 //!
-//! `mixer-compiler/src/cost/counted.rs` is written by `cargo run -p mixer-tests --bin counts -- --fit`, and with the
+//! `mixer-compiler/src/output/cost/counted.rs` is written by `cargo run -p mixer-tests --bin counts -- --fit`, and with the
 //! counts themselves by `-- --bless`. It follows from them and from the evaluators' counts alone.
 
 use std::fs;
@@ -206,7 +206,7 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
 
 /// The file that holds the fit.
 pub fn file() -> PathBuf {
-    root().join("mixer-compiler/src/cost/counted.rs")
+    root().join("mixer-compiler/src/output/cost/counted.rs")
 }
 
 /// Writes [`file()`].

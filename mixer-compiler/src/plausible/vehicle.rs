@@ -2,7 +2,7 @@
 
 use super::Facts;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
-use crate::vehicle::GRAVITY;
+use crate::output::hover::GRAVITY;
 
 /// Share of the largest bare thrust above which hover leaves too little for control.
 const HIGH: f64 = 0.8;

@@ -18,7 +18,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use mixer_rt::{Scalar, TableSeed};
 
-use crate::interval::Interval;
+use crate::model::interval::Interval;
 
 /// See the module.
 #[derive(Clone, Copy, Debug, PartialEq)]

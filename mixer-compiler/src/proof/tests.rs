@@ -2,7 +2,7 @@
 
 use super::enclosure_tests::numbers;
 use super::*;
-use crate::source::Source;
+use crate::diagnostic::source::Source;
 use crate::tables::{InverseTable, SeedTable};
 use mixer_rt::Inverse;
 

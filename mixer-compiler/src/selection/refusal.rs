@@ -3,8 +3,8 @@
 use super::{Best, choose};
 use crate::airframe::{Airframe, Method};
 use crate::diagnostic::{Code, Diagnostic, number};
-use crate::effectiveness::Effectiveness;
-use crate::report::rounded_up;
+use crate::model::effectiveness::Effectiveness;
+use crate::output::report::rounded_up;
 use crate::tables::VoltageTable;
 
 /// Factors on the bounds that were reached: with other tolerances fits weigh thrust and torque differently, and may

@@ -5,7 +5,7 @@
 //! are, or until an end of an interval is itself not positive.
 
 use super::horner;
-use crate::bernstein;
+use crate::model::bernstein;
 
 /// Least k over the range. The mixer divides by k; below this a rotor hardly turns.
 pub(super) const LEAST_FACTOR: f64 = 1e-3;

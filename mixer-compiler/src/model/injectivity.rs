@@ -13,8 +13,8 @@
 
 use crate::airframe::{Airframe, Basis, Pair};
 use crate::diagnostic::{Code, Diagnostic, rounded};
-use crate::interval::Interval;
-use crate::polynomial::{Bivariate, Sign, ThrottleBox};
+use crate::model::interval::Interval;
+use crate::model::polynomial::{Bivariate, Sign, ThrottleBox};
 
 /// The pair's forward map with what the proof needs of it.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! A seed's terms in its coordinates.
 
 use super::{Coordinates, FittedInverse, Sample};
-use crate::evaluator::{Refinement, SeedForm};
+use crate::inverse::evaluator::{Refinement, SeedForm};
 
 /// A seed in its coordinates.
 #[derive(Clone, Copy, Debug)]

@@ -9,12 +9,12 @@ use serde::Serialize;
 
 use crate::Compiled;
 use crate::airframe::Method;
-use crate::cost;
-use crate::evaluator::Evaluator;
-use crate::inversion::Inversion;
+use crate::inverse::evaluator::Evaluator;
+use crate::inverse::fit::Inversion;
 use crate::model::PairMap;
+use crate::output::cost;
+use crate::proof::residual::Residual;
 use crate::proof::{self, Correction};
-use crate::residual::Residual;
 use crate::tables::{InverseTable, MixerTables};
 
 /// One evaluator as it would be emitted.

@@ -1,6 +1,6 @@
 //! What a mix costs on a Cortex-M4F.
 //!
-//! The inverse map is counted on its own, evaluator by evaluator ([`crate::evaluator::cost`]). A mix of n units that
+//! The inverse map is counted on its own, evaluator by evaluator ([`crate::inverse::evaluator::cost`]). A mix of n units that
 //! delivers the request by least norm takes about
 //!
 //! ```text
@@ -19,7 +19,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::Compiled;
-use crate::evaluator::Evaluator;
+use crate::inverse::evaluator::Evaluator;
 
 pub use counted::COUNTED;
 

@@ -14,7 +14,7 @@ mod sample;
 
 pub use coordinates::Coordinates;
 
-use crate::evaluator::{Evaluator, Refinement, SeedForm};
+use crate::inverse::evaluator::{Evaluator, Refinement, SeedForm};
 use crate::model::PairMap;
 use coordinates::Start;
 use form::Form;

@@ -22,8 +22,8 @@ use mixer_rt::Wrench;
 use nalgebra::DMatrix;
 
 use crate::airframe::Airframe;
-use crate::effectiveness::Effectiveness;
 use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
 
 /// Below this share of a column's largest entry a rotor has no part in an axis: rounding of the decomposition.
 const NO_SHARE: f64 = 1e-9;

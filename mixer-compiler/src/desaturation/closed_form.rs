@@ -7,8 +7,8 @@ use mixer_rt::{Airmode, Axis, Facets, VerticalUnit};
 use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
-use crate::effectiveness::Effectiveness;
 use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
 use crate::tables::VerticalTable;
 
 /// Of sums of a few f32 products.

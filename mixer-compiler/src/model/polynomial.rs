@@ -4,8 +4,8 @@
 //! Halving the box by de Casteljau's scheme makes those bounds converge quadratically, so a sign is proven in a
 //! few halvings. Coefficients are intervals throughout: what is proven holds in exact arithmetic.
 
-use crate::bernstein::binomial;
-use crate::interval::Interval;
+use crate::model::bernstein::binomial;
+use crate::model::interval::Interval;
 
 /// A polynomial `sum c[i][j] u^i l^j` with as many coefficients in every row.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,8 +12,8 @@ use quote::quote;
 
 use crate::Compiled;
 use crate::airframe::Airframe;
-use crate::effectiveness::Effectiveness;
 use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
 use crate::tables::{self, VoltageTable};
 
 /// Throttles at which kappa is fitted.

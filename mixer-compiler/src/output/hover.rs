@@ -153,7 +153,7 @@ fn furthest(largest: f64, delivered: impl Fn(f64) -> bool) -> f64 {
 fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
     let airframe = &compiled.airframe;
     let [f, q] = crate::model::PairMap::new(&airframe.pair, &airframe.throttle).scale();
-    let [k_f, k_q] = crate::voltage::largest_factors(airframe);
+    let [k_f, k_q] = crate::model::voltage::largest_factors(airframe);
     let row = compiled.effectiveness.matrix.row(axis as usize);
     let n = airframe.units.len();
     (0..n)

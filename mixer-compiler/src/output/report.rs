@@ -5,8 +5,8 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::Compiled;
-use crate::cost::Cost;
-use crate::vehicle::Hover;
+use crate::output::cost::Cost;
+use crate::output::hover::Hover;
 
 /// `cargo mixer check --json`, but for the time taken.
 #[derive(Clone, Debug, Serialize)]
