@@ -6,6 +6,7 @@
 pub mod airframe;
 #[cfg(feature = "format")]
 pub mod build_script;
+mod compiled;
 mod desaturation;
 pub mod diagnostic;
 mod inverse;
@@ -20,15 +21,15 @@ pub mod tables;
 use airframe::Airframe;
 use desaturation::{closed_form, thrust_range};
 use diagnostic::{Diagnostic, Diagnostics};
-use evaluator::Evaluator;
 use model::effectiveness::Effectiveness;
-use model::injectivity::{self, Injectivity};
+use model::injectivity;
 use model::voltage;
 use output::{emit, scale};
 use proc_macro2::TokenStream;
 use selection::Selected;
-use tables::{MixerTables, VoltageTable};
+use tables::VoltageTable;
 
+pub use compiled::Compiled;
 pub use desaturation::attainable::AreaLoss;
 pub use diagnostic::source::Source;
 pub use inverse::evaluator;
@@ -37,37 +38,6 @@ pub use output::isolated;
 pub use output::{alternatives, checklist, cost, hover, report};
 pub use proof::Certificate;
 pub use proof::residual::Residual;
-
-/// A compiled airframe: what emission and reports read.
-#[derive(Clone, Debug)]
-pub struct Compiled {
-    /// The source's name, as its user knows it.
-    pub source_name: String,
-    /// The checked model.
-    pub airframe: Airframe,
-    /// M and M+.
-    pub effectiveness: Effectiveness,
-    /// That the forward map can be inverted.
-    pub injectivity: Injectivity,
-    /// The least idle at which it can.
-    pub least_idle: f64,
-    /// The chosen evaluator.
-    pub evaluator: Evaluator,
-    /// What it was observed to miss.
-    pub residual: Residual,
-    /// Least and largest thrust that is delivered without torque at the reference voltage, N.
-    pub thrust_range_n: [f32; 2],
-    /// What it is proven to miss at most.
-    pub certificate: Certificate,
-    /// What the polygon inside the attainable set leaves out.
-    pub lost_area: AreaLoss,
-    /// What the sides leave out that desaturation in closed form reads instead; `None` without it.
-    pub lost_between_sides: Option<f64>,
-    /// What is emitted.
-    pub tables: MixerTables,
-    /// What is plausibly a mistake and yet compiles.
-    pub warnings: Diagnostics,
-}
 
 /// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> proof -> tables.
 ///

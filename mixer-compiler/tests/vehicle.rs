@@ -1,6 +1,7 @@
 //! The vehicle in hover.
 
-use mixer_compiler::hover::{GRAVITY, Hover};
+use mixer_compiler::airframe::GRAVITY;
+use mixer_compiler::hover::Hover;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::report::{Report, Summary};
 use mixer_compiler::{Compiled, Source, compile};

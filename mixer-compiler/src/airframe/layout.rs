@@ -10,7 +10,9 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use crate::airframe::{FARTHEST_M, MOST_UNITS, Spin, word};
+use super::check::word;
+use super::pair::Spin;
+use super::unit::{FARTHEST_M, MOST_UNITS};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::spec::{Channels, Layout, Unit};
 

@@ -1,7 +1,5 @@
 //! The text of an airframe file and the places in it.
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-
 /// The text of an airframe file together with the path that its user knows it by.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
@@ -27,34 +25,6 @@ impl Source {
             name: name.into(),
             text: text.into(),
         }
-    }
-
-    /// A source from a path to show and the bytes of the file.
-    ///
-    /// # Errors
-    /// Bytes that are not UTF-8, with the place of the first.
-    pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Result<Self, Diagnostics> {
-        let name = name.into();
-        let bytes = match String::from_utf8(bytes) {
-            Ok(text) => return Ok(Self { name, text }),
-            Err(error) => error,
-        };
-        let valid = bytes.utf8_error().valid_up_to();
-        let source = Self {
-            name,
-            text: String::from_utf8_lossy(bytes.as_bytes()).into_owned(),
-        };
-        let byte = bytes.as_bytes().get(valid).copied().unwrap_or_default();
-        let fault = Diagnostic::new(
-            Code::Syntax,
-            "",
-            valid..valid + char::REPLACEMENT_CHARACTER.len_utf8(),
-            format!("the file is not UTF-8: byte 0x{byte:02x} at offset {valid}"),
-        );
-        Err(Diagnostics::new(
-            source,
-            vec![fault.help("save the file as UTF-8")],
-        ))
     }
 
     /// The place of a byte offset. Offsets past the end or inside a character are moved back to the nearest

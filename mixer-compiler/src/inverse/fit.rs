@@ -7,19 +7,19 @@
 //! efforts at once (`joint.rs`), seeds for Newton steps to the throttles (`lawson.rs`).
 
 mod coordinates;
+mod fit_efforts;
+mod fit_throttles;
 mod form;
-mod joint;
-mod lawson;
 mod sample;
 
-pub use coordinates::Coordinates;
+pub(crate) use coordinates::Coordinates;
 
 use crate::inverse::evaluator::{Evaluator, Refinement, SeedForm};
 use crate::model::PairMap;
 use coordinates::Start;
+use fit_efforts::Joint;
+use fit_throttles::Lawson;
 use form::Form;
-use joint::Joint;
-use lawson::Lawson;
 use sample::{Sample, Sampled, next_to_a_fold};
 
 /// Points per side of the sample grid.
@@ -89,7 +89,7 @@ pub enum FittedInverse {
 
 /// Fits evaluators to one pair; the search for coordinates is shared.
 #[derive(Debug)]
-pub struct Inversion<'a> {
+pub(crate) struct Inversion<'a> {
     pair: &'a PairMap,
     /// `[N, N m]`: errors are counted in these units.
     tolerance: [f64; 2],
@@ -105,7 +105,7 @@ pub struct Inversion<'a> {
 impl<'a> Inversion<'a> {
     /// Inversion of `pair` to `tolerance` `[N, N m]`. Unless it is to be `thorough`, a fit that cannot meet the
     /// tolerance is given up early.
-    pub fn new(pair: &'a PairMap, tolerance: [f64; 2], thorough: bool) -> Self {
+    pub(crate) fn new(pair: &'a PairMap, tolerance: [f64; 2], thorough: bool) -> Self {
         let fold = next_to_a_fold(pair);
         Inversion {
             pair,
@@ -119,7 +119,7 @@ impl<'a> Inversion<'a> {
     }
 
     /// Fits an evaluator. Returns it with its largest error over the samples in units of the tolerance.
-    pub fn fit(&mut self, evaluator: Evaluator) -> (FittedInverse, f64) {
+    pub(crate) fn fit(&mut self, evaluator: Evaluator) -> (FittedInverse, f64) {
         match evaluator {
             Evaluator::Polynomial { degree } => self.fit_polynomial(degree),
             Evaluator::Seeded {
@@ -137,22 +137,22 @@ impl<'a> Inversion<'a> {
             (form.fitted(Refinement::None, coefficients), error)
         };
         let form = Form::new(start, seed, &self.glance.samples);
-        let glance = self.joint(&self.glance, &form, 2);
+        let glance = self.fit_efforts(&self.glance, &form, 2);
         if glance.1 > HOPELESS && !self.thorough {
             return found(form, (glance.0.0, glance.0.1.max(glance.1)));
         }
         let form = Form::new(start, seed, &self.fine.samples);
-        let best = self.joint(&self.fine, &form, DIRECT_ROUNDS[0]).0;
+        let best = self.fit_efforts(&self.fine, &form, DIRECT_ROUNDS[0]).0;
         if best.1 <= 1.0 || best.1 > DIRECT_WORTH_A_SEARCH {
             return found(form, best);
         }
         let error = |coordinates: &Coordinates| {
             let form = Form::new(*coordinates, seed, &self.coarse.samples);
-            self.joint(&self.coarse, &form, DIRECT_ROUNDS[1]).0.1
+            self.fit_efforts(&self.coarse, &form, DIRECT_ROUNDS[1]).0.1
         };
         let searched = start.improved(self.pair, DIRECT_EVALUATIONS, error);
         let other_form = Form::new(searched, seed, &self.fine.samples);
-        let other = self.joint(&self.fine, &other_form, DIRECT_ROUNDS[0]).0;
+        let other = self.fit_efforts(&self.fine, &other_form, DIRECT_ROUNDS[0]).0;
         if other.1 < best.1 {
             found(other_form, other)
         } else {
@@ -166,7 +166,13 @@ impl<'a> Inversion<'a> {
         let mut best = (self.start(0), Start::ALL[0], f64::INFINITY);
         for (index, start) in Start::ALL.into_iter().enumerate() {
             let coordinates = self.start(index);
-            let error = self.coarse_error(&coordinates, seed, refinement, start.emphasis, lawson::PATIENCE);
+            let error = self.coarse_error(
+                &coordinates,
+                seed,
+                refinement,
+                start.emphasis,
+                fit_throttles::PATIENCE,
+            );
             if error <= 1.0 {
                 let fitted = self.fit_seed_in(coordinates, seed, refinement, start.emphasis);
                 if fitted.1 <= 1.0 {
@@ -186,7 +192,7 @@ impl<'a> Inversion<'a> {
         } else if !self.thorough {
             let form = Form::new(coordinates, seed, &self.coarse.samples);
             let (coefficients, error) =
-                self.lawson(&self.coarse, &form, refinement, lawson::PATIENCE, emphasis);
+                self.fit_throttles(&self.coarse, &form, refinement, fit_throttles::PATIENCE, emphasis);
             return (form.fitted(refinement, coefficients), error);
         }
         self.fit_seed_in(coordinates, seed, refinement, emphasis)
@@ -200,7 +206,8 @@ impl<'a> Inversion<'a> {
         emphasis: f64,
     ) -> (FittedInverse, f64) {
         let form = Form::new(coordinates, seed, &self.fine.samples);
-        let (coefficients, error) = self.lawson(&self.fine, &form, refinement, lawson::ROUNDS, emphasis);
+        let (coefficients, error) =
+            self.fit_throttles(&self.fine, &form, refinement, fit_throttles::ROUNDS, emphasis);
         (form.fitted(refinement, coefficients), error)
     }
 
@@ -213,7 +220,8 @@ impl<'a> Inversion<'a> {
         rounds: usize,
     ) -> f64 {
         let form = Form::new(*coordinates, seed, &self.coarse.samples);
-        self.lawson(&self.coarse, &form, refinement, rounds, emphasis).1
+        self.fit_throttles(&self.coarse, &form, refinement, rounds, emphasis)
+            .1
     }
 
     /// The coordinates of a start, searched once.
@@ -247,7 +255,14 @@ impl<'a> Inversion<'a> {
         };
         if degree > JOINT_DEGREE {
             let rows = rows(samples);
-            return fitted(self.lawson_of(&self.fine, &rows, &[], Refinement::None, lawson::ROUNDS, 0.0));
+            return fitted(self.fit_throttles_of(
+                &self.fine,
+                &rows,
+                &[],
+                Refinement::None,
+                fit_throttles::ROUNDS,
+                0.0,
+            ));
         }
         let glance = self.joint_of(&self.glance, &rows(&self.glance.samples), &[], 2);
         if glance.1 > HOPELESS && !self.thorough {
@@ -256,7 +271,7 @@ impl<'a> Inversion<'a> {
         fitted(self.joint_of(&self.fine, &rows(samples), &[], DIRECT_ROUNDS[0]).0)
     }
 
-    fn joint(&self, sampled: &Sampled, form: &Form, rounds: usize) -> (([Vec<f64>; 2], f64), f64) {
+    fn fit_efforts(&self, sampled: &Sampled, form: &Form, rounds: usize) -> (([Vec<f64>; 2], f64), f64) {
         self.joint_of(sampled, &form.rows(&sampled.samples), &form.smooth(), rounds)
     }
 
@@ -285,7 +300,7 @@ impl<'a> Inversion<'a> {
         ((found.coefficients, found.error), found.floor)
     }
 
-    fn lawson(
+    fn fit_throttles(
         &self,
         sampled: &Sampled,
         form: &Form,
@@ -293,7 +308,7 @@ impl<'a> Inversion<'a> {
         rounds: usize,
         emphasis: f64,
     ) -> ([Vec<f64>; 2], f64) {
-        self.lawson_of(
+        self.fit_throttles_of(
             sampled,
             &form.rows(&sampled.samples),
             &form.smooth(),
@@ -304,7 +319,7 @@ impl<'a> Inversion<'a> {
     }
 
     /// The minimax fit of both throttles in the given terms, and its error after the refinement.
-    fn lawson_of(
+    fn fit_throttles_of(
         &self,
         sampled: &Sampled,
         rows: &[Vec<f64>],

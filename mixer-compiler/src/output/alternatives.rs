@@ -7,8 +7,8 @@
 
 use serde::Serialize;
 
-use crate::Compiled;
 use crate::airframe::Method;
+use crate::compiled::Compiled;
 use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::Inversion;
 use crate::model::PairMap;

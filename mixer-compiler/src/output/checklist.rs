@@ -5,8 +5,8 @@ use std::fmt;
 
 use mixer_rt::Wrench;
 
-use crate::Compiled;
 use crate::airframe::{Axis, Unit};
+use crate::compiled::Compiled;
 
 /// Share of an axis' size that is asked: small enough to be delivered in full.
 const ASKED: f64 = 0.02;

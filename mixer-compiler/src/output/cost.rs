@@ -18,7 +18,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::Compiled;
+use crate::compiled::Compiled;
 use crate::inverse::evaluator::Evaluator;
 
 pub use counted::COUNTED;
@@ -53,9 +53,6 @@ impl Kind {
         }
     }
 }
-
-/// Units of the largest frames that were counted.
-pub const MOST_COUNTED_UNITS: usize = 8;
 
 /// Overheads of all mixers beside the evaluators, from one set of counts.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
-use crate::Compiled;
+use crate::compiled::Compiled;
 use crate::tables::{
     AttainableTable, BorderTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable,
     VerticalTable,
@@ -123,7 +123,7 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
     }
     lines.push(String::new());
     lines.push(format!(" Inverse map: {}.", compiled.evaluator.description()));
-    let [f, q] = compiled.certificate.stated.map(crate::output::report::rounded_up);
+    let [f, q] = compiled.certificate.stated.map(crate::diagnostic::rounded_up);
     lines.push(format!(
         " Proven: each unit's thrust and torque are within {f} N and {q} N m of what is asked, at every"
     ));
@@ -131,7 +131,7 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
         " voltage and everywhere in the attainable set, rounding in f32 included ({} cells).",
         compiled.certificate.cells
     ));
-    let [f, q] = compiled.residual.efforts.map(crate::output::report::rounded_up);
+    let [f, q] = compiled.residual.efforts.map(crate::diagnostic::rounded_up);
     lines.push(format!(
         " Largest residual observed over {} efforts at the reference voltage: {f} N, {q} N m.",
         compiled.residual.points

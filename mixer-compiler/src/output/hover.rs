@@ -5,11 +5,8 @@ use std::fmt;
 use mixer_rt::Wrench;
 use serde::Serialize;
 
-use crate::Compiled;
-use crate::airframe::Axis;
-
-/// Standard gravity, m/s^2.
-pub const GRAVITY: f64 = 9.806_65;
+use crate::airframe::{Axis, GRAVITY};
+use crate::compiled::Compiled;
 
 /// Torques tried on the way out.
 const STEPS: usize = 24;

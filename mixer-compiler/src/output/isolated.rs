@@ -10,8 +10,8 @@ use nalgebra::DMatrix;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::Compiled;
 use crate::airframe::Airframe;
+use crate::compiled::Compiled;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::tables::{self, VoltageTable};

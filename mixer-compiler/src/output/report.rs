@@ -4,7 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::Compiled;
+use crate::compiled::Compiled;
+pub use crate::diagnostic::rounded_up;
 use crate::output::cost::Cost;
 use crate::output::hover::Hover;
 
@@ -313,32 +314,4 @@ fn line<'a>(f: &mut fmt::Formatter<'_>, name: &str, values: impl Iterator<Item =
         write!(f, "{value:>9.4}")?;
     }
     writeln!(f)
-}
-
-/// A bound to three significant digits, rounded up, in the shortest form that a file can hold.
-pub fn rounded_up(x: f64) -> String {
-    if x <= 0.0 || !x.is_finite() {
-        return format!("{x:?}");
-    }
-    let mut text = format!("{x:.2e}");
-    if text.parse::<f64>().is_ok_and(|rounded| rounded < x) {
-        let unit = text
-            .split_once('e')
-            .and_then(|(_, exponent)| format!("0.01e{exponent}").parse::<f64>().ok());
-        text = format!("{:.2e}", x + unit.unwrap_or(0.0));
-    }
-    text.parse::<f64>().map_or(text, |rounded| format!("{rounded:?}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::rounded_up;
-
-    #[test]
-    fn bounds_are_rounded_up() {
-        assert_eq!(rounded_up(0.003_211), "0.00322");
-        assert_eq!(rounded_up(0.009_999), "0.01");
-        assert_eq!(rounded_up(3.6e-5), "3.6e-5");
-        assert_eq!(rounded_up(1234.5), "1240.0");
-    }
 }

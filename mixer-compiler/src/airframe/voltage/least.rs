@@ -4,7 +4,7 @@
 //! least factor is positive where all of these are. Where they are not, the interval is halved (de Casteljau) until they
 //! are, or until an end of an interval is itself not positive.
 
-use super::horner;
+use super::law::horner;
 use crate::model::bernstein;
 
 /// Least k over the range. The mixer divides by k; below this a rotor hardly turns.

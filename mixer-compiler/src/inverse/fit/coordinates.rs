@@ -5,7 +5,7 @@
 //! be linear in (u, l), and the inverse linear in (x, y). Real pairs deviate: offsets c1, c2 keep the radicands
 //! positive, and (p, r, c1, c2) are searched from there (Nelder and Mead 1965) for the least error of a fit.
 
-use super::sample::{Sample, samples};
+use super::sample::{Sample, samples, weights};
 use crate::model::PairMap;
 
 /// `x = sqrt(x0 f + x1 Q + x2)`, `y = sqrt(y0 f + y1 Q + y2)`, with f in N and Q in N m.
@@ -150,24 +150,6 @@ impl Plane {
             y: [1.0 / self.scale[0], r / self.scale[1], offset(*r, *c2)],
         }
     }
-}
-
-/// Weights of errors: a power of det J over its mean, bounded where det J vanishes.
-pub(super) fn weights(pair: &PairMap, samples: &[Sample], emphasis: f64) -> Vec<f64> {
-    const FLOOR: f64 = 0.003;
-    if emphasis == 0.0 {
-        return vec![1.0; samples.len()];
-    }
-    let determinant = |sample: &Sample| {
-        let [[f_u, f_l], [q_u, q_l]] = pair.jacobian(sample.throttles);
-        (f_u * q_l - f_l * q_u).max(0.0)
-    };
-    let determinants: Vec<f64> = samples.iter().map(determinant).collect();
-    let mean = determinants.iter().sum::<f64>() / determinants.len() as f64;
-    determinants
-        .iter()
-        .map(|determinant| libm::pow(mean / (determinant + FLOOR * mean), emphasis))
-        .collect()
 }
 
 /// p and r from pure quadratic forms fitted to thrust and torque: det(A - p B) = 0 for the positive root p and the

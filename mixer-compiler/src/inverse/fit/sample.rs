@@ -2,7 +2,6 @@
 
 use std::cell::OnceCell;
 
-use super::coordinates::weights;
 use crate::model::PairMap;
 
 /// One throttle pair with its efforts.
@@ -83,4 +82,22 @@ pub(super) fn next_to_a_fold(pair: &PairMap) -> bool {
         (determinant.min(least), sum + determinant)
     });
     least < SHARE * sum / (GRID * GRID) as f64
+}
+
+/// Weights of errors: a power of det J over its mean, bounded where det J vanishes.
+pub(super) fn weights(pair: &PairMap, samples: &[Sample], emphasis: f64) -> Vec<f64> {
+    const FLOOR: f64 = 0.003;
+    if emphasis == 0.0 {
+        return vec![1.0; samples.len()];
+    }
+    let determinant = |sample: &Sample| {
+        let [[f_u, f_l], [q_u, q_l]] = pair.jacobian(sample.throttles);
+        (f_u * q_l - f_l * q_u).max(0.0)
+    };
+    let determinants: Vec<f64> = samples.iter().map(determinant).collect();
+    let mean = determinants.iter().sum::<f64>() / determinants.len() as f64;
+    determinants
+        .iter()
+        .map(|determinant| libm::pow(mean / (determinant + FLOOR * mean), emphasis))
+        .collect()
 }

@@ -6,8 +6,8 @@
 
 use mixer_rt::Outline;
 
-use crate::Compiled;
 use crate::airframe::Basis;
+use crate::compiled::Compiled;
 use crate::tables::VerticalTable;
 
 /// Checks, and voltage where there is a correction.

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::joint::{SMOOTH, dot};
+use super::fit_efforts::{SMOOTH, dot};
 
 /// Rounds of reweighting.
 pub(super) const ROUNDS: usize = 12;
