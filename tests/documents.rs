@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use mixer_compiler::Source;
+use mixer_compiler::diagnostic::{Code, Severity};
 use mixer_tests::{allocators, bases, documents, root};
 
 fn read(path: &Path) -> String {
@@ -198,4 +199,18 @@ fn the_airframe_page_is_an_airframe() {
     let compiled = mixer_compiler::compile(&Source::new("airframe.md", text))
         .unwrap_or_else(|faults| panic!("{faults}"));
     assert_eq!(compiled.airframe.units.len(), 4);
+}
+
+#[test]
+fn every_warning_is_documented() {
+    let text = read(&root().join("docs/warnings.md"));
+    for code in Code::ALL
+        .iter()
+        .filter(|code| code.severity() == Severity::Warning)
+    {
+        assert!(
+            text.contains(&format!("\n| {code} | ")),
+            "{code} is not in docs/warnings.md"
+        );
+    }
 }

@@ -4,8 +4,8 @@
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::isolated::IsolatedTables;
 use mixer_compiler::model::effectiveness::Effectiveness;
-use mixer_compiler::tables::VoltageTable;
 use mixer_compiler::model::voltage;
+use mixer_compiler::tables::VoltageTable;
 use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 

@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     fn file(name: &str) -> Wrench {
-        let path = format!("{}/../airframes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/airframes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(path).unwrap();
         compile(&Source::new(name, text)).unwrap().scale()
     }

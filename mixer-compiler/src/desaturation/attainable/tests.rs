@@ -6,7 +6,7 @@ use crate::airframe::Airframe;
 
 /// Airframes and fixtures of all bases.
 fn pairs() -> Vec<(String, PairMap)> {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files: Vec<_> = ["airframes", "tests/fixtures"]
         .into_iter()
         .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
