@@ -148,7 +148,7 @@ fn evaluators_cost_what_the_compiler_believes() {
         for (counted, stated) in counted.iter().zip(stated) {
             assert!(
                 counted.abs_diff(stated) <= stated / 20,
-                "{name} takes {counted} instructions, mixer-compiler/src/evaluator/cost.rs says {stated}: run \
+                "{name} takes {counted} instructions, mixer-compiler/src/inverse/evaluator/cost.rs says {stated}: run \
                  `cargo run --release -p mixer-tests --bin evaluators`"
             );
         }
@@ -327,8 +327,7 @@ fn bounds_hold_what_was_counted() {
     let (_, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
     let samples = overhead::samples(&held).unwrap_or_else(|e| panic!("{e}"));
     for sample in samples {
-        let sets = ["attainable_worst", "saturated_worst", "searched_worst"];
-        let worst = sets.map(|set| sample.row.get(set)).into_iter().fold(0, u64::max);
+        let worst = sample.row.worst();
         let Some(bound) = sample.bound else { continue };
         println!("{}: {worst} of {bound}", sample.airframe);
         assert!(

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::cost::Cost;
+use mixer_compiler::hover::{Hover, HoverAt};
 use mixer_compiler::report::{Summary, rounded_up};
-use mixer_compiler::vehicle::{Hover, HoverAt};
 
 /// Share of the largest bare thrust at which authorities are compared.
 const SHARE: f64 = 0.4;

@@ -7,8 +7,8 @@ use std::time::Instant;
 use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::Identified;
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::injectivity::ForwardMap;
 use mixer_compiler::model::PairMap;
+use mixer_compiler::model::injectivity::ForwardMap;
 use mixer_compiler::{Compiled, Source};
 
 /// The idle over the least one at which the map can be inverted.

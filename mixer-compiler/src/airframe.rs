@@ -1,7 +1,9 @@
 //! The checked airframe: a model of which every value is known to make sense.
 
 mod allocation;
+mod check;
 mod inverse;
+mod layout;
 mod name;
 mod pair;
 mod unit;
@@ -15,13 +17,11 @@ use toml::Spanned;
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::inverse::{EVALUATORS, HIGHEST_DEGREE, Inverse, Method};
 pub use self::pair::{Basis, Pair, Spin};
-pub(crate) use self::unit::FARTHEST_M;
 pub use self::unit::{MOST_UNITS, Unit};
-pub use self::vehicle::Vehicle;
+pub use self::vehicle::{GRAVITY, Vehicle};
 pub use self::voltage::{Voltage, VoltageLaw};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, any_of, nearest, number, quoted};
-use crate::layout;
-use crate::source::Source;
+use crate::diagnostic::source::Source;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, number};
 use crate::spec::{self, Places, Spec};
 
 /// An airframe whose values are checked, in SI units. Made by [`Airframe::read`] alone, so that the ranges stated
@@ -54,9 +54,6 @@ pub struct Airframe {
 
 /// Least room between idle and full throttle: less is a mistake, and none is left in single precision.
 const LEAST_THROTTLE_RANGE: f64 = 0.01;
-
-/// Largest coefficient, N or N m: far beyond any rotor, far within single precision.
-pub(crate) const LARGEST_EFFORT: f64 = 1e6;
 
 /// Range of the throttle, 0 <= min < max <= 1, at least 0.01 wide.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -282,36 +279,4 @@ fn units(spec: &Spec, faults: &mut Vec<Diagnostic>) -> Option<Vec<spec::Unit>> {
     let bench_spin = spec.pair.as_ref().and_then(|pair| pair.upper_spin.as_ref());
     let bench_spin = bench_spin.and_then(|spin| Spin::WORDS.iter().find(|(word, _)| word == spin.get_ref()));
     layout::expand(layout, bench_spin.map(|&(_, spin)| spin), faults)
-}
-
-/// The meaning of one of the words that a key takes.
-pub(crate) fn word<T: Copy>(
-    field: &Spanned<String>,
-    key: &str,
-    words: &[(&'static str, T)],
-    faults: &mut Vec<Diagnostic>,
-) -> Option<T> {
-    let written = field.get_ref();
-    let found = words
-        .iter()
-        .find(|(word, _)| word == written)
-        .map(|&(_, meaning)| meaning);
-    if found.is_none() {
-        let names = || words.iter().map(|&(word, _)| word);
-        let label = match nearest(written, names()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "unknown word".to_string(),
-        };
-        faults.push(
-            Diagnostic::new(
-                Code::UnknownWord,
-                key,
-                field.span(),
-                format!("`{key}` cannot be {}", quoted(written)),
-            )
-            .label(label)
-            .help(format!("write {}", any_of(names()))),
-        );
-    }
-    found
 }

@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn files_of_one_stem_do_not_overwrite_each_other() {
         let folder = folder("stems");
-        let airframe = Path::new(env!("CARGO_MANIFEST_DIR")).join("../airframes/single-pair.toml");
+        let airframe = Path::new(env!("CARGO_MANIFEST_DIR")).join("airframes/single-pair.toml");
         let [first, second] = ["a", "b"].map(|part| folder.join(part).join("pair.toml"));
         for copy in [&first, &second] {
             fs::create_dir(copy.parent().unwrap()).unwrap();

@@ -1,6 +1,7 @@
 //! Faults in an airframe file and warnings of it: what is wrong, where, by how much, and what would mend it.
 
 mod code;
+pub mod source;
 mod wording;
 
 use std::fmt;
@@ -11,8 +12,9 @@ use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
 pub use self::code::{Code, Severity};
+use self::source::{BYTE_ORDER_MARK, Place, Source};
+pub use self::wording::rounded_up;
 pub(crate) use self::wording::{any_of, nearest, number, quoted, rounded};
-use crate::source::{BYTE_ORDER_MARK, Place, Source};
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,6 +115,36 @@ pub struct Record {
     pub label: String,
     /// What would mend it.
     pub help: String,
+}
+
+impl Source {
+    /// A source from a path to show and the bytes of the file.
+    ///
+    /// # Errors
+    /// Bytes that are not UTF-8, with the place of the first.
+    pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Result<Self, Diagnostics> {
+        let name = name.into();
+        let bytes = match String::from_utf8(bytes) {
+            Ok(text) => return Ok(Self { name, text }),
+            Err(error) => error,
+        };
+        let valid = bytes.utf8_error().valid_up_to();
+        let source = Self {
+            name,
+            text: String::from_utf8_lossy(bytes.as_bytes()).into_owned(),
+        };
+        let byte = bytes.as_bytes().get(valid).copied().unwrap_or_default();
+        let fault = Diagnostic::new(
+            Code::Syntax,
+            "",
+            valid..valid + char::REPLACEMENT_CHARACTER.len_utf8(),
+            format!("the file is not UTF-8: byte 0x{byte:02x} at offset {valid}"),
+        );
+        Err(Diagnostics::new(
+            source,
+            vec![fault.help("save the file as UTF-8")],
+        ))
+    }
 }
 
 impl Diagnostics {

@@ -4,83 +4,40 @@
 //! `mixer-macros`, [`build_script`] and `cargo mixer`. [`compile`] shows the pipeline.
 
 pub mod airframe;
-pub mod attainable;
-pub mod bernstein;
 #[cfg(feature = "format")]
 pub mod build_script;
-pub mod checklist;
-pub mod cost;
+mod compiled;
+mod desaturation;
 pub mod diagnostic;
-pub mod effectiveness;
-mod emit;
-pub mod evaluator;
-pub mod front;
-mod hover;
-pub mod injectivity;
-pub mod interval;
-pub mod inversion;
-#[cfg(feature = "baselines")]
-pub mod isolated;
-mod layout;
+mod inverse;
 pub mod model;
+mod output;
 mod plausible;
-pub mod polynomial;
-pub mod proof;
-pub mod report;
-pub mod residual;
-mod scale;
+mod proof;
 mod selection;
-pub mod source;
 pub mod spec;
 pub mod tables;
-pub mod vehicle;
-mod vertical;
-pub mod voltage;
 
 use airframe::Airframe;
-use attainable::AreaLoss;
+use desaturation::{closed_form, thrust_range};
 use diagnostic::{Diagnostic, Diagnostics};
-use effectiveness::Effectiveness;
-use evaluator::Evaluator;
-use injectivity::Injectivity;
+use model::effectiveness::Effectiveness;
+use model::injectivity;
+use model::voltage;
+use output::{emit, scale};
 use proc_macro2::TokenStream;
-use proof::Certificate;
-use residual::Residual;
 use selection::Selected;
-use tables::{MixerTables, VoltageTable};
+use tables::VoltageTable;
 
-pub use source::Source;
-
-/// A compiled airframe: what emission and reports read.
-#[derive(Clone, Debug)]
-pub struct Compiled {
-    /// The source's name, as its user knows it.
-    pub source_name: String,
-    /// The checked model.
-    pub airframe: Airframe,
-    /// M and M+.
-    pub effectiveness: Effectiveness,
-    /// That the forward map can be inverted.
-    pub injectivity: Injectivity,
-    /// The least idle at which it can.
-    pub least_idle: f64,
-    /// The chosen evaluator.
-    pub evaluator: Evaluator,
-    /// What it was observed to miss.
-    pub residual: Residual,
-    /// Least and largest thrust that is delivered without torque at the reference voltage, N.
-    pub thrust_range_n: [f32; 2],
-    /// What it is proven to miss at most.
-    pub certificate: Certificate,
-    /// What the polygon inside the attainable set leaves out.
-    pub lost_area: AreaLoss,
-    /// What the sides leave out that desaturation in closed form reads instead; `None` without it.
-    pub lost_between_sides: Option<f64>,
-    /// What is emitted.
-    pub tables: MixerTables,
-    /// What is plausibly a mistake and yet compiles.
-    pub warnings: Diagnostics,
-}
+pub use compiled::Compiled;
+pub use desaturation::attainable::AreaLoss;
+pub use diagnostic::source::Source;
+pub use inverse::evaluator;
+#[cfg(feature = "baselines")]
+pub use output::isolated;
+pub use output::{alternatives, checklist, cost, hover, report};
+pub use proof::Certificate;
+pub use proof::residual::Residual;
 
 /// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> proof -> tables.
 ///
@@ -114,10 +71,10 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual,
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
-    let in_polygon = hover::thrust_range(&airframe, &tables)?;
-    let (shortcut, lost_between_sides) = vertical::table(&airframe, &effectiveness).unzip();
+    let in_polygon = thrust_range::thrust_range(&airframe, &tables)?;
+    let (shortcut, lost_between_sides) = closed_form::table(&airframe, &effectiveness).unzip();
     tables.shortcut = shortcut;
-    let thrust_range_n = hover::delivered_range(&airframe, &tables, in_polygon);
+    let thrust_range_n = thrust_range::delivered_range(&airframe, &tables, in_polygon);
     let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);
     Ok(Compiled {
         source_name: source.name.clone(),

@@ -12,8 +12,8 @@ mod vehicle;
 
 use crate::airframe::Airframe;
 use crate::diagnostic::Diagnostic;
-use crate::effectiveness::Effectiveness;
 use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
 
 /// What the rules read.
 struct Facts<'a> {

@@ -12,6 +12,7 @@ mod bend;
 mod cell;
 mod correction;
 mod expansion;
+pub(crate) mod residual;
 mod table;
 mod taylor;
 
@@ -19,13 +20,13 @@ use std::collections::BinaryHeap;
 
 use crate::airframe::Airframe;
 use crate::model::PairMap;
-use crate::residual::Residual;
+use crate::proof::residual::Residual;
 use crate::tables::MixerTables;
 use cell::{Cell, Subject};
 use expansion::Monomials;
 
-pub use correction::Correction;
-pub use taylor::Taylor;
+pub(crate) use correction::Correction;
+pub(crate) use taylor::Taylor;
 
 /// What has been proven of one unit's inverse map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +84,7 @@ const STALE: u8 = 6;
 /// Proves what it can of the emitted tables. `observed` says where to stop; it gains the points that the proof
 /// finds worth a look. A tolerance that an observation refutes ends the proof, unless it is to be taken `to_the_end`
 /// for the sake of its bound.
-pub fn prove(
+pub(crate) fn prove(
     airframe: &Airframe,
     pair: &PairMap,
     tables: &MixerTables,
@@ -157,7 +158,7 @@ pub fn prove(
 
 /// How far the efforts that the runtime computes of its throttles may be from those of the file's map, and the efforts
 /// that the inverse is given from those that were asked: `[N, N m]` at the reference voltage.
-pub fn rounding(airframe: &Airframe, tables: &MixerTables, correction: &Correction) -> [f64; 2] {
+pub(crate) fn rounding(airframe: &Airframe, tables: &MixerTables, correction: &Correction) -> [f64; 2] {
     let subject = Subject::new(airframe, tables, correction);
     let mut largest = [0.0f64; 2];
     for Cell { centre, half } in Cell::grid([airframe.throttle.min, airframe.throttle.max], START) {

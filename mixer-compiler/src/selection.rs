@@ -5,16 +5,16 @@ mod refusal;
 use mixer_rt::{Axis, Desaturation, Tolerance};
 
 use crate::airframe::Airframe;
-use crate::attainable::{AreaLoss, Polygon};
+use crate::desaturation::attainable::{AreaLoss, Polygon};
 use crate::diagnostic::Diagnostic;
-use crate::effectiveness::Effectiveness;
-use crate::evaluator::Evaluator;
-use crate::inversion::Inversion;
+use crate::inverse::evaluator::Evaluator;
+use crate::inverse::fit::Inversion;
 use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
+use crate::model::voltage;
+use crate::proof::residual::Residual;
 use crate::proof::{self, Certificate, Correction};
-use crate::residual::Residual;
 use crate::tables::{self, InverseTable, MixerTables, VoltageTable};
-use crate::voltage;
 
 /// An evaluator with its tables and what is known about them.
 #[derive(Clone, Debug)]

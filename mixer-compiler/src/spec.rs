@@ -15,8 +15,8 @@ use std::ops::Range;
 pub use toml::Spanned;
 
 use self::fields::Fields;
+use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::source::Source;
 
 /// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where their value
 /// is, arrays, which may run over many lines, where their key is, and tables where their header is.

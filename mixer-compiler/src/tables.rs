@@ -13,8 +13,8 @@ use mixer_rt::{
 };
 
 use crate::airframe::{Airframe, Basis};
-use crate::effectiveness::Effectiveness;
-use crate::voltage::TabulatedLaw;
+use crate::model::effectiveness::Effectiveness;
+use crate::model::voltage::TabulatedLaw;
 
 pub use border::BorderTable;
 pub use inverse::{InverseTable, SeedTable};

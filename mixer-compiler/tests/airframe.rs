@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use mixer_compiler::Source;
 use mixer_compiler::airframe::{Airframe, Airmode, Axis, Basis, Method, Spin, VoltageLaw};
 use mixer_compiler::diagnostic::{Code, Diagnostics};
-use mixer_compiler::source::Source;
 
 fn workspace() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()

@@ -9,8 +9,8 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use mixer_compiler::Source;
 use mixer_compiler::diagnostic::{Code, Diagnostics, Severity};
-use mixer_compiler::source::Source;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/diagnostics")

@@ -9,7 +9,7 @@ use mixer_rt::Wrench;
 
 /// `airframes/isae-x8.toml` with each `(from, to)` replaced.
 fn isae_x8(replacements: &[(&str, &str)]) -> Result<Compiled, Diagnostics> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../airframes/isae-x8.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("airframes/isae-x8.toml");
     let mut text = fs::read_to_string(path).unwrap();
     for (from, to) in replacements {
         assert!(text.contains(from), "{from} is not in the file");

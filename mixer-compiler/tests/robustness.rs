@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
+use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::source::Source;
 use proptest::prelude::*;
 
 /// Reads the text and, if it is bad, goes through everything that a user may be shown of it.
@@ -62,7 +62,7 @@ fn read(text: &str) -> Result<(), TestCaseError> {
 /// The files of `airframes/` and the bad files beside this test.
 fn texts() -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut paths: Vec<_> = ["../airframes", "tests/diagnostics"]
+    let mut paths: Vec<_> = ["airframes", "tests/diagnostics"]
         .into_iter()
         .flat_map(|folder| fs::read_dir(root.join(folder)).unwrap())
         .map(|entry| entry.unwrap().path())
@@ -158,7 +158,7 @@ fn with_voltage() -> impl Strategy<Value = String> {
         }),
     ];
     (laws, 0.1..1.0_f64, 1.0..3.0_f64).prop_map(|(law, low, high)| {
-        let airframe = include_str!("../../airframes/isae-x8.toml");
+        let airframe = include_str!("../airframes/isae-x8.toml");
         let (before, after) = airframe.split_once("[voltage]").unwrap();
         let (_, after) = after.split_once("[[unit]]").unwrap();
         format!(

@@ -105,25 +105,10 @@ fn a_mistake_has_one_code() {
 
 #[test]
 fn the_project_s_airframes_have_none() {
-    let airframes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../airframes");
+    let airframes = Path::new(env!("CARGO_MANIFEST_DIR")).join("airframes");
     for name in names(&airframes, "toml") {
         let warnings = warnings(&airframes, &name);
         assert!(warnings.is_empty(), "{warnings}");
-    }
-}
-
-#[test]
-fn every_warning_is_documented() {
-    let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/warnings.md");
-    let text = fs::read_to_string(document).unwrap();
-    for code in Code::ALL
-        .iter()
-        .filter(|code| code.severity() == Severity::Warning)
-    {
-        assert!(
-            text.contains(&format!("\n| {code} | ")),
-            "{code} is not in docs/warnings.md"
-        );
     }
 }
 

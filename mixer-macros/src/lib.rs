@@ -21,7 +21,7 @@ use syn::LitStr;
 /// ```
 /// use mixer_rt::{Airframe, Health, SetpointError, Wrench};
 ///
-/// mixer_macros::airframe!("../airframes/isae-x8.toml");
+/// mixer_macros::airframe!("airframes/isae-x8.toml");
 ///
 /// # fn main() -> Result<(), SetpointError> {
 /// let setpoint = Wrench { roll_nm: 0.5, pitch_nm: 0.0, yaw_nm: 0.1, thrust_n: 31.0 };

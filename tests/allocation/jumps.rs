@@ -113,7 +113,7 @@ fn few_throttles_jump() {
         small + forced + parted + jumps
     );
     assert!(small >= 5000);
-    // With other seeds some four pairs in a million do: the README says which.
+    // With other seeds some four pairs in a million do.
     assert_eq!(jumps, 0);
 }
 

@@ -6,8 +6,8 @@ mod maps;
 
 use cargo_mixer::identify::fragment;
 use mixer_compiler::airframe::{Airframe, Spin};
-use mixer_compiler::injectivity::ForwardMap;
 use mixer_compiler::model::PairMap;
+use mixer_compiler::model::injectivity::ForwardMap;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::Health;
 use mixer_tests::frames::{self, AIRMODES, Options};

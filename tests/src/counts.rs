@@ -1,4 +1,4 @@
-//! What a mix costs on the target: instructions, counted one by one by the `counts` image of `examples/firmware`, and
+//! What a mix costs on the target: instructions, counted one by one by the `counts` image of `tests/firmware`, and
 //! bytes of code, tables and stack.
 //!
 //! `tests/counts.csv` holds a [`Row`] per [`Subject`]. It is written by `cargo run -p mixer-tests --bin counts -- --bless`
@@ -21,7 +21,7 @@ pub struct Subject {
     /// `coaxial`; the same with one or two rotors out, at random channels: `one-rotor-out`, `two-rotors-out`; or a
     /// baseline: `conventional`, `sequential`, `wls`.
     pub mixer: String,
-    /// A file of `airframes/`, or one of `examples/firmware/build/frames.rs`.
+    /// A file of `airframes/`, or one of `tests/firmware/build/frames.rs`.
     pub airframe: String,
 }
 
@@ -153,6 +153,12 @@ impl Row {
         self.get(&format!("{set}_sum")) as f64 / self.get("requests") as f64
     }
 
+    /// The most instructions of any request of any set.
+    pub fn worst(&self) -> u64 {
+        let sets = ["attainable_worst", "saturated_worst", "searched_worst"];
+        sets.into_iter().map(|set| self.get(set)).max().unwrap_or(0)
+    }
+
     fn parse(line: &str) -> Option<Row> {
         let cells: Vec<&str> = line.split(',').collect();
         let [mixer, airframe, values @ ..] = &cells[..] else {
@@ -251,19 +257,18 @@ pub fn document(compiler: &str, rows: &[Row]) -> String {
          * worst: the most of these, and of a search for more\n\n\
          Mixers: `coaxial` is this one, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (attainable: with all \
          rotors); `conventional` (the paper's), `sequential` (after PX4) and `wls` (the crate `wls-alloc`) take rotors as isolated. Airframes are files of `airframes/`, \
-         `y6-*` with the pairs of the `x8-*`, and frames of `examples/firmware/build/frames.rs`.\n\n\
+         `y6-*` with the pairs of the `x8-*`, and frames of `tests/firmware/build/frames.rs`.\n\n\
          | mixer | airframe | attainable, mean | saturated, mean | worst | code | tables | stack |\n\
          |---|---|---:|---:|---:|---:|---:|---:|\n"
     );
     for row in rows {
-        let worst = ["attainable_worst", "saturated_worst", "searched_worst"].map(|set| row.get(set));
         text.push_str(&format!(
             "| {} | {} | {:.0} | {:.0} | {} | {} | {} | {} |\n",
             row.subject.mixer,
             row.subject.airframe,
             row.mean("attainable"),
             row.mean("saturated"),
-            worst.into_iter().fold(0, u64::max),
+            row.worst(),
             row.get("code_b"),
             row.get("tables_b"),
             row.get("stack_b"),

@@ -1,4 +1,4 @@
-//! What evaluators of the inverse map cost on the target, counted by the `evaluators` image of `examples/firmware`.
+//! What evaluators of the inverse map cost on the target, counted by the `evaluators` image of `tests/firmware`.
 
 use crate::firmware::{Toolchain, Variant};
 

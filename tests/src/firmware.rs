@@ -1,4 +1,4 @@
-//! Builds `examples/firmware` and runs it in QEMU.
+//! Builds the images of `tests/firmware` and of `examples/firmware` and runs them in QEMU.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -26,7 +26,7 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// An airframe's mixer (`examples/firmware/src/subject`), asked with `rotors_out`: 0, 1 or 2.
+    /// An airframe's mixer (`tests/firmware/src/subject`), asked with `rotors_out`: 0, 1 or 2.
     pub fn of_airframe(airframe: &str, rotors_out: u32) -> Self {
         let mut cfgs = vec!["airframe".into(), format!("airframe={airframe:?}")];
         if rotors_out > 0 {
@@ -52,7 +52,7 @@ pub struct Toolchain {
     cargo: OsString,
     environment: Vec<(&'static str, OsString)>,
     arguments: Vec<&'static str>,
-    /// Inside the firmware's own `target`, apart from what its user builds, and one per toolchain.
+    /// Apart from what a user builds, and one per toolchain.
     target_dir: PathBuf,
     /// The compiler, by its own name and version.
     pub compiler: String,
@@ -68,7 +68,7 @@ impl Toolchain {
         if Command::new("qemu-system-arm").arg("--version").output().is_err() {
             return Err("qemu-system-arm is missing: apt-get install qemu-system-arm".into());
         }
-        let target = folder().join("target");
+        let target = root().join("tests/firmware/target");
         let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
         let target_libdir = print(Path::new(&rustc), &["target-libdir", "--target", TARGET]);
         if target_libdir.is_some_and(|libraries| libraries.is_dir()) {
@@ -149,7 +149,7 @@ impl Toolchain {
     ///
     /// What the compiler said, or what the image printed before it failed or was stopped for taking too long.
     pub fn run(&self, image: &str, variant: &Variant) -> Result<String, String> {
-        self.start(image, variant, &runner()?, TIME_LIMIT)
+        self.start(image, variant, &runner(image)?, TIME_LIMIT)
     }
 
     /// As [`Toolchain::run`], but QEMU does not count instructions, which makes it faster.
@@ -158,7 +158,7 @@ impl Toolchain {
     ///
     /// As [`Toolchain::run`].
     pub fn run_uncounted(&self, image: &str, variant: &Variant) -> Result<String, String> {
-        let mut runner = runner()?;
+        let mut runner = runner(image)?;
         if let Some(at) = runner.iter().position(|word| word == "-icount") {
             // The option and its value.
             runner.drain(at..(at + 2).min(runner.len()));
@@ -228,7 +228,7 @@ impl Toolchain {
             command.env_remove(variable);
         }
         command
-            .current_dir(folder())
+            .current_dir(package(image))
             .stdin(Stdio::null())
             .args([subcommand, "--quiet", "--locked", "--release", "--bin", image])
             .args(&self.arguments)
@@ -239,8 +239,16 @@ impl Toolchain {
     }
 }
 
-fn folder() -> PathBuf {
-    root().join("examples/firmware")
+/// The image that a user would copy; all others are for tests.
+const EXAMPLE: &str = "firmware";
+
+/// The package of an image.
+fn package(image: &str) -> PathBuf {
+    root().join(if image == EXAMPLE {
+        "examples/firmware"
+    } else {
+        "tests/firmware"
+    })
 }
 
 /// First line of `rustc --version`: release, commit and date.
@@ -252,9 +260,9 @@ fn version(rustc: &Path) -> String {
     text.lines().next().unwrap_or("unknown").to_owned()
 }
 
-/// QEMU and its arguments, as `cargo run` in the firmware's folder starts it.
-fn runner() -> Result<Vec<String>, String> {
-    let path = folder().join(".cargo/config.toml");
+/// QEMU and its arguments, as `cargo run` in the image's package starts it.
+fn runner(image: &str) -> Result<Vec<String>, String> {
+    let path = package(image).join(".cargo/config.toml");
     let fault = |what: String| format!("{}: {what}", path.display());
     let text = fs::read_to_string(&path).map_err(|e| fault(e.to_string()))?;
     let config: toml::Table = text.parse().map_err(|e: toml::de::Error| fault(e.to_string()))?;

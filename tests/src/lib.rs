@@ -1,8 +1,12 @@
 //! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU, looking into its image;
-//! frames and their physics, requests, the optimum of a request and other allocators to measure the mixer against.
+//! frames and their physics, requests, the optimum of a request, other allocators to measure the mixer against, and the
+//! tables of the documents.
 
+pub mod allocators;
+pub mod bases;
 pub mod counts;
 pub mod digest;
+pub mod documents;
 pub mod evaluators;
 pub mod firmware;
 pub mod frames;
@@ -19,10 +23,15 @@ pub mod vectors;
 
 use std::path::{Path, PathBuf};
 
-/// The examples of `docs/firmware.md` are run with the other documentation tests.
+/// The examples of the documents are run with the other documentation tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/firmware.md")]
-pub struct Firmware;
+mod examples {
+    #[doc = include_str!(concat!(env!("OUT_DIR"), "/README.md"))]
+    pub struct Readme;
+
+    #[doc = include_str!("../../docs/firmware.md")]
+    pub struct Firmware;
+}
 
 /// The project's folder.
 pub fn root() -> PathBuf {

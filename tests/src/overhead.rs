@@ -1,6 +1,6 @@
 //! The compiler's model of what a mix costs, fitted to `tests/counts.csv`.
 //!
-//! `mixer-compiler/src/cost/counted.rs` is written by `cargo run -p mixer-tests --bin counts -- --fit`, and with the
+//! `mixer-compiler/src/output/cost/counted.rs` is written by `cargo run -p mixer-tests --bin counts -- --fit`, and with the
 //! counts themselves by `-- --bless`. It follows from them and from the evaluators' counts alone.
 
 use std::fs;
@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::counts::Row;
 use crate::{frames, golden, root};
 
-#[path = "../../examples/firmware/build/frames.rs"]
+#[path = "../firmware/build/frames.rs"]
 mod measured;
 
 /// A counted mixer with what its cost is modelled by.
@@ -206,7 +206,7 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
 
 /// The file that holds the fit.
 pub fn file() -> PathBuf {
-    root().join("mixer-compiler/src/cost/counted.rs")
+    root().join("mixer-compiler/src/output/cost/counted.rs")
 }
 
 /// Writes [`file()`].

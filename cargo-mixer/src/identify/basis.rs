@@ -7,7 +7,7 @@
 //! (i, j) every (i', j') below it, so phi_ij expands in it, and the subtraction removes the constant.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::polynomial;
+use mixer_compiler::model::polynomial;
 use serde::Serialize;
 
 /// The square of throttles in which the mixer commands both rotors, inside [0, 1].

@@ -8,7 +8,7 @@
 //! (Breiman's rule) or within a tenth of it.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::ForwardMap;
 use serde::Serialize;
 
 use super::basis::ThrottleBox;

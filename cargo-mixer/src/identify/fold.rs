@@ -5,7 +5,7 @@
 //! [`injectivity`], so that `check` accepts what is identified here. The regions of the report are drawn on a grid.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::injectivity::{self, ForwardMap};
+use mixer_compiler::model::injectivity::{self, ForwardMap};
 use serde::Serialize;
 
 use super::basis::ThrottleBox;

@@ -203,7 +203,7 @@ impl Problem {
 
 #[cfg(test)]
 mod tests {
-    use mixer_compiler::injectivity::ForwardMap;
+    use mixer_compiler::model::injectivity::ForwardMap;
 
     use super::*;
     use crate::identify::fit::{fit, judge};

@@ -1,7 +1,7 @@
 //! The map of a pair from bench points: choice of the basis, fit, outliers, fold, shape constraint.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::ForwardMap;
 use serde::Serialize;
 
 use self::placed::{Placed, at_reference, channels, confirmed, places, suspects, without};

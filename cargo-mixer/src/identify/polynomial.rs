@@ -1,6 +1,6 @@
 //! Polynomials in both throttles, in floating point.
 //!
-//! The compiler's [`Bivariate`](mixer_compiler::polynomial::Bivariate) carries an interval for each coefficient: it
+//! The compiler's [`Bivariate`](mixer_compiler::model::polynomial::Bivariate) carries an interval for each coefficient: it
 //! proves. These are for what only looks for a map, over many candidates, or draws one; proofs come after.
 
 use mixer_compiler::airframe::Basis;

@@ -1,7 +1,7 @@
 //! Tables of what the airframe costs on the target.
 
+use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::cost::Cost;
-use mixer_compiler::front::Alternative;
 
 use super::number::{escaped, fixed};
 use super::table::{facts_table, table};

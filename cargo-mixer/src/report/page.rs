@@ -6,8 +6,8 @@
 use std::fmt::Write as _;
 
 use mixer_compiler::airframe::Axis;
+use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::cost::Cost;
-use mixer_compiler::front::Alternative;
 use mixer_compiler::report::{Summary, rounded_up};
 
 use super::authority;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use mixer_compiler::front::Alternative;
+use mixer_compiler::alternatives::Alternative;
+use mixer_compiler::hover::Hover;
 use mixer_compiler::report::{Summary, rounded_up};
-use mixer_compiler::vehicle::Hover;
 
 use super::bench::BenchPoints;
 use super::comparison::{Answer, Comparison};

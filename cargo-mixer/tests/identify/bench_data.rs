@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use cargo_mixer::identify::basis::ThrottleBox;
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::ForwardMap;
 
 use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::{Identified, identify};

@@ -3,7 +3,7 @@
 use cargo_mixer::identify::basis::ThrottleBox;
 use cargo_mixer::identify::bench::Bench;
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::ForwardMap;
 
 use cargo_mixer::identify::fit::{Design, fit, student_t_975};
 use cargo_mixer::identify::identified::{Settings, from_benches};

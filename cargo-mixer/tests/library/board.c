@@ -1,7 +1,7 @@
 /* A Cortex-M4F in QEMU (mps2-an386): start-up, output by semihosting, instructions by timer 0.
  *
  * With `-icount shift=10` an instruction takes 1024 ns of virtual time and the timer ticks every 40 ns; see
- * examples/firmware/src/probe/instructions.rs. */
+ * tests/firmware/src/probe/instructions.rs. */
 #include "golden.h"
 
 #define REGISTER(address) (*(volatile uint32_t *)(address))

@@ -2,10 +2,10 @@
 //! airframe's tables, in f32 as in a flight controller.
 
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::effectiveness::Effectiveness;
 use mixer_compiler::isolated::IsolatedTables;
+use mixer_compiler::model::effectiveness::Effectiveness;
+use mixer_compiler::model::voltage;
 use mixer_compiler::tables::VoltageTable;
-use mixer_compiler::voltage;
 use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 

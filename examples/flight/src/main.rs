@@ -26,6 +26,9 @@ struct Arguments {
     /// Write the flights of the first seed and the errors of all flights as CSV into this folder
     #[arg(long, value_name = "DIR")]
     csv: Option<PathBuf>,
+    /// Write the errors of all flights as CSV to this file
+    #[arg(long, value_name = "FILE")]
+    errors: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -62,6 +65,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     if let Some(folder) = &arguments.csv {
         write_logs(&comparisons, folder)?;
+    }
+    if let Some(path) = &arguments.errors {
+        let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        log::write_tracking(&comparisons, file)?;
     }
     Ok(())
 }

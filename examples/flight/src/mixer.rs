@@ -3,7 +3,7 @@
 use std::fmt;
 
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::effectiveness::Effectiveness;
+use mixer_compiler::model::effectiveness::Effectiveness;
 use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 

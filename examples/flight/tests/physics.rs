@@ -5,8 +5,8 @@ use flight::mixer::{Method, Mixer};
 use flight::plant::{Disturbance, Plant};
 use flight::state::State;
 use flight::vehicle::{self, GRAVITY_M_S2, INERTIA_KG_M2, WEIGHT_N};
-use mixer_compiler::effectiveness::Effectiveness;
 use mixer_compiler::model::PairMap;
+use mixer_compiler::model::effectiveness::Effectiveness;
 use nalgebra::{DVector, SVector, Vector3, Vector4};
 
 fn nominal_plant() -> Plant {

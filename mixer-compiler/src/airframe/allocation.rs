@@ -3,7 +3,7 @@
 pub use mixer_rt::{Airmode, Axis};
 use toml::Spanned;
 
-use super::{LARGEST_EFFORT, word};
+use super::check::{LARGEST_EFFORT, word};
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 

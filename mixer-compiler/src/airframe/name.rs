@@ -4,8 +4,8 @@ use std::path::Path;
 
 use toml::Spanned;
 
+use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, quoted};
-use crate::source::Source;
 
 /// Longest name, in characters.
 const LONGEST: usize = 64;

@@ -2,8 +2,8 @@
 
 use toml::Spanned;
 
-use super::word;
-use crate::airframe::pair::Spin;
+use super::check::word;
+use super::pair::Spin;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::spec;
 
@@ -14,7 +14,7 @@ pub const MOST_UNITS: usize = 32;
 const SAME_PLACE_M: f64 = 1e-3;
 
 /// Farther out than this, millimetres were meant, m.
-pub(crate) const FARTHEST_M: f64 = 100.0;
+pub(super) const FARTHEST_M: f64 = 100.0;
 
 /// An axis written to two or three digits is taken and normalised.
 const AXIS_TOLERANCE: f64 = 1e-2;

@@ -3,6 +3,9 @@
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
+/// Standard gravity, m/s^2.
+pub const GRAVITY: f64 = 9.806_65;
+
 /// Heaviest vehicle, kg.
 const HEAVIEST_KG: f64 = 1e4;
 

@@ -69,6 +69,21 @@ pub(crate) fn rounded(x: f64) -> String {
     number(format!("{x:.3e}").parse().unwrap_or(x))
 }
 
+/// A bound to three significant digits, rounded up, in the shortest form that a file can hold.
+pub fn rounded_up(x: f64) -> String {
+    if x <= 0.0 || !x.is_finite() {
+        return format!("{x:?}");
+    }
+    let mut text = format!("{x:.2e}");
+    if text.parse::<f64>().is_ok_and(|rounded| rounded < x) {
+        let unit = text
+            .split_once('e')
+            .and_then(|(_, exponent)| format!("0.01e{exponent}").parse::<f64>().ok());
+        text = format!("{:.2e}", x + unit.unwrap_or(0.0));
+    }
+    text.parse::<f64>().map_or(text, |rounded| format!("{rounded:?}"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,5 +125,13 @@ mod tests {
     fn quoted_is_one_short_line() {
         assert_eq!(quoted("a\nb"), "`a\\nb`");
         assert!(quoted(&"é".repeat(1000)).chars().count() <= 52);
+    }
+
+    #[test]
+    fn bounds_are_rounded_up() {
+        assert_eq!(rounded_up(0.003_211), "0.00322");
+        assert_eq!(rounded_up(0.009_999), "0.01");
+        assert_eq!(rounded_up(3.6e-5), "3.6e-5");
+        assert_eq!(rounded_up(1234.5), "1240.0");
     }
 }

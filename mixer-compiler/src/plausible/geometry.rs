@@ -2,8 +2,10 @@
 
 use super::Facts;
 use crate::airframe::Axis;
-use crate::cost::MOST_COUNTED_UNITS;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
+
+/// Units of the largest frames whose costs were counted.
+const MOST_COUNTED_UNITS: usize = 8;
 
 /// Longest plausible arm per root of a unit's largest thrust, m / sqrt(N). Thrust grows with the square of the diameter and
 /// arms with the diameter; PX4's X12, the longest in `airframes/`, has 0.2, arms in centimetres 6 and more.

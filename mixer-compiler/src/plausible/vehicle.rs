@@ -1,8 +1,8 @@
 //! The rule on the vehicle's weight.
 
 use super::Facts;
+use crate::airframe::GRAVITY;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
-use crate::vehicle::GRAVITY;
 
 /// Share of the largest bare thrust above which hover leaves too little for control.
 const HIGH: f64 = 0.8;

@@ -12,7 +12,7 @@ use crate::tables::{LawTable, VoltageTable};
 
 /// Bounds over the voltage range, of thrust and of torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Correction {
+pub(crate) struct Correction {
     /// Relative error of the efforts that the inverse is given.
     pub input: [f64; 2],
     /// Largest correction factor.
@@ -27,7 +27,7 @@ const PIECES: usize = 24;
 
 impl Correction {
     /// Of an airframe with its tabulated correction.
-    pub fn new(airframe: &Airframe, table: Option<&VoltageTable>) -> Self {
+    pub(crate) fn new(airframe: &Airframe, table: Option<&VoltageTable>) -> Self {
         let (Some(voltage), Some(table)) = (&airframe.voltage, table) else {
             // The request is rounded, and times 1 / 1.
             return Correction {

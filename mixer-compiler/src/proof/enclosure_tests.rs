@@ -7,7 +7,7 @@ use num_traits::{Signed, ToPrimitive, Zero};
 use super::expansion::{Expansion, Monomials};
 use super::*;
 use crate::airframe::Basis;
-use crate::interval::Interval;
+use crate::model::interval::Interval;
 use mixer_rt::Scalar;
 
 /// The float x, exactly.

@@ -14,15 +14,15 @@
 //! add up to less than 8 x 2^-53 times the product of the factors' norms, which goes to the remainder. Remainders
 //! and errors are sums of fewer than 40 non-negative terms; the factor [`UP`] makes up for their rounding.
 
+mod scalar;
+
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use mixer_rt::{Scalar, TableSeed};
-
-use crate::interval::Interval;
+use crate::model::interval::Interval;
 
 /// See the module.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Taylor {
+pub(crate) struct Taylor {
     c: f64,
     a: f64,
     b: f64,
@@ -58,14 +58,14 @@ fn half_unit(size: f64) -> f64 {
 
 impl Taylor {
     /// The coordinate `centre + half * a`, or with b if `second`.
-    pub fn coordinate(centre: f64, half: f64, second: bool) -> Self {
+    pub(crate) fn coordinate(centre: f64, half: f64, second: bool) -> Self {
         let mut x = Taylor::exact(centre);
         *(if second { &mut x.b } else { &mut x.a }) = half;
         x
     }
 
     /// The number x.
-    pub const fn exact(x: f64) -> Self {
+    pub(crate) const fn exact(x: f64) -> Self {
         Taylor {
             c: x,
             a: 0.0,
@@ -79,14 +79,14 @@ impl Taylor {
     }
 
     /// Any number within `radius` of zero.
-    pub const fn ball(radius: f64) -> Self {
+    pub(crate) const fn ball(radius: f64) -> Self {
         let mut x = Taylor::exact(0.0);
         x.remainder = radius;
         x
     }
 
     /// Any number of the interval.
-    pub fn from_interval(interval: Interval) -> Self {
+    pub(crate) fn from_interval(interval: Interval) -> Self {
         let centre = 0.5 * (interval.low + interval.high);
         let radius = (interval.high - centre).max(centre - interval.low);
         Taylor {
@@ -96,7 +96,7 @@ impl Taylor {
     }
 
     /// The function with these coefficients of 1, a, b, a2, ab, b2 and this remainder.
-    pub const fn new([c, a, b, aa, ab, bb]: [f64; 6], remainder: f64) -> Self {
+    pub(crate) const fn new([c, a, b, aa, ab, bb]: [f64; 6], remainder: f64) -> Self {
         let error = 0.0;
         Taylor {
             c,
@@ -111,50 +111,52 @@ impl Taylor {
     }
 
     /// Coefficients of 1, a, b, a2, ab, b2.
-    pub fn coefficients(&self) -> [f64; 6] {
+    #[cfg(test)]
+    pub(crate) fn coefficients(&self) -> [f64; 6] {
         [self.c, self.a, self.b, self.aa, self.ab, self.bb]
     }
 
     /// Bound of what the coefficients leave out.
-    pub fn remainder(&self) -> f64 {
+    #[cfg(test)]
+    pub(crate) fn remainder(&self) -> f64 {
         self.remainder
     }
 
     /// Bound of the runtime's rounding error so far.
-    pub fn error(self) -> f64 {
+    pub(crate) fn error(self) -> f64 {
         self.error
     }
 
     /// What the runtime computes: its error counts as part of the function from here on.
     #[must_use]
-    pub fn computed(self) -> Self {
+    pub(crate) fn computed(self) -> Self {
         self.widened(self.error).real()
     }
 
     /// The function alone: operations from here on have no rounding behind them but their own.
     #[must_use]
-    pub fn real(mut self) -> Self {
+    pub(crate) fn real(mut self) -> Self {
         self.error = 0.0;
         self
     }
 
     /// With a given error of the runtime.
     #[must_use]
-    pub fn with_error(mut self, error: f64) -> Self {
+    pub(crate) fn with_error(mut self, error: f64) -> Self {
         self.error = error;
         self
     }
 
     /// With a larger remainder.
     #[must_use]
-    pub fn widened(mut self, radius: f64) -> Self {
+    pub(crate) fn widened(mut self, radius: f64) -> Self {
         self.remainder = (self.remainder + radius) * UP;
         self
     }
 
     /// The function over a part of the cell: with `offset + width * a` for a, or for b if `second`.
     #[must_use]
-    pub fn restricted(&self, second: bool, offset: f64, width: f64) -> Self {
+    pub(crate) fn restricted(&self, second: bool, offset: f64, width: f64) -> Self {
         let mut part = *self;
         let square = if second { self.bb } else { self.aa };
         let slope = if second { self.b } else { self.a };
@@ -180,12 +182,12 @@ impl Taylor {
     }
 
     /// Bound of the absolute value.
-    pub fn magnitude(&self) -> f64 {
+    pub(crate) fn magnitude(&self) -> f64 {
         (self.c.abs() + self.linear() + self.quadratic() + self.remainder) * UP
     }
 
     /// An enclosure of all values.
-    pub fn range(&self) -> Interval {
+    pub(crate) fn range(&self) -> Interval {
         // a2 and b2 lie in [0, 1].
         let spread = self.linear() + self.ab.abs() + self.remainder;
         let (mut below, mut above) = (spread, spread);
@@ -204,7 +206,7 @@ impl Taylor {
     }
 
     /// False where a bound was lost: division by something that may be zero, overflow.
-    pub fn is_bounded(&self) -> bool {
+    pub(crate) fn is_bounded(&self) -> bool {
         self.magnitude() < HUGE && self.error < HUGE
     }
 
@@ -216,7 +218,7 @@ impl Taylor {
     }
 
     /// The sum of the functions, with no operation of the runtime behind it.
-    pub fn plus(&self, other: &Taylor) -> Taylor {
+    pub(crate) fn plus(&self, other: &Taylor) -> Taylor {
         let mut sum = Taylor {
             c: self.c + other.c,
             a: self.a + other.a,
@@ -249,12 +251,12 @@ impl Taylor {
     }
 
     /// The product with a number within `radius` of `centre`, with no operation of the runtime behind it.
-    pub fn times(&self, centre: f64, radius: f64) -> Taylor {
+    pub(crate) fn times(&self, centre: f64, radius: f64) -> Taylor {
         self.scaled(centre).widened(self.magnitude() * radius)
     }
 
     /// The product of the functions, with no operation of the runtime behind it.
-    pub fn product(&self, other: &Taylor) -> Taylor {
+    pub(crate) fn product(&self, other: &Taylor) -> Taylor {
         let (x, y) = (self, other);
         let (x1, x2, y1, y2) = (x.linear(), x.quadratic(), y.linear(), y.quadratic());
         let (x_norm, y_norm) = (x.c.abs() + x1 + x2, y.c.abs() + y1 + y2);
@@ -361,59 +363,6 @@ impl Div<f32> for Taylor {
         let factor = 1.0 / f64::from(constant);
         let carried = self.error * factor.abs() * UP;
         self.times(factor, factor.abs() * f64::EPSILON).rounded(carried)
-    }
-}
-
-impl Scalar for Taylor {
-    fn constant(value: f32) -> Taylor {
-        Taylor::exact(f64::from(value))
-    }
-
-    fn reciprocal(self) -> Taylor {
-        let Interval { low, high } = self.range();
-        let least = if low > 0.0 { low } else { -high };
-        if least <= self.error || least.is_nan() {
-            return Taylor::unbounded();
-        }
-        // 1/(c + p) = 1/c - p/c2 + p2/c3 - p3/(c3 (c + p))
-        let per = 1.0 / self.c;
-        let size = self.deviation();
-        let rest = size * size * size * (per * per * per).abs() / least;
-        let carried = self.error / (least * (least - self.error));
-        self.composed([per, -per * per, per * per * per], rest * UP)
-            .rounded(carried * UP)
-    }
-
-    fn root(self) -> Taylor {
-        let Interval { low, high } = self.range();
-        // The radicand is limited to zero, in f32 and in truth: limits bring numbers no further apart.
-        if low <= 0.0 || low.is_nan() {
-            let above = high.max(0.0).sqrt() * UP;
-            let error = self.error.sqrt();
-            return Taylor::from_interval(Interval {
-                low: 0.0,
-                high: above,
-            })
-            .rounded(error * UP);
-        }
-        // sqrt(c + p) = s + p/(2 s) - p2/(8 s3) + p3/(16 x^(5/2)), x between c and c + p
-        let root = self.c.sqrt();
-        let size = self.deviation();
-        let rest = size * size * size / (16.0 * low * low * low.sqrt());
-        let carried = (self.error / low.sqrt()).min(self.error.sqrt());
-        self.composed([root, 0.5 / root, -0.125 / (root * root * root)], rest * UP)
-            .rounded(carried * UP)
-    }
-
-    fn within(self, low: f32, high: f32) -> Taylor {
-        let range = self.range();
-        let beyond = (range.high - f64::from(high)).max(f64::from(low) - range.low);
-        // Limiting moves a number by no more than it lies outside, and two numbers no further apart.
-        if beyond <= 0.0 { self } else { self.widened(beyond) }
-    }
-
-    fn interpolate(table: &TableSeed, place: [Taylor; 2]) -> [Taylor; 2] {
-        super::table::interpolate(table, place)
     }
 }
 

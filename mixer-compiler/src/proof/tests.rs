@@ -2,21 +2,21 @@
 
 use super::enclosure_tests::numbers;
 use super::*;
-use crate::source::Source;
+use crate::diagnostic::source::Source;
 use crate::tables::{InverseTable, SeedTable};
 use mixer_rt::Inverse;
 
 fn airframe_text(name: &str) -> String {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    let path = folder.join("..").join(name);
+    let path = folder.join(name);
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-fn compiled(text: String) -> crate::Compiled {
+fn compiled(text: String) -> crate::compiled::Compiled {
     crate::compile(&Source::new("test.toml", text)).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-fn prove_again(compiled: &crate::Compiled, tables: &MixerTables) -> Certificate {
+fn prove_again(compiled: &crate::compiled::Compiled, tables: &MixerTables) -> Certificate {
     let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
     let correction = Correction::new(&compiled.airframe, tables.voltage.as_ref());
     let mut observed = compiled.residual;

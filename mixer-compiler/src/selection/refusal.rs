@@ -2,9 +2,9 @@
 
 use super::{Best, choose};
 use crate::airframe::{Airframe, Method};
+use crate::diagnostic::rounded_up;
 use crate::diagnostic::{Code, Diagnostic, number};
-use crate::effectiveness::Effectiveness;
-use crate::report::rounded_up;
+use crate::model::effectiveness::Effectiveness;
 use crate::tables::VoltageTable;
 
 /// Factors on the bounds that were reached: with other tolerances fits weigh thrust and torque differently, and may

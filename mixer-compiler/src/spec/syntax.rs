@@ -5,8 +5,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
+use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, quoted};
-use crate::source::Source;
 
 /// What the parser says of a key that is there twice; the rest of the file is read all the same.
 const DUPLICATE: &str = "duplicate key";

@@ -5,8 +5,8 @@ use mixer_rt::{
     RootCoordinates, Scalar, Seed, Seeded, TableSeed, ThrottleRange,
 };
 
-use crate::evaluator::SeedForm;
-use crate::inversion::FittedInverse;
+use crate::inverse::evaluator::SeedForm;
+use crate::inverse::fit::FittedInverse;
 
 /// An inverse in any form.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,148 +1,21 @@
-//! Compares allocators on wrenches that random throttles give, so that every one is attainable, as a table in
-//! Markdown: `cargo run --release -p mixer-tests --bin allocators`.
+//! Compares allocators on attainable wrenches and writes `tests/measurements/allocators.csv`: `cargo xtask allocators`.
 
 use std::process::ExitCode;
 
-use mixer_compiler::Compiled;
-use mixer_compiler::isolated::IsolatedTables;
-use mixer_compiler::model::PairMap;
-use mixer_rt::{Airmode, Wrench};
-use mixer_tests::frames::{self, Options};
-use mixer_tests::random::Random;
-
-/// Wrenches per frame.
-const COUNT: usize = 20_000;
-/// A wrench counts as delivered when every axis is within this share of the frame's authority.
-const DELIVERED: f64 = 0.01;
-/// A yaw below this share of its authority has no sign worth the name.
-const SIGNED: f64 = 0.02;
-
-/// What is counted.
-#[derive(Default)]
-struct Tally {
-    delivered: usize,
-    reversed: usize,
-    error_sum: f64,
-    error_worst: f64,
-}
-
-impl Tally {
-    fn count(&mut self, request: [f64; 4], achieved: [f64; 4], authority: [f64; 4]) {
-        let error = (0..4)
-            .map(|axis| (request[axis] - achieved[axis]).abs() / authority[axis])
-            .fold(0.0, f64::max);
-        self.delivered += usize::from(error <= DELIVERED);
-        let threshold = SIGNED * authority[2];
-        let reversed = request[2].abs() > threshold && request[2] * achieved[2] < 0.0;
-        self.reversed += usize::from(reversed);
-        self.error_sum += error;
-        self.error_worst = self.error_worst.max(error);
-    }
-
-    fn print(&self, frame: &str, allocator: &str) {
-        let share = |count: usize| 100.0 * count as f64 / COUNT as f64;
-        println!(
-            "| {frame} | {allocator} | {:.2} % | {:.2} % | {:.1} % | {:.2} % |",
-            share(self.delivered),
-            100.0 * self.error_sum / COUNT as f64,
-            100.0 * self.error_worst,
-            share(self.reversed)
-        );
-    }
-}
+use mixer_tests::allocators;
 
 fn main() -> ExitCode {
-    println!("| frame | allocator | delivered | mean error | worst error | yaw reversed |");
-    println!("|---|---|---:|---:|---:|---:|");
-    let shapes = [
-        ("X8", frames::regular(4, 45.0)),
-        ("Y6", frames::regular(3, 60.0)),
-        ("X10", frames::regular(5, 0.0)),
-        ("X12", frames::regular(6, 30.0)),
-    ];
-    for (name, places) in shapes {
-        match frames::compile(&places, Options::default()) {
-            Ok(compiled) => compare(name, &compiled),
-            Err(faults) => {
-                eprintln!("{faults}");
-                return ExitCode::FAILURE;
-            }
-        }
-    }
-    ExitCode::SUCCESS
-}
-
-fn compare(name: &str, compiled: &Compiled) {
-    let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
-    let matrix = &compiled.effectiveness.matrix;
-    let n = compiled.airframe.units.len();
-    let [size_f, size_q] = pair.scale();
-    let authority: [f64; 4] = std::array::from_fn(|axis| {
-        (0..n)
-            .map(|i| matrix[(axis, i)].abs() * size_f + matrix[(axis, n + i)].abs() * size_q)
-            .sum()
+    let path = allocators::file();
+    let written = allocators::measure().and_then(|rows| {
+        let text = allocators::text(&rows);
+        print!("{text}");
+        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
     });
-    let wrench = |throttles: &[[f64; 2]]| -> [f64; 4] {
-        let mut wrench = [0.0; 4];
-        for (i, &throttles) in throttles.iter().enumerate() {
-            let [f, q] = pair.efforts(throttles);
-            for (axis, wrench) in wrench.iter_mut().enumerate() {
-                *wrench += matrix[(axis, i)] * f + matrix[(axis, n + i)] * q;
-            }
-        }
-        wrench
-    };
-    let isolated = IsolatedTables::new(compiled);
-    let reference_v = compiled
-        .airframe
-        .voltage
-        .as_ref()
-        .map_or(0.0, |voltage| voltage.reference_v as f32);
-    let [low, high] = pair.range();
-    let mut random = Random(20);
-    let (mut exact, mut least_norm) = (Tally::default(), Tally::default());
-    let (mut conventional, mut sequential) = (Tally::default(), Tally::default());
-    for _ in 0..COUNT {
-        let throttles: Vec<[f64; 2]> = (0..n)
-            .map(|_| [random.between(low, high), random.between(low, high)])
-            .collect();
-        let request = wrench(&throttles);
-        let setpoint = Wrench::from_array(request.map(|x| x as f32));
-        if let Ok((_, achieved, _)) = compiled.tables.mix(&setpoint, reference_v) {
-            exact.count(request, achieved.to_array().map(f64::from), authority);
-        }
-        // M+ u, then the inverse map's clamps.
-        let view = compiled.tables.view();
-        let throttles: Vec<[f64; 2]> = view
-            .units
-            .iter()
-            .map(|unit| {
-                let efforts = unit
-                    .allocation
-                    .map(|row| row.iter().zip(setpoint.to_array()).map(|(a, b)| a * b).sum());
-                mixer_rt::Inverse::throttles(&view.inverse, &view.pair, &view.throttle, efforts)
-                    .map(f64::from)
-            })
-            .collect();
-        least_norm.count(request, wrench(&throttles), authority);
-        let given = |(throttles, _): (Vec<f32>, bool)| {
-            let units = compiled.airframe.units.iter();
-            let pairs: Vec<[f64; 2]> = units
-                .map(|unit| {
-                    [unit.upper_channel, unit.lower_channel].map(|channel| f64::from(throttles[channel]))
-                })
-                .collect();
-            wrench(&pairs)
-        };
-        if let Ok(mix) = isolated.conventional(&setpoint, reference_v) {
-            conventional.count(request, given(mix), authority);
-        }
-        if let Ok(mix) = isolated.sequential(Airmode::Disabled, &setpoint, reference_v) {
-            sequential.count(request, given(mix), authority);
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
         }
     }
-    exact.print(name, "this mixer");
-    least_norm.print(name, "least norm, clamped");
-    sequential.print(name, "isolated rotors, sequential desaturation after PX4");
-    conventional.print(name, "isolated rotors, clipped (the paper's conventional mixer)");
 }

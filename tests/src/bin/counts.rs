@@ -1,7 +1,7 @@
 //! Prints what a mix costs on a Cortex-M4F, counted in QEMU.
 //!
 //! ```text
-//! cargo run -p mixer-tests --bin counts                      all subjects, as in the README
+//! cargo run -p mixer-tests --bin counts                      all subjects
 //! cargo run -p mixer-tests --bin counts -- isae-x8 regular-3 only these airframes
 //! cargo run -p mixer-tests --bin counts -- --bless           all of them, and writes tests/counts.csv and what --fit does
 //! cargo run -p mixer-tests --bin counts -- --fit             counts nothing; from tests/counts.csv writes docs/costs.md and the compiler's model

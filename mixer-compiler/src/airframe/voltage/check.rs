@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use super::largest::not_too_large;
+use super::largest::{Supply, not_too_large};
+use super::law::{Voltage, VoltageLaw};
 use super::least::{LEAST_FACTOR, below_least};
-use super::{Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic, any_of, number, rounded};
 use crate::spec;
 
@@ -40,13 +40,6 @@ pub(in crate::airframe) fn check(voltage: &spec::Voltage, faults: &mut Vec<Diagn
         thrust: thrust?,
         torque: torque?,
     })
-}
-
-/// Reference and range once they are sound.
-#[derive(Clone, Copy)]
-pub(super) struct Supply {
-    pub(super) reference_v: f64,
-    pub(super) range_v: [f64; 2],
 }
 
 fn supply(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Supply> {

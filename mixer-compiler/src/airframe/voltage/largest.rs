@@ -2,9 +2,15 @@
 
 use std::ops::Range;
 
-use super::VoltageLaw;
-use super::check::Supply;
+use super::law::VoltageLaw;
 use crate::diagnostic::{Code, Diagnostic, rounded};
+
+/// Reference and range once they are sound.
+#[derive(Clone, Copy)]
+pub(super) struct Supply {
+    pub(super) reference_v: f64,
+    pub(super) range_v: [f64; 2],
+}
 
 /// Largest k over the range: ten times the voltage by the square. No pack does that, and larger ones overflow.
 const LARGEST_FACTOR: f64 = 100.0;

@@ -4,8 +4,8 @@
 //! least factor is positive where all of these are. Where they are not, the interval is halved (de Casteljau) until they
 //! are, or until an end of an interval is itself not positive.
 
-use super::horner;
-use crate::bernstein;
+use super::law::horner;
+use crate::model::bernstein;
 
 /// Least k over the range. The mixer divides by k; below this a rotor hardly turns.
 pub(super) const LEAST_FACTOR: f64 = 1e-3;

@@ -1,0 +1,205 @@
+//! The table of `mixer-rt`'s shorter way to desaturate, for up to four units with vertical axes.
+
+mod border;
+mod outline;
+
+use mixer_rt::{Airmode, Axis, Facets, VerticalUnit};
+use nalgebra::Vector3;
+
+use crate::airframe::Airframe;
+use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
+use crate::tables::VerticalTable;
+
+/// Of sums of a few f32 products.
+const ROUNDING: f32 = 1e-6;
+
+/// Yaw that counts as none, as a share of the units' largest torques.
+const YAW_ROUNDING: f64 = 1e-5;
+
+/// A unit whose thrust changes by less than this share of the largest along the null space has no part in it.
+const NO_PART: f64 = 1e-5;
+
+/// The table, where the layout and the priorities allow the shorter way, and the share of a unit's attainable set that its
+/// border leaves out.
+pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Option<(VerticalTable, f64)> {
+    let n = airframe.units.len();
+    let allocation = &airframe.allocation;
+    let matrix = &effectiveness.matrix;
+    let vertical = (0..n).all(|i| {
+        matrix[(2, i)] == 0.0
+            && matrix[(3, i)] == 1.0
+            && matrix[(0, n + i)] == 0.0
+            && matrix[(1, n + i)] == 0.0
+            && matrix[(2, n + i)].abs() == 1.0
+            && matrix[(3, n + i)] == 0.0
+    });
+    let levers = [Axis::Roll, Axis::Pitch].map(|axis| allocation.controls(axis));
+    let free: Vec<Vector3<f64>> = [Vector3::x(), Vector3::y()]
+        .into_iter()
+        .zip(levers)
+        .filter_map(|(axis, served)| (!served).then_some(axis))
+        .collect();
+    // The null space of the thrusts has one dimension or none.
+    let spanned = (3..=4).contains(&(n + free.len()));
+    // A reserve of yaw, or yaw before thrust, couples thrust and yaw.
+    let coupled = allocation.yaw_reserve_nm > 0.0 || allocation.airmode == Airmode::RollPitchYaw;
+    if !vertical || !spanned || coupled || !allocation.controls(Axis::Yaw) {
+        return None;
+    }
+    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+    let [low, high] = pair.range();
+    let columns: Vec<Vector3<f64>> = (0..n)
+        .map(|i| {
+            let [roll, pitch] = [0, 1].map(|axis| if levers[axis] { matrix[(axis, i)] } else { 0.0 });
+            Vector3::new(roll, pitch, matrix[(3, i)])
+        })
+        .collect();
+    let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
+    // f32 rounding, inwards.
+    let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
+    let (border, lost) = border::border(&pair)?;
+    let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
+    let mut table = VerticalTable {
+        units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
+        complete: free.is_empty(),
+        thrust_n,
+        border,
+        slopes,
+        walls,
+        thrust_floor_n: 0.0,
+        thrust_middle_n: 0.0,
+        yaw_rounding_nm: (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32,
+    };
+    let [floor, ceiling] = level_range(&table)?;
+    // At least what the facets allow without roll and pitch, with rounding.
+    let least_level = table
+        .slopes
+        .iter()
+        .map(|facets| facets.bounds[0])
+        .fold(floor, f32::max);
+    table.thrust_floor_n = least_level * (1.0 + ROUNDING);
+    table.thrust_middle_n = 0.5 * (floor + ceiling);
+    Some((table, lost))
+}
+
+/// The least and the largest thrust in all (N) without roll and pitch, z as near zero as can be, that can leave yaw at zero.
+fn level_range(table: &VerticalTable) -> Option<[f32; 2]> {
+    const STEPS: usize = 4000;
+    let view = table.view();
+    let [idle, full] = table.thrust_n;
+    let is_level = |thrust_n: f32| {
+        let least_norm = |unit: &VerticalUnit| unit.allocation[2] * thrust_n;
+        let (mut low, mut high) = (-f32::MAX, f32::MAX);
+        for unit in table.units.iter().filter(|unit| unit.null != 0.0) {
+            let [from, to] = unit.ends.map(|end| (end - least_norm(unit)) * unit.per_null);
+            (low, high) = (low.max(from), high.min(to));
+        }
+        let z = if low <= high { 0.0f32.clamp(low, high) } else { 0.0 };
+        let mut yaw = [0.0, 0.0];
+        for unit in &table.units {
+            let f = least_norm(unit) + z * unit.null;
+            if f < idle - ROUNDING * full || f > full + ROUNDING * full {
+                return false;
+            }
+            let [middle, half] = view.border.torques(f.clamp(idle, full));
+            yaw = [
+                yaw[0] + unit.spin * middle - half,
+                yaw[1] + unit.spin * middle + half,
+            ];
+        }
+        yaw[0] <= table.yaw_rounding_nm && yaw[1] >= -table.yaw_rounding_nm
+    };
+    let n = table.units.len() as f32;
+    let at = |k: usize| n * (idle + (full - idle) * k as f32 / STEPS as f32);
+    let floor = (0..=STEPS).map(at).find(|&thrust_n| is_level(thrust_n))?;
+    let ceiling = (0..=STEPS).rev().map(at).find(|&thrust_n| is_level(thrust_n))?;
+    Some([floor, ceiling])
+}
+
+/// Shares of C and C+, rounded.
+fn units(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    null: &[f64],
+    [least, most]: [f32; 2],
+) -> Vec<VerticalUnit> {
+    let n = airframe.units.len();
+    let Effectiveness {
+        matrix,
+        pseudo_inverse,
+        ..
+    } = effectiveness;
+    let units = airframe.units.iter().zip(null).enumerate();
+    units
+        .map(|(i, (unit, &null))| VerticalUnit {
+            allocation: [0, 1, 3].map(|axis| pseudo_inverse[(i, axis)] as f32),
+            arms: [0, 1].map(|axis| matrix[(axis, i)] as f32),
+            spin: matrix[(2, n + i)] as f32,
+            null: null as f32,
+            per_null: if null == 0.0 { 0.0 } else { (1.0 / null) as f32 },
+            ends: if null < 0.0 { [most, least] } else { [least, most] },
+            channels: [unit.upper_channel as u8, unit.lower_channel as u8],
+        })
+        .collect()
+}
+
+/// The facets of the zonotope of all thrusts, slopes and walls: every two units span a pair of them, or one unit and the
+/// `free` axis, or both of these where the airframe serves neither roll nor pitch.
+fn facets(
+    columns: &[Vector3<f64>],
+    free: &[Vector3<f64>],
+    [least, most]: [f64; 2],
+) -> (Vec<Facets>, Vec<Facets>) {
+    let (mut slopes, mut walls): (Vec<Facets>, Vec<Facets>) = (Vec::new(), Vec::new());
+    let (first, second) = match free {
+        [] => (columns, columns),
+        [_] => (columns, free),
+        [first, ..] => (std::slice::from_ref(first), &free[1..]),
+    };
+    for (i, first) in first.iter().enumerate() {
+        let later = if free.is_empty() { i + 1 } else { 0 };
+        for second in &second[later..] {
+            let mut normal = first.cross(second);
+            let level = normal[2].abs() < 1e-9 * normal.amax();
+            normal /= if level { normal.norm() } else { normal[2] };
+            if level {
+                normal[2] = 0.0;
+            }
+            if !normal.amax().is_finite() {
+                continue; // the same direction twice
+            }
+            let mut bounds = [0.0; 2];
+            for column in columns {
+                let along = normal.dot(column);
+                bounds[0] += (along * least).min(along * most);
+                bounds[1] += (along * least).max(along * most);
+            }
+            let facet = Facets {
+                normal: [normal[0] as f32, normal[1] as f32],
+                bounds: bounds.map(|x| x as f32),
+            };
+            let facets = if level { &mut walls } else { &mut slopes };
+            if !facets.contains(&facet) {
+                facets.push(facet);
+            }
+        }
+    }
+    (slopes, walls)
+}
+
+/// Thrusts that give no roll, pitch and thrust but along the `free` axes, the largest being 1; zeros where there are
+/// none.
+fn null_vector(columns: &[Vector3<f64>], free: &[Vector3<f64>]) -> Vec<f64> {
+    let [a, b, c, d] = &[columns, free].concat()[..] else {
+        return vec![0.0; columns.len()];
+    };
+    let minor = |x: &Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>| x.cross(y).dot(z);
+    let null = [minor(b, c, d), -minor(a, c, d), minor(a, b, d), -minor(a, b, c)];
+    let null = &null[..columns.len()];
+    let largest = null.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    null.iter()
+        .map(|x| x / largest)
+        .map(|x| if x.abs() < NO_PART { 0.0 } else { x })
+        .collect()
+}

@@ -1,0 +1,265 @@
+//! Can the forward map be inverted over the whole throttle box?
+//!
+//! Locally it can where det J > 0, J the Jacobian of (f, Q) by (u, l). Globally a map with a P-matrix Jacobian
+//! (all principal minors positive) is injective on a box (Gale and Nikaido 1965). The principal minors of J itself
+//! need not be positive, but those of
+//!
+//! ```text
+//! g = f/F - a Q/T,   h = Q/T + b f/F      a, b >= 0,  F, T scales
+//! ```
+//!
+//! are, for some a and b, when dg/du > 0 and dh/dl > 0; and det d(g, h) = (1 + a b) det J / (F T). An invertible
+//! linear change of the outputs changes nothing about injectivity. All signs are proven by [`Bivariate`].
+
+use crate::airframe::{Airframe, Basis, Pair};
+use crate::diagnostic::{Code, Diagnostic, rounded};
+use crate::model::interval::Interval;
+use crate::model::polynomial::{Bivariate, Sign, ThrottleBox};
+
+/// The pair's forward map with what the proof needs of it.
+#[derive(Clone, Debug)]
+pub struct ForwardMap {
+    thrust: [Bivariate; 2],
+    torque: [Bivariate; 2],
+    determinant: Bivariate,
+    /// F and T: the outputs' sizes.
+    scale: [f64; 2],
+}
+
+/// That the forward map is injective on a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Injectivity {
+    /// Proven lower bound of det J over the box, N N m.
+    pub least_determinant: f64,
+    /// The combination (a, b) of outputs whose Jacobian is a P-matrix.
+    pub combination: [f64; 2],
+}
+
+/// Why the forward map cannot be inverted, or not be proven to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fold {
+    /// det J <= 0 at these throttles (u, l); its value there.
+    Determinant {
+        /// Throttles (u, l).
+        at: [f64; 2],
+        /// det J there, N N m.
+        value: f64,
+    },
+    /// det J < 0 at every corner: the sign of the torque is not the one of the conventions.
+    Reversed,
+    /// det J > 0 was proven, but no combination of the outputs is a P-matrix.
+    NotGlobal,
+}
+
+/// Factors a and b that are tried; the first works for ordinary pairs.
+const COMBINATIONS: [f64; 6] = [0.0, 0.5, 1.0, 2.0, 4.0, 0.25];
+
+impl ForwardMap {
+    /// The map of a pair model.
+    pub fn new(pair: &Pair) -> Self {
+        Self::of(pair.basis, &pair.thrust_n, &pair.torque_nm)
+    }
+
+    /// The map of these coefficients, N and N m, one per term of the basis.
+    pub fn of(basis: Basis, thrust_n: &[f64], torque_nm: &[f64]) -> Self {
+        let exponents = basis.exponents();
+        let quantity = |coefficients: &[f64]| Bivariate::from_terms(exponents, coefficients);
+        let gradient = |p: &Bivariate| [p.by_u(), p.by_l()];
+        let thrust = gradient(&quantity(thrust_n));
+        let torque = gradient(&quantity(torque_nm));
+        let minus = Interval::exact(-1.0);
+        let determinant = thrust[0]
+            .times(&torque[1])
+            .plus(minus, &thrust[1].times(&torque[0]));
+        // The size of thrust is its value at full throttle, that of torque its range over the diagonal's ends.
+        let corner = |coefficients: &[f64], u: f64, l: f64| value(exponents, coefficients, u, l).abs();
+        let size = |c: &[f64]| {
+            corner(c, 1.0, 1.0)
+                .max(corner(c, 0.0, 1.0))
+                .max(corner(c, 1.0, 0.0))
+        };
+        let scale = [size(thrust_n), size(torque_nm)];
+        ForwardMap {
+            thrust,
+            torque,
+            determinant,
+            scale,
+        }
+    }
+
+    /// Proves that the map is injective on the box.
+    ///
+    /// # Errors
+    /// Where it folds, or why nothing could be proven.
+    pub fn prove_injective(&self, throttle: ThrottleBox) -> Result<Injectivity, Fold> {
+        self.injective(throttle).map_err(|found| match found {
+            Some(at) => self.fold(throttle, at),
+            None => Fold::NotGlobal,
+        })
+    }
+
+    /// The proof, or throttles where det J may not be positive, if that is what fails.
+    fn injective(&self, throttle: ThrottleBox) -> Result<Injectivity, Option<[f64; 2]>> {
+        let least_determinant = match self.determinant.prove_positive(throttle) {
+            Sign::Positive { bound } => bound,
+            Sign::NotPositive { at } | Sign::Undecided { near: at } => return Err(Some(at)),
+        };
+        let [thrust_size, torque_size] = self.scale.map(|size| Interval::exact(1.0 / size));
+        let positive = |p: Bivariate| matches!(p.prove_positive(throttle), Sign::Positive { .. });
+        let zero = Bivariate::from_terms(&[(0, 0)], &[0.0]);
+        let combine = |p: &Bivariate, p_size, q: &Bivariate, q_size, factor: f64| {
+            zero.plus(p_size, p).plus(Interval::exact(factor) * q_size, q)
+        };
+        let a = COMBINATIONS.into_iter().find(|&a| {
+            positive(combine(
+                &self.thrust[0],
+                thrust_size,
+                &self.torque[0],
+                torque_size,
+                -a,
+            ))
+        });
+        let b = COMBINATIONS.into_iter().find(|&b| {
+            positive(combine(
+                &self.torque[1],
+                torque_size,
+                &self.thrust[1],
+                thrust_size,
+                b,
+            ))
+        });
+        match (a, b) {
+            (Some(a), Some(b)) => Ok(Injectivity {
+                least_determinant,
+                combination: [a, b],
+            }),
+            _ => Err(None),
+        }
+    }
+
+    /// det J at the throttles (u, l), N N m.
+    pub fn determinant_at(&self, at: [f64; 2]) -> f64 {
+        let value = self.determinant.at(at);
+        0.5 * (value.low + value.high)
+    }
+
+    /// The worst of the point found, the corners and a grid, so that the message shows the heart of the fold.
+    fn fold(&self, ThrottleBox { low, high }: ThrottleBox, found: [f64; 2]) -> Fold {
+        let corners = [[low, low], [low, high], [high, low], [high, high]];
+        if corners.into_iter().all(|at| self.determinant_at(at) < 0.0) {
+            return Fold::Reversed;
+        }
+        let mut worst = (self.determinant_at(found), found);
+        for i in 0..=GRID {
+            for j in 0..=GRID {
+                let at = [i, j].map(|k| low + (high - low) * f64::from(k) / f64::from(GRID));
+                let value = self.determinant_at(at);
+                if value < worst.0 {
+                    worst = (value, at);
+                }
+            }
+        }
+        Fold::Determinant {
+            at: worst.1,
+            value: worst.0,
+        }
+    }
+
+    /// The least idle at which the map is proven injective up to the throttle `high`, rounded up to
+    /// 1e-5; `None` where no idle works.
+    pub fn least_idle(&self, high: f64) -> Option<f64> {
+        let steps = (high * IDLE_STEPS) as u32;
+        let works = |step: u32| {
+            let low = f64::from(step) / IDLE_STEPS;
+            low < high && self.injective(ThrottleBox { low, high }).is_ok()
+        };
+        if works(0) {
+            return Some(0.0);
+        }
+        // Boxes shrink as the idle rises, so what holds at one idle holds at every larger one.
+        let (mut fails, mut holds) = (0, steps.saturating_sub(1));
+        if !works(holds) {
+            return None;
+        }
+        while holds - fails > 1 {
+            let middle = fails + (holds - fails) / 2;
+            if works(middle) {
+                holds = middle;
+            } else {
+                fails = middle;
+            }
+        }
+        Some(f64::from(holds) / IDLE_STEPS)
+    }
+}
+
+/// Proves that the airframe's forward map can be inverted over its throttle range; returns the proof and the least
+/// idle for which it holds.
+///
+/// # Errors
+/// A fold, at `throttle.min` with the least idle that would do, or a torque of the wrong sign.
+pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>> {
+    let map = ForwardMap::new(&airframe.pair);
+    let throttle = ThrottleBox {
+        low: airframe.throttle.min,
+        high: airframe.throttle.max,
+    };
+    let least_idle = map.least_idle(throttle.high);
+    let fold = match map.prove_injective(throttle) {
+        Ok(injectivity) => return Ok((injectivity, least_idle.unwrap_or(throttle.low).min(throttle.low))),
+        Err(fold) => fold,
+    };
+    let mend = match least_idle {
+        Some(idle) => {
+            format!(
+                "throttle.min = {idle} is the least idle at which the map can be inverted up to {}",
+                throttle.high
+            )
+        }
+        None => "check the order and the signs of the coefficients: thrust must rise with both throttles, torque fall \
+                 with the upper one and rise with the lower one"
+            .to_owned(),
+    };
+    Err(vec![match fold {
+        Fold::Determinant { at: [u, l], value } => {
+            let (key, label) = match least_idle {
+                Some(_) => ("throttle.min", "this idle is too low for the model"),
+                None => ("pair", "this model folds at every idle"),
+            };
+            let message =
+                format!("the pair's map folds: det J falls to {} at (u, l) = ({u:.3}, {l:.3})", rounded(value));
+            airframe.diagnostic(Code::Fold, key, message, label, mend)
+        }
+        Fold::Reversed => airframe.diagnostic(
+            Code::Fold,
+            "pair.torque_nm",
+            "det J is negative over the throttle box: this torque falls where the lower rotor speeds up",
+            "signed for the other rotor",
+            "torque counts positive where the lower rotor outweighs the upper: negate every coefficient of torque_nm; if the \
+             columns of the two rotors were exchanged, exchange u and l in both polynomials instead",
+        ),
+        Fold::NotGlobal => airframe.diagnostic(
+            Code::NotInjective,
+            "throttle.min",
+            "det J is positive, but the map could not be proven injective: two throttle pairs may give one effort",
+            "",
+            mend,
+        ),
+    }])
+}
+
+/// Points per side for the worst value in a message.
+const GRID: u32 = 16;
+
+/// Resolution of [`ForwardMap::least_idle`]: steps per unit of throttle.
+const IDLE_STEPS: f64 = 1e5;
+
+/// `sum coefficient u^i l^j`, in f64.
+pub(crate) fn value(exponents: &[(u8, u8)], coefficients: &[f64], u: f64, l: f64) -> f64 {
+    let power = |x: f64, exponent: u8| (0..exponent).fold(1.0, |product, _| product * x);
+    exponents
+        .iter()
+        .zip(coefficients)
+        .map(|(&(i, j), c)| c * power(u, i) * power(l, j))
+        .sum()
+}

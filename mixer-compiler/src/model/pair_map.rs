@@ -1,0 +1,212 @@
+//! The forward map of one unit in f64, with its Jacobian: what inverses are fitted to and checked against.
+
+use crate::airframe::{Pair, Throttle};
+
+/// One more than the largest exponent of any basis.
+const SIZE: usize = 5;
+
+/// Thrust and torque of one unit at the reference voltage (eq. (1)).
+#[derive(Clone, Debug)]
+pub struct PairMap {
+    /// Coefficients in thrust (N) and in torque (N m), by exponents of u and of l.
+    coefficients: [[[f64; 2]; SIZE]; SIZE],
+    /// How many of each row are in use, and how many rows.
+    widths: [usize; SIZE],
+    rows: usize,
+    range: [f64; 2],
+}
+
+/// A value and its derivatives by u and by l, of thrust and of torque.
+#[derive(Clone, Copy, Default)]
+struct Slopes {
+    value: [f64; 2],
+    by_u: [f64; 2],
+    by_l: [f64; 2],
+}
+
+impl PairMap {
+    /// The map of a pair over the allowed throttles.
+    pub fn new(pair: &Pair, throttle: &Throttle) -> Self {
+        let mut map = PairMap {
+            coefficients: [[[0.0; 2]; SIZE]; SIZE],
+            widths: [0; SIZE],
+            rows: 0,
+            range: [throttle.min, throttle.max],
+        };
+        let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
+        for (&exponents, (&f, &q)) in pair.basis.exponents().iter().zip(coefficients) {
+            let (i, j) = (usize::from(exponents.0), usize::from(exponents.1));
+            map.coefficients[i][j] = [f, q];
+            map.widths[i] = map.widths[i].max(j + 1);
+            map.rows = map.rows.max(i + 1);
+        }
+        map
+    }
+
+    /// Least and largest throttle.
+    pub fn range(&self) -> [f64; 2] {
+        self.range
+    }
+
+    /// Efforts `[f, Q]` at throttles `[u, l]`, N and N m.
+    pub fn efforts(&self, [u, l]: [f64; 2]) -> [f64; 2] {
+        // Plain loops, here and below: fits in builds without optimisation spend half of their time here.
+        let (mut f, mut q) = (0.0, 0.0);
+        let mut i = self.rows;
+        while i > 0 {
+            i -= 1;
+            let row = &self.coefficients[i];
+            let (mut row_f, mut row_q) = (0.0, 0.0);
+            let mut j = self.widths[i];
+            while j > 0 {
+                j -= 1;
+                row_f = row_f * l + row[j][0];
+                row_q = row_q * l + row[j][1];
+            }
+            f = f * u + row_f;
+            q = q * u + row_q;
+        }
+        [f, q]
+    }
+
+    /// Horner's rule in both throttles, with derivatives.
+    fn slopes(&self, [u, l]: [f64; 2]) -> Slopes {
+        let mut sum = Slopes::default();
+        let mut k = 0;
+        while k < 2 {
+            let (mut value, mut by_u, mut by_l) = (0.0, 0.0, 0.0);
+            let mut i = self.rows;
+            while i > 0 {
+                i -= 1;
+                let row = &self.coefficients[i];
+                let (mut inner, mut inner_by_l) = (0.0, 0.0);
+                let mut j = self.widths[i];
+                while j > 0 {
+                    j -= 1;
+                    inner_by_l = inner_by_l * l + inner;
+                    inner = inner * l + row[j][k];
+                }
+                by_u = by_u * u + value;
+                value = value * u + inner;
+                by_l = by_l * u + inner_by_l;
+            }
+            sum.value[k] = value;
+            sum.by_u[k] = by_u;
+            sum.by_l[k] = by_l;
+            k += 1;
+        }
+        sum
+    }
+
+    /// Jacobian `[[f_u, f_l], [Q_u, Q_l]]` at throttles `[u, l]`.
+    pub fn jacobian(&self, throttles: [f64; 2]) -> [[f64; 2]; 2] {
+        let Slopes { by_u, by_l, .. } = self.slopes(throttles);
+        [[by_u[0], by_l[0]], [by_u[1], by_l[1]]]
+    }
+
+    /// One Newton step from `throttles` towards `efforts` with `residuals` residuals to its Jacobian, each clamped
+    /// to the range as `mixer-rt` does.
+    pub fn newton(&self, throttles: [f64; 2], [f, q]: [f64; 2], residuals: u8) -> [f64; 2] {
+        let Slopes {
+            value: mut given,
+            by_u: [f_u, q_u],
+            by_l: [f_l, q_l],
+        } = self.slopes(throttles);
+        let determinant = f_u * q_l - f_l * q_u;
+        let [mut u, mut l] = throttles;
+        for residual in 0..residuals {
+            if residual > 0 {
+                given = self.efforts([u, l]);
+            }
+            let (missing_f, missing_q) = (f - given[0], q - given[1]);
+            u = self.clamp(u + (missing_f * q_l - missing_q * f_l) / determinant);
+            l = self.clamp(l + (missing_q * f_u - missing_f * q_u) / determinant);
+        }
+        [u, l]
+    }
+
+    /// A throttle limited to the range.
+    pub fn clamp(&self, throttle: f64) -> f64 {
+        throttle.clamp(self.range[0], self.range[1])
+    }
+
+    /// Throttles on a `points` x `points` grid over the range that is denser towards the edges (Chebyshev's
+    /// extrema), corners included.
+    pub fn grid(&self, points: usize) -> Vec<[f64; 2]> {
+        squared(&self.nodes(points))
+    }
+
+    /// [`PairMap::grid`] with two more lines along every edge of the box: next to a fold an inverse bends within
+    /// less than the grid's first step.
+    pub fn edge_grid(&self, points: usize) -> Vec<[f64; 2]> {
+        let [low, high] = self.range;
+        let mut nodes = self.nodes(points);
+        let step = nodes[1] - low;
+        for share in [0.25, 0.0625] {
+            nodes.extend([low + share * step, high - share * step]);
+        }
+        nodes.sort_by(f64::total_cmp);
+        squared(&nodes)
+    }
+
+    fn nodes(&self, points: usize) -> Vec<f64> {
+        let [low, high] = self.range;
+        let node = |k: usize| {
+            let share = 0.5 - 0.5 * libm::cos(std::f64::consts::PI * k as f64 / (points - 1) as f64);
+            if k + 1 == points {
+                high
+            } else {
+                low + (high - low) * share
+            }
+        };
+        (0..points).map(node).collect()
+    }
+
+    /// `points` throttles along the border of the box, anticlockwise in the plane of (f, Q): since det J > 0 the
+    /// map keeps the sense of rotation. Starts at idle, corners included once each; `points` is per edge.
+    pub fn border(&self, points: usize) -> Vec<[f64; 2]> {
+        let [low, high] = self.range;
+        let at = |k: usize| low + (high - low) * k as f64 / points as f64;
+        let mut border = Vec::with_capacity(4 * points);
+        border.extend((0..points).map(|k| [at(k), low]));
+        border.extend((0..points).map(|k| [high, at(k)]));
+        border.extend((0..points).map(|k| [high - (at(k) - low), high]));
+        border.extend((0..points).map(|k| [low, high - (at(k) - low)]));
+        border
+    }
+
+    /// The efforts `[f, Q]` along the border of the attainable set, over [`PairMap::scale`]; points as in
+    /// [`PairMap::border`].
+    pub(crate) fn scaled_border(&self, points: usize) -> Vec<[f64; 2]> {
+        let scale = self.scale();
+        let scaled = |throttles| {
+            let [f, q] = self.efforts(throttles);
+            [f / scale[0], q / scale[1]]
+        };
+        self.border(points).into_iter().map(scaled).collect()
+    }
+
+    /// The efforts `[f, Q]` on the box's diagonal, which runs through the attainable set from its idle corner to its full
+    /// one, in `steps` steps.
+    pub(crate) fn diagonal(&self, steps: usize) -> impl Iterator<Item = [f64; 2]> {
+        let [low, high] = self.range;
+        (0..=steps).map(move |k| self.efforts([low + (high - low) * k as f64 / steps as f64; 2]))
+    }
+
+    /// Largest thrust (N) and largest absolute torque (N m) over the box: the sizes of the efforts.
+    pub fn scale(&self) -> [f64; 2] {
+        let mut scale = [0.0f64; 2];
+        for throttles in self.border(32) {
+            let [f, q] = self.efforts(throttles);
+            scale = [scale[0].max(f.abs()), scale[1].max(q.abs())];
+        }
+        scale
+    }
+}
+
+fn squared(nodes: &[f64]) -> Vec<[f64; 2]> {
+    nodes
+        .iter()
+        .flat_map(|&u| nodes.iter().map(move |&l| [u, l]))
+        .collect()
+}

@@ -1,0 +1,360 @@
+//! Polynomials of both throttles, and their sign over a box.
+//!
+//! On a box, a polynomial written in the Bernstein basis lies between its smallest and its largest coefficient.
+//! Halving the box by de Casteljau's scheme makes those bounds converge quadratically, so a sign is proven in a
+//! few halvings. Coefficients are intervals throughout: what is proven holds in exact arithmetic.
+
+use crate::model::bernstein::binomial;
+use crate::model::interval::Interval;
+
+/// A polynomial `sum c[i][j] u^i l^j` with as many coefficients in every row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bivariate {
+    coefficients: Vec<Vec<Interval>>,
+}
+
+/// A box of throttles, `[low, high]` for both rotors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThrottleBox {
+    /// Least throttle of both rotors.
+    pub low: f64,
+    /// Largest throttle of both rotors.
+    pub high: f64,
+}
+
+/// What [`Bivariate::prove_positive`] found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sign {
+    /// Positive everywhere on the box; the proven lower bound of the value.
+    Positive {
+        /// The least Bernstein coefficient met, > 0.
+        bound: f64,
+    },
+    /// Not positive at this point.
+    NotPositive {
+        /// The throttles `(u, l)`.
+        at: [f64; 2],
+    },
+    /// Neither proven nor refuted within the work allowed; the undecided box is around this point.
+    Undecided {
+        /// The throttles `(u, l)`.
+        near: [f64; 2],
+    },
+}
+
+/// Boxes looked at before giving up: enough to separate values of 1e-9 of the polynomial's size.
+const MOST_BOXES: usize = 4096;
+
+impl Bivariate {
+    /// From terms `(exponent of u, exponent of l)` and their coefficients, taken as exact; one that is not finite may
+    /// be any number, so that nothing is proven of it.
+    pub fn from_terms(exponents: &[(u8, u8)], coefficients: &[f64]) -> Self {
+        let most = |pick: fn(&(u8, u8)) -> u8| exponents.iter().map(pick).max().map_or(0, usize::from);
+        let mut rows = vec![vec![Interval::ZERO; most(|e| e.1) + 1]; most(|e| e.0) + 1];
+        for (&(i, j), &coefficient) in exponents.iter().zip(coefficients) {
+            let slot = &mut rows[usize::from(i)][usize::from(j)];
+            *slot = *slot
+                + match coefficient.is_finite() {
+                    true => Interval::exact(coefficient),
+                    false => Interval {
+                        low: f64::NEG_INFINITY,
+                        high: f64::INFINITY,
+                    },
+                };
+        }
+        Bivariate { coefficients: rows }
+    }
+
+    fn degree_u(&self) -> usize {
+        self.coefficients.len() - 1
+    }
+
+    fn degree_l(&self) -> usize {
+        self.coefficients[0].len() - 1
+    }
+
+    /// The derivative by u.
+    pub fn by_u(&self) -> Self {
+        let mut rows: Vec<Vec<Interval>> = Vec::new();
+        for (i, row) in self.coefficients.iter().enumerate().skip(1) {
+            rows.push(row.iter().map(|&c| c * Interval::exact(i as f64)).collect());
+        }
+        if rows.is_empty() {
+            rows.push(vec![Interval::ZERO; self.degree_l() + 1]);
+        }
+        Bivariate { coefficients: rows }
+    }
+
+    /// The derivative by l.
+    pub fn by_l(&self) -> Self {
+        self.transposed().by_u().transposed()
+    }
+
+    fn transposed(&self) -> Self {
+        let columns = 0..=self.degree_l();
+        let coefficients = columns
+            .map(|j| self.coefficients.iter().map(|row| row[j]).collect())
+            .collect();
+        Bivariate { coefficients }
+    }
+
+    /// `self + factor * other`.
+    pub fn plus(&self, factor: Interval, other: &Self) -> Self {
+        let rows = self.degree_u().max(other.degree_u()) + 1;
+        let columns = self.degree_l().max(other.degree_l()) + 1;
+        let mut sum = vec![vec![Interval::ZERO; columns]; rows];
+        for (i, row) in self.coefficients.iter().enumerate() {
+            for (j, &c) in row.iter().enumerate() {
+                sum[i][j] = sum[i][j] + c;
+            }
+        }
+        for (i, row) in other.coefficients.iter().enumerate() {
+            for (j, &c) in row.iter().enumerate() {
+                sum[i][j] = sum[i][j] + factor * c;
+            }
+        }
+        Bivariate { coefficients: sum }
+    }
+
+    /// The product with `other`.
+    pub fn times(&self, other: &Self) -> Self {
+        let rows = self.degree_u() + other.degree_u() + 1;
+        let columns = self.degree_l() + other.degree_l() + 1;
+        let mut product = vec![vec![Interval::ZERO; columns]; rows];
+        for (i, row) in self.coefficients.iter().enumerate() {
+            for (j, &a) in row.iter().enumerate() {
+                for (k, other_row) in other.coefficients.iter().enumerate() {
+                    for (m, &b) in other_row.iter().enumerate() {
+                        product[i + k][j + m] = product[i + k][j + m] + a * b;
+                    }
+                }
+            }
+        }
+        Bivariate {
+            coefficients: product,
+        }
+    }
+
+    /// An enclosure of the value at `(u, l)`.
+    pub fn at(&self, [u, l]: [f64; 2]) -> Interval {
+        let (u, l) = (Interval::exact(u), Interval::exact(l));
+        self.coefficients.iter().rev().fold(Interval::ZERO, |value, row| {
+            value * u + row.iter().rev().fold(Interval::ZERO, |value, &c| value * l + c)
+        })
+    }
+
+    /// Proves that the polynomial is positive on the whole box, or finds where it is not.
+    pub fn prove_positive(&self, throttle: ThrottleBox) -> Sign {
+        let whole = Patch {
+            coefficients: self.bernstein(throttle),
+            low: [throttle.low; 2],
+            high: [throttle.high; 2],
+        };
+        let mut bound = f64::INFINITY;
+        let mut open = vec![whole];
+        let mut looked_at = 0;
+        while let Some(patch) = open.pop() {
+            looked_at += 1;
+            let least = patch
+                .coefficients
+                .iter()
+                .flatten()
+                .map(|c| c.low)
+                .fold(f64::INFINITY, f64::min);
+            if least > 0.0 {
+                bound = bound.min(least);
+                continue;
+            }
+            if let Some(at) = patch
+                .corners()
+                .into_iter()
+                .find(|&at| self.at(at).is_not_positive())
+            {
+                return Sign::NotPositive { at };
+            }
+            if looked_at + open.len() >= MOST_BOXES {
+                return Sign::Undecided {
+                    near: patch.corners()[0],
+                };
+            }
+            open.extend(patch.halves());
+        }
+        Sign::Positive { bound }
+    }
+
+    /// Bernstein coefficients on the box.
+    fn bernstein(&self, throttle: ThrottleBox) -> Vec<Vec<Interval>> {
+        let in_l: Vec<Vec<Interval>> = self
+            .coefficients
+            .iter()
+            .map(|row| univariate_bernstein(row, throttle))
+            .collect();
+        let in_u = Bivariate { coefficients: in_l }.transposed();
+        let both: Vec<Vec<Interval>> = in_u
+            .coefficients
+            .iter()
+            .map(|row| univariate_bernstein(row, throttle))
+            .collect();
+        Bivariate { coefficients: both }.transposed().coefficients
+    }
+}
+
+/// Bernstein coefficients on `[low, high]` of `sum c[i] x^i`: substitute `x = low + (high - low) t` (Horner), then
+/// `b[k] = sum over i <= k of C(k, i) / C(n, i) c[i]`.
+fn univariate_bernstein(coefficients: &[Interval], throttle: ThrottleBox) -> Vec<Interval> {
+    let degree = coefficients.len() - 1;
+    let low = Interval::exact(throttle.low);
+    let width = Interval::exact(throttle.high) - low;
+    let mut shifted = vec![Interval::ZERO; degree + 1];
+    for &coefficient in coefficients.iter().rev() {
+        for i in (0..=degree).rev() {
+            let carried = if i > 0 {
+                shifted[i - 1] * width
+            } else {
+                Interval::ZERO
+            };
+            shifted[i] = shifted[i] * low + carried;
+        }
+        shifted[0] = shifted[0] + coefficient;
+    }
+    (0..=degree)
+        .map(|k| {
+            (0..=k).fold(Interval::ZERO, |sum, i| {
+                let (over, under) = (binomial(k, i), binomial(degree, i));
+                let ratio = Interval {
+                    low: (over / under).next_down(),
+                    high: (over / under).next_up(),
+                };
+                let ratio = if over == under {
+                    Interval::exact(1.0)
+                } else {
+                    ratio
+                };
+                sum + ratio * shifted[i]
+            })
+        })
+        .collect()
+}
+
+/// A part of the box with its Bernstein coefficients `[in u][in l]`.
+struct Patch {
+    coefficients: Vec<Vec<Interval>>,
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Patch {
+    fn corners(&self) -> [[f64; 2]; 5] {
+        let ([u0, l0], [u1, l1]) = (self.low, self.high);
+        let middle = [0.5 * (u0 + u1), 0.5 * (l0 + l1)];
+        [middle, [u0, l0], [u0, l1], [u1, l0], [u1, l1]]
+    }
+
+    /// Halves the longer side. The middle is a float; de Casteljau at one half is about the exact middle, which
+    /// differs by rounding only, and corners are used for refutation, never for the proof.
+    fn halves(self) -> [Patch; 2] {
+        let along_u = self.high[0] - self.low[0] >= self.high[1] - self.low[1];
+        let axis = usize::from(!along_u);
+        let middle = 0.5 * (self.low[axis] + self.high[axis]);
+        let (first, second) = if along_u {
+            let transposed = Bivariate {
+                coefficients: self.coefficients,
+            }
+            .transposed()
+            .coefficients;
+            let (first, second) = split_rows(transposed);
+            let back = |rows| Bivariate { coefficients: rows }.transposed().coefficients;
+            (back(first), back(second))
+        } else {
+            split_rows(self.coefficients)
+        };
+        let (mut middle_high, mut middle_low) = (self.high, self.low);
+        middle_high[axis] = middle;
+        middle_low[axis] = middle;
+        [
+            Patch {
+                coefficients: first,
+                low: self.low,
+                high: middle_high,
+            },
+            Patch {
+                coefficients: second,
+                low: middle_low,
+                high: self.high,
+            },
+        ]
+    }
+}
+
+/// De Casteljau at one half on every row: the coefficients of both halves.
+fn split_rows(rows: Vec<Vec<Interval>>) -> (Vec<Vec<Interval>>, Vec<Vec<Interval>>) {
+    rows.into_iter()
+        .map(|mut row| {
+            let mut first = Vec::with_capacity(row.len());
+            let mut second = Vec::with_capacity(row.len());
+            while let (Some(&left), Some(&right)) = (row.first(), row.last()) {
+                first.push(left);
+                second.push(right);
+                row = row.windows(2).map(|pair| (pair[0] + pair[1]).half()).collect();
+            }
+            second.reverse();
+            (first, second)
+        })
+        .unzip()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOX: ThrottleBox = ThrottleBox { low: 0.0, high: 1.0 };
+
+    #[test]
+    fn signs_are_decided_on_both_sides_of_zero() {
+        // (u - 1/2)^2 + (l - 1/4)^2 + c
+        let bowl = |c: f64| {
+            let exponents = [(2, 0), (1, 0), (0, 2), (0, 1), (0, 0)];
+            Bivariate::from_terms(&exponents, &[1.0, -1.0, 1.0, -0.5, 0.3125 + c])
+        };
+        assert!(matches!(bowl(1e-4).prove_positive(BOX), Sign::Positive { bound } if bound <= 1e-4));
+        match bowl(-1e-4).prove_positive(BOX) {
+            Sign::NotPositive { at: [u, l] } => assert!((u - 0.5).abs() < 0.02 && (l - 0.25).abs() < 0.02),
+            other => panic!("{other:?}"),
+        }
+        // A double zero that no corner of a halving hits exactly can be neither proven nor refuted.
+        let thirds = Bivariate::from_terms(&[(2, 0), (1, 0), (0, 0)], &[9.0, -6.0, 1.0]);
+        assert!(
+            matches!(thirds.prove_positive(BOX), Sign::Undecided { near: [u, _] } if (u - 1.0 / 3.0).abs() < 0.01)
+        );
+    }
+
+    #[test]
+    fn a_coefficient_that_is_no_number_proves_nothing() {
+        let line = |c: f64| Bivariate::from_terms(&[(1, 0), (0, 0)], &[c, 1.0]);
+        let positive = |p: Bivariate| matches!(p.prove_positive(BOX), Sign::Positive { .. });
+        for c in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(!positive(line(c)) && !positive(line(c).times(&line(c))), "{c}");
+        }
+        assert!(positive(line(1e200).times(&line(1e200))), "overflow is no loss");
+    }
+
+    #[test]
+    fn derivative_and_product_match_the_definition() {
+        let p = Bivariate::from_terms(&[(2, 1), (0, 3), (1, 0)], &[2.0, -1.0, 0.5]);
+        let q = Bivariate::from_terms(&[(0, 1), (1, 1)], &[3.0, 1.0]);
+        let (u, l) = (0.75, 0.5);
+        let close = |x: Interval, y: f64| assert!(x.low <= y + 1e-12 && x.high >= y - 1e-12, "{x:?} {y}");
+        close(p.at([u, l]), 2.0 * u * u * l - l * l * l + 0.5 * u);
+        close(p.by_u().at([u, l]), 4.0 * u * l + 0.5);
+        close(p.by_l().at([u, l]), 2.0 * u * u - 3.0 * l * l);
+        close(
+            p.times(&q).at([u, l]),
+            (2.0 * u * u * l - l * l * l + 0.5 * u) * (3.0 * l + u * l),
+        );
+        let (value_p, value_q) = (2.0 * u * u * l - l * l * l + 0.5 * u, 3.0 * l + u * l);
+        close(
+            p.plus(Interval::exact(-2.0), &q).at([u, l]),
+            value_p - 2.0 * value_q,
+        );
+    }
+}

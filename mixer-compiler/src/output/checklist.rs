@@ -1,0 +1,142 @@
+//! What to look at on the bench before the first flight: which output drives which rotor, how it turns, and which outputs
+//! rise for roll, pitch, yaw and thrust. Mirrored spins and exchanged channels are found so.
+
+use std::fmt;
+
+use mixer_rt::Wrench;
+
+use crate::airframe::{Axis, Unit};
+use crate::compiled::Compiled;
+
+/// Share of an axis' size that is asked: small enough to be delivered in full.
+const ASKED: f64 = 0.02;
+
+/// Change of a throttle that counts, as a share of the largest change.
+const COUNTS: f32 = 0.1;
+
+/// Distance from the axes within which a unit is on them, as a share of the longest arm.
+const ON_AXIS: f64 = 0.05;
+
+/// The check list of a compiled airframe; its `Display` is the text.
+#[derive(Clone, Copy, Debug)]
+pub struct Checklist<'a>(pub &'a Compiled);
+
+impl fmt::Display for Checklist<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "on the bench    propellers off, outputs one by one; spins as seen from above"
+        )?;
+        let units = &self.0.airframe.units;
+        for (index, unit) in units.iter().enumerate() {
+            writeln!(
+                f,
+                "  unit {index:<9} {}: output {} upper, {}; output {} lower, {}",
+                place(unit, units),
+                unit.upper_channel,
+                unit.upper_spin.in_words(),
+                unit.lower_channel,
+                unit.upper_spin.reversed().in_words()
+            )?;
+        }
+        for axis in Axis::ALL {
+            if let Some(outputs) = self.rising(axis) {
+                let motion = match axis {
+                    Axis::Roll => "right side down",
+                    Axis::Pitch => "nose up",
+                    Axis::Yaw => "nose right",
+                    Axis::Thrust => "up",
+                };
+                writeln!(
+                    f,
+                    "  {:<14} raises outputs {} ({motion})",
+                    format!("+{}", axis.name()),
+                    outputs.join(", ")
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Checklist<'_> {
+    /// The outputs that rise where the axis is asked, most of all first; `None` where it is not served or not delivered.
+    pub fn rising(&self, axis: Axis) -> Option<Vec<String>> {
+        let compiled = self.0;
+        if !compiled.airframe.allocation.controls(axis) {
+            return None;
+        }
+        let [floor, ceiling] = compiled.thrust_range_n;
+        let base = Wrench {
+            thrust_n: floor + 0.4 * (ceiling - floor),
+            ..Wrench::default()
+        };
+        let mut asked = base.to_array();
+        asked[axis as usize] += (ASKED * size(compiled, axis)) as f32;
+        let [before, after] = [base, Wrench::from_array(asked)].map(|wrench| throttles(compiled, &wrench));
+        let (before, after) = (before?, after?);
+        let mut changes: Vec<(usize, f32)> = after
+            .iter()
+            .zip(&before)
+            .map(|(a, b)| a - b)
+            .enumerate()
+            .collect();
+        let largest = changes
+            .iter()
+            .fold(0.0f32, |largest, (_, change)| largest.max(*change));
+        changes.retain(|(_, change)| *change > COUNTS * largest);
+        // Equal up to rounding is equal: then the lower output first.
+        let rank = |change: f32| (-100.0 * change / largest).round() as i32;
+        changes.sort_by_key(|(output, change)| (rank(*change), *output));
+        Some(
+            changes
+                .into_iter()
+                .map(|(output, _)| output.to_string())
+                .collect(),
+        )
+    }
+}
+
+/// The mixer's throttles at the reference voltage.
+fn throttles(compiled: &Compiled, wrench: &Wrench) -> Option<Vec<f32>> {
+    let voltage = compiled.airframe.voltage.as_ref();
+    let volts = voltage.map_or(0.0, |voltage| voltage.reference_v as f32);
+    compiled
+        .tables
+        .mix(wrench, volts)
+        .ok()
+        .map(|(throttle, ..)| throttle)
+}
+
+/// The largest thrust, or a torque in proportion to what the units' efforts make of the axis.
+fn size(compiled: &Compiled, axis: Axis) -> f64 {
+    let airframe = &compiled.airframe;
+    let [f, q] = crate::model::PairMap::new(&airframe.pair, &airframe.throttle).scale();
+    let row = compiled.effectiveness.matrix.row(axis as usize);
+    let n = airframe.units.len();
+    (0..n).map(|i| row[i].abs() * f + row[n + i].abs() * q).sum()
+}
+
+/// Where a unit is among the others: `front right`.
+fn place(unit: &Unit, units: &[Unit]) -> String {
+    let longest = units.iter().fold(0.0f64, |longest, unit| {
+        longest
+            .max(unit.position_m[0].abs())
+            .max(unit.position_m[1].abs())
+    });
+    let [x, y, _] = unit.position_m;
+    let side = |offset: f64, positive: &'static str, negative: &'static str| {
+        if offset.abs() <= ON_AXIS * longest {
+            None
+        } else if offset > 0.0 {
+            Some(positive)
+        } else {
+            Some(negative)
+        }
+    };
+    match (side(x, "front", "rear"), side(y, "right", "left")) {
+        (Some(along), Some(across)) => format!("{along} {across}"),
+        (Some(only), None) | (None, Some(only)) => only.to_owned(),
+        (None, None) => "centre".to_owned(),
+    }
+}

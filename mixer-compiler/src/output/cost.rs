@@ -1,0 +1,217 @@
+//! What a mix costs on a Cortex-M4F.
+//!
+//! The inverse map is counted on its own, evaluator by evaluator ([`crate::inverse::evaluator::cost`]). A mix of n units that
+//! delivers the request by least norm takes about
+//!
+//! ```text
+//! per_mix + n (per_unit + evaluator) + per_voltage where the airframe has a voltage correction
+//! ```
+//!
+//! instructions, the median over attainable requests. The overheads are fitted to whole mixers, counted request by
+//! request in QEMU, apart for the [`Kind`]s of mixers; for those in closed form the mean over attainable requests is
+//! modelled likewise. Any other request costs at most what the code does at most (`cost/bound.rs`).
+
+mod bound;
+mod counted;
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::compiled::Compiled;
+use crate::inverse::evaluator::Evaluator;
+
+pub use counted::COUNTED;
+
+/// What counts are of.
+pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
+
+/// How a mixer brings a request within the attainable set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Vertical axes and little freedom: a few cases, each solved at once.
+    ClosedForm,
+    /// Any other layout: a dual simplex method of bounded work.
+    General,
+}
+
+impl Kind {
+    /// The kind of a compiled airframe.
+    pub fn of(compiled: &Compiled) -> Kind {
+        match &compiled.tables.shortcut {
+            Some(_) => Kind::ClosedForm,
+            None => Kind::General,
+        }
+    }
+
+    /// For people, after "desaturates".
+    pub fn description(self) -> &'static str {
+        match self {
+            Kind::ClosedForm => "in closed form",
+            Kind::General => "by a bounded simplex method",
+        }
+    }
+}
+
+/// Overheads of all mixers beside the evaluators, from one set of counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Counted {
+    /// Instructions more with a voltage correction.
+    pub per_voltage: f64,
+    /// Requests that least norm delivers, of mixers that desaturate in closed form.
+    pub closed_form: Overhead,
+    /// The mean over attainable requests of the same mixers, some of which least norm does not deliver.
+    pub closed_form_mean: Overhead,
+    /// Requests that least norm delivers, of all other mixers.
+    pub general: Overhead,
+}
+
+/// Instructions beside the evaluators'.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overhead {
+    /// Per mix: checks, voltage, allocation.
+    pub per_mix: f64,
+    /// Per unit: allocation, channels, the achieved wrench.
+    pub per_unit: f64,
+    /// Largest error of the model over the frames that it is fitted to, as a share of their counts.
+    pub error: f64,
+}
+
+impl Counted {
+    /// The overhead of requests that least norm delivers.
+    pub fn delivered(&self, kind: Kind) -> Overhead {
+        match kind {
+            Kind::ClosedForm => self.closed_form,
+            Kind::General => self.general,
+        }
+    }
+
+    /// The overhead of the mean over attainable requests, where there is a model of it.
+    pub fn attainable(&self, kind: Kind) -> Option<Overhead> {
+        (kind == Kind::ClosedForm).then_some(self.closed_form_mean)
+    }
+
+    /// Instructions of a mix with as many `units`, whose evaluator takes `one` instructions for each.
+    pub fn mix(&self, overhead: Overhead, units: usize, one: u32, voltage: bool) -> f64 {
+        let voltage = if voltage { self.per_voltage } else { 0.0 };
+        overhead.per_mix + units as f64 * (overhead.per_unit + f64::from(one)) + voltage
+    }
+}
+
+/// What one airframe costs: instructions, and cycles where they are known.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cost {
+    /// [`TARGET`].
+    pub target: &'static str,
+    /// The inverse map of one unit, counted; `None` for an evaluator that has not been.
+    pub inverse_instructions: Option<u32>,
+    /// The inverse map of one unit, with the cycles that divisions and roots take longer.
+    pub inverse_cycles: Option<u32>,
+    /// The inverse map of all units.
+    pub inverses_instructions: Option<u32>,
+    /// The inverse map of all units.
+    pub inverses_cycles: Option<u32>,
+    /// The whole mix of a request that least norm delivers, estimated.
+    pub delivered_instructions: Option<u32>,
+    /// Largest error of this estimate over counted frames, as a share.
+    pub delivered_error: f64,
+    /// The mean of mixes of attainable requests, estimated; `None` where it depends on the frame too much.
+    pub attainable_instructions: Option<u32>,
+    /// Largest error of this estimate over counted frames, as a share.
+    pub attainable_error: Option<f64>,
+    /// How the mixer desaturates.
+    pub desaturation: Kind,
+    /// The most that any request takes, by what the code does at most; `None` where no bound is stated.
+    pub bound_instructions: Option<u32>,
+    /// Bytes of the inverse map's own constants.
+    pub inverse_bytes: usize,
+    /// Bytes of all tables.
+    pub table_bytes: usize,
+}
+
+impl Cost {
+    /// The cost of a compiled airframe.
+    pub fn new(compiled: &Compiled) -> Self {
+        let basis = compiled.airframe.pair.basis;
+        let units = compiled.airframe.units.len();
+        let kind = Kind::of(compiled);
+        let bound_instructions = bound::bound(compiled);
+        let all = |one: Option<u32>| one.map(|one| one * units as u32);
+        let inverse_instructions = compiled.evaluator.instructions(basis);
+        let inverse_cycles = compiled.evaluator.cost(basis);
+        Cost {
+            target: TARGET,
+            inverse_instructions,
+            inverse_cycles,
+            inverses_instructions: all(inverse_instructions),
+            inverses_cycles: all(inverse_cycles),
+            delivered_instructions: delivered(compiled, compiled.evaluator),
+            delivered_error: COUNTED.delivered(kind).error,
+            attainable_instructions: COUNTED
+                .attainable(kind)
+                .and_then(|overhead| mix(compiled, compiled.evaluator, overhead)),
+            attainable_error: COUNTED.attainable(kind).map(|overhead| overhead.error),
+            desaturation: kind,
+            bound_instructions,
+            inverse_bytes: 4 * compiled.tables.inverse.floats(),
+            table_bytes: compiled.tables.bytes(),
+        }
+    }
+}
+
+/// Instructions of a mix that delivers the request by least norm, were the inverse map evaluated by `evaluator`.
+pub fn delivered(compiled: &Compiled, evaluator: Evaluator) -> Option<u32> {
+    mix(compiled, evaluator, COUNTED.delivered(Kind::of(compiled)))
+}
+
+fn mix(compiled: &Compiled, evaluator: Evaluator, overhead: Overhead) -> Option<u32> {
+    let airframe = &compiled.airframe;
+    let one = evaluator.instructions(airframe.pair.basis)?;
+    let sum = COUNTED.mix(overhead, airframe.units.len(), one, airframe.voltage.is_some());
+    Some(sum.round() as u32)
+}
+
+/// The lines of `check`.
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = |value: Option<u32>| value.map_or("not counted".to_owned(), |value| value.to_string());
+        writeln!(
+            f,
+            "cost            {}; instructions (cycles of the inverse in brackets)",
+            self.target
+        )?;
+        writeln!(
+            f,
+            "  inverse       {} ({}) per unit, {} ({}) for all units; {} bytes of constants",
+            number(self.inverse_instructions),
+            number(self.inverse_cycles),
+            number(self.inverses_instructions),
+            number(self.inverses_cycles),
+            self.inverse_bytes
+        )?;
+        if let Some(delivered) = self.delivered_instructions {
+            writeln!(
+                f,
+                "  mix           about {delivered} where least norm delivers the request; the estimate is off by {:.1} % at most \
+                 on counted frames",
+                100.0 * self.delivered_error
+            )?;
+        }
+        if let (Some(attainable), Some(error)) = (self.attainable_instructions, self.attainable_error) {
+            writeln!(
+                f,
+                "                about {attainable} in the mean of attainable requests; off by {:.1} % at most",
+                100.0 * error
+            )?;
+        }
+        if let Some(bound) = self.bound_instructions {
+            writeln!(
+                f,
+                "  any request   at most {bound}, desaturation {}: the sum of what the code does at most",
+                self.desaturation.description()
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,107 @@
+//! The most instructions that a mix takes, whatever is asked: the sum of what the code does at most.
+//!
+//! In closed form that is least norm, an attempt at it next to the border, and one of two ways: the facets in several steps
+//! where they change the request, or the climb along the null space where they do not; after either the retreat. The
+//! instructions of each part are rounded up from counts of parts; the tests hold the sum to the counts of whole mixers.
+
+use mixer_rt::Outline;
+
+use crate::airframe::Basis;
+use crate::compiled::Compiled;
+use crate::tables::VerticalTable;
+
+/// Checks, and voltage where there is a correction.
+const PER_MIX: u32 = 120;
+const PER_VOLTAGE: u32 = 78;
+
+/// One unit's least norm, its throttles written, and its share of the achieved wrench.
+const PER_UNIT: u32 = 90;
+
+/// A step of the facets' linear programme, and one pair of facets in it. As many steps as in `mixer-rt`.
+const STEP: u32 = 30;
+const FACETS: u32 = 18;
+const STEPS: u32 = 6;
+
+/// The range of the null space, one unit.
+const NULL_RANGE: u32 = 40;
+
+/// How far yaw reaches: a call, and one unit in it. Calls at the start, in the climb, and in the retreat.
+const REACH: u32 = 35;
+const REACH_UNIT: u32 = 45;
+const CLIMB: u32 = 3;
+const RETREAT: u32 = 5;
+
+/// The outlines' top: one unit's knots, one knot passed, and one unit in that.
+const KNOTS: u32 = 75;
+const KNOT: u32 = 30;
+const KNOT_UNIT: u32 = 7;
+
+/// The torques, one unit.
+const TORQUES: u32 = 40;
+
+/// The general path beside its pivots, and one unit in it.
+const GENERAL: u32 = 900;
+const GENERAL_UNIT: u32 = 330;
+
+/// A pivot of the simplex method, and one unit in it.
+const PIVOT: u32 = 1000;
+const PIVOT_UNIT: u32 = 120;
+
+/// A move to another bound, and one unit in the search for the next.
+const FLIP: u32 = 90;
+const FLIP_UNIT: u32 = 8;
+
+/// The bound for a compiled airframe; `None` where there is none yet, or its evaluator has not been counted.
+pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
+    match &compiled.tables.shortcut {
+        Some(table) => closed_form(compiled, table),
+        None => general(compiled),
+    }
+}
+
+/// The general path with all rotors: least norm, the pivots and flips that are allowed, and what follows them.
+fn general(compiled: &Compiled) -> Option<u32> {
+    let basis = compiled.airframe.pair.basis;
+    let n = compiled.tables.units.len() as u32;
+    let unit = compiled.evaluator.instructions(basis)? + forward(basis) + GENERAL_UNIT;
+    let pivots = u32::from(mixer_rt::PIVOTS) * (PIVOT + n * PIVOT_UNIT);
+    let flips = u32::from(mixer_rt::FLIPS) * (FLIP + n * FLIP_UNIT);
+    let voltage = if compiled.airframe.voltage.is_some() {
+        PER_VOLTAGE
+    } else {
+        0
+    };
+    Some(GENERAL + voltage + n * unit + pivots + flips)
+}
+
+/// The forward map of one unit.
+fn forward(basis: Basis) -> u32 {
+    match basis {
+        Basis::Biquadratic | Basis::Cubic => 50,
+        Basis::Quartic => 75,
+    }
+}
+
+fn closed_form(compiled: &Compiled, table: &VerticalTable) -> Option<u32> {
+    let basis = compiled.airframe.pair.basis;
+    let evaluator = compiled.evaluator.instructions(basis)?;
+    let n = table.units.len() as u32;
+    let inverses = n * (evaluator + forward(basis));
+    let reach = REACH + n * REACH_UNIT;
+    let step = STEP + FACETS * table.slopes.len() as u32;
+    let walls = STEP + FACETS * table.walls.len() as u32;
+    let moved = table.units.iter().filter(|unit| unit.null != 0.0).count() as u32;
+    let climb = if moved == 0 {
+        0
+    } else {
+        CLIMB * reach + n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT)
+    };
+    let voltage = if compiled.airframe.voltage.is_some() {
+        PER_VOLTAGE
+    } else {
+        0
+    };
+    let ways = (STEPS * step).max(step + climb);
+    let found = walls + ways + n * NULL_RANGE + (1 + RETREAT) * reach + n * TORQUES;
+    Some(PER_MIX + voltage + n * PER_UNIT + 2 * inverses + found)
+}

@@ -1,0 +1,187 @@
+//! The vehicle in hover, by the mixer itself: throttles, what is left of roll, pitch and yaw, thrust over weight.
+
+use std::fmt;
+
+use mixer_rt::Wrench;
+use serde::Serialize;
+
+use crate::airframe::{Axis, GRAVITY};
+use crate::compiled::Compiled;
+
+/// Torques tried on the way out.
+const STEPS: usize = 24;
+
+/// Halvings between the last torque that is delivered and the next: a hundred-thousandth of the largest.
+const HALVINGS: usize = 12;
+
+/// The vehicle in hover.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hover {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Weight, N.
+    pub weight_n: f64,
+    /// Largest bare thrust over weight at the reference voltage.
+    pub thrust_over_weight: f64,
+    /// At the lowest and at the reference voltage; one without a voltage where it has no effect.
+    pub at: Vec<HoverAt>,
+}
+
+/// Hover at one voltage.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HoverAt {
+    /// The voltage, V.
+    pub voltage_v: Option<f64>,
+    /// Mean throttle of the upper rotors; `None` where the weight is not carried.
+    pub upper_throttle: Option<f64>,
+    /// Mean throttle of the lower rotors, likewise.
+    pub lower_throttle: Option<f64>,
+    /// Largest torques `[negative, positive]` about the served axes that are delivered with the weight, each alone, N m.
+    pub margins: Vec<Margin>,
+}
+
+/// What is left of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Margin {
+    /// `roll`, `pitch` or `yaw`.
+    pub axis: &'static str,
+    /// Least and largest torque, N m.
+    pub torque_nm: [f64; 2],
+}
+
+impl Hover {
+    /// The hover of a compiled airframe; `None` where the file has no mass.
+    pub fn new(compiled: &Compiled) -> Option<Hover> {
+        let mass_kg = compiled.airframe.vehicle.as_ref()?.mass_kg;
+        let weight_n = GRAVITY * mass_kg;
+        let volts = match &compiled.airframe.voltage {
+            None => vec![None],
+            Some(voltage) => {
+                let mut volts = vec![voltage.range_v[0], voltage.reference_v];
+                volts.dedup();
+                volts.into_iter().map(Some).collect()
+            }
+        };
+        Some(Hover {
+            mass_kg,
+            weight_n,
+            thrust_over_weight: f64::from(compiled.thrust_range_n[1]) / weight_n,
+            at: volts
+                .into_iter()
+                .map(|volts| HoverAt::new(compiled, weight_n, volts))
+                .collect(),
+        })
+    }
+}
+
+impl HoverAt {
+    /// What is left beside a thrust of `weight_n` N at a voltage, V; any where the airframe ignores it.
+    pub fn new(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Self {
+        let tables = &compiled.tables;
+        // Throttles where all of the wrench is delivered.
+        let mix = |wrench: [f64; 4]| {
+            let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
+            let (throttle, _, saturation) = tables.mix(&setpoint, voltage_v.unwrap_or(0.0) as f32).ok()?;
+            (!saturation.any_axis()).then_some(throttle)
+        };
+        let served = [Axis::Roll, Axis::Pitch, Axis::Yaw]
+            .into_iter()
+            .filter(|&axis| compiled.airframe.allocation.controls(axis));
+        let Some(throttles) = mix([0.0, 0.0, 0.0, weight_n]) else {
+            return HoverAt {
+                voltage_v,
+                upper_throttle: None,
+                lower_throttle: None,
+                margins: Vec::new(),
+            };
+        };
+        let units = &compiled.airframe.units;
+        let mean = |channels: &mut dyn Iterator<Item = usize>| {
+            let sum: f64 = channels
+                .filter_map(|channel| throttles.get(channel))
+                .map(|&throttle| f64::from(throttle))
+                .sum();
+            Some(sum / units.len() as f64)
+        };
+        let margins = served.map(|axis| {
+            let largest = largest_torque(compiled, axis);
+            let reach = |sign: f64| {
+                let delivered = |torque: f64| {
+                    let mut wrench = [0.0, 0.0, 0.0, weight_n];
+                    wrench[axis as usize] = sign * torque;
+                    mix(wrench).is_some()
+                };
+                sign * furthest(largest, delivered)
+            };
+            Margin {
+                axis: axis.name(),
+                torque_nm: [reach(-1.0), reach(1.0)],
+            }
+        });
+        HoverAt {
+            voltage_v,
+            upper_throttle: mean(&mut units.iter().map(|unit| unit.upper_channel)),
+            lower_throttle: mean(&mut units.iter().map(|unit| unit.lower_channel)),
+            margins: margins.collect(),
+        }
+    }
+}
+
+/// The furthest torque up to `largest` that is delivered: looks on where one on the way is missed.
+fn furthest(largest: f64, delivered: impl Fn(f64) -> bool) -> f64 {
+    let step = largest / STEPS as f64;
+    let tried = (0..=STEPS).rev().map(|k| k as f64 * step);
+    let Some(mut good) = tried.into_iter().find(|&torque| delivered(torque)) else {
+        return 0.0;
+    };
+    let mut bad = good + step;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (good + bad);
+        if delivered(middle) {
+            good = middle;
+        } else {
+            bad = middle;
+        }
+    }
+    good
+}
+
+/// A torque that no throttles exceed: all units at their largest thrust and torque.
+fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
+    let airframe = &compiled.airframe;
+    let [f, q] = crate::model::PairMap::new(&airframe.pair, &airframe.throttle).scale();
+    let [k_f, k_q] = crate::model::voltage::largest_factors(airframe);
+    let row = compiled.effectiveness.matrix.row(axis as usize);
+    let n = airframe.units.len();
+    (0..n)
+        .map(|i| row[i].abs() * f * k_f + row[n + i].abs() * q * k_q)
+        .sum()
+}
+
+impl fmt::Display for Hover {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "hover           {:?} kg, {:.2} N; largest thrust over weight {:.2}",
+            self.mass_kg, self.weight_n, self.thrust_over_weight
+        )?;
+        for at in &self.at {
+            let volts = at
+                .voltage_v
+                .map_or_else(String::new, |volts| format!("at {volts:?} V"));
+            write!(f, "  {volts:<14}")?;
+            let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
+                writeln!(f, "the weight is not carried")?;
+                continue;
+            };
+            write!(f, "throttle {upper:.3} upper, {lower:.3} lower; left (N m):")?;
+            for (index, margin) in at.margins.iter().enumerate() {
+                let [least, largest] = margin.torque_nm;
+                let comma = if index > 0 { "," } else { "" };
+                write!(f, "{comma} {} {least:.3} to {largest:.3}", margin.axis)?;
+            }
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,216 @@
+//! The documents: tables are what their commands write, links lead somewhere, code blocks are what they say.
+//!
+//! Rust blocks are run as documentation tests, see `src/lib.rs`.
+#![allow(missing_docs)]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use mixer_compiler::Source;
+use mixer_compiler::diagnostic::{Code, Severity};
+use mixer_tests::{allocators, bases, documents, root};
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn tables_are_what_the_command_writes() {
+    let tables = documents::tables().unwrap_or_else(|error| panic!("{error}"));
+    let mut stale = Vec::new();
+    for table in &tables {
+        let page = read(&root().join(table.page));
+        let filled = documents::filled(&page, table).unwrap_or_else(|error| panic!("{error}"));
+        if filled != page {
+            stale.push(format!("{}: {}", table.page, table.name));
+        }
+    }
+    assert!(stale.is_empty(), "{stale:?} are stale; run `cargo xtask tables`");
+    for path in documents::pages().expect("documents") {
+        for name in read(&path)
+            .lines()
+            .filter_map(|line| line.strip_prefix("<!-- table: ")?.strip_suffix(" -->"))
+        {
+            let written = tables
+                .iter()
+                .any(|table| table.name == name && path.ends_with(table.page));
+            assert!(written, "{}: nothing writes the table {name}", path.display());
+        }
+    }
+}
+
+#[test]
+fn allocators_measure_what_is_held() {
+    let rows = allocators::measure().unwrap_or_else(|error| panic!("{error}"));
+    let held = read(&allocators::file());
+    assert_eq!(held, allocators::text(&rows), "run `cargo xtask allocators`");
+}
+
+#[test]
+fn bases_measure_what_is_held() {
+    let Some(data) = std::env::var_os("MIXER_BENCH_DATA") else {
+        eprintln!("NOT RUN: bases_measure_what_is_held needs MIXER_BENCH_DATA");
+        return;
+    };
+    let rows = bases::measure(Path::new(&data)).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(
+        read(&bases::file()),
+        bases::text(&rows),
+        "run `cargo xtask bases`"
+    );
+}
+
+/// A stranger reads it in two minutes.
+#[test]
+fn the_readme_is_short() {
+    let readme = read(&root().join("README.md"));
+    assert!(readme.lines().count() <= 250, "{} lines", readme.lines().count());
+    assert!(readme.len() <= 16_000, "{} bytes", readme.len());
+}
+
+/// Headings as their anchors: lower case, without punctuation, `-` for a space.
+fn anchors(page: &str) -> BTreeSet<String> {
+    let headings = page
+        .lines()
+        .filter(|line| line.starts_with('#'))
+        .map(|line| line.trim_start_matches('#').trim());
+    headings
+        .map(|heading| {
+            let kept = heading
+                .chars()
+                .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+            kept.collect::<String>().to_lowercase().replace(' ', "-")
+        })
+        .collect()
+}
+
+/// Targets of `[text](target)` and `src="target"` outside of code.
+fn links(page: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut in_code = false;
+    for line in page.lines() {
+        if line.starts_with("```") {
+            in_code = !in_code;
+            continue;
+        }
+        if in_code {
+            continue;
+        }
+        for (open, close) in [("](", ')'), ("src=\"", '"')] {
+            let targets = line.split(open).skip(1);
+            found.extend(targets.filter_map(|rest| Some(rest.split_once(close)?.0.to_owned())));
+        }
+    }
+    found
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let mut dead = Vec::new();
+    let mut count = 0;
+    for path in documents::pages().expect("documents") {
+        let page = read(&path);
+        for link in links(&page) {
+            if link.contains("://") {
+                continue;
+            }
+            count += 1;
+            let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
+            let target = path.parent().unwrap_or(Path::new("")).join(file);
+            let target = if file.is_empty() { path.clone() } else { target };
+            let alive = target.exists() && (anchor.is_empty() || anchors(&read(&target)).contains(anchor));
+            if !alive {
+                dead.push(format!("{}: {link}", path.display()));
+            }
+        }
+    }
+    assert!(count > 100, "only {count} links were found");
+    assert!(dead.is_empty(), "{dead:#?}");
+}
+
+/// Fenced blocks of a page: language and text.
+fn blocks(page: &str) -> Vec<(String, String)> {
+    let mut blocks: Vec<(String, String)> = Vec::new();
+    let mut open = false;
+    for line in page.lines() {
+        match line.strip_prefix("```") {
+            Some(_) if open => open = false,
+            Some(language) => {
+                blocks.push((language.to_owned(), String::new()));
+                open = true;
+            }
+            None if open => {
+                if let Some((_, text)) = blocks.last_mut() {
+                    text.push_str(line);
+                    text.push('\n');
+                }
+            }
+            None => {}
+        }
+    }
+    assert!(!open, "a code block is not closed");
+    blocks
+}
+
+/// A block of TOML that has a name is a whole airframe: it compiles without a warning.
+#[test]
+fn blocks_of_toml_are_read() {
+    let mut airframes = 0;
+    for path in documents::pages().expect("documents") {
+        for (language, text) in blocks(&read(&path)) {
+            let place = format!("{}:\n{text}", path.display());
+            assert!(!language.is_empty(), "a block without a language: {place}");
+            if language.starts_with("rust") {
+                let run = ["README.md", "docs/firmware.md"]
+                    .iter()
+                    .any(|page| path.ends_with(page));
+                assert!(run, "src/lib.rs does not run the examples of {place}");
+                assert!(!language.contains("ignore"), "{place}");
+            }
+            if language != "toml" {
+                continue;
+            }
+            let table: toml::Table = text.parse().unwrap_or_else(|error| panic!("{place}{error}"));
+            if table.contains_key("name") && table.contains_key("pair") {
+                airframes += 1;
+                let compiled = mixer_compiler::compile(&Source::new("block.toml", text.clone()))
+                    .unwrap_or_else(|faults| panic!("{place}{faults}"));
+                assert!(compiled.warnings.is_empty(), "{place}{}", compiled.warnings);
+            }
+        }
+    }
+    assert!(airframes > 0, "the README has a whole airframe");
+}
+
+/// The sections of `docs/airframe.md` make one airframe, so that every key in them is one that the compiler knows.
+#[test]
+fn the_airframe_page_is_an_airframe() {
+    let page = read(&root().join("docs/airframe.md"));
+    let toml = blocks(&page)
+        .into_iter()
+        .filter(|(language, _)| language == "toml");
+    // `[layout]` stands in place of `[[unit]]`.
+    let sections: Vec<String> = toml
+        .map(|(_, text)| text)
+        .filter(|text| !text.starts_with("[[unit]]"))
+        .collect();
+    let text = sections.concat();
+    let compiled = mixer_compiler::compile(&Source::new("airframe.md", text))
+        .unwrap_or_else(|faults| panic!("{faults}"));
+    assert_eq!(compiled.airframe.units.len(), 4);
+}
+
+#[test]
+fn every_warning_is_documented() {
+    let text = read(&root().join("docs/warnings.md"));
+    for code in Code::ALL
+        .iter()
+        .filter(|code| code.severity() == Severity::Warning)
+    {
+        assert!(
+            text.contains(&format!("\n| {code} | ")),
+            "{code} is not in docs/warnings.md"
+        );
+    }
+}

@@ -1,0 +1,93 @@
+//! The packages that are published hold what their user needs, and nothing that reads files outside.
+#![allow(missing_docs)]
+
+use std::fs;
+use std::process::Command;
+
+use mixer_tests::root;
+
+/// In the order of publication: each uses only those before it.
+const PUBLISHED: [&str; 4] = ["mixer-rt", "mixer-compiler", "mixer-macros", "cargo-mixer"];
+
+fn manifest(package: &str) -> toml::Table {
+    let path = root().join(package).join("Cargo.toml");
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    text.parse()
+        .unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn packages_hold_readme_and_licences() {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    for package in PUBLISHED {
+        let output = Command::new(&cargo)
+            .current_dir(root())
+            .args([
+                "package",
+                "--list",
+                "--allow-dirty",
+                "--offline",
+                "--package",
+                package,
+            ])
+            .output()
+            .unwrap_or_else(|error| panic!("cargo package: {error}"));
+        assert!(
+            output.status.success(),
+            "{package}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let list = String::from_utf8_lossy(&output.stdout).into_owned();
+        for file in ["README.md", "LICENSE-MIT", "LICENSE-APACHE", "Cargo.toml"] {
+            assert!(
+                list.lines().any(|line| line == file),
+                "{package} has no {file}:\n{list}"
+            );
+        }
+        for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
+            let [own, project] = [root().join(package), root()].map(|folder| fs::read(folder.join(licence)));
+            assert_eq!(own.ok(), project.ok(), "{package}/{licence}");
+        }
+    }
+}
+
+#[test]
+fn packages_use_those_published_before() {
+    for (index, package) in PUBLISHED.iter().enumerate() {
+        let manifest = manifest(package);
+        let dependencies = manifest["dependencies"].as_table().expect("a table");
+        for name in PUBLISHED {
+            if dependencies.contains_key(name) {
+                assert!(
+                    PUBLISHED[..index].contains(&name),
+                    "{package} needs {name}, which is published later"
+                );
+            }
+        }
+        for key in ["description", "documentation", "readme"] {
+            assert!(manifest["package"].get(key).is_some(), "{package} has no {key}");
+        }
+    }
+}
+
+/// Source files name no file above their package: it is not there once the package is unpacked.
+#[test]
+fn sources_stay_in_their_package() {
+    for package in PUBLISHED {
+        let mut folders = vec![root().join(package).join("src")];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(&folder).expect("src").flatten() {
+                let path = entry.path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|extension| extension == "rs") {
+                    let text = fs::read_to_string(&path).expect("text");
+                    let above = ["include_str!(\"../../../..", "join(\"..\")", "join(\"../"];
+                    for needle in above {
+                        assert!(!text.contains(needle), "{}: {needle}", path.display());
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Tables in the documents that commands write: each stands between two comments of its page,
+//! `<!-- table: NAME -->` and `<!-- end -->`.
+//!
+//! `cargo xtask tables` writes them all; `tests/documents.rs` holds the pages to them.
+
+mod tables;
+
+use std::path::PathBuf;
+
+use crate::root;
+
+/// A table of a page.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Table {
+    /// The page, from the project's folder.
+    pub page: &'static str,
+    /// The name in the comment before it.
+    pub name: &'static str,
+    /// Its lines in Markdown, each ended.
+    pub text: String,
+}
+
+/// All tables, from the airframes, `tests/counts.csv` and `tests/measurements/`.
+///
+/// # Errors
+/// A file that cannot be read or is not what its command writes.
+pub fn tables() -> Result<Vec<Table>, String> {
+    let of = |page, name, text| Table { page, name, text };
+    Ok(vec![
+        of("README.md", "isolated", tables::isolated()?),
+        of("README.md", "cost", tables::cost()?),
+        of("docs/evaluation.md", "accuracy", tables::accuracy()?),
+        of("docs/evaluation.md", "static", tables::static_comparison()?),
+        of("docs/evaluation.md", "allocators", tables::allocators()?),
+        of("docs/bench.md", "bases", tables::bases()?),
+        of("docs/flight.md", "hover", tables::hover()?),
+        of("docs/flight.md", "tracking", tables::tracking()?),
+    ])
+}
+
+/// The page's text with the table in its place.
+///
+/// # Errors
+/// If the page has no such place.
+pub fn filled(page: &str, table: &Table) -> Result<String, String> {
+    let start = format!("<!-- table: {} -->\n", table.name);
+    let fault = || format!("{}: no `{}` .. `{END}`", table.page, start.trim_end());
+    let (before, rest) = page.split_once(&start).ok_or_else(fault)?;
+    let (_, after) = rest.split_once(END).ok_or_else(fault)?;
+    Ok(format!("{before}{start}\n{}\n{END}{after}", table.text))
+}
+
+const END: &str = "<!-- end -->";
+
+/// `README.md`, the other pages of the project's folder and those of `docs/`, sorted.
+///
+/// # Errors
+/// If a folder cannot be read.
+pub fn pages() -> std::io::Result<Vec<PathBuf>> {
+    let mut pages = Vec::new();
+    for folder in [root(), root().join("docs")] {
+        for entry in std::fs::read_dir(folder)? {
+            let path = entry?.path();
+            if path.extension().is_some_and(|extension| extension == "md") {
+                pages.push(path);
+            }
+        }
+    }
+    pages.sort();
+    Ok(pages)
+}

@@ -1,0 +1,375 @@
+//! The tables, in Markdown.
+
+use cargo_mixer::report::comparison::{Answer, Comparison, throttles};
+use cargo_mixer::report::study::Study;
+use mixer_compiler::isolated::IsolatedTables;
+use mixer_compiler::report::{Summary, rounded_up};
+
+use crate::counts;
+use crate::{airframes, allocators, bases, golden, root};
+
+/// The airframe of the paper.
+const PAPER: &str = "isae-x8";
+
+/// A table in Markdown; columns of numbers are aligned to the right.
+fn markdown(header: &[&str], rows: &[Vec<String>]) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let header: Vec<String> = header.iter().map(|cell| (*cell).to_owned()).collect();
+    let is_number = |cell: &String| cell.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+    let first = rows.first().into_iter().flatten();
+    let rule: String = first
+        .map(|cell| if is_number(cell) { "|---:" } else { "|---" })
+        .chain(["|\n"])
+        .collect();
+    let rows: String = rows.iter().map(|row| line(row)).collect();
+    line(&header) + &rule + &rows
+}
+
+/// A wrench as the tables write it, thrust with fewer decimals; no negative zero.
+fn wrench(values: [f64; 4], decimals: usize) -> String {
+    let cell = |(axis, value): (usize, f64)| {
+        let decimals = if axis == 3 { decimals.min(2) } else { decimals };
+        let text = format!("{value:.decimals$}");
+        match text.strip_prefix('-') {
+            Some(digits) if digits.bytes().all(|digit| matches!(digit, b'0' | b'.')) => digits.to_owned(),
+            _ => text,
+        }
+    };
+    values
+        .into_iter()
+        .enumerate()
+        .map(cell)
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// Four requests to the paper's X8, and what isolated rotors and this mixer give by the pair's map.
+pub(super) fn isolated() -> Result<String, String> {
+    let compiled = golden::compile(PAPER)?;
+    let study = Study::new(&compiled, None);
+    let conventional = IsolatedTables::new(&compiled);
+    let given = |throttles: Vec<[f64; 2]>| {
+        let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
+        study.wrench(&efforts)
+    };
+    let requests = [
+        [0.0, 0.0, 0.0, 31.4],
+        [0.0, 0.0, 0.3, 31.4],
+        [0.5, 0.0, 0.0, 31.4],
+        [1.0, -0.5, 0.2, 40.0],
+    ];
+    let rows = requests.map(|request| {
+        let [roll, pitch, yaw, thrust] = request;
+        vec![
+            format!("{roll}, {pitch}, {yaw}, {thrust}"),
+            wrench(given(throttles(&study, &conventional, request).0), 3),
+            wrench(given(study.mix(request).0), 3),
+        ]
+    });
+    Ok(markdown(
+        &[
+            "asked: roll, pitch, yaw (N m), thrust (N)",
+            "isolated rotors give",
+            "this mixer gives",
+        ],
+        &rows,
+    ))
+}
+
+/// What a mix costs on frames of each kind.
+pub(super) fn cost() -> Result<String, String> {
+    let (_, held) = counts::held()?;
+    let subjects = [
+        ("coaxial", "px4-y6", "Y6"),
+        ("coaxial", PAPER, "X8"),
+        ("coaxial", "x8-16in-quartic", "X8, real pair of 14 terms"),
+        ("coaxial", "px4-x12", "X12"),
+        ("one-rotor-out", PAPER, "X8, one rotor out"),
+        (
+            "sequential",
+            PAPER,
+            "X8, isolated rotors with desaturation after PX4",
+        ),
+    ];
+    let rows = subjects
+        .iter()
+        .map(|(mixer, airframe, title)| {
+            let row = held
+                .iter()
+                .find(|row| row.subject.mixer == *mixer && row.subject.airframe == *airframe)
+                .ok_or_else(|| format!("{}: no {mixer}, {airframe}", counts::file().display()))?;
+            Ok(vec![
+                (*title).to_owned(),
+                format!("{:.0}", row.mean("attainable")),
+                format!("{:.0}", row.mean("saturated")),
+                row.worst().to_string(),
+                (row.get("code_b") + row.get("tables_b")).to_string(),
+            ])
+        })
+        .collect::<Result<Vec<_>, String>>()?;
+    Ok(markdown(
+        &["mixer", "attainable, mean", "saturated, mean", "worst", "bytes"],
+        &rows,
+    ))
+}
+
+/// What the emitted inverse of every airframe misses.
+pub(super) fn accuracy() -> Result<String, String> {
+    let names = airframes().map_err(|error| format!("airframes/: {error}"))?;
+    let rows = names
+        .iter()
+        .map(|name| {
+            let summary = Summary::new(&golden::compile(name)?);
+            Ok(vec![
+                name.clone(),
+                summary.evaluator.clone(),
+                rounded_up(summary.proven_thrust_n),
+                rounded_up(summary.observed_thrust_n),
+                rounded_up(summary.proven_torque_nm),
+                rounded_up(summary.observed_torque_nm),
+            ])
+        })
+        .collect::<Result<Vec<_>, String>>()?;
+    Ok(markdown(
+        &[
+            "airframe",
+            "evaluator",
+            "f proven (N)",
+            "f observed (N)",
+            "Q proven (N m)",
+            "Q observed (N m)",
+        ],
+        &rows,
+    ))
+}
+
+/// Yaw commands of [`static_comparison`], from zero to the largest.
+const YAW_COMMANDS: usize = 9;
+
+/// Section V-A of the paper: yaw commands at constant thrust, and what units of each spin really give.
+pub(super) fn static_comparison() -> Result<String, String> {
+    let compiled = golden::compile(PAPER)?;
+    let study = Study::new(&compiled, None);
+    let comparison = Comparison::sweep(&study, YAW_COMMANDS).ok_or("the paper's X8 has no yaw to sweep")?;
+    let mut rows = Vec::new();
+    // Negative commands mirror the positive ones.
+    for row in comparison.rows.iter().skip(YAW_COMMANDS / 2) {
+        for (mixer, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
+            let Answer {
+                efforts,
+                within,
+                wrench,
+                ..
+            } = answer;
+            let [first, second, ..] = efforts[..] else {
+                return Err("the paper's X8 has four units".into());
+            };
+            let unit = |[f, q]: [f64; 2]| format!("{f:.3}, {:.4}", q + 0.0).replace("-0.0000", "0.0000");
+            let limited = if *within { "" } else { ", a throttle at its limit" };
+            rows.push(vec![
+                format!("{:.3}", row.yaw_nm),
+                format!("{mixer}{limited}"),
+                unit(first),
+                unit(second),
+                format!("{:.4}", wrench[2]).replace("-0.0000", "0.0000"),
+                format!("{:.3}", wrench[3]),
+            ]);
+        }
+    }
+    let header = [
+        "yaw asked (N m)",
+        "mixer",
+        "units 0, 2: f (N), Q (N m)",
+        "units 1, 3: f (N), Q (N m)",
+        "yaw given (N m)",
+        "thrust given (N)",
+    ];
+    Ok(markdown(&header, &rows))
+}
+
+/// Rows of a file in `tests/measurements/` without their header, split at commas.
+fn measured(path: &std::path::Path) -> Result<Vec<Vec<String>>, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let lines = text.lines().skip(1);
+    Ok(lines
+        .map(|line| line.split(',').map(str::to_owned).collect())
+        .collect())
+}
+
+/// Allocators on attainable wrenches.
+pub(super) fn allocators() -> Result<String, String> {
+    let rows: Vec<Vec<String>> = measured(&allocators::file())?
+        .into_iter()
+        .map(|row| {
+            let (names, percent) = row.split_at(2.min(row.len()));
+            let percent = percent.iter().map(|cell| format!("{cell} %"));
+            names.iter().cloned().chain(percent).collect()
+        })
+        .collect();
+    Ok(markdown(
+        &[
+            "frame",
+            "allocator",
+            "delivered",
+            "mean error",
+            "worst error",
+            "yaw reversed",
+        ],
+        &rows,
+    ))
+}
+
+/// Leave-one-out errors of the three bases on real maps.
+pub(super) fn bases() -> Result<String, String> {
+    let path = bases::file();
+    let held = measured(&path)?;
+    let rows = held
+        .chunks(3)
+        .map(|of_map| {
+            let mut cells = Vec::new();
+            let mut choice = String::new();
+            for row in of_map {
+                let [map, basis, thrust, torque, _, chosen] = &row[..] else {
+                    return Err(format!("{}: not a row: {row:?}", path.display()));
+                };
+                if cells.is_empty() {
+                    cells.push(map.clone());
+                }
+                cells.push(format!("{thrust}, {torque}"));
+                if chosen == "chosen" {
+                    choice.clone_from(basis);
+                }
+            }
+            cells.push(choice);
+            Ok(cells)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(markdown(
+        &["map", "biquadratic", "cubic", "quartic", "chosen"],
+        &rows,
+    ))
+}
+
+/// One flight of `tests/measurements/flight.csv`: scenario, seed, mixer and figures.
+struct Flight {
+    scenario: String,
+    seed: String,
+    mixer: String,
+    /// Nine errors of Table II (MSE, MAE, MaxAE of x, y, z), then hover thrust over weight.
+    figures: Vec<f64>,
+}
+
+fn flights() -> Result<Vec<Flight>, String> {
+    let path = root().join("tests/measurements/flight.csv");
+    measured(&path)?
+        .into_iter()
+        .map(|row| {
+            let fault = || format!("{}: not a flight: {row:?}", path.display());
+            // A scenario's name has commas, and quotes around it.
+            let line = row.join(",");
+            let (scenario, rest) = line
+                .strip_prefix('"')
+                .and_then(|line| line.split_once("\","))
+                .or_else(|| line.split_once(','))
+                .ok_or_else(fault)?;
+            let cells: Vec<&str> = rest.split(',').collect();
+            let [seed, mixer, figures @ ..] = &cells[..] else {
+                return Err(fault());
+            };
+            Ok(Flight {
+                scenario: scenario.to_owned(),
+                seed: (*seed).to_owned(),
+                mixer: (*mixer).to_owned(),
+                figures: figures
+                    .iter()
+                    .map(|cell| cell.parse().map_err(|_| fault()))
+                    .collect::<Result<_, _>>()?,
+            })
+        })
+        .collect()
+}
+
+/// Mean and standard deviation, with these decimals.
+fn spread(values: &[f64], decimals: usize) -> String {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let deviation = (squares / (count - 1.0).max(1.0)).sqrt();
+    format!("{mean:.decimals$} ± {deviation:.decimals$}")
+}
+
+/// Column of hover thrust over weight among a flight's figures.
+const HOVER: usize = 9;
+
+/// Names of the scenarios, in the order of the file.
+fn scenarios(flights: &[Flight]) -> Vec<&str> {
+    let mut scenarios: Vec<&str> = flights.iter().map(|flight| flight.scenario.as_str()).collect();
+    scenarios.dedup();
+    scenarios
+}
+
+/// Thrust command over weight in hover (Fig. 10).
+pub(super) fn hover() -> Result<String, String> {
+    let flights = flights()?;
+    let row = |scenario: &str| {
+        let of = |mixer: &str| {
+            let flown = flights
+                .iter()
+                .filter(|flight| flight.scenario == scenario && flight.mixer == mixer);
+            spread(&flown.map(|flight| flight.figures[HOVER]).collect::<Vec<_>>(), 3)
+        };
+        vec![scenario.to_owned(), of("coaxial"), of("simple")]
+    };
+    let rows: Vec<Vec<String>> = scenarios(&flights).into_iter().map(row).collect();
+    Ok(markdown(
+        &["thrust command / weight", "coaxial", "conventional"],
+        &rows,
+    ))
+}
+
+/// Names of the errors of Table II, with the paper's own ratios of x, y and z.
+const TABLE_II: [(&str, [f64; 3]); 3] = [
+    ("MSE", [0.55, 0.39, 0.45]),
+    ("MAE", [0.72, 0.69, 0.73]),
+    ("MaxAE", [0.90, 0.50, 0.78]),
+];
+
+/// Table II: errors with the coaxial mixer over those with the conventional one, seed by seed.
+pub(super) fn tracking() -> Result<String, String> {
+    let flights = flights()?;
+    let scenarios = scenarios(&flights);
+    let mut rows = Vec::new();
+    for (row, (name, paper)) in TABLE_II.into_iter().enumerate() {
+        for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+            let mut cells = vec![format!("{name} {letter}")];
+            for scenario in &scenarios {
+                let of = |mixer: &str| {
+                    let flown = flights
+                        .iter()
+                        .filter(|flight| flight.scenario == *scenario && flight.mixer == mixer);
+                    flown
+                        .map(|flight| (flight.seed.as_str(), flight.figures[3 * row + axis]))
+                        .collect::<Vec<_>>()
+                };
+                let (coaxial, simple) = (of("coaxial"), of("simple"));
+                if coaxial
+                    .iter()
+                    .map(|flight| flight.0)
+                    .ne(simple.iter().map(|flight| flight.0))
+                {
+                    return Err(format!("{scenario}: a seed was not flown with both mixers"));
+                }
+                let ratios: Vec<f64> = coaxial.iter().zip(&simple).map(|(a, b)| a.1 / b.1).collect();
+                cells.push(spread(&ratios, 2));
+            }
+            cells.push(format!("{:.2}", paper[axis]));
+            rows.push(cells);
+        }
+    }
+    let header: Vec<&str> = ["error, coaxial / conventional"]
+        .into_iter()
+        .chain(scenarios.iter().copied())
+        .chain(["paper"])
+        .collect();
+    Ok(markdown(&header, &rows))
+}

@@ -1,0 +1,148 @@
+//! `cargo xtask TASK`: the developer's commands behind one door. Each starts a program that stands elsewhere.
+
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+/// A task: its name, the words that start it, and what it does.
+struct Task {
+    name: &'static str,
+    program: &'static [&'static str],
+    does: &'static str,
+}
+
+/// Runs a program of `mixer-tests`.
+macro_rules! tests {
+    ($binary:literal) => {
+        &[
+            "cargo",
+            "run",
+            "--quiet",
+            "--locked",
+            "-p",
+            "mixer-tests",
+            "--bin",
+            $binary,
+            "--",
+        ]
+    };
+    (release $binary:literal) => {
+        &[
+            "cargo",
+            "run",
+            "--quiet",
+            "--locked",
+            "--release",
+            "-p",
+            "mixer-tests",
+            "--bin",
+            $binary,
+            "--",
+        ]
+    };
+}
+
+const TASKS: &[Task] = &[
+    Task {
+        name: "test",
+        program: &["tests/run"],
+        does: "every test; `test --stage NAME` runs one stage, `test --install` installs what is missing first",
+    },
+    Task {
+        name: "bless",
+        program: tests!("bless"),
+        does: "writes the golden outputs of airframes/ to tests/golden/",
+    },
+    Task {
+        name: "counts",
+        program: tests!("counts"),
+        does: "counts instructions in QEMU; `counts --bless` writes tests/counts.csv, `counts --fit` what follows from it",
+    },
+    Task {
+        name: "evaluators",
+        program: tests!(release "evaluators"),
+        does: "counts the instructions of every evaluator and prints them as mixer-compiler states them",
+    },
+    Task {
+        name: "allocators",
+        program: tests!(release "allocators"),
+        does: "compares allocators and writes tests/measurements/allocators.csv",
+    },
+    Task {
+        name: "bases",
+        program: tests!(release "bases"),
+        does: "compares bases on MIXER_BENCH_DATA and writes tests/measurements/bases.csv",
+    },
+    Task {
+        name: "flights",
+        program: &[
+            "cargo",
+            "run",
+            "--quiet",
+            "--locked",
+            "--release",
+            "-p",
+            "flight",
+            "--",
+            "--errors",
+            "tests/measurements/flight.csv",
+        ],
+        does: "flies the comparison and writes tests/measurements/flight.csv",
+    },
+    Task {
+        name: "tables",
+        program: tests!("tables"),
+        does: "writes the tables of README.md and docs/ from what the tasks above have measured",
+    },
+    Task {
+        name: "gallery",
+        program: &[
+            "cargo",
+            "run",
+            "--quiet",
+            "--locked",
+            "-p",
+            "cargo-mixer",
+            "--example",
+            "gallery",
+            "--",
+        ],
+        does: "draws the pictures of docs/",
+    },
+];
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args_os().skip(1);
+    let name = arguments.next().unwrap_or_default();
+    let Some(task) = TASKS.iter().find(|task| name == task.name) else {
+        eprintln!("usage: cargo xtask TASK [ARGUMENT..]\n");
+        for Task { name, does, .. } in TASKS {
+            eprintln!("  {name:<11} {does}");
+        }
+        return ExitCode::from(2);
+    };
+    let [program, words @ ..] = task.program else {
+        return ExitCode::FAILURE;
+    };
+    // `cargo xtask counts -- --fit` and `cargo xtask counts --fit` are the same.
+    let arguments = arguments.filter(|argument| argument != "--");
+    // This package lies directly in the project's folder.
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let program = if program.contains('/') {
+        root.join(program)
+    } else {
+        program.into()
+    };
+    match Command::new(&program)
+        .args(words)
+        .args(arguments)
+        .current_dir(&root)
+        .status()
+    {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {}: {error}", program.display());
+            ExitCode::FAILURE
+        }
+    }
+}
