@@ -23,6 +23,7 @@ pub mod library;
 pub mod mix;
 pub mod new;
 pub mod report;
+pub mod schema;
 pub mod setpoints;
 pub mod shell;
 pub mod stack;
