@@ -25,6 +25,7 @@ pub mod new;
 pub mod report;
 pub mod schema;
 pub mod setpoints;
+mod sha256;
 pub mod shell;
 pub mod stack;
 mod stdout;
