@@ -65,7 +65,10 @@ pub fn run(args: &ReportArgs) -> ExitCode {
     let study = Study::new(&compiled, args.thrust);
     let page = page::page(&study, bench.as_ref(), &Origin::now(&args.airframe));
     match crate::file::write(&args.output, &page) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => {
+            crate::remark(format_args!("wrote {}", args.output.display()));
+            ExitCode::SUCCESS
+        }
         Err(message) => crate::complain(message),
     }
 }

@@ -63,7 +63,7 @@ pub fn rust(compiled: &Compiled, rows: &[Row], rotors_out: &[(u8, Row)]) -> Stri
     );
     let _ = writeln!(
         text,
-        "/// All rotors turn.\npub static VECTORS: [[u32; {count}]; {}] = [",
+        "/// All rotors turn.\npub(crate) static VECTORS: [[u32; {count}]; {}] = [",
         rows.len()
     );
     for row in rows {
@@ -73,8 +73,8 @@ pub fn rust(compiled: &Compiled, rows: &[Row], rotors_out: &[(u8, Row)]) -> Stri
     let each = by_rotor.first().map_or(0, |rows| rows.len());
     let _ = writeln!(
         text,
-        "];\n\n/// One rotor is out: its output, and rows.\n\
-         pub static ROTORS_OUT: [(u8, [[u32; {count}]; {each}]); {}] = [",
+        "];\n\n/// One rotor is out: its output, and rows.\n#[allow(dead_code)]\n\
+         pub(crate) static ROTORS_OUT: [(u8, [[u32; {count}]; {each}]); {}] = [",
         by_rotor.len()
     );
     for rows in by_rotor {

@@ -105,7 +105,11 @@ fn new_overwrites_only_by_force() {
     assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
     let forced: Vec<&str> = arguments.into_iter().chain(["--force"]).collect();
     assert_eq!(run(&forced).status.code(), Some(0));
-    assert!(fs::read_to_string(&file).unwrap().contains("\nname = \"kept\"\n"));
+    assert!(
+        fs::read_to_string(&file)
+            .unwrap()
+            .starts_with("#:schema ./airframe.schema.json\nname = \"kept\"\n")
+    );
 }
 
 #[test]

@@ -40,8 +40,8 @@ impl fmt::Display for Comparison {
         writeln!(f)?;
         writeln!(
             f,
-            "  {:<12} {:^21} {:^21} {:^15} | paper {:>8} {:>8} {:>6}",
-            "Table II", "coaxial", "conventional", "coaxial/conventional", "coaxial", "conventional", "ratio"
+            "  {:<12} {:^21} {:^21} {:^15} | paper {:>8} {:>12} {:>6}",
+            "Table II", "coaxial", "conventional", "ratio", "coaxial", "conventional", "ratio"
         )?;
         for (row, name) in TrackingError::NAMES.into_iter().enumerate() {
             let unit = if row == 0 { "mm2" } else { "mm" };
@@ -53,7 +53,7 @@ impl fmt::Display for Comparison {
                     [PAPER_COAXIAL, PAPER_CONVENTIONAL].map(|paper| paper.rows()[row][axis]);
                 writeln!(
                     f,
-                    "  {:<12} {:>21} {:>21} {:>15} |       {:>8} {:>8} {:>6.2}",
+                    "  {:<12} {:>21} {:>21} {:>15} |       {:>8} {:>12} {:>6.2}",
                     format!("{name} {letter}, {unit}"),
                     of(Method::Coaxial),
                     of(Method::Conventional),
@@ -72,7 +72,7 @@ impl fmt::Display for Comparison {
             let saturated: usize = flights.iter().map(|pair| pair.with(method).saturated()).sum();
             writeln!(
                 f,
-                "  {method:<8} thrust command / weight in hover {:.3}, mean yaw error {:.2} degrees, \
+                "  {method:<12} thrust command / weight in hover {:.3}, mean yaw error {:.2} degrees, \
                  {saturated} periods saturated",
                 over(|flight| flight.hover_thrust()),
                 over(|flight| flight.yaw_error().to_degrees()),

@@ -110,8 +110,8 @@ mod tests {
     #[test]
     fn labels_are_never_upside_down() {
         let leftwards: Vec<[f64; 2]> = (0..20).map(|k| [-5.0 * f64::from(k), 0.0]).collect();
-        let label = Label::along(&leftwards).unwrap();
+        let label = Label::along(&leftwards, 0.5).unwrap();
         assert_eq!(label.degrees, 0.0);
-        assert!(Label::along(&leftwards[..5]).is_none());
+        assert!(Label::along(&leftwards[..5], 0.5).is_none());
     }
 }
