@@ -32,7 +32,7 @@ fn compilation_is_deterministic() {
 mod isae_x8 {
     mixer_macros::airframe!("../airframes/isae-x8.toml");
     include!("golden/isae-x8.vectors.rs");
-    pub use isae_x8::mix;
+    pub(super) use isae_x8::mix;
 }
 
 /// The harness that users copy to the target counts every row whose bits differ.

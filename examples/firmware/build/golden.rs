@@ -15,17 +15,20 @@ pub(crate) fn image(airframes: &[String]) -> Result<String, String> {
         let module = module(airframe);
         let path = format!("{GOLDEN}/{airframe}.vectors.rs");
         println!("cargo::rerun-if-changed={path}");
-        let path = fs::canonicalize(&path)
-            .map_err(|e| format!("cannot read the golden vectors {path}: {e}; write them first, see the README"))?;
+        let path = fs::canonicalize(&path).map_err(|e| {
+            format!("cannot read the golden vectors {path}: {e}; write them first, see the README")
+        })?;
         write!(
             items,
             "mixer_macros::airframe!(\"{AIRFRAMES}/{airframe}.toml\");\n\
-             #[allow(dead_code, unreachable_pub, reason = \"rotors out are for another image\")]\n\
              mod {module}_vectors {{\n    include!({path:?});\n}}\n"
         )
         .map_err(|e| e.to_string())?;
-        writeln!(calls, "    check!(check, \"{airframe}\", {module}, {module}_vectors);")
-            .map_err(|e| e.to_string())?;
+        writeln!(
+            calls,
+            "    check!(check, \"{airframe}\", {module}, {module}_vectors);"
+        )
+        .map_err(|e| e.to_string())?;
     }
     Ok(format!(
         "{items}fn for_each_airframe(check: &mut Check) {{\n{calls}}}\n"

@@ -5,7 +5,6 @@ use crate::airframe::{Airframe, Method};
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::effectiveness::Effectiveness;
 use crate::injectivity::ForwardMap;
-use crate::model::PairMap;
 use crate::report::rounded_up;
 use crate::tables::VoltageTable;
 
@@ -16,9 +15,6 @@ const FACTORS: [f64; 5] = [1.02, 1.06, 1.15, 1.4, 2.0];
 /// Factors on the least idle at which the map can be inverted. All fits of ten real maps compile at the first (README); an idle
 /// above the last is not near the fold.
 const IDLES: [f64; 2] = [1.03, 1.1];
-
-/// Share of a unit's largest effort above which a tolerance is no mend where an idle is one.
-const WIDE: f64 = 0.01;
 
 /// The least of [`IDLES`] above the file's own that meets the tolerances, upwards to 1e-4; `None` far from the fold.
 fn better_idle(airframe: &Airframe, meets: impl Fn(&Airframe) -> bool) -> Option<f64> {
@@ -91,10 +87,9 @@ pub(super) fn diagnostic(
         other.inverse.method = method.clone();
         meets(&other)
     };
-    let largest = PairMap::new(&airframe.pair, &airframe.throttle).scale();
-    let is_wide = (0..2).any(|k| reached[k] > stated[k].max(WIDE * largest[k]));
-    let factors = FACTORS.iter().filter(|_| idle.is_none() || !is_wide);
-    let offered = factors.into_iter().find_map(|factor| {
+    // Where an idle does, the tolerance is not at fault.
+    let mut factors = FACTORS.into_iter().filter(|_| idle.is_none());
+    let offered = factors.find_map(|factor| {
         let offered = [0, 1].map(|k| {
             let enough = rounded_up(factor * reached[k]).parse().unwrap_or(f64::INFINITY);
             if reached[k] > stated[k] { enough } else { stated[k] }

@@ -1,4 +1,5 @@
-//! Mixes the golden vectors of every airframe and compares every bit with what the host computed.
+//! Mixes the golden vectors of every airframe, with all rotors and with one out, and compares every bit with what the host
+//! computed.
 //!
 //! Prints one line per airframe: vectors, mismatches, instructions per mix (mean and worst over the vectors) and
 //! stack per mix. Exit status 0 if every bit agrees and every non-finite setpoint is refused.
@@ -12,8 +13,8 @@ use core::mem::MaybeUninit;
 
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hprintln;
-use harness::{agrees, request};
-use mixer_rt::{Mix, SetpointError, Wrench};
+use harness::{agrees, differing, request};
+use mixer_rt::{Health, Mix, SetpointError, Wrench};
 use probe::{Counter, Mixer};
 
 #[path = "../vectors/harness.rs"]
@@ -37,7 +38,16 @@ macro_rules! check {
             }
         }
         // SAFETY: `mix` writes the result for as many channels as the vectors have.
-        unsafe { $check.airframe::<{ $module::CHANNELS }>($name, $vectors::VECTORS.iter().map(|row| &row[..]), mix) }
+        unsafe {
+            $check.airframe::<{ $module::CHANNELS }>($name, $vectors::VECTORS.iter().map(|row| &row[..]), mix)
+        };
+        let rotors_out = $vectors::ROTORS_OUT.iter().map(|(failed, rows)| {
+            let health = Health::GOOD.with_failed(*failed);
+            differing(rows, |setpoint, voltage_v| {
+                $module::mix_with_health(setpoint, voltage_v, health)
+            })
+        });
+        $check.rotors_out($name, rotors_out.sum());
     }};
 }
 
@@ -52,6 +62,14 @@ struct Check {
 }
 
 impl Check {
+    /// Notes how many rows with a rotor out differ.
+    fn rotors_out(&mut self, name: &str, differing: usize) {
+        if differing > 0 {
+            hprintln!("{}.rotors-out.csv: {} rows differ", name, differing);
+            self.passed = false;
+        }
+    }
+
     /// Mixes the vectors of one airframe and prints its line.
     ///
     /// # Safety
