@@ -77,7 +77,8 @@ fn the_yaw_table_of_many_units_is_narrow() {
 
 #[test]
 fn units_of_headers_stand_in_parentheses() {
-    for compiled in airframes() {
+    for name in ["isae-x8", "px4-y6"] {
+        let compiled = compiled(&root().join(format!("airframes/{name}.toml")));
         let page = page(&Study::new(&compiled, None), None, &Origin::default());
         for header in headers(&parsed(&page)).concat() {
             let bare = ["N", "m", "V", "kg", "instructions", "cycles", "bytes"]
