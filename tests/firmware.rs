@@ -91,6 +91,21 @@ fn golden_vectors_have_the_same_bits_as_on_the_host() {
     assert_eq!(text, again, "a second run counts the same instructions");
 }
 
+/// The harness that users copy, on the table that `cargo mixer golden` writes.
+#[test]
+fn the_copied_harness_agrees_in_one_line() {
+    let text = toolchain()
+        .run("vectors", &Variant::default())
+        .unwrap_or_else(|e| panic!("{e}"));
+    println!("{text}");
+    let rows = |file: &str| {
+        let table = std::fs::read_to_string(golden::folder().join(file)).expect("golden");
+        table.lines().count() - 1
+    };
+    let rows = rows("isae-x8.vectors.csv") + rows("isae-x8.rotors-out.csv");
+    assert_eq!(text.trim(), format!("isae-x8: {rows} vectors, 0 differ"));
+}
+
 #[test]
 fn mixers_are_small_and_cannot_panic() {
     let toolchain = toolchain();

@@ -1,6 +1,5 @@
 //! `cargo mixer compare`: airframes side by side.
 
-use std::io::{Write, stdout};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -29,7 +28,7 @@ pub fn run(args: &CompareArgs) -> ExitCode {
             Err(refusal) => return refusal.report(),
         }
     }
-    crate::finish(stdout().lock().write_all(comparison(&all).as_bytes()))
+    crate::print(&comparison(&all))
 }
 
 /// One row per property, one column per airframe.

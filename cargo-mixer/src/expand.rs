@@ -1,6 +1,5 @@
 //! `cargo mixer expand`.
 
-use std::io::{Write, stdout};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,7 +13,7 @@ pub struct ExpandArgs {
 /// Runs the command.
 pub fn run(args: &ExpandArgs) -> ExitCode {
     match crate::compile(&args.airframe) {
-        Ok(compiled) => crate::finish(stdout().lock().write_all(compiled.rust().as_bytes())),
+        Ok(compiled) => crate::print(&compiled.rust()),
         Err(refusal) => refusal.report(),
     }
 }

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
+use crate::schema::DIRECTIVE;
+
 /// A frame of coaxial pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Frame {
@@ -97,7 +99,7 @@ impl FrameArgs {
             description, axes, ..
         } = self.frame.shape();
         let mut text = format!(
-            "name = \"{}\"\ndescription = \"{description}\"\n\n",
+            "{DIRECTIVE}\nname = \"{}\"\ndescription = \"{description}\"\n\n",
             self.name(output)
         );
         text.push_str(tables.trim());

@@ -1,7 +1,8 @@
 //! `cargo mixer golden`: what an airframe compiles to, held in files and compared.
 //!
-//! An airframe has four of them: `NAME.rs`, the generated Rust; `NAME.report.txt`, the report; `NAME.vectors.csv`,
-//! setpoints with the bits that the mixer gives; `NAME.rotors-out.csv`, the same with rotors out.
+//! An airframe has five of them: `NAME.rs`, the generated Rust; `NAME.report.txt`, the report; `NAME.vectors.csv`,
+//! setpoints with the bits that the mixer gives; `NAME.rotors-out.csv`, the same with rotors out; `NAME.vectors.rs`, both as
+//! constants for a test on the target.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,8 +19,8 @@ pub mod vectors;
 /// Writes golden outputs of airframes, or compares them with those that were written
 ///
 /// Per airframe: NAME.rs (the generated Rust), NAME.report.txt, NAME.vectors.csv (setpoints with the bits of throttles,
-/// achieved wrench and saturation) and NAME.rotors-out.csv (the same with rotors out). Keep the folder under version
-/// control and run the command with --check in your tests.
+/// achieved wrench and saturation), NAME.rotors-out.csv (the same with rotors out) and NAME.vectors.rs (both as constants,
+/// for a test on the target). Keep the folder under version control and run the command with --check in your tests.
 #[derive(clap::Args, Debug)]
 pub struct GoldenArgs {
     /// The airframe files
@@ -67,18 +68,20 @@ fn all_outputs(airframes: &[PathBuf]) -> Result<BTreeMap<String, String>, ExitCo
 }
 
 /// The golden outputs of one airframe: file name and content.
-pub fn outputs(compiled: &Compiled) -> [(String, String); 4] {
-    let name = &compiled.airframe.name;
+pub fn outputs(compiled: &Compiled) -> [(String, String); 5] {
     let vectors = vectors::healthy(compiled);
-    let rotors_out = vectors::rotors_out(compiled, &vectors);
+    let rotors_out = table::rotors_out(compiled, &vectors::rotors_out(compiled, &vectors));
+    let vectors = table::healthy(compiled, &vectors);
+    let file = |ending: &str| format!("{}.{ending}", compiled.airframe.name);
     [
-        (format!("{name}.rs"), compiled.rust()),
-        (format!("{name}.report.txt"), Report(compiled).to_string()),
-        (format!("{name}.vectors.csv"), table::healthy(compiled, &vectors)),
+        (file("rs"), compiled.rust()),
+        (file("report.txt"), Report(compiled).to_string()),
+        (file("vectors.csv"), table::csv(compiled, &vectors)),
         (
-            format!("{name}.rotors-out.csv"),
-            table::rotors_out(compiled, &rotors_out),
+            file("rotors-out.csv"),
+            table::rotors_out_csv(compiled, &rotors_out),
         ),
+        (file("vectors.rs"), table::rust(compiled, &vectors, &rotors_out)),
     ]
 }
 

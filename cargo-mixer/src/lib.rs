@@ -23,9 +23,12 @@ pub mod library;
 pub mod mix;
 pub mod new;
 pub mod report;
+pub mod schema;
 pub mod setpoints;
+mod sha256;
 pub mod shell;
 pub mod stack;
+mod stdout;
 pub mod sweep;
 
 /// The exit status for a bad input.
@@ -105,14 +108,22 @@ fn compile_quietly(path: &Path) -> Result<Compiled, Refusal> {
     mixer_compiler::compile(&source).map_err(Refusal::Faulty)
 }
 
+/// Prints the only output of a command; its exit status.
+fn print(text: &str) -> ExitCode {
+    finish(io::stdout().lock().write_all(text.as_bytes()))
+}
+
 /// The exit status after the last output.
-fn finish(written: io::Result<()>) -> ExitCode {
+pub fn finish(written: io::Result<()>) -> ExitCode {
     output(written).err().unwrap_or(ExitCode::SUCCESS)
 }
 
 /// What became of an output; the exit status where it failed. A reader that has seen enough (`| head`) is no fault.
 fn output(written: io::Result<()>) -> Result<(), ExitCode> {
-    match written {
+    if stdout::was_closed() {
+        return Err(complain("stdout is closed"));
+    }
+    match written.and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(complain(format_args!("stdout: {error}")))
         }

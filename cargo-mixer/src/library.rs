@@ -17,7 +17,6 @@ mod names;
 mod object;
 mod output;
 mod selftest;
-mod sha256;
 mod toolchain;
 
 use std::path::{Path, PathBuf};
@@ -99,7 +98,7 @@ impl Airframe {
         Ok(Airframe {
             module: compiled.airframe.module_name(),
             file: file.into_owned(),
-            hash: sha256::hex(&bytes),
+            hash: crate::sha256::hex(&bytes),
             compiled,
         })
     }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use cargo_mixer::{
-    check, compare, expand, golden, identify, import, library, mix, new, report, shell, sweep,
+    check, compare, expand, finish, golden, identify, import, library, mix, new, report, schema, shell, sweep,
 };
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -32,6 +32,7 @@ enum Command {
     Import(import::ImportArgs),
     Library(library::LibraryArgs),
     Report(report::ReportArgs),
+    Schema(schema::SchemaArgs),
     Sweep(sweep::SweepArgs),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),
@@ -43,7 +44,13 @@ fn main() -> ExitCode {
     let arguments = arguments
         .filter(|(index, word)| *index != 1 || word != "mixer")
         .map(|(_, word)| word);
-    match Arguments::parse_from(arguments).command {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        // Help and the version go to stdout, bad usage to stderr.
+        Err(said) if said.use_stderr() => said.exit(),
+        Err(said) => return finish(said.print()),
+    };
+    match arguments.command {
         Command::Check(args) => check::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Mix(args) => mix::run(&args),
@@ -54,6 +61,7 @@ fn main() -> ExitCode {
         Command::Import(args) => import::run(&args),
         Command::Library(args) => library::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Schema(args) => schema::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Completions(args) => shell::completions(&args, Arguments::command()),
         Command::Man(args) => shell::man(&args, &Arguments::command()),

@@ -95,6 +95,7 @@ pub fn run(args: &MixArgs) -> ExitCode {
         }
     };
     match mixed {
+        Ok(0) if args.output.is_none() => crate::finish(Ok(())),
         Ok(0) => ExitCode::SUCCESS,
         Ok(1) => crate::complain("1 bad row is left out"),
         Ok(bad) => crate::complain(format_args!("{bad} bad rows are left out")),
@@ -179,7 +180,10 @@ pub fn mix<T>(
             Err(error) => return Err(Stopped::Output(error)),
         }
         let Some((line, row)) = setpoints.read().map_err(Stopped::Input)? else {
-            return Ok(bad);
+            return match output.flush() {
+                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Stopped::Output(error)),
+                _ => Ok(bad),
+            };
         };
         let mixed = row.and_then(|row| {
             let voltage_v = row.voltage_v.unwrap_or(reference_v);

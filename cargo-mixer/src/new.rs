@@ -62,6 +62,13 @@ pub(crate) fn write(path: &std::path::Path, text: &str) -> ExitCode {
     match crate::file::write(path, text) {
         Ok(()) => {
             crate::remark(format_args!("wrote {}", path.display()));
+            let schema = path.with_file_name("airframe.schema.json");
+            if !schema.exists() {
+                crate::remark(format_args!(
+                    "your editor completes and checks it with its schema beside it: cargo mixer schema -o {}",
+                    schema.display()
+                ));
+            }
             ExitCode::SUCCESS
         }
         Err(message) => crate::complain(message),

@@ -14,6 +14,7 @@ pub mod gallery;
 pub mod layout;
 pub mod maps;
 pub mod number;
+pub mod origin;
 pub mod page;
 pub mod plots;
 pub mod study;
@@ -21,6 +22,7 @@ pub mod surface;
 pub mod table;
 
 use self::bench::BenchPoints;
+use self::origin::Origin;
 use self::study::Study;
 
 /// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and tables
@@ -61,9 +63,12 @@ pub fn run(args: &ReportArgs) -> ExitCode {
         crate::remark(format_args!("warning: {doubt}"));
     }
     let study = Study::new(&compiled, args.thrust);
-    let page = page::page(&study, bench.as_ref());
+    let page = page::page(&study, bench.as_ref(), &Origin::now(&args.airframe));
     match crate::file::write(&args.output, &page) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => {
+            crate::remark(format_args!("wrote {}", args.output.display()));
+            ExitCode::SUCCESS
+        }
         Err(message) => crate::complain(message),
     }
 }

@@ -191,7 +191,7 @@ fn authority_lines(study: &Study<'_>) -> Vec<String> {
         .iter()
         .map(|axis| format!(",{0}_least_nm,{0}_largest_nm", axis.name()));
     let mut lines = vec!["thrust_n".to_owned() + &columns.collect::<String>()];
-    for at in authority::against_thrust(study, THRUSTS) {
+    for at in authority::against_thrust(study, &study.reference(), THRUSTS) {
         let torques = axes.iter().flat_map(|&axis| at.torque_nm[axis as usize]);
         lines.push(line([at.thrust_n].into_iter().chain(torques)));
     }

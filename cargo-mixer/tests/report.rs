@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::{env, fs};
 
+use cargo_mixer::report::origin::Origin;
 use cargo_mixer::report::page::{SECTIONS, page};
 use cargo_mixer::report::study::Study;
 use cargo_mixer::sweep::{Data, sweep};
@@ -14,6 +15,8 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 #[path = "report/browser.rs"]
 mod browser;
+#[path = "report/content.rs"]
+mod content;
 #[path = "report/cost.rs"]
 mod cost;
 #[path = "report/doubts.rs"]
@@ -85,8 +88,11 @@ fn pages_show_warnings() {
             .collect::<Vec<_>>()
     };
     let warned = compiled(&root().join("mixer-compiler/tests/warnings/tolerance-wide.toml"));
-    assert_eq!(list(&page(&Study::new(&warned, None), None)), [2]);
-    assert!(list(&page(&Study::new(&x8(), None), None)).is_empty());
+    assert_eq!(
+        list(&page(&Study::new(&warned, None), None, &Origin::default())),
+        [2]
+    );
+    assert!(list(&page(&Study::new(&x8(), None), None, &Origin::default())).is_empty());
 }
 
 #[test]
@@ -95,7 +101,7 @@ fn pages_are_well_formed_and_complete() {
     for compiled in airframes().into_iter().chain(folder("tests/fixtures")) {
         let name = &compiled.airframe.name;
         let study = Study::new(&compiled, None);
-        let page = page(&study, None);
+        let page = page(&study, None, &Origin::default());
         let document = parsed(&page);
         let sections: Vec<(&str, Node)> = named(document.root(), "section")
             .map(|section| (section.attribute("id").unwrap(), section))
@@ -138,7 +144,7 @@ fn pages_are_well_formed_and_complete() {
 #[test]
 fn pages_refer_to_nothing_outside() {
     for compiled in airframes() {
-        let page = page(&Study::new(&compiled, None), None);
+        let page = page(&Study::new(&compiled, None), None, &Origin::default());
         let document = parsed(&page);
         let anchors: BTreeSet<&str> = document.descendants().filter_map(|n| n.attribute("id")).collect();
         for node in document.descendants() {
@@ -188,7 +194,7 @@ fn text_of_the_airframe_is_no_markup() {
     let text = fs::read_to_string(root().join("airframes/single-pair.toml")).unwrap();
     let text = text.replace("One coaxial pair", "<script>alert(1)</script> & <b>\\u0007");
     let compiled = compile_text(&text);
-    let page = page(&Study::new(&compiled, None), None);
+    let page = page(&Study::new(&compiled, None), None, &Origin::default());
     let document = parsed(&page);
     let lead = document
         .descendants()
@@ -314,7 +320,7 @@ fn bench_points_stand_beside_the_model() {
     let cells: Vec<&str> = named(document.root(), "td")
         .filter_map(|cell| cell.text())
         .collect();
-    for (rms, largest) in [("0.100 N", "0.100 N"), ("0.00100 N m", "0.00100 N m")] {
+    for (rms, largest) in [("0.100", "0.100"), ("0.00100", "0.00100")] {
         assert!(
             cells.windows(2).any(|pair| pair == [rms, largest]),
             "{rms}: {cells:?}"
@@ -356,7 +362,7 @@ fn an_airframe_without_yaw_says_so() {
     let text = text.replace("[\"roll\", \"yaw\", \"thrust\"]", "[\"roll\", \"thrust\"]");
     let compiled = compile_text(&text);
     let study = Study::new(&compiled, None);
-    assert!(page(&study, None).contains("Yaw is not a served axis"));
+    assert!(page(&study, None, &Origin::default()).contains("Yaw is not a served axis"));
     assert!(
         sweep(&study, Data::Yaw)
             .unwrap_err()

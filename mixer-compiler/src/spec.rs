@@ -5,7 +5,7 @@
 //! [`crate::airframe`] to say.
 
 mod fields;
-mod keys;
+pub mod keys;
 mod syntax;
 mod value;
 
@@ -193,7 +193,7 @@ impl Spec {
             return None;
         }
         let mut file = Fields::new(&table, keys::FILE, String::new(), top, faults);
-        file.require(&["name", "throttle", "pair"]);
+        file.require();
         if file.key_place("unit").is_none() && file.key_place("layout").is_none() {
             let fault = Diagnostic::new(Code::MissingKey, "unit", file.place(), "the airframe has 0 units")
                 .label("this airframe has no `[[unit]]`")
@@ -218,7 +218,7 @@ impl Spec {
 
 impl Vehicle {
     fn read(fields: &mut Fields<'_, '_>) -> Self {
-        fields.require(&["mass_kg"]);
+        fields.require();
         Self {
             mass_kg: fields.read("mass_kg"),
         }
@@ -227,7 +227,7 @@ impl Vehicle {
 
 impl Throttle {
     fn read(fields: &mut Fields<'_, '_>) -> Self {
-        fields.require(&["min", "max"]);
+        fields.require();
         Self {
             min: fields.read("min"),
             max: fields.read("max"),
@@ -237,7 +237,7 @@ impl Throttle {
 
 impl Pair {
     fn read(fields: &mut Fields<'_, '_>) -> Self {
-        fields.require(&["basis", "thrust_n", "torque_nm", "upper_spin"]);
+        fields.require();
         Self {
             basis: fields.read("basis"),
             thrust_n: fields.read("thrust_n"),
@@ -249,7 +249,7 @@ impl Pair {
 
 impl Voltage {
     fn read(fields: &mut Fields<'_, '_>) -> Self {
-        fields.require(&["reference_v", "range_v"]);
+        fields.require();
         Self {
             place: fields.place(),
             reference_v: fields.read("reference_v"),
@@ -277,7 +277,7 @@ impl VoltageLaw {
 
 impl Layout {
     fn read(fields: &mut Fields<'_, '_>) -> Self {
-        fields.require(&["arm_m", "units", "first_angle_deg"]);
+        fields.require();
         Self {
             place: fields.place(),
             arm_m: fields.read("arm_m"),
@@ -292,7 +292,7 @@ impl Layout {
 
 impl Unit {
     fn read(fields: &mut Fields<'_, '_>) -> Self {
-        fields.require(&["position_m", "upper_spin", "channels"]);
+        fields.require();
         Self {
             path: fields.path().to_string(),
             place: fields.place(),

@@ -1,15 +1,13 @@
-//! Golden outputs: what is held per airframe in `tests/golden/`, and how it is made.
+//! Golden outputs of `airframes/`, held in `tests/golden/` as a user's are.
 //!
-//! `<name>.rs` is the generated Rust, `<name>.report.txt` the report, `<name>.vectors.csv` setpoints with the bits
-//! that the mixer gives. They are written by `cargo run -p mixer-tests --bin bless` only.
+//! `cargo mixer golden airframes/*.toml -o tests/golden` writes them and nothing else does.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use cargo_mixer::golden::table;
-use mixer_compiler::report::Report;
 use mixer_compiler::{Compiled, Source};
 
-use crate::{root, vectors};
+use crate::{airframes, root};
 
 /// The folder of the golden outputs.
 pub fn folder() -> PathBuf {
@@ -26,18 +24,14 @@ pub fn compile(name: &str) -> Result<Compiled, String> {
     mixer_compiler::compile(&Source::new(path, text)).map_err(|faults| faults.to_string())
 }
 
-/// The golden outputs of one airframe: file name and content.
+/// The golden outputs of all airframes: file name and content.
 ///
 /// # Errors
 /// As [`compile`].
-pub fn outputs(name: &str) -> Result<Vec<(String, String)>, String> {
-    let compiled = compile(name)?;
-    Ok(vec![
-        (format!("{name}.report.txt"), Report(&compiled).to_string()),
-        (format!("{name}.rs"), compiled.rust()),
-        (
-            format!("{name}.vectors.csv"),
-            table::healthy(&compiled, &vectors::setpoints(&compiled)),
-        ),
-    ])
+pub fn outputs() -> Result<BTreeMap<String, String>, String> {
+    let mut outputs = BTreeMap::new();
+    for name in airframes().map_err(|error| format!("airframes/: {error}"))? {
+        outputs.extend(cargo_mixer::golden::outputs(&compile(&name)?));
+    }
+    Ok(outputs)
 }

@@ -19,7 +19,6 @@ pub mod random;
 pub mod request;
 pub mod shortfall;
 pub mod soundness;
-pub mod vectors;
 
 use std::path::{Path, PathBuf};
 

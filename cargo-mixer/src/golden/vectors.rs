@@ -7,6 +7,25 @@ use mixer_compiler::airframe::Axis;
 use mixer_compiler::model::PairMap;
 use mixer_rt::Wrench;
 
+/// A setpoint and the battery's voltage, V.
+pub type Vector = (Wrench, f32);
+
+/// What a golden vector is of. The table holds the kinds in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Zero, thrusts to beyond the ceiling at voltages to beyond the range, each axis alone.
+    ByHand,
+    /// Wrenches of throttles within the range: anywhere, near its ends (where least-norm efforts often do not suffice), and
+    /// about one throttle for all, as in hover.
+    Attainable,
+    /// Corners of the attainable set at the ends of the voltage's range, and a little inside and outside.
+    Border,
+    /// One axis or several far beyond what there is.
+    Saturated,
+    /// Torques with no thrust, with less than none and with next to none; torques next to none.
+    Faint,
+}
+
 /// A setpoint with a rotor out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotorsOut {
@@ -21,32 +40,52 @@ pub struct RotorsOut {
 /// Wrenches of random throttles.
 const ATTAINABLE: usize = 120;
 
-/// Wrenches of throttles that are all at idle or full, and a little inside and outside of these.
-const BORDER: usize = 40;
+/// Those throttles keep this share of the range from its ends: a mixer may leave out as little as 0.2 % of the attainable set.
+const MARGIN: f64 = 0.02;
 
-/// Inside, on and outside of the border, as shares about the middle of the throttles.
-const SHARES: [f64; 3] = [0.98, 1.0, 1.02];
+/// Directions in which corners of the attainable set are taken.
+const DIRECTIONS: usize = 36;
+
+/// A corner's wrench and these shares of the size more of its direction. None on the border itself, for the same reason.
+const STEPS: [f64; 3] = [-0.02, -0.004, 0.02];
+
+/// Points of the throttle box's border among which a unit's best is taken.
+const BORDER_POINTS: usize = 64;
 
 /// Random wrenches of up to three times what there is.
-const BEYOND: usize = 80;
+const BEYOND: usize = 60;
+
+/// Torques and thrusts next to none, normal and subnormal.
+const FAINT: [f64; 6] = [1e-3, 1e-6, 1e-20, 1e-38, 1e-40, 1e-45];
 
 /// Setpoints for every rotor that is out: every so many of the others.
 const ROTORS_OUT: usize = 12;
 
-/// Setpoints with all rotors: attainable, on the border, saturated, by hand, at voltages in and beyond the range.
-pub fn healthy(compiled: &Compiled) -> Vec<(Wrench, f32)> {
+/// Setpoints with all rotors, kind by kind.
+pub fn by_kind(compiled: &Compiled) -> Vec<(Kind, Vec<Vector>)> {
     let mut draw = Draw::new(compiled);
-    let mut vectors = by_hand(&draw);
-    vectors.extend((0..ATTAINABLE).map(|_| draw.attainable()));
-    for _ in 0..BORDER {
-        vectors.extend(draw.border());
-    }
-    vectors.extend((0..BEYOND).map(|_| draw.beyond()));
-    vectors
+    vec![
+        (Kind::ByHand, draw.by_hand()),
+        (
+            Kind::Attainable,
+            (0..ATTAINABLE).map(|index| draw.attainable(index)).collect(),
+        ),
+        (
+            Kind::Border,
+            (0..DIRECTIONS).flat_map(|_| draw.corner()).collect(),
+        ),
+        (Kind::Saturated, draw.saturated()),
+        (Kind::Faint, draw.faint()),
+    ]
+}
+
+/// [`by_kind`] in one list.
+pub fn healthy(compiled: &Compiled) -> Vec<Vector> {
+    by_kind(compiled).into_iter().flat_map(|(_, list)| list).collect()
 }
 
 /// For every output its rotor out, a choice of the setpoints each.
-pub fn rotors_out(compiled: &Compiled, vectors: &[(Wrench, f32)]) -> Vec<RotorsOut> {
+pub fn rotors_out(compiled: &Compiled, vectors: &[Vector]) -> Vec<RotorsOut> {
     let rotors = compiled.airframe.rotors();
     let mut list = Vec::new();
     for channel in 0..rotors {
@@ -68,31 +107,12 @@ pub fn rotors_out(compiled: &Compiled, vectors: &[(Wrench, f32)]) -> Vec<RotorsO
     list
 }
 
-/// Zero, thrusts to beyond the ceiling at voltages to beyond the range, each axis alone on both sides.
-fn by_hand(draw: &Draw<'_>) -> Vec<(Wrench, f32)> {
-    let [low, reference, high] = draw.volts;
-    let size = draw.size;
-    let wrench = |shares: [f64; 4]| Wrench::from_array(std::array::from_fn(|k| (shares[k] * size[k]) as f32));
-    let mut list = vec![(Wrench::default(), reference as f32)];
-    for thrust in [0.02, 0.3, 0.6, 0.95, 1.2] {
-        for volts in [low - 1.0, low, reference, high, high + 1.0] {
-            list.push((wrench([0.0, 0.0, 0.0, thrust]), volts as f32));
-        }
-        for axis in 0..3 {
-            for torque in [-20.0, -1.0, -0.1, 0.1, 1.0, 20.0] {
-                let mut shares = [0.0, 0.0, 0.0, thrust];
-                shares[axis] = torque;
-                list.push((wrench(shares), reference as f32));
-            }
-        }
-    }
-    list
-}
-
 /// Random setpoints of one airframe.
 struct Draw<'a> {
     compiled: &'a Compiled,
     pair: PairMap,
+    /// Efforts `[f, Q]` along the border of the throttle box.
+    border: Vec<[f64; 2]>,
     /// Largest wrench on each axis: all units at their best, whatever the others lose.
     size: [f64; 4],
     /// Lowest, reference and highest voltage; any where the airframe ignores it.
@@ -115,8 +135,13 @@ impl<'a> Draw<'a> {
             let [low, high] = voltage.range_v;
             [low, voltage.reference_v, high]
         });
+        let border = pair.border(BORDER_POINTS);
         Draw {
             compiled,
+            border: border
+                .into_iter()
+                .map(|throttles| pair.efforts(throttles))
+                .collect(),
             pair,
             size,
             volts,
@@ -133,59 +158,155 @@ impl<'a> Draw<'a> {
         bits as f64 / 4_294_967_296.0
     }
 
-    fn volts(&mut self) -> f64 {
-        let [low, _, high] = self.volts;
+    /// [`Self::share`] between two ends.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.share()
     }
 
-    /// The wrench of the units' throttles, given in shares of the range.
-    fn wrench(&self, shares: &[[f64; 2]], volts: f64) -> Wrench {
-        let [low, high] = self.pair.range();
-        let (k_f, k_q) = self
-            .compiled
+    /// Correction `[k_f, k_Q]` at a voltage of the range.
+    fn factors(&self, volts: f64) -> [f64; 2] {
+        self.compiled
             .airframe
             .voltage
             .as_ref()
-            .map_or((1.0, 1.0), |v| (v.thrust_factor(volts), v.torque_factor(volts)));
+            .map_or([1.0, 1.0], |v| [v.thrust_factor(volts), v.torque_factor(volts)])
+    }
+
+    /// A wrench in shares of the size.
+    fn sized(&self, shares: [f64; 4]) -> Wrench {
+        Wrench::from_array(std::array::from_fn(|k| (shares[k] * self.size[k]) as f32))
+    }
+
+    /// Wrenches in shares of the size, at the three voltages in turn.
+    fn list(&self, shares: impl IntoIterator<Item = [f64; 4]>) -> Vec<Vector> {
+        let volts = self.volts.into_iter().cycle();
+        let vectors = shares.into_iter().zip(volts);
+        vectors
+            .map(|(shares, volts)| (self.sized(shares), volts as f32))
+            .collect()
+    }
+
+    /// The wrench (N m, N) of the units' efforts `[f, Q]` at the reference voltage, under the correction `factors`.
+    fn wrench(&self, efforts: impl ExactSizeIterator<Item = [f64; 2]>, factors: [f64; 2]) -> [f64; 4] {
         let matrix = &self.compiled.effectiveness.matrix;
-        let n = shares.len();
+        let n = efforts.len();
         let mut wrench = [0.0; 4];
-        for (i, shares) in shares.iter().enumerate() {
-            let [f, q] = self.pair.efforts(shares.map(|share| low + (high - low) * share));
+        for (i, [f, q]) in efforts.enumerate() {
             for (axis, sum) in wrench.iter_mut().enumerate() {
-                *sum += matrix[(axis, i)] * k_f * f + matrix[(axis, n + i)] * k_q * q;
+                *sum += matrix[(axis, i)] * factors[0] * f + matrix[(axis, n + i)] * factors[1] * q;
             }
         }
-        Wrench::from_array(wrench.map(|x| x as f32))
+        wrench
     }
 
-    fn attainable(&mut self) -> (Wrench, f32) {
-        let volts = self.volts();
+    fn by_hand(&self) -> Vec<Vector> {
+        let [low, reference, high] = self.volts;
+        let mut list = vec![(Wrench::default(), reference as f32)];
+        for thrust in [0.02, 0.3, 0.6, 0.95, 1.2] {
+            for volts in [low - 1.0, low, reference, high, high + 1.0] {
+                list.push((self.sized([0.0, 0.0, 0.0, thrust]), volts as f32));
+            }
+            for axis in 0..3 {
+                for torque in [-20.0, -1.0, -0.1, 0.1, 1.0, 20.0] {
+                    let mut shares = [0.0, 0.0, 0.0, thrust];
+                    shares[axis] = torque;
+                    list.push((self.sized(shares), reference as f32));
+                }
+            }
+        }
+        list
+    }
+
+    fn attainable(&mut self, index: usize) -> Vector {
+        let [low, high] = self.pair.range();
+        let [lowest_v, _, highest_v] = self.volts;
+        let volts = self.between(lowest_v, highest_v);
+        let common = self.between(0.15, 0.85);
         let units = self.compiled.airframe.units.len();
-        let shares: Vec<[f64; 2]> = (0..units).map(|_| [self.share(), self.share()]).collect();
-        (self.wrench(&shares, volts), volts as f32)
+        let mut throttle = || {
+            let [from, to] = match index % 4 {
+                0 => [MARGIN, 1.0 - MARGIN],
+                1 => [common - 0.1, common + 0.1],
+                _ if self.share() < 0.5 => [MARGIN, 0.1],
+                _ => [0.9, 1.0 - MARGIN],
+            };
+            low + (high - low) * self.between(from, to)
+        };
+        let throttles: Vec<[f64; 2]> = (0..units).map(|_| [throttle(), throttle()]).collect();
+        let efforts = throttles
+            .into_iter()
+            .map(|throttles| self.pair.efforts(throttles));
+        let wrench = self.wrench(efforts, self.factors(volts));
+        (Wrench::from_array(wrench.map(|x| x as f32)), volts as f32)
     }
 
-    fn border(&mut self) -> [(Wrench, f32); 3] {
+    /// Every unit at the best point of its border in one direction, which is a corner of the attainable set.
+    fn corner(&mut self) -> [Vector; 3] {
         let [low, _, high] = self.volts;
         let volts = if self.share() < 0.5 { low } else { high };
+        let factors = self.factors(volts);
+        let direction = Axis::ALL.map(|axis| {
+            let part = self.between(-1.0, 1.0);
+            if self.compiled.airframe.allocation.controls(axis) {
+                part
+            } else {
+                0.0
+            }
+        });
+        let matrix = &self.compiled.effectiveness.matrix;
+        let gain = |column: usize| -> f64 {
+            let parts = direction.iter().zip(self.size).enumerate();
+            parts
+                .filter(|(_, (_, size))| *size > 0.0)
+                .map(|(axis, (part, size))| part * matrix[(axis, column)] / size)
+                .sum()
+        };
         let units = self.compiled.airframe.units.len();
-        let ends: Vec<[f64; 2]> = (0..units)
-            .map(|_| [self.share(), self.share()].map(|share| if share < 0.5 { 0.0 } else { 1.0 }))
-            .collect();
-        let [inside, on, outside] = SHARES;
-        [inside, on, outside].map(|share| {
-            let about_middle = |end: f64| 0.5 + share * (end - 0.5);
-            let shares: Vec<[f64; 2]> = ends.iter().map(|ends| ends.map(about_middle)).collect();
-            (self.wrench(&shares, volts), volts as f32)
+        let best = (0..units).map(|i| {
+            let (by_f, by_q) = (factors[0] * gain(i), factors[1] * gain(units + i));
+            let value = |[f, q]: &[f64; 2]| by_f * f + by_q * q;
+            let best = self.border.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+            best.copied().unwrap_or_default()
+        });
+        let corner = self.wrench(best, factors);
+        STEPS.map(|step| {
+            let wrench = |axis: usize| corner[axis] + step * direction[axis] * self.size[axis];
+            let wrench = std::array::from_fn(|axis| wrench(axis) as f32);
+            (Wrench::from_array(wrench), volts as f32)
         })
     }
 
-    fn beyond(&mut self) -> (Wrench, f32) {
-        let [roll, pitch, yaw] = [(); 3].map(|()| 6.0 * self.share() - 3.0);
-        let shares = [roll, pitch, yaw, 1.7 * self.share() - 0.2];
-        let size = self.size;
-        let wrench = std::array::from_fn(|axis| (shares[axis] * size[axis]) as f32);
-        (Wrench::from_array(wrench), self.volts() as f32)
+    fn saturated(&mut self) -> Vec<Vector> {
+        let mut shares = Vec::new();
+        for (thrust, times) in [(0.05, 0.6), (0.4, 2.0), (0.4, 20.0), (0.9, 1.0), (1.3, 0.1)] {
+            for signs in 0..8 {
+                let torque = |axis: usize| if signs >> axis & 1 == 0 { times } else { -times };
+                shares.push([torque(0), 0.7 * torque(1), 0.8 * torque(2), thrust]);
+            }
+        }
+        shares.push([0.02, -0.02, 0.02, 1e6]);
+        shares.push([-0.02, 0.02, 0.02, -1e6]);
+        for _ in 0..BEYOND {
+            let [roll, pitch, yaw] = [(); 3].map(|()| self.between(-3.0, 3.0));
+            shares.push([roll, pitch, yaw, self.between(-0.2, 1.5)]);
+        }
+        self.list(shares)
+    }
+
+    fn faint(&self) -> Vec<Vector> {
+        let mut shares = Vec::new();
+        for thrust in [0.0, -0.0, -0.01, -0.5] {
+            shares.push([0.0, 0.0, 0.0, thrust]);
+            shares.push([0.1, -0.05, 0.1, thrust]);
+            shares.push([0.0, 0.0, -0.5, thrust]);
+        }
+        for (k, faint) in FAINT.into_iter().enumerate() {
+            shares.push([0.0, 0.05, -0.05, faint]);
+            shares.push([faint, -faint, faint, 0.4]);
+            let mut share = [0.0, 0.0, 0.0, 0.4];
+            share[k % 3] = -faint;
+            shares.push(share);
+        }
+        self.list(shares)
     }
 }

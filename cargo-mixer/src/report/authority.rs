@@ -2,8 +2,9 @@
 //! torque asked. Found with the compiled mixer itself, not with a model of it.
 
 use mixer_compiler::airframe::Axis;
+use mixer_rt::Health;
 
-use super::study::Study;
+use super::study::{Condition, Study};
 
 /// Authority about each served torque axis at one thrust.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,56 +15,120 @@ pub struct Authority {
     pub torque_nm: [[f64; 2]; 3],
 }
 
-/// Halvings of the bracket: a ten-thousandth of the largest torque.
-const HALVINGS: usize = 14;
+/// How finely a largest torque is looked for.
+#[derive(Clone, Copy, Debug)]
+struct Search {
+    /// Torques tried over the whole range. The largest that is delivered counts, whatever was missed before it.
+    steps: usize,
+    /// Halvings from there to the next one tried.
+    halvings: usize,
+}
 
-/// Torques tried on the way out, so that the first torque that is not delivered ends the search.
-const STEPS: usize = 12;
+/// To a ten-thousandth of the largest torque.
+const FINE: Search = Search {
+    steps: 24,
+    halvings: 12,
+};
 
-/// Authority at `count` thrusts from the floor to the ceiling.
-pub fn against_thrust(study: &Study<'_>, count: usize) -> Vec<Authority> {
-    let [low, high] = study.compiled.thrust_range_n.map(f64::from);
-    (0..count)
-        .map(|k| low + (high - low) * k as f64 / (count - 1) as f64)
-        .map(|thrust_n| at(study, thrust_n))
+/// To a thousandth: every rotor is out in turn.
+const COARSE: Search = Search {
+    steps: 16,
+    halvings: 6,
+};
+
+/// Authority at `count` thrusts from the floor to the ceiling of the reference voltage.
+pub fn against_thrust(study: &Study<'_>, condition: &Condition, count: usize) -> Vec<Authority> {
+    thrusts(study, count)
+        .map(|thrust_n| at(study, condition, thrust_n))
         .collect()
 }
 
 /// Authority at one thrust.
-pub fn at(study: &Study<'_>, thrust_n: f64) -> Authority {
-    let torque_nm = [Axis::Roll, Axis::Pitch, Axis::Yaw].map(|axis| {
+pub fn at(study: &Study<'_>, condition: &Condition, thrust_n: f64) -> Authority {
+    Authority {
+        thrust_n,
+        torque_nm: about_axes(study, |axis, sign| {
+            reach(study, condition, FINE, axis, sign, thrust_n)
+        }),
+    }
+}
+
+/// What is left at `count` thrusts whichever one rotor is out, at the reference voltage.
+pub fn with_a_rotor_out(study: &Study<'_>, count: usize) -> Vec<Authority> {
+    let rotors = study.compiled.airframe.rotors() as u8;
+    let conditions: Vec<Condition> = (0..rotors)
+        .map(|channel| Condition {
+            health: Health::GOOD.with_failed(channel),
+            ..study.reference()
+        })
+        .collect();
+    thrusts(study, count)
+        .map(|thrust_n| Authority {
+            thrust_n,
+            torque_nm: about_axes(study, |axis, sign| {
+                let reaches = conditions
+                    .iter()
+                    .map(|condition| reach(study, condition, COARSE, axis, sign, thrust_n));
+                reaches.fold(f64::INFINITY, f64::min)
+            }),
+        })
+        .collect()
+}
+
+fn thrusts(study: &Study<'_>, count: usize) -> impl Iterator<Item = f64> {
+    let [low, high] = study.compiled.thrust_range_n.map(f64::from);
+    (0..count).map(move |k| low + (high - low) * k as f64 / (count - 1) as f64)
+}
+
+/// `[least, largest]` about each torque axis.
+fn about_axes(study: &Study<'_>, reach: impl Fn(Axis, f64) -> f64) -> [[f64; 2]; 3] {
+    [Axis::Roll, Axis::Pitch, Axis::Yaw].map(|axis| {
         if study.serves(axis) {
-            [-1.0, 1.0].map(|sign| sign * reach(study, axis, sign, thrust_n))
+            [-1.0, 1.0].map(|sign| sign * reach(axis, sign))
         } else {
             [f64::NAN; 2]
         }
-    });
-    Authority { thrust_n, torque_nm }
+    })
 }
 
 /// The largest delivered torque in one direction, N m; 0 where not even the bare thrust is delivered.
-fn reach(study: &Study<'_>, axis: Axis, sign: f64, thrust_n: f64) -> f64 {
+fn reach(
+    study: &Study<'_>,
+    condition: &Condition,
+    search: Search,
+    axis: Axis,
+    sign: f64,
+    thrust_n: f64,
+) -> f64 {
     let delivered = |torque: f64| {
         let mut wrench = [0.0, 0.0, 0.0, thrust_n];
         wrench[axis as usize] = sign * torque;
-        study.mix(wrench).1
+        study.mix(wrench, condition).1
     };
-    let largest = largest_torque(study, axis);
-    let tried = (0..=STEPS).map(|k| largest * k as f64 / STEPS as f64);
-    let Some(first_missed) = tried.clone().find(|&torque| !delivered(torque)) else {
-        return largest;
-    };
-    let step = largest / STEPS as f64;
-    let (mut good, mut bad) = ((first_missed - step).max(0.0), first_missed);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (good + bad);
-        if delivered(middle) {
-            good = middle;
-        } else {
-            bad = middle;
+    search.largest(largest_torque(study, axis), delivered)
+}
+
+impl Search {
+    /// The largest number up to `end` that is `delivered`, whatever is missed before it; 0 where not even 0 is.
+    fn largest(self, end: f64, delivered: impl Fn(f64) -> bool) -> f64 {
+        let step = end / self.steps as f64;
+        let Some(last) = (0..=self.steps).rev().find(|&k| delivered(k as f64 * step)) else {
+            return 0.0;
+        };
+        if last == self.steps {
+            return end;
         }
+        let (mut good, mut bad) = (last as f64 * step, (last + 1) as f64 * step);
+        for _ in 0..self.halvings {
+            let middle = 0.5 * (good + bad);
+            if delivered(middle) {
+                good = middle;
+            } else {
+                bad = middle;
+            }
+        }
+        good
     }
-    good
 }
 
 /// A torque that no throttles exceed: all units at their largest thrust and torque.
@@ -72,4 +137,20 @@ fn largest_torque(study: &Study<'_>, axis: Axis) -> f64 {
     let row = study.compiled.effectiveness.matrix.row(axis as usize);
     let n = row.len() / 2;
     (0..n).map(|i| row[i].abs() * f + row[n + i].abs() * q).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{COARSE, FINE};
+
+    /// A torque that is missed does not hide those beyond it.
+    #[test]
+    fn the_search_looks_on_after_a_miss() {
+        for search in [FINE, COARSE] {
+            let found = search.largest(2.0, |torque| torque <= 1.3 && !(0.4..0.6).contains(&torque));
+            assert!((1.298..=1.3).contains(&found), "{found}");
+            assert_eq!(search.largest(2.0, |_| true), 2.0);
+            assert_eq!(search.largest(2.0, |_| false), 0.0);
+        }
+    }
 }

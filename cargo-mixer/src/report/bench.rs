@@ -51,8 +51,8 @@ pub struct BenchPoints {
     pub files: Vec<String>,
     /// The points within the airframe's throttle range.
     pub points: Vec<BenchPoint>,
-    /// Points outside of it, where the model is not used.
-    pub outside: usize,
+    /// Points outside of it, where the model is not used: its polynomials all the same.
+    pub outside: Vec<BenchPoint>,
     /// Rows that were refused, as `file:line: reason`.
     pub refused: Vec<String>,
     /// Whether the points were brought to the reference voltage.
@@ -117,15 +117,12 @@ impl BenchPoints {
         let [low, high] = pair.range();
         for point in &bench.points {
             let throttles = [point.u, point.l];
-            if throttles.iter().any(|t| !(low - 1e-9..=high + 1e-9).contains(t)) {
-                self.outside += 1;
-                continue;
-            }
+            let within = throttles.iter().all(|t| (low - 1e-9..=high + 1e-9).contains(t));
             let k = match voltage {
                 Some(voltage) if point.voltage.is_finite() => {
                     self.corrected = true;
                     let [lowest, highest] = voltage.range_v;
-                    if !(lowest..=highest).contains(&point.voltage) {
+                    if within && !(lowest..=highest).contains(&point.voltage) {
                         self.outside_voltage += 1;
                     }
                     [
@@ -135,7 +132,12 @@ impl BenchPoints {
                 }
                 _ => [1.0, 1.0],
             };
-            self.points.push(BenchPoint {
+            let list = if within {
+                &mut self.points
+            } else {
+                &mut self.outside
+            };
+            list.push(BenchPoint {
                 line: point.line,
                 throttles,
                 measured: [point.thrust / k[0], point.torque / k[1]],

@@ -52,7 +52,8 @@ impl Comparison {
         if !study.serves(Axis::Yaw) {
             return None;
         }
-        let [low, high] = authority::at(study, study.thrust_n).torque_nm[Axis::Yaw as usize];
+        let [low, high] =
+            authority::at(study, &study.reference(), study.thrust_n).torque_nm[Axis::Yaw as usize];
         if low.is_nan() || low >= high || count < 2 {
             return None;
         }
@@ -65,7 +66,7 @@ impl Comparison {
                 let wrench = [0.0, 0.0, yaw_nm, study.thrust_n];
                 Row {
                     yaw_nm,
-                    coaxial: answer(study, study.mix(wrench)),
+                    coaxial: answer(study, study.mix(wrench, &study.reference())),
                     conventional: answer(study, throttles(study, &conventional, wrench)),
                 }
             })

@@ -63,18 +63,18 @@ pub fn facts(cost: &Cost) -> String {
 /// All evaluators, in the order of their cost.
 pub fn evaluators(units: usize, front: &[Alternative]) -> String {
     let all = match units {
-        1 => "1 unit".to_owned(),
-        units => format!("{units} units"),
+        1 => "all units (instructions)".to_owned(),
+        units => format!("{units} units (instructions)"),
     };
     let header = [
         "evaluator",
         "",
-        "one unit",
-        "cycles",
+        "1 unit (instructions)",
+        "(cycles)",
         &all,
-        "cycles",
-        "whole mix",
-        "bytes",
+        "(cycles)",
+        "whole mix (instructions)",
+        "constants (bytes)",
     ];
     let times = |one: Option<u32>| number(one.map(|one| one * units as u32));
     let rows: Vec<Vec<String>> = front

@@ -22,6 +22,9 @@ const BAR_ROOM: f64 = 86.0;
 /// Values of iso-curves keep this distance, px.
 const LABEL_ROOM: f64 = 15.0;
 
+/// Where on a curve its value is tried, as shares of the length.
+const LABEL_PLACES: [f64; 9] = [0.5, 0.45, 0.55, 0.4, 0.6, 0.33, 0.67, 0.25, 0.75];
+
 /// Height of a row of the legend, px.
 const LEGEND_ROW: f64 = 18.0;
 
@@ -182,14 +185,17 @@ impl Figure {
             return;
         };
         let pixels: Vec<[f64; 2]> = longest.iter().map(|&p| self.at(p)).collect();
-        let Some(label) = Label::along(&pixels) else {
+        let is_free = |label: &Label| {
+            let far =
+                |other: &[f64; 2]| libm::hypot(other[0] - label.at[0], other[1] - label.at[1]) >= LABEL_ROOM;
+            self.labels.iter().all(far)
+        };
+        let mut places = LABEL_PLACES
+            .iter()
+            .filter_map(|share| Label::along(&pixels, *share));
+        let Some(label) = places.find(is_free) else {
             return;
         };
-        let near =
-            |other: &[f64; 2]| libm::hypot(other[0] - label.at[0], other[1] - label.at[1]) < LABEL_ROOM;
-        if self.labels.iter().any(near) {
-            return;
-        }
         self.labels.push(label.at);
         let halo = if ink == "#000" { "#fff" } else { "#000" };
         let _ = writeln!(
@@ -208,6 +214,24 @@ impl Figure {
             "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"><title>{}</title></circle>",
             escaped(title)
         );
+    }
+
+    /// A point in a colour of the data with its numbers for the pointer.
+    pub fn coloured_dot(&mut self, colour: &str, radius: f64, point: [f64; 2], title: &str) {
+        let [x, y] = self.at(point);
+        let _ = writeln!(
+            self.above,
+            "<circle class=\"residual\" fill=\"{colour}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"><title>{}</title></circle>",
+            escaped(title)
+        );
+    }
+
+    /// Values of iso-curves keep clear of these points.
+    pub fn keep_clear(&mut self, points: impl IntoIterator<Item = [f64; 2]>) {
+        for point in points {
+            let pixel = self.at(point);
+            self.labels.push(pixel);
+        }
     }
 
     /// Words at a point; `class` also sets the alignment.

@@ -44,8 +44,8 @@ pub fn gallery(airframes: &[Compiled]) -> Files {
             let text = format!("Yaw at {} N by both mixers", number::shortest(study.thrust_n));
             add("yaw", &text, file(&plots::yaw_plane(&study, &comparison)));
         }
-        let all = authority::against_thrust(&study, THRUSTS);
-        if let Some(figure) = plots::authority(&study, &all, Axis::Yaw) {
+        let all = authority::against_thrust(&study, &study.reference(), THRUSTS);
+        if let Some(figure) = plots::authority(&study, &all, &[], Axis::Yaw) {
             add("authority", "Yaw authority against thrust", file(&figure));
         }
         page.push('\n');

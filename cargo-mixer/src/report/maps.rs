@@ -2,11 +2,11 @@
 
 use mixer_compiler::report::{Summary, rounded_up};
 
-use super::bench::BenchPoints;
+use super::bench::{BenchPoint, BenchPoints};
 use super::colour::Scale;
 use super::field::{Field, Painting, paint};
 use super::figure::Figure;
-use super::number::{range, shortest, widened};
+use super::number::{Ticks, range, shortest, widened};
 use super::study::Study;
 
 /// Points per side of the grid from which smooth maps are traced.
@@ -49,7 +49,13 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     let points = bench.map_or(&[][..], |bench| &bench.points);
     let throttles = |k: usize| {
         let measured = points.iter().map(|point| point.throttles[k]);
-        range(measured.chain(study.pair.range()))
+        let all = range(measured.chain(study.pair.range()));
+        // Markers stay within the frame.
+        if points.is_empty() {
+            all
+        } else {
+            widened(all, 0.025)
+        }
     };
     let title = [
         "Thrust of one unit over both throttles",
@@ -74,12 +80,75 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
         ticks: None,
         label: effort.label(),
     };
+    figure.keep_clear(points.iter().map(|point| point.throttles));
     paint(&mut figure, &field, &painting, |square| study.throttles(square));
     for point in points {
         figure.dot("bench-dot", 3.0, point.throttles, &point.text(effort));
     }
     figure
 }
+
+/// Model less measured at every bench point over both throttles; small where it lies outside the throttle range. `None` without points.
+pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Option<Figure> {
+    let residual = |point: &BenchPoint| point.model[effort as usize] - point.measured[effort as usize];
+    let largest = bench
+        .points
+        .iter()
+        .fold(0.0f64, |largest, point| largest.max(residual(point).abs()));
+    if largest <= 0.0 {
+        return None;
+    }
+    let all = || bench.points.iter().chain(&bench.outside);
+    let throttles = |k: usize| {
+        let measured = all().map(|point| point.throttles[k]);
+        widened(range(measured.chain(study.pair.range())), 0.05)
+    };
+    let title = [
+        "Thrust by the model less thrust measured",
+        "Torque by the model less torque measured",
+    ];
+    let mut figure = Figure::new(
+        title[effort as usize],
+        (UPPER, throttles(0)),
+        (LOWER, throttles(1)),
+    )
+    .sized(300.0, 300.0);
+    let [low, high] = study.pair.range();
+    figure.outline(
+        "border",
+        "throttle range",
+        &[[low, low], [high, low], [high, high], [low, high]],
+    );
+    let scale = Scale::signed([-largest, largest]);
+    for point in all() {
+        let within = point
+            .throttles
+            .iter()
+            .all(|t| (low - 1e-9..=high + 1e-9).contains(t));
+        let colour = scale.hex(residual(point).clamp(-largest, largest));
+        let radius = if within { 6.0 } else { 3.5 };
+        figure.coloured_dot(&colour, radius, point.throttles, &point.text(effort));
+    }
+    let (factor, prefix) = prefixed(largest);
+    let bands = (0..RESIDUAL_BANDS).map(|k| {
+        let edge = |k: usize| largest * (2.0 * k as f64 / RESIDUAL_BANDS as f64 - 1.0);
+        (edge(k), edge(k + 1), scale.hex(0.5 * (edge(k) + edge(k + 1))))
+    });
+    let ticks = Ticks::within([-largest * factor, largest * factor], 6);
+    figure.colour_bar(
+        &format!("model \u{2212} measured ({prefix}{})", effort.unit()),
+        bands.collect(),
+        ticks
+            .values
+            .iter()
+            .map(|&value| (value / factor, ticks.text(value)))
+            .collect(),
+    );
+    Some(figure)
+}
+
+/// Bands of colour of the residuals' bar.
+const RESIDUAL_BANDS: usize = 20;
 
 /// A plot over thrust and torque that has the whole attainable set in view.
 pub(super) fn over_efforts(study: &Study<'_>, title: &str, k: [f64; 2]) -> Figure {

@@ -11,13 +11,14 @@ use mixer_compiler::cost::Cost;
 use mixer_compiler::report::{Summary, rounded_up};
 
 use super::authority;
-use super::bench::BenchPoints;
+use super::bench::{BenchPoint, BenchPoints};
 use super::comparison::Comparison;
 use super::cost;
 use super::figure::Figure;
 use super::layout;
 use super::maps::{self, Effort};
 use super::number::{escaped, shortest};
+use super::origin::Origin;
 use super::plots;
 use super::study::Study;
 use super::surface;
@@ -33,6 +34,9 @@ pub const YAW_COMMANDS: usize = 25;
 
 /// Thrusts at which authority is found.
 pub const THRUSTS: usize = 61;
+
+/// Thrusts at which it is found with every rotor out in turn.
+const THRUSTS_ROTOR_OUT: usize = 21;
 
 /// Every so many nodes of the error's grid are there for the pointer.
 const HOVER_STRIDE: usize = 2;
@@ -51,7 +55,7 @@ pub const SECTIONS: [(&str, &str); 9] = [
 ];
 
 /// The whole page.
-pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
+pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> String {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
@@ -73,7 +77,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
     }
     html.push_str("</nav>\n");
     html.push_str(&warnings(study, bench));
-    html.push_str(&table::summary(study));
+    html.push_str(&table::summary(study, origin));
 
     for (anchor, title) in SECTIONS {
         let _ = writeln!(html, "<section id=\"{anchor}\">\n<h2>{title}</h2>");
@@ -185,16 +189,46 @@ fn comparison_section(study: &Study<'_>) -> String {
 }
 
 fn authority_section(study: &Study<'_>) -> String {
-    let all = authority::against_thrust(study, THRUSTS);
+    let all = authority::against_thrust(study, &study.reference(), THRUSTS);
+    let lowest = study.lowest().map(|lowest| {
+        (
+            lowest.voltage_v,
+            authority::against_thrust(study, &lowest, THRUSTS),
+        )
+    });
+    let rotor_out = authority::with_a_rotor_out(study, THRUSTS_ROTOR_OUT);
+    let is_held = rotor_out
+        .iter()
+        .any(|at| at.torque_nm.iter().flatten().any(|torque| torque.abs() > 0.0));
+    let lowest_name = lowest
+        .as_ref()
+        .map_or_else(String::new, |(volts, _)| format!("{volts} V"));
+    let mut cases: Vec<plots::Case<'_>> = Vec::new();
+    if let Some((_, all)) = &lowest {
+        cases.push((&lowest_name, "series-3", all));
+    }
+    if is_held {
+        cases.push(("any one rotor out", "series-2", &rotor_out));
+    }
     let plots: Vec<String> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
         .into_iter()
-        .filter_map(|axis| plots::authority(study, &all, axis))
-        .map(|figure| shown(&figure, ""))
+        .filter_map(|axis| plots::authority(study, &all, &cases, axis).map(|figure| (axis, figure)))
+        .map(|(axis, figure)| {
+            let caption = format!("{} against thrust.", ["Roll", "Pitch", "Yaw"][axis as usize]);
+            shown(&figure, &caption)
+        })
         .collect();
-    let text = "<p>The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
+    let rotor_out = if is_held {
+        "With any one rotor out: what is left whichever it is, at the reference voltage."
+    } else {
+        "With one rotor out, whichever it is, no thrust is held without a torque."
+    };
+    let text = format!(
+        "<p>The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
          holds the thrust and no \
-         other torque is asked, found by asking the mixer itself, at the reference voltage.</p>\n";
-    text.to_owned() + &figures(&plots).replacen("figures", "figures three", 1)
+         other torque is asked, found by asking the mixer itself. {rotor_out}</p>\n"
+    );
+    text + &figures(&plots).replacen("figures", "figures three", 1)
 }
 
 fn attainable_section(study: &Study<'_>) -> String {
@@ -225,11 +259,16 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
             bench.points.len(),
             files.join(", ")
         );
-        if bench.outside > 0 {
+        if !bench.outside.is_empty() {
+            let [low, _] = study.pair.range();
+            let below = |point: &&BenchPoint| point.throttles.iter().any(|t| *t < low);
             let _ = writeln!(
                 text,
-                " {} more lie outside the throttle range and are left out.",
-                bench.outside
+                " {} more lie outside the throttle range, {} of them below the idle of {}: small in the maps of what the model \
+                 misses, and in no number.",
+                bench.outside.len(),
+                bench.outside.iter().filter(below).count(),
+                shortest(low)
             );
         }
         text.push_str("</p>\n");
@@ -253,7 +292,29 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
             &format!("{quantity} with iso-curves. (Fig. 4)"),
         )
     });
-    text + &figures(&maps)
+    let residuals: Vec<String> = bench.map_or_else(Vec::new, |bench| {
+        let figures = Effort::BOTH
+            .into_iter()
+            .filter_map(|effort| maps::residuals(study, effort, bench).map(|figure| (effort, figure)));
+        figures
+            .map(|(effort, figure)| {
+                let quantity = ["Thrust", "Torque"][effort as usize];
+                shown(
+                    &figure,
+                    &format!(
+                        "{quantity} by the model less {} measured.",
+                        quantity.to_lowercase()
+                    ),
+                )
+            })
+            .collect()
+    });
+    let residuals = if residuals.is_empty() {
+        String::new()
+    } else {
+        figures(&residuals)
+    };
+    text + &figures(&maps) + &residuals + &table::coefficients(study)
 }
 
 fn inverse_section(study: &Study<'_>) -> String {
@@ -286,7 +347,12 @@ fn error_section(study: &Study<'_>, fields: &[super::field::Field; 2], front: &[
     let text = "<p>What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
          precision as on the target, the map in double precision. \
          Colours are logarithmic over two decades up to the proven bound.</p>\n";
-    text.to_owned() + &figures(&plots) + &table::front(front)
+    text.to_owned()
+        + &figures(&plots)
+        + &table::folded(
+            "All evaluators: what each is proven to miss",
+            &table::front(front),
+        )
 }
 
 fn cost_section(study: &Study<'_>, front: &[Alternative]) -> String {
@@ -299,7 +365,11 @@ fn cost_section(study: &Study<'_>, front: &[Alternative]) -> String {
         costs.target,
         costs.desaturation.description()
     );
-    text + &cost::facts(&costs) + &cost::evaluators(study.compiled.airframe.units.len(), front)
+    text + &cost::facts(&costs)
+        + &table::folded(
+            "All evaluators: what each costs",
+            &cost::evaluators(study.compiled.airframe.units.len(), front),
+        )
 }
 
 /// What the script needs: the forward map and the error on its grid.

@@ -217,8 +217,11 @@ fn yaw_range(comparison: &Comparison) -> [f64; 2] {
     range(comparison.rows.iter().map(|row| row.yaw_nm))
 }
 
-/// Authority about one axis against thrust; `None` where the axis is not served.
-pub fn authority(study: &Study<'_>, all: &[Authority], axis: Axis) -> Option<Figure> {
+/// Authority in words, with its class and the curve.
+pub type Case<'a> = (&'a str, &'a str, &'a [Authority]);
+
+/// Authority about one axis against thrust, and what of it other `cases` leave; `None` where the axis is not served.
+pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis: Axis) -> Option<Figure> {
     if axis == Axis::Thrust || !study.serves(axis) {
         return None;
     }
@@ -247,5 +250,24 @@ pub fn authority(study: &Study<'_>, all: &[Authority], axis: Axis) -> Option<Fig
     figure.level("axis-line", "", 0.0);
     figure.unlisted_curve("series-1", "largest", &largest);
     figure.unlisted_curve("series-1", "least", &least);
+    if !cases.is_empty() {
+        figure.entry("series-1", "all rotors, reference voltage");
+    }
+    for (name, class, all) in cases {
+        for side in 0..2 {
+            // Where not even the thrust is held, there is nothing to draw.
+            let held = |at: &Authority| at.torque_nm[index] != [0.0; 2];
+            let torque = |at: &Authority| {
+                if held(at) {
+                    at.torque_nm[index][side]
+                } else {
+                    f64::NAN
+                }
+            };
+            let curve: Vec<[f64; 2]> = all.iter().map(|at| [at.thrust_n, torque(at)]).collect();
+            figure.unlisted_curve(class, &format!("{name}, {}", ["least", "largest"][side]), &curve);
+        }
+        figure.entry(class, name);
+    }
     Some(figure)
 }

@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::model::PairMap;
-use mixer_rt::{Inverse, Wrench};
+use mixer_rt::{Health, Inverse, Wrench};
 
 use super::number::round_half_digit;
 
@@ -16,6 +16,15 @@ pub struct Study<'a> {
     pub pair: PairMap,
     /// Total thrust of the comparisons at constant thrust, N.
     pub thrust_n: f64,
+}
+
+/// What a mixer meets in flight.
+#[derive(Clone, Copy, Debug)]
+pub struct Condition {
+    /// Of the battery, V; any where the airframe ignores it.
+    pub voltage_v: f32,
+    /// Which rotors are out.
+    pub health: Health,
 }
 
 /// Share of the largest bare thrust that stands for the weight of a vehicle.
@@ -88,10 +97,22 @@ impl<'a> Study<'a> {
             .collect()
     }
 
-    /// The reference voltage, V; what an airframe without voltage ignores.
-    pub fn reference_v(&self) -> f32 {
+    /// All rotors at the reference voltage.
+    pub fn reference(&self) -> Condition {
         let voltage = self.compiled.airframe.voltage.as_ref();
-        voltage.map_or(0.0, |voltage| voltage.reference_v as f32)
+        Condition {
+            voltage_v: voltage.map_or(0.0, |voltage| voltage.reference_v as f32),
+            health: Health::GOOD,
+        }
+    }
+
+    /// All rotors at the lowest voltage; `None` where voltage has no effect.
+    pub fn lowest(&self) -> Option<Condition> {
+        let voltage = self.compiled.airframe.voltage.as_ref()?;
+        Some(Condition {
+            voltage_v: voltage.range_v[0] as f32,
+            health: Health::GOOD,
+        })
     }
 
     /// Whether the airframe serves an axis.
@@ -99,12 +120,12 @@ impl<'a> Study<'a> {
         self.compiled.airframe.allocation.controls(axis)
     }
 
-    /// The compiled mixer's throttles `[u, l]` of every unit for `[roll, pitch, yaw (N m), thrust (N)]` at the reference
-    /// voltage, and whether all of it is delivered.
-    pub fn mix(&self, wrench: [f64; 4]) -> (Vec<[f64; 2]>, bool) {
+    /// The compiled mixer's throttles `[u, l]` of every unit for `[roll, pitch, yaw (N m), thrust (N)]`, and whether all of it
+    /// is delivered.
+    pub fn mix(&self, wrench: [f64; 4], condition: &Condition) -> (Vec<[f64; 2]>, bool) {
         let tables = &self.compiled.tables;
         let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
-        match tables.mix(&setpoint, self.reference_v()) {
+        match tables.mix_with_health(&setpoint, condition.voltage_v, condition.health) {
             Ok((throttle, _, saturation)) => {
                 let of = |channel: u8| {
                     throttle
@@ -112,7 +133,7 @@ impl<'a> Study<'a> {
                         .map_or(f64::NAN, |&x| f64::from(x))
                 };
                 let throttles = tables.units.iter().map(|unit| unit.channels.map(of)).collect();
-                (throttles, saturation.bits() == 0)
+                (throttles, !saturation.any_axis())
             }
             // No figure asks for what is not finite.
             Err(_) => (vec![[f64::NAN; 2]; tables.units.len()], false),

@@ -10,6 +10,7 @@ use super::bench::BenchPoints;
 use super::comparison::{Answer, Comparison};
 use super::maps::Effort;
 use super::number::{escaped, fixed, shortest, significant};
+use super::origin::Origin;
 use super::study::Study;
 
 /// Rows of the comparison that the page and the command show of the whole sweep.
@@ -48,7 +49,7 @@ pub fn facts_table<'a>(facts: impl IntoIterator<Item = &'a (&'a str, String)>) -
 }
 
 /// Names with values: what `check` prints.
-pub fn summary(study: &Study<'_>) -> String {
+pub fn summary(study: &Study<'_>, origin: &Origin) -> String {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let summary = Summary::new(compiled);
@@ -114,7 +115,14 @@ pub fn summary(study: &Study<'_>) -> String {
         ),
     ];
     let hover = summary.hover.iter().flat_map(hover);
-    facts_table(&facts.into_iter().chain(hover).collect::<Vec<_>>())
+    let mut facts: Vec<_> = facts.into_iter().chain(hover).collect();
+    let mut file = format!("<code>{}</code>", escaped(&compiled.source_name));
+    if let Some(hash) = &origin.sha256 {
+        let _ = write!(file, ", SHA-256 <code>{hash}</code>");
+    }
+    facts.push(("Airframe file", file));
+    facts.extend(origin.date.iter().map(|date| ("Date", date.clone())));
+    facts_table(&facts)
 }
 
 /// The vehicle in hover.
@@ -217,17 +225,46 @@ struct Line {
     limited: bool,
 }
 
+/// Units by what both mixers make of them: those that always give the same as one another share their columns.
+fn alike(comparison: &Comparison) -> Vec<Vec<usize>> {
+    let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
+    let same = |a: usize, b: usize| {
+        comparison.rows.iter().all(|row| {
+            [&row.coaxial, &row.conventional].into_iter().all(|answer| {
+                let [a, b] = [answer.efforts[a], answer.efforts[b]].map(rounded);
+                a == b
+            })
+        })
+    };
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for unit in 0..units {
+        match groups.iter_mut().find(|group| same(group[0], unit)) {
+            Some(group) => group.push(unit),
+            None => groups.push(vec![unit]),
+        }
+    }
+    groups
+}
+
+/// A unit's efforts to the digits of the table.
+fn rounded([f, q]: [f64; 2]) -> [String; 2] {
+    [fixed(f, 2), fixed(q, 3)]
+}
+
 /// Columns of the comparison beside yaw and mixer.
 fn columns(comparison: &Comparison) -> Vec<String> {
-    let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
-    let efforts = (0..units).flat_map(|i| [format!("f{i} N"), format!("Q{i} N m")]);
-    let mut columns = vec!["yaw asked N m".to_owned(), "mixer".to_owned()];
-    columns.extend(efforts);
-    columns.extend(["yaw given N m", "thrust given N"].map(str::to_owned));
+    let mut columns = vec!["yaw asked (N m)".to_owned(), "mixer".to_owned()];
+    for group in alike(comparison) {
+        let numbers: Vec<String> = group.iter().map(usize::to_string).collect();
+        let numbers = numbers.join(", ");
+        columns.extend([format!("f {numbers} (N)"), format!("Q {numbers} (N m)")]);
+    }
+    columns.extend(["yaw given (N m)", "thrust given (N)"].map(str::to_owned));
     columns
 }
 
 fn lines(comparison: &Comparison) -> Vec<Line> {
+    let groups = alike(comparison);
     let count = comparison.rows.len();
     let mut lines = Vec::new();
     let shown = SHOWN_ROWS.min(count).max(2);
@@ -238,8 +275,8 @@ fn lines(comparison: &Comparison) -> Vec<Line> {
         for (name, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
             let Answer { efforts, wrench, .. } = answer;
             let mut cells = vec![fixed(row.yaw_nm, 3), name.to_owned()];
-            cells.extend(efforts.iter().flat_map(|[f, q]| [fixed(*f, 3), fixed(*q, 4)]));
-            cells.extend([fixed(wrench[2], 4), fixed(wrench[3], 3)]);
+            cells.extend(groups.iter().flat_map(|group| rounded(efforts[group[0]])));
+            cells.extend([fixed(wrench[2], 3), fixed(wrench[3], 2)]);
             lines.push(Line {
                 cells,
                 limited: !answer.within,
@@ -348,14 +385,50 @@ pub fn bench(bench: &BenchPoints) -> String {
         .into_iter()
         .filter_map(|effort| {
             let misfit = bench.misfit(effort)?;
-            let unit = effort.unit();
             Some(vec![
                 effort.label().to_owned(),
-                format!("{} {unit}", significant(misfit.rms, 3)),
-                format!("{} {unit}", significant(misfit.largest, 3)),
+                significant(misfit.rms, 3),
+                significant(misfit.largest, 3),
                 fixed(misfit.r_squared, 5),
             ])
         })
         .collect();
     table("Model less measurement", &header, &rows)
+}
+
+/// The pair's coefficients, as the file has them.
+pub fn coefficients(study: &Study<'_>) -> String {
+    let pair = &study.compiled.airframe.pair;
+    let terms = pair.basis.exponents().iter();
+    let rows: Vec<Vec<String>> = terms
+        .zip(pair.thrust_n.iter().zip(&pair.torque_nm))
+        .map(|(&(i, j), (f, q))| {
+            let power = |letter: &str, exponent: u8| match exponent {
+                0 => String::new(),
+                1 => letter.to_owned(),
+                _ => format!("{letter}<sup>{exponent}</sup>"),
+            };
+            vec![power("u", i) + &power("l", j), exact(*f), exact(*q)]
+        })
+        .collect();
+    let caption = format!(
+        "The pair\u{2019}s coefficients, {}; its upper rotor turned {} on the bench",
+        pair.basis.name(),
+        pair.upper_spin.name()
+    );
+    table(
+        &caption,
+        &["term", "thrust f (N)", "torque Q (N m)"].map(str::to_owned),
+        &rows,
+    )
+}
+
+/// All digits, with a typographic minus.
+fn exact(x: f64) -> String {
+    format!("{x:?}").replace('-', "\u{2212}")
+}
+
+/// A table behind a line that opens it.
+pub fn folded(line: &str, table: &str) -> String {
+    format!("<details><summary>{line}</summary>\n{table}</details>\n")
 }

@@ -12,11 +12,12 @@ fn folder(test: &str) -> String {
 }
 
 const PAIR: &str = "airframes/single-pair.toml";
-const FILES: [&str; 4] = [
+const FILES: [&str; 5] = [
     "single-pair.report.txt",
     "single-pair.rotors-out.csv",
     "single-pair.rs",
     "single-pair.vectors.csv",
+    "single-pair.vectors.rs",
 ];
 
 #[test]
@@ -24,7 +25,7 @@ fn golden_outputs_are_written_and_hold() {
     let folder = folder("holds");
     let output = run(&["golden", PAIR, "-o", &folder]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert_eq!(stderr(&output).lines().count(), 4, "{}", stderr(&output));
+    assert_eq!(stderr(&output).lines().count(), 5, "{}", stderr(&output));
     let mut files: Vec<_> = fs::read_dir(&folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -63,7 +64,7 @@ fn golden_check_names_what_differs() {
         "single-pair.vectors.csv:4: throttle_0 was 0.",
         "single-pair.report.txt: No such file",
         "other-x8.rs: belongs to none of these airframes",
-        "error: 3 of 4 golden outputs differ",
+        "error: 3 of 5 golden outputs differ",
     ] {
         assert!(told.contains(part), "no {part:?} in {told}");
     }

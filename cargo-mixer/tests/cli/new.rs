@@ -108,7 +108,7 @@ fn new_overwrites_only_by_force() {
     assert!(
         fs::read_to_string(&file)
             .unwrap()
-            .starts_with("name = \"kept\"\n")
+            .starts_with("#:schema ./airframe.schema.json\nname = \"kept\"\n")
     );
 }
 

@@ -28,3 +28,38 @@ fn manual_pages_are_there() {
     assert!(stdout(&check).contains("deny\\-warnings"), "{}", stdout(&check));
     assert_status(&run(&["man", "none"]), 2);
 }
+
+/// What cannot be written is no success; a reader that has seen enough is no fault.
+#[cfg(target_os = "linux")]
+#[test]
+fn lost_output_is_an_error() {
+    let setpoints = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lost.setpoints.csv");
+    std::fs::write(&setpoints, "roll_nm,pitch_nm,yaw_nm,thrust_n\n0,0,0,30\n").unwrap();
+    let mix = format!("mix {X8} {}", setpoints.display());
+    let expand = format!("expand {X8}");
+    for command in [&mix, &expand, "man", "--help"] {
+        let command = format!("{} {command}", env!("CARGO_BIN_EXE_cargo-mixer"));
+        let told = |script: String| {
+            let output = Command::new("sh")
+                .args(["-c", &script])
+                .current_dir(root())
+                .output()
+                .unwrap();
+            (output.status.code(), stderr(&output).to_owned())
+        };
+        let (status, message) = told(format!("{command} >/dev/full"));
+        assert_eq!(status, Some(1), "{command}");
+        assert!(
+            message.ends_with("stdout: No space left on device (os error 28)\n"),
+            "{message}"
+        );
+        assert_eq!(
+            told(format!("{command} >&-")),
+            (Some(1), "error: stdout is closed\n".to_owned()),
+            "{command}"
+        );
+        // Its status is said on stderr: that of the pipe is the reader's.
+        let (_, message) = told(format!("({command}; echo $? >&2) | head -c 1 >/dev/null"));
+        assert_eq!(message, "0\n", "{command}");
+    }
+}

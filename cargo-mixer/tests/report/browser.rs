@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
+use cargo_mixer::report::origin::Origin;
 use cargo_mixer::report::page::page;
 use cargo_mixer::report::study::Study;
 
@@ -70,7 +71,7 @@ fn pages_open_without_errors_and_show_values() {
     };
     for compiled in airframes() {
         let name = compiled.airframe.name.clone();
-        let html = page(&Study::new(&compiled, None), None);
+        let html = page(&Study::new(&compiled, None), None, &Origin::default());
         let path = scratch(&format!("{name}.html"));
         fs::write(&path, html.replace("</body>", POINTER)).unwrap();
         let (dom, messages) = open(&browser, &path);
@@ -96,7 +97,7 @@ fn pages_open_without_errors_and_show_values() {
 
     // The test can fail: a broken script and a reference to outside are both told.
     let broken = scratch("broken.html");
-    let html = page(&Study::new(&airframes()[0], None), None);
+    let html = page(&Study::new(&airframes()[0], None), None, &Origin::default());
     fs::write(
         &broken,
         html.replace("document.getElementById(\"model\")", "document.nothing.there"),

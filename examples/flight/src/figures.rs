@@ -1,4 +1,4 @@
-//! Fig. 8, 9 and 10 of the paper as SVG, the simple mixer on the left and the coaxial one on the right.
+//! Fig. 8, 9 and 10 of the paper as SVG, the conventional mixer on the left and the coaxial one on the right.
 //!
 //! Blue and vermilion of Okabe and Ito's palette, black for what is given: told apart with any colour vision.
 
@@ -24,7 +24,7 @@ const WIDTH: u32 = 1000;
 const EVERY: usize = 20;
 
 /// Left and right column.
-const COLUMNS: [Method; 2] = [Method::Simple, Method::Coaxial];
+const COLUMNS: [Method; 2] = [Method::Conventional, Method::Coaxial];
 
 /// A line of a panel.
 struct Line {

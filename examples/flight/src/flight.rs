@@ -158,7 +158,7 @@ impl Scenario {
         Ok(FlightPair {
             seed,
             coaxial: flight(Method::Coaxial)?,
-            simple: flight(Method::Simple)?,
+            conventional: flight(Method::Conventional)?,
         })
     }
 }
@@ -185,7 +185,7 @@ pub struct FlightPair {
     /// With the airframe's mixer.
     pub coaxial: Flight,
     /// With the conventional one.
-    pub simple: Flight,
+    pub conventional: Flight,
 }
 
 impl FlightPair {
@@ -193,7 +193,7 @@ impl FlightPair {
     pub fn with(&self, method: Method) -> &Flight {
         match method {
             Method::Coaxial => &self.coaxial,
-            Method::Simple => &self.simple,
+            Method::Conventional => &self.conventional,
         }
     }
 }

@@ -68,7 +68,7 @@ pub fn write_tracking(comparisons: &[Comparison], to: impl Write) -> csv::Result
     writer.write_record(&header)?;
     for comparison in comparisons {
         for pair in &comparison.flights {
-            for method in [Method::Coaxial, Method::Simple] {
+            for method in [Method::Coaxial, Method::Conventional] {
                 let flight = pair.with(method);
                 let mut record = vec![
                     comparison.scenario.to_string(),

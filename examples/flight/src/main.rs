@@ -89,7 +89,7 @@ fn write_figures(comparisons: &[Comparison], folder: &Path) -> Result<(), Box<dy
 fn write_logs(comparisons: &[Comparison], folder: &Path) -> Result<(), Box<dyn Error>> {
     for Comparison { scenario, flights } in comparisons {
         if let Some(pair) = flights.first() {
-            for method in [Method::Coaxial, Method::Simple] {
+            for method in [Method::Coaxial, Method::Conventional] {
                 let path = folder.join(format!("{}-{method}.csv", scenario.slug()));
                 log::write_flight(pair.with(method), File::create(path)?)?;
             }

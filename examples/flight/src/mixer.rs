@@ -16,14 +16,14 @@ pub enum Method {
     /// The airframe's mixer from the macro.
     Coaxial,
     /// The conventional mixer, isolated rotors.
-    Simple,
+    Conventional,
 }
 
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Method::Coaxial => "coaxial",
-            Method::Simple => "simple",
+            Method::Conventional => "conventional",
         })
     }
 }
@@ -34,7 +34,7 @@ pub enum Mixer {
     /// The airframe's mixer from the macro.
     Coaxial,
     /// The conventional mixer.
-    Simple(Box<ConventionalMixer>),
+    Conventional(Box<ConventionalMixer>),
 }
 
 impl Mixer {
@@ -45,9 +45,9 @@ impl Mixer {
     pub fn new(method: Method, airframe: &Airframe) -> Result<Self, Unsuited> {
         Ok(match method {
             Method::Coaxial => Mixer::Coaxial,
-            Method::Simple => {
+            Method::Conventional => {
                 let effectiveness = Effectiveness::new(airframe).map_err(|_| Unsuited::Rank)?;
-                Mixer::Simple(Box::new(ConventionalMixer::new(airframe, &effectiveness)?))
+                Mixer::Conventional(Box::new(ConventionalMixer::new(airframe, &effectiveness)?))
             }
         })
     }
@@ -68,7 +68,7 @@ impl Mixer {
                 let throttle = SVector::from(mix.throttle).map(f64::from);
                 Ok((throttle, mix.saturation.any_axis()))
             }
-            Mixer::Simple(mixer) => mixer.mix(wrench, voltage_v),
+            Mixer::Conventional(mixer) => mixer.mix(wrench, voltage_v),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::flight::{FlightPair, Scenario};
 use crate::mixer::Method;
-use crate::tracking::{PAPER_COAXIAL, PAPER_SIMPLE, Spread, TrackingError, figure, ratio};
+use crate::tracking::{PAPER_COAXIAL, PAPER_CONVENTIONAL, Spread, TrackingError, figure, ratio};
 
 /// A scenario flown over several seeds; prints as its tables.
 #[derive(Clone, Debug)]
@@ -40,8 +40,8 @@ impl fmt::Display for Comparison {
         writeln!(f)?;
         writeln!(
             f,
-            "  {:<12} {:^21} {:^21} {:^15} | paper {:>8} {:>8} {:>6}",
-            "Table II", "coaxial", "simple", "coaxial/simple", "coaxial", "simple", "ratio"
+            "  {:<12} {:^21} {:^21} {:^15} | paper {:>8} {:>12} {:>6}",
+            "Table II", "coaxial", "conventional", "ratio", "coaxial", "conventional", "ratio"
         )?;
         for (row, name) in TrackingError::NAMES.into_iter().enumerate() {
             let unit = if row == 0 { "mm2" } else { "mm" };
@@ -49,29 +49,30 @@ impl fmt::Display for Comparison {
             let scale = if row == 0 { 1e6 } else { 1e3 };
             for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                 let of = |method| scaled(figure(flights, method, row, axis), scale);
-                let [coaxial, simple] = [PAPER_COAXIAL, PAPER_SIMPLE].map(|paper| paper.rows()[row][axis]);
+                let [coaxial, conventional] =
+                    [PAPER_COAXIAL, PAPER_CONVENTIONAL].map(|paper| paper.rows()[row][axis]);
                 writeln!(
                     f,
-                    "  {:<12} {:>21} {:>21} {:>15} |       {:>8} {:>8} {:>6.2}",
+                    "  {:<12} {:>21} {:>21} {:>15} |       {:>8} {:>12} {:>6.2}",
                     format!("{name} {letter}, {unit}"),
                     of(Method::Coaxial),
-                    of(Method::Simple),
+                    of(Method::Conventional),
                     format!("{:.2}", ratio(flights, row, axis)),
                     format!("{:.0}", coaxial * scale),
-                    format!("{:.0}", simple * scale),
-                    coaxial / simple,
+                    format!("{:.0}", conventional * scale),
+                    coaxial / conventional,
                 )?;
             }
         }
         writeln!(f)?;
-        for method in [Method::Coaxial, Method::Simple] {
+        for method in [Method::Coaxial, Method::Conventional] {
             let over = |value: fn(&crate::flight::Flight) -> f64| {
                 Spread::of(flights.iter().map(|pair| value(pair.with(method))))
             };
             let saturated: usize = flights.iter().map(|pair| pair.with(method).saturated()).sum();
             writeln!(
                 f,
-                "  {method:<8} thrust command / weight in hover {:.3}, mean yaw error {:.2} degrees, \
+                "  {method:<12} thrust command / weight in hover {:.3}, mean yaw error {:.2} degrees, \
                  {saturated} periods saturated",
                 over(|flight| flight.hover_thrust()),
                 over(|flight| flight.yaw_error().to_degrees()),

@@ -35,8 +35,8 @@ pub const PAPER_COAXIAL: TrackingError = TrackingError {
     max: Vector3::new(0.130, 0.078, 0.062),
 };
 
-/// Table II of the paper, simple mixer.
-pub const PAPER_SIMPLE: TrackingError = TrackingError {
+/// Table II of the paper, conventional mixer.
+pub const PAPER_CONVENTIONAL: TrackingError = TrackingError {
     mse: Vector3::new(2.9e-3, 1.8e-3, 1.1e-3),
     mae: Vector3::new(0.039, 0.029, 0.026),
     max: Vector3::new(0.144, 0.156, 0.080),
@@ -121,10 +121,14 @@ pub fn figure(flights: &[FlightPair], method: Method, row: usize, axis: usize) -
     )
 }
 
-/// The ratio coaxial over simple of one figure: taken seed by seed, then averaged.
+/// The ratio coaxial over conventional of one figure: taken seed by seed, then averaged.
 pub fn ratio(flights: &[FlightPair], row: usize, axis: usize) -> Spread {
     let of = |flight: &Flight| flight.tracking_error().rows()[row][axis];
-    Spread::of(flights.iter().map(|pair| of(&pair.coaxial) / of(&pair.simple)))
+    Spread::of(
+        flights
+            .iter()
+            .map(|pair| of(&pair.coaxial) / of(&pair.conventional)),
+    )
 }
 
 #[cfg(test)]

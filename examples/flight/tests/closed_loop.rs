@@ -49,17 +49,21 @@ fn assert_stable(flight: &Flight) {
 fn assert_common(flights: &[FlightPair]) {
     for pair in flights {
         assert_stable(&pair.coaxial);
-        assert_stable(&pair.simple);
+        assert_stable(&pair.conventional);
         // Eight rotors, each 1 % off in speed and hence some 2 % in thrust: 0.7 % of deviation, three times.
         let coaxial = pair.coaxial.hover_thrust();
         assert!((coaxial - 1.0).abs() < 0.021, "seed {}: {coaxial}", pair.seed);
-        let simple = pair.simple.hover_thrust();
-        assert!((1.15..1.23).contains(&simple), "seed {}: {simple}", pair.seed);
+        let conventional = pair.conventional.hover_thrust();
+        assert!(
+            (1.15..1.23).contains(&conventional),
+            "seed {}: {conventional}",
+            pair.seed
+        );
         // "No significant yaw tracking amelioration was noticed" (section V-B).
-        let yaw = pair.coaxial.yaw_error() / pair.simple.yaw_error();
+        let yaw = pair.coaxial.yaw_error() / pair.conventional.yaw_error();
         assert!((yaw - 1.0).abs() < 0.01, "seed {}: {yaw}", pair.seed);
         // The conventional mixer is never better in z, with any seed.
-        let errors = [&pair.coaxial, &pair.simple].map(Flight::tracking_error);
+        let errors = [&pair.coaxial, &pair.conventional].map(Flight::tracking_error);
         assert!(
             errors[0].mse.z < errors[1].mse.z,
             "seed {}: {errors:?}",
@@ -126,8 +130,8 @@ fn with_equal_rotors_the_coaxial_mixer_hovers_on_the_weight() {
     let coaxial = hover(Method::Coaxial);
     assert!((coaxial - 1.0).abs() < 0.002, "{coaxial}");
     // 31.4 N asked, 26.43 N given by `tests/oracle.py conventional`: a command of 1.19 weights.
-    let simple = hover(Method::Simple);
-    assert!((simple - 31.4 / 26.4256).abs() < 0.01, "{simple}");
+    let conventional = hover(Method::Conventional);
+    assert!((conventional - 31.4 / 26.4256).abs() < 0.01, "{conventional}");
 }
 
 #[test]
@@ -139,17 +143,17 @@ fn equal_seeds_give_equal_flights_and_others_do_not() {
     };
     let [first, again, other] = [1, 1, 2].map(|seed| scenario.fly(&airframe, seed).unwrap());
     assert!(first == again);
-    assert!(first.coaxial != other.coaxial && first.simple != other.simple);
-    assert!(first.coaxial != first.simple);
+    assert!(first.coaxial != other.coaxial && first.conventional != other.conventional);
+    assert!(first.coaxial != first.conventional);
 }
 
 #[test]
 fn a_known_hover_thrust_makes_up_for_nearly_all_of_the_difference_in_z() {
     let airframe = vehicle::airframe().unwrap();
-    let Mixer::Simple(simple) = Mixer::new(Method::Simple, &airframe).unwrap() else {
-        unreachable!("asked for the simple mixer")
+    let Mixer::Conventional(conventional) = Mixer::new(Method::Conventional, &airframe).unwrap() else {
+        unreachable!("asked for the conventional mixer")
     };
-    let calibrated = Mixer::Simple(Box::new(simple.with_thrust_factor(31.4 / 26.4256)));
+    let calibrated = Mixer::Conventional(Box::new(conventional.with_thrust_factor(31.4 / 26.4256)));
     let scenario = Scenario {
         air: Air::Unsteady,
         tilt: Tilt::Decoupled,
@@ -160,7 +164,7 @@ fn a_known_hover_thrust_makes_up_for_nearly_all_of_the_difference_in_z() {
         let pair = scenario.fly(&airframe, seed).unwrap();
         let mse = |flight: &Flight| flight.tracking_error().mse.z;
         let coaxial = mse(&pair.coaxial);
-        let ratios = [&calibrated, &pair.simple].map(|flight| coaxial / mse(flight));
+        let ratios = [&calibrated, &pair.conventional].map(|flight| coaxial / mse(flight));
         assert!(
             (ratios[0] - 1.0).abs() < 0.1 && ratios[1] < 0.75,
             "seed {seed}: {ratios:?}"

@@ -54,11 +54,11 @@ fn prints_the_tables_and_writes_figures_and_data() {
         for figure in ["fig8-position", "fig9-yaw", "fig10-thrust"] {
             let svg = fs::read_to_string(plots.join(format!("{figure}-{scenario}.svg"))).unwrap();
             assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
-            assert!(svg.contains("simple mixer") && svg.contains("coaxial mixer"));
+            assert!(svg.contains("conventional mixer") && svg.contains("coaxial mixer"));
             // Two columns with two lines each at least, none of them broken.
             assert!(svg.matches("<polyline").count() >= 4 && !svg.contains("NaN"));
         }
-        let [coaxial, simple] = ["coaxial", "simple"].map(|mixer| {
+        let [coaxial, conventional] = ["coaxial", "conventional"].map(|mixer| {
             let mut log = csv::Reader::from_path(logs.join(format!("{scenario}-{mixer}.csv"))).unwrap();
             let column = log.headers().unwrap().iter().position(|name| name == "thrust_n");
             let thrusts: Vec<f64> = log
@@ -69,8 +69,8 @@ fn prints_the_tables_and_writes_figures_and_data() {
             thrusts.iter().sum::<f64>() / thrusts.len() as f64 / WEIGHT_N
         });
         assert!(
-            (coaxial - 1.0).abs() < 0.02 && (1.15..1.23).contains(&simple),
-            "{coaxial} {simple}"
+            (coaxial - 1.0).abs() < 0.02 && (1.15..1.23).contains(&conventional),
+            "{coaxial} {conventional}"
         );
     }
     let mut tracking = csv::Reader::from_path(logs.join("tracking.csv")).unwrap();

@@ -165,8 +165,8 @@ fn the_conventional_mixer_agrees_with_the_oracle() {
 #[test]
 fn the_conventional_mixer_limits_and_says_so() {
     let airframe = vehicle::airframe().unwrap();
-    let Mixer::Simple(mixer) = Mixer::new(Method::Simple, &airframe).unwrap() else {
-        unreachable!("asked for the simple mixer")
+    let Mixer::Conventional(mixer) = Mixer::new(Method::Conventional, &airframe).unwrap() else {
+        unreachable!("asked for the conventional mixer")
     };
     for thrust in [-10.0, 0.0, 500.0] {
         let (throttle, limited) = mixer.mix(&Vector4::new(0.0, 0.0, 0.0, thrust), 14.8).unwrap();

@@ -4,33 +4,7 @@ use toml::Spanned;
 
 use crate::diagnostic::{Code, Diagnostic, any_of, nearest, number, quoted};
 use crate::spec;
-
-/// Names of the evaluators that a file can ask for.
-pub const EVALUATORS: &[&str] = &[
-    "bilinear",
-    "quadratic",
-    "eight-term",
-    "cubic",
-    "table",
-    "bilinear-newton",
-    "quadratic-newton",
-    "eight-term-newton",
-    "cubic-newton",
-    "table-newton",
-    "bilinear-shamanskii",
-    "quadratic-shamanskii",
-    "eight-term-shamanskii",
-    "cubic-shamanskii",
-    "table-shamanskii",
-    "bilinear-newton2",
-    "quadratic-newton2",
-    "eight-term-newton2",
-    "cubic-newton2",
-    "table-newton2",
-];
-
-/// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.
-pub const HIGHEST_DEGREE: usize = 15;
+pub use crate::spec::keys::{EVALUATORS, HIGHEST_DEGREE};
 
 /// Which evaluator of the inverse to emit.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,8 +7,7 @@ use super::pair::Spin;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::spec;
 
-/// Most units of one airframe; 64 rotors are twice what any flight stack drives.
-pub const MOST_UNITS: usize = 32;
+pub use crate::spec::keys::MOST_UNITS;
 
 /// Units nearer than this are one and the same, m.
 const SAME_PLACE_M: f64 = 1e-3;

@@ -50,22 +50,27 @@ fn diagnostic(
     )
 }
 
+/// Whether the file states a tolerance above a tenth of the largest effort.
+fn is_absurd(airframe: &Airframe, (key, _, tolerance, largest): (&str, &str, f64, f64)) -> bool {
+    largest > 0.0 && tolerance > ABSURD * largest && airframe.states(key)
+}
+
 /// Tolerances above a tenth of the largest effort.
 pub(super) fn absurd_tolerances(airframe: &Airframe) -> Vec<Diagnostic> {
     let scale = PairMap::new(&airframe.pair, &airframe.throttle).scale();
     each(airframe, scale)
         .into_iter()
-        .filter(|(_, _, tolerance, largest)| *largest > 0.0 && *tolerance > ABSURD * largest)
-        .filter(|(key, ..)| airframe.states(key))
+        .filter(|tolerance| is_absurd(airframe, *tolerance))
         .map(|tolerance| diagnostic(airframe, Code::ToleranceAbsurd, tolerance, ABSURD))
         .collect()
 }
 
-/// Tolerances above a hundredth of the largest effort.
+/// Tolerances above a hundredth of the largest effort that are no errors.
 pub(super) fn tolerances(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     let wide = each(facts.airframe, facts.scale)
         .into_iter()
-        .filter(|(_, _, tolerance, largest)| *tolerance > WIDE * largest);
+        .filter(|(_, _, tolerance, largest)| *tolerance > WIDE * largest)
+        .filter(|tolerance| !is_absurd(facts.airframe, *tolerance));
     found.extend(wide.map(|tolerance| diagnostic(facts.airframe, Code::WideTolerance, tolerance, WIDE)));
 }
 

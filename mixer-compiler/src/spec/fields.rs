@@ -61,11 +61,11 @@ impl<'a, 'f> Fields<'a, 'f> {
         Some(Spanned::new(item.place, value))
     }
 
-    /// Reports those of `names` that are absent, except where a misspelt key was reported in their stead.
-    pub(crate) fn require(&mut self, names: &[&str]) {
-        for name in names {
-            if self.key_place(name).is_none() {
-                let fault = self.missing(name);
+    /// Reports required keys that are absent, except where a misspelt key was reported in their stead.
+    pub(crate) fn require(&mut self) {
+        for key in self.shape.keys.iter().filter(|key| key.required) {
+            if self.key_place(key.name).is_none() {
+                let fault = self.missing(key.name);
                 self.faults.push(fault);
             }
         }

@@ -57,8 +57,8 @@ pub(super) struct Label {
 const SHORTEST: f64 = 46.0;
 
 impl Label {
-    /// In the middle of a curve that is long enough.
-    pub(super) fn along(pixels: &[[f64; 2]]) -> Option<Self> {
+    /// At a share of the length of a curve that is long enough.
+    pub(super) fn along(pixels: &[[f64; 2]], share: f64) -> Option<Self> {
         let length = |a: [f64; 2], b: [f64; 2]| libm::hypot(b[0] - a[0], b[1] - a[1]);
         let total: f64 = pixels.windows(2).map(|w| length(w[0], w[1])).sum();
         if total < SHORTEST {
@@ -67,7 +67,7 @@ impl Label {
         let mut walked = 0.0;
         for (index, pair) in pixels.windows(2).enumerate() {
             walked += length(pair[0], pair[1]);
-            if walked >= 0.5 * total {
+            if walked >= share * total {
                 // The direction over a few points: a single one may turn back at a corner.
                 let from = pixels[index.saturating_sub(2)];
                 let to = pixels[(index + 3).min(pixels.len() - 1)];
@@ -110,8 +110,8 @@ mod tests {
     #[test]
     fn labels_are_never_upside_down() {
         let leftwards: Vec<[f64; 2]> = (0..20).map(|k| [-5.0 * f64::from(k), 0.0]).collect();
-        let label = Label::along(&leftwards).unwrap();
+        let label = Label::along(&leftwards, 0.5).unwrap();
         assert_eq!(label.degrees, 0.0);
-        assert!(Label::along(&leftwards[..5]).is_none());
+        assert!(Label::along(&leftwards[..5], 0.5).is_none());
     }
 }

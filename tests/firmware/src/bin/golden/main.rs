@@ -1,4 +1,5 @@
-//! Mixes the golden vectors of every airframe and compares every bit with what the host computed.
+//! Mixes the golden vectors of every airframe, with all rotors and with one out, and compares every bit with what the host
+//! computed.
 //!
 //! Prints one line per airframe: vectors, mismatches, instructions per mix (mean and worst over the vectors) and
 //! stack per mix. Exit status 0 if every bit agrees and every non-finite setpoint is refused.
@@ -12,18 +13,12 @@ use core::mem::MaybeUninit;
 
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hprintln;
-use mixer_rt::{Mix, SetpointError, Wrench};
+use harness::{agrees, differing, request};
+use mixer_rt::{Health, Mix, SetpointError, Wrench};
 use probe::{Counter, Mixer};
 
-/// One row of the golden vectors; floats as their f32 bits.
-struct Vector<const CHANNELS: usize> {
-    /// Roll, pitch, yaw (N m), thrust (N).
-    setpoint: [u32; 4],
-    voltage_v: u32,
-    throttle: [u32; CHANNELS],
-    achieved: [u32; 4],
-    saturation: u16,
-}
+#[path = "../vectors/harness.rs"]
+mod harness;
 
 /// What a mixer returns.
 type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
@@ -43,7 +38,16 @@ macro_rules! check {
             }
         }
         // SAFETY: `mix` writes the result for as many channels as the vectors have.
-        unsafe { $check.airframe::<{ $module::CHANNELS }>($name, &$vectors, mix) }
+        unsafe {
+            $check.airframe::<{ $module::CHANNELS }>($name, $vectors::VECTORS.iter().map(|row| &row[..]), mix)
+        };
+        let rotors_out = $vectors::ROTORS_OUT.iter().map(|(failed, rows)| {
+            let health = Health::GOOD.with_failed(*failed);
+            differing(rows, |setpoint, voltage_v| {
+                $module::mix_with_health(setpoint, voltage_v, health)
+            })
+        });
+        $check.rotors_out($name, rotors_out.sum());
     }};
 }
 
@@ -58,6 +62,14 @@ struct Check {
 }
 
 impl Check {
+    /// Notes how many rows with a rotor out differ.
+    fn rotors_out(&mut self, name: &str, differing: usize) {
+        if differing > 0 {
+            hprintln!("{}.rotors-out.csv: {} rows differ", name, differing);
+            self.passed = false;
+        }
+    }
+
     /// Mixes the vectors of one airframe and prints its line.
     ///
     /// # Safety
@@ -66,13 +78,17 @@ impl Check {
     unsafe fn airframe<const CHANNELS: usize>(
         &mut self,
         name: &str,
-        vectors: &[Vector<CHANNELS>],
+        vectors: impl ExactSizeIterator<Item = &'static [u32]> + Clone,
         mix: Mixer,
     ) {
+        let count = vectors.len();
         let (mut mismatches, mut sum, mut worst, mut stack) = (0, 0_u64, 0, 0);
-        for (row, vector) in vectors.iter().enumerate() {
-            let setpoint = wrench(vector.setpoint);
-            let voltage_v = f32::from_bits(vector.voltage_v);
+        for (row, vector) in vectors.clone().enumerate() {
+            let Some((setpoint, voltage_v)) = request(vector) else {
+                hprintln!("{}: row {} of the vectors is too short", name, row);
+                self.passed = false;
+                continue;
+            };
             let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
             let pointer = output.as_mut_ptr().cast();
             // SAFETY: the output is of the type that `mix` writes, which it does in every call; no interrupt is
@@ -96,7 +112,7 @@ impl Check {
             }
         }
         // SAFETY: as above.
-        let accepted = unsafe { accepted_non_finite(vectors, mix) };
+        let accepted = unsafe { accepted_non_finite::<CHANNELS>(vectors, mix) };
         if accepted > 0 {
             hprintln!(
                 "{}: {} non-finite setpoints were mixed instead of refused",
@@ -106,11 +122,11 @@ impl Check {
         }
         self.passed &= mismatches == 0 && accepted == 0;
         // One decimal in whole numbers: float formatting would be the largest part of this image.
-        let tenths = sum * 10 / vectors.len() as u64;
+        let tenths = sum * 10 / count as u64;
         hprintln!(
             "{:<24} {:>8} {:>10} {:>8}.{} {:>8} {:>8}",
             name,
-            vectors.len(),
+            count,
             mismatches,
             tenths / 10,
             tenths % 10,
@@ -120,41 +136,15 @@ impl Check {
     }
 }
 
-fn wrench([roll, pitch, yaw, thrust]: [u32; 4]) -> Wrench {
-    Wrench {
-        roll_nm: f32::from_bits(roll),
-        pitch_nm: f32::from_bits(pitch),
-        yaw_nm: f32::from_bits(yaw),
-        thrust_n: f32::from_bits(thrust),
-    }
-}
-
-fn bits(wrench: &Wrench) -> [u32; 4] {
-    [wrench.roll_nm, wrench.pitch_nm, wrench.yaw_nm, wrench.thrust_n].map(f32::to_bits)
-}
-
-fn agrees<const CHANNELS: usize>(expected: &Vector<CHANNELS>, mixed: &Mixed<CHANNELS>) -> bool {
-    mixed.as_ref().is_ok_and(|mix| {
-        mix.throttle.map(f32::to_bits) == expected.throttle
-            && bits(&mix.achieved) == expected.achieved
-            && mix.saturation.bits() == expected.saturation
-    })
-}
-
-fn show<const CHANNELS: usize>(name: &str, row: usize, expected: &Vector<CHANNELS>, mixed: &Mixed<CHANNELS>) {
+fn show<const CHANNELS: usize>(name: &str, row: usize, expected: &[u32], mixed: &Mixed<CHANNELS>) {
     // Line 1 of the file is the header.
     hprintln!("{}.vectors.csv:{}: throttle, achieved, saturation", name, row + 2);
-    hprintln!(
-        "  host   {:08x?} {:08x?} {}",
-        expected.throttle,
-        expected.achieved,
-        expected.saturation
-    );
+    hprintln!("  host   {:08x?}", expected.get(5..).unwrap_or_default());
     match mixed {
         Ok(mix) => hprintln!(
-            "  target {:08x?} {:08x?} {}",
+            "  target {:08x?} {:08x?} {:08x}",
             mix.throttle.map(f32::to_bits),
-            bits(&mix.achieved),
+            mix.achieved.to_array().map(f32::to_bits),
             mix.saturation.bits()
         ),
         Err(_) => hprintln!("  target refused the setpoint"),
@@ -166,20 +156,23 @@ fn show<const CHANNELS: usize>(name: &str, row: usize, expected: &Vector<CHANNEL
 /// # Safety
 ///
 /// `mix` must write a [`Mixed`] for `CHANNELS` channels.
-unsafe fn accepted_non_finite<const CHANNELS: usize>(vectors: &[Vector<CHANNELS>], mix: Mixer) -> u32 {
+unsafe fn accepted_non_finite<const CHANNELS: usize>(
+    vectors: impl Iterator<Item = &'static [u32]>,
+    mix: Mixer,
+) -> u32 {
     let mut accepted = 0;
-    for vector in vectors.iter().take(1) {
+    for (setpoint, voltage_v) in vectors.take(1).filter_map(request) {
         for axis in 0..4 {
             for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-                let mut setpoint = vector.setpoint;
-                setpoint[axis] = value.to_bits();
+                let mut setpoint = setpoint.to_array();
+                setpoint[axis] = value;
                 let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
                 // SAFETY: the output is of the type that `mix` writes, which it does in every call.
                 let mixed = unsafe {
                     mix(
-                        &wrench(setpoint),
+                        &Wrench::from_array(setpoint),
                         output.as_mut_ptr().cast(),
-                        f32::from_bits(vector.voltage_v),
+                        voltage_v,
                     );
                     output.assume_init()
                 };

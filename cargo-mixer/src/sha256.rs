@@ -24,7 +24,7 @@ const ROUND: [u32; 64] = [
 ];
 
 /// The digest in hexadecimal.
-pub(super) fn hex(message: &[u8]) -> String {
+pub(crate) fn hex(message: &[u8]) -> String {
     let mut padded = message.to_vec();
     padded.push(0x80);
     while padded.len() % 64 != 56 {

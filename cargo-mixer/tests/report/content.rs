@@ -1,0 +1,186 @@
+//! What a page says of its origin, of a rotor out, of the bench; what is folded, and how units are written.
+
+use super::*;
+
+fn text_of(node: Node) -> String {
+    node.descendants()
+        .filter(Node::is_text)
+        .filter_map(|n| n.text())
+        .collect()
+}
+
+fn section<'a, 'd>(document: &'d Document<'a>, id: &str) -> Node<'d, 'a> {
+    named(document.root(), "section")
+        .find(|section| section.attribute("id") == Some(id))
+        .unwrap()
+}
+
+/// Headers of all tables of a page.
+fn headers(document: &Document) -> Vec<Vec<String>> {
+    named(document.root(), "thead")
+        .map(|head| named(head, "th").map(text_of).collect())
+        .collect()
+}
+
+#[test]
+fn pages_name_their_origin() {
+    let made = |epoch: &str| {
+        let output = scratch(&format!("origin-{epoch}.html")).display().to_string();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_cargo-mixer"));
+        command.args(["report", "airframes/single-pair.toml", "-o", &output]);
+        let run = command
+            .current_dir(root())
+            .env("SOURCE_DATE_EPOCH", epoch)
+            .output()
+            .unwrap();
+        assert_status(&run, 0, "");
+        fs::read_to_string(output).unwrap()
+    };
+    let page = made("951782400");
+    assert_eq!(page, made("951782401"), "of one day");
+    let summed = Command::new("sha256sum")
+        .arg(root().join("airframes/single-pair.toml"))
+        .output()
+        .unwrap();
+    let hash = String::from_utf8(summed.stdout).unwrap();
+    let hash = hash.split(' ').next().unwrap();
+    assert!(
+        page.contains(hash) && page.contains("<td>2000-02-29</td>"),
+        "{hash}"
+    );
+    // All coefficients, with all their digits.
+    let pair = compiled(&root().join("airframes/single-pair.toml")).airframe.pair;
+    for coefficient in pair.thrust_n.iter().chain(&pair.torque_nm) {
+        let cell = format!("<td>{}</td>", format!("{coefficient:?}").replace('-', "\u{2212}"));
+        assert!(page.contains(&cell), "{cell}");
+    }
+}
+
+#[test]
+fn the_yaw_table_of_many_units_is_narrow() {
+    let compiled = compiled(&root().join("airframes/px4-x12.toml"));
+    let page = page(&Study::new(&compiled, None), None, &Origin::default());
+    let document = parsed(&page);
+    let table = headers(&document)
+        .into_iter()
+        .find(|header| header[0] == "yaw asked (N m)")
+        .unwrap();
+    let groups = [
+        "f 0, 2, 5 (N)",
+        "Q 0, 2, 5 (N m)",
+        "f 1, 3, 4 (N)",
+        "Q 1, 3, 4 (N m)",
+    ];
+    assert_eq!(table[2..6], groups);
+    assert_eq!(table.len(), 8);
+}
+
+#[test]
+fn units_of_headers_stand_in_parentheses() {
+    for name in ["isae-x8", "px4-y6"] {
+        let compiled = compiled(&root().join(format!("airframes/{name}.toml")));
+        let page = page(&Study::new(&compiled, None), None, &Origin::default());
+        for header in headers(&parsed(&page)).concat() {
+            let bare = ["N", "m", "V", "kg", "instructions", "cycles", "bytes"]
+                .iter()
+                .any(|unit| header.split(' ').any(|word| word == *unit && header != *unit));
+            let in_parentheses = header.contains('(') && header.ends_with(')');
+            assert!(!bare || in_parentheses, "{header}");
+        }
+    }
+}
+
+#[test]
+fn authority_is_shown_at_the_lowest_voltage_and_with_a_rotor_out() {
+    let of = |name: &str| {
+        let compiled = compiled(&root().join(format!("airframes/{name}.toml")));
+        let page = page(&Study::new(&compiled, None), None, &Origin::default());
+        let document = parsed(&page);
+        let section = section(&document, "authority");
+        let curves: Vec<String> = section
+            .descendants()
+            .filter_map(|n| n.attribute("data-name").map(str::to_owned))
+            .collect();
+        (curves, text_of(section))
+    };
+    let (curves, _) = of("isae-x8");
+    for curve in ["largest", "12.8 V, largest", "any one rotor out, least"] {
+        assert_eq!(curves.iter().filter(|name| *name == curve).count(), 3, "{curve}");
+    }
+    // One pair turns where a rotor is out.
+    let (curves, text) = of("single-pair");
+    assert!(
+        curves.iter().all(|curve| !curve.contains("rotor out")),
+        "{curves:?}"
+    );
+    assert!(text.contains("no thrust is held without a torque"), "{text}");
+}
+
+#[test]
+fn captions_stand_below_and_evaluators_are_folded() {
+    let page = page(&Study::new(&x8(), None), None, &Origin::default());
+    let document = parsed(&page);
+    for figure in named(document.root(), "figure") {
+        let last = figure.children().rfind(Node::is_element).unwrap();
+        assert_eq!(last.tag_name().name(), "figcaption");
+        assert!(!text_of(last).is_empty());
+    }
+    let folded: Vec<Node> = named(document.root(), "details").collect();
+    assert_eq!(folded.len(), 2);
+    for details in folded {
+        assert!(details.attribute("open").is_none());
+        assert!(named(details, "tr").count() > 20);
+    }
+}
+
+/// Every bench point has its residual, small where it lies below the idle, within the frame.
+#[test]
+fn residuals_are_mapped() {
+    use cargo_mixer::report::bench::{BenchPoint, BenchPoints};
+
+    let compiled = x8();
+    let study = Study::new(&compiled, None);
+    let point = |u: f64, off: f64| {
+        let model = study.pair.efforts([u, 1.0]);
+        BenchPoint {
+            line: 2,
+            throttles: [u, 1.0],
+            measured: [model[0] - off, model[1] + 0.1 * off],
+            model,
+        }
+    };
+    let bench = BenchPoints {
+        points: vec![point(0.2, 0.1), point(0.6, -0.3), point(1.0, 0.0)],
+        outside: vec![point(0.05, 9.0)],
+        ..BenchPoints::default()
+    };
+    let page = page(&study, Some(&bench), &Origin::default());
+    assert!(page.contains("1 more lie outside the throttle range, 1 of them below the idle of 0.1"));
+    let document = parsed(&page);
+    let maps: Vec<Node> = named(document.root(), "svg")
+        .filter(|svg| svg.attribute("aria-label").unwrap().contains("by the model less"))
+        .collect();
+    assert_eq!(maps.len(), 2);
+    for map in maps {
+        let frame: Vec<f64> = map
+            .attribute("data-box")
+            .unwrap()
+            .split(' ')
+            .map(|number| number.parse().unwrap())
+            .collect();
+        let dots: Vec<Node> = named(map, "circle").collect();
+        let radii: Vec<&str> = dots.iter().map(|dot| dot.attribute("r").unwrap()).collect();
+        assert_eq!(radii, ["6", "6", "6", "3.5"]);
+        let mut colours: Vec<&str> = dots.iter().map(|dot| dot.attribute("fill").unwrap()).collect();
+        colours.dedup();
+        assert_eq!(colours.len(), 4, "{colours:?}");
+        for dot in dots {
+            let at = |name: &str| dot.attribute(name).unwrap().parse::<f64>().unwrap();
+            let [left, top, width, height] = frame[..] else {
+                panic!("{frame:?}")
+            };
+            assert!((left + 6.0..=left + width - 6.0).contains(&at("cx")), "{dot:?}");
+            assert!((top + 6.0..=top + height - 6.0).contains(&at("cy")), "{dot:?}");
+        }
+    }
+}
