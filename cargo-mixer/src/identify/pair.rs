@@ -31,6 +31,8 @@ pub struct Wishes {
     pub throttle: Option<ThrottleBox>,
     /// Reference voltage, V, or nothing for the mean of the rows.
     pub reference_v: Option<f64>,
+    /// Declared exponents of thrust and of torque, or nothing to identify them.
+    pub voltage_exponent: Option<[f64; 2]>,
 }
 
 /// The identified map, as in `[throttle]` and `[pair]`.

@@ -66,6 +66,12 @@ fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
                     paragraph(out, "  ", &format!("{name}: no exponent: {reason}"))?;
                     paragraph(out, "    ", &format!("needed: {needed}"))?;
                 }
+                Exponent::Declared { exponent, .. } => {
+                    writeln!(
+                        out,
+                        "  {name}: exponent {exponent}, declared by --voltage-exponent"
+                    )?;
+                }
                 Exponent::NotMeasured => writeln!(out, "  {name}: not measured")?,
             }
         }

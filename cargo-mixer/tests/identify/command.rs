@@ -133,6 +133,8 @@ fn statuses_and_streams() {
         &["map.csv", "--torque-sign", "x"],
         &["map.csv", "--date", "yesterday"],
         &["map.csv", "--basis", "quintic"],
+        &["map.csv", "--voltage-exponent", "0"],
+        &["map.csv", "--voltage-exponent", "1.7,x"],
         &[],
     ] {
         assert_eq!(status(usage), Some(2), "{usage:?}");
