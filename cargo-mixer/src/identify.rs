@@ -307,7 +307,8 @@ fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
     }
 }
 
-fn pwm_range(text: &str) -> Result<PulseRange, String> {
+/// `LOW,HIGH`, increasing.
+pub(crate) fn pwm_range(text: &str) -> Result<PulseRange, String> {
     let [low, high] = two(text)?;
     if low < high {
         Ok(PulseRange([low, high]))

@@ -4,6 +4,7 @@ mod bench_data;
 mod command;
 mod doubts;
 mod formats;
+mod plan;
 mod refusals;
 mod sweep;
 mod voltage;
