@@ -35,6 +35,7 @@ pub mod monotone;
 pub mod pair;
 pub mod plateau;
 pub mod polynomial;
+pub mod power;
 pub mod read;
 pub mod refusal;
 pub mod report;
@@ -88,7 +89,8 @@ pub struct IdentifyArgs {
     #[arg(long, value_name = "PART", default_value_t = 0.33, value_parser = part)]
     pub settle: f64,
     /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust, torque,
-    /// upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, time.
+    /// upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage, current, upper_current, lower_current,
+    /// time.
     #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
     pub columns: Vec<(String, String)>,
     /// A unit by hand, as thrust=gf, for a header without one.

@@ -6,6 +6,8 @@ use super::bench::{Bench, Kind};
 use super::fit::Fit;
 use super::identified::Identified;
 use super::pair::Pair;
+use super::power::Power;
+use super::report;
 use super::voltage::{Estimate, Exponent, Voltage};
 
 /// The fragment: `[throttle]` and `[pair]` where a pair was identified, `[voltage]` where its exponents are sound.
@@ -50,6 +52,14 @@ fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
     }
     if let Some(pair) = &id.pair {
         write_pair(out, pair)?;
+    }
+    if let Some(Power::Identified(found)) = &id.power {
+        writeln!(out, "\n# Least power:")?;
+        for line in report::least_power_lines(found) {
+            for line in wrapped(&line, 104) {
+                writeln!(out, "#   {line}")?;
+            }
+        }
     }
     if let Some(voltage) = &id.voltage {
         write_voltage(out, voltage, id.reference_v, id.pair.is_some())?;

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::bench::{self, Bench, Kind, Preparation};
 use super::pair::{self, Pair, Wishes};
+use super::power::{self, Power};
 use super::read::{self, Reading};
 use super::refusal::Refusal;
 use super::voltage::{self, Exponent, PLAUSIBLE, Voltage};
@@ -32,6 +33,8 @@ pub struct Identified {
     pub pair: Option<Pair>,
     /// The dependence on voltage; none where no file has a voltage.
     pub voltage: Option<Voltage>,
+    /// The torque of least power; none where all files are of single rotors.
+    pub power: Option<Power>,
     /// What was read.
     pub files: Vec<Bench>,
     /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was given.
@@ -83,10 +86,12 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
         let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
         warnings.push(told);
     }
+    let power = pair.as_ref().map(|pair| power::examine(&benches, pair));
     Ok(Identified {
         generator: format!("cargo mixer identify {}", env!("CARGO_PKG_VERSION")),
         pair,
         voltage,
+        power,
         files: benches,
         reference_v,
         warnings,

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use cargo_mixer::identify::basis::ThrottleBox;
 use cargo_mixer::identify::bench::{self, Point};
 use cargo_mixer::identify::fit::Fit;
+use cargo_mixer::identify::power::Power;
 use cargo_mixer::identify::read;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::injectivity::ForwardMap;
@@ -439,4 +440,43 @@ fn five_levels_suffice_as_the_page_says() {
     let ((all_f, all_q), (five_f, five_q)) = (of(10).expect("a fit"), of(5).expect("a fit"));
     assert!(five_f < 1.2 * all_f && five_q < 1.25 * all_q);
     assert_eq!(of(3), None, "3 x 3 levels do not determine nine terms");
+}
+
+#[test]
+fn torque_of_least_power_saves_on_every_full_range_map() {
+    let Some(data) = data("torque_of_least_power_saves_on_every_full_range_map") else {
+        return;
+    };
+    let mut maps = files(&data.join("newdexterity"), "full_range");
+    maps.retain(|path| !path.to_string_lossy().contains(CORRUPT));
+    let mut savings = Vec::new();
+    for path in &maps {
+        let Some(Power::Identified(least)) = fitted(path, None, false).power else {
+            panic!("no power map of {}", path.display());
+        };
+        println!(
+            "{}: c = {}, {:.2} %",
+            path.display(),
+            least.bias_nm_per_n,
+            least.saving_percent
+        );
+        assert!(
+            (0.0028..0.011).contains(&least.bias_nm_per_n),
+            "{}",
+            least.bias_nm_per_n
+        );
+        assert!(
+            least.at.iter().all(|at| at.least_power_w < at.power_w),
+            "{:?}",
+            least.at
+        );
+        assert!(
+            least.residual_rms_w < 0.006 * least.full_scale_w,
+            "{}",
+            least.residual_rms_w
+        );
+        savings.push(least.saving_percent);
+    }
+    let mean = savings.iter().sum::<f64>() / savings.len() as f64;
+    assert!(mean > 2.35, "{mean} of {savings:?}");
 }

@@ -5,6 +5,7 @@ mod command;
 mod doubts;
 mod formats;
 mod plan;
+mod power;
 mod refusals;
 mod sweep;
 mod voltage;
