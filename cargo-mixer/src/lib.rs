@@ -22,6 +22,7 @@ pub mod import;
 pub mod library;
 pub mod mix;
 pub mod new;
+pub mod plan;
 pub mod report;
 pub mod schema;
 pub mod setpoints;

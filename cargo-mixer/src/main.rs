@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 
 use cargo_mixer::{
-    check, compare, expand, finish, golden, identify, import, library, mix, new, report, schema, shell, sweep,
+    check, compare, expand, finish, golden, identify, import, library, mix, new, plan, report, schema, shell,
+    sweep,
 };
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -29,6 +30,7 @@ enum Command {
     Golden(golden::GoldenArgs),
     Identify(Box<identify::IdentifyArgs>),
     New(new::NewArgs),
+    Plan(plan::PlanArgs),
     Import(import::ImportArgs),
     Library(library::LibraryArgs),
     Report(report::ReportArgs),
@@ -58,6 +60,7 @@ fn main() -> ExitCode {
         Command::Golden(args) => golden::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::New(args) => new::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Import(args) => import::run(&args),
         Command::Library(args) => library::run(&args),
         Command::Report(args) => report::run(&args),

@@ -37,6 +37,8 @@ pub struct Point {
     pub torque: f64,
     /// Supply voltage, V; NaN where not measured.
     pub voltage: f64,
+    /// Electrical power of the whole, W; NaN where not measured.
+    pub power_w: f64,
 }
 
 /// A bench file made ready.
@@ -66,6 +68,8 @@ pub struct Bench {
     pub signs: Signs,
     /// Remarks for the report.
     pub notes: Vec<String>,
+    /// Why there is no electrical power, where columns are missing for it.
+    pub no_power: Option<String>,
     /// The points.
     #[serde(skip)]
     pub points: Vec<Point>,
@@ -179,6 +183,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             thrust,
             torque,
             voltage: sample.voltage,
+            power_w: sample.power_w,
         });
     }
     refused.sort_by_key(|r| r.line);
@@ -198,6 +203,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     }
     let date = how.date.clone().or_else(|| date_in(&name));
     Ok(Bench {
+        no_power: columns.no_power(),
         file: name,
         format: columns.format,
         date,

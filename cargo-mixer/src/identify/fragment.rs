@@ -6,6 +6,8 @@ use super::bench::{Bench, Kind};
 use super::fit::Fit;
 use super::identified::Identified;
 use super::pair::Pair;
+use super::power::Power;
+use super::report;
 use super::voltage::{Estimate, Exponent, Voltage};
 
 /// The fragment: `[throttle]` and `[pair]` where a pair was identified, `[voltage]` where its exponents are sound.
@@ -50,6 +52,14 @@ fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
     }
     if let Some(pair) = &id.pair {
         write_pair(out, pair)?;
+    }
+    if let Some(Power::Identified(found)) = &id.power {
+        writeln!(out, "\n# Least power:")?;
+        for line in report::least_power_lines(found) {
+            for line in wrapped(&line, 104) {
+                writeln!(out, "#   {line}")?;
+            }
+        }
     }
     if let Some(voltage) = &id.voltage {
         write_voltage(out, voltage, id.reference_v, id.pair.is_some())?;
@@ -180,7 +190,7 @@ fn write_voltage(
     let high = (100.0 * reference.map_or(high, |v| v.max(high))).ceil() / 100.0;
     let at = reference.map_or("?".to_string(), |v| format!("{v:?}"));
     writeln!(out)?;
-    let (thrust, torque) = (voltage.thrust.estimate(), voltage.torque.estimate());
+    let (thrust, torque) = (voltage.thrust.value(), voltage.torque.value());
     if thrust.is_none() && torque.is_none() {
         writeln!(
             out,
@@ -195,6 +205,9 @@ fn write_voltage(
         let told = match exponent {
             Exponent::Identified(e) => exponent_line(e),
             Exponent::Refused { reason, .. } => format!("no exponent: {reason}"),
+            Exponent::Declared { exponent, .. } => {
+                format!("exponent {exponent}, declared by --voltage-exponent")
+            }
             Exponent::NotMeasured => {
                 "not measured, no file has its column. Thrust and torque both follow the square of rotor speed, so \
                  that the other's exponent is the usual stand-in; it is for you to decide."
@@ -208,15 +221,20 @@ fn write_voltage(
     if thrust.is_none() && torque.is_none() {
         return Ok(());
     }
+    writeln!(
+        out,
+        "# The voltage of the flight must be measured where the bench's was: at the same point of the wiring, under\n\
+         # load. Behind other leads, or at no load, k is wrong by what the voltage drops in between."
+    )?;
     let complete = thrust.is_some() && torque.is_some() && reference.is_some();
     let mark = if beside_pair && !complete { "# " } else { "" };
     writeln!(
         out,
         "{mark}[voltage]\n{mark}reference_v = {at}\n{mark}range_v = [{low:?}, {high:?}]"
     )?;
-    for (name, estimate) in [("thrust", thrust), ("torque", torque)] {
-        match estimate {
-            Some(e) => writeln!(out, "{mark}{name}_exponent = {:?}", thousandths(e.exponent))?,
+    for (name, exponent) in [("thrust", thrust), ("torque", torque)] {
+        match exponent {
+            Some(e) => writeln!(out, "{mark}{name}_exponent = {:?}", thousandths(e))?,
             None => writeln!(out, "# {name}_exponent = ?")?,
         }
     }

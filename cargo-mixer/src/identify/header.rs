@@ -39,6 +39,12 @@ pub struct Columns {
     pub rotor_torque: [Option<Column>; 2],
     /// Supply voltage (of the upper rotor where each has its own sensor: two sensors differ by their calibration).
     pub voltage: Option<Column>,
+    /// Supply voltage of the lower rotor, for its power only.
+    pub lower_voltage: Option<Column>,
+    /// Supply current of the whole.
+    pub current: Option<Column>,
+    /// Supply current of the upper and of the lower rotor.
+    pub rotor_current: [Option<Column>; 2],
     /// Time.
     pub time: Option<Column>,
     /// The format that the header was recognised as, for the report.
@@ -59,7 +65,7 @@ pub struct ByHand {
 }
 
 /// Roles for `--column`, with what they measure.
-pub const ROLES: [(&str, Quantity); 10] = [
+pub const ROLES: [(&str, Quantity); 14] = [
     ("upper", Quantity::Throttle),
     ("lower", Quantity::Throttle),
     ("thrust", Quantity::Thrust),
@@ -69,6 +75,10 @@ pub const ROLES: [(&str, Quantity); 10] = [
     ("upper_torque", Quantity::Torque),
     ("lower_torque", Quantity::Torque),
     ("voltage", Quantity::Voltage),
+    ("lower_voltage", Quantity::Voltage),
+    ("current", Quantity::Current),
+    ("upper_current", Quantity::Current),
+    ("lower_current", Quantity::Current),
     ("time", Quantity::Time),
 ];
 
@@ -85,6 +95,10 @@ impl Columns {
             "upper_torque" => &mut self.rotor_torque[0],
             "lower_torque" => &mut self.rotor_torque[1],
             "voltage" => &mut self.voltage,
+            "lower_voltage" => &mut self.lower_voltage,
+            "current" => &mut self.current,
+            "upper_current" => &mut self.rotor_current[0],
+            "lower_current" => &mut self.rotor_current[1],
             "time" => &mut self.time,
             _ => return None,
         })
@@ -102,6 +116,7 @@ impl Columns {
             std::mem::swap(&mut columns.upper, &mut columns.lower);
             columns.rotor_thrust.swap(0, 1);
             columns.rotor_torque.swap(0, 1);
+            columns.rotor_current.swap(0, 1);
         }
         for (role, wanted) in &by_hand.columns {
             let Some(&(_, quantity)) = ROLES.iter().find(|(r, _)| r == role) else {
@@ -130,6 +145,23 @@ impl Columns {
         Ok(columns)
     }
 
+    /// Why there is no electrical power, where columns are missing for it.
+    pub fn no_power(&self) -> Option<String> {
+        let of_one = |named: &Column, other: &str| {
+            format!(
+                "the current of one rotor only ({:?}): --column {other}_current=HEADER names the other's",
+                named.name
+            )
+        };
+        match (&self.voltage, &self.current, &self.rotor_current) {
+            (Some(_), Some(_), _) | (Some(_), _, [Some(_), Some(_)]) => None,
+            (_, None, [Some(upper), None]) => Some(of_one(upper, "lower")),
+            (_, None, [None, Some(lower)]) => Some(of_one(lower, "upper")),
+            (_, None, [None, None]) => Some("no file has the current of both rotors".into()),
+            (None, _, _) => Some("no file has the supply voltage beside the current".into()),
+        }
+    }
+
     fn by_name(&mut self, file: &str, names: &[Name], by_hand: &ByHand) -> Result<(), Refusal> {
         let prefixes = distinct_prefixes(names);
         for (index, name) in names.iter().enumerate() {
@@ -145,7 +177,10 @@ impl Columns {
                 (Quantity::Torque, Some(0)) => "upper_torque",
                 (Quantity::Torque, _) => "lower_torque",
                 (Quantity::Voltage, None | Some(0)) => "voltage",
-                (Quantity::Voltage, _) => continue,
+                (Quantity::Voltage, _) => "lower_voltage",
+                (Quantity::Current, None) => "current",
+                (Quantity::Current, Some(0)) => "upper_current",
+                (Quantity::Current, _) => "lower_current",
                 (Quantity::Time, _) => "time",
             };
             if by_hand.columns.iter().any(|(r, _)| r == role) {
@@ -154,7 +189,8 @@ impl Columns {
             let Some(slot) = self.slot(role) else { continue };
             if let Some(first) = slot {
                 // Two columns for one role: guessing would be silent. Time is only used to keep rows in order.
-                if quantity == Quantity::Time {
+                // Power is a by-product: what is doubtful there refuses no map.
+                if matches!(quantity, Quantity::Time | Quantity::Current) || role == "lower_voltage" {
                     continue;
                 }
                 return Err(Refusal::of(
@@ -166,7 +202,10 @@ impl Columns {
                     format!("the right one by hand: --column {role}={:?}", name.raw),
                 ));
             }
-            *slot = Some(scaled(file, index, name, quantity, role, by_hand)?);
+            match scaled(file, index, name, quantity, role, by_hand) {
+                Err(_) if quantity == Quantity::Current || role == "lower_voltage" => {}
+                column => *slot = Some(column?),
+            }
             self.sides_named |= quantity == Quantity::Throttle && name.says_upper_or_lower();
         }
         if self.format == NEWDEXTERITY {

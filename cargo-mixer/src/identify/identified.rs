@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use super::bench::{self, Bench, Kind, Preparation};
 use super::pair::{self, Pair, Wishes};
+use super::power::{self, Power};
 use super::read::{self, Reading};
 use super::refusal::Refusal;
-use super::voltage::{self, Exponent, Voltage};
+use super::voltage::{self, Exponent, PLAUSIBLE, Voltage};
 
 /// Everything that decides an identification, besides the files.
 #[derive(Debug, Clone)]
@@ -32,6 +33,8 @@ pub struct Identified {
     pub pair: Option<Pair>,
     /// The dependence on voltage; none where no file has a voltage.
     pub voltage: Option<Voltage>,
+    /// The torque of least power; none where all files are of single rotors.
+    pub power: Option<Power>,
     /// What was read.
     pub files: Vec<Bench>,
     /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was given.
@@ -50,6 +53,10 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
     distinct_names(&benches)?;
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let voltage = dependence(&benches);
+    let voltage = match wishes.voltage_exponent {
+        Some(exponents) => Some(declared(voltage, exponents, &benches)?),
+        None => voltage,
+    };
     let pair = if has(Kind::Pair) {
         Some(pair::identify(&benches, voltage.as_ref(), wishes)?)
     } else {
@@ -59,6 +66,7 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
     let mut warnings: Vec<String> = pair.iter().flat_map(|p| p.warnings.clone()).collect();
     if let Some(v) = &voltage {
         warnings.extend(voltage_warnings(v));
+        warnings.extend(sag(&benches, v));
     }
     if has(Kind::Pair) && has(Kind::SingleRotor) {
         warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
@@ -78,10 +86,12 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
         let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
         warnings.push(told);
     }
+    let power = pair.as_ref().map(|pair| power::examine(&benches, pair));
     Ok(Identified {
         generator: format!("cargo mixer identify {}", env!("CARGO_PKG_VERSION")),
         pair,
         voltage,
+        power,
         files: benches,
         reference_v,
         warnings,
@@ -149,6 +159,40 @@ fn dependence(benches: &[Bench]) -> Option<Voltage> {
     }
 }
 
+/// The dependence with the user's own exponents, which need a voltage of every row to work on.
+fn declared(
+    measured: Option<Voltage>,
+    [thrust, torque]: [f64; 2],
+    benches: &[Bench],
+) -> Result<Voltage, Refusal> {
+    let files = || {
+        benches
+            .iter()
+            .map(|b| b.file.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let Some(voltage) = measured else {
+        return Err(Refusal::of(
+            files(),
+            "--voltage-exponent has nothing to work on: no file has a voltage column",
+            "the supply voltage of every row, in a column of its own (--column voltage=HEADER)",
+        ));
+    };
+    if !benches.iter().any(|b| b.kind == Kind::Pair) {
+        return Err(Refusal::of(
+            files(),
+            "--voltage-exponent has nothing to work on: one throttle only, so there is no map of a pair",
+            "a sweep of both throttles independently; or no --voltage-exponent, to identify it from these files",
+        ));
+    }
+    Ok(Voltage {
+        thrust: voltage.thrust.declared(thrust),
+        torque: voltage.torque.declared(torque),
+        ..voltage
+    })
+}
+
 /// Without a pair the files must at least give an exponent.
 fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refusal> {
     let files = benches
@@ -164,7 +208,7 @@ fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refus
             format!("one throttle only, so there is no map of a pair; and no voltage exponent: {reason}"),
             format!("{for_pair}; for [voltage]: {needed}"),
         )),
-        Some(Exponent::NotMeasured) | None => Err(Refusal::of(
+        Some(Exponent::Declared { .. } | Exponent::NotMeasured) | None => Err(Refusal::of(
             files,
             "one throttle only, so there is no map of a pair; and no voltage was measured",
             format!(
@@ -174,13 +218,68 @@ fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refus
     }
 }
 
+/// Sag of the supply within one map, as a share of its highest voltage, above which it matters how the voltage of the
+/// flight is measured: thrust then misses by 5 % and more.
+const SAG: f64 = 0.03;
+
+/// What a supply that sagged with the load means for `[voltage]`.
+fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
+    let of = |bench: &&Bench| {
+        let volts = bench.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());
+        let (low, high) = volts.fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+        if high > 0.0 { 1.0 - low / high } else { 0.0 }
+    };
+    let maps = benches.iter().filter(|b| b.kind == Kind::Pair);
+    let sag = maps.map(|b| of(&b)).fold(0.0, f64::max);
+    if sag <= SAG {
+        return None;
+    }
+    let percent = 100.0 * sag;
+    let exponents = voltage.thrust.value().zip(voltage.torque.value());
+    Some(match exponents {
+        Some((thrust, torque)) => format!(
+            "the supply sagged by {percent:.1} % within a map, and its rows are brought to one voltage: measure the voltage \
+             of the flight under load where the bench did; at no load thrust errs by up to {:.0} %, torque by {:.0} %",
+            100.0 * (1.0 - libm::pow(1.0 - sag, thrust)),
+            100.0 * (1.0 - libm::pow(1.0 - sag, torque))
+        ),
+        None => format!(
+            "the supply sagged by {percent:.1} % within a map, which the map includes: a [voltage] written beside it by \
+             hand counts that sag twice; --voltage-exponent 1.75 brings the rows to one voltage and writes [voltage]"
+        ),
+    })
+}
+
 fn voltage_warnings(voltage: &Voltage) -> Vec<String> {
     let [low, high] = voltage.range_v;
+    let contradicted = voltage.channels().into_iter().filter_map(|(name, exponent)| match exponent {
+        Exponent::Declared { exponent, measured: Some(e) } if (exponent - e.exponent).abs() > e.ci95 => Some(format!(
+            "--voltage-exponent declares {exponent} for {name}, the files themselves give {:.3} +- {:.3}",
+            e.exponent, e.ci95
+        )),
+        Exponent::Declared { exponent, .. } if !(PLAUSIBLE[0]..=PLAUSIBLE[1]).contains(exponent) => Some(format!(
+            "--voltage-exponent declares {exponent} for {name}, outside {}..{}, which no propeller has",
+            PLAUSIBLE[0], PLAUSIBLE[1]
+        )),
+        _ => None,
+    });
+    let contradicted: Vec<String> = contradicted.collect();
+    if matches!(voltage.thrust, Exponent::Declared { .. }) {
+        let range = format!(
+            "range_v is {low:.2}..{high:.2} V, what the bench had: write what the battery gives in flight, since a voltage \
+             outside is clamped"
+        );
+        return [contradicted, vec![range]].concat();
+    }
     if !voltage.varies() {
         let sag = 100.0 * (1.0 - low / high);
         let told =
             format!("the supply varied by {sag:.1} % ({high:.2} to {low:.2} V), which the map includes");
-        return if sag > 2.0 { vec![told] } else { Vec::new() };
+        return if sag > 2.0 && sag <= 100.0 * SAG {
+            vec![told]
+        } else {
+            Vec::new()
+        };
     }
     let told = voltage
         .channels()
@@ -190,7 +289,7 @@ fn voltage_warnings(voltage: &Voltage) -> Vec<String> {
                 "no {name} exponent of voltage: {reason}; needed: {needed}"
             )),
             Exponent::NotMeasured => Some(format!("no {name} exponent of voltage: no file has its column")),
-            Exponent::Identified(_) => None,
+            Exponent::Identified(_) | Exponent::Declared { .. } => None,
         });
     told.collect()
 }

@@ -31,6 +31,8 @@ pub struct Wishes {
     pub throttle: Option<ThrottleBox>,
     /// Reference voltage, V, or nothing for the mean of the rows.
     pub reference_v: Option<f64>,
+    /// Declared exponents of thrust and of torque, or nothing to identify them.
+    pub voltage_exponent: Option<[f64; 2]>,
 }
 
 /// The identified map, as in `[throttle]` and `[pair]`.
@@ -113,7 +115,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         Refusal::of(
             label(),
             reason.to_string(),
-            "a sweep of both throttles independently, best a grid of at least 6 x 6 levels from idle to full",
+            "a sweep of both throttles independently: a grid of 5 x 5 levels or more from idle to full (cargo mixer plan)",
         )
     };
     let chosen_on = if wishes.robust { &clean } else { &points };

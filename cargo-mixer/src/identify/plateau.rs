@@ -49,6 +49,7 @@ pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
             rotor_thrust: [0, 1].map(|r| mean(&|s| s.rotor_thrust[r])),
             rotor_torque: [0, 1].map(|r| mean(&|s| s.rotor_torque[r])),
             voltage: mean(&|s| s.voltage),
+            power_w: mean(&|s| s.power_w),
         });
     }
     (points, dropped)
@@ -80,6 +81,7 @@ mod tests {
             rotor_thrust: [f64::NAN; 2],
             rotor_torque: [f64::NAN; 2],
             voltage: f64::NAN,
+            power_w: f64::NAN,
         }
     }
 

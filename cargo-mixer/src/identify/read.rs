@@ -42,6 +42,8 @@ pub struct Sample {
     pub rotor_torque: [f64; 2],
     /// Supply voltage, V.
     pub voltage: f64,
+    /// Electrical power of the whole, W.
+    pub power_w: f64,
 }
 
 /// All samples of one file.
@@ -205,6 +207,7 @@ impl Cells {
         ];
         let [upper_thrust, lower_thrust] = &columns.rotor_thrust;
         let [upper_torque, lower_torque] = &columns.rotor_torque;
+        let voltage = self.value(&columns.voltage, record)?;
         Ok(Sample {
             line,
             throttle,
@@ -218,8 +221,22 @@ impl Cells {
                 self.value(upper_torque, record)?,
                 self.value(lower_torque, record)?,
             ],
-            voltage: self.value(&columns.voltage, record)?,
+            voltage,
+            power_w: self.power(columns, voltage, record)?,
         })
+    }
+
+    /// Power of the whole, or of both rotors together; NaN where a part of it is not measured.
+    fn power(&self, columns: &Columns, voltage: f64, record: &csv::ByteRecord) -> Result<f64, String> {
+        if columns.current.is_some() {
+            return Ok(voltage * self.value(&columns.current, record)?);
+        }
+        let [upper, lower] = &columns.rotor_current;
+        let lower_voltage = match columns.lower_voltage {
+            Some(_) => self.value(&columns.lower_voltage, record)?,
+            None => voltage,
+        };
+        Ok(voltage * self.value(upper, record)? + lower_voltage * self.value(lower, record)?)
     }
 
     fn value(&self, column: &Option<Column>, record: &csv::ByteRecord) -> Result<f64, String> {

@@ -7,6 +7,7 @@ use super::fit::Fit;
 use super::fragment::{exponent_line, provenance, wrapped};
 use super::identified::Identified;
 use super::pair::Pair;
+use super::power::{LeastPower, Power};
 use super::voltage::Exponent;
 
 /// The whole report.
@@ -66,9 +67,18 @@ fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
                     paragraph(out, "  ", &format!("{name}: no exponent: {reason}"))?;
                     paragraph(out, "    ", &format!("needed: {needed}"))?;
                 }
+                Exponent::Declared { exponent, .. } => {
+                    writeln!(
+                        out,
+                        "  {name}: exponent {exponent}, declared by --voltage-exponent"
+                    )?;
+                }
                 Exponent::NotMeasured => writeln!(out, "  {name}: not measured")?,
             }
         }
+    }
+    if let Some(power) = &id.power {
+        write_power(out, power)?;
     }
     if !id.warnings.is_empty() {
         writeln!(out, "\nTo know")?;
@@ -77,6 +87,42 @@ fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
         }
     }
     Ok(())
+}
+
+fn write_power(out: &mut String, power: &Power) -> std::fmt::Result {
+    writeln!(out, "\nLeast power")?;
+    match power {
+        Power::Refused { reason } => paragraph(out, "  ", &format!("none: {reason}")),
+        Power::Identified(found) => {
+            for line in least_power_lines(found) {
+                paragraph(out, "  ", &line)?;
+            }
+            Ok(())
+        }
+    }
+}
+
+/// What there is to say of the torque of least power.
+pub fn least_power_lines(found: &LeastPower) -> Vec<String> {
+    let middle = found.at[found.at.len() / 2];
+    vec![
+        format!(
+            "Q = c f with c = {:?} N m per N takes {:.1} % less electrical power than Q = 0, in the mean over 0.3 to 0.7 of \
+             full thrust: {:.1} for {:.1} W at {:.2} N",
+            found.bias_nm_per_n, found.saving_percent, middle.least_power_w, middle.power_w, middle.thrust_n
+        ),
+        format!(
+            "that is {:.1} % of flight time where as many upper rotors turn one way as the other; with spins s of n units \
+             1 - (sum s / n)2 of it is left, none where all turn alike (a Y6)",
+            100.0 * (1.0 / (1.0 - 0.01 * found.saving_percent) - 1.0)
+        ),
+        format!(
+            "power map of {} rows: residual {:.2} W rms, {:.2} % of the greatest power",
+            found.points,
+            found.residual_rms_w,
+            100.0 * found.residual_rms_w / found.full_scale_w
+        ),
+    ]
 }
 
 /// Wraps text to 100 columns behind an indentation.

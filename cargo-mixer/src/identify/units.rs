@@ -19,6 +19,8 @@ pub enum Quantity {
     Torque,
     /// Supply voltage, to V.
     Voltage,
+    /// Supply current, to A.
+    Current,
     /// Time since the log's start, to s.
     Time,
 }
@@ -92,6 +94,11 @@ pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
             "mv" => 1e-3,
             _ => return None,
         },
+        Quantity::Current => match unit.as_str() {
+            "a" => 1.0,
+            "ma" => 1e-3,
+            _ => return None,
+        },
         Quantity::Time => match unit.as_str() {
             "s" | "sec" => 1.0,
             "ms" => 1e-3,
@@ -108,6 +115,7 @@ pub fn known(quantity: Quantity) -> &'static str {
         Quantity::Thrust => "N, mN, gf, kgf, lbf, ozf",
         Quantity::Torque => "N·m, mN·m, N·cm, N·mm, kgf·m, kgf·cm, gf·cm, lbf·in, lbf·ft, ozf·in",
         Quantity::Voltage => "V, mV",
+        Quantity::Current => "A, mA",
         Quantity::Time => "s, ms",
     }
 }

@@ -31,7 +31,7 @@ const LEAST_SPREAD: f64 = 0.3;
 /// Relative root-mean-square residual above which the rows do not follow one power of voltage.
 const ONE_POWER: f64 = 0.10;
 /// Exponents between a rotor at constant torque and the square law with an ample margin.
-const PLAUSIBLE: [f64; 2] = [1.2, 2.4];
+pub const PLAUSIBLE: [f64; 2] = [1.2, 2.4];
 /// Half-width of the interval above which the exponent says too little.
 const WIDEST: f64 = 0.35;
 /// Throttles closer than this are one level.
@@ -50,11 +50,37 @@ pub enum Exponent {
         /// What would serve.
         needed: String,
     },
+    /// The user's own, by `--voltage-exponent`.
+    Declared {
+        /// k in (V / Vref)^k.
+        exponent: f64,
+        /// What the files themselves would have given, where that is sound.
+        measured: Option<Estimate>,
+    },
     /// The channel is in no file.
     NotMeasured,
 }
 
 impl Exponent {
+    /// k, if it is known.
+    pub fn value(&self) -> Option<f64> {
+        match self {
+            Exponent::Identified(estimate) => Some(estimate.exponent),
+            Exponent::Declared { exponent, .. } => Some(*exponent),
+            Exponent::Refused { .. } | Exponent::NotMeasured => None,
+        }
+    }
+
+    /// This channel with the user's own exponent.
+    #[must_use]
+    pub fn declared(self, exponent: f64) -> Exponent {
+        let measured = match self {
+            Exponent::Identified(estimate) => Some(estimate),
+            _ => None,
+        };
+        Exponent::Declared { exponent, measured }
+    }
+
     /// The estimate, if sound.
     pub fn estimate(&self) -> Option<&Estimate> {
         match self {

@@ -3,11 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use cargo_mixer::identify::basis::ThrottleBox;
+use cargo_mixer::identify::bench::{self, Point};
+use cargo_mixer::identify::fit::Fit;
+use cargo_mixer::identify::power::Power;
+use cargo_mixer::identify::read;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::ForwardMap;
 
 use cargo_mixer::identify::fragment;
-use cargo_mixer::identify::identified::{Identified, identify};
+use cargo_mixer::identify::identified::{Identified, from_benches, identify};
 use cargo_mixer::identify::pair::Pair;
 use cargo_mixer::identify::polynomial::Polynomial;
 
@@ -357,4 +361,122 @@ fn rotor_speeds_mapped_by_hand_are_still_one_line() {
         error.contains("do not determine the map") || error.contains("distinct throttle pairs"),
         "{error}"
     );
+}
+
+/// Indices of `count` levels of ten, from the lowest to the highest, evenly.
+fn thinned(count: usize) -> Vec<usize> {
+    (0..count)
+        .map(|k| (9 * k + (count - 1) / 2) / (count - 1))
+        .collect()
+}
+
+/// Root mean square errors of thrust and torque on the rows left out, percent of the greatest value, when a bench runs only
+/// `count` x `count` of the map's 10 x 10 levels; nothing where `identify` refuses so few.
+fn left_out(path: &Path, basis: Basis, count: usize) -> Option<[f64; 2]> {
+    let settings = settings(Some(basis));
+    let log = read::read_file(path, &settings.reading, |file| file).expect("a log");
+    let whole = bench::prepare(log, &settings.preparation).expect("a bench");
+    let level = |throttle: f64| (9.0 * (throttle - 0.07) / 0.88).round() as usize;
+    let kept = thinned(count);
+    let is_kept = |p: &Point| kept.contains(&level(p.u)) && kept.contains(&level(p.l));
+    let (rows, rest): (Vec<Point>, Vec<Point>) = whole.points.iter().partition(|p| is_kept(p));
+    assert_eq!(rows.len(), count * count, "{}", path.display());
+    let thin = bench::Bench {
+        points: rows,
+        ..whole.clone()
+    };
+    let pair = from_benches(vec![thin], &settings.wishes).ok()?.pair?;
+    // Of ten levels none is left out: the leave-one-out error is the comparison.
+    if rest.is_empty() {
+        let percent = |fit: &Fit| 100.0 * fit.leave_one_out_rms / fit.full_scale;
+        return Some([percent(&pair.thrust), percent(&pair.torque)]);
+    }
+    let percent = |coefficients: &[f64], of: fn(&Point) -> f64| {
+        let model = Polynomial::of(basis, coefficients);
+        let square: f64 = rest.iter().map(|p| (model.at(p.u, p.l) - of(p)).powi(2)).sum();
+        let full = whole.points.iter().map(|p| of(p).abs()).fold(0.0, f64::max);
+        100.0 * (square / rest.len() as f64).sqrt() / full
+    };
+    Some([
+        percent(&pair.thrust_n, |p| p.thrust),
+        percent(&pair.torque_nm, |p| p.torque),
+    ])
+}
+
+#[test]
+fn five_levels_suffice_as_the_page_says() {
+    let Some(data) = data("five_levels_suffice_as_the_page_says") else {
+        return;
+    };
+    let mut maps = files(&data.join("newdexterity"), "full_range");
+    maps.retain(|path| !path.to_string_lossy().contains(CORRUPT));
+    let mut table = String::from(
+        "| levels | biquadratic: thrust, torque | cubic: thrust, torque | quartic: thrust, torque |\n|---|---|---|---|\n",
+    );
+    let mut cubic = Vec::new();
+    for count in [10, 6, 5, 4, 3] {
+        table += &format!("| {count} x {count} |");
+        for basis in Basis::ALL {
+            let errors: Option<Vec<[f64; 2]>> =
+                maps.iter().map(|path| left_out(path, basis, count)).collect();
+            table += &errors.as_ref().map_or(" refused |".to_string(), |errors| {
+                let [f, q] = [0, 1].map(|c| errors.iter().map(|e| e[c]).sum::<f64>() / errors.len() as f64);
+                if basis == Basis::Cubic {
+                    cubic.push((count, f, q));
+                }
+                format!(" {f:.2} %, {q:.2} % |")
+            });
+        }
+        table += "\n";
+    }
+    println!("{table}");
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/bench-run.md"));
+    let page = page.expect("docs/bench-run.md");
+    assert!(
+        page.contains(&table),
+        "docs/bench-run.md must hold the table\n{table}"
+    );
+    let of = |count: usize| cubic.iter().find(|c| c.0 == count).map(|&(_, f, q)| (f, q));
+    let ((all_f, all_q), (five_f, five_q)) = (of(10).expect("a fit"), of(5).expect("a fit"));
+    assert!(five_f < 1.2 * all_f && five_q < 1.25 * all_q);
+    assert_eq!(of(3), None, "3 x 3 levels do not determine nine terms");
+}
+
+#[test]
+fn torque_of_least_power_saves_on_every_full_range_map() {
+    let Some(data) = data("torque_of_least_power_saves_on_every_full_range_map") else {
+        return;
+    };
+    let mut maps = files(&data.join("newdexterity"), "full_range");
+    maps.retain(|path| !path.to_string_lossy().contains(CORRUPT));
+    let mut savings = Vec::new();
+    for path in &maps {
+        let Some(Power::Identified(least)) = fitted(path, None, false).power else {
+            panic!("no power map of {}", path.display());
+        };
+        println!(
+            "{}: c = {}, {:.2} %",
+            path.display(),
+            least.bias_nm_per_n,
+            least.saving_percent
+        );
+        assert!(
+            (0.0028..0.011).contains(&least.bias_nm_per_n),
+            "{}",
+            least.bias_nm_per_n
+        );
+        assert!(
+            least.at.iter().all(|at| at.least_power_w < at.power_w),
+            "{:?}",
+            least.at
+        );
+        assert!(
+            least.residual_rms_w < 0.006 * least.full_scale_w,
+            "{}",
+            least.residual_rms_w
+        );
+        savings.push(least.saving_percent);
+    }
+    let mean = savings.iter().sum::<f64>() / savings.len() as f64;
+    assert!(mean > 2.35, "{mean} of {savings:?}");
 }

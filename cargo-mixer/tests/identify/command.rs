@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use crate::sweep::{bench, plain, rows, settings};
 
 /// A folder of this test's own, empty.
-fn folder(test: &str) -> PathBuf {
+pub(crate) fn folder(test: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("identify-{test}"));
     let _ = fs::remove_dir_all(&path);
     fs::create_dir_all(&path).expect("a folder");
@@ -25,7 +25,7 @@ fn run(folder: &Path, args: &[&str]) -> Output {
         .expect("the program runs")
 }
 
-fn text(bytes: &[u8]) -> String {
+pub(crate) fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("UTF-8")
 }
 
@@ -133,6 +133,8 @@ fn statuses_and_streams() {
         &["map.csv", "--torque-sign", "x"],
         &["map.csv", "--date", "yesterday"],
         &["map.csv", "--basis", "quintic"],
+        &["map.csv", "--voltage-exponent", "0"],
+        &["map.csv", "--voltage-exponent", "1.7,x"],
         &[],
     ] {
         assert_eq!(status(usage), Some(2), "{usage:?}");

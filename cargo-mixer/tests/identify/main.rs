@@ -4,6 +4,8 @@ mod bench_data;
 mod command;
 mod doubts;
 mod formats;
+mod plan;
+mod power;
 mod refusals;
 mod sweep;
 mod voltage;

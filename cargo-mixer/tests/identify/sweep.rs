@@ -266,6 +266,7 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
             monotone: false,
             throttle: None,
             reference_v: None,
+            voltage_exponent: None,
         },
     }
 }

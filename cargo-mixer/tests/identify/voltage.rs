@@ -156,3 +156,90 @@ fn a_map_without_voltage_asks_for_its_reference() {
     assert_eq!(table["voltage"]["reference_v"].as_float(), Some(14.8));
     assert_eq!(table["voltage"]["torque_exponent"].as_float(), Some(1.7));
 }
+
+#[test]
+fn a_declared_exponent_brings_the_rows_to_the_reference() {
+    let mut settings = settings(Some(Basis::Biquadratic));
+    settings.wishes.reference_v = Some(14.8);
+    settings.wishes.voltage_exponent = Some([1.7, 1.9]);
+    let found = from_benches(vec![map("a.csv", 16.4, 3.0, 1)], &settings.wishes).expect("a pair");
+    let pair = found.pair.as_ref().expect("a pair");
+    assert_eq!(pair.normalised_to_v, Some(14.8));
+    let truth = THRUST.into_iter().zip(&pair.thrust_n).zip(&pair.thrust.ci95);
+    for ((truth, c), ci) in truth {
+        assert!((c - truth).abs() < 2.0 * ci, "{c} {truth} {ci}");
+    }
+    let text = fragment::text(&found);
+    let table: toml::Table = text.parse().expect("TOML");
+    let v = &table["voltage"];
+    assert_eq!(
+        ["thrust_exponent", "torque_exponent"].map(|key| v[key].as_float()),
+        [Some(1.7), Some(1.9)]
+    );
+    assert!(text.contains("declared by --voltage-exponent"), "{text}");
+    assert!(text.contains("must be measured where the bench's was"), "{text}");
+    let told = |part: &str| found.warnings.iter().any(|w| w.contains(part));
+    assert!(
+        told("sagged by 18.1 % within a map") && told("range_v is"),
+        "{:?}",
+        found.warnings
+    );
+}
+
+#[test]
+fn sag_in_a_map_without_exponents_is_told_once() {
+    let found = from_benches(vec![map("a.csv", 14.8, 0.8, 1)], &settings(None).wishes).expect("a pair");
+    let told: Vec<_> = found
+        .warnings
+        .iter()
+        .filter(|w| w.contains("the map includes"))
+        .collect();
+    assert!(
+        told.len() == 1 && told[0].contains("--voltage-exponent"),
+        "{:?}",
+        found.warnings
+    );
+    let found = from_benches(vec![map("a.csv", 14.8, 0.2, 1)], &settings(None).wishes).expect("a pair");
+    assert!(
+        !found.warnings.iter().any(|w| w.contains("sagged")),
+        "{:?}",
+        found.warnings
+    );
+}
+
+#[test]
+fn a_declared_exponent_that_the_files_contradict_is_told() {
+    let mut wishes = settings(None).wishes;
+    wishes.voltage_exponent = Some([1.6, 2.9]);
+    let found = from_benches(
+        vec![map("a.csv", 16.4, 0.6, 1), map("b.csv", 12.9, 0.6, 2)],
+        &wishes,
+    );
+    let warnings = found.expect("a pair").warnings;
+    let told = |part: &str| warnings.iter().any(|w| w.contains(part));
+    assert!(
+        told("declares 1.6 for thrust, the files themselves give 1.69") && told("declares 2.9 for torque"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_declared_exponent_needs_a_map_with_voltages() {
+    let mut wishes = settings(None).wishes;
+    wishes.voltage_exponent = Some([1.75; 2]);
+    let map = String::from_utf8(plain(&rows(1))).expect("text");
+    let without: String = map
+        .lines()
+        .map(|l| format!("{}\n", l.rsplit_once(',').expect("a column").0))
+        .collect();
+    let without = bench("without.csv", without.as_bytes(), &settings(None)).expect("a bench");
+    let error = from_benches(vec![without.clone()], &wishes).unwrap_err();
+    assert!(error.reason.contains("no file has a voltage column"), "{error}");
+    let with = bench("with.csv", map.as_bytes(), &settings(None)).expect("a bench");
+    let error = from_benches(vec![with, without], &wishes).unwrap_err();
+    assert_eq!(error.place.as_deref(), Some("without.csv"), "{error}");
+    let single = "upper,thrust_n,voltage_v\n.2,1,12\n.4,3,12\n.6,6,12\n.8,9,12\n";
+    let single = bench("single.csv", single.as_bytes(), &settings(None)).expect("a bench");
+    let error = from_benches(vec![single], &wishes).unwrap_err();
+    assert!(error.reason.contains("one throttle only"), "{error}");
+}

@@ -63,7 +63,7 @@ pub(super) fn isolated() -> Result<String, String> {
         vec![
             format!("{roll}, {pitch}, {yaw}, {thrust}"),
             wrench(given(throttles(&study, &conventional, request).0), 3),
-            wrench(given(study.mix(request).0), 3),
+            wrench(given(study.mix(request, &study.reference()).0), 3),
         ]
     });
     Ok(markdown(

@@ -13,10 +13,9 @@ pub(super) struct Name {
 }
 
 /// Words that make a column something other than what its `thrust` or `torque` suggests.
-const OTHERS: [&str; 12] = [
+const OTHERS: [&str; 11] = [
     "efficiency",
     "power ",
-    "current",
     "speed",
     "rpm",
     "servo",
@@ -65,6 +64,8 @@ impl Name {
             Some(Quantity::Voltage)
         } else if word("time") {
             Some(Quantity::Time)
+        } else if word("current") {
+            Some(Quantity::Current)
         } else {
             None
         }
@@ -108,7 +109,7 @@ pub(super) fn distinct_prefixes(names: &[Name]) -> Vec<&str> {
     let mut prefixes: Vec<&str> = Vec::new();
     for name in names
         .iter()
-        .filter(|n| n.quantity().is_some_and(|q| q != Quantity::Time))
+        .filter(|n| !matches!(n.quantity(), None | Some(Quantity::Time | Quantity::Current)))
     {
         if let Some(prefix) = name.prefix.as_deref().filter(|p| !prefixes.contains(p)) {
             prefixes.push(prefix);
@@ -136,6 +137,10 @@ fn split_unit(text: &str) -> (String, Option<String>) {
             Quantity::Time,
             Quantity::Throttle,
         ];
+        // The A of amperes is also a side: it is a unit behind a current alone.
+        if rest.contains("current") && suffix_of(Quantity::Current, last) {
+            return (rest.to_string(), Some(last.to_string()));
+        }
         if rest.contains(|c: char| c.is_alphabetic()) && known.iter().any(|&q| suffix_of(q, last)) {
             return (rest.to_string(), Some(last.to_string()));
         }

@@ -8,7 +8,7 @@ use crate::identify::bench::{Bench, Point};
 use crate::identify::fit::Design;
 use crate::identify::refusal::Refusal;
 use crate::identify::robust::{self, Outlier};
-use crate::identify::voltage::{Estimate, Voltage};
+use crate::identify::voltage::Voltage;
 
 /// A point and the file it comes from.
 #[derive(Clone, Copy)]
@@ -36,7 +36,7 @@ pub(super) fn at_reference<'a>(
     voltage: Option<&Voltage>,
     wishes: &Wishes,
 ) -> Result<(Vec<Placed<'a>>, Option<f64>), Refusal> {
-    let sound = voltage.and_then(|v| Some((v.thrust.estimate()?, v.torque.estimate()?)));
+    let sound = voltage.and_then(|v| Some((v.thrust.value()?, v.torque.value()?)));
     let volts = |b: &Bench| {
         let measured = b.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());
         let (sum, n) = measured.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
@@ -60,7 +60,15 @@ pub(super) fn at_reference<'a>(
         .reference_v
         .unwrap_or_else(|| hundredths(means.iter().sum::<f64>() / means.len() as f64));
     let exponents = sound.filter(|_| all);
-    let bring = |y: f64, v: f64, e: &Estimate| y / libm::pow(v / reference, e.exponent);
+    if let (Some(_), false) = (wishes.voltage_exponent, all) {
+        let without = benches.iter().find(|b| volts(b).is_none());
+        return Err(Refusal::of(
+            without.map_or("", |b| b.file.as_str()),
+            "rows without a voltage cannot be brought to the reference by --voltage-exponent",
+            "the supply voltage of every row, in a column of its own (--column voltage=HEADER)",
+        ));
+    }
+    let bring = |y: f64, v: f64, exponent: f64| y / libm::pow(v / reference, exponent);
     let mut points = Vec::new();
     for bench in benches {
         for point in &bench.points {

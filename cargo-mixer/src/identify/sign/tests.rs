@@ -16,6 +16,7 @@ fn samples(a: f64, b: f64) -> Vec<Sample> {
         rotor_thrust: [u, -0.5 * l],
         rotor_torque: [a * u * u, b * l * l],
         voltage: f64::NAN,
+        power_w: f64::NAN,
     };
     [(0.2, 0.8), (0.8, 0.2), (0.5, 0.5), (0.9, 0.9), (0.2, 0.3)]
         .map(|(u, l)| at(u, l))

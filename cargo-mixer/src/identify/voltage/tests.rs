@@ -20,6 +20,7 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
             torque_policy: "auto",
         },
         notes: Vec::new(),
+        no_power: None,
         points,
     }
 }
@@ -36,6 +37,7 @@ fn sweep(volts: f64, sag: f64, k: f64, throttles: impl Iterator<Item = f64>, noi
             thrust: 10.0 * u * u * scale,
             torque: f64::NAN,
             voltage,
+            power_w: f64::NAN,
         }
     };
     throttles.enumerate().map(point).collect()
@@ -115,6 +117,7 @@ fn torque_that_changes_its_sign_has_an_exponent_too() {
                 thrust: 20.0 * (u * u + l * l) * scale,
                 torque,
                 voltage: volts,
+                power_w: f64::NAN,
             }
         };
         (0..25).map(at).collect()

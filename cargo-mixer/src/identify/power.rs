@@ -1,0 +1,273 @@
+//! Least power: the torque at which a pair gives its thrust for the least electrical power.
+//!
+//! A unit whose torque is not asked for can give its thrust f at any torque that the other units cancel. Q = 0 is not the
+//! cheapest: the lower rotor works in air that already moves. Electrical power (voltage times current, of both rotors) is
+//! fitted as a quartic of both throttles with a constant, as standby takes some; along Q = c f the throttles follow from the
+//! pair's map, and c is the number with the greatest mean saving against Q = 0 over [`SHARES`] of full thrust. A frame can
+//! cancel these torques as far as its upper rotors turn both ways: with spins s of n units the share of the saving that is
+//! left is 1 - (sum s / n)2, none where all turn alike.
+
+use faer::Mat;
+use faer::linalg::solvers::SolveLstsq;
+use mixer_compiler::airframe::Basis;
+use serde::Serialize;
+
+use super::basis::{ThrottleBox, monomials};
+use super::bench::{Bench, Kind, Point};
+use super::fit::distinct_pairs;
+use super::pair::Pair;
+use super::polynomial::Polynomial;
+
+/// Shares of full thrust at which vehicles hover.
+const SHARES: [f64; 9] = [0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70];
+/// Distinct throttle pairs that a power map of 15 terms takes, to judge itself as well.
+const FEWEST: usize = 19;
+/// Power over thrust, W/N, of propellers that fly: 2 (large ones at idle) to 200 (small ones at full throttle).
+const PLAUSIBLE_W_PER_N: [f64; 2] = [2.0, 200.0];
+/// Residual rms of the power map, share of the greatest power, above which a saving of a few percent is no finding.
+const POOR: f64 = 0.03;
+
+/// What the files say of least power.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case", tag = "status")]
+pub enum Power {
+    /// A power map.
+    Identified(LeastPower),
+    /// None, and why.
+    Refused {
+        /// With the numbers that matter.
+        reason: String,
+    },
+}
+
+/// The torque of least power.
+#[derive(Debug, Clone, Serialize)]
+pub struct LeastPower {
+    /// c in Q = c f, N m per N; positive where the lower rotor takes more.
+    pub bias_nm_per_n: f64,
+    /// Mean saving against Q = 0 over 0.3 to 0.7 of full thrust where upper rotors turn both ways in equal number, percent.
+    pub saving_percent: f64,
+    /// Electrical power of one pair at Q = 0 and at Q = c f, W, by share of full thrust.
+    pub at: Vec<AtThrust>,
+    /// Residual rms of the power map, W.
+    pub residual_rms_w: f64,
+    /// Greatest power of the rows, W.
+    pub full_scale_w: f64,
+    /// Rows with power.
+    pub points: usize,
+}
+
+/// Power at one thrust.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct AtThrust {
+    /// Thrust of the pair, N.
+    pub thrust_n: f64,
+    /// Power without torque, W.
+    pub power_w: f64,
+    /// Power at Q = c f, W.
+    pub least_power_w: f64,
+}
+
+/// The electrical power of a pair over its throttles.
+struct PowerMap {
+    coefficients: Vec<f64>,
+    residual_rms: f64,
+    full_scale: f64,
+}
+
+impl PowerMap {
+    fn fit(points: &[&Point]) -> PowerMap {
+        let rows: Vec<Vec<f64>> = points.iter().map(|p| terms(p.u, p.l)).collect();
+        let columns = rows.first().map_or(0, Vec::len);
+        let matrix = Mat::from_fn(rows.len(), columns, |i, j| rows[i][j]);
+        let power = Mat::from_fn(rows.len(), 1, |i, _| points[i].power_w);
+        let solved = matrix.qr().solve_lstsq(&power);
+        let coefficients: Vec<f64> = (0..columns).map(|k| solved[(k, 0)]).collect();
+        let missed = points
+            .iter()
+            .zip(&rows)
+            .map(|(p, row)| p.power_w - dot(row, &coefficients));
+        let rms = (missed.map(|e| e * e).sum::<f64>() / points.len() as f64).sqrt();
+        PowerMap {
+            residual_rms: rms,
+            full_scale: points.iter().map(|p| p.power_w).fold(0.0, f64::max),
+            coefficients,
+        }
+    }
+
+    fn at(&self, [u, l]: [f64; 2]) -> f64 {
+        dot(&terms(u, l), &self.coefficients)
+    }
+}
+
+fn terms(u: f64, l: f64) -> Vec<f64> {
+    let mut terms = monomials(Basis::Quartic, u, l);
+    terms.push(1.0);
+    terms
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Thrust and torque of the identified pair.
+struct Map {
+    thrust: [Polynomial; 3],
+    torque: [Polynomial; 3],
+    throttle: ThrottleBox,
+}
+
+impl Map {
+    fn new(pair: &Pair) -> Map {
+        let with_slopes = |coefficients: &[f64]| {
+            let value = Polynomial::of(pair.basis, coefficients);
+            let slopes = [value.du(), value.dl()];
+            let [du, dl] = slopes;
+            [value, du, dl]
+        };
+        Map {
+            thrust: with_slopes(&pair.thrust_n),
+            torque: with_slopes(&pair.torque_nm),
+            throttle: pair.throttle,
+        }
+    }
+
+    /// Thrust at both throttles at their greatest, N.
+    fn full_thrust(&self) -> f64 {
+        self.thrust[0].at(self.throttle.max, self.throttle.max)
+    }
+
+    /// The throttles of (f, Q) within the box, by Newton's method from equal throttles; nothing where there are none.
+    fn throttles(&self, f: f64, q: f64) -> Option<[f64; 2]> {
+        let ThrottleBox { min, max } = self.throttle;
+        let share = (f / self.full_thrust()).clamp(0.0, 1.0).sqrt();
+        let [mut u, mut l] = [max * share; 2].map(|x: f64| x.clamp(min, max));
+        for _ in 0..50 {
+            let [ef, eq] = [f - self.thrust[0].at(u, l), q - self.torque[0].at(u, l)];
+            let [fu, fl] = [1, 2].map(|k| self.thrust[k].at(u, l));
+            let [qu, ql] = [1, 2].map(|k| self.torque[k].at(u, l));
+            let det = fu * ql - fl * qu;
+            if det <= 0.0 {
+                return None;
+            }
+            let (du, dl) = ((ef * ql - eq * fl) / det, (eq * fu - ef * qu) / det);
+            (u, l) = ((u + du).clamp(min, max), (l + dl).clamp(min, max));
+            if du.abs().max(dl.abs()) < 1e-10 {
+                break;
+            }
+        }
+        let missed = (f - self.thrust[0].at(u, l)).abs() / self.full_thrust();
+        (missed < 1e-8 && (q - self.torque[0].at(u, l)).abs() < 1e-8 * self.full_thrust()).then_some([u, l])
+    }
+}
+
+/// Examines the pair's files; nothing where there is no pair.
+pub fn examine(benches: &[Bench], pair: &Pair) -> Power {
+    match least_power(benches, pair) {
+        Ok(found) => Power::Identified(found),
+        Err(reason) => Power::Refused { reason },
+    }
+}
+
+fn least_power(benches: &[Bench], pair: &Pair) -> Result<LeastPower, String> {
+    let of_pair = || benches.iter().filter(|b| b.kind == Kind::Pair);
+    let points: Vec<&Point> = of_pair()
+        .flat_map(|b| &b.points)
+        .filter(|p| p.power_w.is_finite())
+        .collect();
+    if points.is_empty() {
+        return Err(of_pair()
+            .find_map(|b| b.no_power.clone())
+            .unwrap_or_else(|| "voltage or current is empty in every row".into()));
+    }
+    plausible(&points)?;
+    let places: Vec<[f64; 2]> = points.iter().map(|p| [p.u, p.l]).collect();
+    let distinct = distinct_pairs(&places);
+    if distinct < FEWEST {
+        return Err(format!(
+            "{distinct} distinct throttle pairs with power, at least {FEWEST} are needed (5 x 5 levels)"
+        ));
+    }
+    let power = PowerMap::fit(&points);
+    if power.residual_rms > POOR * power.full_scale {
+        return Err(format!(
+            "the power map leaves {:.1} % of the greatest power, more than there is to save",
+            100.0 * power.residual_rms / power.full_scale
+        ));
+    }
+    let map = Map::new(pair);
+    let at = |c: f64| -> Option<Vec<AtThrust>> {
+        let full = map.full_thrust();
+        let along = |share: &f64| {
+            let thrust_n = share * full;
+            Some(AtThrust {
+                thrust_n,
+                power_w: power.at(map.throttles(thrust_n, 0.0)?),
+                least_power_w: power.at(map.throttles(thrust_n, c * thrust_n)?),
+            })
+        };
+        SHARES.iter().map(along).collect()
+    };
+    let saving = |c: f64| {
+        at(c).map_or(f64::NEG_INFINITY, |at| {
+            at.iter().map(|a| 1.0 - a.least_power_w / a.power_w).sum::<f64>() / at.len() as f64
+        })
+    };
+    // Torque over thrust with one rotor at its least and the other at full throttle bounds what is worth trying.
+    let ThrottleBox { min, max } = pair.throttle;
+    let most = map.torque[0].at(min, max).abs() / map.thrust[0].at(min, max);
+    let step = most / 50.0;
+    let best = (-50..=50)
+        .map(|k| f64::from(k) * step)
+        .max_by(|a, b| saving(*a).total_cmp(&saving(*b)))
+        .unwrap_or(0.0);
+    let best = golden(best - step, best + step, saving);
+    // Two digits more than a bench can tell.
+    let bias_nm_per_n = (1e5 * best).round() / 1e5;
+    let at = at(bias_nm_per_n)
+        .ok_or("the map does not reach 0.3 to 0.7 of its full thrust without torque (a high idle)")?;
+    let saving_percent = 100.0 * saving(bias_nm_per_n);
+    if saving_percent <= 0.0 {
+        return Err("no torque saves power against none".into());
+    }
+    Ok(LeastPower {
+        bias_nm_per_n,
+        saving_percent,
+        at,
+        residual_rms_w: power.residual_rms,
+        full_scale_w: power.full_scale,
+        points: points.len(),
+    })
+}
+
+/// Refuses power that no propeller takes.
+fn plausible(points: &[&Point]) -> Result<(), String> {
+    let mut rates: Vec<f64> = points.iter().map(|p| p.power_w / p.thrust).collect();
+    rates.sort_by(f64::total_cmp);
+    let median = rates[rates.len() / 2];
+    let [least, most] = PLAUSIBLE_W_PER_N;
+    if !(least..=most).contains(&median) {
+        return Err(format!(
+            "the rows take {median:.3} W per N of thrust in the median, propellers take {least} to {most}: check the units \
+             of voltage and current (mA for A?)"
+        ));
+    }
+    // Power rises with throttle, and steeply.
+    let mean = |of: &dyn Fn(&Point) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / points.len() as f64;
+    let (load, power) = (mean(&|p| p.u + p.l), mean(&|p| p.power_w));
+    let covariance = mean(&|p| (p.u + p.l - load) * (p.power_w - power));
+    if covariance <= 0.0 {
+        return Err("power falls with throttle: check the sign and the columns of the current".into());
+    }
+    Ok(())
+}
+
+/// The place of the greatest value of a function with one hill between `a` and `b`.
+fn golden(mut a: f64, mut b: f64, of: impl Fn(f64) -> f64) -> f64 {
+    const RATIO: f64 = 0.618_033_988_749_894_9;
+    for _ in 0..40 {
+        let (c, d) = (b - RATIO * (b - a), a + RATIO * (b - a));
+        if of(c) < of(d) { a = c } else { b = d }
+    }
+    0.5 * (a + b)
+}

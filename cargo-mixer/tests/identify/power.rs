@@ -1,0 +1,131 @@
+//! The torque of least power, against a pair whose optimum is known in closed form.
+//!
+//! With f = A (u2 + l2), Q = B (l2 - u2) and P = E (u3 + g l3) + P0, Q = c f at k = c A / B has
+//! P - P0 ~ (1 - k)^1.5 + g (1 + k)^1.5, least at k = (1 - g2) / (1 + g2) whatever the thrust.
+
+use std::fmt::Write as _;
+
+use cargo_mixer::identify::fragment;
+use cargo_mixer::identify::identified::{Identified, from_benches};
+use cargo_mixer::identify::power::Power;
+use mixer_compiler::airframe::Basis;
+
+use crate::sweep::{Normal, bench, settings};
+
+const A: f64 = 10.0;
+const B: f64 = 0.2;
+const E: f64 = 150.0;
+const G: f64 = 0.8;
+
+/// Electrical columns behind `upper,lower,thrust_n,torque_nm`, for the power of the upper and of the lower rotor.
+struct Electrical {
+    header: &'static str,
+    row: fn([f64; 2]) -> String,
+}
+
+fn identified(electrical: &Electrical, noise: f64) -> Identified {
+    let mut normal = Normal::new(7);
+    let mut text = format!("upper,lower,thrust_n,torque_nm{}\n", electrical.header);
+    for k in 0..100 {
+        let (u, l) = (0.1 + 0.1 * f64::from(k / 10), 0.1 + 0.1 * f64::from(k % 10));
+        let power = [u * u * u, G * l * l * l].map(|p| E * p * (1.0 + noise * normal.next()));
+        let (f, q) = (A * (u * u + l * l), B * (l * l - u * u));
+        writeln!(text, "{u},{l},{f},{q}{}", (electrical.row)(power)).expect("a string");
+    }
+    let settings = settings(Some(Basis::Biquadratic));
+    let bench = bench("map.csv", text.as_bytes(), &settings).expect("a bench");
+    from_benches(vec![bench], &settings.wishes).expect("a pair")
+}
+
+const BOTH: Electrical = Electrical {
+    header: ",upper_voltage_v,lower_voltage_v,upper_current_a,lower_current_a",
+    row: |[upper, lower]| format!(",14.8,14.4,{},{}", upper / 14.8, lower / 14.4),
+};
+
+fn reason(electrical: &Electrical) -> String {
+    match identified(electrical, 0.0).power {
+        Some(Power::Refused { reason }) => reason,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_bias_of_least_power_is_recovered() {
+    let k = (1.0 - G * G) / (1.0 + G * G);
+    let share = |k: f64| libm::pow(1.0 - k, 1.5) + G * libm::pow(1.0 + k, 1.5);
+    let saving = 100.0 * (1.0 - share(k) / share(0.0));
+    for (noise, wide) in [(0.0, 2e-5), (0.01, 4e-4)] {
+        let found = identified(&BOTH, noise);
+        let Some(Power::Identified(least)) = &found.power else {
+            panic!("{:?}", found.power)
+        };
+        assert!(
+            (least.bias_nm_per_n - k * B / A).abs() < wide,
+            "{} {}",
+            least.bias_nm_per_n,
+            k * B / A
+        );
+        assert!(
+            (least.saving_percent - saving).abs() < 0.3,
+            "{} {saving}",
+            least.saving_percent
+        );
+        let text = fragment::text(&found);
+        assert!(
+            text.contains("# Least power:") && text.contains("N m per N"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn one_supply_current_of_the_whole_serves() {
+    let whole = Electrical {
+        header: ",Voltage (V),Current (mA)",
+        row: |[upper, lower]| format!(",14.8,{}", 1000.0 * (upper + lower) / 14.8),
+    };
+    assert!(matches!(
+        identified(&whole, 0.0).power,
+        Some(Power::Identified(_))
+    ));
+}
+
+#[test]
+fn why_there_is_none_is_told() {
+    let none = Electrical {
+        header: ",voltage_v",
+        row: |_| ",14.8".into(),
+    };
+    assert_eq!(reason(&none), "no file has the current of both rotors");
+    let one = Electrical {
+        header: ",voltage_v,upper_current_a",
+        row: |[upper, _]| format!(",14.8,{}", upper / 14.8),
+    };
+    assert!(
+        reason(&one).contains("one rotor only (\"upper_current_a\"): --column lower_current="),
+        "{}",
+        reason(&one)
+    );
+    let milliamperes = Electrical {
+        header: BOTH.header,
+        row: |[upper, lower]| format!(",14.8,14.8,{},{}", 1e3 * upper / 14.8, 1e3 * lower / 14.8),
+    };
+    assert!(
+        reason(&milliamperes).contains("mA for A"),
+        "{}",
+        reason(&milliamperes)
+    );
+    let falling = Electrical {
+        header: BOTH.header,
+        row: |[upper, lower]| format!(",14.8,14.8,{},{}", 20.0 - upper / 14.8, 20.0 - lower / 14.8),
+    };
+    assert_eq!(
+        reason(&falling),
+        "power falls with throttle: check the sign and the columns of the current"
+    );
+    let empty = Electrical {
+        header: BOTH.header,
+        row: |_| ",14.8,14.8,,".into(),
+    };
+    assert_eq!(reason(&empty), "voltage or current is empty in every row");
+}
