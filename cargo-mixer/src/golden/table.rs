@@ -7,7 +7,7 @@ use mixer_rt::{Health, Wrench};
 
 use super::vectors::{RotorsOut, Vector};
 
-/// One vector with what the mixer makes of it: the bits of the floats in the order of [`columns`], `saturation` last.
+/// One vector with what the mixer makes of it: the bits of the floats in the order of the header of [`csv()`], `saturation` last.
 pub type Row = Vec<u32>;
 
 /// Rows with all rotors.
