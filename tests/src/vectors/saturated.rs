@@ -5,7 +5,7 @@ use mixer_rt::{Axis, Health, Wrench};
 
 use super::voltages;
 use crate::physics::Physics;
-use crate::random::Random;
+use mixer_setpoints::Random;
 
 /// Directions in which the corners of the attainable set are looked for.
 const DIRECTIONS: usize = 12;
@@ -100,13 +100,13 @@ impl Saturated {
     }
 
     pub(super) fn edge(&self) -> Vec<(Wrench, f32)> {
-        let mut random = Random(11);
+        let mut random = Random::new(11);
         let [_, low, high] = self.volts;
         let mut list = Vec::new();
         for k in 0..DIRECTIONS {
             let volts = if k % 2 == 0 { low } else { high };
             let direction: [f64; 4] = std::array::from_fn(|axis| {
-                let part = random.between(-1.0, 1.0);
+                let part = random.uniform(-1.0, 1.0);
                 if self.served[axis] { part } else { 0.0 }
             });
             let corner = self.physics.furthest(direction, self.physics.factors(volts));
@@ -122,16 +122,16 @@ impl Saturated {
     }
 
     pub(super) fn null_space(&self) -> Vec<(Wrench, f32)> {
-        let mut random = Random(12);
+        let mut random = Random::new(12);
         let [_, low, high] = self.volts;
         let rotors = 2 * self.physics.units();
         let wrenches = (0..TRIES).filter_map(|_| {
-            let volts = random.between(f64::from(low), f64::from(high)) as f32;
+            let volts = random.uniform(f64::from(low), f64::from(high)) as f32;
             // Many near the ends of the range, where least norm is in need of help; none at the very end.
-            let share = |random: &mut Random| match random.index(3) {
-                0 => random.between(0.02, 0.1),
-                1 => random.between(0.9, 0.98),
-                _ => random.between(0.02, 0.98),
+            let share = |random: &mut Random| match random.below(3) {
+                0 => random.uniform(0.02, 0.1),
+                1 => random.uniform(0.9, 0.98),
+                _ => random.uniform(0.02, 0.98),
             };
             let shares: Vec<f64> = (0..rotors).map(|_| share(&mut random)).collect();
             let throttles = self.physics.throttles(shares.into_iter(), Health::GOOD);
