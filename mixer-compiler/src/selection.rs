@@ -53,17 +53,68 @@ pub(crate) fn select(
 /// The evaluator that came closest, and what is proven of it; `None` where there is none of the name asked for.
 type Best = Option<(Evaluator, Certificate)>;
 
+/// What the tables of an evaluator are judged by.
+struct Judge<'a> {
+    airframe: &'a Airframe,
+    effectiveness: &'a Effectiveness,
+    pair: &'a PairMap,
+    polygon: &'a Polygon,
+    correction: Correction,
+}
+
+impl Judge<'_> {
+    /// The evaluator with its tables, where they are proven to meet the tolerance. Else what is proven of them: a proof that
+    /// is not `thorough` is given up where it takes long.
+    fn accept(
+        &self,
+        evaluator: Evaluator,
+        tables: &MixerTables,
+        thorough: bool,
+        mut residual: Residual,
+    ) -> Result<Selected, Certificate> {
+        let Judge {
+            airframe,
+            effectiveness,
+            pair,
+            polygon,
+            correction,
+        } = self;
+        let certificate = proof::prove(airframe, pair, tables, correction, &mut residual, thorough);
+        if !(certificate.holds() && certificate.agrees(&residual)) {
+            return Err(certificate);
+        }
+        Ok(Selected {
+            evaluator,
+            tables: MixerTables {
+                tolerance: proven(airframe, effectiveness, pair, tables, correction, &certificate),
+                ..tables.clone()
+            },
+            lost_area: polygon.lost,
+            residual,
+            certificate,
+        })
+    }
+}
+
+/// Tries the evaluators by their cost. Where none is proven at once, the one that came closest gets a thorough proof.
 fn choose(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     voltage: Option<&VoltageTable>,
 ) -> Result<Selected, Best> {
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+    let pair = &PairMap::new(&airframe.pair, &airframe.throttle);
+    let polygon = &Polygon::new(pair);
     let correction = Correction::new(airframe, voltage);
     let tolerance = tolerance_at_reference(airframe, &correction);
+    let judge = Judge {
+        airframe,
+        effectiveness,
+        pair,
+        polygon,
+        correction,
+    };
     let candidates = Evaluator::candidates(&airframe.inverse.method, airframe.pair.basis);
-    let mut inversion = Inversion::new(&pair, tolerance, candidates.len() == 1);
-    let polygon = Polygon::new(&pair);
+    let mut inversion = Inversion::new(pair, tolerance, candidates.len() == 1);
     let mut best: Option<(Evaluator, MixerTables, f64)> = None;
     for evaluator in candidates {
         let (fitted, fit_error) = inversion.fit(evaluator);
@@ -73,57 +124,30 @@ fn choose(
                 inverse,
                 ..tables.clone()
             },
-            None => assemble(
-                airframe,
-                effectiveness,
-                &pair,
-                &polygon,
-                voltage.cloned(),
-                inverse,
-            ),
+            None => assemble(airframe, effectiveness, pair, polygon, voltage.cloned(), inverse),
         };
         // The grid of the fit is part of the set: what fails there, fails.
-        let glance = Residual::at_a_glance(&pair, &tables)
+        let error = Residual::coarse_check(pair, &tables)
             .ratio(tolerance)
             .max(fit_error);
-        if glance <= 1.0 {
-            let mut residual = Residual::over_set(&pair, &tables);
-            if residual.within(tolerance) {
-                let certificate = proof::prove(airframe, &pair, &tables, &correction, &mut residual, false);
-                if certificate.holds() && certificate.agrees(&residual) {
-                    let tolerance =
-                        proven(airframe, effectiveness, &pair, &tables, &correction, &certificate);
-                    return Ok(Selected {
-                        evaluator,
-                        tables: MixerTables { tolerance, ..tables },
-                        lost_area: polygon.lost,
-                        residual,
-                        certificate,
-                    });
-                }
+        if error <= 1.0 {
+            let residual = Residual::over_set(pair, &tables);
+            if residual.within(tolerance)
+                && let Ok(selected) = judge.accept(evaluator, &tables, false, residual)
+            {
+                return Ok(selected);
             }
         }
-        if best.as_ref().is_none_or(|(_, _, so_far)| glance < *so_far) {
-            best = Some((evaluator, tables, glance));
+        if best.as_ref().is_none_or(|(_, _, so_far)| error < *so_far) {
+            best = Some((evaluator, tables, error));
         }
     }
     let Some((evaluator, tables, _)) = best else {
         return Err(None);
     };
-    // Proofs above were given up where they took long.
-    let mut residual = Residual::over_set(&pair, &tables);
-    let certificate = proof::prove(airframe, &pair, &tables, &correction, &mut residual, true);
-    if certificate.holds() && certificate.agrees(&residual) {
-        let tolerance = proven(airframe, effectiveness, &pair, &tables, &correction, &certificate);
-        return Ok(Selected {
-            evaluator,
-            tables: MixerTables { tolerance, ..tables },
-            lost_area: polygon.lost,
-            residual,
-            certificate,
-        });
-    }
-    Err(Some((evaluator, certificate)))
+    judge
+        .accept(evaluator, &tables, true, Residual::over_set(pair, &tables))
+        .map_err(|certificate| Some((evaluator, certificate)))
 }
 
 /// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage where efforts are

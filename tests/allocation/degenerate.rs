@@ -1,9 +1,9 @@
 //! Requests that no controller sends, voltages that no battery has, and frames at the edge of what makes sense.
 
 use mixer_rt::{Axis, Health, SetpointError};
+use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Place};
 use mixer_tests::golden;
-use mixer_tests::random::Random;
 use mixer_tests::request::{Frame, Request};
 use mixer_tests::soundness;
 
@@ -53,16 +53,16 @@ pub(crate) fn degenerate_frames() -> [(&'static str, Vec<Place>); 4] {
 
 #[test]
 fn degenerate_requests_are_answered() {
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     for (name, places) in degenerate_frames() {
         for airmode in AIRMODES {
             let frame = compile(&places, airmode, 0.0);
             for _ in 0..200 {
                 let request = Request {
-                    wrench: std::array::from_fn(|_| NUMBERS[random.index(NUMBERS.len())]),
-                    volts: match random.index(2) {
+                    wrench: std::array::from_fn(|_| NUMBERS[random.below(NUMBERS.len())]),
+                    volts: match random.below(2) {
                         0 => REFERENCE_V,
-                        _ => NUMBERS[random.index(NUMBERS.len())],
+                        _ => NUMBERS[random.below(NUMBERS.len())],
                     },
                     health: Health::GOOD,
                 };

@@ -1,8 +1,8 @@
 //! Wrenches that random throttles give are delivered.
 
 use mixer_rt::Health;
+use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
-use mixer_tests::random::Random;
 use mixer_tests::request::{Frame, Request};
 
 use crate::regular_frames;
@@ -19,7 +19,7 @@ const PAIRS: [&str; 5] = [
 #[test]
 fn attainable_wrenches_are_delivered_at_any_voltage_and_order_of_channels() {
     const COUNT: usize = 2000;
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for (name, places) in regular_frames() {
         let mut channels: Vec<usize> = (0..2 * places.len()).collect();
         random.shuffle(&mut channels);
@@ -28,7 +28,7 @@ fn attainable_wrenches_are_delivered_at_any_voltage_and_order_of_channels() {
         let mut delivered = 0;
         for _ in 0..COUNT {
             let volts = frame.draw_volts(&mut random);
-            let shares: Vec<f64> = channels.iter().map(|_| random.between(0.0, 1.0)).collect();
+            let shares: Vec<f64> = channels.iter().map(|_| random.uniform(0.0, 1.0)).collect();
             let throttles = frame.physics.throttles(shares.into_iter(), Health::GOOD);
             let request = Request {
                 wrench: frame.physics.wrench(&throttles, volts).map(|x| x as f32),
@@ -50,7 +50,7 @@ fn attainable_wrenches_are_delivered_at_any_voltage_and_order_of_channels() {
 fn wrenches_of_throttles_at_their_limits_are_delivered_to_a_percent() {
     const COUNT: usize = 60;
     const ALLOWED: f64 = 0.01;
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let (mut asked, mut missed) = (0, 0);
     let mut worst: f64 = 0.0;
     for pair in PAIRS {
@@ -70,10 +70,10 @@ fn wrenches_of_throttles_at_their_limits_are_delivered_to_a_percent() {
             };
             let frame = Frame::new(compiled);
             for _ in 0..COUNT {
-                let shares = channels.iter().map(|_| match random.index(4) {
+                let shares = channels.iter().map(|_| match random.below(4) {
                     0 => 0.0,
                     1 => 1.0,
-                    _ => random.between(0.0, 1.0),
+                    _ => random.uniform(0.0, 1.0),
                 });
                 let shares: Vec<f64> = shares.collect();
                 let throttles = frame.physics.throttles(shares.into_iter(), Health::GOOD);

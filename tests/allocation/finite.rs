@@ -9,8 +9,8 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use mixer_compiler::tables::{InverseTable, MixerTables};
 use mixer_rt::{Health, Inverse, Pair, Quantity, Scalar, Scratch, TableSeed, Tables, ThrottleRange, Wrench};
+use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
-use mixer_tests::random::Random;
 
 use crate::degenerate::{NUMBERS, degenerate_frames};
 
@@ -115,7 +115,6 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         voltage: view.voltage,
         attainable: view.attainable,
         rows: view.rows,
-        level: view.level,
         desaturation: view.desaturation,
         shortcut: view.shortcut,
         tolerance: view.tolerance,
@@ -143,7 +142,7 @@ const LARGEST: f32 = 1e8;
 
 #[test]
 fn efforts_are_finite() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for (name, places) in degenerate_frames() {
         for (airmode, yaw_reserve_nm) in AIRMODES.into_iter().zip([0.0, 0.02, 0.0]) {
             let options = Options {
@@ -152,11 +151,11 @@ fn efforts_are_finite() {
             };
             let compiled = frames::compile(&places, options).expect("a frame");
             for _ in 0..400 {
-                let setpoint = std::array::from_fn(|_| NUMBERS[random.index(NUMBERS.len())]);
-                let volts = NUMBERS[random.index(NUMBERS.len())];
-                let health = match random.index(2) {
+                let setpoint = std::array::from_fn(|_| NUMBERS[random.below(NUMBERS.len())]);
+                let volts = NUMBERS[random.below(NUMBERS.len())];
+                let health = match random.below(2) {
                     0 => Health::GOOD,
-                    _ => Health::GOOD.with_failed(random.index(2 * places.len()) as u8),
+                    _ => Health::GOOD.with_failed(random.below(2 * places.len()) as u8),
                 };
                 let largest = largest_effort(&compiled.tables, setpoint, volts, health);
                 assert!(largest < LARGEST, "{name} {airmode}: {setpoint:?} -> {largest}");

@@ -5,7 +5,7 @@
 //! | `delivery.rs` | wrenches of random throttles: delivered |
 //! | `optimum.rs` | linear programs: few requests short by 1 % of any axis' authority |
 //! | `continuity.rs` | requests near which throttles or what is delivered once jumped: answered as their neighbours are |
-//! | `hollows.rs` | the same where attainable sets bend inwards |
+//! | `regressions.rs`, `.toml` | requests that an earlier mixer answered badly, as data |
 //! | `jumps.rs` | throttles that jump from a request to its neighbour: those that must; others are counted |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
@@ -22,12 +22,12 @@ mod delivery;
 mod failure;
 mod finite;
 mod flags;
-mod hollows;
 mod jumps;
 mod layout;
 mod optimum;
 mod polygons;
 mod properties;
+mod regressions;
 mod shapes;
 
 use mixer_rt::Health;

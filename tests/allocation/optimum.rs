@@ -1,9 +1,9 @@
 //! Answers against linear programs over the physical attainable sets, at any voltage and with rotors out.
 
 use mixer_rt::Health;
+use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options, Place};
 use mixer_tests::optimum::Oracle;
-use mixer_tests::random::Random;
 use mixer_tests::request::{Frame, Request};
 use mixer_tests::shortfall::{ALLOWED, Shortfall};
 
@@ -78,7 +78,7 @@ impl Judged {
 
 /// Random numbers from a fixed seed; `MIXER_SEED` sets another.
 fn random(seed: u64) -> Random {
-    Random(number("MIXER_SEED", seed))
+    Random::new(number("MIXER_SEED", seed))
 }
 
 /// An irregular frame that can hover, for about each that is asked for.
@@ -201,7 +201,7 @@ fn frames_with_rotors_out_reach_the_optimum() {
                     };
                     for _ in 0..3 {
                         let health = (0..out).fold(Health::GOOD, |health, _| {
-                            health.with_failed(random.index(2 * n) as u8)
+                            health.with_failed(random.below(2 * n) as u8)
                         });
                         let volts = frame.draw_volts(&mut random);
                         judged.judge(&frame, &mut random, (volts, health), 4);

@@ -10,9 +10,9 @@ use mixer_compiler::model::PairMap;
 use mixer_compiler::model::injectivity::ForwardMap;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::Health;
+use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
 use mixer_tests::optimum::Oracle;
-use mixer_tests::random::Random;
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
 
@@ -90,7 +90,7 @@ impl Tally {
 fn deliver(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) {
     for _ in 0..count {
         let shares: Vec<f64> = (0..2 * frame.physics.units())
-            .map(|_| random.between(MARGIN, 1.0 - MARGIN))
+            .map(|_| random.uniform(MARGIN, 1.0 - MARGIN))
             .collect();
         let throttles = frame.physics.throttles(shares.into_iter(), Health::GOOD);
         let request = Request {
@@ -170,7 +170,7 @@ fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally)
                 println!("  short {short}: {request:?} -> {:?}", answer.achieved);
             }
         }
-        let moved = random.index(5);
+        let moved = random.below(5);
         let mut near = request;
         for (axis, value) in near.wrench.iter_mut().enumerate() {
             if moved == 4 || moved == axis {
@@ -222,7 +222,7 @@ fn least_level_thrust(frame: &Frame, most: f64) -> f64 {
 /// The pair on an X8 and a Y6.
 fn judge(name: &str, pair: &str, count: usize) -> Tally {
     let mut tally = Tally::default();
-    let mut random = Random(21);
+    let mut random = Random::new(21);
     for (frame_name, places) in regular_frames().into_iter().take(2) {
         for airmode in ["disabled", "roll-pitch"] {
             let mut channels: Vec<usize> = (0..2 * places.len()).collect();
@@ -337,7 +337,7 @@ fn x12(pair: &str, airmode: &'static str) -> Result<Compiled, String> {
 /// `count` requests of either kind, or `MIXER_COUNT`, to an X12 of each pair.
 fn on_x12<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>, count: u64) -> Tally {
     let count = number("MIXER_COUNT", count) as usize;
-    let mut random = Random(22);
+    let mut random = Random::new(22);
     let mut sum = Tally::default();
     for ((name, pair), airmode) in pairs.zip(AIRMODES.into_iter().cycle()) {
         let compiled = x12(pair, airmode).unwrap_or_else(|faults| panic!("{name}: {faults}"));

@@ -12,8 +12,8 @@ use mixer_compiler::model::PairMap;
 use mixer_rt::{Airmode, Wrench};
 
 use crate::frames::{self, Options};
-use crate::random::Random;
 use crate::root;
+use mixer_setpoints::Random;
 
 /// Wrenches per frame.
 pub const COUNT: usize = 20_000;
@@ -138,12 +138,12 @@ fn compare(name: &str, compiled: &Compiled) -> [Row; 4] {
         .as_ref()
         .map_or(0.0, |voltage| voltage.reference_v as f32);
     let [low, high] = pair.range();
-    let mut random = Random(20);
+    let mut random = Random::new(20);
     let (mut exact, mut least_norm) = (Tally::default(), Tally::default());
     let (mut conventional, mut sequential) = (Tally::default(), Tally::default());
     for _ in 0..COUNT {
         let throttles: Vec<[f64; 2]> = (0..n)
-            .map(|_| [random.between(low, high), random.between(low, high)])
+            .map(|_| [random.uniform(low, high), random.uniform(low, high)])
             .collect();
         let request = wrench(&throttles);
         let setpoint = Wrench::from_array(request.map(|x| x as f32));

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use mixer_compiler::{Compiled, Source};
 
-use crate::random::Random;
+use mixer_setpoints::Random;
 
 /// The `[throttle]`, `[pair]` and `[voltage]` of `airframes/isae-x8.toml`.
 const PAPER: &str = r#"
@@ -91,19 +91,19 @@ pub fn polar(arm_m: f64, angle_deg: f64) -> [f64; 2] {
 /// An irregular frame: units in about even directions around the centre with arms of 0.2 m to 0.7 m, random
 /// spins, axes tilted by up to `tilt` (about radians).
 pub fn irregular(random: &mut Random, units: usize, tilt: f64) -> Vec<Place> {
-    let start = random.between(0.0, 360.0);
+    let start = random.uniform(0.0, 360.0);
     (0..units)
         .map(|k| {
-            let angle = start + (k as f64 + random.between(-0.3, 0.3)) * 360.0 / units as f64;
-            let arm = random.between(0.2, 0.7);
+            let angle = start + (k as f64 + random.uniform(-0.3, 0.3)) * 360.0 / units as f64;
+            let arm = random.uniform(0.2, 0.7);
             Place {
                 position: [
                     arm * cos(angle.to_radians()),
                     arm * sin(angle.to_radians()),
-                    random.between(-0.05, 0.05),
+                    random.uniform(-0.05, 0.05),
                 ],
-                axis: [random.between(-tilt, tilt), random.between(-tilt, tilt), -1.0],
-                clockwise: if k < 2 { k == 0 } else { random.index(2) == 0 },
+                axis: [random.uniform(-tilt, tilt), random.uniform(-tilt, tilt), -1.0],
+                clockwise: if k < 2 { k == 0 } else { random.below(2) == 0 },
             }
         })
         .collect()

@@ -15,7 +15,6 @@ pub mod image;
 pub mod optimum;
 pub mod overhead;
 pub mod physics;
-pub mod random;
 pub mod request;
 pub mod shortfall;
 pub mod soundness;

@@ -5,7 +5,7 @@ use mixer_compiler::airframe::Allocation;
 use mixer_rt::{Axis, Health, Saturation, SetpointError, Wrench};
 
 use crate::physics::Physics;
-use crate::random::Random;
+use mixer_setpoints::Random;
 
 /// A compiled frame with what its answers are judged by.
 pub struct Frame {
@@ -41,11 +41,11 @@ impl Frame {
 
     /// A request of up to `size` times the authority in torque and 1.2 times in thrust, all rotors working.
     pub fn draw(&self, random: &mut Random, size: f64, volts: f32) -> Request {
-        let size = random.between(0.0, size);
+        let size = random.uniform(0.0, size);
         let [roll, pitch, yaw, thrust] = self.authority;
-        let mut torque = |authority: f64| (random.between(-size, size) * authority) as f32;
+        let mut torque = |authority: f64| (random.uniform(-size, size) * authority) as f32;
         let torques = [torque(roll), torque(pitch), torque(yaw)];
-        let thrust = (random.between(-0.05, 1.2) * thrust) as f32;
+        let thrust = (random.uniform(-0.05, 1.2) * thrust) as f32;
         Request {
             wrench: [torques[0], torques[1], torques[2], thrust],
             volts,
@@ -56,7 +56,7 @@ impl Frame {
     /// A voltage within the declared range; any where there is none.
     pub fn draw_volts(&self, random: &mut Random) -> f32 {
         let [low, high] = self.physics.voltage_range().unwrap_or([14.0, 14.0]);
-        random.between(low, high) as f32
+        random.uniform(low, high) as f32
     }
 }
 

@@ -13,12 +13,9 @@ use mixer_rt::{BilinearSeed, CubicSeed, EightTermSeed, Facets, QuadraticSeed, Ta
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let module = identifier(&compiled.airframe.module_name());
-    let mixer = identifier(&compiled.airframe.type_name());
-    let name = &compiled.airframe.name;
     let module_doc = doc(&module_lines(compiled));
-    let mixer_doc = doc(&[format!(
-        " The mixer of `{name}` as a type, for code that is generic over airframes."
-    )]);
+    let mixer = mixer_type(compiled);
+    let functions = functions();
     let tables = tables(&compiled.tables);
     let tables_type = tables_type(&compiled.tables);
     let units = Literal::usize_unsuffixed(compiled.tables.units.len());
@@ -40,57 +37,76 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
                 thrust_n: #thrust,
             };
 
-            #mixer_doc
-            #[derive(Clone, Copy, Debug, Default)]
-            pub struct #mixer;
+            #mixer
 
-            impl ::mixer_rt::Airframe for #mixer {
-                const NAME: &'static str = #name;
-                type Mix = ::mixer_rt::Mix<CHANNELS>;
-                #[inline]
-                fn mix(
-                    setpoint: &::mixer_rt::Wrench,
-                    voltage_v: f32,
-                ) -> ::core::result::Result<Self::Mix, ::mixer_rt::SetpointError> {
-                    mix(setpoint, voltage_v)
-                }
-                #[inline]
-                fn mix_with_health(
-                    setpoint: &::mixer_rt::Wrench,
-                    voltage_v: f32,
-                    health: ::mixer_rt::Health,
-                ) -> ::core::result::Result<Self::Mix, ::mixer_rt::SetpointError> {
-                    mix_with_health(setpoint, voltage_v, health)
-                }
-            }
-
-            /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage (V).
-            ///
-            /// # Errors
-            /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a correction.
-            #[inline]
-            pub fn mix(
-                setpoint: &::mixer_rt::Wrench,
-                voltage_v: f32,
-            ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-                ::mixer_rt::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
-            }
-
-            /// [`mix`] with the rotors out that `health` names by channel.
-            ///
-            /// # Errors
-            /// As [`mix`].
-            #[inline]
-            pub fn mix_with_health(
-                setpoint: &::mixer_rt::Wrench,
-                voltage_v: f32,
-                health: ::mixer_rt::Health,
-            ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-                ::mixer_rt::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
-            }
+            #functions
 
             /// The tables; see `mixer_rt::Tables` for their meaning and units.
             pub static TABLES: #tables_type = #tables;
+        }
+    }
+}
+
+/// The mixer as a type, for code that is generic over airframes.
+fn mixer_type(compiled: &Compiled) -> TokenStream {
+    let mixer = identifier(&compiled.airframe.type_name());
+    let name = &compiled.airframe.name;
+    let mixer_doc = doc(&[format!(
+        " The mixer of `{name}` as a type, for code that is generic over airframes."
+    )]);
+    quote! {
+        #mixer_doc
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct #mixer;
+
+        impl ::mixer_rt::Airframe for #mixer {
+            const NAME: &'static str = #name;
+            type Mix = ::mixer_rt::Mix<CHANNELS>;
+            #[inline]
+            fn mix(
+                setpoint: &::mixer_rt::Wrench,
+                voltage_v: f32,
+            ) -> ::core::result::Result<Self::Mix, ::mixer_rt::SetpointError> {
+                mix(setpoint, voltage_v)
+            }
+            #[inline]
+            fn mix_with_health(
+                setpoint: &::mixer_rt::Wrench,
+                voltage_v: f32,
+                health: ::mixer_rt::Health,
+            ) -> ::core::result::Result<Self::Mix, ::mixer_rt::SetpointError> {
+                mix_with_health(setpoint, voltage_v, health)
+            }
+        }
+    }
+}
+
+/// The functions that firmware calls: the same for all airframes.
+fn functions() -> TokenStream {
+    quote! {
+        /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage (V).
+        ///
+        /// # Errors
+        /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a correction.
+        #[inline]
+        pub fn mix(
+            setpoint: &::mixer_rt::Wrench,
+            voltage_v: f32,
+        ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
+            ::mixer_rt::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+        }
+
+        /// [`mix`] with the rotors out that `health` names by channel.
+        ///
+        /// # Errors
+        /// As [`mix`].
+        #[inline]
+        pub fn mix_with_health(
+            setpoint: &::mixer_rt::Wrench,
+            voltage_v: f32,
+            health: ::mixer_rt::Health,
+        ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
+            ::mixer_rt::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
         }
     }
 }

@@ -38,7 +38,7 @@ impl Residual {
     }
 
     /// A first look that rejects most evaluators.
-    pub fn at_a_glance(pair: &PairMap, tables: &MixerTables) -> Self {
+    pub fn coarse_check(pair: &PairMap, tables: &MixerTables) -> Self {
         Self::over(pair, tables, &pair.grid(COARSE_GRID))
     }
 

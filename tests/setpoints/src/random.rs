@@ -28,6 +28,23 @@ impl Random {
         min + (max - min) * unit
     }
 
+    /// Uniform in [low, high), in f64: for requests and frames that only the host draws.
+    pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// One of 0..count, likewise.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.bits() % count as u64) as usize
+    }
+
+    /// Shuffles in place (Fisher, Yates).
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        for k in (1..items.len()).rev() {
+            items.swap(k, self.below(k + 1));
+        }
+    }
+
     /// One of 0..count, for a count that is small against 2^32.
     pub fn index(&mut self, count: u32) -> u32 {
         (((self.bits() >> 32) * u64::from(count)) >> 32) as u32
