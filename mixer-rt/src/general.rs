@@ -102,7 +102,7 @@ pub(crate) fn allocate<P: Quantity, I, S>(
     }
     let chords = [Rotors::Upper, Rotors::Lower].map(|rotors| {
         let [low, high] = rotors
-            .ends(&tables.pair, &tables.throttle)
+            .ends(&tables.singles, &tables.throttle)
             .map(|[f, q]| [f / set.scale[0], q / set.scale[1]]);
         [Corner::between(high, low, high), Corner::between(low, high, low)]
     });
@@ -286,10 +286,11 @@ impl Frame<'_> {
             let centre = self.centres[kind];
             let share = 1.0 / (1.0 + beyond);
             let f = centre[0] + share * (unit.efforts[0] - centre[0]);
-            let [u, l] = unit
+            let throttles = unit
                 .rotors
-                .invert(&tables.pair, &tables.throttle, f * self.scale[0]);
-            let torque = tables.pair.torque.value(u, l) / self.scale[1];
+                .invert(&tables.singles, &tables.throttle, f * self.scale[0]);
+            let [_, torque] = unit.rotors.efforts(tables, throttles);
+            let torque = torque / self.scale[1];
             let wanted = centre[1] + (torque - centre[1]) * (1.0 + beyond);
             let change = wanted - unit.efforts[1];
             if change.abs() > TOUCHING {

@@ -54,6 +54,18 @@ pub(crate) const PAIR: Shape = shape! { "[pair]":
     "thrust_n" => "thrust_n = [5.2075, -2.1892, ..]",
     "torque_nm" => "torque_nm = [-0.0673, -0.0606, ..]",
     "upper_spin" => "upper_spin = \"cw\"",
+    "lower_out" => "[pair.lower_out]",
+    "upper_out" => "[pair.upper_out]",
+};
+
+pub(crate) const LOWER_OUT: Shape = shape! { "[pair.lower_out]":
+    "thrust_n" => "thrust_n = [0.2, 14.1, -1.7]",
+    "torque_nm" => "torque_nm = [-0.01, -0.2, 0.02]",
+};
+
+pub(crate) const UPPER_OUT: Shape = shape! { "[pair.upper_out]":
+    "thrust_n" => "thrust_n = [0.2, 14.1, -1.7]",
+    "torque_nm" => "torque_nm = [0.01, 0.2, -0.02]",
 };
 
 pub(crate) const VOLTAGE: Shape = shape! { "[voltage]":
@@ -102,5 +114,5 @@ pub(crate) const VEHICLE: Shape = shape! { "[vehicle]":
 
 /// Every table, to tell where a misplaced key belongs.
 pub(crate) const ALL: &[Shape] = &[
-    FILE, THROTTLE, PAIR, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION, VEHICLE,
+    FILE, THROTTLE, PAIR, LOWER_OUT, UPPER_OUT, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION, VEHICLE,
 ];
