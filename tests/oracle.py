@@ -2,7 +2,9 @@
 """An independent judge of mixers: the forward physics of an airframe file, in plain Python.
 
     oracle.py draw AIRFRAME COUNT SEED          setpoints as CSV on stdout
-    oracle.py judge AIRFRAME SETPOINTS MIXED    judges what a mixer made of them; status 1 and a list if it is wrong
+    oracle.py judge AIRFRAME SETPOINTS MIXED [FAILED,..]
+                                                judges what a mixer made of them, with the rotors of these channels out;
+                                                status 1 and a list if it is wrong
     oracle.py conventional AIRFRAME SETPOINTS   the wrench that the conventional mixer's throttles really give, as CSV
     oracle.py isolated AIRFRAME METHOD SETPOINTS
                                                 throttles of isolated rotors as CSV; METHOD is `conventional` or an
@@ -18,6 +20,9 @@ What it asks of every row:
     file's tolerance of them
   * otherwise no axis reverses or overshoots, (roll, pitch) keeps its direction, and airmode "disabled" does not
     raise the thrust above the request unless that is below the floor of the controlled flight
+  * with rotors out their throttles are 0, and a unit with one rotor left gives what the file says of that rotor alone,
+    else the pair's polynomials with the other throttle at zero; what is delivered is not judged then: some frames cannot
+    even be level
   * saturation flags say on which axes and sides the request was missed
 """
 
@@ -61,6 +66,8 @@ class Airframe:
         pair = spec["pair"]
         self.terms = TERMS[pair["basis"]]
         self.coefficients = [pair["thrust_n"], pair["torque_nm"]]
+        # Of the upper and of the lower rotor alone, by the rotor that is out: a1 x + a2 x^2 + a3 x^3.
+        self.alone = [pair.get("lower_out"), pair.get("upper_out")]
         self.voltage = spec.get("voltage")
         inverse = spec.get("inverse", {})
         self.tolerance = [inverse.get("thrust_tolerance_n", 0.01), inverse.get("torque_tolerance_nm", 1e-4)]
@@ -98,6 +105,17 @@ class Airframe:
 
     def efforts(self, u, l):
         return [sum(c * u**i * l**j for c, (i, j) in zip(cs, self.terms)) for cs in self.coefficients]
+
+    def given(self, unit, throttles, failed):
+        """What a unit gives with the rotors of some channels out."""
+        at = [throttles[channel] for channel in self.channels[unit]]
+        out = [channel in failed for channel in self.channels[unit]]
+        if out[0] != out[1]:
+            rotor = 0 if out[1] else 1
+            if self.alone[rotor]:
+                keys = ("thrust_n", "torque_nm")
+                return [sum(c * at[rotor] ** (k + 1) for k, c in enumerate(self.alone[rotor][key])) for key in keys]
+        return self.efforts(*at)
 
     def jacobian(self, u, l):
         rows = []
@@ -207,14 +225,14 @@ def rounding(airframe, k):
     return [2e-6 * sum(abs(row[i]) * full + abs(row[n + i]) * torque for i in range(n)) + 1e-9 for row in airframe.m]
 
 
-def judge_row(airframe, request, volts, throttles, achieved, saturation):
+def judge_row(airframe, request, volts, throttles, achieved, saturation, failed):
     """Faults of one row, and whether its least-norm efforts are attainable."""
     n = airframe.units
     k = airframe.factors(volts)
     faults = []
-    if any(not airframe.low <= t <= airframe.high for t in throttles):
-        faults.append(f"a throttle leaves [{airframe.low}, {airframe.high}]: {throttles}")
-    given = [airframe.efforts(throttles[u], throttles[l]) for u, l in airframe.channels]
+    if any(t != 0.0 if c in failed else not airframe.low <= t <= airframe.high for c, t in enumerate(throttles)):
+        faults.append(f"a throttle leaves [{airframe.low}, {airframe.high}], or 0 where a rotor is out: {throttles}")
+    given = [airframe.given(unit, throttles, failed) for unit in range(n)]
     efforts = [k[0] * f for f, _ in given] + [k[1] * q for _, q in given]
     truth = airframe.wrench(efforts)
     # A fitted voltage law may be a millionth off.
@@ -224,7 +242,7 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation):
             faults.append(f"achieved {axis} is {was!r}, the mixer says {said!r}")
 
     wanted = [sum(m * r for m, r in zip(row, request)) for row in airframe.m_plus]
-    attainable = all(airframe.attains([wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
+    attainable = not failed and all(airframe.attains([wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
     budget = [
         sum(abs(row[i]) * airframe.tolerance[0] + abs(row[n + i]) * airframe.tolerance[1] for i in range(n)) + 4 * allowed
         for row, allowed in zip(airframe.m, noise)
@@ -244,7 +262,7 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation):
         served = sum(3 << 2 * axis for axis in range(4) if airframe.axes[axis])
         if saturation & served:
             faults.append(f"saturation {saturation} though the request was delivered")
-    else:
+    elif not failed:
         for axis in range(3):
             if not airframe.axes[axis]:
                 continue
@@ -278,7 +296,7 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation):
     return faults, attainable
 
 
-def judge(airframe, setpoints_path, mixed_path):
+def judge(airframe, setpoints_path, mixed_path, failed=()):
     with open(setpoints_path, newline="") as file:
         setpoints = list(csv.DictReader(file))
     with open(mixed_path, newline="") as file:
@@ -291,7 +309,7 @@ def judge(airframe, setpoints_path, mixed_path):
         volts = float(asked["voltage_v"])
         throttles = [float(row[f"throttle_{channel}"]) for channel in range(2 * airframe.units)]
         achieved = [float(row["achieved_" + column]) for column in COLUMNS]
-        found, attainable = judge_row(airframe, request, volts, throttles, achieved, int(row["saturation"]))
+        found, attainable = judge_row(airframe, request, volts, throttles, achieved, int(row["saturation"]), failed)
         delivered += attainable
         faults += [f"row {index + 2}: {fault}" for fault in found]
     print(f"{len(mixed)} rows, {delivered} with attainable least-norm efforts, {len(faults)} faults")
@@ -427,6 +445,8 @@ def main(arguments):
             return 0
         case ["judge", path, setpoints_path, mixed_path]:
             return judge(Airframe(path), setpoints_path, mixed_path)
+        case ["judge", path, setpoints_path, mixed_path, failed]:
+            return judge(Airframe(path), setpoints_path, mixed_path, {int(channel) for channel in failed.split(",")})
         case _:
             print(__doc__, file=sys.stderr)
             return 2

@@ -7,6 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use mixer_compiler::Compiled;
+use mixer_rt::Health;
 use mixer_tests::{airframes, golden, root};
 
 /// Random setpoints per airframe.
@@ -27,18 +29,20 @@ fn scratch(name: &str) -> PathBuf {
 
 /// Has the oracle judge `mixed`; panics with its list of faults.
 fn judge(airframe: &str, name: &str, setpoints: &str, mixed: &str) -> String {
+    judge_with(airframe, name, setpoints, mixed, &[])
+}
+
+/// [`judge`] with the channels of the rotors that are out, if any.
+fn judge_with(airframe: &str, name: &str, setpoints: &str, mixed: &str, failed: &[&str]) -> String {
     let (asked, answered) = (
         scratch(&format!("{name}.setpoints.csv")),
         scratch(&format!("{name}.mixed.csv")),
     );
     fs::write(&asked, setpoints).expect("scratch folder");
     fs::write(&answered, mixed).expect("scratch folder");
-    let verdict = oracle(&[
-        "judge",
-        airframe,
-        &asked.display().to_string(),
-        &answered.display().to_string(),
-    ]);
+    let files = [&asked, &answered].map(|path| path.display().to_string());
+    let arguments = [&["judge", airframe, &files[0], &files[1]], failed].concat();
+    let verdict = oracle(&arguments);
     let said = String::from_utf8_lossy(&verdict.stdout).into_owned();
     assert!(
         verdict.status.success(),
@@ -50,17 +54,22 @@ fn judge(airframe: &str, name: &str, setpoints: &str, mixed: &str) -> String {
 
 /// The answer of the mixer to setpoints in CSV, as `cargo mixer mix` gives it.
 fn mix(path: &str, setpoints: &str) -> String {
+    mix_with(path, Health::GOOD, setpoints)
+}
+
+fn compiled(path: &str) -> Compiled {
     let text = fs::read_to_string(root().join(path)).expect(path);
     let compiled = mixer_compiler::compile(&mixer_compiler::Source::new(path, text));
-    let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
+    compiled.unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// [`mix`] with rotors out.
+fn mix_with(path: &str, health: Health, setpoints: &str) -> String {
+    let compiled = compiled(path);
     let mut mixed = Vec::new();
-    let bad = cargo_mixer::mix::mix(
-        &compiled,
-        mixer_rt::Health::GOOD,
-        setpoints.as_bytes(),
-        &mut mixed,
-        |bad| eprintln!("{bad:?}"),
-    );
+    let bad = cargo_mixer::mix::mix(&compiled, health, setpoints.as_bytes(), &mut mixed, |bad| {
+        eprintln!("{bad:?}")
+    });
     assert!(matches!(bad, Ok(0)), "{bad:?}");
     String::from_utf8(mixed).expect("CSV is UTF-8")
 }
@@ -185,4 +194,51 @@ fn the_oracle_finds_planted_faults() {
         ]);
         assert!(!verdict.status.success(), "{what} went unnoticed");
     }
+}
+
+#[test]
+fn setpoints_with_rotors_out_are_mixed_as_the_physics_demand() {
+    for (seed, file) in files().iter().enumerate() {
+        let drawn = oracle(&["draw", file, "120", &(100 + seed).to_string()]);
+        let setpoints = String::from_utf8(drawn.stdout).expect("CSV is UTF-8");
+        let name = Path::new(file).file_stem().expect("name").to_string_lossy();
+        let rotors = compiled(file).airframe.rotors() as u8;
+        // One rotor of each layer, and where there are enough two of different units.
+        for failed in [vec![0], vec![rotors - 1], vec![0, rotors / 2 + 1]] {
+            if failed.len() > 1 && rotors < 8 {
+                continue;
+            }
+            let health = failed
+                .iter()
+                .fold(Health::GOOD, |health, &channel| health.with_failed(channel));
+            let channels: Vec<String> = failed.iter().map(u8::to_string).collect();
+            let channels = channels.join(",");
+            let said = judge_with(
+                file,
+                &format!("out.{name}.{channels}"),
+                &setpoints,
+                &mix_with(file, health, &setpoints),
+                &[&channels],
+            );
+            print!("{file}, {channels} out: {said}");
+        }
+    }
+}
+
+/// Where the file declares what the polynomials at zero give, the bits are those of the file that does not.
+#[test]
+fn a_declared_curve_is_the_polynomial_where_it_says_the_same() {
+    let file = "airframes/isae-x8.toml";
+    let text = fs::read_to_string(root().join(file)).expect(file);
+    let declared = text.replace(
+        "[voltage]",
+        "[pair.lower_out]\nthrust_n = [2.7640, 12.3604, 0.0]\ntorque_nm = [-0.0907, -0.1312, 0.0]\n\n\
+         [pair.upper_out]\nthrust_n = [0.2363, 12.2092, 0.0]\ntorque_nm = [0.0720, 0.1441, 0.0]\n\n[voltage]",
+    );
+    let of = |text: String| {
+        let compiled = mixer_compiler::compile(&mixer_compiler::Source::new(file, text));
+        compiled.unwrap_or_else(|faults| panic!("{faults}")).tables
+    };
+    let (plain, declared) = (of(text), of(declared));
+    assert_eq!(plain, declared);
 }

@@ -21,6 +21,7 @@ use self::read::Reading;
 use self::sign::{SignChoice, SignPolicy};
 use crate::{complain, output, remark};
 
+pub mod alone;
 pub mod basis;
 pub mod bench;
 pub mod bernstein;
@@ -108,6 +109,12 @@ pub struct IdentifyArgs {
     /// Reference voltage, V [default: mean of the rows].
     #[arg(long, value_name = "VOLT", value_parser = positive)]
     pub reference_voltage: Option<f64>,
+    /// A run of the upper rotor alone, the lower one at rest: `[pair.lower_out]`, for when the lower rotor is out.
+    #[arg(long, value_name = "RUN.csv")]
+    pub lower_out: Option<PathBuf>,
+    /// A run of the lower rotor alone, likewise: `[pair.upper_out]`.
+    #[arg(long, value_name = "RUN.csv")]
+    pub upper_out: Option<PathBuf>,
     /// Exponent of thrust and of torque in (V / reference)^k, or one for both: brings the rows to the reference voltage and
     /// writes `[voltage]` where the files cannot tell one. 1.75 is the median of 104 motors with propellers.
     #[arg(long, value_name = "K[,K]", value_parser = exponents)]
@@ -147,6 +154,7 @@ impl IdentifyArgs {
             swap: self.swap,
         };
         Settings {
+            alone: [self.lower_out.clone(), self.upper_out.clone()],
             reading: Reading {
                 by_hand,
                 pwm_range: self.pwm_range.map(|r| r.0),
@@ -252,7 +260,8 @@ fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
         (Ok(a), Ok(b)) => a == b,
         _ => input == output,
     };
-    let overwritten = args.files.iter().any(same);
+    let runs = args.lower_out.iter().chain(&args.upper_out);
+    let overwritten = args.files.iter().chain(runs).any(same);
     overwritten.then(|| {
         format!(
             "{} is one of the bench files and would be overwritten",

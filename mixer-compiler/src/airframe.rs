@@ -6,6 +6,7 @@ mod inverse;
 mod layout;
 mod name;
 mod pair;
+mod rotor_alone;
 mod unit;
 mod vehicle;
 mod voltage;
@@ -17,6 +18,7 @@ use toml::Spanned;
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::inverse::{EVALUATORS, HIGHEST_DEGREE, Inverse, Method};
 pub use self::pair::{Basis, Pair, Spin};
+pub use self::rotor_alone::RotorAlone;
 pub use self::unit::{MOST_UNITS, Unit};
 pub use self::vehicle::{GRAVITY, Vehicle};
 pub use self::voltage::{Voltage, VoltageLaw};
@@ -140,7 +142,10 @@ impl Airframe {
 fn check(spec: Spec, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let name = spec.name.as_ref().and_then(|field| name::check(field, faults));
     let throttle = spec.throttle.as_ref().and_then(|table| throttle(table, faults));
-    let pair = spec.pair.as_ref().and_then(|table| pair::check(table, faults));
+    let pair = spec
+        .pair
+        .as_ref()
+        .and_then(|table| pair::check(table, throttle.as_ref(), faults));
     let voltage = spec.voltage.as_ref().map(|table| voltage::check(table, faults));
     let units = units(&spec, faults).and_then(|units| unit::check(&units, faults));
     let inverse = spec

@@ -170,6 +170,7 @@ fn assemble(
     MixerTables {
         units: tables::unit_tables(airframe, effectiveness),
         pair: tables::pair_table(airframe),
+        singles: tables::single_tables(airframe),
         inverse,
         throttle: tables::throttle_table(airframe),
         voltage,

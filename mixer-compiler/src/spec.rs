@@ -78,6 +78,19 @@ pub struct Pair {
     pub torque_nm: Option<Spanned<Vec<Spanned<f64>>>>,
     /// `upper_spin`
     pub upper_spin: Option<Spanned<String>>,
+    /// `[pair.lower_out]`
+    pub lower_out: Option<RotorAlone>,
+    /// `[pair.upper_out]`
+    pub upper_out: Option<RotorAlone>,
+}
+
+/// `[pair.lower_out]` or `[pair.upper_out]`
+#[derive(Clone, Debug)]
+pub struct RotorAlone {
+    /// `thrust_n`
+    pub thrust_n: Option<Spanned<Triple>>,
+    /// `torque_nm`
+    pub torque_nm: Option<Spanned<Triple>>,
 }
 
 /// `[voltage]`
@@ -243,6 +256,18 @@ impl Pair {
             thrust_n: fields.read("thrust_n"),
             torque_nm: fields.read("torque_nm"),
             upper_spin: fields.read("upper_spin"),
+            lower_out: fields.table("lower_out", keys::LOWER_OUT, RotorAlone::read),
+            upper_out: fields.table("upper_out", keys::UPPER_OUT, RotorAlone::read),
+        }
+    }
+}
+
+impl RotorAlone {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require();
+        Self {
+            thrust_n: fields.read("thrust_n"),
+            torque_nm: fields.read("torque_nm"),
         }
     }
 }

@@ -5,11 +5,12 @@
 
 mod border;
 mod inverse;
+mod single;
 
 use mixer_rt::{
     AttainableSet, Biquadratic, Corner, Cubic, Desaturation, Facets, Health, Pair, Quantity, Quartic,
-    Saturation, Scalar, Scratch, SetpointError, Tables, ThrottleRange, Tolerance, Unit, Vertical,
-    VerticalUnit, Voltage, VoltageLaw, Wrench,
+    Saturation, Scalar, Scratch, SetpointError, SingleRotor, Tables, ThrottleRange, Tolerance, Unit,
+    Vertical, VerticalUnit, Voltage, VoltageLaw, Wrench,
 };
 
 use crate::airframe::{Airframe, Basis};
@@ -18,6 +19,7 @@ use crate::model::voltage::TabulatedLaw;
 
 pub use border::BorderTable;
 pub use inverse::{InverseTable, SeedTable};
+pub use single::single_tables;
 
 /// The tables of one airframe.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +28,8 @@ pub struct MixerTables {
     pub units: Vec<Unit>,
     /// The forward map.
     pub pair: Pair<QuantityTable>,
+    /// What the upper and the lower rotor of a unit give alone.
+    pub singles: [SingleRotor; 2],
     /// The inverse map.
     pub inverse: InverseTable,
     /// The allowed throttles.
@@ -181,6 +185,7 @@ impl MixerTables {
         Tables {
             units: &self.units,
             pair: self.pair,
+            singles: self.singles,
             inverse: &self.inverse,
             throttle: self.throttle,
             voltage: self.voltage.as_ref().map(VoltageTable::view),
@@ -227,6 +232,7 @@ impl MixerTables {
     pub fn bytes(&self) -> usize {
         let floats = self.units.len() * 16
             + 2 * self.pair.thrust.terms()
+            + 2 * 2 * 4 // single rotors
             + self.inverse.floats()
             + 2 // throttle range
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())

@@ -112,7 +112,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         if !is_whole {
             for rotors in [Rotors::Upper, Rotors::Lower] {
                 rolled();
-                let [low, high] = rotors.ends(&tables.pair, &tables.throttle);
+                let [low, high] = rotors.ends(&tables.singles, &tables.throttle);
                 efforts[rotors as usize] = [[high[0] - low[0], high[1] - low[1]], low];
             }
         }
@@ -261,8 +261,9 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             let [along, low] = self.efforts[unit.rotors as usize & 3];
             let x = 0.5 + share * (unit.at[0] - 0.5);
             let [f, chord] = [0, 1].map(|k| low[k] + x * along[k]);
-            let [u, l] = unit.rotors.invert(&tables.pair, &tables.throttle, f);
-            let extra = (tables.pair.torque.value(u, l) - chord) / share;
+            let throttles = unit.rotors.invert(&tables.singles, &tables.throttle, f);
+            let [_, torque] = unit.rotors.efforts(tables, throttles);
+            let extra = (torque - chord) / share;
             let change = extra - unit.rate[1];
             if change.abs() > TOUCHING * tables.attainable.scale[1] {
                 has_moved = true;

@@ -53,6 +53,7 @@ pub use inverse::{
     Seeded, ThrottleRange, solve,
 };
 pub use mix::{Airframe, Mix, mix, mix_into, mix_with_health};
+pub use rotors::SingleRotor;
 pub use saturation::{Direction, Saturation};
 pub use scalar::Scalar;
 pub use sqrt::sqrt;

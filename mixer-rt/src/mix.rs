@@ -116,10 +116,11 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
                 .inverse
                 .throttles(&tables.pair, &tables.throttle, scratch.at),
             Rotors::None => [0.0; 2],
-            single => single.invert(&tables.pair, &tables.throttle, scratch.at[0]),
+            single => single.invert(&tables.singles, &tables.throttle, scratch.at[0]),
         };
         write(unit.channels, throttles, throttle);
-        unit.add_wrench(tables.pair.efforts(throttles), factors, &mut achieved);
+        let efforts = scratch.rotors.efforts(tables, throttles);
+        unit.add_wrench(efforts, factors, &mut achieved);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
     Ok((

@@ -1,6 +1,37 @@
 //! Which rotors of a unit work, and the curve that a single rotor leaves its unit.
 
-use crate::{Health, Pair, Quantity, ThrottleRange, sqrt};
+use crate::{Health, Quantity, Tables, ThrottleRange, sqrt};
+
+/// What a rotor gives alone, the other one of its unit at rest: thrust (N) and torque (N m, signed as on the bench) as
+/// polynomials of its throttle without a constant, coefficients from the fourth power down to the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SingleRotor {
+    /// Of thrust.
+    pub thrust: [f32; 4],
+    /// Of torque.
+    pub torque: [f32; 4],
+}
+
+impl SingleRotor {
+    /// The efforts `[f, Q]` at a throttle, by Horner's rule.
+    #[inline]
+    pub fn efforts(&self, throttle: f32) -> [f32; 2] {
+        let value =
+            |[a4, a3, a2, a1]: [f32; 4]| (((throttle * a4 + a3) * throttle + a2) * throttle + a1) * throttle;
+        [value(self.thrust), value(self.torque)]
+    }
+
+    /// The thrust at a throttle and its slope. The thrust has the bits of [`SingleRotor::efforts`].
+    #[inline]
+    fn thrust_and_slope(&self, x: f32) -> [f32; 2] {
+        let [a4, a3, a2, a1] = self.thrust;
+        let leading = x * a4;
+        let inner = leading + a3;
+        let (outer, outer_slope) = (inner * x + a2, leading + inner);
+        let (value, slope) = (outer * x + a1, outer_slope * x + outer);
+        [value * x, slope * x + value]
+    }
+}
 
 /// Which rotors of a unit work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,24 +74,42 @@ impl Rotors {
         }
     }
 
+    /// What the rotor gives that works, of a unit with a single one.
+    #[inline]
+    fn curve(self, [upper, lower]: &[SingleRotor; 2]) -> &SingleRotor {
+        if self == Rotors::Lower { lower } else { upper }
+    }
+
+    /// The efforts `[f, Q]` (N, N m) of a unit with these rotors at `[u, l]`.
+    #[inline(always)]
+    pub(crate) fn efforts<P: Quantity, I, S>(
+        self,
+        tables: &Tables<'_, P, I, S>,
+        [u, l]: [f32; 2],
+    ) -> [f32; 2] {
+        if self.is_single() {
+            self.curve(&tables.singles).efforts(u + l)
+        } else {
+            tables.pair.efforts([u, l])
+        }
+    }
+
     /// The efforts `[f, Q]` (N, N m) of a unit whose single rotor is at the least and at the largest throttle.
-    pub(crate) fn ends<P: Quantity>(self, pair: &Pair<P>, range: &ThrottleRange) -> [[f32; 2]; 2] {
-        [range.min, range.max].map(|throttle| pair.efforts(self.throttles(throttle)))
+    pub(crate) fn ends(self, singles: &[SingleRotor; 2], range: &ThrottleRange) -> [[f32; 2]; 2] {
+        [range.min, range.max].map(|throttle| self.curve(singles).efforts(throttle))
     }
 
     /// The throttles within the range at which a unit with a single rotor gives the thrust `f` (N): Newton's method on the
-    /// pair's polynomial, each step limited to the range.
+    /// rotor's polynomial, each step limited to the range.
     #[inline(never)]
-    pub(crate) fn invert<P: Quantity>(self, pair: &Pair<P>, range: &ThrottleRange, f: f32) -> [f32; 2] {
-        let [[least, _], [most, _]] = self.ends(pair, range);
+    pub(crate) fn invert(self, singles: &[SingleRotor; 2], range: &ThrottleRange, f: f32) -> [f32; 2] {
+        let [[least, _], [most, _]] = self.ends(singles, range);
         let (low, high) = (range.min * range.min, range.max * range.max);
         let share = (f - least) / (most - least);
         let square = low + share * (high - low);
         let mut throttle = range.clamp(if square > low { sqrt(square) } else { range.min });
         for _ in 0..STEPS {
-            let [u, l] = self.throttles(throttle);
-            let [value, by_upper, by_lower] = pair.thrust.value_and_gradient(u, l);
-            let slope = if self == Rotors::Lower { by_lower } else { by_upper };
+            let [value, slope] = self.curve(singles).thrust_and_slope(throttle);
             // Where a thrust does not grow with its throttle the step is limited to the range.
             throttle = range.clamp(throttle + (f - value) / slope);
         }

@@ -1,6 +1,6 @@
 //! What the compiler emits for one airframe.
 
-use crate::{AttainableSet, Desaturation, NoShortcut, Pair, ThrottleRange, Voltage};
+use crate::{AttainableSet, Desaturation, NoShortcut, Pair, SingleRotor, ThrottleRange, Voltage};
 
 /// One coaxial unit's share of M and M+.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +53,8 @@ pub struct Tables<'a, P, I, S = NoShortcut> {
     pub units: &'a [Unit],
     /// The forward map of every unit.
     pub pair: Pair<P>,
+    /// What the upper and the lower rotor of a unit give alone, the other one out.
+    pub singles: [SingleRotor; 2],
     /// The inverse map of every unit.
     pub inverse: I,
     /// The allowed throttles.

@@ -110,6 +110,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
     let view = Tables {
         units: view.units,
         pair: view.pair,
+        singles: view.singles,
         inverse: &watched,
         throttle: view.throttle,
         voltage: view.voltage,

@@ -130,6 +130,16 @@ pub mod isae_x8 {
                 0.072,
             ]),
         },
+        singles: [
+            ::mixer_rt::SingleRotor {
+                thrust: [0.0, 0.0, 12.3604, 2.764],
+                torque: [0.0, 0.0, -0.1312, -0.0907],
+            },
+            ::mixer_rt::SingleRotor {
+                thrust: [0.0, 0.0, 12.2092, 0.2363],
+                torque: [0.0, 0.0, 0.1441, 0.072],
+            },
+        ],
         inverse: ::mixer_rt::Seeded {
             coordinates: ::mixer_rt::RootCoordinates {
                 x: [0.040342588, -2.504363, 0.04923412],

@@ -144,6 +144,16 @@ pub mod x8_11in_cubic {
                 0.04840858,
             ]),
         },
+        singles: [
+            ::mixer_rt::SingleRotor {
+                thrust: [0.0, -1.568439, 10.38016, 2.109963],
+                torque: [0.0, 0.009379736, -0.1813082, -0.06034118],
+            },
+            ::mixer_rt::SingleRotor {
+                thrust: [0.0, -0.2664861, 6.913037, 4.025217],
+                torque: [0.0, -0.02220356, 0.1624532, 0.04840858],
+            },
+        ],
         inverse: ::mixer_rt::Seeded {
             coordinates: ::mixer_rt::RootCoordinates {
                 x: [0.055495482, -3.066655, 0.04458168],

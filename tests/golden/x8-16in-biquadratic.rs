@@ -142,6 +142,16 @@ pub mod x8_16in_biquadratic {
                 0.3005523,
             ]),
         },
+        singles: [
+            ::mixer_rt::SingleRotor {
+                thrust: [0.0, 0.0, 25.32957, 0.1466085],
+                torque: [0.0, 0.0, -0.2830277, -0.3241275],
+            },
+            ::mixer_rt::SingleRotor {
+                thrust: [0.0, 0.0, 23.36379, 3.664099],
+                torque: [0.0, 0.0, 0.2588536, 0.3005523],
+            },
+        ],
         inverse: ::mixer_rt::Seeded {
             coordinates: ::mixer_rt::RootCoordinates {
                 x: [0.023797631, -1.4680592, 0.19563453],

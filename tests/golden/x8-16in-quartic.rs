@@ -154,6 +154,16 @@ pub mod x8_16in_quartic {
                 -0.003942542,
             ]),
         },
+        singles: [
+            ::mixer_rt::SingleRotor {
+                thrust: [5.017811, -27.33077, 51.63577, -4.662869],
+                torque: [-0.03087651, 0.4061824, -0.8303414, -0.0513442],
+            },
+            ::mixer_rt::SingleRotor {
+                thrust: [-31.21384, 39.612, 11.22456, 5.334038],
+                torque: [-0.4149023, 0.2985188, 0.5926543, -0.003942542],
+            },
+        ],
         inverse: ::mixer_rt::Seeded {
             coordinates: ::mixer_rt::RootCoordinates {
                 x: [0.024828965, -1.5989246, 0.2026527],

@@ -153,6 +153,16 @@ pub mod x8_22in_cubic {
                 -0.4766169,
             ]),
         },
+        singles: [
+            ::mixer_rt::SingleRotor {
+                thrust: [0.0, -21.87007, 60.47546, 2.633585],
+                torque: [0.0, 1.229847, -2.649546, 0.3015207],
+            },
+            ::mixer_rt::SingleRotor {
+                thrust: [0.0, -49.93869, 96.15143, -8.530369],
+                torque: [0.0, -1.545362, 2.943932, -0.4766169],
+            },
+        ],
         inverse: ::mixer_rt::Seeded {
             coordinates: ::mixer_rt::RootCoordinates {
                 x: [0.01704014, -0.6866573, -0.041779503],

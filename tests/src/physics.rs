@@ -1,7 +1,7 @@
 //! What throttles give by the airframe file's own numbers, in f64: what mixers in f32 are judged against.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Voltage;
+use mixer_compiler::airframe::{RotorAlone, Voltage};
 use mixer_compiler::model::PairMap;
 use mixer_rt::Health;
 use nalgebra::{Matrix4xX, MatrixXx4};
@@ -20,6 +20,8 @@ pub struct Physics {
     /// Outputs of the upper and of the lower rotor, per unit.
     pub channels: Vec<[usize; 2]>,
     voltage: Option<Voltage>,
+    /// What the upper and the lower rotor give alone, where the file says it.
+    alone: [Option<RotorAlone>; 2],
 }
 
 impl Physics {
@@ -36,6 +38,7 @@ impl Physics {
                 .map(|unit| [unit.upper_channel, unit.lower_channel])
                 .collect(),
             voltage: airframe.voltage.clone(),
+            alone: [airframe.pair.lower_out.clone(), airframe.pair.upper_out.clone()],
         }
     }
 
@@ -82,9 +85,20 @@ impl Physics {
     pub fn wrench(&self, throttle: &[f32], volts: f32) -> [f64; 4] {
         let efforts = self.channels.iter().map(|channels| {
             let throttles = channels.map(|channel| f64::from(throttle[channel]));
-            self.pair.efforts(throttles)
+            self.given(throttles)
         });
         self.wrench_of(efforts, self.factors(volts))
+    }
+
+    /// What a unit gives: a rotor below idle is out.
+    fn given(&self, throttles: [f64; 2]) -> [f64; 2] {
+        let idle = self.pair.range()[0];
+        let is_out = throttles.map(|throttle| throttle < 0.999 * idle);
+        match (is_out, &self.alone) {
+            ([false, true], [Some(alone), _]) => alone.efforts(throttles[0]),
+            ([true, false], [_, Some(alone)]) => alone.efforts(throttles[1]),
+            _ => self.pair.efforts(throttles),
+        }
     }
 
     /// The largest `[roll, pitch, yaw, thrust]` at the reference voltage, N m and N: all units at their best,

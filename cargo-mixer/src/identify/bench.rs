@@ -6,6 +6,7 @@
 
 use serde::Serialize;
 
+use super::alone::Turning;
 use super::date::date_in;
 use super::plateau;
 use super::read::{Log, RefusedRow, Sample};
@@ -52,6 +53,8 @@ pub struct Bench {
     pub date: Option<String>,
     /// Pair or single rotor.
     pub kind: Kind,
+    /// Which rotor turns in a run of one, where the header has a throttle for each.
+    pub turning: Option<Turning>,
     /// Rows of measurements in the file.
     pub rows: usize,
     /// Start and stop rows dropped.
@@ -204,6 +207,8 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     let date = how.date.clone().or_else(|| date_in(&name));
     Ok(Bench {
         no_power: columns.no_power(),
+        turning: (kind == Kind::SingleRotor && columns.lower.is_some())
+            .then_some([Turning::Upper, Turning::Lower][rotor]),
         file: name,
         format: columns.format,
         date,

@@ -53,6 +53,22 @@ fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
     if let Some(pair) = &id.pair {
         write_pair(out, pair)?;
     }
+    for (turning, alone) in id.pair.iter().flat_map(report::runs) {
+        writeln!(out)?;
+        for line in report::alone_lines(alone)
+            .iter()
+            .flat_map(|line| wrapped(line, 104))
+        {
+            writeln!(out, "# {line}")?;
+        }
+        writeln!(
+            out,
+            "[pair.{}]\nthrust_n = {:?}\ntorque_nm = {:?}",
+            turning.key(),
+            alone.thrust_n,
+            alone.torque_nm
+        )?;
+    }
     if let Some(Power::Identified(found)) = &id.power {
         writeln!(out, "\n# Least power:")?;
         for line in report::least_power_lines(found) {

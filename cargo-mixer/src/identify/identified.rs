@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
+use super::alone::{self, Turning};
 use super::bench::{self, Bench, Kind, Preparation};
 use super::pair::{self, Pair, Wishes};
 use super::power::{self, Power};
@@ -22,6 +23,8 @@ pub struct Settings {
     pub preparation: Preparation,
     /// How points are fitted.
     pub wishes: Wishes,
+    /// Runs of the upper and of the lower rotor alone.
+    pub alone: [Option<PathBuf>; 2],
 }
 
 /// All that `--json` prints.
@@ -45,11 +48,26 @@ pub struct Identified {
 
 /// Reads the files and identifies what they hold. All refusals are collected.
 pub fn identify(paths: &[PathBuf], settings: &Settings) -> Result<Identified, Vec<Refusal>> {
-    from_benches(read_all(paths, settings)?, &settings.wishes).map_err(|r| vec![r])
+    let benches = read_all(paths, settings)?;
+    let run = |path: &Option<PathBuf>| -> Result<Option<Bench>, Vec<Refusal>> {
+        let Some(path) = path else { return Ok(None) };
+        Ok(read_all(std::slice::from_ref(path), settings)?.pop())
+    };
+    let [upper, lower] = &settings.alone;
+    with_runs(benches, [run(upper)?, run(lower)?], &settings.wishes).map_err(|r| vec![r])
 }
 
 /// Identifies what benches hold that have been read.
 pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, Refusal> {
+    with_runs(benches, [None, None], wishes)
+}
+
+/// [`from_benches`] with runs of the upper and of the lower rotor alone.
+pub fn with_runs(
+    benches: Vec<Bench>,
+    runs: [Option<Bench>; 2],
+    wishes: &Wishes,
+) -> Result<Identified, Refusal> {
     distinct_names(&benches)?;
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let voltage = dependence(&benches);
@@ -57,13 +75,30 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
         Some(exponents) => Some(declared(voltage, exponents, &benches)?),
         None => voltage,
     };
-    let pair = if has(Kind::Pair) {
+    let mut pair = if has(Kind::Pair) {
         Some(pair::identify(&benches, voltage.as_ref(), wishes)?)
     } else {
         only_single(&benches, voltage.as_ref())?;
         None
     };
     let mut warnings: Vec<String> = pair.iter().flat_map(|p| p.warnings.clone()).collect();
+    if let Some(pair) = &mut pair {
+        let [upper, lower] = &runs;
+        let mut alone = |run: &Option<Bench>, turning, pair: &Pair| {
+            let run = run.as_ref();
+            run.map(|run| alone::identify(run, turning, pair, voltage.as_ref(), &mut warnings))
+                .transpose()
+        };
+        pair.lower_out = alone(upper, Turning::Upper, pair)?;
+        pair.upper_out = alone(lower, Turning::Lower, pair)?;
+        warnings.extend(alone::extrapolated(pair));
+    } else if let Some(run) = runs.iter().flatten().next() {
+        return Err(Refusal::of(
+            &run.file,
+            "a run of one rotor alone belongs to a map of the pair, and there is none",
+            "the map of the pair as BENCH.csv",
+        ));
+    }
     if let Some(v) = &voltage {
         warnings.extend(voltage_warnings(v));
         warnings.extend(sag(&benches, v));
@@ -86,7 +121,9 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
         let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
         warnings.push(told);
     }
-    let power = pair.as_ref().map(|pair| power::examine(&benches, pair));
+    let power = pair
+        .as_ref()
+        .map(|pair| power::examine(&benches, pair, voltage.as_ref()));
     Ok(Identified {
         generator: format!("cargo mixer identify {}", env!("CARGO_PKG_VERSION")),
         pair,

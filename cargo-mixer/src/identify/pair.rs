@@ -5,6 +5,7 @@ use mixer_compiler::model::injectivity::ForwardMap;
 use serde::Serialize;
 
 use self::placed::{Placed, at_reference, channels, confirmed, places, suspects, without};
+use super::alone::Alone;
 use super::basis::ThrottleBox;
 use super::bench::{Bench, Kind};
 use super::cross::{self, Candidate};
@@ -48,6 +49,10 @@ pub struct Pair {
     pub torque_nm: Vec<f64>,
     /// `cw`: the spin of the upper rotor for which that sign of torque is clockwise on the airframe.
     pub upper_spin: &'static str,
+    /// The upper rotor alone, from `--lower-out`.
+    pub lower_out: Option<Alone>,
+    /// The lower rotor alone, from `--upper-out`.
+    pub upper_out: Option<Alone>,
     /// Statistics of thrust.
     pub thrust: Fit,
     /// Statistics of torque.
@@ -100,7 +105,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         Some(wished) => beyond(wished, measured, &mut warnings),
         None => inside(measured),
     };
-    doubts::coverage(measured, throttle_box, &mut warnings);
+    doubts::coverage(throttle_box, &mut warnings);
     if throttle_box.min >= throttle_box.max {
         return Err(Refusal::of(
             label(),
@@ -194,6 +199,8 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         thrust_n: thrust_fit.coefficients.clone(),
         torque_nm: torque_fit.coefficients.clone(),
         upper_spin: "cw",
+        lower_out: None,
+        upper_out: None,
         thrust: thrust_fit,
         torque: torque_fit,
         throttle,

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::alone::{Alone, AloneFit, Turning};
 use super::cross::Candidate;
 use super::fit::Fit;
 use super::fragment::{exponent_line, provenance, wrapped};
@@ -42,6 +43,12 @@ fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
     }
     if let Some(pair) = &id.pair {
         write_pair(out, pair)?;
+    }
+    for (turning, alone) in id.pair.iter().flat_map(runs) {
+        writeln!(out, "\nAlone: [pair.{}]", turning.key())?;
+        for line in alone_lines(alone) {
+            paragraph(out, "  ", &line)?;
+        }
     }
     if let Some(v) = &id.voltage {
         writeln!(
@@ -87,6 +94,39 @@ fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
         }
     }
     Ok(())
+}
+
+/// The rotors of a pair that were run alone.
+pub fn runs(pair: &Pair) -> impl Iterator<Item = (Turning, &Alone)> {
+    let both = [
+        (Turning::Upper, &pair.lower_out),
+        (Turning::Lower, &pair.upper_out),
+    ];
+    both.into_iter()
+        .filter_map(|(turning, alone)| Some((turning, alone.as_ref()?)))
+}
+
+/// What there is to say of a rotor alone.
+pub fn alone_lines(alone: &Alone) -> Vec<String> {
+    let channel = |name: &str, unit: &str, coefficients: [f64; 3], fit: &AloneFit| {
+        let percent = |x: f64| 100.0 * x / fit.full_scale;
+        let [a1, a2, a3] = coefficients;
+        format!(
+            "{name} {a1:.5} x {a2:+.5} x2 {a3:+.5} x3 {unit}: leave-one-out {:.2} % of {:.4} {unit}; the pair's polynomial at \
+             zero misses this run by {:.2} %",
+            percent(fit.leave_one_out_rms),
+            fit.full_scale,
+            percent(fit.of_the_pair_rms)
+        )
+    };
+    vec![
+        format!(
+            "{}: {} points, throttle {:.2} to {:.2}",
+            alone.file, alone.points, alone.measured[0], alone.measured[1]
+        ),
+        channel("thrust", "N", alone.thrust_n, &alone.thrust),
+        channel("torque", "N m", alone.torque_nm, &alone.torque),
+    ]
 }
 
 fn write_power(out: &mut String, power: &Power) -> std::fmt::Result {

@@ -176,20 +176,20 @@ pub fn single(
     samples: &[Sample],
     policy: &SignPolicy,
 ) -> (Signs, Vec<(f64, f64)>) {
-    let own_thrust = columns.rotor_thrust[rotor].is_some();
-    let own_torque = columns.rotor_torque[rotor].is_some();
+    // The whole where it is measured: a rotor at rest in the wake has a drag of its own.
+    let (whole_thrust, whole_torque) = (columns.thrust.is_some(), columns.torque.is_some());
     let thrust = |s: &Sample| {
-        if own_thrust {
-            s.rotor_thrust[rotor]
-        } else {
+        if whole_thrust {
             s.thrust
+        } else {
+            s.rotor_thrust[rotor]
         }
     };
     let torque = |s: &Sample| {
-        if own_torque {
-            s.rotor_torque[rotor]
-        } else {
+        if whole_torque {
             s.torque
+        } else {
+            s.rotor_torque[rotor]
         }
     };
     let sign = |choice: SignChoice, automatic: f64| match choice {
@@ -198,7 +198,7 @@ pub fn single(
     };
     let thrust_sign = sign(policy.thrust, sign_of_sum(samples.iter().map(thrust)));
     let torque_sign = sign_of_sum(samples.iter().map(torque));
-    let has_torque = own_torque || columns.torque.is_some();
+    let has_torque = whole_torque || columns.rotor_torque[rotor].is_some();
     let signs = Signs {
         thrust: vec![thrust_sign],
         torque: if has_torque { vec![torque_sign] } else { Vec::new() },

@@ -480,3 +480,75 @@ fn torque_of_least_power_saves_on_every_full_range_map() {
     let mean = savings.iter().sum::<f64>() / savings.len() as f64;
     assert!(mean > 2.35, "{mean} of {savings:?}");
 }
+
+#[test]
+fn single_rotors_are_described_by_three_terms() {
+    let Some(data) = data("single_rotors_are_described_by_three_terms") else {
+        return;
+    };
+    let coaxial = |part: &str| coaxial(&data, part);
+    // The upper and the lower rotor's runs, with a full-range map of the same pair and with one from 0.40, where there is one.
+    let pairs = [
+        (
+            "_11in_prop_910kv_11V_propdrivev2_single_rotor_good",
+            "_11in_prop_910kv_11V_propdrivev2_bottom",
+        ),
+        (
+            "_16p2in_prop_400kv_22V_U5_T_motor_single",
+            "_16p2in_prop_400kv_22V_U5_T_motor_bottom",
+        ),
+        (
+            "_22in_prop_240kv_25V_MN501S_T_motor_single",
+            "_22in_prop_240kv_25V_MN501S_T_motor_bottom",
+        ),
+    ];
+    let maps = [
+        ("08_17_09_33_47_11in", "07_23_08_27_27_11in"),
+        ("08_09_18_15_06_16p2in", "07_22_10_20_01_16p2in"),
+        ("08_17_17_00_55_22in", "07_20_14_17_57_22in"),
+    ];
+    let mut errors = Vec::new();
+    let mut from_idle = Vec::new();
+    let mut from_forty = Vec::new();
+    for ((upper, lower), (full, forty)) in pairs.into_iter().zip(maps) {
+        for (map, of_the_pair) in [(full, &mut from_idle), (forty, &mut from_forty)] {
+            let mut settings = settings(Some(Basis::Cubic));
+            settings.alone = [Some(coaxial(upper)), Some(coaxial(lower))];
+            let found = identify(&[coaxial(map)], &settings).unwrap_or_else(|e| panic!("{map}: {}", e[0]));
+            assert!(
+                !found
+                    .warnings
+                    .iter()
+                    .any(|w| w.contains("nothing was measured below"))
+            );
+            let pair = found.pair.expect("a pair");
+            for alone in [&pair.lower_out, &pair.upper_out] {
+                let alone = alone.as_ref().expect("a rotor alone");
+                let [f, q] = [alone.thrust, alone.torque];
+                let percent = |x: f64, of: f64| 100.0 * x / of;
+                of_the_pair.push([
+                    percent(f.of_the_pair_rms, f.full_scale),
+                    percent(q.of_the_pair_rms, q.full_scale),
+                ]);
+                if map == full {
+                    errors.push([
+                        percent(f.leave_one_out_rms, f.full_scale),
+                        percent(q.leave_one_out_rms, q.full_scale),
+                    ]);
+                }
+                println!("{map}: {} {f:?} {q:?}", alone.file);
+            }
+        }
+    }
+    let mean = |errors: &[[f64; 2]], k: usize| errors.iter().map(|e| e[k]).sum::<f64>() / errors.len() as f64;
+    let figures = [&errors, &from_idle, &from_forty].map(|errors| [0, 1].map(|k| mean(errors, k)));
+    let [alone, idle, forty] = figures;
+    println!("alone {alone:.2?}, polynomial of full-range maps {idle:.2?}, of maps from 0.40 {forty:.2?}");
+    assert!(alone[0] < 0.9 && alone[1] < 0.95, "{alone:?}");
+    assert!(errors.iter().all(|[f, q]| *f < 1.5 && *q < 1.5), "{errors:?}");
+    // What these runs replace.
+    assert!(
+        idle[0] > 1.0 && forty[0] > 4.0 && forty[1] > 9.0,
+        "{idle:?} {forty:?}"
+    );
+}

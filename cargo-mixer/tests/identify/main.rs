@@ -1,5 +1,6 @@
 //! `cargo mixer identify`: synthetic sweeps with known truth in every format, refusals, the command, real bench data.
 
+mod alone;
 mod bench_data;
 mod command;
 mod doubts;

@@ -22,7 +22,7 @@ fn too_few_throttle_pairs() {
     let levels = |t: f64| (t * 10.0).round() as i64 % 4 == 1; // 0.1, 0.5, 0.9
     let text = reason(&sweep(|r| levels(r.u) && levels(r.l)));
     assert!(
-        text.contains("9 distinct throttle pairs") && text.contains("grid of at least"),
+        text.contains("9 distinct throttle pairs") && text.contains("a grid of"),
         "{text}"
     );
 }

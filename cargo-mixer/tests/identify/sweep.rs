@@ -268,6 +268,7 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
             reference_v: None,
             voltage_exponent: None,
         },
+        alone: [None, None],
     }
 }
 

@@ -3,7 +3,9 @@
 use serde::Serialize;
 use toml::Spanned;
 
+use super::Throttle;
 use super::check::{LARGEST_EFFORT, word};
+use super::rotor_alone::{self, RotorAlone};
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
@@ -138,9 +140,17 @@ pub struct Pair {
     pub torque_nm: Vec<f64>,
     /// Spin of the upper rotor on the bench.
     pub upper_spin: Spin,
+    /// The upper rotor alone; `None` where the polynomials at l = 0 stand for it.
+    pub lower_out: Option<RotorAlone>,
+    /// The lower rotor alone; `None` where the polynomials at u = 0 stand for it.
+    pub upper_out: Option<RotorAlone>,
 }
 
-pub(super) fn check(pair: &spec::Pair, faults: &mut Vec<Diagnostic>) -> Option<Pair> {
+pub(super) fn check(
+    pair: &spec::Pair,
+    throttle: Option<&Throttle>,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<Pair> {
     let bases = Basis::ALL.map(|basis| (basis.name(), basis));
     let basis = pair
         .basis
@@ -152,7 +162,15 @@ pub(super) fn check(pair: &spec::Pair, faults: &mut Vec<Diagnostic>) -> Option<P
         .upper_spin
         .as_ref()
         .and_then(|field| word(field, "pair.upper_spin", &Spin::WORDS, faults));
+    let mut alone = |key, table: &Option<spec::RotorAlone>, sign| {
+        let table = table.as_ref()?;
+        Some(rotor_alone::check(key, table, sign, throttle, faults))
+    };
+    let lower_out = alone("lower_out", &pair.lower_out, -1.0);
+    let upper_out = alone("upper_out", &pair.upper_out, 1.0);
     Some(Pair {
+        lower_out: lower_out.map_or(Some(None), |alone| alone.map(Some))?,
+        upper_out: upper_out.map_or(Some(None), |alone| alone.map(Some))?,
         basis: basis?,
         thrust_n: thrust_n?,
         torque_nm: torque_nm?,

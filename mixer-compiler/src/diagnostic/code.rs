@@ -92,6 +92,9 @@ catalogue! {
     /// A yaw reserve where yaw is not controlled.
     YawReserve = 121,
 
+    /// A single rotor's curve that no rotor has: thrust that does not grow, or torque of the other rotor's sign.
+    RotorAlone = 130,
+
     /// The units cannot produce an axis: the effectiveness matrix has not the rank that the axes ask for.
     RankDeficient = 200,
     /// The pair's map folds inside the throttle range: det J falls to zero or below.

@@ -166,6 +166,10 @@ fn tables(tables: &MixerTables) -> TokenStream {
     });
     let thrust = quantity(&tables.pair.thrust);
     let torque = quantity(&tables.pair.torque);
+    let singles = tables.singles.iter().map(|single| {
+        let (thrust, torque) = (vector(&single.thrust), vector(&single.torque));
+        quote!(::mixer_rt::SingleRotor { thrust: #thrust, torque: #torque })
+    });
     let inverse = inverse(&tables.inverse);
     let (min, max) = (float(tables.throttle.min), float(tables.throttle.max));
     let voltage = voltage(tables);
@@ -181,6 +185,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
         ::mixer_rt::Tables {
             units: &[#(#units),*],
             pair: ::mixer_rt::Pair { thrust: #thrust, torque: #torque },
+            singles: [#(#singles),*],
             inverse: #inverse,
             throttle: ::mixer_rt::ThrottleRange { min: #min, max: #max },
             voltage: #voltage,

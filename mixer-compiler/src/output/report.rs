@@ -57,8 +57,51 @@ pub struct Summary {
     pub thrust_range_n: [f32; 2],
     /// The vehicle in hover; null where the file has no mass.
     pub hover: Option<Hover>,
+    /// What a unit with one rotor left is taken to give.
+    pub rotor_out: RotorOut,
     /// What it costs on the target.
     pub cost: Cost,
+}
+
+/// What a unit with one rotor left is taken to give, by the rotor that is out.
+#[derive(Clone, Debug, Serialize)]
+pub struct RotorOut {
+    /// The upper rotor turns.
+    pub lower_out: RotorAlone,
+    /// The lower rotor turns.
+    pub upper_out: RotorAlone,
+}
+
+/// Where that comes from.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "snake_case", tag = "by")]
+pub enum RotorAlone {
+    /// The file's `[pair.lower_out]` or `[pair.upper_out]`.
+    Declared,
+    /// The pair's polynomials at a throttle of zero of the rotor that is out.
+    Extrapolated {
+        /// From here, the idle, down to zero.
+        from_throttle: f64,
+    },
+}
+
+impl RotorAlone {
+    fn new(is_declared: bool, idle: f64) -> Self {
+        if is_declared {
+            RotorAlone::Declared
+        } else {
+            RotorAlone::Extrapolated { from_throttle: idle }
+        }
+    }
+
+    fn in_words(&self) -> String {
+        match self {
+            RotorAlone::Declared => "as declared in the file".to_owned(),
+            RotorAlone::Extrapolated { from_throttle } => {
+                format!("by the pair's polynomials, extrapolated from {from_throttle:?} to 0")
+            }
+        }
+    }
 }
 
 /// The certificate in `cargo mixer check --json`.
@@ -116,6 +159,10 @@ impl Summary {
             attainable_area_lost_in_closed_form: compiled.lost_between_sides,
             thrust_range_n: compiled.thrust_range_n,
             hover: Hover::new(compiled),
+            rotor_out: RotorOut {
+                lower_out: RotorAlone::new(airframe.pair.lower_out.is_some(), airframe.throttle.min),
+                upper_out: RotorAlone::new(airframe.pair.upper_out.is_some(), airframe.throttle.min),
+            },
             cost: Cost::new(compiled),
         }
     }
@@ -279,6 +326,14 @@ impl Report<'_> {
         )?;
         let [floor, ceiling] = summary.thrust_range_n;
         writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;
+        let [lower, upper] =
+            [&summary.rotor_out.lower_out, &summary.rotor_out.upper_out].map(RotorAlone::in_words);
+        if lower == upper {
+            writeln!(f, "rotor out       the other one {lower}")?;
+        } else {
+            writeln!(f, "lower rotor out the upper one {lower}")?;
+            writeln!(f, "upper rotor out the lower one {upper}")?;
+        }
         if let Some(hover) = &summary.hover {
             write!(f, "{hover}")?;
         }

@@ -168,6 +168,26 @@ pub const PAIR: Shape = shape! { "[pair]":
         "Coefficients of the total torque, N m, positive where the lower rotor outweighs the upper.";
     "upper_spin" required => "upper_spin = \"cw\"", Kind::Word(SPINS),
         "How the upper rotor turned on the bench, seen from above.";
+    "lower_out" => "[pair.lower_out]", Kind::Table(&LOWER_OUT),
+        "What the upper rotor gives alone, the lower one at rest: used while the lower one is out.";
+    "upper_out" => "[pair.upper_out]", Kind::Table(&UPPER_OUT),
+        "What the lower rotor gives alone, the upper one at rest: used while the upper one is out.";
+};
+
+/// `[pair.lower_out]`
+pub const LOWER_OUT: Shape = shape! { "[pair.lower_out]":
+    "thrust_n" required => "thrust_n = [0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
+        "Thrust of the upper rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.";
+    "torque_nm" required => "torque_nm = [-0.01, -0.2, 0.02]", Kind::Numbers([3, 3]),
+        "Its torque, N m, signed as that of the pair.";
+};
+
+/// `[pair.upper_out]`
+pub const UPPER_OUT: Shape = shape! { "[pair.upper_out]":
+    "thrust_n" required => "thrust_n = [0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
+        "Thrust of the lower rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.";
+    "torque_nm" required => "torque_nm = [0.01, 0.2, -0.02]", Kind::Numbers([3, 3]),
+        "Its torque, N m, signed as that of the pair.";
 };
 
 /// `[voltage]`
@@ -248,5 +268,5 @@ pub const VEHICLE: Shape = shape! { "[vehicle]":
 
 /// Every table, to tell where a misplaced key belongs.
 pub(crate) const ALL: &[Shape] = &[
-    FILE, THROTTLE, PAIR, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION, VEHICLE,
+    FILE, THROTTLE, PAIR, LOWER_OUT, UPPER_OUT, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION, VEHICLE,
 ];

@@ -5,9 +5,6 @@ use super::super::fit::Fit;
 use super::MonotoneCost;
 use super::placed::Placed;
 
-/// Lowest measured throttle above which a rotor that stands still is far from what was measured.
-const LOW: f64 = 0.15;
-
 /// Full throttle, but for what pulse widths are rounded to.
 const FULL: f64 = 0.995;
 
@@ -19,14 +16,7 @@ const APART: f64 = 0.01;
 const COSTLY: f64 = 0.05;
 
 /// What the measured range leaves out.
-pub(super) fn coverage([upper, lower]: [[f64; 2]; 2], throttle: ThrottleBox, warnings: &mut Vec<String>) {
-    let lowest = upper[0].max(lower[0]);
-    if lowest > LOW {
-        warnings.push(format!(
-            "nothing was measured below a throttle of {lowest:.2}: with a rotor out the map is extrapolated to 0, on \
-             real maps by 5 to 15 % of thrust"
-        ));
-    }
+pub(super) fn coverage(throttle: ThrottleBox, warnings: &mut Vec<String>) {
     if throttle.max < FULL {
         warnings.push(format!(
             "throttle.max is {}: what is above is never commanded; measure up to full throttle",

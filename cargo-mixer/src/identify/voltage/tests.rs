@@ -21,6 +21,7 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
         },
         notes: Vec::new(),
         no_power: None,
+        turning: None,
         points,
     }
 }
