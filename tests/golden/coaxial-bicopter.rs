@@ -217,13 +217,6 @@ pub mod coaxial_bicopter {
             ],
         },
         rows: [0.0896502, 0.0, 4.595398, 0.040342588],
-        level: ::core::option::Option::Some(::mixer_rt::Level {
-            thrust: [0.04686655, 1.021227],
-            efforts: &[
-                [[0.58085686, -0.0012923703], [12.656935, 0.0]],
-                [[0.58085686, -0.0012923703], [12.656935, 0.0]],
-            ],
-        }),
         desaturation: ::mixer_rt::Desaturation {
             airmode: ::mixer_rt::Airmode::Disabled,
             yaw_reserve_nm: 0.0,

@@ -232,14 +232,6 @@ pub mod px4_y6 {
             ],
         },
         rows: [0.12102777, 0.12102777, 4.595398, 0.040342588],
-        level: ::core::option::Option::Some(::mixer_rt::Level {
-            thrust: [0.077356346, 1.5240406],
-            efforts: &[
-                [[0.639162, 0.0], [12.592487, 0.0]],
-                [[0.639162, 0.0], [12.592487, 0.0]],
-                [[0.639162, 0.0], [12.592487, 0.0]],
-            ],
-        }),
         desaturation: ::mixer_rt::Desaturation {
             airmode: ::mixer_rt::Airmode::RollPitch,
             yaw_reserve_nm: 0.0,

@@ -189,10 +189,6 @@ pub mod single_pair {
             ],
         },
         rows: [0.0, 0.0, 4.595398, 0.040342588],
-        level: ::core::option::Option::Some(::mixer_rt::Level {
-            thrust: [0.025785318, 0.5080134],
-            efforts: &[[[0.6391587, 0.0], [12.592484, 0.0]]],
-        }),
         desaturation: ::mixer_rt::Desaturation {
             airmode: ::mixer_rt::Airmode::Disabled,
             yaw_reserve_nm: 0.0,

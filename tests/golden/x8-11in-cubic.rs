@@ -218,15 +218,6 @@ pub mod x8_11in_cubic {
             ],
         },
         rows: [0.2616082, 0.2616082, 4.76171, 0.055495482],
-        level: ::core::option::Option::Some(::mixer_rt::Level {
-            thrust: [0.12200558, 2.0311499],
-            efforts: &[
-                [[0.5496141, -0.0020095196], [9.150068, 0.0]],
-                [[0.5496141, -0.0020095196], [9.150068, 0.0]],
-                [[0.5496141, -0.0020095196], [9.150068, 0.0]],
-                [[0.5496141, -0.0020095196], [9.150068, 0.0]],
-            ],
-        }),
         desaturation: ::mixer_rt::Desaturation {
             airmode: ::mixer_rt::Airmode::Disabled,
             yaw_reserve_nm: 0.0,

@@ -240,15 +240,6 @@ pub mod x8_16in_biquadratic {
             ],
         },
         rows: [0.07478874, 0.07478874, 1.804133, 0.023797631],
-        level: ::core::option::Option::Some(::mixer_rt::Level {
-            thrust: [0.06136482, 1.9629538],
-            efforts: &[
-                [[0.6446521, -0.0015982252], [20.621315, 0.0]],
-                [[0.6446521, -0.0015982252], [20.621315, 0.0]],
-                [[0.6446521, -0.0015982252], [20.621315, 0.0]],
-                [[0.6446521, -0.0015982252], [20.621315, 0.0]],
-            ],
-        }),
         desaturation: ::mixer_rt::Desaturation {
             airmode: ::mixer_rt::Airmode::Disabled,
             yaw_reserve_nm: 0.0,

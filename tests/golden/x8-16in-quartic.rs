@@ -248,15 +248,6 @@ pub mod x8_16in_quartic {
             ],
         },
         rows: [0.07802991, 0.07802991, 2.0053651, 0.024828965],
-        level: ::core::option::Option::Some(::mixer_rt::Level {
-            thrust: [0.21773349, 2.0968006],
-            efforts: &[
-                [[2.1923435, -0.013661224], [21.112444, 0.0]],
-                [[2.1923435, -0.013661224], [21.112444, 0.0]],
-                [[2.1923435, -0.013661224], [21.112444, 0.0]],
-                [[2.1923435, -0.013661224], [21.112444, 0.0]],
-            ],
-        }),
         desaturation: ::mixer_rt::Desaturation {
             airmode: ::mixer_rt::Airmode::Disabled,
             yaw_reserve_nm: 0.0,

@@ -249,15 +249,6 @@ pub mod x8_22in_cubic {
             ],
         },
         rows: [0.040163998, 0.040163998, 0.8869217, 0.01704014],
-        level: ::core::option::Option::Some(::mixer_rt::Level {
-            thrust: [0.27701834, 2.103729],
-            efforts: &[
-                [[4.064209, -0.043147083], [30.864313, 0.0]],
-                [[4.064209, -0.043147083], [30.864313, 0.0]],
-                [[4.064209, -0.043147083], [30.864313, 0.0]],
-                [[4.064209, -0.043147083], [30.864313, 0.0]],
-            ],
-        }),
         desaturation: ::mixer_rt::Desaturation {
             airmode: ::mixer_rt::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
