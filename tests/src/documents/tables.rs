@@ -293,7 +293,7 @@ fn flights() -> Result<Vec<Flight>, String> {
 fn spread(values: &[f64], decimals: usize) -> String {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
     let deviation = (squares / (count - 1.0).max(1.0)).sqrt();
     format!("{mean:.decimals$} ± {deviation:.decimals$}")
 }
