@@ -10,6 +10,10 @@
 //! airmode disabled the thrust stays below the request, or below the least thrust that the rotors at idle and
 //! the yaw allow.
 
+pub(crate) mod attainable;
+pub(crate) mod closed_form;
+pub(crate) mod general;
+
 use crate::clamp;
 
 /// What desaturation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).

@@ -9,10 +9,10 @@
 //! setpoint u = [roll, pitch, yaw, thrust]                                     wrench.rs
 //!   -> efforts eta = M+ u            eq. (8), least norm                      tables.rs
 //!   -> divided by k_f(V), k_Q(V)     to the reference voltage                 voltage.rs
-//!   -> throttles of every unit       inverse of (f, Q)(u, l)                  inverse.rs, forward.rs
+//!   -> throttles of every unit       inverse of (f, Q)(u, l)                  pair/inverse.rs, pair/forward.rs
 //!   -> if a unit cannot: desaturate  within the attainable set, by priority
-//!        up to four vertical units     in closed form                         vertical.rs
-//!        any frame, rotors out         a bounded dual simplex method          general.rs
+//!        up to four vertical units     in closed form                         desaturation/closed_form.rs
+//!        any frame, rotors out         a bounded dual simplex method          desaturation/general.rs
 //!   -> achieved wrench               M (k_f f(u, l), k_Q Q(u, l))             mix.rs
 //! ```
 //!
@@ -24,42 +24,35 @@
 //! thrust positive upwards; throttles inside `[min, max]` within `[0, 1]`.
 #![no_std]
 
-mod attainable;
+mod arithmetic;
 #[cfg(feature = "baselines")]
 pub mod baselines;
 mod desaturation;
-mod forward;
-mod general;
 mod health;
-mod inverse;
 mod mix;
-mod rotors;
+mod pair;
 mod saturation;
-mod scalar;
-mod sqrt;
-mod table;
 mod tables;
-mod vertical;
 mod voltage;
 mod wrench;
 
-pub use attainable::{AttainableSet, Corner};
-pub use desaturation::{Airmode, Desaturation};
-pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
-pub use general::{FLIPS, PIVOTS, Scratch};
-pub use health::Health;
-pub use inverse::{
-    BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,
-    Seeded, ThrottleRange, solve,
+pub use arithmetic::{Scalar, sqrt};
+pub(crate) use arithmetic::{clamp, rolled};
+pub use desaturation::attainable::{AttainableSet, Corner};
+pub use desaturation::closed_form::{
+    Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortcut, Vertical, VerticalUnit,
 };
+pub use desaturation::general::{FLIPS, PIVOTS, Scratch};
+pub use desaturation::{Airmode, Desaturation};
+pub use health::Health;
 pub use mix::{Airframe, Mix, mix, mix_into, mix_with_health};
-pub use rotors::SingleRotor;
+pub use pair::{
+    BilinearSeed, Biquadratic, Cubic, CubicSeed, EightTermSeed, Inverse, Pair, PolynomialInverse,
+    QuadraticSeed, Quantity, Quartic, RootCoordinates, Seed, Seeded, SingleRotor, TableSeed, ThrottleRange,
+    solve,
+};
 pub use saturation::{Direction, Saturation};
-pub use scalar::Scalar;
-pub use sqrt::sqrt;
-pub use table::TableSeed;
 pub use tables::{Tables, Tolerance, Unit};
-pub use vertical::{Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortcut, Vertical, VerticalUnit};
 pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
 
@@ -70,17 +63,3 @@ pub static SOURCES: Sources = include_dir::include_dir!("$CARGO_MANIFEST_DIR/src
 /// Type of [`SOURCES`].
 #[cfg(feature = "sources")]
 pub type Sources = include_dir::Dir<'static>;
-
-/// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take three times the code
-/// and are hardly faster.
-#[inline(always)]
-fn rolled() {
-    core::hint::black_box(());
-}
-
-/// `x` limited to `[low, high]`; `low` where `x` is NaN. (`f32::clamp` has a panic path.)
-#[inline(always)]
-fn clamp(x: f32, low: f32, high: f32) -> f32 {
-    let x = if x > low { x } else { low };
-    if x < high { x } else { high }
-}

@@ -1,10 +1,10 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
+use crate::desaturation::closed_form::{Attained, Efforts, Request, Shortcut, Vertical};
+use crate::desaturation::general::{Scratch, allocate};
 use crate::desaturation::{is_bounded, limited};
-use crate::general::{Scratch, allocate};
+use crate::pair::rotors::Rotors;
 use crate::rolled;
-use crate::rotors::Rotors;
-use crate::vertical::{Attained, Efforts, Request, Shortcut, Vertical};
 use crate::voltage::Correction;
 use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};
 

@@ -6,9 +6,9 @@
 
 use core::hint::black_box;
 
-use crate::attainable::Corner;
+use crate::desaturation::attainable::Corner;
+use crate::pair::rotors::Rotors;
 use crate::rolled;
-use crate::rotors::Rotors;
 
 /// No breakpoint: further than any dual step.
 pub(super) const NEVER: f32 = 1e9;

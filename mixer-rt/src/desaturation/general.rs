@@ -36,7 +36,7 @@ mod variable;
 
 pub use variable::Scratch;
 
-use crate::rotors::Rotors;
+use crate::pair::rotors::Rotors;
 use crate::tables::Tables;
 use crate::{Desaturation, Quantity, rolled};
 use shortage::RAY;

@@ -21,7 +21,7 @@
 //! and of moves to other corners that are allowed.
 
 use super::variable::{NEVER, Place, Polygon, Scratch, corner, dot, next, positive};
-use crate::attainable::Corner;
+use crate::desaturation::attainable::Corner;
 use crate::rolled;
 
 /// Slots further outside their bounds are brought back: of an edge's length, or of a row.

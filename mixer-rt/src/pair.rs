@@ -1,0 +1,14 @@
+//! One coaxial pair: the efforts `[f, Q]` of two throttles, the throttles of two efforts, and a rotor alone.
+
+mod forward;
+mod inverse;
+pub(crate) mod rotors;
+mod table_seed;
+
+pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
+pub use inverse::{
+    BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,
+    Seeded, ThrottleRange, solve,
+};
+pub use rotors::SingleRotor;
+pub use table_seed::TableSeed;
