@@ -282,7 +282,7 @@ fn plausible(points: &[Point]) -> Result<(), String> {
         ));
     }
     // Power rises with throttle, and steeply.
-    let mean = |of: &dyn Fn(&Point) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / points.len() as f64;
+    let mean = |of: &dyn Fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
     let (load, power) = (mean(&|p| p.u + p.l), mean(&|p| p.power_w));
     let covariance = mean(&|p| (p.u + p.l - load) * (p.power_w - power));
     if covariance <= 0.0 {

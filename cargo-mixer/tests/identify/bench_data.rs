@@ -393,7 +393,8 @@ fn left_out(path: &Path, basis: Basis, count: usize) -> Option<[f64; 2]> {
     }
     let percent = |coefficients: &[f64], of: fn(&Point) -> f64| {
         let model = Polynomial::of(basis, coefficients);
-        let square: f64 = rest.iter().map(|p| (model.at(p.u, p.l) - of(p)).powi(2)).sum();
+        let missed = rest.iter().map(|p| model.at(p.u, p.l) - of(p));
+        let square: f64 = missed.map(|e| e * e).sum();
         let full = whole.points.iter().map(|p| of(p).abs()).fold(0.0, f64::max);
         100.0 * (square / rest.len() as f64).sqrt() / full
     };
