@@ -43,21 +43,22 @@ use shortage::RAY;
 use simplex::{Budget, SHORTAGES, Simplex};
 use variable::{Polygon, between, positive};
 
-/// Pivots of the general path at most.
-pub const PIVOTS: u8 = 16;
+/// Pivots of the general path at most, level flight included.
+pub const PIVOTS: u8 = BUDGET.pivots + LEVEL_BUDGET.pivots;
 
-/// Moves of units and shortages to other corners at most.
-pub const FLIPS: u8 = 64;
+/// Moves of units and shortages to other corners at most, level flight included.
+pub const FLIPS: u8 = BUDGET.flips + LEVEL_BUDGET.flips;
 
 /// Rounds at most in which the curves of single rotors take the place of their chords.
 const ROUNDS: u8 = 3;
 
+/// For the request.
 const BUDGET: Budget = Budget {
-    pivots: PIVOTS,
-    flips: FLIPS,
+    pivots: 16,
+    flips: 64,
 };
 
-/// The same for level flight.
+/// For level flight, where the budget of the request ends first.
 const LEVEL_BUDGET: Budget = Budget { pivots: 8, flips: 32 };
 
 /// The multipliers at the start, per row of the request's distance from the centres: so units start at corners on the

@@ -40,15 +40,15 @@ const KNOT_UNIT: u32 = 7;
 const TORQUES: u32 = 40;
 
 /// The general path beside its pivots, and one unit in it.
-const GENERAL: u32 = 900;
-const GENERAL_UNIT: u32 = 330;
+const GENERAL: u32 = 2500;
+const GENERAL_UNIT: u32 = 600;
 
 /// A pivot of the simplex method, and one unit in it.
-const PIVOT: u32 = 1000;
-const PIVOT_UNIT: u32 = 120;
+const PIVOT: u32 = 850;
+const PIVOT_UNIT: u32 = 80;
 
-/// A move to another bound, and one unit in the search for the next.
-const FLIP: u32 = 90;
+/// A move to another corner, and one unit in the search for the next.
+const FLIP: u32 = 140;
 const FLIP_UNIT: u32 = 8;
 
 /// The bound for a compiled airframe; `None` where there is none yet, or its evaluator has not been counted.
@@ -59,7 +59,8 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     }
 }
 
-/// The general path with all rotors: least norm, the pivots and flips that are allowed, and what follows them.
+/// The general path with all rotors: least norm, the pivots and flips that are allowed for the request and for level flight, and
+/// what follows them.
 fn general(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let n = compiled.tables.units.len() as u32;
