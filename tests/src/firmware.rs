@@ -1,4 +1,4 @@
-//! Builds the images of `tests/firmware` and of `examples/firmware` and runs them in QEMU.
+//! Builds the images of `tests/firmware` and of the examples and runs them in QEMU.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -49,6 +49,8 @@ impl Variant {
 
 /// What builds firmware on this machine.
 pub struct Toolchain {
+    /// The package of the images.
+    folder: PathBuf,
     cargo: OsString,
     environment: Vec<(&'static str, OsString)>,
     arguments: Vec<&'static str>,
@@ -65,14 +67,25 @@ impl Toolchain {
     ///
     /// If there is neither, or no QEMU: what to install.
     pub fn find() -> Result<Toolchain, String> {
+        Toolchain::for_package("tests/firmware")
+    }
+
+    /// The same for the images of another package.
+    ///
+    /// # Errors
+    ///
+    /// As [`Toolchain::find`].
+    pub fn for_package(package: &str) -> Result<Toolchain, String> {
+        let folder = root().join(package);
         if Command::new("qemu-system-arm").arg("--version").output().is_err() {
             return Err("qemu-system-arm is missing: apt-get install qemu-system-arm".into());
         }
-        let target = root().join("tests/firmware/target");
+        let target = folder.join("target");
         let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
         let target_libdir = print(Path::new(&rustc), &["target-libdir", "--target", TARGET]);
         if target_libdir.is_some_and(|libraries| libraries.is_dir()) {
             return Ok(Toolchain {
+                folder,
                 cargo: std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()),
                 environment: Vec::new(),
                 arguments: Vec::new(),
@@ -86,6 +99,7 @@ impl Toolchain {
         if sources.is_some_and(|core| core.is_dir()) && Path::new("/usr/bin/cargo").exists() && linker.is_ok()
         {
             return Ok(Toolchain {
+                folder,
                 cargo: "/usr/bin/cargo".into(),
                 environment: vec![
                     ("RUSTC", debian.into()),
@@ -149,7 +163,7 @@ impl Toolchain {
     ///
     /// What the compiler said, or what the image printed before it failed or was stopped for taking too long.
     pub fn run(&self, image: &str, variant: &Variant) -> Result<String, String> {
-        self.start(image, variant, &runner(image)?, TIME_LIMIT)
+        self.start(image, variant, &self.runner()?, TIME_LIMIT)
     }
 
     /// As [`Toolchain::run`], but QEMU does not count instructions, which makes it faster.
@@ -158,7 +172,7 @@ impl Toolchain {
     ///
     /// As [`Toolchain::run`].
     pub fn run_uncounted(&self, image: &str, variant: &Variant) -> Result<String, String> {
-        let mut runner = runner(image)?;
+        let mut runner = self.runner()?;
         if let Some(at) = runner.iter().position(|word| word == "-icount") {
             // The option and its value.
             runner.drain(at..(at + 2).min(runner.len()));
@@ -228,7 +242,7 @@ impl Toolchain {
             command.env_remove(variable);
         }
         command
-            .current_dir(package(image))
+            .current_dir(&self.folder)
             .stdin(Stdio::null())
             .args([subcommand, "--quiet", "--locked", "--release", "--bin", image])
             .args(&self.arguments)
@@ -237,18 +251,22 @@ impl Toolchain {
             .envs(self.environment.iter().map(|(name, value)| (name, value)));
         command
     }
-}
 
-/// The image that a user would copy; all others are for tests.
-const EXAMPLE: &str = "firmware";
-
-/// The package of an image.
-fn package(image: &str) -> PathBuf {
-    root().join(if image == EXAMPLE {
-        "examples/firmware"
-    } else {
-        "tests/firmware"
-    })
+    /// QEMU and its arguments, as `cargo run` in the package's folder starts it.
+    fn runner(&self) -> Result<Vec<String>, String> {
+        let path = self.folder.join(".cargo/config.toml");
+        let fault = |what: String| format!("{}: {what}", path.display());
+        let text = fs::read_to_string(&path).map_err(|e| fault(e.to_string()))?;
+        let config: toml::Table = text.parse().map_err(|e: toml::de::Error| fault(e.to_string()))?;
+        let runner = config
+            .get("target")
+            .and_then(|target| target.get(TARGET)?.get("runner")?.as_array());
+        let words = runner.ok_or_else(|| fault(format!("no runner for {TARGET}")))?;
+        Ok(words
+            .iter()
+            .filter_map(|word| word.as_str().map(str::to_owned))
+            .collect())
+    }
 }
 
 /// First line of `rustc --version`: release, commit and date.
@@ -258,22 +276,6 @@ fn version(rustc: &Path) -> String {
         .map(|output| String::from_utf8_lossy(&output.stdout).into_owned())
         .unwrap_or_default();
     text.lines().next().unwrap_or("unknown").to_owned()
-}
-
-/// QEMU and its arguments, as `cargo run` in the image's package starts it.
-fn runner(image: &str) -> Result<Vec<String>, String> {
-    let path = package(image).join(".cargo/config.toml");
-    let fault = |what: String| format!("{}: {what}", path.display());
-    let text = fs::read_to_string(&path).map_err(|e| fault(e.to_string()))?;
-    let config: toml::Table = text.parse().map_err(|e: toml::de::Error| fault(e.to_string()))?;
-    let runner = config
-        .get("target")
-        .and_then(|target| target.get(TARGET)?.get("runner")?.as_array());
-    let words = runner.ok_or_else(|| fault(format!("no runner for {TARGET}")))?;
-    Ok(words
-        .iter()
-        .filter_map(|word| word.as_str().map(str::to_owned))
-        .collect())
 }
 
 /// Answer of `rustc --print`, a path.

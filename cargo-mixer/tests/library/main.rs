@@ -3,6 +3,7 @@
 mod example;
 mod program;
 mod refusals;
+mod stacks;
 
 use std::fs;
 use std::path::{Path, PathBuf};

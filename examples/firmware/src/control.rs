@@ -20,8 +20,12 @@ pub(crate) trait Battery {
 /// What one cycle did.
 #[derive(Clone, Copy)]
 pub(crate) enum Cycle {
-    /// Mixed and written. The rate controller stops integrating on the axes that are saturated.
-    Mixed(Saturation),
+    /// Mixed and written: the wrench that the rotors give, and the axes that are saturated, on which the rate controller
+    /// stops integrating.
+    Mixed {
+        achieved: Wrench,
+        saturation: Saturation,
+    },
     /// The setpoint was not finite: the rotors keep the last throttles.
     Held,
     /// Too many such setpoints in a row, now or earlier: the rotors are stopped.
@@ -69,7 +73,10 @@ where
             Ok(mix) => {
                 self.missed = 0;
                 self.outputs.write(&mix.throttle);
-                Cycle::Mixed(mix.saturation)
+                Cycle::Mixed {
+                    achieved: mix.achieved,
+                    saturation: mix.saturation,
+                }
             }
             Err(_) => {
                 self.missed += 1;

@@ -8,6 +8,7 @@
 
 mod board;
 mod control;
+mod flight;
 
 use core::panic::PanicInfo;
 
@@ -51,11 +52,11 @@ fn fly() {
     let (mut mixed, mut saturated, mut held, mut disarmed) = (0, 0, 0, 0);
     for cycle in 0.. {
         cortex_m::asm::wfi();
-        let Some(setpoint) = board::setpoint(cycle) else {
+        let Some(setpoint) = flight::setpoint(cycle) else {
             break;
         };
         match motors.cycle(&setpoint) {
-            Cycle::Mixed(saturation) => {
+            Cycle::Mixed { saturation, .. } => {
                 mixed += 1;
                 saturated += u32::from(saturation.bits() != 0);
             }

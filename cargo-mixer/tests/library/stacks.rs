@@ -1,0 +1,94 @@
+//! `examples/px4` and `examples/ardupilot`, compiled against the declarations in `stand_ins` and driven once.
+
+use std::fs;
+use std::process::Command;
+
+use crate::program::source;
+use crate::{Folder, library, root, run};
+
+const WARNINGS: [&str; 3] = ["-Wall", "-Wextra", "-Werror"];
+
+/// A flight stack's example.
+struct Stack {
+    /// Name of the stand-ins: `<name>.cpp` drives the example.
+    name: &'static str,
+    /// What `<name>.{hpp,h}` stands in for.
+    headers: &'static [&'static str],
+    declarations: &'static str,
+    /// The example's source in its folder.
+    folder: &'static str,
+    source: &'static str,
+    /// What the stack compiles with.
+    standards: &'static [&'static str],
+}
+
+const PX4: Stack = Stack {
+    name: "px4",
+    headers: &[
+        "drivers/drv_hrt.h",
+        "px4_platform_common/module.h",
+        "px4_platform_common/px4_work_queue/WorkItem.hpp",
+        "uORB/Publication.hpp",
+        "uORB/Subscription.hpp",
+        "uORB/SubscriptionCallback.hpp",
+        "uORB/topics/actuator_motors.h",
+        "uORB/topics/battery_status.h",
+        "uORB/topics/control_allocator_status.h",
+        "uORB/topics/vehicle_control_mode.h",
+        "uORB/topics/vehicle_thrust_setpoint.h",
+        "uORB/topics/vehicle_torque_setpoint.h",
+    ],
+    declarations: "px4.hpp",
+    folder: "examples/px4/src/modules/coaxial_mixer",
+    source: "CoaxialMixer.cpp",
+    standards: &["-std=gnu++14", "-std=gnu++20"],
+};
+
+const ARDUPILOT: Stack = Stack {
+    name: "ardupilot",
+    headers: &["AP_Motors/AP_MotorsMatrix.h", "AP_BattMonitor/AP_BattMonitor.h"],
+    declarations: "ardupilot.h",
+    folder: "examples/ardupilot",
+    source: "AP_MotorsCoaxialMixer.cpp",
+    standards: &["-std=gnu++11", "-std=gnu++17"],
+};
+
+impl Stack {
+    fn drive(&self) {
+        let folder = Folder::new(self.name);
+        let stand_ins = source("stand_ins");
+        run(&mut library(&["airframes/isae-x8.toml"], &folder.join("lib")));
+        for header in self.headers {
+            let path = folder.join("include").join(header);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            let forward = format!("#include \"{}\"\n", self.declarations);
+            fs::write(path, forward).unwrap();
+        }
+        let example = root().join(self.folder);
+        for standard in self.standards {
+            let program = folder.join("drive");
+            let mut compiler = Command::new("g++");
+            compiler.args(WARNINGS).arg(standard);
+            for include in [&folder.join("include"), &folder.join("lib"), &stand_ins, &example] {
+                compiler.arg("-I").arg(include);
+            }
+            compiler.arg(example.join(self.source));
+            compiler.arg(stand_ins.join(format!("{}.cpp", self.name)));
+            compiler.arg(folder.join("lib/libisae_x8.a"));
+            run(compiler.arg("-o").arg(&program));
+            let output = run(&mut Command::new(&program));
+            let text = String::from_utf8(output.stdout).unwrap();
+            assert!(text.ends_with("0 faults\n"), "{text}");
+        }
+    }
+}
+
+#[test]
+fn the_px4_module_publishes_what_the_library_mixes() {
+    PX4.drive();
+}
+
+#[test]
+fn the_ardupilot_motors_write_what_the_library_mixes() {
+    ARDUPILOT.drive();
+}

@@ -1,0 +1,92 @@
+// Stand-ins for what examples/ardupilot uses of ArduPilot: our own declarations, not ArduPilot's, enough to compile the class
+// and to drive it once. Every header of ArduPilot that it includes is this file.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+using std::isfinite;
+
+#define AP_MOTORS_MAX_NUM_MOTORS 32
+
+class AP_BattMonitor {
+public:
+    float voltage() const { return volts; }
+    bool healthy() const { return good; }
+
+    float volts = 0.0f;
+    bool good = false;
+};
+
+namespace AP {
+inline AP_BattMonitor &battery()
+{
+    static AP_BattMonitor monitor;
+    return monitor;
+}
+}
+
+class AP_MotorsMatrix {
+public:
+    explicit AP_MotorsMatrix(uint16_t speed_hz = 490) : _speed_hz(speed_hz) {}
+    virtual ~AP_MotorsMatrix() = default;
+
+    enum class SpoolState : uint8_t {
+        SHUT_DOWN = 0,
+        GROUND_IDLE = 1,
+        SPOOLING_UP = 2,
+        THROTTLE_UNLIMITED = 3,
+        SPOOLING_DOWN = 4,
+    };
+
+    struct AP_Motors_limit {
+        bool roll;
+        bool pitch;
+        bool yaw;
+        bool throttle_lower;
+        bool throttle_upper;
+    } limit {};
+
+    float get_throttle() const { return _throttle_in; }
+
+    virtual void output_to_motors()
+    {
+        for (uint8_t i = 0; i < AP_MOTORS_MAX_NUM_MOTORS; i++) {
+            if (motor_enabled[i]) {
+                _actuator[i] = _spool_state == SpoolState::SHUT_DOWN ? 0.0f : 0.05f;
+                rc_write(i, output_to_pwm(_actuator[i]));
+            }
+        }
+    }
+
+protected:
+    virtual void output_armed_stabilizing() {}
+
+    virtual void rc_write(uint8_t channel, uint16_t pwm) { _written[channel] = pwm; }
+
+    int16_t output_to_pwm(float actuator) { return static_cast<int16_t>(1000.0f + 1000.0f * actuator); }
+
+    void set_actuator_with_slew(float &actuator, float input) { actuator = input; }
+
+    void check_for_failed_motor(float throttle) { _checked_throttle = throttle; }
+
+    uint16_t _speed_hz;
+    float _dt_s = 0.0025f;
+    float _roll_in = 0.0f;
+    float _roll_in_ff = 0.0f;
+    float _pitch_in = 0.0f;
+    float _pitch_in_ff = 0.0f;
+    float _yaw_in = 0.0f;
+    float _yaw_in_ff = 0.0f;
+    float _throttle_in = 0.0f;
+    float _throttle_out = 0.0f;
+    float _throttle_thrust_max = 1.0f;
+    SpoolState _spool_state = SpoolState::SHUT_DOWN;
+    bool motor_enabled[AP_MOTORS_MAX_NUM_MOTORS] {};
+    float _thrust_rpyt_out[AP_MOTORS_MAX_NUM_MOTORS] {};
+    float _actuator[AP_MOTORS_MAX_NUM_MOTORS] {};
+
+    // Of the stand-in: what was written and checked last.
+    uint16_t _written[AP_MOTORS_MAX_NUM_MOTORS] {};
+    float _checked_throttle = -1.0f;
+};

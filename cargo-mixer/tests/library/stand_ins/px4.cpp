@@ -1,0 +1,139 @@
+// Drives examples/px4 once: what it publishes is what the library mixes.
+#include "px4.hpp"
+
+#include "isae_x8.h"
+
+extern "C" int coaxial_mixer_main(int argc, char *argv[]);
+
+static unsigned faults;
+
+#define CHECK(condition) \
+	do { \
+		if (!(condition)) { \
+			++faults; \
+			printf("line %d: %s\n", __LINE__, #condition); \
+		} \
+	} while (0)
+
+static int command(const char *word)
+{
+	char name[] = "coaxial_mixer";
+	char argument[16];
+	snprintf(argument, sizeof(argument), "%s", word);
+	char *argv[] = {name, argument, nullptr};
+	return coaxial_mixer_main(2, argv);
+}
+
+template<class T>
+static T last()
+{
+	T message;
+	memcpy(&message, stand_in::topic<T>()->last, sizeof(T));
+	return message;
+}
+
+template<class T>
+static unsigned published() { return stand_in::topic<T>()->generation; }
+
+template<class T>
+static void publish(const T &message) { uORB::Publication<T>(stand_in::topic<T>()).publish(message); }
+
+// A cycle of the rate controller: thrust first, then the torque that wakes the module.
+static void cycle(float roll, float pitch, float yaw, float thrust)
+{
+	stand_in::now_us() += 2500;
+	publish(vehicle_thrust_setpoint_s{0, 0, {0.f, 0.f, -thrust}});
+	publish(vehicle_torque_setpoint_s{0, stand_in::now_us() - 100, {roll, pitch, yaw}});
+}
+
+// Whether the motors are, bit by bit, those of the library.
+static bool same(float roll, float pitch, float yaw, float thrust, float voltage_v)
+{
+	const mixer_wrench_t setpoint{roll * ISAE_X8_ROLL_NM, pitch * ISAE_X8_PITCH_NM, yaw * ISAE_X8_YAW_NM, thrust * ISAE_X8_THRUST_N};
+	isae_x8_mix_t mix;
+	const actuator_motors_s motors = last<actuator_motors_s>();
+	bool equal = isae_x8_mix(&setpoint, voltage_v, &mix) == MIXER_OK
+		     && memcmp(motors.control, mix.throttle, sizeof(mix.throttle)) == 0;
+
+	for (int i = ISAE_X8_CHANNELS; i < actuator_motors_s::NUM_CONTROLS; ++i) {
+		equal = equal && std::isnan(motors.control[i]);
+	}
+
+	return equal && motors.timestamp_sample == stand_in::now_us() - 100;
+}
+
+int main()
+{
+	// PX4's allocator still runs.
+	stand_in::topic<actuator_motors_s>()->advertised = true;
+	CHECK(command("start") == PX4_ERROR);
+	stand_in::topic<actuator_motors_s>()->advertised = false;
+	CHECK(command("start") == PX4_OK);
+
+	// Allocation is not enabled: a status, but no motors.
+	cycle(0.f, 0.f, 0.f, 0.f);
+	CHECK(published<actuator_motors_s>() == 0 && published<control_allocator_status_s>() == 1);
+	publish(vehicle_control_mode_s{0, true});
+
+	// Before a voltage is measured it is the reference voltage.
+	cycle(0.02f, -0.01f, 0.05f, 0.3f);
+	CHECK(same(0.02f, -0.01f, 0.05f, 0.3f, ISAE_X8_REFERENCE_V));
+	publish(battery_status_s{0, 15.5f, true});
+	cycle(0.02f, -0.01f, 0.05f, 0.3f);
+	CHECK(same(0.02f, -0.01f, 0.05f, 0.3f, 15.5f));
+	control_allocator_status_s status = last<control_allocator_status_s>();
+	CHECK(status.torque_setpoint_achieved && status.thrust_setpoint_achieved);
+
+	for (int axis = 0; axis < 3; ++axis) {
+		CHECK(status.unallocated_torque[axis] <= 0.f && status.unallocated_torque[axis] >= 0.f);
+	}
+
+	// A voltage that is not measured is the last one that was.
+	publish(battery_status_s{0, 0.f, false});
+	cycle(0.f, 0.f, 0.f, 0.4f);
+	CHECK(same(0.f, 0.f, 0.f, 0.4f, 15.5f));
+	publish(battery_status_s{0, NAN, true});
+	cycle(0.f, 0.f, 0.f, 0.4f);
+	CHECK(same(0.f, 0.f, 0.f, 0.4f, 15.5f));
+
+	// Yaw beyond the authority, either way: that axis only.
+	cycle(0.f, 0.f, 2.f, 0.3f);
+	CHECK(same(0.f, 0.f, 2.f, 0.3f, 15.5f));
+	status = last<control_allocator_status_s>();
+	CHECK(!status.torque_setpoint_achieved && status.thrust_setpoint_achieved);
+	CHECK(status.unallocated_torque[2] > 0.5f && status.unallocated_torque[2] < 2.f);
+	CHECK(status.unallocated_torque[0] <= 0.f && status.unallocated_torque[0] >= 0.f);
+	cycle(0.f, 0.f, -2.f, 0.3f);
+	status = last<control_allocator_status_s>();
+	CHECK(status.unallocated_torque[2] < -0.5f && status.unallocated_torque[2] > -2.f);
+
+	// All of the thrust, and more: PX4's z counts downwards.
+	cycle(0.f, 0.f, 0.f, 1.5f);
+	status = last<control_allocator_status_s>();
+	CHECK(status.torque_setpoint_achieved && !status.thrust_setpoint_achieved && status.unallocated_thrust[2] < -0.1f);
+	CHECK(status.actuator_saturation[0] == control_allocator_status_s::ACTUATOR_SATURATION_UPPER);
+
+	// A setpoint that is not finite: held for 100 ms, then stopped.
+	const unsigned before = published<actuator_motors_s>();
+	cycle(NAN, 0.f, 0.f, 0.3f);
+	CHECK(published<actuator_motors_s>() == before);
+
+	for (int i = 0; i < 50; ++i) {
+		cycle(NAN, 0.f, 0.f, 0.3f);
+	}
+
+	CHECK(published<actuator_motors_s>() > before && std::isnan(last<actuator_motors_s>().control[0]));
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
+
+	CHECK(command("status") == PX4_OK);
+	CHECK(command("nonsense") == 0);
+	CHECK(command("stop") == PX4_OK);
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	const unsigned after = published<actuator_motors_s>();
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(published<actuator_motors_s>() == after);
+
+	printf("%u faults\n", faults);
+	return faults != 0;
+}

@@ -1,0 +1,153 @@
+#include "CoaxialMixer.hpp"
+
+#include <cmath>
+
+CoaxialMixer::CoaxialMixer() : WorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl) {}
+
+void CoaxialMixer::Run()
+{
+	if (should_exit()) {
+		_torque_sub.unregisterCallback();
+		exit_and_cleanup();
+		return;
+	}
+
+	vehicle_torque_setpoint_s torque;
+
+	if (!_torque_sub.update(&torque)) {
+		return;
+	}
+
+	_thrust_sub.update(&_thrust);
+	_mode_sub.update(&_mode);
+	update_voltage();
+
+	// FRD as in PX4, but thrust counts upwards.
+	const mixer_wrench_t setpoint{
+		torque.xyz[0] * ISAE_X8_ROLL_NM,
+		torque.xyz[1] * ISAE_X8_PITCH_NM,
+		torque.xyz[2] * ISAE_X8_YAW_NM,
+		-_thrust.xyz[2] * ISAE_X8_THRUST_N,
+	};
+	isae_x8_mix_t mix;
+
+	if (isae_x8_mix(&setpoint, _voltage_v, &mix) == MIXER_OK) {
+		_last_mix = hrt_absolute_time();
+		_saturation = mix.saturation;
+		publish_motors(mix.throttle, torque.timestamp_sample);
+		publish_status(setpoint, mix);
+
+	} else {
+		// The outputs hold the last throttles.
+		++_refused;
+
+		if (hrt_elapsed_time(&_last_mix) > PATIENCE_US) {
+			publish_motors(nullptr, torque.timestamp_sample);
+		}
+	}
+}
+
+void CoaxialMixer::update_voltage()
+{
+	battery_status_s battery;
+
+	if (_battery_sub.update(&battery) && battery.connected && std::isfinite(battery.voltage_v) && battery.voltage_v > 0.f) {
+		_voltage_v = battery.voltage_v;
+	}
+}
+
+// Throttles, or NAN where there are none: PX4 stops such motors.
+void CoaxialMixer::publish_motors(const float *throttle, hrt_abstime timestamp_sample)
+{
+	if (!_mode.flag_control_allocation_enabled) {
+		return;
+	}
+
+	static_assert(ISAE_X8_CHANNELS <= actuator_motors_s::NUM_CONTROLS, "more rotors than PX4 has motors");
+	actuator_motors_s motors{};
+
+	for (int i = 0; i < actuator_motors_s::NUM_CONTROLS; ++i) {
+		motors.control[i] = throttle && i < ISAE_X8_CHANNELS ? throttle[i] : NAN;
+	}
+
+	motors.timestamp_sample = timestamp_sample;
+	motors.timestamp = hrt_absolute_time();
+	_motors_pub.publish(motors);
+}
+
+void CoaxialMixer::publish_status(const mixer_wrench_t &setpoint, const isae_x8_mix_t &mix)
+{
+	// The rate controller stops integrating for any other difference than 0, so those within the mixer's tolerance are 0.
+	const auto unallocated = [&mix](uint32_t flags, float asked, float achieved, float unit) {
+		return (mix.saturation & flags) ? (asked - achieved) / unit : 0.f;
+	};
+	const mixer_wrench_t &achieved = mix.achieved;
+	control_allocator_status_s status{};
+	status.unallocated_torque[0] = unallocated(MIXER_ROLL_SHORT | MIXER_ROLL_OVER, setpoint.roll_nm, achieved.roll_nm, ISAE_X8_ROLL_NM);
+	status.unallocated_torque[1] = unallocated(MIXER_PITCH_SHORT | MIXER_PITCH_OVER, setpoint.pitch_nm, achieved.pitch_nm, ISAE_X8_PITCH_NM);
+	status.unallocated_torque[2] = unallocated(MIXER_YAW_SHORT | MIXER_YAW_OVER, setpoint.yaw_nm, achieved.yaw_nm, ISAE_X8_YAW_NM);
+	status.unallocated_thrust[2] = -unallocated(MIXER_THRUST_SHORT | MIXER_THRUST_OVER, setpoint.thrust_n, achieved.thrust_n, ISAE_X8_THRUST_N);
+	status.torque_setpoint_achieved = !(mix.saturation & (MIXER_ROLL_SHORT | MIXER_ROLL_OVER | MIXER_PITCH_SHORT
+					    | MIXER_PITCH_OVER | MIXER_YAW_SHORT | MIXER_YAW_OVER));
+	status.thrust_setpoint_achieved = !(mix.saturation & (MIXER_THRUST_SHORT | MIXER_THRUST_OVER));
+
+	for (int i = 0; i < ISAE_X8_CHANNELS; ++i) {
+		status.actuator_saturation[i] = mix.throttle[i] >= ISAE_X8_THROTTLE_MAX ? control_allocator_status_s::ACTUATOR_SATURATION_UPPER
+						: mix.throttle[i] <= ISAE_X8_THROTTLE_MIN ? control_allocator_status_s::ACTUATOR_SATURATION_LOWER
+						: control_allocator_status_s::ACTUATOR_SATURATION_OK;
+	}
+
+	status.timestamp = hrt_absolute_time();
+	_status_pub.publish(status);
+}
+
+int CoaxialMixer::task_spawn(int, char *[])
+{
+	// Both would write the motors.
+	if (orb_exists(ORB_ID(actuator_motors), 0) == PX4_OK) {
+		PX4_ERR("actuator_motors is published already: control_allocator stop");
+		return PX4_ERROR;
+	}
+
+	CoaxialMixer *instance = new CoaxialMixer();
+
+	if (instance && instance->_torque_sub.registerCallback()) {
+		_object.store(instance);
+		_task_id = task_id_is_work_queue;
+		return PX4_OK;
+	}
+
+	PX4_ERR("no memory or no callback");
+	delete instance;
+	return PX4_ERROR;
+}
+
+int CoaxialMixer::print_status()
+{
+	PX4_INFO("%s %s, %.2f V, saturation 0x%x, refused %u", ISAE_X8_AIRFRAME, ISAE_X8_VERSION, static_cast<double>(_voltage_v),
+		 static_cast<unsigned>(_saturation), _refused);
+	return 0;
+}
+
+int CoaxialMixer::custom_command(int, char *[])
+{
+	return print_usage("unknown command");
+}
+
+int CoaxialMixer::print_usage(const char *reason)
+{
+	if (reason) {
+		PX4_WARN("%s", reason);
+	}
+
+	PRINT_MODULE_DESCRIPTION("Mixes torque and thrust setpoints for coaxial pairs, in place of control_allocator.");
+	PRINT_MODULE_USAGE_NAME("coaxial_mixer", "controller");
+	PRINT_MODULE_USAGE_COMMAND("start");
+	PRINT_MODULE_USAGE_DEFAULT_COMMANDS();
+	return 0;
+}
+
+extern "C" __EXPORT int coaxial_mixer_main(int argc, char *argv[])
+{
+	return CoaxialMixer::main(argc, argv);
+}

@@ -1,0 +1,52 @@
+// PX4's control allocation by a compiled coaxial mixer: runs after every torque setpoint, in place of control_allocator.
+#pragma once
+
+#include <drivers/drv_hrt.h>
+#include <px4_platform_common/module.h>
+#include <px4_platform_common/px4_work_queue/WorkItem.hpp>
+#include <uORB/Publication.hpp>
+#include <uORB/Subscription.hpp>
+#include <uORB/SubscriptionCallback.hpp>
+#include <uORB/topics/actuator_motors.h>
+#include <uORB/topics/battery_status.h>
+#include <uORB/topics/control_allocator_status.h>
+#include <uORB/topics/vehicle_control_mode.h>
+#include <uORB/topics/vehicle_thrust_setpoint.h>
+#include <uORB/topics/vehicle_torque_setpoint.h>
+
+#include "isae_x8.h"
+
+class CoaxialMixer : public ModuleBase<CoaxialMixer>, public px4::WorkItem
+{
+public:
+	CoaxialMixer();
+
+	static int task_spawn(int argc, char *argv[]);
+	static int custom_command(int argc, char *argv[]);
+	static int print_usage(const char *reason = nullptr);
+	int print_status() override;
+
+private:
+	void Run() override;
+	void update_voltage();
+	void publish_motors(const float *throttle, hrt_abstime timestamp_sample);
+	void publish_status(const mixer_wrench_t &setpoint, const isae_x8_mix_t &mix);
+
+	// Without a usable setpoint for so long, the motors stop.
+	static constexpr hrt_abstime PATIENCE_US = 100000;
+
+	uORB::SubscriptionCallbackWorkItem _torque_sub{this, ORB_ID(vehicle_torque_setpoint)};
+	uORB::Subscription _thrust_sub{ORB_ID(vehicle_thrust_setpoint)};
+	uORB::Subscription _battery_sub{ORB_ID(battery_status)};
+	uORB::Subscription _mode_sub{ORB_ID(vehicle_control_mode)};
+	uORB::Publication<actuator_motors_s> _motors_pub{ORB_ID(actuator_motors)};
+	uORB::Publication<control_allocator_status_s> _status_pub{ORB_ID(control_allocator_status)};
+
+	vehicle_thrust_setpoint_s _thrust{};
+	vehicle_control_mode_s _mode{};
+	hrt_abstime _last_mix{0};
+	// The last voltage that was measured.
+	float _voltage_v{ISAE_X8_REFERENCE_V};
+	unsigned _refused{0};
+	uint32_t _saturation{0};
+};
