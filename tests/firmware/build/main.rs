@@ -45,8 +45,13 @@ fn main() {
 
 fn generate() -> Result<(), String> {
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
+    // What is as it was keeps its time: an airframe written anew would have cargo run this script again for every image.
     let write = |file: &str, text: &str| {
-        fs::write(out.join(file), text).map_err(|e| format!("cannot write {file} to OUT_DIR: {e}"))
+        let path = out.join(file);
+        if fs::read_to_string(&path).is_ok_and(|held| held == text) {
+            return Ok(());
+        }
+        fs::write(path, text).map_err(|e| format!("cannot write {file} to OUT_DIR: {e}"))
     };
 
     println!("cargo::rerun-if-changed=memory.x");
