@@ -203,7 +203,7 @@ fn control_loop_holds_and_then_disarms() {
 
 /// The flight of `examples/executors`: 1600 cycles, of which three lost ones are held, and of a hundred at the end the first
 /// forty. The bench is the mixer's own model, so both executors give the same numbers if each paces every cycle and passes
-/// voltage and saturation on; the integral that does not stop overshoots to 4.9 rad/s.
+/// voltage and saturation on; an integral that does not stop overshoots to 4.7 rad/s.
 #[test]
 fn executors_pace_the_loop_and_stop_the_integral() {
     let toolchain =

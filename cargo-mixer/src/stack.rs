@@ -4,10 +4,8 @@
 use std::fmt;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::vehicle::GRAVITY;
 use serde::Serialize;
-
-/// Standard gravity, m/s^2.
-const GRAVITY: f64 = 9.806_65;
 
 /// Scales and parameters; its `Display` is what `check` prints.
 #[derive(Clone, Debug, Serialize)]
@@ -31,7 +29,7 @@ pub struct Normalised {
     pub yaw_nm: f32,
     /// All rotors at full throttle, N.
     pub thrust_n: f32,
-    /// Hover throttle (PX4's `MPC_THR_HOVER`) per kilogram of the vehicle.
+    /// Hover throttle (PX4's `MPC_THR_HOVER`, ArduPilot's `MOT_THST_HOVER`) per kilogram of the vehicle.
     pub hover_per_kg: f64,
 }
 
@@ -61,13 +59,20 @@ impl Stack {
             ardupilot.push(parameter("MOT_BAT_VOLT_MAX", 0.0));
             ardupilot.push(parameter("MOT_BAT_VOLT_MIN", 0.0));
         }
+        let hover_per_kg = GRAVITY / f64::from(scale.thrust_n);
+        if let Some(vehicle) = &airframe.vehicle {
+            // Four decimals, as ground stations show it.
+            let hover = (1e4 * hover_per_kg * vehicle.mass_kg).round() / 1e4;
+            px4.push(parameter("MPC_THR_HOVER", hover));
+            ardupilot.push(parameter("MOT_THST_HOVER", hover));
+        }
         Stack {
             normalised: Normalised {
                 roll_nm: scale.roll_nm,
                 pitch_nm: scale.pitch_nm,
                 yaw_nm: scale.yaw_nm,
                 thrust_n: scale.thrust_n,
-                hover_per_kg: GRAVITY / f64::from(scale.thrust_n),
+                hover_per_kg,
             },
             px4,
             ardupilot,
@@ -94,11 +99,25 @@ impl fmt::Display for Stack {
                 .map(|Parameter { name, value }| format!("{name} {value}"));
             words.collect::<Vec<_>>().join(", ")
         };
+        // A file without a mass leaves the last multiplication to the reader.
+        let hover = |name: &'static str, parameters: &[Parameter]| -> String {
+            if parameters.iter().any(|parameter| parameter.name == name) {
+                String::new()
+            } else {
+                format!(", {name} {hover_per_kg:.4} per kg of the vehicle")
+            }
+        };
         writeln!(
             f,
-            "  PX4           {}, MPC_THR_HOVER {hover_per_kg:.4} per kg of the vehicle",
-            list(&self.px4)
+            "  PX4           {}{}",
+            list(&self.px4),
+            hover("MPC_THR_HOVER", &self.px4)
         )?;
-        writeln!(f, "  ArduPilot     {}", list(&self.ardupilot))
+        writeln!(
+            f,
+            "  ArduPilot     {}{}",
+            list(&self.ardupilot),
+            hover("MOT_THST_HOVER", &self.ardupilot)
+        )
     }
 }

@@ -88,13 +88,40 @@ fn check_prints_the_key_lines() {
         "\n  +yaw           raises outputs 4, 6, 1, 3 (nose right)\n",
         "\nnormalised      one unit is 22.3091 N m roll, 22.3091 N m pitch, 1.7320 N m yaw, 99.151 N thrust\n",
         "\n  PX4           THR_MDL_FAC 0, MC_BAT_SCALE_EN 0, MPC_THR_HOVER 0.0989 per kg of the vehicle\n",
-        "\n  ArduPilot     MOT_THST_EXPO 0, MOT_SPIN_MIN 0.1, MOT_SPIN_MAX 1, MOT_BAT_VOLT_MAX 0, MOT_BAT_VOLT_MIN 0\n",
+        "\n  ArduPilot     MOT_THST_EXPO 0, MOT_SPIN_MIN 0.1, MOT_SPIN_MAX 1, MOT_BAT_VOLT_MAX 0, MOT_BAT_VOLT_MIN 0, \
+         MOT_THST_HOVER 0.0989 per kg of the vehicle\n",
         "\ncompiled in ",
     ] {
         assert!(
             stdout(&output).contains(line),
             "no {line:?} in\n{}",
             stdout(&output)
+        );
+    }
+}
+
+/// With a mass, hover is a number in both lists of parameters.
+#[test]
+fn check_gives_the_hover_throttle_of_a_vehicle() {
+    let text = std::fs::read_to_string(root().join(X8)).unwrap();
+    let text = text.replacen("[throttle]", "[vehicle]\nmass_kg = 3.2\n\n[throttle]", 1);
+    let path = std::env::temp_dir().join(format!("cargo-mixer-hover-{}.toml", std::process::id()));
+    std::fs::write(&path, text).unwrap();
+    let name = path.to_str().unwrap();
+    let [output, json] = [run(&["check", name]), run(&["check", "--json", name])];
+    std::fs::remove_file(&path).unwrap();
+    assert_status(&output, 0);
+    // 3.2 kg of 99.1508 N: 31.3813 N.
+    let printed = stdout(&output);
+    assert!(printed.contains(", MPC_THR_HOVER 0.3165\n"), "{printed}");
+    assert!(printed.contains(", MOT_THST_HOVER 0.3165\n"), "{printed}");
+    let summary: Value = serde_json::from_slice(&json.stdout).unwrap();
+    for (stack, name) in [("px4", "MPC_THR_HOVER"), ("ardupilot", "MOT_THST_HOVER")] {
+        let list = summary[stack].as_array().unwrap();
+        assert!(
+            list.iter()
+                .any(|parameter| parameter["name"] == name && parameter["value"] == 0.3165),
+            "{list:?}"
         );
     }
 }

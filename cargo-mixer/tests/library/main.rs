@@ -180,3 +180,42 @@ fn a_cortex_m4f_has_the_golden_bits() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("is for -mfloat-abi=hard"), "{said}");
 }
+
+/// Processors without a floating-point unit: their library's self-test, on a Cortex-M3 and on a Cortex-M0.
+#[test]
+fn processors_without_floating_point_have_the_bits() {
+    // The Cortex-M0 has its flash where the other boards have all their memory, and its stack elsewhere.
+    for (target, processor, machine, options) in [
+        ("thumbv7m-none-eabi", "-mcpu=cortex-m3", "mps2-an385", &[][..]),
+        (
+            "thumbv6m-none-eabi",
+            "-mcpu=cortex-m0",
+            "microbit",
+            &["-Wl,--defsym=stack_top=0x20004000"][..],
+        ),
+    ] {
+        let folder = Folder::new(target);
+        run(&mut library(
+            &["airframes/isae-x8.toml", "--target", target],
+            &folder.0,
+        ));
+        let archive = folder.join("libisae_x8.a");
+        // Arithmetic is the compiler's, and so are the leading zeros where there is no instruction for them; clearing and
+        // copying arrays may be calls.
+        let others: Vec<String> = symbols(&archive)
+            .into_iter()
+            .filter(|symbol| !symbol.starts_with("U __aeabi_") && symbol != "U __clzsi2")
+            .collect();
+        assert_eq!(others, ["T isae_x8_mix"], "{target}");
+        let image = folder.join("selftest.elf");
+        let mut compiler = Command::new("arm-none-eabi-gcc");
+        compiler.args(["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-pedantic"]);
+        compiler.args(["-mthumb", "-mfloat-abi=soft", "-nostartfiles", processor]);
+        compiler.args(options).arg("-I").arg(&folder.0);
+        compiler.arg(format!("-T{}", program::source("board.ld").display()));
+        compiler.arg(program::source("selftest.c"));
+        compiler.arg(folder.join("isae_x8_selftest.c")).arg(archive);
+        run(compiler.arg("-o").arg(&image));
+        assert_eq!(program::qemu_on(machine, &image), "all rows equal\n", "{target}");
+    }
+}

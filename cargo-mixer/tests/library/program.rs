@@ -155,10 +155,15 @@ impl Golden {
     }
 }
 
-/// Runs an image on the board and returns what it prints.
+/// Runs an image on the board with a Cortex-M4F and returns what it prints.
 pub(crate) fn qemu(image: &Path) -> String {
+    qemu_on("mps2-an386", image)
+}
+
+/// The same on another machine of QEMU.
+pub(crate) fn qemu_on(machine: &str, image: &Path) -> String {
     let mut command = Command::new("qemu-system-arm");
-    command.args(["-machine", "mps2-an386", "-cpu", "cortex-m4", "-display", "none"]);
+    command.args(["-machine", machine, "-display", "none"]);
     command.args(["-monitor", "none", "-serial", "none"]);
     command.args(["-icount", "shift=10,align=off,sleep=off"]);
     command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);

@@ -89,12 +89,14 @@ int main()
 	}
 
 	// A voltage that is not measured is the last one that was.
-	publish(battery_status_s{0, 0.f, false});
-	cycle(0.f, 0.f, 0.f, 0.4f);
-	CHECK(same(0.f, 0.f, 0.f, 0.4f, 15.5f));
-	publish(battery_status_s{0, NAN, true});
-	cycle(0.f, 0.f, 0.f, 0.4f);
-	CHECK(same(0.f, 0.f, 0.f, 0.4f, 15.5f));
+	const battery_status_s unusable[] = {{0, 13.f, false}, {0, 0.f, true}, {0, NAN, true}, {0, INFINITY, true}};
+
+	for (const battery_status_s &battery : unusable) {
+		publish(battery);
+		cycle(0.f, 0.f, 0.f, 0.4f);
+		CHECK(same(0.f, 0.f, 0.f, 0.4f, 15.5f));
+	}
+
 
 	// Yaw beyond the authority, either way: that axis only.
 	cycle(0.f, 0.f, 2.f, 0.3f);
