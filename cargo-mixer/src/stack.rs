@@ -4,7 +4,7 @@
 use std::fmt;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::vehicle::GRAVITY;
+use mixer_compiler::airframe::GRAVITY;
 use serde::Serialize;
 
 /// Scales and parameters; its `Display` is what `check` prints.
