@@ -82,7 +82,10 @@ impl RateLoop {
 
     /// One cycle; `false` at the end of the flight.
     pub(crate) fn cycle(&mut self) -> bool {
-        let torque = self.torque(bench::rate_setpoint(self.cycle), bench::gyro(self.cycle, self.rate));
+        let torque = self.torque(
+            bench::rate_setpoint(self.cycle),
+            bench::gyro(self.cycle, self.rate),
+        );
         let setpoint = Wrench::from_normalised([0.0, 0.0, torque, bench::HOVER], &isae_x8::SCALE);
         match self.motors.cycle(&setpoint) {
             Cycle::Mixed { achieved, saturation } => {

@@ -1,10 +1,22 @@
 //! What the example has in place of a flight controller's peripherals: QEMU's MPS2 board has neither speed
 //! controllers nor a battery. A port to a real board replaces this file.
 
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+
 use crate::control::{Battery, EscOutputs};
 
 /// Frequency of the core and of SysTick, Hz.
-pub(crate) const CORE_HZ: u32 = 25_000_000;
+const CORE_HZ: u32 = 25_000_000;
+
+/// Interrupts `rate_hz` times a second.
+pub(crate) fn pace(mut systick: SYST, rate_hz: u32) {
+    systick.set_clock_source(SystClkSource::Core);
+    systick.set_reload(CORE_HZ / rate_hz - 1);
+    systick.clear_current();
+    systick.enable_counter();
+    systick.enable_interrupt();
+}
 
 /// Pulse widths as a timer's compare registers would hold them, microseconds.
 pub(crate) struct Pulses<const CHANNELS: usize> {

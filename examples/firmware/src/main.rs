@@ -12,11 +12,10 @@ mod flight;
 
 use core::panic::PanicInfo;
 
-use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::{entry, exception};
 use cortex_m_semihosting::{debug, hprintln};
 
-use board::{CORE_HZ, DischargingPack, Pulses};
+use board::{DischargingPack, Pulses};
 use control::{Cycle, MotorControl};
 
 mixer_macros::airframe!("../../airframes/isae-x8.toml");
@@ -33,12 +32,7 @@ fn SysTick() {
 #[entry]
 fn main() -> ! {
     if let Some(peripherals) = cortex_m::Peripherals::take() {
-        let mut systick = peripherals.SYST;
-        systick.set_clock_source(SystClkSource::Core);
-        systick.set_reload(CORE_HZ / RATE_HZ - 1);
-        systick.clear_current();
-        systick.enable_counter();
-        systick.enable_interrupt();
+        board::pace(peripherals.SYST, RATE_HZ);
         fly();
         debug::exit(debug::EXIT_SUCCESS);
     }
@@ -50,13 +44,15 @@ fn main() -> ! {
 fn fly() {
     let mut motors = MotorControl::new(isae_x8::mix, Pulses::new(), DischargingPack::full(), PATIENCE);
     let (mut mixed, mut saturated, mut held, mut disarmed) = (0, 0, 0, 0);
+    let mut most_yaw_nm = 0.0_f32;
     for cycle in 0.. {
         cortex_m::asm::wfi();
         let Some(setpoint) = flight::setpoint(cycle) else {
             break;
         };
         match motors.cycle(&setpoint) {
-            Cycle::Mixed { saturation, .. } => {
+            Cycle::Mixed { achieved, saturation } => {
+                most_yaw_nm = achieved.yaw_nm.max(most_yaw_nm);
                 mixed += 1;
                 saturated += u32::from(saturation.bits() != 0);
             }
@@ -69,7 +65,11 @@ fn fly() {
         }
     }
     hprintln!("mixed {}, held {}, disarmed {}", mixed, held, disarmed);
-    hprintln!("saturated {}", saturated);
+    hprintln!(
+        "saturated {}, yaw at most {} mN m",
+        saturated,
+        (1e3 * most_yaw_nm) as i32
+    );
     hprintln!("pulses after landing {:?} us", motors.outputs().width_us);
 }
 

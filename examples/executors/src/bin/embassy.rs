@@ -13,14 +13,13 @@ mod rate;
 
 use core::panic::PanicInfo;
 
-use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 use cortex_m_semihosting::{debug, hprintln};
 use embassy_executor::Spawner;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 
-use board::{CORE_HZ, DischargingPack};
+use board::DischargingPack;
 use control::Battery;
 use rate::{CYCLES_PER_MEASUREMENT, RATE_HZ, RateLoop, VOLTAGE};
 
@@ -42,12 +41,7 @@ async fn main(spawner: Spawner) {
     spawner.spawn(measure);
     spawner.spawn(fly);
     if let Some(peripherals) = cortex_m::Peripherals::take() {
-        let mut systick = peripherals.SYST;
-        systick.set_clock_source(SystClkSource::Core);
-        systick.set_reload(CORE_HZ / RATE_HZ - 1);
-        systick.clear_current();
-        systick.enable_counter();
-        systick.enable_interrupt();
+        board::pace(peripherals.SYST, RATE_HZ);
     }
 }
 

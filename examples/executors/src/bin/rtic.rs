@@ -24,10 +24,9 @@ mod device {
 
 #[rtic::app(device = crate::device, peripherals = false)]
 mod app {
-    use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m_semihosting::debug;
 
-    use crate::board::{CORE_HZ, DischargingPack};
+    use crate::board::{self, DischargingPack};
     use crate::control::Battery;
     use crate::rate::{CYCLES_PER_MEASUREMENT, RATE_HZ, RateLoop, VOLTAGE};
 
@@ -42,12 +41,7 @@ mod app {
 
     #[init]
     fn init(context: init::Context) -> (Shared, Local) {
-        let mut systick = context.core.SYST;
-        systick.set_clock_source(SystClkSource::Core);
-        systick.set_reload(CORE_HZ / RATE_HZ - 1);
-        systick.clear_current();
-        systick.enable_counter();
-        systick.enable_interrupt();
+        board::pace(context.core.SYST, RATE_HZ);
         let local = Local {
             rate_loop: RateLoop::new(),
             pack: DischargingPack::full(),
