@@ -34,7 +34,7 @@ pub struct PlanArgs {
     /// The highest throttle
     #[arg(long, value_name = "THROTTLE", default_value_t = 1.0, value_parser = throttle)]
     max: f64,
-    /// What to write
+    /// The format to write
     #[arg(long, value_enum, default_value_t = Format::Template)]
     format: Format,
     /// Pulse widths of throttle 0 and 1 in the script, microseconds
@@ -48,7 +48,7 @@ pub struct PlanArgs {
     force: bool,
 }
 
-/// What a plan is written as.
+/// The format of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// A CSV to fill in.

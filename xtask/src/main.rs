@@ -10,28 +10,15 @@ struct Task {
     does: &'static str,
 }
 
-/// Runs a program of `mixer-tests`.
+/// Runs a program of `mixer-tests`, with flags of cargo.
 macro_rules! tests {
-    ($binary:literal) => {
+    ($($flag:literal)? => $binary:literal) => {
         &[
             "cargo",
             "run",
             "--quiet",
             "--locked",
-            "-p",
-            "mixer-tests",
-            "--bin",
-            $binary,
-            "--",
-        ]
-    };
-    (release $binary:literal) => {
-        &[
-            "cargo",
-            "run",
-            "--quiet",
-            "--locked",
-            "--release",
+            $($flag,)?
             "-p",
             "mixer-tests",
             "--bin",
@@ -59,22 +46,22 @@ const TASKS: &[Task] = &[
     },
     Task {
         name: "counts",
-        program: tests!("counts"),
+        program: tests!(=> "counts"),
         does: "counts instructions in QEMU; `counts --bless` writes tests/counts.csv, `counts --fit` what follows from it",
     },
     Task {
         name: "evaluators",
-        program: tests!(release "evaluators"),
+        program: tests!("--release" => "evaluators"),
         does: "counts the instructions of every evaluator and prints them as mixer-compiler states them",
     },
     Task {
         name: "allocators",
-        program: tests!(release "allocators"),
+        program: tests!("--release" => "allocators"),
         does: "compares allocators and writes tests/measurements/allocators.csv",
     },
     Task {
         name: "bases",
-        program: tests!(release "bases"),
+        program: tests!("--release" => "bases"),
         does: "compares bases on MIXER_BENCH_DATA and writes tests/measurements/bases.csv",
     },
     Task {
@@ -95,7 +82,7 @@ const TASKS: &[Task] = &[
     },
     Task {
         name: "tables",
-        program: tests!("tables"),
+        program: tests!(=> "tables"),
         does: "writes the tables of README.md and docs/ from what the tasks above have measured",
     },
     Task {

@@ -10,7 +10,7 @@ use mixer_rt::Wrench;
 /// A setpoint and the battery's voltage, V.
 pub type Vector = (Wrench, f32);
 
-/// What a golden vector is of. The table holds the kinds in this order.
+/// The kind of a golden vector. The table holds the kinds in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Zero, thrusts to beyond the ceiling at voltages to beyond the range, each axis alone.

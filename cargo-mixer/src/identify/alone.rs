@@ -1,4 +1,4 @@
-//! What one rotor gives alone: `[pair.lower_out]` and `[pair.upper_out]` from runs in which the other one stands still.
+//! Thrust and torque of one rotor alone, `[pair.lower_out]` and `[pair.upper_out]`, from runs in which the other one stands still.
 //!
 //! Model: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor that turns, for thrust and torque, by least squares (QR). Left
 //! out, a point would miss by e_i / (1 - h_i). The polynomials of the pair say the same at a throttle of zero, but are
@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::basis::ThrottleBox;
 use super::bench::{Bench, Kind, Point};
-use super::fit::ten_digits;
+use super::fit::{distinct_pairs, ten_digits};
 use super::pair::Pair;
 use super::polynomial::Polynomial;
 use super::refusal::Refusal;
@@ -126,12 +126,8 @@ pub fn identify(
     }
     let points = at_reference(run, turning, pair, voltage, warnings);
     let x: Vec<f64> = points.iter().map(|p| p.u).collect();
-    let distinct = {
-        let mut us: Vec<i64> = x.iter().map(|x| (1000.0 * x).round() as i64).collect();
-        us.sort_unstable();
-        us.dedup();
-        us.len()
-    };
+    let places: Vec<[f64; 2]> = x.iter().map(|&x| turning.throttles(x)).collect();
+    let distinct = distinct_pairs(&places);
     if distinct < FEWEST || points.iter().any(|p| !p.torque.is_finite()) {
         let reason = if distinct < FEWEST {
             format!("{flag}: {distinct} distinct throttles, at least {FEWEST} are needed")
@@ -254,7 +250,7 @@ fn falls([a1, a2, a3]: [f64; 3], throttle: ThrottleBox) -> Option<f64> {
         .find(|x| (3.0 * a3 * x + 2.0 * a2) * x + a1 <= 0.0)
 }
 
-/// What the map leaves to extrapolate to where a rotor is out, unless both rotors were run alone.
+/// A warning that the map is extrapolated where a rotor is out; none where both rotors were run alone or it begins low.
 pub fn extrapolated(pair: &Pair) -> Option<String> {
     let lowest = pair.measured[0][0].max(pair.measured[1][0]);
     let missing: Vec<&str> = [(&pair.lower_out, "--lower-out"), (&pair.upper_out, "--upper-out")]

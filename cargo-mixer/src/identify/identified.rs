@@ -259,7 +259,7 @@ fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refus
 /// flight is measured: thrust then misses by 5 % and more.
 const SAG: f64 = 0.03;
 
-/// What a supply that sagged with the load means for `[voltage]`.
+/// A warning about a supply that sagged with the load, for the use of `[voltage]`.
 fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
     let of = |bench: &&Bench| {
         let volts = bench.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());

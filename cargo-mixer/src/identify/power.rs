@@ -3,7 +3,7 @@
 //! A unit whose torque is not asked for can give its thrust f at any torque that the other units cancel. Q = 0 is not the
 //! cheapest: the lower rotor works in air that already moves. Electrical power (voltage times current, of both rotors) is
 //! fitted as a quartic of both throttles with a constant, as standby takes some; along Q = c f the throttles follow from the
-//! pair's map, and c is the number with the greatest mean saving against Q = 0 over [`SHARES`] of full thrust. A frame can
+//! pair's map, and c is the number with the greatest mean saving against Q = 0 over 0.3 to 0.7 of full thrust. A frame can
 //! cancel these torques as far as its upper rotors turn both ways: with spins s of n units the share of the saving that is
 //! left is 1 - (sum s / n)2, none where all turn alike.
 
@@ -32,7 +32,7 @@ const PLAUSIBLE_W_PER_N: [f64; 2] = [2.0, 200.0];
 /// Residual rms of the power map, share of the greatest power, above which a saving of a few percent is no finding.
 const POOR: f64 = 0.03;
 
-/// What the files say of least power.
+/// The torque of least power that the files give, or the reason why they give none.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "snake_case", tag = "status")]
 pub enum Power {

@@ -106,7 +106,7 @@ pub fn runs(pair: &Pair) -> impl Iterator<Item = (Turning, &Alone)> {
         .filter_map(|(turning, alone)| Some((turning, alone.as_ref()?)))
 }
 
-/// What there is to say of a rotor alone.
+/// The report's lines about a rotor alone.
 pub fn alone_lines(alone: &Alone) -> Vec<String> {
     let channel = |name: &str, unit: &str, coefficients: [f64; 3], fit: &AloneFit| {
         let percent = |x: f64| 100.0 * x / fit.full_scale;
@@ -142,7 +142,7 @@ fn write_power(out: &mut String, power: &Power) -> std::fmt::Result {
     }
 }
 
-/// What there is to say of the torque of least power.
+/// The report's lines about the torque of least power.
 pub fn least_power_lines(found: &LeastPower) -> Vec<String> {
     let middle = found.at[found.at.len() / 2];
     vec![

@@ -54,7 +54,7 @@ pub enum Exponent {
     Declared {
         /// k in (V / Vref)^k.
         exponent: f64,
-        /// What the files themselves would have given, where that is sound.
+        /// The exponent that the files themselves give, where it is sound.
         measured: Option<Estimate>,
     },
     /// The channel is in no file.

@@ -2,6 +2,7 @@
 //! torque asked. Found with the compiled mixer itself, not with a model of it.
 
 use mixer_compiler::airframe::Axis;
+use mixer_compiler::hover::Search;
 use mixer_rt::Health;
 
 use super::study::{Condition, Study};
@@ -14,21 +15,6 @@ pub struct Authority {
     /// Least and largest torque about roll, pitch and yaw, N m; NaN where the axis is not served.
     pub torque_nm: [[f64; 2]; 3],
 }
-
-/// How finely a largest torque is looked for.
-#[derive(Clone, Copy, Debug)]
-struct Search {
-    /// Torques tried over the whole range. The largest that is delivered counts, whatever was missed before it.
-    steps: usize,
-    /// Halvings from there to the next one tried.
-    halvings: usize,
-}
-
-/// To a ten-thousandth of the largest torque.
-const FINE: Search = Search {
-    steps: 24,
-    halvings: 12,
-};
 
 /// To a thousandth: every rotor is out in turn.
 const COARSE: Search = Search {
@@ -48,12 +34,12 @@ pub fn at(study: &Study<'_>, condition: &Condition, thrust_n: f64) -> Authority 
     Authority {
         thrust_n,
         torque_nm: about_axes(study, |axis, sign| {
-            reach(study, condition, FINE, axis, sign, thrust_n)
+            reach(study, condition, Search::FINE, axis, sign, thrust_n)
         }),
     }
 }
 
-/// What is left at `count` thrusts whichever one rotor is out, at the reference voltage.
+/// Authority that is left with any one rotor out, at `count` thrusts and the reference voltage.
 pub fn with_a_rotor_out(study: &Study<'_>, count: usize) -> Vec<Authority> {
     let rotors = study.compiled.airframe.rotors() as u8;
     let conditions: Vec<Condition> = (0..rotors)
@@ -108,29 +94,6 @@ fn reach(
     search.largest(largest_torque(study, axis), delivered)
 }
 
-impl Search {
-    /// The largest number up to `end` that is `delivered`, whatever is missed before it; 0 where not even 0 is.
-    fn largest(self, end: f64, delivered: impl Fn(f64) -> bool) -> f64 {
-        let step = end / self.steps as f64;
-        let Some(last) = (0..=self.steps).rev().find(|&k| delivered(k as f64 * step)) else {
-            return 0.0;
-        };
-        if last == self.steps {
-            return end;
-        }
-        let (mut good, mut bad) = (last as f64 * step, (last + 1) as f64 * step);
-        for _ in 0..self.halvings {
-            let middle = 0.5 * (good + bad);
-            if delivered(middle) {
-                good = middle;
-            } else {
-                bad = middle;
-            }
-        }
-        good
-    }
-}
-
 /// A torque that no throttles exceed: all units at their largest thrust and torque.
 fn largest_torque(study: &Study<'_>, axis: Axis) -> f64 {
     let [f, q] = study.pair.scale();
@@ -141,12 +104,12 @@ fn largest_torque(study: &Study<'_>, axis: Axis) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{COARSE, FINE};
+    use super::{COARSE, Search};
 
     /// A torque that is missed does not hide those beyond it.
     #[test]
     fn the_search_looks_on_after_a_miss() {
-        for search in [FINE, COARSE] {
+        for search in [Search::FINE, COARSE] {
             let found = search.largest(2.0, |torque| torque <= 1.3 && !(0.4..0.6).contains(&torque));
             assert!((1.298..=1.3).contains(&found), "{found}");
             assert_eq!(search.largest(2.0, |_| true), 2.0);

@@ -1,4 +1,4 @@
-//! What a page is of: the airframe file's hash and the day.
+//! Origin of a report page: the hash of the airframe file and the day.
 
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};

@@ -8,11 +8,43 @@ use serde::Serialize;
 use crate::airframe::{Axis, GRAVITY};
 use crate::compiled::Compiled;
 
-/// Torques tried on the way out.
-const STEPS: usize = 24;
+/// How finely a largest torque is looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Search {
+    /// Torques tried over the whole range. The largest that is delivered counts, whatever was missed before it.
+    pub steps: usize,
+    /// Halvings from there to the next one tried.
+    pub halvings: usize,
+}
 
-/// Halvings between the last torque that is delivered and the next: a hundred-thousandth of the largest.
-const HALVINGS: usize = 12;
+impl Search {
+    /// To a hundred-thousandth of the range.
+    pub const FINE: Search = Search {
+        steps: 24,
+        halvings: 12,
+    };
+
+    /// The largest number up to `end` that is `delivered`, whatever is missed before it; 0 where not even 0 is.
+    pub fn largest(self, end: f64, delivered: impl Fn(f64) -> bool) -> f64 {
+        let step = end / self.steps as f64;
+        let Some(last) = (0..=self.steps).rev().find(|&k| delivered(k as f64 * step)) else {
+            return 0.0;
+        };
+        if last == self.steps {
+            return end;
+        }
+        let (mut good, mut bad) = (last as f64 * step, (last + 1) as f64 * step);
+        for _ in 0..self.halvings {
+            let middle = 0.5 * (good + bad);
+            if delivered(middle) {
+                good = middle;
+            } else {
+                bad = middle;
+            }
+        }
+        good
+    }
+}
 
 /// The vehicle in hover.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -111,7 +143,7 @@ impl HoverAt {
                     wrench[axis as usize] = sign * torque;
                     mix(wrench).is_some()
                 };
-                sign * furthest(largest, delivered)
+                sign * Search::FINE.largest(largest, delivered)
             };
             Margin {
                 axis: axis.name(),
@@ -125,25 +157,6 @@ impl HoverAt {
             margins: margins.collect(),
         }
     }
-}
-
-/// The furthest torque up to `largest` that is delivered: looks on where one on the way is missed.
-fn furthest(largest: f64, delivered: impl Fn(f64) -> bool) -> f64 {
-    let step = largest / STEPS as f64;
-    let tried = (0..=STEPS).rev().map(|k| k as f64 * step);
-    let Some(mut good) = tried.into_iter().find(|&torque| delivered(torque)) else {
-        return 0.0;
-    };
-    let mut bad = good + step;
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (good + bad);
-        if delivered(middle) {
-            good = middle;
-        } else {
-            bad = middle;
-        }
-    }
-    good
 }
 
 /// A torque that no throttles exceed: all units at their largest thrust and torque.

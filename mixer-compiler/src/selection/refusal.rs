@@ -2,8 +2,7 @@
 
 use super::{Best, choose};
 use crate::airframe::{Airframe, Method};
-use crate::diagnostic::rounded_up;
-use crate::diagnostic::{Code, Diagnostic, number};
+use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
 use crate::model::effectiveness::Effectiveness;
 use crate::model::injectivity::ForwardMap;
 use crate::tables::VoltageTable;
@@ -12,7 +11,7 @@ use crate::tables::VoltageTable;
 /// come out a little worse.
 const FACTORS: [f64; 5] = [1.02, 1.06, 1.15, 1.4, 2.0];
 
-/// Factors on the least idle at which the map can be inverted. All fits of ten real maps compile at the first (README); an idle
+/// Factors on the least idle at which the map can be inverted. All fits of ten real maps compile at the first; an idle
 /// above the last is not near the fold.
 const IDLES: [f64; 2] = [1.03, 1.1];
 

@@ -52,13 +52,13 @@ pub const FLIPS: u8 = BUDGET.flips + LEVEL_BUDGET.flips;
 /// Rounds at most in which the curves of single rotors take the place of their chords.
 const ROUNDS: u8 = 3;
 
-/// For the request.
+/// Budget of the programme for the request.
 const BUDGET: Budget = Budget {
     pivots: 16,
     flips: 64,
 };
 
-/// For level flight, where the budget of the request ends first.
+/// Budget of the programme for level flight, which is solved where that of the request ends first.
 const LEVEL_BUDGET: Budget = Budget { pivots: 8, flips: 32 };
 
 /// The multipliers at the start, per row of the request's distance from the centres: so units start at corners on the
@@ -129,8 +129,8 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         }
     }
 
-    /// Moves units towards the efforts of least norm for a wrench in N m and N, as far as all polygons allow; true where that is
-    /// all the way. With `from_centre` they start at the centre, and stay anywhere where it is not all the way.
+    /// Moves units towards the efforts of least norm for a wrench in N m and N, as far as all polygons allow; true if they arrive.
+    /// With `from_centre` they start at the centre; then their coordinates mean nothing if they do not arrive.
     #[inline(never)]
     fn towards_least_norm(&self, wrench: &[f32; 4], units: &mut [Scratch], from_centre: bool) -> bool {
         let scale = self.tables.attainable.scale;
@@ -196,14 +196,11 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             yaw_reserve_nm,
         } = tables.desaturation;
         let reserve = yaw_reserve_nm * self.rows[2];
-        let count = shortage::write(
-            &mut shortages,
-            &mut wanted,
-            &centre,
-            units.len(),
-            airmode,
-            reserve,
-        );
+        let n = units.len();
+        let write = |shortages: &mut _, wanted: &mut _| {
+            shortage::write(shortages, wanted, &centre, n, airmode, reserve)
+        };
+        let count = write(&mut shortages, &mut wanted);
         let ahead = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - centre[k]));
         let mut simplex = Simplex::new(units, &mut shortages, self.polygon);
         simplex.start(&wanted, &ahead, count, BUDGET);
@@ -222,14 +219,8 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             unit.at = between(self.polygon.inside(unit.rotors), unit.at, share);
         }
         if !is_solved {
-            shortage::write(
-                simplex.shortages,
-                &mut wanted,
-                &centre,
-                simplex.units.len(),
-                airmode,
-                reserve,
-            );
+            // The first programme has changed the gains of the shortages.
+            write(simplex.shortages, &mut wanted);
             let level = [0.0, 0.0, 0.0, wanted[3]];
             simplex.start(&level, &[0.0; 4], shortage::LEVEL, LEVEL_BUDGET);
             simplex.solve();

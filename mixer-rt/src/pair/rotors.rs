@@ -34,9 +34,8 @@ impl SingleRotor {
 }
 
 /// Which rotors of a unit work.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rotors {
-    #[default]
     Both,
     Upper,
     Lower,

@@ -46,7 +46,7 @@ pub(super) const SHORTAGES: usize = 6;
 
 /// What a slot of the basis holds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Holds {
+enum Holds {
     /// What its row misses.
     Artificial,
     /// What its row misses, at the largest multiplier.
@@ -60,8 +60,8 @@ pub(super) enum Holds {
 
 /// A slot of the basis.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct Slot {
-    pub(super) holds: Holds,
+struct Slot {
+    holds: Holds,
     variable: u8,
 }
 
@@ -93,19 +93,19 @@ pub(super) struct Simplex<'a> {
     pub(super) units: &'a mut [Scratch],
     pub(super) shortages: &'a mut [Scratch; SHORTAGES],
     /// How many of the shortages there are at present.
-    pub(super) count: usize,
-    pub(super) polygon: Polygon<'a>,
-    pub(super) slots: [Slot; 4],
+    count: usize,
+    polygon: Polygon<'a>,
+    slots: [Slot; 4],
     /// Rows of the inverse of the basis.
     inverse: [[f32; 4]; 4],
     /// w less all that does not depend on the basis.
     pub(super) residual: [f32; 4],
     multipliers: [f32; 4],
     /// The values of the slots.
-    pub(super) values: [f32; 4],
+    values: [f32; 4],
     /// The last dual step, which the gains do not yet have.
     step: f32,
-    pub(super) budget: Budget,
+    budget: Budget,
 }
 
 /// Puts variables, whose gains are their bias, at the corners that the multipliers make best; takes what they give there from
@@ -160,7 +160,8 @@ impl<'a> Simplex<'a> {
         }
     }
 
-    /// Starts with the first `count` shortages, whose gains are their costs, the variables at the corners that `multipliers` put them at, and artificial slots.
+    /// Starts with artificial slots and with the variables at the corners that `multipliers` put them at: all units, and the
+    /// first `count` shortages, whose gains are their costs.
     #[inline(never)]
     pub(super) fn start(&mut self, wanted: &[f32; 4], multipliers: &[f32; 4], count: usize, budget: Budget) {
         self.budget = budget;
@@ -200,17 +201,7 @@ impl<'a> Simplex<'a> {
         }
     }
 
-    /// The variable of this index: units first.
-    #[inline(always)]
-    fn variable(&mut self, index: usize) -> &mut Scratch {
-        let shortage = index.wrapping_sub(self.units.len());
-        match self.units.get_mut(index) {
-            Some(unit) => unit,
-            None => &mut self.shortages[shortage.min(SHORTAGES - 1)],
-        }
-    }
-
-    /// The variable of this index, its set, and the residual.
+    /// The variable of this index, units first, its set, and the residual.
     #[inline(always)]
     fn parts(&mut self, index: usize) -> (&mut Scratch, &'a [Corner], &mut [f32; 4]) {
         let shortage = index.wrapping_sub(self.units.len());
@@ -413,8 +404,8 @@ impl<'a> Simplex<'a> {
                     variable: entering as u8,
                 };
             }
-            self.variable(entering)
-                .subtract(way.map(|part| -part), &mut column);
+            let (variable, ..) = self.parts(entering);
+            variable.subtract(way.map(|part| -part), &mut column);
         }
         for (multiplier, part) in self.multipliers.iter_mut().zip(direction) {
             rolled();

@@ -45,10 +45,9 @@ const ORIGIN: [Corner; 1] = [Corner {
 }];
 
 /// Where in its set a variable is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// At a corner: no slot of the basis.
-    #[default]
     Corner,
     /// On the edge that leaves its corner: one slot.
     Edge,
@@ -176,11 +175,6 @@ pub(super) fn positive(x: f32) -> f32 {
 }
 
 impl Scratch {
-    /// The efforts `[f, Q]` that were found, N and N m at the reference voltage.
-    pub fn efforts(&self) -> [f32; 2] {
-        self.at
-    }
-
     /// Takes what coordinates give from `rows`.
     #[inline(never)]
     pub(super) fn subtract(&self, [y0, y1]: [f32; 2], rows: &mut [f32; 4]) {
@@ -245,7 +239,7 @@ impl Scratch {
         }
     }
 
-    /// As [`Scratch::look_ahead`].
+    /// [`Scratch::look_ahead`] for a variable on a segment, whose gain has one part.
     #[inline(always)]
     pub(super) fn look_ahead_on_segment(&mut self, last_step: f32, direction: &[f32; 4]) {
         let rate = dot(&self.columns[0], direction);
