@@ -9,8 +9,8 @@ mod single;
 
 use mixer_rt::{
     AttainableSet, Biquadratic, Corner, Cubic, Desaturation, Facets, Health, Pair, Quantity, Quartic,
-    Saturation, Scalar, Scratch, SetpointError, SingleRotor, Tables, ThrottleRange, Tolerance, Unit,
-    Vertical, VerticalUnit, Voltage, VoltageLaw, Wrench,
+    SHORTAGES, Saturation, Scalar, SetpointError, SingleRotor, Tables, ThrottleRange, Tolerance, Unit,
+    Variable, Vertical, VerticalUnit, Voltage, VoltageLaw, Wrench,
 };
 
 use crate::airframe::{Airframe, Basis};
@@ -215,14 +215,14 @@ impl MixerTables {
         voltage_v: f32,
         health: Health,
     ) -> Result<AnyMix, SetpointError> {
-        let mut scratch = vec![Scratch::default(); self.units.len()];
+        let mut variables = vec![Variable::default(); self.units.len() + SHORTAGES];
         let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
         let (achieved, saturation) = mixer_rt::mix_into(
             &self.view(),
             setpoint,
             voltage_v,
             health,
-            &mut scratch,
+            &mut variables,
             &mut throttle,
         )?;
         Ok((throttle, achieved, saturation))

@@ -42,7 +42,7 @@ pub use desaturation::attainable::{AttainableSet, Corner};
 pub use desaturation::closed_form::{
     Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortcut, Vertical, VerticalUnit,
 };
-pub use desaturation::general::{FLIPS, PIVOTS, Scratch};
+pub use desaturation::general::{FLIPS, PIVOTS, SHORTAGES, Variable};
 pub use desaturation::{Airmode, Desaturation};
 pub use health::Health;
 pub use mix::{Airframe, Mix, mix, mix_into, mix_with_health};

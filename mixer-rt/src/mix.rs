@@ -1,7 +1,9 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
+use core::hint::black_box;
+
 use crate::desaturation::closed_form::{Attained, Efforts, Request, Shortcut, Vertical};
-use crate::desaturation::general::{Scratch, allocate};
+use crate::desaturation::general::{SHORTAGES, Variable, allocate};
 use crate::desaturation::{is_bounded, limited};
 use crate::pair::rotors::Rotors;
 use crate::rolled;
@@ -19,28 +21,34 @@ pub struct Mix<const CHANNELS: usize> {
     pub saturation: Saturation,
 }
 
-/// Mixes for an airframe of `UNITS` units and `CHANNELS` = 2 `UNITS` rotors. `voltage_v` is the battery's present
+/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n + [`SHORTAGES`]. `voltage_v` is the battery's present
 /// voltage, V: outside the airframe's range it is taken as the nearest within and flagged, zero as well; an airframe
 /// without `[voltage]` ignores it. Any finite setpoint is mixed.
 ///
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
 #[inline(always)]
-pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>, S: Shortcut>(
+pub fn mix<const VARIABLES: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>, S: Shortcut>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
-    mix_with_health::<UNITS, CHANNELS, P, I, S>(tables, setpoint, voltage_v, Health::GOOD)
+    mix_with_health::<VARIABLES, CHANNELS, P, I, S>(tables, setpoint, voltage_v, Health::GOOD)
 }
 
-/// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells how much. `UNITS` is not
-/// inferred; the generated module has this function without it. Links the general way of desaturation for every frame.
+/// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells how much. `VARIABLES` is
+/// not inferred; the generated module has this function without it. Links the general way of desaturation for every frame.
 ///
 /// # Errors
 /// As [`mix`].
 #[inline(always)]
-pub fn mix_with_health<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>, S: Shortcut>(
+pub fn mix_with_health<
+    const VARIABLES: usize,
+    const CHANNELS: usize,
+    P: Quantity,
+    I: Inverse<P>,
+    S: Shortcut,
+>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -50,14 +58,14 @@ pub fn mix_with_health<const UNITS: usize, const CHANNELS: usize, P: Quantity, I
     let (achieved, saturation) = match (tables.shortcut.vertical(), health.is_good()) {
         (Some(vertical), true) => mix_vertical(tables, vertical, setpoint, voltage_v, &mut throttle)?,
         _ => {
-            let mut scratch = [Scratch::default(); UNITS];
+            let mut variables = [black_box(Variable::default()); VARIABLES];
             mix_units(
                 tables,
                 tables.units,
                 setpoint,
                 voltage_v,
                 health,
-                &mut scratch,
+                &mut variables,
                 &mut throttle,
             )?
         }
@@ -69,8 +77,8 @@ pub fn mix_with_health<const UNITS: usize, const CHANNELS: usize, P: Quantity, I
     })
 }
 
-/// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `scratch` takes one
-/// element per unit, `throttle` one value per channel. Units or channels beyond a buffer's end are left out.
+/// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `variables` takes one element per unit
+/// and [`SHORTAGES`] more, `throttle` one value per channel. Units or channels beyond a buffer's end are left out.
 ///
 /// # Errors
 /// As [`mix`]; the buffers are then as they were.
@@ -80,15 +88,16 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
     setpoint: &Wrench,
     voltage_v: f32,
     health: Health,
-    scratch: &mut [Scratch],
+    variables: &mut [Variable],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
     if let (Some(vertical), true) = (tables.shortcut.vertical(), health.is_good()) {
         return mix_vertical(tables, vertical, setpoint, voltage_v, throttle);
     }
-    let units = tables.units.get(..scratch.len()).unwrap_or(tables.units);
-    let scratch = scratch.get_mut(..units.len()).unwrap_or_default();
-    mix_units(tables, units, setpoint, voltage_v, health, scratch, throttle)
+    let units = variables.len().saturating_sub(SHORTAGES);
+    let units = tables.units.get(..units).unwrap_or(tables.units);
+    let variables = variables.get_mut(..units.len() + SHORTAGES).unwrap_or_default();
+    mix_units(tables, units, setpoint, voltage_v, health, variables, throttle)
 }
 
 /// [`mix_into`] for `units`.
@@ -99,27 +108,29 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
     setpoint: &Wrench,
     voltage_v: f32,
     health: Health,
-    scratch: &mut [Scratch],
+    variables: &mut [Variable],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
-    for (unit, scratch) in units.iter().zip(scratch.iter_mut()) {
-        scratch.rotors = Rotors::of(unit.channels, health);
+    let mut is_whole = true;
+    for (unit, variable) in units.iter().zip(variables.iter_mut()) {
+        variable.rotors = Rotors::of(unit.channels, health);
+        is_whole &= variable.rotors == Rotors::Both;
     }
-    allocate(tables, &bounded, factors, scratch);
+    allocate(tables, &bounded, factors, variables, is_whole);
     let mut achieved = [0.0; 4];
-    for (unit, scratch) in units.iter().zip(scratch) {
+    for (unit, Variable { rotors, at, .. }) in units.iter().zip(variables) {
         rolled();
-        let throttles = match scratch.rotors {
-            Rotors::Both => tables
-                .inverse
-                .throttles(&tables.pair, &tables.throttle, scratch.at),
+        // With all rotors known to work the compiler leaves the code for single ones out.
+        let rotors = if is_whole { Rotors::Both } else { *rotors };
+        let throttles = match rotors {
+            Rotors::Both => tables.inverse.throttles(&tables.pair, &tables.throttle, *at),
             Rotors::None => [0.0; 2],
-            single => single.invert(&tables.singles, &tables.throttle, scratch.at[0]),
+            single => single.invert(&tables.singles, &tables.throttle, at[0]),
         };
         write(unit.channels, throttles, throttle);
-        let efforts = scratch.rotors.efforts(tables, throttles);
+        let efforts = rotors.efforts(tables, throttles);
         unit.add_wrench(efforts, factors, &mut achieved);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);

@@ -8,7 +8,9 @@ use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Sub};
 
 use mixer_compiler::tables::{InverseTable, MixerTables};
-use mixer_rt::{Health, Inverse, Pair, Quantity, Scalar, Scratch, TableSeed, Tables, ThrottleRange, Wrench};
+use mixer_rt::{
+    Health, Inverse, Pair, Quantity, SHORTAGES, Scalar, TableSeed, Tables, ThrottleRange, Variable, Wrench,
+};
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
 
@@ -121,7 +123,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         tolerance: view.tolerance,
     };
     let units = tables.units.len();
-    let (mut scratch, mut throttle) = (vec![Scratch::default(); units], vec![0.0; 2 * units]);
+    let (mut variables, mut throttle) = (vec![Variable::default(); units + SHORTAGES], vec![0.0; 2 * units]);
     let [roll_nm, pitch_nm, yaw_nm, thrust_n] = setpoint;
     let wrench = Wrench {
         roll_nm,
@@ -129,7 +131,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         yaw_nm,
         thrust_n,
     };
-    let mixed = mixer_rt::mix_into(&view, &wrench, volts, health, &mut scratch, &mut throttle);
+    let mixed = mixer_rt::mix_into(&view, &wrench, volts, health, &mut variables, &mut throttle);
     let (achieved, _) = mixed.expect("finite");
     assert!(
         achieved.to_array().iter().all(|x| x.is_finite()),

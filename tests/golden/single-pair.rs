@@ -53,7 +53,13 @@ pub mod single_pair {
         setpoint: &::mixer_rt::Wrench,
         voltage_v: f32,
     ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-        ::mixer_rt::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+        ::mixer_rt::mix::<
+            { UNITS + ::mixer_rt::SHORTAGES },
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, voltage_v)
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -66,7 +72,7 @@ pub mod single_pair {
         health: ::mixer_rt::Health,
     ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
         ::mixer_rt::mix_with_health::<
-            UNITS,
+            { UNITS + ::mixer_rt::SHORTAGES },
             CHANNELS,
             _,
             _,

@@ -1,7 +1,7 @@
 //! The same bits on the host and on the target, over many random setpoints: one number is compared for all of them.
 
 use mixer_compiler::Compiled;
-use mixer_rt::{Scratch, Wrench};
+use mixer_rt::{SHORTAGES, Variable, Wrench};
 use mixer_setpoints::{Digest, Mixture, RotorsOut};
 
 /// Digest after each tenth of `count` setpoints with `rotors_out`, as the `digest` image prints them.
@@ -14,14 +14,14 @@ pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
     for _ in 0..10 {
         for (setpoint, health) in setpoints.by_ref().take(count / 10) {
             let wrench = Wrench::from_array(setpoint.wrench);
-            let mut scratch = vec![Scratch::default(); tables.units.len()];
+            let mut variables = vec![Variable::default(); tables.units.len() + SHORTAGES];
             let mut throttle = vec![tables.throttle.min; 2 * tables.units.len()];
             let mixed = mixer_rt::mix_into(
                 &tables,
                 &wrench,
                 setpoint.voltage_v,
                 health,
-                &mut scratch,
+                &mut variables,
                 &mut throttle,
             );
             match &mixed {

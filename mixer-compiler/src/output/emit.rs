@@ -93,7 +93,7 @@ fn functions() -> TokenStream {
             setpoint: &::mixer_rt::Wrench,
             voltage_v: f32,
         ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-            ::mixer_rt::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+            ::mixer_rt::mix::<{ UNITS + ::mixer_rt::SHORTAGES }, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
         }
 
         /// [`mix`] with the rotors out that `health` names by channel.
@@ -106,7 +106,7 @@ fn functions() -> TokenStream {
             voltage_v: f32,
             health: ::mixer_rt::Health,
         ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-            ::mixer_rt::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
+            ::mixer_rt::mix_with_health::<{ UNITS + ::mixer_rt::SHORTAGES }, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
         }
     }
 }

@@ -14,9 +14,11 @@
 //! shortage, along their request, so that their direction stays. A shortage runs from nothing to all that was asked for, so
 //! that nothing is reversed.
 
-use super::simplex::SHORTAGES;
-use super::variable::{NEVER, Scratch};
+use super::variable::Variable;
 use crate::{Airmode, clamp, rolled, sqrt};
+
+/// How many shortages there are at most. Each has a [`Variable`] behind those of the units.
+pub const SHORTAGES: usize = 6;
 
 /// The shortages of thrust, which come first: all that there are without roll, pitch and yaw.
 pub(super) const LEVEL: usize = 2;
@@ -47,17 +49,32 @@ const CEILING: f32 = 1.02;
 const LEAST_WIDTH: f32 = 1e-3;
 const LEAST_WIDTH_OF_THRUST: f32 = 0.1;
 
-/// Writes the shortages of a request in rows, which is limited to what is looked at; returns how many there are. `centre` is
-/// what the units' centres give, `reserve` the yaw that is kept before roll and pitch, in rows.
+/// A unit's bias: small beside the least cost, large beside rounding.
+const BIAS: f32 = 4e-3;
+
+/// Writes the units' biases and, behind the units, the shortages of a request in rows, which is limited to what is looked at;
+/// returns how many shortages there are. `centre` is what the units' centres give, `reserve` the yaw that is kept before roll
+/// and pitch, in rows.
 #[inline(never)]
 pub(super) fn write(
-    shortages: &mut [Scratch; SHORTAGES],
+    variables: &mut [Variable],
+    units: usize,
     wanted: &mut [f32; 4],
     centre: &[f32; 4],
-    units: usize,
     airmode: Airmode,
     reserve: f32,
 ) -> usize {
+    let Some((unit, shortages)) = variables.split_at_mut_checked(units) else {
+        return 0;
+    };
+    let mut weyl = 0.5;
+    for unit in unit {
+        rolled();
+        unit.gain = [BIAS * (weyl - 0.5), BIAS * (0.75 - weyl)];
+        // Weyl's sequence: spread over [0, 1) for any number of units.
+        weyl += 0.618_034;
+        weyl -= if weyl >= 1.0 { 1.0 } else { 0.0 };
+    }
     let n = units as f32;
     let limit = LIMIT * n;
     let [roll, pitch, ..] = *wanted;
@@ -111,7 +128,6 @@ pub(super) fn write(
     for (shortage, (rows, cost)) in shortages.iter_mut().zip(values) {
         rolled();
         (shortage.columns[0], shortage.gain) = (rows, [-cost, 0.0]);
-        shortage.breakpoint = NEVER;
     }
     if reserve > 0.0 { SHORTAGES } else { WITHOUT_RESERVE }
 }

@@ -20,19 +20,23 @@
 //! Any lambda may be the start: nothing has to be known about the frame or its health. Work is bounded by the numbers of pivots
 //! and of moves to other corners that are allowed.
 
-use super::variable::{NEVER, Place, Polygon, Scratch, corner, dot, next, positive};
+use core::hint::black_box;
+
+use super::variable::{NEVER, Place, Polygon, Variable, corner, dot, next, positive};
 use crate::desaturation::attainable::Corner;
+use crate::pair::rotors::Rotors;
 use crate::rolled;
 
 /// Slots further outside their bounds are brought back: of an edge's length, or of a row.
 const TOLERANCE: f32 = 3e-5;
 const TOLERANCE_OF_POLYGON: f32 = 1e-5;
 
-/// Multipliers up to which rows are met. Where not even roll = pitch = yaw = 0 is attainable, rows are missed at this price.
-const LARGEST_MULTIPLIER: f32 = 4e4;
+/// Multipliers up to which the rows are met. Where not even roll = pitch = yaw = 0 is attainable, rows are missed at these
+/// prices, which differ so that the answer is unique.
+const PRICES: [f32; 4] = [4e4, 3.7e4, 3.4e4, 3.1e4];
 
-/// Bias of a unit's efforts: small beside the least cost, large beside rounding.
-const BIAS: f32 = 4e-3;
+/// The bit of a float's sign.
+const SIGN: u32 = 1 << 31;
 
 const IDENTITY: [[f32; 4]; 4] = [
     [1.0, 0.0, 0.0, 0.0],
@@ -41,15 +45,12 @@ const IDENTITY: [[f32; 4]; 4] = [
     [0.0, 0.0, 0.0, 1.0],
 ];
 
-/// The number of shortages, the one along the ray included.
-pub(super) const SHORTAGES: usize = 6;
-
 /// What a slot of the basis holds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Holds {
     /// What its row misses.
     Artificial,
-    /// What its row misses, at the largest multiplier.
+    /// What its row misses, at its price.
     Elastic,
     /// The share of the edge on which the variable is.
     Edge,
@@ -81,6 +82,45 @@ struct Leaving {
     second: usize,
 }
 
+/// The index of no variable.
+const NONE: u8 = u8::MAX;
+
+/// A variable's breakpoint. The bits of floats are in their order, but for negative ones, which all come first; that
+/// spares the transfers of comparisons between floats.
+#[derive(Clone, Copy)]
+struct Breakpoint {
+    bits: i32,
+    variable: u8,
+}
+
+/// The bits of a breakpoint that has to be looked for.
+const UNKNOWN: i32 = i32::MIN;
+
+/// The two breakpoints that come first.
+#[derive(Clone, Copy)]
+struct Next([Breakpoint; 2]);
+
+impl Next {
+    /// Those before any of a variable: the end of the dual step.
+    #[inline(always)]
+    fn new(limit: f32) -> Self {
+        let bits = limit.to_bits() as i32;
+        Next([Breakpoint { bits, variable: NONE }; 2])
+    }
+
+    #[inline(always)]
+    fn consider(&mut self, variable: u8, breakpoint: f32) {
+        let bits = breakpoint.to_bits() as i32;
+        let new = Breakpoint { bits, variable };
+        let [first, second] = self.0;
+        if bits < first.bits {
+            self.0 = [new, first];
+        } else if bits < second.bits {
+            self.0[1] = new;
+        }
+    }
+}
+
 /// Pivots and moves to other corners that are left.
 #[derive(Clone, Copy)]
 pub(super) struct Budget {
@@ -90,10 +130,8 @@ pub(super) struct Budget {
 
 /// The programme and its state.
 pub(super) struct Simplex<'a> {
-    pub(super) units: &'a mut [Scratch],
-    pub(super) shortages: &'a mut [Scratch; SHORTAGES],
-    /// How many of the shortages there are at present.
-    count: usize,
+    /// The units, then the shortages.
+    pub(super) variables: &'a mut [Variable],
     polygon: Polygon<'a>,
     slots: [Slot; 4],
     /// Rows of the inverse of the basis.
@@ -108,85 +146,46 @@ pub(super) struct Simplex<'a> {
     budget: Budget,
 }
 
-/// Puts variables, whose gains are their bias, at the corners that the multipliers make best; takes what they give there from
-/// `residual`.
-#[inline(never)]
-fn put_at_corners(
-    variables: &mut [Scratch],
-    polygon: &Polygon<'_>,
-    multipliers: &[f32; 4],
-    residual: &mut [f32; 4],
-) {
-    for variable in variables {
-        rolled();
-        let worth = variable.transposed(multipliers);
-        variable.gain = [0, 1].map(|k| variable.gain[k] + worth[k]);
-        (variable.rate, variable.place) = ([0.0; 2], Place::Corner);
-        let set = polygon.set(variable.rotors);
-        variable.choose_corner(set);
-        variable.subtract(corner(set, variable.corner).at, residual);
-    }
-}
-
-/// Gives variables the coordinates of their corners.
-#[inline(never)]
-fn take_corners(variables: &mut [Scratch], polygon: &Polygon<'_>) {
-    for variable in variables {
-        rolled();
-        variable.at = corner(polygon.set(variable.rotors), variable.corner).at;
-    }
-}
-
 impl<'a> Simplex<'a> {
-    /// The programme before [`Simplex::start`].
-    #[inline(always)]
-    pub(super) fn new(
-        units: &'a mut [Scratch],
-        shortages: &'a mut [Scratch; SHORTAGES],
+    /// Starts with artificial slots and with the variables, whose gains are their biases, at the corners that `multipliers`
+    /// make best.
+    #[inline(never)]
+    pub(super) fn start(
+        variables: &'a mut [Variable],
         polygon: Polygon<'a>,
+        wanted: &[f32; 4],
+        multipliers: &[f32; 4],
+        budget: Budget,
     ) -> Self {
+        let mut residual = *wanted;
+        for variable in variables.iter_mut() {
+            rolled();
+            let worth = variable.transposed(multipliers);
+            variable.gain = [0, 1].map(|k| variable.gain[k] + worth[k]);
+            (variable.rate, variable.place) = ([0.0; 2], Place::Corner);
+            let set = polygon.set(variable.rotors);
+            variable.choose_corner(set);
+            variable.subtract(corner(set, variable.corner).at, &mut residual);
+        }
         Simplex {
-            units,
-            shortages,
-            count: 0,
+            variables,
             polygon,
             slots: [ARTIFICIAL; 4],
             inverse: IDENTITY,
-            residual: [0.0; 4],
-            multipliers: [0.0; 4],
+            residual,
+            multipliers: *multipliers,
             values: [0.0; 4],
             step: 0.0,
-            budget: Budget { pivots: 0, flips: 0 },
+            budget,
         }
-    }
-
-    /// Starts with artificial slots and with the variables at the corners that `multipliers` put them at: all units, and the
-    /// first `count` shortages, whose gains are their costs.
-    #[inline(never)]
-    pub(super) fn start(&mut self, wanted: &[f32; 4], multipliers: &[f32; 4], count: usize, budget: Budget) {
-        self.budget = budget;
-        self.residual = *wanted;
-        self.inverse = IDENTITY;
-        self.slots = [ARTIFICIAL; 4];
-        (self.multipliers, self.step, self.count) = (*multipliers, 0.0, count);
-        let mut weyl = 0.5;
-        for variable in self.units.iter_mut() {
-            rolled();
-            variable.gain = [BIAS * (weyl - 0.5), BIAS * (0.75 - weyl)];
-            // Weyl's sequence: spread over [0, 1) for any number of units.
-            weyl += 0.618_034;
-            weyl -= if weyl >= 1.0 { 1.0 } else { 0.0 };
-        }
-        let shortages = self.shortages.get_mut(..count).unwrap_or_default();
-        put_at_corners(self.units, &self.polygon, multipliers, &mut self.residual);
-        put_at_corners(shortages, &self.polygon, multipliers, &mut self.residual);
     }
 
     /// Pivots until all slots are within their bounds; false where the budget ends first.
     #[inline(never)]
     pub(super) fn solve(&mut self) -> bool {
         loop {
-            for (value, row) in self.values.iter_mut().zip(&self.inverse) {
+            let values = black_box(self.values.as_mut_slice());
+            for (value, row) in values.iter_mut().zip(&self.inverse) {
                 rolled();
                 *value = dot(row, &self.residual);
             }
@@ -201,16 +200,12 @@ impl<'a> Simplex<'a> {
         }
     }
 
-    /// The variable of this index, units first, its set, and the residual.
+    /// The variable of this index, its set, and the residual.
     #[inline(always)]
-    fn parts(&mut self, index: usize) -> (&mut Scratch, &'a [Corner], &mut [f32; 4]) {
-        let shortage = index.wrapping_sub(self.units.len());
-        let variable = match self.units.get_mut(index) {
-            Some(unit) => unit,
-            None => &mut self.shortages[shortage.min(SHORTAGES - 1)],
-        };
+    fn parts(&mut self, index: u8) -> Option<(&mut Variable, &'a [Corner], &mut [f32; 4])> {
+        let variable = self.variables.get_mut(usize::from(index))?;
         let set = self.polygon.set(variable.rotors);
-        (variable, set, &mut self.residual)
+        Some((variable, set, &mut self.residual))
     }
 
     #[inline(never)]
@@ -289,22 +284,22 @@ impl<'a> Simplex<'a> {
             let direction = self.across(corner, slot, second);
             let [e0, e1] = corner.edge;
             let per_square = 1.0 / (e0 * e0 + e1 * e1);
-            for (k, across) in direction.iter().enumerate() {
-                rolled();
-                let along = e0 * self.inverse[slot][k] + e1 * self.inverse[second][k];
-                self.inverse[slot][k] = along * per_square;
-                self.inverse[second][k] = across * per_square;
-            }
+            self.turn(slot, second, [e0 * per_square, e1 * per_square]);
             self.slots[slot].holds = Holds::Edge;
-            let (unit, _, residual) = self.parts(usize::from(variable));
-            (unit.place, unit.corner) = (Place::Edge, leaving.edge);
-            (unit.gain, unit.rate) = ([0.0; 2], [0.0; 2]);
-            unit.subtract(corner.at, residual);
+            if let Some((unit, _, residual)) = self.parts(variable) {
+                (unit.place, unit.corner) = (Place::Edge, leaving.edge);
+                (unit.gain, unit.rate) = ([0.0; 2], [0.0; 2]);
+                unit.subtract(corner.at, residual);
+            }
             return (second, direction);
         }
-        if holds == Holds::Edge {
-            let (variable, set, residual) = self.parts(usize::from(variable));
+        if holds == Holds::Edge
+            && let Some((variable, set, residual)) = self.parts(variable)
+        {
             variable.place = Place::Corner;
+            if variable.rotors != Rotors::Both {
+                (variable.gain[0], variable.rate[0]) = (0.0, 0.0);
+            }
             if leaving.sign > 0.0 {
                 variable.subtract(corner(set, variable.corner).edge, residual);
                 variable.corner = next(set, variable.corner);
@@ -313,61 +308,60 @@ impl<'a> Simplex<'a> {
         (slot, self.inverse[slot].map(|part| leaving.sign * part))
     }
 
-    /// Breakpoints of the variables outside the basis in a direction of lambda.
+    /// Finds the breakpoints of all variables in a direction of lambda; returns those that come first.
     #[inline(never)]
-    fn look_ahead(&mut self, direction: &[f32; 4]) {
-        for unit in self.units.iter_mut() {
+    fn look_ahead(&mut self, direction: &[f32; 4], limit: f32) -> Next {
+        let mut next = Next::new(limit);
+        for (index, variable) in (0u8..).zip(self.variables.iter_mut()) {
             rolled();
-            unit.look_ahead(self.polygon.set(unit.rotors), self.step, direction);
+            next.consider(
+                index,
+                variable.look_ahead(self.polygon.corners, self.step, direction),
+            );
         }
-        let shortages = self.shortages.get_mut(..self.count).unwrap_or_default();
-        for shortage in shortages {
-            rolled();
-            shortage.look_ahead_on_segment(self.step, direction);
-        }
+        next
     }
 
-    /// The breakpoint that comes first, and its variable. Breakpoints are not negative: their bits are in their order, which
-    /// spares the transfers of comparisons between floats.
+    /// The breakpoints that come first.
     #[inline(always)]
-    fn first_breakpoint(&self) -> (f32, usize) {
-        let (mut least, mut first) = (NEVER.to_bits(), usize::MAX);
-        for (index, unit) in self.units.iter().enumerate() {
+    fn next(&self, limit: f32) -> Next {
+        let mut next = Next::new(limit);
+        for (index, variable) in (0u8..).zip(self.variables.iter()) {
             rolled();
-            if unit.breakpoint.to_bits() < least {
-                (least, first) = (unit.breakpoint.to_bits(), index);
-            }
+            next.consider(index, variable.breakpoint);
         }
-        for (index, shortage) in self.shortages.iter().enumerate() {
-            rolled();
-            if shortage.breakpoint.to_bits() < least {
-                (least, first) = (shortage.breakpoint.to_bits(), self.units.len() + index);
-            }
-        }
-        (f32::from_bits(least), first)
+        next
     }
 
-    /// Passes breakpoints while the leaving variable stays outside its bounds; returns the dual step and the entering
-    /// variable, none where nothing enters.
+    /// Passes breakpoints in a direction of lambda while the leaving variable stays outside its bounds; returns the dual
+    /// step and the entering variable, [`NONE`] where nothing enters.
     #[inline(never)]
-    fn long_step(&mut self, mut violation: f32) -> (f32, usize) {
+    fn long_step(&mut self, direction: &[f32; 4], mut violation: f32) -> (f32, u8) {
+        let limit = self.first_price(direction).0;
+        let Next([mut first, mut second]) = self.look_ahead(direction, limit);
         loop {
-            let (step, entering) = self.first_breakpoint();
-            if self.budget.flips == 0 || entering == usize::MAX {
-                return (step, entering);
-            }
-            let (variable, set, residual) = self.parts(entering);
-            if variable.place == Place::Edge {
-                return (step, entering);
+            let step = positive(f32::from_bits(first.bits as u32));
+            let has_ended = self.budget.flips == 0;
+            let Some((variable, set, residual)) = self.parts(first.variable) else {
+                return (step, NONE);
+            };
+            if has_ended || variable.place == Place::Edge {
+                return (step, first.variable);
             }
             let (_, way) = variable.way(set);
             violation -= (way[0] * variable.rate[0] + way[1] * variable.rate[1]).abs();
             if violation <= 0.0 {
-                return (step, entering);
+                return (step, first.variable);
             }
             variable.subtract(way, residual);
-            variable.flip(set, step);
+            first.bits = variable.flip(set, step).to_bits() as i32;
             self.budget.flips -= 1;
+            if second.bits == UNKNOWN {
+                Next([first, second]) = self.next(limit);
+            } else if first.bits > second.bits {
+                first = second;
+                second.bits = UNKNOWN;
+            }
         }
     }
 
@@ -375,66 +369,62 @@ impl<'a> Simplex<'a> {
     #[inline(always)]
     fn pivot(&mut self, leaving: &Leaving) {
         let (slot, direction) = self.release(leaving);
-        self.look_ahead(&direction);
-        let (step, entering) = self.long_step(leaving.violation);
+        let (step, entering) = self.long_step(&direction, leaving.violation);
         let mut column = [0.0; 4];
         let mut is_freed = false;
         self.step = step;
-        if entering == usize::MAX {
-            let row = self.largest_multiplier(&direction);
-            column[row & 3] = if direction[row & 3] > 0.0 { 1.0 } else { -1.0 };
-            self.slots[slot & 3].holds = Holds::Elastic;
-        } else {
-            let (variable, set, residual) = self.parts(entering);
+        if let Some((variable, set, residual)) = self.parts(entering) {
             let mut way;
-            if variable.place == Place::Edge {
-                is_freed = true;
+            is_freed = variable.place == Place::Edge;
+            if is_freed {
                 let [e0, e1] = corner(set, variable.corner).edge;
-                way = [e1, -e0];
+                way = [-e1, e0];
             } else {
                 (variable.corner, way) = variable.way(set);
                 variable.place = Place::Edge;
-                if !variable.is_forward {
+                if variable.is_forward {
+                    way = way.map(|part| -part);
+                } else {
                     // The place along an edge counts from its start.
                     variable.subtract(way, residual);
-                    way = way.map(|part| -part);
                 }
+            }
+            variable.subtract(way, &mut column);
+            if !is_freed {
                 self.slots[slot & 3] = Slot {
                     holds: Holds::Edge,
-                    variable: entering as u8,
+                    variable: entering,
                 };
             }
-            let (variable, ..) = self.parts(entering);
-            variable.subtract(way.map(|part| -part), &mut column);
+        } else {
+            let (step, row) = self.first_price(&direction);
+            self.step = step;
+            column[row & 3] = if direction[row & 3] > 0.0 { 1.0 } else { -1.0 };
+            self.slots[slot & 3].holds = Holds::Elastic;
         }
-        for (multiplier, part) in self.multipliers.iter_mut().zip(direction) {
+        for (multiplier, part) in self.multipliers.iter_mut().zip(black_box(direction.as_slice())) {
             rolled();
             *multiplier += self.step * part;
         }
         self.exchange(slot, &column);
         if is_freed {
-            self.free(entering as u8, slot);
+            self.free(entering, slot);
         }
     }
 
-    /// Takes the dual step to the first multiplier that becomes largest; returns its row.
-    #[cold]
+    /// The dual step at which the first multiplier is at its price, and its row.
     #[inline(never)]
-    fn largest_multiplier(&mut self, direction: &[f32; 4]) -> usize {
-        let mut row = 0;
-        for (k, (multiplier, rate)) in self.multipliers.iter().zip(direction).enumerate() {
-            rolled();
-            let limit = if *rate > 0.0 {
-                LARGEST_MULTIPLIER
-            } else {
-                -LARGEST_MULTIPLIER
-            };
-            let room = positive((limit - multiplier) / rate);
-            if *rate != 0.0 && room < self.step {
-                (self.step, row) = (room, k);
+    fn first_price(&self, direction: &[f32; 4]) -> (f32, usize) {
+        let (mut least, mut row) = (NEVER, 0);
+        for k in 0..4 {
+            let rate = direction[k];
+            let multiplier = self.multipliers[k].to_bits() ^ (rate.to_bits() & SIGN);
+            let room = PRICES[k] - f32::from_bits(multiplier);
+            if room < least * rate.abs() {
+                (least, row) = (room / rate.abs(), k);
             }
         }
-        row
+        (positive(least), row)
     }
 
     /// Puts a column into a slot: a rank-1 update of the inverse.
@@ -444,7 +434,6 @@ impl<'a> Simplex<'a> {
         let per_pivot = 1.0 / dot(&row, column);
         let row = row.map(|part| part * per_pivot);
         for other in &mut self.inverse {
-            rolled();
             let share = dot(other, column);
             for (other, part) in other.iter_mut().zip(row) {
                 *other -= share * part;
@@ -453,22 +442,29 @@ impl<'a> Simplex<'a> {
         self.inverse[slot & 3] = row;
     }
 
+    /// Changes the coordinates of two slots: place along an edge and distance from it, thrust and torque.
+    #[inline(never)]
+    fn turn(&mut self, first: usize, second: usize, [e0, e1]: [f32; 2]) {
+        for k in 0..black_box(4_usize) {
+            rolled();
+            let (x, y) = (self.inverse[first & 3][k & 3], self.inverse[second & 3][k & 3]);
+            self.inverse[first & 3][k & 3] = e0 * x + e1 * y;
+            self.inverse[second & 3][k & 3] = e1 * x - e0 * y;
+        }
+    }
+
     /// A unit leaves its edge: place along the edge and distance from it become thrust and torque.
     #[inline(never)]
     fn free(&mut self, index: u8, slot: usize) {
         let along = self.slot_of(Holds::Edge, index);
         let slot = slot & 3;
-        let (unit, set, residual) = self.parts(usize::from(index));
+        let Some((unit, set, residual)) = self.parts(index) else {
+            return;
+        };
         let corner = corner(set, unit.corner);
         unit.place = Place::Free;
         unit.subtract(corner.at.map(|part| -part), residual);
-        let [e0, e1] = corner.edge;
-        for k in 0..4 {
-            rolled();
-            let (by_along, by_across) = (self.inverse[along][k], self.inverse[slot][k]);
-            self.inverse[along][k] = e0 * by_along + e1 * by_across;
-            self.inverse[slot][k] = e1 * by_along - e0 * by_across;
-        }
+        self.turn(along, slot, corner.edge);
         self.slots[along].holds = Holds::First;
         self.slots[slot] = Slot {
             holds: Holds::Second,
@@ -479,11 +475,19 @@ impl<'a> Simplex<'a> {
     /// Writes the coordinates of all variables.
     #[inline(never)]
     pub(super) fn place(&mut self) {
-        take_corners(self.units, &self.polygon);
-        take_corners(self.shortages, &self.polygon);
-        for (slot, value) in self.slots.into_iter().zip(self.values) {
+        for variable in self.variables.iter_mut() {
             rolled();
-            let (variable, set, _) = self.parts(usize::from(slot.variable));
+            variable.at = corner(self.polygon.set(variable.rotors), variable.corner).at;
+        }
+        let (slots, values) = (self.slots, self.values);
+        for (slot, &value) in black_box(slots.as_slice())
+            .iter()
+            .zip(black_box(values.as_slice()))
+        {
+            rolled();
+            let Some((variable, set, _)) = self.parts(slot.variable) else {
+                continue;
+            };
             match slot.holds {
                 Holds::Edge => {
                     let edge = corner(set, variable.corner).edge;

@@ -55,9 +55,9 @@ pub(super) enum Place {
     Free,
 }
 
-/// The workspace of one unit, or of one shortage, while the general path runs.
+/// The workspace of one variable: of a unit, or of a shortage, while the general path runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scratch {
+pub struct Variable {
     /// B: rows per coordinate.
     pub(super) columns: [[f32; 4]; 2],
     /// B^T lambda and a bias: what more of each coordinate is worth.
@@ -78,12 +78,12 @@ pub struct Scratch {
     pub(crate) rotors: Rotors,
 }
 
-impl Default for Scratch {
+impl Default for Variable {
     #[inline(always)]
     fn default() -> Self {
         // Known zeros would be written by a call of memset, which a bare-metal target may not have.
         let zero = black_box(0.0);
-        Scratch {
+        Variable {
             columns: [[zero; 4]; 2],
             gain: [zero; 2],
             rate: [zero; 2],
@@ -174,7 +174,7 @@ pub(super) fn positive(x: f32) -> f32 {
     if x > 0.0 { x } else { 0.0 }
 }
 
-impl Scratch {
+impl Variable {
     /// Takes what coordinates give from `rows`.
     #[inline(never)]
     pub(super) fn subtract(&self, [y0, y1]: [f32; 2], rows: &mut [f32; 4]) {
@@ -203,60 +203,54 @@ impl Scratch {
         }
     }
 
-    /// Takes the last dual step and finds the breakpoint in a direction of lambda.
+    /// Takes the last dual step, and finds the breakpoint in a direction of lambda. By rounding it may be just below zero.
     #[inline(always)]
-    pub(super) fn look_ahead(&mut self, set: &[Corner], last_step: f32, direction: &[f32; 4]) {
-        if self.rotors != Rotors::Both {
-            return self.look_ahead_on_segment(last_step, direction);
-        }
-        let rate = self.transposed(direction);
-        let gain = [0, 1].map(|k| self.gain[k] + last_step * self.rate[k]);
-        (self.gain, self.rate) = (gain, rate);
-        self.breakpoint = NEVER;
-        if self.place == Place::Free {
-            return;
-        }
-        let corner = corner(set, self.corner);
-        if self.place == Place::Edge {
-            let slope = -corner.outward(rate);
-            if slope > LEAST_SLOPE_OF_EDGE {
-                self.breakpoint = positive(corner.outward(gain)) / slope;
-            }
-            return;
-        }
-        let slope = dot2(corner.edge, rate);
-        if slope > LEAST_SLOPE {
-            self.breakpoint = positive(-dot2(corner.edge, gain)) / slope;
+    pub(super) fn look_ahead(&mut self, corners: &[Corner], last_step: f32, direction: &[f32; 4]) -> f32 {
+        let mut breakpoint = NEVER;
+        let is_segment = self.rotors != Rotors::Both;
+        // A variable that is free in all its dimensions has no gain.
+        if self.place == Place::Corner || (self.place == Place::Edge && !is_segment) {
+            let rate = dot(&self.columns[0], direction);
+            let gain = self.gain[0] + last_step * self.rate[0];
+            (self.gain[0], self.rate[0]) = (gain, rate);
             self.is_forward = true;
-        }
-        let slope = -dot2(corner.before, rate);
-        if slope > LEAST_SLOPE {
-            let breakpoint = positive(dot2(corner.before, gain)) / slope;
-            if breakpoint < self.breakpoint {
-                self.breakpoint = breakpoint;
-                self.is_forward = false;
+            if is_segment {
+                let (gain, slope) = if self.corner == 0 {
+                    (-gain, rate)
+                } else {
+                    (gain, -rate)
+                };
+                if slope > LEAST_SLOPE {
+                    breakpoint = gain / slope;
+                }
+            } else {
+                let rate = [rate, dot(&self.columns[1], direction)];
+                let gain = [gain, self.gain[1] + last_step * self.rate[1]];
+                (self.gain[1], self.rate[1]) = (gain[1], rate[1]);
+                let corner = corner(corners, self.corner);
+                if self.place == Place::Edge {
+                    let slope = -corner.outward(rate);
+                    if slope > LEAST_SLOPE_OF_EDGE {
+                        breakpoint = corner.outward(gain) / slope;
+                    }
+                } else {
+                    let slope = dot2(corner.edge, rate);
+                    if slope > LEAST_SLOPE {
+                        breakpoint = -dot2(corner.edge, gain) / slope;
+                    }
+                    let slope = -dot2(corner.before, rate);
+                    if slope > LEAST_SLOPE {
+                        let backward = dot2(corner.before, gain) / slope;
+                        if backward < breakpoint {
+                            breakpoint = backward;
+                            self.is_forward = false;
+                        }
+                    }
+                }
             }
         }
-    }
-
-    /// [`Scratch::look_ahead`] for a variable on a segment, whose gain has one part.
-    #[inline(always)]
-    pub(super) fn look_ahead_on_segment(&mut self, last_step: f32, direction: &[f32; 4]) {
-        let rate = dot(&self.columns[0], direction);
-        let gain = self.gain[0] + last_step * self.rate[0];
-        (self.gain[0], self.rate[0], self.breakpoint) = (gain, rate, NEVER);
-        if self.place == Place::Edge {
-            return;
-        }
-        let (gain, slope) = if self.corner == 0 {
-            (-gain, rate)
-        } else {
-            (gain, -rate)
-        };
-        if slope > LEAST_SLOPE {
-            self.breakpoint = positive(gain) / slope;
-            self.is_forward = true;
-        }
+        self.breakpoint = breakpoint;
+        breakpoint
     }
 
     /// The edge along which it leaves its corner: its index and its direction from here.
@@ -270,9 +264,9 @@ impl Scratch {
         }
     }
 
-    /// Moves on to the corner at the end of its way, with the breakpoint after `step` there.
+    /// Moves on to the corner at the end of its way; returns the breakpoint there, `step` or after it.
     #[inline(always)]
-    pub(super) fn flip(&mut self, set: &[Corner], step: f32) {
+    pub(super) fn flip(&mut self, set: &[Corner], step: f32) -> f32 {
         self.corner = if self.is_forward {
             next(set, self.corner)
         } else {
@@ -280,10 +274,12 @@ impl Scratch {
         };
         let (_, way) = self.way(set);
         let slope = dot2(way, self.rate);
-        self.breakpoint = NEVER;
+        let mut breakpoint = NEVER;
         if slope > LEAST_SLOPE {
-            let breakpoint = -dot2(way, self.gain) / slope;
-            self.breakpoint = if breakpoint > step { breakpoint } else { step };
+            breakpoint = -dot2(way, self.gain) / slope;
+            breakpoint = if breakpoint > step { breakpoint } else { step };
         }
+        self.breakpoint = breakpoint;
+        breakpoint
     }
 }
