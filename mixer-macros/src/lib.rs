@@ -110,9 +110,13 @@ fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStre
         pub mod #module {
             pub const UNITS: usize = 0;
             pub const CHANNELS: usize = 0;
+            pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench::from_array([0.0; 4]);
             pub struct #mixer;
             impl ::mixer_rt::Airframe for #mixer {
                 const NAME: &'static str = "";
+                const UNITS: usize = UNITS;
+                const CHANNELS: usize = CHANNELS;
+                const SCALE: ::mixer_rt::Wrench = SCALE;
                 type Mix = ::mixer_rt::Mix<CHANNELS>;
                 fn mix(#parameters) -> #result {
                     ::core::unreachable!()

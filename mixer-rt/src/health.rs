@@ -4,6 +4,7 @@
 /// and is taken to give nothing; its partner is modelled by the same polynomial with the failed one's throttle at
 /// zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Health {
     failed: u64,
 }

@@ -45,7 +45,7 @@ pub use desaturation::closed_form::{
 pub use desaturation::general::{FLIPS, PIVOTS, SHORTAGES, Variable};
 pub use desaturation::{Airmode, Desaturation};
 pub use health::Health;
-pub use mix::{Airframe, Mix, mix, mix_into, mix_with_health};
+pub use mix::{Airframe, Mix, Outputs, mix, mix_into, mix_with_health};
 pub use pair::{
     BilinearSeed, Biquadratic, Cubic, CubicSeed, EightTermSeed, Inverse, Pair, PolynomialInverse,
     QuadraticSeed, Quantity, Quartic, RootCoordinates, Seed, Seeded, SingleRotor, TableSeed, ThrottleRange,

@@ -12,6 +12,7 @@ use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, 
 
 /// What a mix gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mix<const CHANNELS: usize> {
     /// Throttle per output channel, each within the airframe's range; 0 for a failed rotor.
     pub throttle: [f32; CHANNELS],
@@ -19,6 +20,45 @@ pub struct Mix<const CHANNELS: usize> {
     pub achieved: Wrench,
     /// What could not be delivered.
     pub saturation: Saturation,
+}
+
+/// All rotors off, nothing achieved: what firmware holds before its first mix.
+impl<const CHANNELS: usize> Default for Mix<CHANNELS> {
+    #[inline]
+    fn default() -> Self {
+        Mix {
+            throttle: [0.0; CHANNELS],
+            achieved: Wrench::default(),
+            saturation: Saturation::NONE,
+        }
+    }
+}
+
+impl<const CHANNELS: usize> Mix<CHANNELS> {
+    /// What of `setpoint` was not delivered, per axis; zero where the axis is not flagged. An anti-windup that works by
+    /// amount takes this (PX4: `unallocated_torque`), one that works by direction takes [`Mix::saturation`].
+    ///
+    /// ```
+    /// # use mixer_rt::{Mix, Saturation, Wrench};
+    /// let setpoint = Wrench { roll_nm: 1.0, yaw_nm: 0.5, ..Wrench::default() };
+    /// let mix = Mix {
+    ///     throttle: [0.5; 8],
+    ///     achieved: Wrench { roll_nm: 0.9999, yaw_nm: 0.2, ..Wrench::default() },
+    ///     saturation: Saturation::from_bits(1 << 4),
+    /// };
+    /// assert_eq!(mix.unallocated(&setpoint).to_array(), [0.0, 0.0, 0.3, 0.0]);
+    /// ```
+    #[inline]
+    pub fn unallocated(&self, setpoint: &Wrench) -> Wrench {
+        let (asked, given) = (setpoint.to_array(), self.achieved.to_array());
+        Wrench::from_array(Axis::ALL.map(|axis| {
+            if self.saturation.is_short(axis) {
+                asked[axis as usize] - given[axis as usize]
+            } else {
+                0.0
+            }
+        }))
+    }
 }
 
 /// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n + [`SHORTAGES`]. `voltage_v` is the battery's present
@@ -239,12 +279,53 @@ fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
     within
 }
 
+/// What a [`Mix`] holds, for code that is generic over airframes and does not know the number of channels.
+pub trait Outputs {
+    /// [`Mix::throttle`], one per channel.
+    fn throttle(&self) -> &[f32];
+    /// [`Mix::achieved`].
+    fn achieved(&self) -> Wrench;
+    /// [`Mix::saturation`].
+    fn saturation(&self) -> Saturation;
+}
+
+impl<const CHANNELS: usize> Outputs for Mix<CHANNELS> {
+    #[inline]
+    fn throttle(&self) -> &[f32] {
+        &self.throttle
+    }
+
+    #[inline]
+    fn achieved(&self) -> Wrench {
+        self.achieved
+    }
+
+    #[inline]
+    fn saturation(&self) -> Saturation {
+        self.saturation
+    }
+}
+
 /// An airframe's mixer as a type, for code that is generic over airframes. The compiler implements it.
+///
+/// ```
+/// # use mixer_rt::{Airframe, Outputs, SetpointError, Wrench};
+/// fn largest_throttle<A: Airframe>(setpoint: &Wrench, voltage_v: f32) -> Result<f32, SetpointError> {
+///     let mix = A::mix(setpoint, voltage_v)?;
+///     Ok(mix.throttle().iter().copied().fold(0.0, f32::max))
+/// }
+/// ```
 pub trait Airframe {
     /// The name in the airframe file.
     const NAME: &'static str;
+    /// Number of coaxial units.
+    const UNITS: usize;
+    /// Number of output channels, two per unit.
+    const CHANNELS: usize;
+    /// What one unit of a normalised setpoint asks for: see [`Wrench::from_normalised`].
+    const SCALE: Wrench;
     /// [`Mix`] for the airframe's number of channels.
-    type Mix;
+    type Mix: Outputs;
 
     /// As [`mix`].
     ///

@@ -1,9 +1,14 @@
 //! Per-axis saturation flags, for anti-windup.
 
+use core::fmt;
+
 use crate::Axis;
 
 /// The side on which an axis is saturated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Direction {
     /// Less was delivered than asked: the integrator must not grow further upwards.
     Positive,
@@ -15,6 +20,8 @@ pub enum Direction {
 /// [`Direction::Negative`], with roll 0, pitch 1, yaw 2, thrust 3; bit 8 says that the voltage was clamped.
 // Of 32 bits, so that a mix consists of whole words; see `SetpointError`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "u16", into = "u16"))]
 pub struct Saturation(u32);
 
 impl Saturation {
@@ -53,6 +60,12 @@ impl Saturation {
         self.0 & Self::VOLTAGE != 0
     }
 
+    /// True where anything was given up on this axis.
+    #[inline]
+    pub(crate) const fn is_short(self, axis: Axis) -> bool {
+        self.0 & (3 << (2 * axis as u32)) != 0
+    }
+
     #[inline]
     pub(crate) fn with_voltage_clamped(self, clamped: bool) -> Self {
         Saturation(self.0 | if clamped { Self::VOLTAGE } else { 0 })
@@ -74,5 +87,55 @@ impl Saturation {
             bit <<= 2;
         }
         Saturation(bits)
+    }
+}
+
+/// The saturated axes by name, `+` where less was delivered than asked and `-` where more was:
+///
+/// ```
+/// # use mixer_rt::Saturation;
+/// assert_eq!(Saturation::from_bits(0b1_0010_0001).to_string(), "roll+ yaw- voltage");
+/// assert_eq!(Saturation::NONE.to_string(), "none");
+/// ```
+impl fmt::Display for Saturation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut separator = "";
+        for axis in Axis::ALL {
+            for (direction, sign) in [(Direction::Positive, '+'), (Direction::Negative, '-')] {
+                if self.is_saturated(axis, direction) {
+                    write!(f, "{separator}{axis}{sign}")?;
+                    separator = " ";
+                }
+            }
+        }
+        if self.voltage_clamped() {
+            write!(f, "{separator}voltage")?;
+            separator = " ";
+        }
+        if separator.is_empty() {
+            f.write_str("none")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<u16> for Saturation {
+    fn from(bits: u16) -> Self {
+        Saturation::from_bits(bits)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Saturation> for u16 {
+    fn from(saturation: Saturation) -> Self {
+        saturation.bits()
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Saturation {
+    fn format(&self, formatter: defmt::Formatter<'_>) {
+        defmt::write!(formatter, "{}", defmt::Display2Format(self));
     }
 }

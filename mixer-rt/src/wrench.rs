@@ -4,6 +4,8 @@ use core::fmt;
 
 /// A wrench in the body frame FRD: what the controller asks for, or what the rotors deliver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Wrench {
     /// Torque about x (forward), N m; positive lowers the right side.
     pub roll_nm: f32,
@@ -56,6 +58,9 @@ impl Wrench {
 
 /// An axis of the [`Wrench`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Axis {
     /// Torque about x.
     Roll,
@@ -82,9 +87,17 @@ impl Axis {
     }
 }
 
+/// [`Axis::name`].
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
 /// Why a mix was refused. The caller keeps its last outputs or disarms; no throttle is ever made of a NaN.
 // Of whole words, as a mix is: copying a `Result` of other parts takes hundreds of instructions on a Cortex-M.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(align(4))]
 pub enum SetpointError {
     /// The setpoint is infinite or NaN on this axis (the first such axis is named).
@@ -97,7 +110,7 @@ impl fmt::Display for SetpointError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             SetpointError::NonFinite(axis) => {
-                write!(f, "the {} setpoint is not finite", axis.name())
+                write!(f, "the {axis} setpoint is not finite")
             }
             SetpointError::NonFiniteVoltage => f.write_str("the voltage is not finite"),
         }

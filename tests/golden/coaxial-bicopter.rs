@@ -28,6 +28,9 @@ pub mod coaxial_bicopter {
     pub struct CoaxialBicopter;
     impl ::mixer_rt::Airframe for CoaxialBicopter {
         const NAME: &'static str = "coaxial-bicopter";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -81,6 +84,7 @@ pub mod coaxial_bicopter {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Biquadratic,

@@ -30,6 +30,9 @@ pub mod isae_x8 {
     pub struct IsaeX8;
     impl ::mixer_rt::Airframe for IsaeX8 {
         const NAME: &'static str = "isae-x8";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -83,6 +86,7 @@ pub mod isae_x8 {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Biquadratic,

@@ -32,6 +32,9 @@ pub mod px4_x12 {
     pub struct Px4X12;
     impl ::mixer_rt::Airframe for Px4X12 {
         const NAME: &'static str = "px4-x12";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -85,6 +88,7 @@ pub mod px4_x12 {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Biquadratic,

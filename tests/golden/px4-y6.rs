@@ -29,6 +29,9 @@ pub mod px4_y6 {
     pub struct Px4Y6;
     impl ::mixer_rt::Airframe for Px4Y6 {
         const NAME: &'static str = "px4-y6";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -82,6 +85,7 @@ pub mod px4_y6 {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Biquadratic,

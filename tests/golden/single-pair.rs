@@ -27,6 +27,9 @@ pub mod single_pair {
     pub struct SinglePair;
     impl ::mixer_rt::Airframe for SinglePair {
         const NAME: &'static str = "single-pair";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -80,6 +83,7 @@ pub mod single_pair {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Biquadratic,

@@ -30,6 +30,9 @@ pub mod x8_11in_cubic {
     pub struct X8_11inCubic;
     impl ::mixer_rt::Airframe for X8_11inCubic {
         const NAME: &'static str = "x8-11in-cubic";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -83,6 +86,7 @@ pub mod x8_11in_cubic {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Cubic,

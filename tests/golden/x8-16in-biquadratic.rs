@@ -30,6 +30,9 @@ pub mod x8_16in_biquadratic {
     pub struct X8_16inBiquadratic;
     impl ::mixer_rt::Airframe for X8_16inBiquadratic {
         const NAME: &'static str = "x8-16in-biquadratic";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -83,6 +86,7 @@ pub mod x8_16in_biquadratic {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Biquadratic,

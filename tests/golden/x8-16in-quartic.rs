@@ -30,6 +30,9 @@ pub mod x8_16in_quartic {
     pub struct X8_16inQuartic;
     impl ::mixer_rt::Airframe for X8_16inQuartic {
         const NAME: &'static str = "x8-16in-quartic";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -83,6 +86,7 @@ pub mod x8_16in_quartic {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Quartic,

@@ -30,6 +30,9 @@ pub mod x8_22in_cubic {
     pub struct X8_22inCubic;
     impl ::mixer_rt::Airframe for X8_22inCubic {
         const NAME: &'static str = "x8-22in-cubic";
+        const UNITS: usize = UNITS;
+        const CHANNELS: usize = CHANNELS;
+        const SCALE: ::mixer_rt::Wrench = SCALE;
         type Mix = ::mixer_rt::Mix<CHANNELS>;
         #[inline]
         fn mix(
@@ -83,6 +86,7 @@ pub mod x8_22in_cubic {
         >(&TABLES, setpoint, voltage_v, health)
     }
     /// The tables; see `mixer_rt::Tables` for their meaning and units.
+    #[doc(hidden)]
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Cubic,

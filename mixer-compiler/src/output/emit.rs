@@ -42,6 +42,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             #functions
 
             /// The tables; see `mixer_rt::Tables` for their meaning and units.
+            #[doc(hidden)]
             pub static TABLES: #tables_type = #tables;
         }
     }
@@ -61,6 +62,9 @@ fn mixer_type(compiled: &Compiled) -> TokenStream {
 
         impl ::mixer_rt::Airframe for #mixer {
             const NAME: &'static str = #name;
+            const UNITS: usize = UNITS;
+            const CHANNELS: usize = CHANNELS;
+            const SCALE: ::mixer_rt::Wrench = SCALE;
             type Mix = ::mixer_rt::Mix<CHANNELS>;
             #[inline]
             fn mix(

@@ -1,7 +1,7 @@
 //! The square root, correctly rounded on every target, hence the same bits everywhere.
 //!
 //! `core` has no stable square root. Cores with an IEEE 754 square root instruction use it; the rest compute the
-//! same bits with integers.
+//! same bits with integers. WebAssembly has the instruction, but stable Rust has no way to it.
 
 /// The correctly rounded square root of `x >= 0`. Negative numbers, which the runtime never passes, give NaN.
 #[inline(always)]
@@ -54,10 +54,26 @@ mod hardware {
     }
 }
 
+#[cfg(all(any(target_arch = "riscv32", target_arch = "riscv64"), target_feature = "f"))]
+mod hardware {
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    pub(super) fn sqrt(x: f32) -> f32 {
+        let root: f32;
+        // SAFETY: FSQRT.S reads and writes the named registers, and the exception flags.
+        unsafe {
+            core::arch::asm!("fsqrt.s {root}, {x}", root = out(freg) root, x = in(freg) x,
+                options(pure, nomem, nostack));
+        }
+        root
+    }
+}
+
 #[cfg(not(any(
     all(target_arch = "arm", target_abi = "eabihf"),
     target_arch = "aarch64",
-    target_arch = "x86_64"
+    target_arch = "x86_64",
+    all(any(target_arch = "riscv32", target_arch = "riscv64"), target_feature = "f"),
 )))]
 use software as hardware;
 
@@ -66,7 +82,8 @@ use software as hardware;
     not(any(
         all(target_arch = "arm", target_abi = "eabihf"),
         target_arch = "aarch64",
-        target_arch = "x86_64"
+        target_arch = "x86_64",
+        all(any(target_arch = "riscv32", target_arch = "riscv64"), target_feature = "f"),
     ))
 ))]
 mod software {

@@ -61,7 +61,10 @@ const BUDGET: Budget = Budget {
 
 /// Budget of the programme for level flight, which is solved where that of the request ends first. In 600,000 trials over 15
 /// frames and healths level flight took 13 pivots and 29 moves at most.
-const LEVEL_BUDGET: Budget = Budget { pivots: 14, flips: 32 };
+const LEVEL_BUDGET: Budget = Budget {
+    pivots: 14,
+    flips: 32,
+};
 
 /// The multipliers at the start, per row of the request's distance from the centres: so units start at corners on the
 /// request's side. Chosen for the fewest pivots (0.005 to 1 differ by less than a tenth).
