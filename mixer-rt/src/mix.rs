@@ -2,6 +2,7 @@
 
 use crate::desaturation::closed_form::{Attained, Efforts, Request, Shortcut, Vertical};
 use crate::desaturation::general::{Scratch, allocate};
+use crate::desaturation::power_bias::add_power_bias;
 use crate::desaturation::{is_bounded, limited};
 use crate::pair::rotors::Rotors;
 use crate::rolled;
@@ -107,7 +108,10 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
     for (unit, scratch) in units.iter().zip(scratch.iter_mut()) {
         scratch.rotors = Rotors::of(unit.channels, health);
     }
-    allocate(tables, &bounded, factors, scratch);
+    let is_least_norm = allocate(tables, &bounded, factors, scratch);
+    if is_least_norm && tables.power_bias_nm_per_n != 0.0 {
+        add_power_bias(tables, factors, scratch);
+    }
     let mut achieved = [0.0; 4];
     for (unit, scratch) in units.iter().zip(scratch) {
         rolled();
@@ -145,9 +149,12 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     let at_reference = at_reference(bounded, per_factor);
     let airmode = tables.desaturation.airmode;
     let mut efforts = Efforts::default();
-    let mut attained = vertical.least_norm(&at_reference, &mut efforts);
+    let (mut attained, room) = vertical.least_norm(&at_reference, &mut efforts);
+    let power_bias = tables.power_bias_nm_per_n;
     if attained == Attained::No {
         vertical.desaturate(airmode, &at_reference, &mut efforts);
+    } else if attained == Attained::Yes && power_bias != 0.0 {
+        vertical.add_power_bias(power_bias, room, &mut efforts);
     }
     loop {
         let mut is_near = true;

@@ -81,19 +81,21 @@ struct Frame<'a, 't, P, I, S> {
 }
 
 /// Writes attainable efforts (`[f, Q]` at the reference voltage, N and N m, in the scratch) that serve `request` (`[roll,
-/// pitch, yaw, thrust]`, bounded) in the order of priority. `factors` is `[k_f, k_Q]`. Units have their rotors.
+/// pitch, yaw, thrust]`, bounded) in the order of priority. `factors` is `[k_f, k_Q]`. Units have their rotors. True where
+/// these are the efforts of least norm, with all rotors.
 #[inline(never)]
 pub(crate) fn allocate<P: Quantity, I, S>(
     tables: &Tables<'_, P, I, S>,
     request: &[f32; 4],
     factors: [f32; 2],
     units: &mut [Scratch],
-) {
+) -> bool {
     // With the tables known the compiler would write every loop over them out.
     let tables = black_box(tables);
     let is_whole = units.iter().all(|unit| unit.rotors == Rotors::Both);
     let frame = Frame::new(tables, factors, is_whole);
-    if !(is_whole && frame.towards_least_norm(request, units, true)) {
+    let is_least_norm = is_whole && frame.towards_least_norm(request, units, true);
+    if !is_least_norm {
         frame.programme(request, units, is_whole);
     }
     for unit in units.iter_mut() {
@@ -101,6 +103,7 @@ pub(crate) fn allocate<P: Quantity, I, S>(
         let [first, second] = frame.efforts[unit.rotors as usize & 3];
         unit.at = [0, 1].map(|k| first[k] * unit.at[0] + second[k] * unit.at[1]);
     }
+    is_least_norm
 }
 
 impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
