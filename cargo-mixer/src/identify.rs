@@ -215,7 +215,7 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     let fragment = match &args.frame {
         None => fragment::text(&identified),
         Some(frame) => frame
-            .airframe(file, &fragment::tables(&identified))
+            .airframe(file, &fragment::tables(&identified), identified.power_bias())
             .map_err(|message| {
                 complain(message);
                 ExitCode::from(BAD_USAGE)

@@ -46,6 +46,16 @@ pub struct Identified {
     pub warnings: Vec<String>,
 }
 
+impl Identified {
+    /// The torque of least power, N m per N, where power is saved by one.
+    pub fn power_bias(&self) -> Option<f64> {
+        match &self.power {
+            Some(Power::Identified(found)) => Some(found.bias_nm_per_n),
+            _ => None,
+        }
+    }
+}
+
 /// Reads the files and identifies what they hold. All refusals are collected.
 pub fn identify(paths: &[PathBuf], settings: &Settings) -> Result<Identified, Vec<Refusal>> {
     let benches = read_all(paths, settings)?;

@@ -157,6 +157,10 @@ pub fn least_power_lines(found: &LeastPower) -> Vec<String> {
             100.0 * (1.0 / (1.0 - 0.01 * found.saving_percent) - 1.0)
         ),
         format!(
+            "in an airframe file: power_bias_nm_per_n = {:?} under [allocation]",
+            found.bias_nm_per_n
+        ),
+        format!(
             "power map of {} rows: residual {:.2} W rms, {:.2} % of the greatest power",
             found.points,
             found.residual_rms_w,
