@@ -149,11 +149,13 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     let at_reference = at_reference(bounded, per_factor);
     let airmode = tables.desaturation.airmode;
     let mut efforts = Efforts::default();
-    let (mut attained, room) = vertical.least_norm(&at_reference, &mut efforts);
     let power_bias = tables.power_bias_nm_per_n;
+    let has_bias = power_bias != 0.0;
+    let mut room = f32::MAX;
+    let mut attained = vertical.least_norm(&at_reference, &mut efforts, has_bias, &mut room);
     if attained == Attained::No {
         vertical.desaturate(airmode, &at_reference, &mut efforts);
-    } else if attained == Attained::Yes && power_bias != 0.0 {
+    } else if attained == Attained::Yes && has_bias {
         vertical.add_power_bias(power_bias, room, &mut efforts);
     }
     loop {
