@@ -119,9 +119,14 @@ pub fn alone_lines(alone: &Alone) -> Vec<String> {
             percent(fit.of_the_pair_rms)
         )
     };
+    let other = alone.other_at.map_or(String::new(), |level| {
+        format!(
+            ", of a map in which the other rotor turned at {level:.2}: taken off by the pair's polynomials"
+        )
+    });
     vec![
         format!(
-            "{}: {} points, throttle {:.2} to {:.2}",
+            "{}: {} points, throttle {:.2} to {:.2}{other}",
             alone.file, alone.points, alone.measured[0], alone.measured[1]
         ),
         channel("thrust", "N", alone.thrust_n, &alone.thrust),
