@@ -19,7 +19,7 @@
 use super::closed_form::{Efforts, Vertical};
 use super::general::Scratch;
 use crate::rolled;
-use crate::tables::Tables;
+use crate::tables::{Tables, Unit};
 
 /// A polygon's edge of constant thrust is not crossed by torques. They fade before it all the same, as if thrusts moved by
 /// this share of the largest shift (in scaled efforts).
@@ -68,12 +68,10 @@ pub(crate) fn add_power_bias<P, I, S>(
         rolled();
         table.add_wrench([0.0, c * unit.at[0]], factors, &mut wrench);
     }
-    let shift =
-        |f: f32, efforts: [f32; 2]| [-(efforts[0] * per_factor[0]), c * f - efforts[1] * per_factor[1]];
     let mut largest = [0.0f32; 2];
     for (unit, table) in units.iter().zip(tables.units) {
         rolled();
-        let shift = shift(unit.at[0], table.efforts(&wrench));
+        let shift = shift(table, &wrench, c * unit.at[0], per_factor);
         for ((largest, part), per_scale) in largest.iter_mut().zip(shift).zip(per_scale) {
             let part = (part * per_scale).abs();
             if part > *largest {
@@ -83,13 +81,12 @@ pub(crate) fn add_power_bias<P, I, S>(
     }
     let [by_thrust, by_torque] = [largest[0] + FADE * largest[1], largest[1]];
     let mut b = 1.0;
-    for unit in units.iter() {
+    for corner in set.corners {
         rolled();
-        let at = [0, 1].map(|k| unit.at[k] * per_scale[k]);
-        for corner in set.corners {
+        let out = corner.edge[1].abs() * by_thrust + corner.edge[0].abs() * by_torque;
+        for unit in units.iter() {
             rolled();
-            let room = -corner.beyond(at);
-            let out = corner.edge[1].abs() * by_thrust + corner.edge[0].abs() * by_torque;
+            let room = -corner.beyond([unit.at[0] * per_scale[0], unit.at[1] * per_scale[1]]);
             if b * out > room {
                 b = if room > 0.0 { room / out } else { 0.0 };
             }
@@ -97,9 +94,14 @@ pub(crate) fn add_power_bias<P, I, S>(
     }
     for (unit, table) in units.iter_mut().zip(tables.units) {
         rolled();
-        let shift = shift(unit.at[0], table.efforts(&wrench));
-        for (at, shift) in unit.at.iter_mut().zip(shift) {
-            *at += b * shift;
-        }
+        let [f, q] = shift(table, &wrench, c * unit.at[0], per_factor);
+        unit.at = [unit.at[0] + b * f, unit.at[1] + b * q];
     }
+}
+
+/// A unit's `[f, Q]` of the shift at the reference voltage, where its own torque is `torque` and all torques give `wrench`.
+#[inline(always)]
+fn shift(table: &Unit, wrench: &[f32; 4], torque: f32, per_factor: [f32; 2]) -> [f32; 2] {
+    let [f, q] = table.efforts(wrench);
+    [-(f * per_factor[0]), torque - q * per_factor[1]]
 }
