@@ -17,7 +17,8 @@ What it asks of every row:
   * throttles within [min, max]; one row per setpoint
   * the achieved wrench is the one that these throttles give, within the file's tolerance of every unit
   * a request whose least-norm efforts are attainable is delivered: every unit's thrust and torque within the
-    file's tolerance of them
+    file's tolerance of them; with a power bias c within that of a point on the way from them to those that the torques
+    c f add without changing the wrench, and at its end where every unit could move by that much either way
   * otherwise no axis reverses or overshoots, (roll, pitch) keeps its direction, and airmode "disabled" does not
     raise the thrust above the request unless that is below the floor of the controlled flight
   * with rotors out their throttles are 0, and a unit with one rotor left gives what the file says of that rotor alone,
@@ -73,6 +74,7 @@ class Airframe:
         self.tolerance = [inverse.get("thrust_tolerance_n", 0.01), inverse.get("torque_tolerance_nm", 1e-4)]
         allocation = spec.get("allocation", {})
         self.airmode = allocation.get("airmode", "disabled")
+        self.power_bias = allocation.get("power_bias_nm_per_n", 0.0)
         self.axes = [axis in allocation.get("axes", AXES) for axis in AXES]
         self.channels, columns_f, columns_q = [], [], []
         for unit in spec.get("unit") or regular(spec["layout"], pair["upper_spin"]):
@@ -167,6 +169,13 @@ class Airframe:
                 l = min(max(l + step * dl, self.low), self.high)
         return False
 
+    def bias(self, wanted, k):
+        """What the torques c f (at the reference voltage) add to least-norm efforts: less what M+ makes of their wrench."""
+        n = self.units
+        wish = [0.0] * n + [k[1] * self.power_bias * wanted[i] / k[0] for i in range(n)]
+        wrench = self.wrench(wish)
+        return [w - sum(m * x for m, x in zip(row, wrench)) for w, row in zip(wish, self.m_plus)]
+
     def isolated_throttle(self, thrust):
         """d with f(d, 0) = thrust, by bisection, limited to the range."""
         low, high = self.low, self.high
@@ -225,6 +234,18 @@ def rounding(airframe, k):
     return [2e-6 * sum(abs(row[i]) * full + abs(row[n + i]) * torque for i in range(n)) + 1e-9 for row in airframe.m]
 
 
+def has_room(airframe, wanted, shift, k):
+    """Whether every unit could move by twice the largest shift of all either way, and by a little for what mixers' polygons
+    leave out."""
+    n = airframe.units
+    torque = max(abs(airframe.efforts(airframe.low, airframe.high)[1]), abs(airframe.efforts(airframe.high, airframe.low)[1]))
+    thrust = airframe.efforts(airframe.high, airframe.high)[0]
+    by_q = 2.0 * max(map(abs, shift[n:])) / k[1] + 0.05 * torque
+    by_f = 2.0 * max(map(abs, shift[:n])) / k[0] + (0.05 * thrust if airframe.is_general else 0.0)
+    at = [[wanted[i] / k[0], wanted[n + i] / k[1]] for i in range(n)]
+    return all(airframe.attains([f + a * by_f, q + b * by_q]) for f, q in at for a in (-1, 1) for b in (-1, 1))
+
+
 def judge_row(airframe, request, volts, throttles, achieved, saturation, failed):
     """Faults of one row, and whether its least-norm efforts are attainable."""
     n = airframe.units
@@ -248,6 +269,17 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation, failed)
         for row, allowed in zip(airframe.m, noise)
     ]
     if attainable:
+        if airframe.power_bias != 0.0:
+            shift = airframe.bias(wanted, k)
+            # The share of the way by the torques alone: the thrusts of a tilted frame move by less than they are known.
+            size = sum(part * part for part in shift[n:])
+            way = sum((e - w) * part for e, w, part in zip(efforts[n:], wanted[n:], shift[n:]))
+            share = min(max(way / size, 0.0), 1.0) if size > 0 else 0.0
+            if share < 1.0 and size > 0 and has_room(airframe, wanted, shift, k):
+                short = (1.0 - share) * max(map(abs, shift[n:]))
+                if short > 1.001 * airframe.tolerance[1]:
+                    faults.append(f"only {share:.3f} of the power bias though there is room for all")
+            wanted = [w + share * part for w, part in zip(wanted, shift)]
         for i in range(n):
             off = [abs(efforts[i] - wanted[i]), abs(efforts[n + i] - wanted[n + i])]
             # The general path knows a polygon inside the attainable set: next to the border its efforts are others.

@@ -196,6 +196,31 @@ fn the_oracle_finds_planted_faults() {
     }
 }
 
+/// A mixer that leaves the power bias out, or takes another, is condemned.
+#[test]
+fn the_oracle_finds_a_missing_power_bias() {
+    let file = "tests/fixtures/power-bias-x12.toml";
+    let setpoints =
+        "roll_nm,pitch_nm,yaw_nm,thrust_n,voltage_v\n0.5,-0.3,0.1,62.0,15.0\n0.0,0.0,0.0,70.0,14.0\n";
+    judge(file, "bias.own", setpoints, &mix(file, setpoints));
+    let text = fs::read_to_string(root().join(file)).expect(file);
+    for bias in ["0.0", "0.004", "-0.005"] {
+        let other = scratch(&format!("bias{bias}.toml"));
+        let changed = text.replace(
+            "power_bias_nm_per_n = -0.004",
+            &format!("power_bias_nm_per_n = {bias}"),
+        );
+        assert_ne!(changed, text);
+        fs::write(&other, changed).expect("scratch folder");
+        let (asked, answered) = (scratch("bias.setpoints.csv"), scratch("bias.mixed.csv"));
+        fs::write(&asked, setpoints).expect("scratch folder");
+        fs::write(&answered, mix(&other.display().to_string(), setpoints)).expect("scratch folder");
+        let files = [&asked, &answered].map(|path| path.display().to_string());
+        let verdict = oracle(&["judge", file, &files[0], &files[1]]);
+        assert!(!verdict.status.success(), "a bias of {bias} went unnoticed");
+    }
+}
+
 #[test]
 fn setpoints_with_rotors_out_are_mixed_as_the_physics_demand() {
     for (seed, file) in files().iter().enumerate() {

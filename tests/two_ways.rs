@@ -40,6 +40,7 @@ airframes! {
     px4_y6: "../airframes/px4-y6.toml", "px4-y6", px4_y6::Px4Y6;
     single_pair: "../airframes/single-pair.toml", "single-pair", single_pair::SinglePair;
     x8_11in_cubic: "../airframes/x8-11in-cubic.toml", "x8-11in-cubic", x8_11in_cubic::X8_11inCubic;
+    x8_11in_least_power: "../airframes/x8-11in-least-power.toml", "x8-11in-least-power", x8_11in_least_power::X8_11inLeastPower;
     x8_16in_biquadratic: "../airframes/x8-16in-biquadratic.toml", "x8-16in-biquadratic", x8_16in_biquadratic::X8_16inBiquadratic;
     x8_16in_quartic: "../airframes/x8-16in-quartic.toml", "x8-16in-quartic", x8_16in_quartic::X8_16inQuartic;
     x8_22in_cubic: "../airframes/x8-22in-cubic.toml", "x8-22in-cubic", x8_22in_cubic::X8_22inCubic;

@@ -54,6 +54,9 @@ struct Shape {
     description: &'static str,
 }
 
+/// Spins of a frame that can cancel torques.
+const ALTERNATE: &str = "they alternate";
+
 impl Frame {
     fn shape(self) -> Shape {
         let shape = |units, first_angle_deg, first, spins, axes, description| Shape {
@@ -64,7 +67,7 @@ impl Frame {
             axes,
             description,
         };
-        let (alternate, alike) = ("they alternate", "all turn alike");
+        let (alternate, alike) = (ALTERNATE, "all turn alike");
         match self {
             Frame::X8 => shape(4, 45.0, "front right", alternate, None, "X8: four coaxial pairs"),
             Frame::Y6 => shape(3, 60.0, "front right", alike, None, "Y6: three coaxial pairs"),
@@ -91,12 +94,21 @@ impl Frame {
 
 impl FrameArgs {
     /// A whole airframe file around `tables`, which are `[throttle]`, `[pair]` and, if there is one, `[voltage]`.
+    /// `power_bias` is the torque of least power, N m per N, if it is known; it is written where the frame gains by it.
     ///
     /// # Errors
     /// An arm that is missing, or one too many.
-    pub fn airframe(&self, output: Option<&Path>, tables: &str) -> Result<String, String> {
+    pub fn airframe(
+        &self,
+        output: Option<&Path>,
+        tables: &str,
+        power_bias: Option<f64>,
+    ) -> Result<String, String> {
         let Shape {
-            description, axes, ..
+            description,
+            axes,
+            spins,
+            ..
         } = self.frame.shape();
         let mut text = format!(
             "{DIRECTIVE}\nname = \"{}\"\ndescription = \"{description}\"\n\n",
@@ -117,6 +129,17 @@ impl FrameArgs {
         );
         if let Some(axes) = axes {
             let _ = writeln!(text, "{axes}");
+        }
+        if let Some(bias) = power_bias {
+            let line = format!("power_bias_nm_per_n = {bias:?}");
+            let _ = if spins == ALTERNATE {
+                writeln!(text, "{line:<38} # least power: torque per thrust of every unit")
+            } else {
+                writeln!(
+                    text,
+                    "# no power_bias_nm_per_n: it saves nothing where no upper rotors turn against each other"
+                )
+            };
         }
         Ok(text)
     }

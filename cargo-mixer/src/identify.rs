@@ -115,6 +115,9 @@ pub struct IdentifyArgs {
     /// A run of the lower rotor alone, likewise: `[pair.upper_out]`.
     #[arg(long, value_name = "RUN.csv")]
     pub upper_out: Option<PathBuf>,
+    /// Without such runs, take the map's rows in which one rotor turns at its lowest throttle (up to 0.15) for the other one alone.
+    #[arg(long)]
+    pub rotor_out_from_map: bool,
     /// Exponent of thrust and of torque in (V / reference)^k, or one for both: brings the rows to the reference voltage and
     /// writes `[voltage]` where the files cannot tell one. 1.75 is the median of 104 motors with propellers.
     #[arg(long, value_name = "K[,K]", value_parser = exponents)]
@@ -180,6 +183,7 @@ impl IdentifyArgs {
                 throttle: self.throttle,
                 reference_v: self.reference_voltage,
                 voltage_exponent: self.voltage_exponent.map(|e| e.0),
+                rotor_out_from_map: self.rotor_out_from_map,
             },
         }
     }
@@ -215,7 +219,7 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     let fragment = match &args.frame {
         None => fragment::text(&identified),
         Some(frame) => frame
-            .airframe(file, &fragment::tables(&identified))
+            .airframe(file, &fragment::tables(&identified), identified.power_bias())
             .map_err(|message| {
                 complain(message);
                 ExitCode::from(BAD_USAGE)

@@ -42,7 +42,7 @@ pub fn run(args: &NewArgs) -> ExitCode {
             Err(error) => return crate::complain(format_args!("{}: {error}", path.display())),
         },
     };
-    match args.frame.airframe(Some(&args.output), &tables) {
+    match args.frame.airframe(Some(&args.output), &tables, None) {
         Ok(text) => write(&args.output, &text),
         Err(message) => {
             crate::complain(message);

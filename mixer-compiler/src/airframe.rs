@@ -6,6 +6,7 @@ mod inverse;
 mod layout;
 mod name;
 mod pair;
+mod power;
 mod rotor_alone;
 mod unit;
 mod vehicle;
@@ -18,6 +19,7 @@ use toml::Spanned;
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::inverse::{EVALUATORS, HIGHEST_DEGREE, Inverse, Method};
 pub use self::pair::{Basis, Pair, Spin};
+pub use self::power::Power;
 pub use self::rotor_alone::RotorAlone;
 pub use self::unit::{MOST_UNITS, Unit};
 pub use self::vehicle::{GRAVITY, Vehicle};
@@ -102,6 +104,14 @@ impl Airframe {
     /// Number of rotors, twice that of the units.
     pub fn rotors(&self) -> usize {
         2 * self.units.len()
+    }
+
+    /// The share of a pair's saving by `power_bias_nm_per_n` that is left in hover, as torques must cancel:
+    /// 1 - (sum s / n)^2 with the spins s of n units.
+    pub fn power_bias_share(&self) -> f64 {
+        let spins = self.units.iter().map(|unit| unit.spin_sign(self.pair.upper_spin));
+        let mean = spins.sum::<f64>() / self.units.len() as f64;
+        1.0 - mean * mean
     }
 
     /// Whether the file itself has a key like `unit[3].channels`.

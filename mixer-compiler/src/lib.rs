@@ -35,7 +35,7 @@ pub use diagnostic::source::Source;
 pub use inverse::evaluator;
 #[cfg(feature = "baselines")]
 pub use output::isolated;
-pub use output::{alternatives, checklist, cost, hover, report};
+pub use output::{alternatives, checklist, cost, hover, power, report};
 pub use proof::Certificate;
 pub use proof::residual::Residual;
 

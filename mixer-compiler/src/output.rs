@@ -8,5 +8,6 @@ pub(crate) mod emit;
 pub mod hover;
 #[cfg(feature = "baselines")]
 pub mod isolated;
+pub mod power;
 pub mod report;
 pub(crate) mod scale;

@@ -7,6 +7,7 @@
 mod geometry;
 mod limits;
 mod pair;
+mod power_bias;
 mod supply;
 mod vehicle;
 
@@ -45,6 +46,8 @@ const RULES: &[Rule] = &[
     supply::factors,
     limits::tolerances,
     limits::yaw_reserve,
+    power_bias::beyond,
+    power_bias::idle,
     vehicle::hover,
 ];
 

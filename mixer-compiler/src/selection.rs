@@ -180,6 +180,7 @@ fn assemble(
             airmode: airframe.allocation.airmode,
             yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,
         },
+        power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n as f32,
         shortcut: None,
         tolerance: Tolerance {
             efforts: [0.0; 2],

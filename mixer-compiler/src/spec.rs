@@ -82,6 +82,15 @@ pub struct Pair {
     pub lower_out: Option<RotorAlone>,
     /// `[pair.upper_out]`
     pub upper_out: Option<RotorAlone>,
+    /// `[pair.power]`
+    pub power: Option<Power>,
+}
+
+/// `[pair.power]`
+#[derive(Clone, Debug)]
+pub struct Power {
+    /// `power_w`
+    pub power_w: Option<Spanned<Vec<Spanned<f64>>>>,
 }
 
 /// `[pair.lower_out]` or `[pair.upper_out]`
@@ -181,6 +190,8 @@ pub struct Allocation {
     pub axes: Option<Spanned<Vec<Spanned<String>>>>,
     /// `yaw_reserve_nm`
     pub yaw_reserve_nm: Option<Spanned<f64>>,
+    /// `power_bias_nm_per_n`
+    pub power_bias_nm_per_n: Option<Spanned<f64>>,
 }
 
 /// `[vehicle]`
@@ -258,6 +269,16 @@ impl Pair {
             upper_spin: fields.read("upper_spin"),
             lower_out: fields.table("lower_out", keys::LOWER_OUT, RotorAlone::read),
             upper_out: fields.table("upper_out", keys::UPPER_OUT, RotorAlone::read),
+            power: fields.table("power", keys::POWER, Power::read),
+        }
+    }
+}
+
+impl Power {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require();
+        Self {
+            power_w: fields.read("power_w"),
         }
     }
 }
@@ -347,6 +368,7 @@ impl Allocation {
             airmode: fields.read("airmode"),
             axes: fields.read("axes"),
             yaw_reserve_nm: fields.read("yaw_reserve_nm"),
+            power_bias_nm_per_n: fields.read("power_bias_nm_per_n"),
         }
     }
 }

@@ -42,6 +42,8 @@ pub struct MixerTables {
     pub rows: [f32; 4],
     /// Priorities of desaturation.
     pub desaturation: Desaturation,
+    /// Least power: [`mixer_rt::Tables::power_bias_nm_per_n`].
+    pub power_bias_nm_per_n: f32,
     /// A shorter way to desaturate, where the layout allows one.
     pub shortcut: Option<VerticalTable>,
     /// What the mixer may miss.
@@ -192,6 +194,7 @@ impl MixerTables {
             attainable: self.attainable.view(),
             rows: self.rows,
             desaturation: self.desaturation,
+            power_bias_nm_per_n: self.power_bias_nm_per_n,
             shortcut: self.shortcut.as_ref().map(VerticalTable::view),
             tolerance: self.tolerance,
         }
@@ -240,6 +243,7 @@ impl MixerTables {
             + 4 // rows
             + self.shortcut.as_ref().map_or(0, VerticalTable::floats)
             + 2 // desaturation
+            + 1 // power bias
             + 6; // tolerance
         let channels = 2 * self.units.len() * (1 + usize::from(self.shortcut.is_some()));
         4 * floats + channels

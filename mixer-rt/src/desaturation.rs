@@ -13,6 +13,7 @@
 pub(crate) mod attainable;
 pub(crate) mod closed_form;
 pub(crate) mod general;
+pub(crate) mod power_bias;
 
 use crate::clamp;
 

@@ -4,6 +4,7 @@ use core::hint::black_box;
 
 use crate::desaturation::closed_form::{Attained, Efforts, Request, Shortcut, Vertical};
 use crate::desaturation::general::{SHORTAGES, Variable, allocate};
+use crate::desaturation::power_bias::add_power_bias;
 use crate::desaturation::{is_bounded, limited};
 use crate::pair::rotors::Rotors;
 use crate::rolled;
@@ -158,7 +159,14 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
         variable.rotors = Rotors::of(unit.channels, health);
         is_whole &= variable.rotors == Rotors::Both;
     }
-    allocate(tables, &bounded, factors, variables, is_whole);
+    let is_least_norm = allocate(tables, &bounded, factors, variables, is_whole);
+    if is_least_norm && tables.power_bias_nm_per_n != 0.0 {
+        add_power_bias(
+            tables,
+            factors,
+            variables.get_mut(..units.len()).unwrap_or_default(),
+        );
+    }
     let mut achieved = [0.0; 4];
     for (unit, Variable { rotors, at, .. }) in units.iter().zip(variables) {
         rolled();
@@ -196,9 +204,14 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     let at_reference = at_reference(bounded, per_factor);
     let airmode = tables.desaturation.airmode;
     let mut efforts = Efforts::default();
-    let mut attained = vertical.least_norm(&at_reference, &mut efforts);
+    let power_bias = tables.power_bias_nm_per_n;
+    let has_bias = power_bias != 0.0;
+    let mut room = f32::MAX;
+    let mut attained = vertical.least_norm(&at_reference, &mut efforts, has_bias, &mut room);
     if attained == Attained::No {
         vertical.desaturate(airmode, &at_reference, &mut efforts);
+    } else if attained == Attained::Yes && has_bias {
+        vertical.add_power_bias(power_bias, room, &mut efforts);
     }
     loop {
         let mut is_near = true;

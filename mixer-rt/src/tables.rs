@@ -68,6 +68,8 @@ pub struct Tables<'a, P, I, S = NoShortcut> {
     pub rows: [f32; 4],
     /// What is given up when a unit cannot follow.
     pub desaturation: Desaturation,
+    /// Least power: every unit's torque per thrust (N m per N at the reference voltage) while no unit is near its limits.
+    pub power_bias_nm_per_n: f32,
     /// A shorter way to desaturate while all rotors work.
     pub shortcut: S,
     /// What the mixer may miss.

@@ -61,7 +61,7 @@ fn wrenches_of_throttles_at_their_limits_are_delivered_to_a_percent() {
             let places = frames::irregular(&mut random, units, tilt);
             let options = Options {
                 airmode: AIRMODES[units % 3],
-                yaw_reserve_nm: 0.0,
+                ..Options::default()
             };
             let channels: Vec<usize> = (0..2 * units).collect();
             let text = frames::toml_with_pair(&pair_text, &places, &channels, options);

@@ -119,6 +119,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         attainable: view.attainable,
         rows: view.rows,
         desaturation: view.desaturation,
+        power_bias_nm_per_n: view.power_bias_nm_per_n,
         shortcut: view.shortcut,
         tolerance: view.tolerance,
     };
@@ -147,10 +148,19 @@ const LARGEST: f32 = 1e8;
 fn efforts_are_finite() {
     let mut random = Random::new(11);
     for (name, places) in degenerate_frames() {
-        for (airmode, yaw_reserve_nm) in AIRMODES.into_iter().zip([0.0, 0.02, 0.0]) {
+        let cases = [
+            (0, 0.0, 0.0),
+            (1, 0.02, 0.0),
+            (2, 0.0, 0.0),
+            (0, 0.0, 0.004),
+            (2, 0.0, -0.004),
+        ];
+        for (mode, yaw_reserve_nm, power_bias_nm_per_n) in cases {
+            let airmode = AIRMODES[mode];
             let options = Options {
                 airmode,
                 yaw_reserve_nm,
+                power_bias_nm_per_n,
             };
             let compiled = frames::compile(&places, options).expect("a frame");
             for _ in 0..400 {

@@ -34,6 +34,7 @@ pub(crate) struct Layout {
     is_tilted: bool,
     airmode: &'static str,
     yaw_reserve_nm: f64,
+    power_bias_nm_per_n: f64,
 }
 
 impl Layout {
@@ -67,8 +68,17 @@ impl Layout {
         let options = Options {
             airmode: self.airmode,
             yaw_reserve_nm: self.yaw_reserve_nm,
+            power_bias_nm_per_n: self.power_bias_nm_per_n,
         };
         frames::toml(&self.places(), &self.channels(), options)
+    }
+
+    /// The same with no power bias.
+    pub(crate) fn without_power_bias(&self) -> Layout {
+        Layout {
+            power_bias_nm_per_n: 0.0,
+            ..self.clone()
+        }
     }
 
     /// The compiled frame; `None` where the compiler refuses it, as it does what cannot hover. The last one is kept,
@@ -129,7 +139,16 @@ pub(crate) fn layout() -> impl Strategy<Value = Layout> {
             is_tilted,
             airmode,
             yaw_reserve_nm,
+            power_bias_nm_per_n: 0.0,
         })
+}
+
+/// [`layout`] with a power bias of either sign, the largest more than the pair can give at most thrusts.
+pub(crate) fn biased_layout() -> impl Strategy<Value = Layout> {
+    (layout(), 0.0005..0.02, any::<bool>()).prop_map(|(layout, size, is_negative): (_, f64, _)| Layout {
+        power_bias_nm_per_n: if is_negative { -size } else { size },
+        ..layout
+    })
 }
 
 /// Shares of the range for every rotor of the largest layout.

@@ -11,6 +11,7 @@
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
 //! | `polygons.rs` | the optimum over the mixer's own polygons, where what these leave out decides |
 //! | `degenerate.rs` | numbers that no controller sends |
+//! | `power_bias.rs` | least power: the wrench stays, torques follow thrusts, fading before anything saturates |
 //! | `shapes.rs` | the same on attainable sets that are not convex, real ones with `MIXER_BENCH_DATA` |
 //! | `flags.rs` | attainable yaw is delivered without a flag, and shortages are flagged |
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
@@ -26,6 +27,7 @@ mod jumps;
 mod layout;
 mod optimum;
 mod polygons;
+mod power_bias;
 mod properties;
 mod regressions;
 mod shapes;
@@ -64,6 +66,7 @@ fn compile(places: &[Place], airmode: &'static str, yaw_reserve_nm: f64) -> Fram
     let options = Options {
         airmode,
         yaw_reserve_nm,
+        ..Options::default()
     };
     Frame::new(frames::compile(places, options).unwrap_or_else(|faults| panic!("{faults}")))
 }

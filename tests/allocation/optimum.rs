@@ -94,7 +94,7 @@ fn vertical_frames_of_three_and_four_units_reach_the_optimum() {
         for airmode in ["disabled", "roll-pitch"] {
             let options = Options {
                 airmode,
-                yaw_reserve_nm: 0.0,
+                ..Options::default()
             };
             let mut judged = Judged::default();
             let regular = frames::compile(&frames::regular(n, 45.0), options).map(Frame::new);
@@ -125,6 +125,7 @@ fn any_frame_reaches_the_optimum() {
                     let options = Options {
                         airmode,
                         yaw_reserve_nm,
+                        ..Options::default()
                     };
                     let Some(frame) = irregular(&mut random, n, tilt, options) else {
                         continue;
@@ -194,7 +195,7 @@ fn frames_with_rotors_out_reach_the_optimum() {
                 for airmode in AIRMODES {
                     let options = Options {
                         airmode,
-                        yaw_reserve_nm: 0.0,
+                        ..Options::default()
                     };
                     let Some(frame) = irregular(&mut random, n, tilt, options) else {
                         continue;

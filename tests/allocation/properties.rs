@@ -18,7 +18,7 @@ use crate::polygons::delivered;
 /// Each layout takes a compilation, about 0.1 s.
 const LAYOUTS: u32 = 32;
 
-fn config() -> ProptestConfig {
+pub(crate) fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let is_set = |variable: &str| std::env::var_os(variable).is_some();
     ProptestConfig {
@@ -41,12 +41,12 @@ fn config() -> ProptestConfig {
 }
 
 /// `count` requests for one layout.
-fn many<S: Strategy>(request: S, count: usize) -> impl Strategy<Value = Vec<S::Value>> {
+pub(crate) fn many<S: Strategy>(request: S, count: usize) -> impl Strategy<Value = Vec<S::Value>> {
     prop::collection::vec(request, 1..=count)
 }
 
 /// Holds every draw for `layout` to `property`; a layout that makes no frame counts for nothing.
-fn each<D>(
+pub(crate) fn each<D>(
     layout: &Layout,
     draws: &[D],
     property: impl Fn(&Frame, &D) -> Result<(), TestCaseError>,
@@ -57,7 +57,7 @@ fn each<D>(
 
 /// Throttles in range, the truth about the achieved wrench, flags by axis and side, no axis reversed or exceeded,
 /// (roll, pitch) in the direction asked, no thrust raised with airmode disabled.
-fn sound(frame: &Frame, draw: &Draw) -> Result<(), TestCaseError> {
+pub(crate) fn sound(frame: &Frame, draw: &Draw) -> Result<(), TestCaseError> {
     let request = draw.of(frame);
     let answer = request.mix(frame).expect("finite");
     let fault = soundness::fault(frame, &request, &answer);

@@ -229,7 +229,7 @@ fn judge(name: &str, pair: &str, count: usize) -> Tally {
             random.shuffle(&mut channels);
             let options = Options {
                 airmode,
-                yaw_reserve_nm: 0.0,
+                ..Options::default()
             };
             let text = frames::toml_with_pair(pair, &places, &channels, options);
             let compiled = frames::compile_text(&text).unwrap_or_else(|faults| panic!("{name}: {faults}"));
@@ -329,7 +329,7 @@ fn x12(pair: &str, airmode: &'static str) -> Result<Compiled, String> {
     let channels: Vec<usize> = (0..2 * places.len()).collect();
     let options = Options {
         airmode,
-        yaw_reserve_nm: 0.0,
+        ..Options::default()
     };
     frames::compile_text(&frames::toml_with_pair(pair, &places, &channels, options))
 }

@@ -231,6 +231,7 @@ pub mod coaxial_bicopter {
             airmode: ::mixer_rt::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
         },
+        power_bias_nm_per_n: 0.0,
         shortcut: &::mixer_rt::Vertical {
             units: &[
                 ::mixer_rt::VerticalUnit {

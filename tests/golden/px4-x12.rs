@@ -272,6 +272,7 @@ pub mod px4_x12 {
             airmode: ::mixer_rt::Airmode::RollPitchYaw,
             yaw_reserve_nm: 0.0,
         },
+        power_bias_nm_per_n: 0.0,
         shortcut: ::mixer_rt::NoShortcut,
         tolerance: ::mixer_rt::Tolerance {
             efforts: [0.0030275749, 0.00003889632],

@@ -246,6 +246,7 @@ pub mod px4_y6 {
             airmode: ::mixer_rt::Airmode::RollPitch,
             yaw_reserve_nm: 0.0,
         },
+        power_bias_nm_per_n: 0.0,
         shortcut: &::mixer_rt::Vertical {
             units: &[
                 ::mixer_rt::VerticalUnit {

@@ -35,6 +35,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/bench.md", "bases", tables::bases()?),
         of("docs/flight.md", "hover", tables::hover()?),
         of("docs/flight.md", "tracking", tables::tracking()?),
+        of("docs/flight.md", "energy", tables::energy()?),
     ])
 }
 

@@ -30,6 +30,8 @@ pub struct Options {
     pub airmode: &'static str,
     /// As in the airframe file, N m.
     pub yaw_reserve_nm: f64,
+    /// As in the airframe file, N m per N; left out where it is 0.
+    pub power_bias_nm_per_n: f64,
 }
 
 impl Default for Options {
@@ -37,6 +39,7 @@ impl Default for Options {
         Options {
             airmode: "disabled",
             yaw_reserve_nm: 0.0,
+            power_bias_nm_per_n: 0.0,
         }
     }
 }
@@ -120,11 +123,15 @@ pub fn toml_with_pair(pair: &str, places: &[Place], channels: &[usize], options:
     let Options {
         airmode,
         yaw_reserve_nm,
+        power_bias_nm_per_n,
     } = options;
     let _ = write!(
         text,
         "[allocation]\nairmode = \"{airmode}\"\nyaw_reserve_nm = {yaw_reserve_nm:?}\n"
     );
+    if power_bias_nm_per_n != 0.0 {
+        let _ = writeln!(text, "power_bias_nm_per_n = {power_bias_nm_per_n:?}");
+    }
     match places.len() {
         1 => text.push_str("axes = [\"yaw\", \"thrust\"]\n"),
         2 => text.push_str("axes = [\"roll\", \"yaw\", \"thrust\"]\n"),

@@ -77,8 +77,10 @@ const TASKS: &[Task] = &[
             "--",
             "--errors",
             "tests/measurements/flight.csv",
+            "--energy",
+            "tests/measurements/energy.csv",
         ],
-        does: "flies the comparison and writes tests/measurements/flight.csv",
+        does: "flies the comparison and writes flight.csv and energy.csv of tests/measurements/",
     },
     Task {
         name: "tables",

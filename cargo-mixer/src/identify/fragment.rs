@@ -76,6 +76,13 @@ fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
                 writeln!(out, "#   {line}")?;
             }
         }
+        match &found.power_w {
+            Some(power_w) => writeln!(out, "[pair.power]\npower_w = {power_w:?}")?,
+            None => writeln!(
+                out,
+                "#   No [pair.power]: the fit is not positive at the least throttles to command."
+            )?,
+        }
     }
     if let Some(voltage) = &id.voltage {
         write_voltage(out, voltage, id.reference_v, id.pair.is_some())?;

@@ -46,6 +46,16 @@ pub struct Identified {
     pub warnings: Vec<String>,
 }
 
+impl Identified {
+    /// The torque of least power, N m per N, where power is saved by one.
+    pub fn power_bias(&self) -> Option<f64> {
+        match &self.power {
+            Some(Power::Identified(found)) => Some(found.bias_nm_per_n),
+            _ => None,
+        }
+    }
+}
+
 /// Reads the files and identifies what they hold. All refusals are collected.
 pub fn identify(paths: &[PathBuf], settings: &Settings) -> Result<Identified, Vec<Refusal>> {
     let benches = read_all(paths, settings)?;
@@ -91,6 +101,17 @@ pub fn with_runs(
         };
         pair.lower_out = alone(upper, Turning::Upper, pair)?;
         pair.upper_out = alone(lower, Turning::Lower, pair)?;
+        if wishes.rotor_out_from_map {
+            let mut from_map = |turning, pair: &Pair| {
+                alone::from_map(&benches, turning, pair, voltage.as_ref(), &mut warnings).map(Some)
+            };
+            if pair.lower_out.is_none() {
+                pair.lower_out = from_map(Turning::Upper, pair)?;
+            }
+            if pair.upper_out.is_none() {
+                pair.upper_out = from_map(Turning::Lower, pair)?;
+            }
+        }
         warnings.extend(alone::extrapolated(pair));
     } else if let Some(run) = runs.iter().flatten().next() {
         return Err(Refusal::of(

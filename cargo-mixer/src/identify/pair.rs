@@ -34,6 +34,8 @@ pub struct Wishes {
     pub reference_v: Option<f64>,
     /// Declared exponents of thrust and of torque, or nothing to identify them.
     pub voltage_exponent: Option<[f64; 2]>,
+    /// Whether rows of the map stand for runs of one rotor alone that are missing.
+    pub rotor_out_from_map: bool,
 }
 
 /// The identified map, as in `[throttle]` and `[pair]`.

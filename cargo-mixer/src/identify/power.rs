@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::basis::{ThrottleBox, monomials};
 use super::bench::{Bench, Kind, Point};
-use super::fit::distinct_pairs;
+use super::fit::{distinct_pairs, ten_digits};
 use super::pair::Pair;
 use super::polynomial::Polynomial;
 use super::voltage::Voltage;
@@ -60,6 +60,9 @@ pub struct LeastPower {
     pub full_scale_w: f64,
     /// Rows with power.
     pub points: usize,
+    /// Coefficients of the power map, W: the quartic's in their order and a constant; none where it is not positive over the
+    /// throttles to command, so that no airframe file takes it.
+    pub power_w: Option<Vec<f64>>,
 }
 
 /// Power at one thrust.
@@ -102,6 +105,15 @@ impl PowerMap {
 
     fn at(&self, [u, l]: [f64; 2]) -> f64 {
         dot(&terms(u, l), &self.coefficients)
+    }
+
+    /// `[pair.power]`, where it is positive at all throttles that may be commanded.
+    fn of_file(&self, throttle: ThrottleBox) -> Option<Vec<f64>> {
+        const STEPS: usize = 64;
+        let is_positive = throttle
+            .grid(STEPS)
+            .all(|u| throttle.grid(STEPS).all(|l| self.at([u, l]) > 0.0));
+        is_positive.then(|| self.coefficients.iter().map(|&c| ten_digits(c)).collect())
     }
 }
 
@@ -266,6 +278,7 @@ fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Res
         residual_rms_w: power.residual_rms,
         full_scale_w: power.full_scale,
         points: points.len(),
+        power_w: power.of_file(pair.throttle),
     })
 }
 

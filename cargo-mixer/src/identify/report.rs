@@ -119,9 +119,14 @@ pub fn alone_lines(alone: &Alone) -> Vec<String> {
             percent(fit.of_the_pair_rms)
         )
     };
+    let other = alone.other_at.map_or(String::new(), |level| {
+        format!(
+            ", of a map in which the other rotor turned at {level:.2}: taken off by the pair's polynomials"
+        )
+    });
     vec![
         format!(
-            "{}: {} points, throttle {:.2} to {:.2}",
+            "{}: {} points, throttle {:.2} to {:.2}{other}",
             alone.file, alone.points, alone.measured[0], alone.measured[1]
         ),
         channel("thrust", "N", alone.thrust_n, &alone.thrust),
@@ -155,6 +160,10 @@ pub fn least_power_lines(found: &LeastPower) -> Vec<String> {
             "that is {:.1} % of flight time where as many upper rotors turn one way as the other; with spins s of n units \
              1 - (sum s / n)2 of it is left, none where all turn alike (a Y6)",
             100.0 * (1.0 / (1.0 - 0.01 * found.saving_percent) - 1.0)
+        ),
+        format!(
+            "in an airframe file: power_bias_nm_per_n = {:?} under [allocation]",
+            found.bias_nm_per_n
         ),
         format!(
             "power map of {} rows: residual {:.2} W rms, {:.2} % of the greatest power",

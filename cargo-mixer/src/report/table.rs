@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::hover::Hover;
+use mixer_compiler::power::LevelPower;
 use mixer_compiler::report::{Summary, rounded_up};
 
 use super::bench::BenchPoints;
@@ -115,7 +116,8 @@ pub fn summary(study: &Study<'_>, origin: &Origin) -> String {
         ),
     ];
     let hover = summary.hover.iter().flat_map(hover);
-    let mut facts: Vec<_> = facts.into_iter().chain(hover).collect();
+    let power = summary.power.iter().map(power);
+    let mut facts: Vec<_> = facts.into_iter().chain(hover).chain(power).collect();
     let mut file = format!("<code>{}</code>", escaped(&compiled.source_name));
     if let Some(hash) = &origin.sha256 {
         let _ = write!(file, ", SHA-256 <code>{hash}</code>");
@@ -158,6 +160,25 @@ fn hover(hover: &Hover) -> Vec<(&'static str, String)> {
         )
     });
     [carried].into_iter().chain(at).collect()
+}
+
+/// Electrical power in level flight.
+fn power(power: &LevelPower) -> (&'static str, String) {
+    let mut text = format!(
+        "{} W at {} N at the reference voltage",
+        fixed(power.power_w, 1),
+        fixed(power.thrust_n, 1)
+    );
+    if power.power_w != power.without_bias_w {
+        let _ = write!(
+            text,
+            "; without the power bias {} W. It saves {} %, which is {} % of flight time",
+            fixed(power.without_bias_w, 1),
+            fixed(power.saving_percent, 2),
+            fixed(power.flight_time_percent, 2)
+        );
+    }
+    ("Power", text)
 }
 
 /// Places, spins and outputs of the units.

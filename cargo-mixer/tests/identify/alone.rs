@@ -117,3 +117,60 @@ fn runs_that_cannot_serve_are_refused() {
     let error = refused(vec![single], run(0, 14.8, 0.0));
     assert!(error.contains("belongs to a map of the pair"), "{error}");
 }
+
+/// A map whose rotors alone are [`THRUST`] and [`TORQUE`], from a lowest throttle on.
+fn map_from(lowest: f64) -> Bench {
+    let mut text = String::from("upper,lower,thrust_n,torque_nm,voltage_v\n");
+    for k in 0..100 {
+        let at = |k: u32| lowest + (1.0 - lowest) * f64::from(k) / 9.0;
+        let (u, l) = (at(k / 10), at(k % 10));
+        let f = value(THRUST, u) + value(THRUST, l) - 3.0 * u * l;
+        let q = value(TORQUE, l) - value(TORQUE, u) - 0.01 * u * l;
+        writeln!(text, "{u},{l},{f},{q},14.8").expect("a string");
+    }
+    bench("map.csv", text.as_bytes(), &settings(None)).expect("a bench")
+}
+
+#[test]
+fn the_lowest_level_of_a_map_stands_for_a_run_where_asked() {
+    let mut wishes = settings(Some(Basis::Cubic)).wishes;
+    let plain = with_runs(vec![map_from(0.1)], [None, None], &wishes).expect("a pair");
+    assert!(plain.pair.is_some_and(|pair| pair.lower_out.is_none()));
+    wishes.rotor_out_from_map = true;
+    let runs = [Some(run(0, 14.8, 0.0)), None];
+    let found = with_runs(vec![map_from(0.1)], runs, &wishes).expect("a pair");
+    let pair = found.pair.as_ref().expect("a pair");
+    let [upper, lower] =
+        [&pair.lower_out, &pair.upper_out].map(|alone| alone.as_ref().expect("a rotor alone"));
+    assert_eq!((upper.other_at, lower.other_at), (None, Some(0.1)));
+    for (found, truth) in lower
+        .thrust_n
+        .iter()
+        .zip(THRUST)
+        .chain(lower.torque_nm.iter().zip(TORQUE))
+    {
+        assert!((found - truth).abs() < 1e-6, "{found} {truth}");
+    }
+    let text = fragment::text(&found);
+    for caveat in [
+        "# ! --rotor-out-from-map",
+        "in which the other rotor turned at 0.10",
+    ] {
+        assert!(text.contains(caveat), "{caveat}: {text}");
+    }
+}
+
+#[test]
+fn a_map_that_begins_high_does_not() {
+    let mut wishes = settings(Some(Basis::Cubic)).wishes;
+    wishes.rotor_out_from_map = true;
+    let error = with_runs(vec![map_from(0.4)], [None, None], &wishes).unwrap_err();
+    let error = error.to_string();
+    for part in [
+        "--rotor-out-from-map: the lowest throttle of the lower rotor is 0.40",
+        "0.15 or lower",
+        "--lower-out",
+    ] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
+}

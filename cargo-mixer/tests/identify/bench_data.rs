@@ -2,20 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
+use cargo_mixer::frame::{Frame, FrameArgs};
 use cargo_mixer::identify::basis::ThrottleBox;
 use cargo_mixer::identify::bench::{self, Point};
 use cargo_mixer::identify::fit::Fit;
 use cargo_mixer::identify::power::Power;
 use cargo_mixer::identify::read;
+use mixer_compiler::Source;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::ForwardMap;
+use mixer_compiler::tables::MixerTables;
+use mixer_rt::Wrench;
 
 use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::{Identified, from_benches, identify};
 use cargo_mixer::identify::pair::Pair;
 use cargo_mixer::identify::polynomial::Polynomial;
 
-use crate::sweep::settings;
+use crate::sweep::{Normal, settings};
 
 /// The folder, or a clear word that the test does not run.
 fn data(test: &str) -> Option<PathBuf> {
@@ -482,6 +486,100 @@ fn torque_of_least_power_saves_on_every_full_range_map() {
     assert!(mean > 2.35, "{mean} of {savings:?}");
 }
 
+/// What the compiled mixer of an X8 saves by its power bias over what was recorded: level from 0.3 to 0.7 of full thrust, and
+/// over brisk requests about these.
+#[test]
+fn the_mixer_saves_what_is_identified() {
+    const BRISK: [f64; 2] = [0.05, 0.1];
+    let Some(data) = data("the_mixer_saves_what_is_identified") else {
+        return;
+    };
+    let mut maps = files(&data.join("newdexterity"), "full_range");
+    maps.retain(|path| !path.to_string_lossy().contains(CORRUPT));
+    assert!(maps.len() >= 5, "{maps:?}");
+    let (mut level, mut brisk) = (Vec::new(), [Vec::new(), Vec::new()]);
+    for path in &maps {
+        let found = fitted(path, None, false);
+        let frame = FrameArgs {
+            frame: Frame::X8,
+            arm: Some(0.45),
+            name: Some("x8".into()),
+        };
+        let text = frame.airframe(None, &fragment::tables(&found), found.power_bias());
+        let source = Source::new("x8.toml", text.expect("a frame"));
+        let with = mixer_compiler::compile(&source).unwrap_or_else(|faults| panic!("{faults}"));
+        assert!(with.tables.power_bias_nm_per_n > 0.0, "{}", path.display());
+        let power = with.airframe.pair.power.clone().expect("a power map");
+        let mut without = with.tables.clone();
+        without.power_bias_nm_per_n = 0.0;
+        let volts = with
+            .airframe
+            .voltage
+            .as_ref()
+            .map_or(0.0, |v| v.reference_v as f32);
+        let watts = |tables: &MixerTables, wrench: [f64; 4]| -> Option<f64> {
+            let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
+            let (throttle, _, saturation) = tables.mix(&setpoint, volts).expect("finite");
+            let units = with.airframe.units.iter();
+            let pairs = units.map(|unit| [unit.upper_channel, unit.lower_channel]);
+            let sum = pairs
+                .map(|pair| power.at(pair.map(|channel| f64::from(throttle[channel]))))
+                .sum();
+            (!saturation.any_axis()).then_some(sum)
+        };
+        let full = f64::from(with.thrust_range_n[1]);
+        let shares = (0..9).map(|k| 0.3 + 0.05 * f64::from(k));
+        // As a level thrust may be beneath what the idle leaves.
+        let saved: Vec<f64> = shares
+            .filter_map(|share| {
+                let wrench = [0.0, 0.0, 0.0, share * full];
+                Some(100.0 * (1.0 - watts(&with.tables, wrench)? / watts(&without, wrench)?))
+            })
+            .collect();
+        assert!(saved.len() >= 8, "{saved:?}");
+        assert!(
+            saved.iter().all(|saved| *saved >= 0.0),
+            "{}: {saved:?}",
+            path.display()
+        );
+        level.push(saved.iter().sum::<f64>() / saved.len() as f64);
+        // Roll and pitch up to this share of a normalised setpoint, yaw up to twice the share, thrust by a fifth.
+        let scale = with.scale().to_array().map(f64::from);
+        for (share, brisk) in BRISK.into_iter().zip(&mut brisk) {
+            let mut normal = Normal::new(3);
+            let mut energy = [0.0; 2];
+            for k in 0..2000 {
+                let mut draw = || normal.next().clamp(-2.0, 2.0) / 2.0;
+                let thrust = full * (0.3 + 0.4 * f64::from(k) / 2000.0) * (1.0 + 0.2 * draw());
+                let [roll, pitch, yaw] = [share, share, 2.0 * share].map(|share| share * draw());
+                let wrench = [roll * scale[0], pitch * scale[1], yaw * scale[2], thrust];
+                if let (Some(a), Some(b)) = (watts(&with.tables, wrench), watts(&without, wrench)) {
+                    energy = [energy[0] + a, energy[1] + b];
+                }
+            }
+            brisk.push(100.0 * (1.0 - energy[0] / energy[1]));
+        }
+        let last = |of: &[f64]| of[of.len() - 1];
+        println!(
+            "{}: level {:.2} %, brisk {:.2} and {:.2} %",
+            path.display(),
+            last(&level),
+            last(&brisk[0]),
+            last(&brisk[1])
+        );
+    }
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+    let [moderate, hard] = [&brisk[0], &brisk[1]].map(|of| mean(of));
+    println!(
+        "mean: level {:.2} %, brisk {moderate:.2} and {hard:.2} %",
+        mean(&level)
+    );
+    assert!(
+        mean(&level) >= 2.4 && moderate >= 2.2 && hard >= 1.9,
+        "{level:?} {brisk:?}"
+    );
+}
+
 #[test]
 fn single_rotors_are_described_by_three_terms() {
     let Some(data) = data("single_rotors_are_described_by_three_terms") else {
@@ -541,6 +639,37 @@ fn single_rotors_are_described_by_three_terms() {
             }
         }
     }
+    // The lowest level of the full-range maps, against the runs, which are of other days.
+    let mut lowest = Vec::new();
+    for ((upper, lower), (map, _)) in pairs.into_iter().zip(maps) {
+        let mut settings = settings(Some(Basis::Cubic));
+        settings.wishes.voltage_exponent = Some([1.75; 2]);
+        let mut of = |runs: [Option<PathBuf>; 2], from_map: bool| {
+            settings.alone = runs;
+            settings.wishes.rotor_out_from_map = from_map;
+            let found = identify(&[coaxial(map)], &settings).unwrap_or_else(|e| panic!("{map}: {}", e[0]));
+            let told = found.warnings.iter().any(|w| w.contains("--rotor-out-from-map"));
+            assert_eq!(told, from_map, "{:?}", found.warnings);
+            let pair = found.pair.expect("a pair");
+            [pair.lower_out, pair.upper_out].map(|alone| alone.expect("a rotor alone"))
+        };
+        let runs = of([Some(coaxial(upper)), Some(coaxial(lower))], false);
+        let rows = of([None, None], true);
+        for (run, rows) in runs.iter().zip(&rows) {
+            let value = |[a1, a2, a3]: [f64; 3], x: f64| ((a3 * x + a2) * x + a1) * x;
+            let rms = |a: [f64; 3], b: [f64; 3], scale: f64| {
+                let at = (0..=20).map(|k| 0.1 + 0.0425 * f64::from(k));
+                let squares = at.map(|x| (value(a, x) - value(b, x)) * (value(a, x) - value(b, x)));
+                100.0 * (squares.sum::<f64>() / 21.0).sqrt() / scale
+            };
+            lowest.push([
+                rms(run.thrust_n, rows.thrust_n, run.thrust.full_scale),
+                rms(run.torque_nm, rows.torque_nm, run.torque.full_scale),
+            ]);
+        }
+    }
+    println!("lowest level of full-range maps {lowest:.2?}");
+    assert!(lowest.iter().all(|[f, q]| *f < 5.0 && *q < 6.0), "{lowest:?}");
     let mean = |errors: &[[f64; 2]], k: usize| errors.iter().map(|e| e[k]).sum::<f64>() / errors.len() as f64;
     let figures = [&errors, &from_idle, &from_forty].map(|errors| [0, 1].map(|k| mean(errors, k)));
     let [alone, idle, forty] = figures;

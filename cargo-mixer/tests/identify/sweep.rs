@@ -267,6 +267,7 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
             throttle: None,
             reference_v: None,
             voltage_exponent: None,
+            rotor_out_from_map: false,
         },
         alone: [None, None],
     }

@@ -19,6 +19,7 @@ pub mod air;
 pub mod battery;
 pub mod controller;
 pub mod conventional;
+pub mod energy;
 pub mod figures;
 pub mod flight;
 pub mod integrator;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use flight::energy::{self, Rotors, Saving};
 use flight::figures;
 use flight::flight::Scenario;
 use flight::log;
@@ -29,6 +30,9 @@ struct Arguments {
     /// Write the errors of all flights as CSV to this file
     #[arg(long, value_name = "FILE")]
     errors: Option<PathBuf>,
+    /// Write the energy of all flights with and without a power bias as CSV to this file
+    #[arg(long, value_name = "FILE")]
+    energy: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -60,6 +64,18 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         comparisons.push(comparison);
     }
     write!(out, "{NOTES}")?;
+    let savings = savings(arguments.seeds)?;
+    writeln!(
+        out,
+        "\nEnergy of the manoeuvre with the rotors of airframes/x8-11in-least-power.toml"
+    )?;
+    for saving in &savings {
+        writeln!(out, "{saving}")?;
+    }
+    if let Some(path) = &arguments.energy {
+        let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        energy::write(&savings, file)?;
+    }
     if let Some(folder) = &arguments.plots {
         write_figures(&comparisons, folder)?;
     }
@@ -71,6 +87,19 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         log::write_tracking(&comparisons, file)?;
     }
     Ok(())
+}
+
+/// The energy of every scenario with and without a power bias.
+fn savings(seeds: u64) -> Result<Vec<Saving>, Box<dyn Error>> {
+    let rotors = Rotors::new()?;
+    let fly = |scenario: &Scenario| -> Result<Saving, Box<dyn Error>> {
+        let flights = (1..=seeds).map(|seed| rotors.fly(scenario, seed));
+        Ok(Saving {
+            scenario: *scenario,
+            flights: flights.collect::<Result<_, _>>()?,
+        })
+    };
+    Scenario::ALL.iter().map(fly).collect()
 }
 
 /// The figures of the first seed of every scenario.

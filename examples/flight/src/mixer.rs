@@ -4,6 +4,7 @@ use std::fmt;
 
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::effectiveness::Effectiveness;
+use mixer_compiler::tables::MixerTables;
 use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 
@@ -35,6 +36,8 @@ pub enum Mixer {
     Coaxial,
     /// The conventional mixer.
     Conventional(Box<ConventionalMixer>),
+    /// The mixer of another airframe with as many rotors.
+    Compiled(Box<MixerTables>),
 }
 
 impl Mixer {
@@ -69,6 +72,12 @@ impl Mixer {
                 Ok((throttle, mix.saturation.any_axis()))
             }
             Mixer::Conventional(mixer) => mixer.mix(wrench, voltage_v),
+            Mixer::Compiled(tables) => {
+                let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
+                let (throttle, _, saturation) = tables.mix(&setpoint, voltage_v as f32)?;
+                let rotors = throttle.into_iter().map(f64::from).chain([0.0; ROTORS]);
+                Ok((SVector::from_iterator(rotors.take(ROTORS)), saturation.any_axis()))
+            }
         }
     }
 }

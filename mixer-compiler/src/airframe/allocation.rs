@@ -14,6 +14,9 @@ const AIRMODES: [(&str, Airmode); 3] = [
     ("roll-pitch-yaw", Airmode::RollPitchYaw),
 ];
 
+/// Largest torque per thrust of a pair, N m per N: a propeller of 2 m with the other one at rest has a tenth.
+const LARGEST_POWER_BIAS: f64 = 1.0;
+
 /// `[allocation]` with its defaults.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -24,6 +27,9 @@ pub struct Allocation {
     pub axes: Vec<Axis>,
     /// Yaw moment kept available either way, N m, 0 to 1e6, and 0 where yaw is not controlled.
     pub yaw_reserve_nm: f64,
+    /// Torque per thrust of every unit for the least power, N m per N at the reference voltage, -1 to 1, and 0 where yaw
+    /// is not controlled.
+    pub power_bias_nm_per_n: f64,
 }
 
 impl Default for Allocation {
@@ -32,6 +38,7 @@ impl Default for Allocation {
             airmode: Airmode::Disabled,
             axes: Axis::ALL.to_vec(),
             yaw_reserve_nm: 0.0,
+            power_bias_nm_per_n: 0.0,
         }
     }
 }
@@ -57,10 +64,15 @@ pub(super) fn check(allocation: &spec::Allocation, faults: &mut Vec<Diagnostic>)
         Some(field) => yaw_reserve(field, axes.as_deref(), faults),
         None => Some(default.yaw_reserve_nm),
     };
+    let power_bias_nm_per_n = match &allocation.power_bias_nm_per_n {
+        Some(field) => power_bias(field, axes.as_deref(), faults),
+        None => Some(default.power_bias_nm_per_n),
+    };
     Some(Allocation {
         airmode: airmode?,
         axes: axes?,
         yaw_reserve_nm: yaw_reserve_nm?,
+        power_bias_nm_per_n: power_bias_nm_per_n?,
     })
 }
 
@@ -143,4 +155,44 @@ fn yaw_reserve(field: &Spanned<f64>, axes: Option<&[Axis]>, faults: &mut Vec<Dia
         return None;
     }
     Some(reserve + 0.0)
+}
+
+fn power_bias(field: &Spanned<f64>, axes: Option<&[Axis]>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
+    let bias = *field.get_ref();
+    let key = "allocation.power_bias_nm_per_n";
+    if bias.abs() > LARGEST_POWER_BIAS {
+        let help = if bias.abs() <= 1e3 * LARGEST_POWER_BIAS {
+            format!("if mN m per N were meant, write {}", number(bias / 1e3))
+        } else {
+            "`cargo mixer identify` finds it from voltage and current; 0.002 to 0.02 are usual".to_string()
+        };
+        faults.push(
+            Diagnostic::new(
+                Code::OutOfRange,
+                key,
+                field.span(),
+                format!("`{key}` = {} is not between -1 and 1", number(bias)),
+            )
+            .label("no pair has that torque per thrust")
+            .help(help),
+        );
+        return None;
+    }
+    if bias != 0.0 && axes.is_some_and(|axes| !axes.contains(&Axis::Yaw)) {
+        faults.push(
+            Diagnostic::new(
+                Code::PowerBias,
+                key,
+                field.span(),
+                format!(
+                    "a power bias of {} N m per N without yaw in `allocation.axes`",
+                    number(bias)
+                ),
+            )
+            .label("nothing would cancel these torques")
+            .help("remove the bias, or add `yaw` to `axes`"),
+        );
+        return None;
+    }
+    Some(bias + 0.0)
 }

@@ -5,6 +5,7 @@ use toml::Spanned;
 
 use super::Throttle;
 use super::check::{LARGEST_EFFORT, word};
+use super::power::{self, Power};
 use super::rotor_alone::{self, RotorAlone};
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
@@ -144,6 +145,8 @@ pub struct Pair {
     pub lower_out: Option<RotorAlone>,
     /// The lower rotor alone; `None` where the polynomials at u = 0 stand for it.
     pub upper_out: Option<RotorAlone>,
+    /// Electrical power; `None` where the file has no `[pair.power]`.
+    pub power: Option<Power>,
 }
 
 pub(super) fn check(
@@ -168,7 +171,12 @@ pub(super) fn check(
     };
     let lower_out = alone("lower_out", &pair.lower_out, -1.0);
     let upper_out = alone("upper_out", &pair.upper_out, 1.0);
+    let power = pair
+        .power
+        .as_ref()
+        .map(|table| power::check(table, throttle, faults));
     Some(Pair {
+        power: power.map_or(Some(None), |power| power.map(Some))?,
         lower_out: lower_out.map_or(Some(None), |alone| alone.map(Some))?,
         upper_out: upper_out.map_or(Some(None), |alone| alone.map(Some))?,
         basis: basis?,

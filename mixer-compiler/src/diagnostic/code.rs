@@ -91,9 +91,13 @@ catalogue! {
     ControlAxes = 120,
     /// A yaw reserve where yaw is not controlled.
     YawReserve = 121,
+    /// A power bias where yaw is not controlled.
+    PowerBias = 122,
 
     /// A single rotor's curve that no rotor has: thrust that does not grow, or torque of the other rotor's sign.
     RotorAlone = 130,
+    /// A power map that no pair has: power that is not positive, or that does not grow with the throttles.
+    PowerMap = 131,
 
     /// The units cannot produce an axis: the effectiveness matrix has not the rank that the axes ask for.
     RankDeficient = 200,
@@ -136,6 +140,10 @@ catalogue! {
     WideTolerance = 330,
     /// A yaw reserve that the units cannot hold at any thrust.
     YawReserveBeyond = 331,
+    /// A power bias that the pair cannot give at half of its thrust.
+    PowerBiasBeyond = 332,
+    /// A power bias that saves nothing, as no upper rotors turn against each other.
+    PowerBiasIdle = 333,
     /// A vehicle that is too heavy to hover.
     TooHeavy = 340,
     /// A vehicle that rises at idle.

@@ -183,6 +183,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let limits = &tables.desaturation;
     let airmode = identifier(&format!("{:?}", limits.airmode));
     let reserve = float(limits.yaw_reserve_nm);
+    let power_bias = float(tables.power_bias_nm_per_n);
     let efforts = vector(&tables.tolerance.efforts);
     let wrench = vector(&tables.tolerance.wrench);
     quote! {
@@ -199,6 +200,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
                 airmode: ::mixer_rt::Airmode::#airmode,
                 yaw_reserve_nm: #reserve,
             },
+            power_bias_nm_per_n: #power_bias,
             shortcut: #shortcut,
             tolerance: ::mixer_rt::Tolerance { efforts: #efforts, wrench: #wrench },
         }

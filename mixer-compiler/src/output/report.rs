@@ -8,6 +8,7 @@ use crate::compiled::Compiled;
 pub use crate::diagnostic::rounded_up;
 use crate::output::cost::Cost;
 use crate::output::hover::Hover;
+use crate::output::power::LevelPower;
 
 /// `cargo mixer check --json`, but for the time taken.
 #[derive(Clone, Debug, Serialize)]
@@ -57,6 +58,10 @@ pub struct Summary {
     pub thrust_range_n: [f32; 2],
     /// The vehicle in hover; null where the file has no mass.
     pub hover: Option<Hover>,
+    /// The torque per thrust at which units start for the least power, N m per N.
+    pub power_bias_nm_per_n: f64,
+    /// Electrical power in level flight; null where the file has no power map.
+    pub power: Option<LevelPower>,
     /// What a unit with one rotor left is taken to give.
     pub rotor_out: RotorOut,
     /// What it costs on the target.
@@ -159,6 +164,8 @@ impl Summary {
             attainable_area_lost_in_closed_form: compiled.lost_between_sides,
             thrust_range_n: compiled.thrust_range_n,
             hover: Hover::new(compiled),
+            power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n,
+            power: LevelPower::new(compiled),
             rotor_out: RotorOut {
                 lower_out: RotorAlone::new(airframe.pair.lower_out.is_some(), airframe.throttle.min),
                 upper_out: RotorAlone::new(airframe.pair.upper_out.is_some(), airframe.throttle.min),
@@ -336,6 +343,17 @@ impl Report<'_> {
         }
         if let Some(hover) = &summary.hover {
             write!(f, "{hover}")?;
+        }
+        if summary.power_bias_nm_per_n != 0.0 {
+            writeln!(
+                f,
+                "least power     torques start at {:?} N m per N of thrust; {:.0} % of a pair's saving is left to this frame",
+                summary.power_bias_nm_per_n,
+                100.0 * airframe.power_bias_share()
+            )?;
+        }
+        if let Some(power) = &summary.power {
+            write!(f, "{power}")?;
         }
         match &airframe.voltage {
             None => writeln!(f, "voltage         no correction"),

@@ -172,6 +172,8 @@ pub const PAIR: Shape = shape! { "[pair]":
         "What the upper rotor gives alone, the lower one at rest: used while the lower one is out.";
     "upper_out" => "[pair.upper_out]", Kind::Table(&UPPER_OUT),
         "What the lower rotor gives alone, the upper one at rest: used while the upper one is out.";
+    "power" => "[pair.power]", Kind::Table(&POWER),
+        "Electrical power, for what `check` and the report say of least power.";
 };
 
 /// `[pair.lower_out]`
@@ -188,6 +190,15 @@ pub const UPPER_OUT: Shape = shape! { "[pair.upper_out]":
         "Thrust of the lower rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.";
     "torque_nm" required => "torque_nm = [0.01, 0.2, -0.02]", Kind::Numbers([3, 3]),
         "Its torque, N m, signed as that of the pair.";
+};
+
+/// Coefficients of a power map: the quartic's and a constant.
+pub const POWER_TERMS: usize = 15;
+
+/// `[pair.power]`
+pub const POWER: Shape = shape! { "[pair.power]":
+    "power_w" required => "power_w = [0, 0, 0, 0, 0, 620, 90, 40, 560, 160, -60, 150, 8, 6, 5]", Kind::Numbers([POWER_TERMS, POWER_TERMS]),
+        "Electrical power of both rotors, W: the quartic's coefficients and a constant; `identify` writes it.";
 };
 
 /// `[voltage]`
@@ -258,6 +269,8 @@ pub const ALLOCATION: Shape = shape! { "[allocation]":
         "The served axes, all four without it; fewer for one or two units, which cannot produce all.";
     "yaw_reserve_nm" => "yaw_reserve_nm = 0.05", Kind::NotNegative,
         "Yaw torque that is kept available before roll and pitch, N m; 0 without it.";
+    "power_bias_nm_per_n" => "power_bias_nm_per_n = 0.005", Kind::Number,
+        "Least power: torque per thrust of every unit while none is near its limits, N m per N; 0 without it.";
 };
 
 /// `[vehicle]`
@@ -268,5 +281,5 @@ pub const VEHICLE: Shape = shape! { "[vehicle]":
 
 /// Every table, to tell where a misplaced key belongs.
 pub(crate) const ALL: &[Shape] = &[
-    FILE, THROTTLE, PAIR, LOWER_OUT, UPPER_OUT, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION, VEHICLE,
+    FILE, THROTTLE, PAIR, LOWER_OUT, UPPER_OUT, POWER, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION, VEHICLE,
 ];

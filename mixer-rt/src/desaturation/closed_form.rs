@@ -165,9 +165,16 @@ impl Search {
 }
 
 impl Vertical<'_> {
-    /// Writes the least-norm efforts of `request`, and tells whether all are attainable.
+    /// Writes the least-norm efforts of `request`, and tells whether all are attainable. With `has_room` it lowers `room` to the
+    /// least distance of their torques from the sides, N m; negative beyond.
     #[inline(always)]
-    pub(crate) fn least_norm(&self, request: &Request, efforts: &mut Efforts) -> Attained {
+    pub(crate) fn least_norm(
+        &self,
+        request: &Request,
+        efforts: &mut Efforts,
+        has_room: bool,
+        room: &mut f32,
+    ) -> Attained {
         let share = self.torque_share * request.yaw;
         let wrench = [request.roll, request.pitch, request.thrust];
         let mut attained = Attained::Yes;
@@ -181,6 +188,9 @@ impl Vertical<'_> {
             }
             if outside > 0.0 {
                 attained = Attained::Perhaps;
+            }
+            if has_room && -outside < *room {
+                *room = -outside;
             }
         }
         attained

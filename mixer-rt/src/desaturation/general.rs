@@ -87,7 +87,8 @@ struct Frame<'a, 't, P, I, S> {
 
 /// Writes attainable efforts (`[f, Q]` at the reference voltage, N and N m, in the variables) that serve `request` (`[roll,
 /// pitch, yaw, thrust]`, bounded) in the order of priority. `factors` is `[k_f, k_Q]`. There is a variable per unit, which
-/// has the unit's rotors, and [`SHORTAGES`] more. `is_whole` tells that all rotors work.
+/// has the unit's rotors, and [`SHORTAGES`] more. `is_whole` tells that all rotors work. True where these are the efforts of
+/// least norm, with all rotors.
 #[inline(never)]
 pub(crate) fn allocate<P: Quantity, I, S>(
     tables: &Tables<'_, P, I, S>,
@@ -95,11 +96,12 @@ pub(crate) fn allocate<P: Quantity, I, S>(
     factors: [f32; 2],
     variables: &mut [Variable],
     is_whole: bool,
-) {
+) -> bool {
     // With the tables known the compiler would write every loop over them out.
     let frame = Frame::new(black_box(tables), factors, is_whole);
     let units = variables.len().saturating_sub(SHORTAGES);
-    if !(is_whole && frame.towards_least_norm(request, variables, true)) {
+    let is_least_norm = is_whole && frame.towards_least_norm(request, variables, true);
+    if !is_least_norm {
         frame.programme(request, variables, units);
     }
     for unit in variables.iter_mut().take(units) {
@@ -107,6 +109,7 @@ pub(crate) fn allocate<P: Quantity, I, S>(
         let [first, second] = frame.efforts(unit.rotors);
         unit.at = [0, 1].map(|k| first[k] * unit.at[0] + second[k] * unit.at[1]);
     }
+    is_least_norm
 }
 
 impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {

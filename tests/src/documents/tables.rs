@@ -250,17 +250,17 @@ pub(super) fn bases() -> Result<String, String> {
     ))
 }
 
-/// One flight of `tests/measurements/flight.csv`: scenario, seed, mixer and figures.
+/// One flight of `tests/measurements/flight.csv` or `energy.csv`: scenario, seed, mixer and figures.
 struct Flight {
     scenario: String,
     seed: String,
     mixer: String,
-    /// Nine errors of Table II (MSE, MAE, MaxAE of x, y, z), then hover thrust over weight.
+    /// Nine errors of Table II (MSE, MAE, MaxAE of x, y, z), then hover thrust over weight; or the energy, J.
     figures: Vec<f64>,
 }
 
-fn flights() -> Result<Vec<Flight>, String> {
-    let path = root().join("tests/measurements/flight.csv");
+fn flights(file: &str) -> Result<Vec<Flight>, String> {
+    let path = root().join("tests/measurements").join(file);
     measured(&path)?
         .into_iter()
         .map(|row| {
@@ -310,7 +310,7 @@ fn scenarios(flights: &[Flight]) -> Vec<&str> {
 
 /// Thrust command over weight in hover (Fig. 10).
 pub(super) fn hover() -> Result<String, String> {
-    let flights = flights()?;
+    let flights = flights("flight.csv")?;
     let row = |scenario: &str| {
         let of = |mixer: &str| {
             let flown = flights
@@ -318,11 +318,41 @@ pub(super) fn hover() -> Result<String, String> {
                 .filter(|flight| flight.scenario == scenario && flight.mixer == mixer);
             spread(&flown.map(|flight| flight.figures[HOVER]).collect::<Vec<_>>(), 3)
         };
-        vec![scenario.to_owned(), of("coaxial"), of("simple")]
+        vec![scenario.to_owned(), of("coaxial"), of("conventional")]
     };
     let rows: Vec<Vec<String>> = scenarios(&flights).into_iter().map(row).collect();
     Ok(markdown(
         &["thrust command / weight", "coaxial", "conventional"],
+        &rows,
+    ))
+}
+
+/// Energy of the manoeuvre with a power bias and without.
+pub(super) fn energy() -> Result<String, String> {
+    let flights = flights("energy.csv")?;
+    let row = |scenario: &str| {
+        let of = |mixer: &str| -> Vec<f64> {
+            let flown = flights
+                .iter()
+                .filter(|flight| flight.scenario == scenario && flight.mixer == mixer);
+            flown.map(|flight| flight.figures[0]).collect()
+        };
+        let (with, without) = (of("bias"), of("none"));
+        let saved: Vec<f64> = with
+            .iter()
+            .zip(&without)
+            .map(|(a, b)| 100.0 * (1.0 - a / b))
+            .collect();
+        vec![
+            scenario.to_owned(),
+            spread(&with, 0),
+            spread(&without, 0),
+            spread(&saved, 2),
+        ]
+    };
+    let rows: Vec<Vec<String>> = scenarios(&flights).into_iter().map(row).collect();
+    Ok(markdown(
+        &["energy, J", "with the power bias", "without", "saved, %"],
         &rows,
     ))
 }
@@ -336,7 +366,7 @@ const TABLE_II: [(&str, [f64; 3]); 3] = [
 
 /// Table II: errors with the coaxial mixer over those with the conventional one, seed by seed.
 pub(super) fn tracking() -> Result<String, String> {
-    let flights = flights()?;
+    let flights = flights("flight.csv")?;
     let scenarios = scenarios(&flights);
     let mut rows = Vec::new();
     for (row, (name, paper)) in TABLE_II.into_iter().enumerate() {
@@ -351,7 +381,7 @@ pub(super) fn tracking() -> Result<String, String> {
                         .map(|flight| (flight.seed.as_str(), flight.figures[3 * row + axis]))
                         .collect::<Vec<_>>()
                 };
-                let (coaxial, simple) = (of("coaxial"), of("simple"));
+                let (coaxial, simple) = (of("coaxial"), of("conventional"));
                 if coaxial
                     .iter()
                     .map(|flight| flight.0)

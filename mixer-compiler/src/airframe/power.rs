@@ -1,0 +1,100 @@
+//! The electrical power of one pair over its throttles.
+
+use super::Throttle;
+use super::check::LARGEST_EFFORT;
+use super::pair::Basis;
+use crate::diagnostic::{Code, Diagnostic, number};
+use crate::spec;
+use crate::spec::keys::POWER_TERMS;
+
+/// `[pair.power]`: what `check` and the report say of power comes from it, nothing else does.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Power {
+    /// Coefficients, W: the quartic's in their order, then a constant, as standby takes some. The power is positive over the
+    /// throttle range.
+    pub power_w: Vec<f64>,
+}
+
+impl Power {
+    /// Power of both rotors at `[u, l]`, W.
+    pub fn at(&self, [u, l]: [f64; 2]) -> f64 {
+        value(&self.power_w, [u, l])
+    }
+}
+
+/// Throttles per side of the range at which the power is looked at.
+const STEPS: u32 = 16;
+
+/// Checks `[pair.power]`.
+pub(super) fn check(
+    table: &spec::Power,
+    throttle: Option<&Throttle>,
+    faults: &mut Vec<Diagnostic>,
+) -> Option<Power> {
+    let key = "pair.power.power_w";
+    let field = table.power_w.as_ref()?;
+    let power_w: Vec<f64> = field.get_ref().iter().map(|c| *c.get_ref()).collect();
+    let fault = |code, message: String| Diagnostic::new(code, key, field.span(), message);
+    if power_w.len() != POWER_TERMS {
+        let message = format!(
+            "`{key}` has {} coefficients, a power map takes {POWER_TERMS}",
+            power_w.len()
+        );
+        faults.push(
+            fault(Code::WrongLength, message)
+                .label(format!("expected {POWER_TERMS} numbers"))
+                .help(format!(
+                    "the terms are {}, 1, in this order",
+                    Basis::Quartic.terms()
+                )),
+        );
+        return None;
+    }
+    if let Some(beyond) = power_w.iter().find(|c| c.abs() > LARGEST_EFFORT) {
+        let message = format!(
+            "a coefficient of {} in `{key}` is beyond {}",
+            number(*beyond),
+            number(LARGEST_EFFORT)
+        );
+        faults.push(
+            fault(Code::OutOfRange, message)
+                .label("no rotor takes that")
+                .help("the throttles of the polynomial run from 0 to 1, not in microseconds"),
+        );
+        return None;
+    }
+    let Throttle { min, max } = throttle?;
+    let along = |k: u32| min + (max - min) * f64::from(k) / f64::from(STEPS);
+    let places = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |k| [along(i), along(k)]));
+    let (least, [u, l]) =
+        places
+            .map(|at| (value(&power_w, at), at))
+            .fold((f64::INFINITY, [*min; 2]), |least, here| {
+                if here.0 < least.0 { here } else { least }
+            });
+    let [idle, full] = [min, max].map(|throttle| value(&power_w, [*throttle; 2]));
+    let message = if least <= 0.0 {
+        format!("the power of `{key}` is {least:.1} W at (u, l) = ({u:.2}, {l:.2})")
+    } else if full <= idle {
+        format!("the power of `{key}` falls from {idle:.1} W at idle to {full:.1} W at full throttle")
+    } else {
+        return Some(Power { power_w });
+    };
+    faults.push(
+        fault(Code::PowerMap, message)
+            .label("must be positive and grow with the throttles")
+            .help(format!(
+                "the terms are {}, 1, in this order; `cargo mixer identify` writes them",
+                Basis::Quartic.terms()
+            )),
+    );
+    None
+}
+
+fn value(coefficients: &[f64], [u, l]: [f64; 2]) -> f64 {
+    let power = |x: f64, n: u8| (0..n).fold(1.0, |product, _| product * x);
+    let terms = Basis::Quartic.exponents().iter().chain(&[(0, 0)]);
+    let terms = terms.zip(coefficients);
+    terms.map(|(&(i, j), c)| c * power(u, i) * power(l, j)).sum()
+}

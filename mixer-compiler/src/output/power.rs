@@ -1,0 +1,106 @@
+//! Electrical power in level flight, by the mixer itself and the file's power map: what the power bias saves.
+
+use std::fmt;
+
+use mixer_rt::Wrench;
+use serde::Serialize;
+
+use crate::airframe::{GRAVITY, Power};
+use crate::compiled::Compiled;
+use crate::tables::MixerTables;
+
+/// Share of the largest bare thrust at which vehicles without a mass are looked at.
+const LEVEL: f64 = 0.5;
+
+/// Power in level flight at the reference voltage.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LevelPower {
+    /// The weight; without a mass half of the largest bare thrust, N.
+    pub thrust_n: f64,
+    /// Electrical power of all rotors, W.
+    pub power_w: f64,
+    /// The same with all torques zero, W.
+    pub without_bias_w: f64,
+    /// What the bias saves of it, percent.
+    pub saving_percent: f64,
+    /// By how much longer the flight is, percent.
+    pub flight_time_percent: f64,
+    /// Whether the thrust is the vehicle's weight.
+    pub is_hover: bool,
+}
+
+impl LevelPower {
+    /// Of a compiled airframe; `None` where the file has no power map, or the thrust is not attainable.
+    pub fn new(compiled: &Compiled) -> Option<LevelPower> {
+        let power = compiled.airframe.pair.power.as_ref()?;
+        let weight = compiled
+            .airframe
+            .vehicle
+            .as_ref()
+            .map(|vehicle| GRAVITY * vehicle.mass_kg);
+        let thrust_n = weight.unwrap_or(LEVEL * f64::from(compiled.thrust_range_n[1]));
+        let with = &compiled.tables;
+        let without = MixerTables {
+            power_bias_nm_per_n: 0.0,
+            ..with.clone()
+        };
+        let power_w = at(compiled, power, with, thrust_n)?;
+        let without_bias_w = at(compiled, power, &without, thrust_n)?;
+        Some(LevelPower {
+            thrust_n,
+            power_w,
+            without_bias_w,
+            saving_percent: 100.0 * (1.0 - power_w / without_bias_w),
+            flight_time_percent: 100.0 * (without_bias_w / power_w - 1.0),
+            is_hover: weight.is_some(),
+        })
+    }
+}
+
+/// Power of all rotors at a level thrust, W; `None` where it is not delivered.
+fn at(compiled: &Compiled, power: &Power, tables: &MixerTables, thrust_n: f64) -> Option<f64> {
+    let setpoint = Wrench {
+        thrust_n: thrust_n as f32,
+        ..Wrench::default()
+    };
+    let airframe = &compiled.airframe;
+    let volts = airframe
+        .voltage
+        .as_ref()
+        .map_or(0.0, |voltage| voltage.reference_v);
+    let (throttle, _, saturation) = tables.mix(&setpoint, volts as f32).ok()?;
+    let of_unit = |channels: [usize; 2]| {
+        let [u, l] = channels.map(|channel| throttle.get(channel).copied().map(f64::from));
+        Some(power.at([u?, l?]))
+    };
+    let units = airframe.units.iter();
+    let powers = units.map(|unit| of_unit([unit.upper_channel, unit.lower_channel]));
+    let sum: Option<f64> = powers.sum();
+    sum.filter(|_| !saturation.any_axis())
+}
+
+impl fmt::Display for LevelPower {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let LevelPower {
+            thrust_n,
+            power_w,
+            without_bias_w,
+            saving_percent,
+            flight_time_percent,
+            is_hover,
+        } = self;
+        let what = if *is_hover {
+            "in hover"
+        } else {
+            "half of the largest bare thrust"
+        };
+        write!(f, "power           {power_w:.1} W at {thrust_n:.2} N ({what})")?;
+        if power_w == without_bias_w {
+            return writeln!(f, "; no power bias");
+        }
+        writeln!(
+            f,
+            ", {without_bias_w:.1} W at Q = 0: saves {saving_percent:.2} %, flight time {flight_time_percent:+.2} %"
+        )
+    }
+}

@@ -1,0 +1,107 @@
+//! Least power: where the efforts of least norm are attainable, the torques start from Q = c f instead of 0.
+//!
+//! c is the airframe's `power_bias_nm_per_n`. What of the torques c f changes the wrench is taken off again by M+, so the
+//! efforts move along
+//!
+//! ```text
+//! shift = eta - M+ M eta     with eta = [0 .. 0, c f_1 .. c f_n]
+//! ```
+//!
+//! which leaves the wrench on all served axes as it is, whatever the axes of thrust. With vertical ones it is
+//! Q_i = c f_i - s_i sum (s_j c f_j) / n, and no thrust moves. c holds at the reference voltage.
+//!
+//! They move by b shift. b is the room of the unit nearest its border over the largest shift of any unit, at most 1. So no
+//! unit leaves the attainable set, whatever the direction of its own shift, and b reaches 0 with the room: where the first
+//! unit reaches its border, desaturation begins, and nothing jumps there.
+//!
+//! With c = 0 the mixer leaves this out, and so does the compiler, as the tables are constants.
+
+use super::closed_form::{Efforts, Vertical};
+use super::general::Variable;
+use crate::rolled;
+use crate::tables::{Tables, Unit};
+
+/// A polygon's edge of constant thrust is not crossed by torques. They fade before it all the same, as if thrusts moved by
+/// this share of the largest shift (in scaled efforts).
+const FADE: f32 = 0.125;
+
+impl Vertical<'_> {
+    /// Moves least-norm `efforts` towards Q = `c` f; `room` is the least distance of a unit's torque from its sides, N m,
+    /// >= 0.
+    #[inline(always)]
+    pub(crate) fn add_power_bias(&self, c: f32, room: f32, efforts: &mut Efforts) {
+        let mut yaw = 0.0;
+        for (unit, effort) in self.units.iter().zip(efforts.iter()) {
+            yaw += unit.spin * effort.thrust;
+        }
+        let mean = self.torque_share * yaw;
+        let mut largest = 0.0;
+        for (unit, effort) in self.units.iter().zip(efforts.iter()) {
+            let shift = (c * (effort.thrust - unit.spin * mean)).abs();
+            if shift > largest {
+                largest = shift;
+            }
+        }
+        let b = if room < largest { room / largest } else { 1.0 };
+        let along = b * c;
+        for (unit, effort) in self.units.iter().zip(efforts) {
+            effort.torque += along * (effort.thrust - unit.spin * mean);
+        }
+    }
+}
+
+/// [`Vertical::add_power_bias`] for any frame with all rotors: the units are at their least-norm efforts, within their
+/// polygons. `factors` is `[k_f, k_Q]`.
+#[inline(never)]
+pub(crate) fn add_power_bias<P, I, S>(
+    tables: &Tables<'_, P, I, S>,
+    factors: [f32; 2],
+    units: &mut [Variable],
+) {
+    let c = tables.power_bias_nm_per_n;
+    let set = &tables.attainable;
+    let per_scale = set.scale.map(|scale| 1.0 / scale);
+    let per_factor = factors.map(|factor| 1.0 / factor);
+    // What Q = c f would add to the wrench.
+    let mut wrench = [0.0; 4];
+    for (unit, table) in units.iter().zip(tables.units) {
+        rolled();
+        table.add_wrench([0.0, c * unit.at[0]], factors, &mut wrench);
+    }
+    let mut largest = [0.0f32; 2];
+    for (unit, table) in units.iter().zip(tables.units) {
+        rolled();
+        let shift = shift(table, &wrench, c * unit.at[0], per_factor);
+        for ((largest, part), per_scale) in largest.iter_mut().zip(shift).zip(per_scale) {
+            let part = (part * per_scale).abs();
+            if part > *largest {
+                *largest = part;
+            }
+        }
+    }
+    let [by_thrust, by_torque] = [largest[0] + FADE * largest[1], largest[1]];
+    let mut b = 1.0;
+    for corner in set.corners {
+        rolled();
+        let out = corner.edge[1].abs() * by_thrust + corner.edge[0].abs() * by_torque;
+        for unit in units.iter() {
+            rolled();
+            let room = -corner.beyond([unit.at[0] * per_scale[0], unit.at[1] * per_scale[1]]);
+            if b * out > room {
+                b = if room > 0.0 { room / out } else { 0.0 };
+            }
+        }
+    }
+    for (unit, table) in units.iter_mut().zip(tables.units) {
+        rolled();
+        let [f, q] = shift(table, &wrench, c * unit.at[0], per_factor);
+        unit.at = [unit.at[0] + b * f, unit.at[1] + b * q];
+    }
+}
+
+/// A unit's `[f, Q]` of the shift at the reference voltage, where its own torque is `torque` and all torques give `wrench`.
+#[inline(always)]
+fn shift(table: &Unit, wrench: &[f32; 4], torque: f32, per_factor: [f32; 2]) -> [f32; 2] {
+    let [f, q] = table.efforts(wrench);
+    [-(f * per_factor[0]), torque - q * per_factor[1]]
+}
