@@ -30,6 +30,7 @@
 
 use core::hint::black_box;
 
+mod breakpoint;
 mod shortage;
 mod simplex;
 mod variable;

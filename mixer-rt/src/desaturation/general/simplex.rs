@@ -22,6 +22,7 @@
 
 use core::hint::black_box;
 
+use super::breakpoint::{FirstTwo, NONE, UNKNOWN};
 use super::variable::{NEVER, Place, Polygon, Variable, corner, dot, next, positive};
 use crate::desaturation::attainable::Corner;
 use crate::pair::rotors::Rotors;
@@ -80,45 +81,6 @@ struct Leaving {
     /// For a free variable: the edge that it is beyond, and the slot of the second coordinate.
     edge: u8,
     second: usize,
-}
-
-/// The index of no variable.
-const NONE: u8 = u8::MAX;
-
-/// A variable's breakpoint. The bits of floats are in their order, but for negative ones, which all come first; that
-/// spares the transfers of comparisons between floats.
-#[derive(Clone, Copy)]
-struct Breakpoint {
-    bits: i32,
-    variable: u8,
-}
-
-/// The bits of a breakpoint that has to be looked for.
-const UNKNOWN: i32 = i32::MIN;
-
-/// The two breakpoints that come first.
-#[derive(Clone, Copy)]
-struct Next([Breakpoint; 2]);
-
-impl Next {
-    /// Those before any of a variable: the end of the dual step.
-    #[inline(always)]
-    fn new(limit: f32) -> Self {
-        let bits = limit.to_bits() as i32;
-        Next([Breakpoint { bits, variable: NONE }; 2])
-    }
-
-    #[inline(always)]
-    fn consider(&mut self, variable: u8, breakpoint: f32) {
-        let bits = breakpoint.to_bits() as i32;
-        let new = Breakpoint { bits, variable };
-        let [first, second] = self.0;
-        if bits < first.bits {
-            self.0 = [new, first];
-        } else if bits < second.bits {
-            self.0[1] = new;
-        }
-    }
 }
 
 /// Pivots and moves to other corners that are left.
@@ -310,27 +272,27 @@ impl<'a> Simplex<'a> {
 
     /// Finds the breakpoints of all variables in a direction of lambda; returns those that come first.
     #[inline(never)]
-    fn look_ahead(&mut self, direction: &[f32; 4], limit: f32) -> Next {
-        let mut next = Next::new(limit);
+    fn look_ahead(&mut self, direction: &[f32; 4], limit: f32) -> FirstTwo {
+        let mut found = FirstTwo::new(limit);
         for (index, variable) in (0u8..).zip(self.variables.iter_mut()) {
             rolled();
-            next.consider(
+            found.consider(
                 index,
                 variable.look_ahead(self.polygon.corners, self.step, direction),
             );
         }
-        next
+        found
     }
 
     /// The breakpoints that come first.
     #[inline(always)]
-    fn next(&self, limit: f32) -> Next {
-        let mut next = Next::new(limit);
+    fn first_two(&self, limit: f32) -> FirstTwo {
+        let mut found = FirstTwo::new(limit);
         for (index, variable) in (0u8..).zip(self.variables.iter()) {
             rolled();
-            next.consider(index, variable.breakpoint);
+            found.consider(index, variable.breakpoint);
         }
-        next
+        found
     }
 
     /// Passes breakpoints in a direction of lambda while the leaving variable stays outside its bounds; returns the dual
@@ -338,9 +300,9 @@ impl<'a> Simplex<'a> {
     #[inline(never)]
     fn long_step(&mut self, direction: &[f32; 4], mut violation: f32) -> (f32, u8) {
         let limit = self.first_price(direction).0;
-        let Next([mut first, mut second]) = self.look_ahead(direction, limit);
+        let FirstTwo([mut first, mut second]) = self.look_ahead(direction, limit);
         loop {
-            let step = positive(f32::from_bits(first.bits as u32));
+            let step = first.step();
             let has_ended = self.budget.flips == 0;
             let Some((variable, set, residual)) = self.parts(first.variable) else {
                 return (step, NONE);
@@ -357,7 +319,7 @@ impl<'a> Simplex<'a> {
             first.bits = variable.flip(set, step).to_bits() as i32;
             self.budget.flips -= 1;
             if second.bits == UNKNOWN {
-                Next([first, second]) = self.next(limit);
+                FirstTwo([first, second]) = self.first_two(limit);
             } else if first.bits > second.bits {
                 first = second;
                 second.bits = UNKNOWN;
@@ -397,6 +359,7 @@ impl<'a> Simplex<'a> {
                 };
             }
         } else {
+            // A multiplier is at its price first: its row is missed.
             let (step, row) = self.first_price(&direction);
             self.step = step;
             column[row & 3] = if direction[row & 3] > 0.0 { 1.0 } else { -1.0 };

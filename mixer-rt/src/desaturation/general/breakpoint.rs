@@ -1,0 +1,53 @@
+//! The breakpoints of a dual step: where variables leave their corners or edges.
+//!
+//! A long step passes the first one again and again. Two are kept, so that only every other passage looks through all variables.
+
+use super::variable::positive;
+
+/// The index of no variable.
+pub(super) const NONE: u8 = u8::MAX;
+
+/// A variable's breakpoint. The bits of floats are in their order, but for negative ones, which all come first; that
+/// spares the transfers of comparisons between floats.
+#[derive(Clone, Copy)]
+pub(super) struct Breakpoint {
+    pub(super) bits: i32,
+    pub(super) variable: u8,
+}
+
+impl Breakpoint {
+    /// The dual step there, zero where rounding has put it below.
+    #[inline(always)]
+    pub(super) fn step(self) -> f32 {
+        positive(f32::from_bits(self.bits as u32))
+    }
+}
+
+/// The bits of a breakpoint that has to be looked for.
+pub(super) const UNKNOWN: i32 = i32::MIN;
+
+/// The two breakpoints that come first.
+#[derive(Clone, Copy)]
+pub(super) struct FirstTwo(pub(super) [Breakpoint; 2]);
+
+impl FirstTwo {
+    /// Before any variable is considered: the end of the dual step.
+    #[inline(always)]
+    pub(super) fn new(limit: f32) -> Self {
+        let bits = limit.to_bits() as i32;
+        FirstTwo([Breakpoint { bits, variable: NONE }; 2])
+    }
+
+    /// Takes a variable's breakpoint in if it is one of the two.
+    #[inline(always)]
+    pub(super) fn consider(&mut self, variable: u8, breakpoint: f32) {
+        let bits = breakpoint.to_bits() as i32;
+        let new = Breakpoint { bits, variable };
+        let [first, second] = self.0;
+        if bits < first.bits {
+            self.0 = [new, first];
+        } else if bits < second.bits {
+            self.0[1] = new;
+        }
+    }
+}
