@@ -131,11 +131,13 @@ fn the_parser_agrees_key_by_key() {
     let layout = "[layout]\narm_m = 0.45\nunits = 4\nfirst_angle_deg = 45.0\nspins = [\"cw\", \"ccw\", \"cw\", \"ccw\"]\n\
                   channels = [[0, 4], [1, 5], [2, 6], [3, 7]]\n[vehicle]\nmass_kg = 3.0\n[inverse]\nmethod = \"auto\"\n";
     let alone = "[pair.lower_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [-0.01, -0.2, 0.0]\n\
-                 [pair.upper_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n";
+                 [pair.upper_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
+                 [pair.power]\npower_w = [0, 0, 0, 0, 0, 260, 30, 20, 240, 20, -10, 40, 2, 3, 4]\n";
     let forms = [
         format!(
             "name = \"one\"\ndescription = \"x\"\n{pair}{UNIT}[inverse]\nthrust_tolerance_n = 0.1\ntorque_tolerance_nm = 0.01\n\
-             method = \"polynomial\"\ndegree = 9\n[allocation]\nairmode = \"disabled\"\naxes = [\"yaw\", \"thrust\"]\nyaw_reserve_nm = 0.0\n"
+             method = \"polynomial\"\ndegree = 9\n[allocation]\nairmode = \"disabled\"\naxes = [\"yaw\", \"thrust\"]\nyaw_reserve_nm = 0.0\n\
+             power_bias_nm_per_n = 0.004\n"
         ),
         format!("name = \"two\"\n{pair}{layout}{alone}"),
         format!("name = \"three\"\n{}{layout}", with_law(&pair, points)),

@@ -5,6 +5,7 @@
 
 use std::fmt::Write as _;
 
+use cargo_mixer::frame::{Frame, FrameArgs};
 use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::{Identified, from_benches};
 use cargo_mixer::identify::power::Power;
@@ -128,4 +129,31 @@ fn why_there_is_none_is_told() {
         row: |_| ",14.8,14.8,,".into(),
     };
     assert_eq!(reason(&empty), "voltage or current is empty in every row");
+}
+
+#[test]
+fn an_airframe_has_the_bias_where_it_gains_by_it() {
+    let found = identified(&BOTH, 0.0);
+    let airframe = |frame| {
+        let frame = FrameArgs {
+            frame,
+            arm: Some(0.45),
+            name: Some("written".into()),
+        };
+        let text = frame.airframe(None, &fragment::tables(&found), found.power_bias());
+        text.expect("an airframe")
+    };
+    let x8 = airframe(Frame::X8);
+    let compiled = mixer_compiler::compile(&mixer_compiler::Source::new("x8.toml", x8));
+    let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
+    assert_eq!(
+        Some(compiled.airframe.allocation.power_bias_nm_per_n),
+        found.power_bias()
+    );
+    assert!(compiled.airframe.pair.power.is_some());
+    let y6 = airframe(Frame::Y6);
+    assert!(
+        !y6.contains("\npower_bias_nm_per_n = ") && y6.contains("it saves nothing"),
+        "{y6}"
+    );
 }
