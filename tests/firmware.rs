@@ -381,8 +381,8 @@ fn the_page_of_costs_is_that_of_the_counts() {
     assert_eq!(page, counts::document(&compiler, &held), "{MEND}");
 }
 
-/// No request of any set takes more than the bound that the compiler states, which is not more than 2.5 times the worst: pivots
-/// and flips are never all used by one request.
+/// No request of any set takes more than the bound that the compiler states, which is not more than three times the worst: no
+/// request that was tried used up all pivots and flips, nor those of level flight.
 #[test]
 fn bounds_hold_what_was_counted() {
     let (_, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
@@ -392,7 +392,7 @@ fn bounds_hold_what_was_counted() {
         let Some(bound) = sample.bound else { continue };
         println!("{}: {worst} of {bound}", sample.airframe);
         assert!(
-            worst <= u64::from(bound) && 2 * u64::from(bound) <= 5 * worst,
+            worst <= u64::from(bound) && u64::from(bound) <= 3 * worst,
             "{}: {worst} counted, at most {bound} stated",
             sample.airframe
         );
