@@ -5,6 +5,7 @@
 //!   -> the user's rustc and its `core` for the target                toolchain.rs
 //!   -> Rust of the C interface                                       interface.rs
 //!   -> one object: runtime, tables, interface, link-time optimised   build.rs
+//!   -> again with what it would call of the C compiler's library     support.rs
 //!   -> the object looked into, wrapped in an archive                 object.rs
 //!   -> headers, CMake, self-test                                     header.rs, selftest.rs
 //!   -> all files written, or none                                    output.rs
@@ -17,6 +18,7 @@ mod names;
 mod object;
 mod output;
 mod selftest;
+mod support;
 mod toolchain;
 
 use std::path::{Path, PathBuf};
@@ -26,6 +28,7 @@ use mixer_compiler::Compiled;
 
 use build::Build;
 use header::Header;
+use object::Symbols;
 use output::File;
 use toolchain::Toolchain;
 
@@ -38,8 +41,8 @@ use toolchain::Toolchain;
 ///   M_selftest.c      golden bits: M_selftest() counts the rows that differ, 0 where all is well
 ///
 /// The mixer is compiled by this machine's rustc (RUSTC or PATH) for the target: `rustup target add TRIPLE`, or the
-/// sources of `core` (`rustup component add rust-src`). Nothing is downloaded. Targets without a floating-point unit
-/// call the run-time ABI of the Arm architecture (__aeabi_fadd and the like), which every C compiler for them has.
+/// sources of `core` (`rustup component add rust-src`). Nothing is downloaded. For a target without a floating-point
+/// unit the object has arithmetic of its own, with the same bits.
 ///
 /// The float ABI is the target's: thumbv7em-none-eabihf goes with -mfloat-abi=hard, thumbv7em-none-eabi with
 /// -mfloat-abi=soft or softfp.
@@ -58,6 +61,18 @@ pub struct LibraryArgs {
     /// The folder to write into; made where there is none
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+}
+
+impl LibraryArgs {
+    /// Of one airframe, without rotors out.
+    pub fn for_target(airframe: PathBuf, target: &str, output: PathBuf) -> Self {
+        LibraryArgs {
+            airframes: vec![airframe],
+            target: Some(target.to_owned()),
+            health: false,
+            output,
+        }
+    }
 }
 
 /// An airframe of which a library is made.
@@ -148,8 +163,22 @@ fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<Vec<u8
     } else {
         airframe.module.clone()
     };
-    let bytes = build.object(&name, &interface::rust(airframe, health))?;
-    object::check(&bytes, &interface::function(&airframe.module, health))
-        .map_err(|fault| format!("the object of {} for {}: {fault}", airframe.file, build.target()))?;
-    Ok(bytes)
+    let rust = interface::rust(airframe, health);
+    let fault = |fault: String| format!("the object of {} for {}: {fault}", airframe.file, build.target());
+    // The run-time functions that the object calls; they may call others in turn.
+    let mut calls: Vec<String> = Vec::new();
+    loop {
+        let bytes = build.object(&name, &(rust.clone() + &support::rust(build.target(), &calls)))?;
+        let symbols = Symbols::of(&bytes).map_err(fault)?;
+        let known = calls.len();
+        let new = |name: &&String| support::has(name) && !calls.contains(name);
+        let found: Vec<String> = symbols.undefined.iter().filter(new).cloned().collect();
+        calls.extend(found);
+        if calls.len() == known {
+            symbols
+                .check(&interface::function(&airframe.module, health))
+                .map_err(fault)?;
+            return Ok(bytes);
+        }
+    }
 }

@@ -2,69 +2,45 @@
 
 use object::{BinaryFormat, Object, ObjectSymbol};
 
-/// Arithmetic in software: the run-time ABI of the Arm architecture, and what GCC and Clang add to it. Every C compiler for
-/// a core without a floating-point unit brings them along.
-const SOFT_FLOAT: &[&str] = &[
-    "__clzsi2",
-    "__aeabi_fadd",
-    "__aeabi_fcmpeq",
-    "__aeabi_fcmpge",
-    "__aeabi_fcmpgt",
-    "__aeabi_fcmple",
-    "__aeabi_fcmplt",
-    "__aeabi_fcmpun",
-    "__aeabi_fdiv",
-    "__aeabi_fmul",
-    "__aeabi_frsub",
-    "__aeabi_fsub",
-    "__aeabi_f2iz",
-    "__aeabi_f2uiz",
-    "__aeabi_i2f",
-    "__aeabi_ui2f",
-    "__aeabi_ul2f",
-    "__aeabi_lmul",
-    "__aeabi_llsl",
-    "__aeabi_llsr",
-    "__aeabi_uidiv",
-    "__aeabi_uidivmod",
-];
+/// Symbols of an object that others see or must have.
+#[derive(Debug, Default)]
+pub(super) struct Symbols {
+    pub(super) undefined: Vec<String>,
+    global: Vec<String>,
+}
 
-/// Copying and filling, which a compiler may call in any C program: frames of more than 16 units and a Cortex-M0 with
-/// rotors out need it.
-const MEMORY: &[&str] = &[
-    "memcpy",
-    "memset",
-    "__aeabi_memclr",
-    "__aeabi_memclr4",
-    "__aeabi_memcpy",
-    "__aeabi_memcpy4",
-    "__aeabi_memset",
-    "__aeabi_memset4",
-];
-
-/// Whether the object has `function` as its only global symbol and needs nothing that a C program might lack.
-pub(super) fn check(bytes: &[u8], function: &str) -> Result<(), String> {
-    let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
-    if file.format() != BinaryFormat::Elf {
-        return Err("is no ELF file; libraries are made for bare metal and Linux".to_owned());
-    }
-    let (mut undefined, mut global) = (Vec::new(), Vec::new());
-    for symbol in file.symbols() {
-        let name = symbol.name().map_err(|error| error.to_string())?;
-        let is_known = name.is_empty() || SOFT_FLOAT.contains(&name) || MEMORY.contains(&name);
-        if symbol.is_undefined() && !is_known {
-            undefined.push(name);
-        } else if symbol.is_global() && !symbol.is_undefined() {
-            global.push(name);
+impl Symbols {
+    /// Of an ELF file.
+    pub(super) fn of(bytes: &[u8]) -> Result<Self, String> {
+        let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
+        if file.format() != BinaryFormat::Elf {
+            return Err("is no ELF file; libraries are made for bare metal and Linux".to_owned());
         }
+        let mut symbols = Symbols::default();
+        for symbol in file.symbols() {
+            let name = symbol.name().map_err(|error| error.to_string())?.to_owned();
+            if symbol.is_undefined() && !name.is_empty() {
+                symbols.undefined.push(name);
+            } else if symbol.is_global() && !symbol.is_undefined() {
+                symbols.global.push(name);
+            }
+        }
+        Ok(symbols)
     }
-    if !undefined.is_empty() {
-        return Err(format!("needs {}", undefined.join(", ")));
+
+    /// Whether the object has `function` as its only global symbol and needs nothing.
+    pub(super) fn check(&self, function: &str) -> Result<(), String> {
+        if !self.undefined.is_empty() {
+            return Err(format!("needs {}", self.undefined.join(", ")));
+        }
+        if self.global != [function] {
+            return Err(format!(
+                "defines {}, not {function} alone",
+                self.global.join(", ")
+            ));
+        }
+        Ok(())
     }
-    if global != [function] {
-        return Err(format!("defines {}, not {function} alone", global.join(", ")));
-    }
-    Ok(())
 }
 
 /// A static library as GNU's and LLVM's linkers read it, its index of `functions` (one per member) included. Without
@@ -158,7 +134,8 @@ mod tests {
     #[test]
     fn objects_of_others_are_refused() {
         let this_test = std::fs::read(std::env::current_exe().unwrap()).unwrap();
-        assert!(check(&this_test, "x_mix").unwrap_err().starts_with("needs "));
-        assert!(check(b"no object", "x_mix").is_err());
+        let symbols = Symbols::of(&this_test).unwrap();
+        assert!(symbols.check("x_mix").unwrap_err().starts_with("needs "));
+        assert!(Symbols::of(b"no object").is_err());
     }
 }
