@@ -210,8 +210,8 @@ fn executors_pace_the_loop_and_stop_the_integral() {
         Toolchain::for_package("examples/executors").unwrap_or_else(|missing| panic!("{missing}"));
     for executor in ["embassy", "rtic"] {
         let variant = Variant {
-            cfgs: Vec::new(),
             features: vec![executor],
+            ..Variant::default()
         };
         let text = toolchain
             .run(executor, &variant)

@@ -5,12 +5,18 @@
 //! only, and begins with the compiler that built the firmware: another one gives other counts.
 
 use std::fmt;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::PathBuf;
+use std::process::ExitCode;
 
-use crate::firmware::{Toolchain, Variant};
+use cargo_mixer::library::LibraryArgs;
+
+use crate::firmware::{TARGET, Toolchain, Variant};
 use crate::image::Image;
 use crate::root;
 
+/// [`Subject::mixer`] that is called from C.
+const C_INTERFACE: &str = "c-interface";
 /// [`Subject::mixer`] with rotors out.
 const ONE_OUT: &str = "one-rotor-out";
 const TWO_OUT: &str = "two-rotors-out";
@@ -18,8 +24,8 @@ const TWO_OUT: &str = "two-rotors-out";
 /// A mixer of an airframe.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
-    /// `coaxial`; the same with one or two rotors out, at random channels: `one-rotor-out`, `two-rotors-out`; or a
-    /// baseline: `conventional`, `sequential`, `wls`.
+    /// `coaxial`; the same as a library for C: `c-interface`; with one or two rotors out, at random channels:
+    /// `one-rotor-out`, `two-rotors-out`; or a baseline: `conventional`, `sequential`, `wls`.
     pub mixer: String,
     /// A file of `airframes/`, or one of `tests/firmware/build/frames.rs`.
     pub airframe: String,
@@ -52,11 +58,12 @@ impl Subject {
     }
 }
 
-/// The subjects that every run of the tests compares: all airframes, and on the X8 the baselines of `mixer-rt` and one
-/// rotor out.
+/// The subjects that every run of the tests compares: all airframes, and on the X8 the baselines of `mixer-rt`, one
+/// rotor out, and the library for C.
 pub fn compared(airframes: &[String]) -> Vec<Subject> {
     let airframes = airframes.iter().map(|airframe| Subject::new("coaxial", airframe));
-    let others = ["conventional", "sequential", ONE_OUT].map(|mixer| Subject::new(mixer, "isae-x8"));
+    let others =
+        ["conventional", "sequential", ONE_OUT, C_INTERFACE].map(|mixer| Subject::new(mixer, "isae-x8"));
     airframes.chain(others).collect()
 }
 
@@ -117,7 +124,10 @@ impl Row {
     /// # Errors
     /// As [`Toolchain::run`], or if an image prints something else.
     pub fn measure(toolchain: &Toolchain, subject: &Subject, empty: &Image) -> Result<Row, String> {
-        let variant = subject.variant();
+        let mut variant = subject.variant();
+        if subject.mixer == C_INTERFACE {
+            variant.library = Some(library(toolchain, &subject.airframe)?);
+        }
         let size = Image::read(&toolchain.build("size", &variant)?)?;
         let text = toolchain.run("counts", &variant)?;
         let counts: Option<Vec<Count>> = text.lines().map(Count::parse).collect();
@@ -210,6 +220,26 @@ impl Count {
     }
 }
 
+/// The library of an airframe of `airframes/` for C, made anew: its folder and its module.
+fn library(toolchain: &Toolchain, airframe: &str) -> Result<(PathBuf, String), String> {
+    let path = root().join("airframes").join(format!("{airframe}.toml"));
+    let module = airframe.replace('-', "_");
+    let made = toolchain.scratch("c-interface")?;
+    let args = LibraryArgs::for_target(path, TARGET, made.clone());
+    if cargo_mixer::library::run(&args) != ExitCode::SUCCESS {
+        return Err(format!("no library of {airframe} for {TARGET}: see above"));
+    }
+    // Cargo does not see that a library has changed, but that it has another path.
+    let name = format!("lib{module}.a");
+    let fault = |error: std::io::Error| format!("{name}: {error}");
+    let bytes = std::fs::read(made.join(&name)).map_err(fault)?;
+    let mut hasher = DefaultHasher::new();
+    bytes.hash(&mut hasher);
+    let folder = toolchain.scratch(&format!("c-interface-{:016x}", hasher.finish()))?;
+    std::fs::write(folder.join(&name), bytes).map_err(fault)?;
+    Ok((folder, module))
+}
+
 /// The file of the counts.
 pub fn file() -> PathBuf {
     root().join("tests/counts.csv")
@@ -255,7 +285,7 @@ pub fn document(compiler: &str, rows: &[Row]) -> String {
          * attainable: 2,000 wrenches that random throttles give, at random voltages\n\
          * saturated: 2,000 requests up to four times the authority, one axis alone, on and beyond the border\n\
          * worst: the most of these, and of a search for more\n\n\
-         Mixers: `coaxial` is this one, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (attainable: with all \
+         Mixers: `coaxial` is this one, `c-interface` is its library for C with a caller who copies the throttles, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (attainable: with all \
          rotors); `conventional` (the paper's), `sequential` (after PX4) and `wls` (the crate `wls-alloc`) take rotors as isolated. Airframes are files of `airframes/`, \
          `y6-*` with the pairs of the `x8-*`, and frames of `tests/firmware/build/frames.rs`.\n\n\
          | mixer | airframe | attainable, mean | saturated, mean | worst | code | tables | stack |\n\

@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 
 use crate::root;
 
-const TARGET: &str = "thumbv7em-none-eabihf";
+/// Of every image.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
 /// Far more than any image needs; an image that hangs must not hang the tests.
 const TIME_LIMIT: Duration = Duration::from_secs(300);
 /// Of images that mix up to a million times.
@@ -23,6 +24,8 @@ pub struct Variant {
     pub cfgs: Vec<String>,
     /// Features of the firmware package.
     pub features: Vec<&'static str>,
+    /// A library for C that is linked, by its folder and its module.
+    pub library: Option<(PathBuf, String)>,
 }
 
 impl Variant {
@@ -34,7 +37,7 @@ impl Variant {
         }
         Variant {
             cfgs,
-            features: Vec::new(),
+            ..Variant::default()
         }
     }
 
@@ -42,7 +45,7 @@ impl Variant {
     pub fn with(cfg: &str) -> Self {
         Variant {
             cfgs: vec![cfg.to_owned()],
-            features: Vec::new(),
+            ..Variant::default()
         }
     }
 }
@@ -142,6 +145,12 @@ impl Toolchain {
         for cfg in &variant.cfgs {
             command.args(["--cfg", cfg]);
         }
+        if let Some((folder, module)) = &variant.library {
+            command.arg(format!("-Lnative={}", folder.display()));
+            command.arg(format!("-lstatic={module}"));
+            command.arg(format!("-Clink-arg=--undefined={module}_mix"));
+            command.arg(format!("-Clink-arg=--defsym=c_interface_mix={module}_mix"));
+        }
         let output = command.output().map_err(|e| format!("cannot start cargo: {e}"))?;
         if !output.status.success() {
             return Err(String::from_utf8_lossy(&output.stderr).into_owned());
@@ -155,6 +164,17 @@ impl Toolchain {
         let kept = images.join(name);
         fs::copy(&built, &kept).map_err(fault)?;
         Ok(kept)
+    }
+
+    /// A folder beside the images for what is linked into them.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be made.
+    pub fn scratch(&self, name: &str) -> Result<PathBuf, String> {
+        let folder = self.target_dir.join("images").join(name);
+        fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        Ok(folder)
     }
 
     /// Builds one image, runs it in QEMU and returns what it printed.

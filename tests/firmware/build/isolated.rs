@@ -14,7 +14,7 @@ pub(crate) fn tables(compiled: &Compiled) -> String {
     });
     let rotors = tables.rotors.len();
     quote! {
-        #[cfg(baseline)]
+        #[cfg(all(baseline, not(baseline = "c-interface")))]
         pub(crate) static ISOLATED: ::mixer_rt::baselines::IsolatedRotors<'static> = #isolated;
         #[cfg(baseline = "wls")]
         pub(crate) static EFFECTIVENESS: [[f32; #rotors]; 4] = [#(#rows),*];

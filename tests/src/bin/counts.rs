@@ -3,13 +3,14 @@
 //! ```text
 //! cargo run -p mixer-tests --bin counts                      all subjects
 //! cargo run -p mixer-tests --bin counts -- isae-x8 regular-3 only these airframes
+//! cargo run -p mixer-tests --bin counts -- c-interface,isae-x8 only this row, as tests/counts.csv has it too
 //! cargo run -p mixer-tests --bin counts -- --bless           all of them, and writes tests/counts.csv and what --fit does
 //! cargo run -p mixer-tests --bin counts -- --fit             counts nothing; from tests/counts.csv writes docs/costs.md and the compiler's model
 //! ```
 
 use std::process::ExitCode;
 
-use mixer_tests::counts::{self, Row};
+use mixer_tests::counts::{self, Row, Subject};
 use mixer_tests::firmware::{Toolchain, Variant};
 use mixer_tests::image::Image;
 use mixer_tests::overhead;
@@ -38,7 +39,9 @@ fn print() -> Result<(), String> {
     }
     let airframes = mixer_tests::airframes().map_err(|error| format!("airframes/: {error}"))?;
     let mut subjects = counts::all(&airframes);
-    subjects.retain(|subject| named.is_empty() || named.contains(&subject.airframe));
+    subjects.retain(|Subject { mixer, airframe }| {
+        named.is_empty() || named.contains(airframe) || named.contains(&format!("{mixer},{airframe}"))
+    });
     let empty = Image::read(&toolchain.build("size", &Variant::default())?)?;
 
     println!("{}", toolchain.compiler);
@@ -67,6 +70,11 @@ fn print() -> Result<(), String> {
             row.get("stack_b")
         );
         rows.push(row);
+    }
+    for row in &rows {
+        if named.contains(&format!("{},{}", row.subject.mixer, row.subject.airframe)) {
+            println!("{row}");
+        }
     }
     if bless {
         let path = counts::file();

@@ -1,7 +1,10 @@
 //! The mixer that an image measures: one airframe's, `--cfg airframe --cfg airframe="<name>"`, or what flight stacks do
-//! with that airframe, in addition `--cfg baseline --cfg baseline="conventional"`, `"sequential"` or `"wls"`. With
+//! with that airframe, in addition `--cfg baseline --cfg baseline="conventional"`, `"sequential"` or `"wls"`, or its library
+//! for C, `"c-interface"`. With
 //! `--cfg rotors_out="1"` or `"2"` the airframe's mixer is asked with so many rotors out.
 
+#[cfg(baseline = "c-interface")]
+mod c_interface;
 #[cfg(not(baseline))]
 mod coaxial;
 #[cfg(any(baseline = "conventional", baseline = "sequential"))]
@@ -9,6 +12,8 @@ mod isolated;
 #[cfg(baseline = "wls")]
 mod wls;
 
+#[cfg(baseline = "c-interface")]
+pub(crate) use c_interface::*;
 #[cfg(not(baseline))]
 pub(crate) use coaxial::*;
 #[cfg(any(baseline = "conventional", baseline = "sequential"))]
