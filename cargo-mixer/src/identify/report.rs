@@ -158,7 +158,7 @@ pub fn least_power_lines(found: &LeastPower) -> Vec<String> {
         ),
         format!(
             "that is {:.1} % of flight time where as many upper rotors turn one way as the other; with spins s of n units \
-             1 - (sum s / n)2 of it is left, none where all turn alike (a Y6)",
+             1 - (sum s / n)^2 of it is left, none where all turn alike (a Y6)",
             100.0 * (1.0 / (1.0 - 0.01 * found.saving_percent) - 1.0)
         ),
         format!(
