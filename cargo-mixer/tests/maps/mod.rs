@@ -43,11 +43,13 @@ pub(crate) fn identified(map: &Path, basis: &str) -> Identified {
         .unwrap_or_else(|refusals| panic!("{}: {}", map.display(), refusals[0]))
 }
 
-/// The tables that it writes, with these throttles instead of its own.
+/// The tables that it writes but for the power map, with these throttles instead of its own.
 #[allow(dead_code, reason = "not all tests that share this module change them")]
 pub(crate) fn with_throttle(identified: &Identified, [min, max]: [f64; 2]) -> String {
     let lines: Vec<String> = fragment::text(identified)
         .lines()
+        // The power map holds for the throttles that were measured.
+        .filter(|line| *line != "[pair.power]" && !line.starts_with("power_w = "))
         .map(|line| match line.split_once(" = ") {
             Some(("min", _)) => format!("min = {min:?}"),
             Some(("max", _)) => format!("max = {max:?}"),

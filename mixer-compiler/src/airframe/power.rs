@@ -85,7 +85,8 @@ pub(super) fn check(
         fault(Code::PowerMap, message)
             .label("must be positive and grow with the throttles")
             .help(format!(
-                "the terms are {}, 1, in this order; `cargo mixer identify` writes them",
+                "the terms are {}, 1, in this order; `cargo mixer identify` writes them for the throttles it states; without \
+                 [pair.power] only the figures of power are missing",
                 Basis::Quartic.terms()
             )),
     );
