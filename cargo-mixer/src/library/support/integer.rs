@@ -19,7 +19,7 @@ pub(super) extern "C" fn multiply_long(a: u64, b: u64) -> u64 {
     // One half is opaque: LLVM takes the whole for a product of 64 bits otherwise, which is a call of this function.
     let a1 = core::hint::black_box(a_low >> 16) & 0xffff;
     let (a0, b1, b0) = (a_low & 0xffff, b_low >> 16, b_low & 0xffff);
-    let middle = a1 * b0 + (a0 * b0 >> 16);
+    let middle = a1 * b0 + ((a0 * b0) >> 16);
     let carry = a0 * b1 + (middle & 0xffff);
     let low = a_low.wrapping_mul(b_low);
     let high = (a1 * b1 + (middle >> 16) + (carry >> 16))
