@@ -381,7 +381,7 @@ fn the_page_of_costs_is_that_of_the_counts() {
     assert_eq!(page, counts::document(&compiler, &held), "{MEND}");
 }
 
-/// No request of any set takes more than the bound that the compiler states, which is not more than three times the worst: no
+/// No request of any set takes more than the bound that the compiler states, which is not more than three and a half times the worst: no
 /// request that was tried used up all pivots and flips, nor those of level flight.
 #[test]
 fn bounds_hold_what_was_counted() {
@@ -392,7 +392,7 @@ fn bounds_hold_what_was_counted() {
         let Some(bound) = sample.bound else { continue };
         println!("{}: {worst} of {bound}", sample.airframe);
         assert!(
-            worst <= u64::from(bound) && u64::from(bound) <= 3 * worst,
+            worst <= u64::from(bound) && 2 * u64::from(bound) <= 7 * worst,
             "{}: {worst} counted, at most {bound} stated",
             sample.airframe
         );
@@ -400,7 +400,7 @@ fn bounds_hold_what_was_counted() {
 }
 
 /// As a share of what was counted.
-const MODEL_ERROR: f64 = 0.12;
+const MODEL_ERROR: f64 = 0.13;
 
 const MEND: &str =
     "if the change is meant, `cargo run -p mixer-tests --bin counts -- --bless` and look at the difference";
