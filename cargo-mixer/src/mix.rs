@@ -153,11 +153,7 @@ pub fn mix<T>(
         HeaderError::Bad(line) => Stopped::Header(line),
         HeaderError::Io(error) => Stopped::Input(error),
     })?;
-    let reference_v = compiled
-        .airframe
-        .voltage
-        .as_ref()
-        .map_or(0.0, |voltage| voltage.reference_v as f32);
+    let reference_v = compiled.airframe.reference_v() as f32;
 
     let mut bad = 0;
     let mut text = String::new();

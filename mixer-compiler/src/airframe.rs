@@ -106,6 +106,23 @@ impl Airframe {
         2 * self.units.len()
     }
 
+    /// The reference voltage, V; 0 without `[voltage]`, as mixers then ignore it.
+    pub fn reference_v(&self) -> f64 {
+        self.voltage.as_ref().map_or(0.0, |voltage| voltage.reference_v)
+    }
+
+    /// Electrical power of all rotors at the reference voltage, W, with a throttle per channel; `None` where the file has no
+    /// `[pair.power]`, or a channel has no throttle.
+    pub fn power_w(&self, throttle: &[f64]) -> Option<f64> {
+        let map = self.pair.power.as_ref()?;
+        let of_unit = |unit: &Unit| {
+            let [u, l] =
+                [unit.upper_channel, unit.lower_channel].map(|channel| throttle.get(channel).copied());
+            Some(map.at([u?, l?]))
+        };
+        self.units.iter().map(of_unit).sum()
+    }
+
     /// The share of a pair's saving by `power_bias_nm_per_n` that is left in hover, as torques must cancel:
     /// 1 - (sum s / n)^2 with the spins s of n units.
     pub fn power_bias_share(&self) -> f64 {

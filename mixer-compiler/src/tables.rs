@@ -200,6 +200,14 @@ impl MixerTables {
         }
     }
 
+    /// The same tables with all torques starting from 0, to compare with.
+    pub fn without_power_bias(&self) -> Self {
+        MixerTables {
+            power_bias_nm_per_n: 0.0,
+            ..self.clone()
+        }
+    }
+
     /// Mixes with `mixer-rt`, operation by operation as the generated mixer does.
     ///
     /// # Errors

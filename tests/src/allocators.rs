@@ -132,11 +132,7 @@ fn compare(name: &str, compiled: &Compiled) -> [Row; 4] {
         wrench
     };
     let isolated = IsolatedTables::new(compiled);
-    let reference_v = compiled
-        .airframe
-        .voltage
-        .as_ref()
-        .map_or(0.0, |voltage| voltage.reference_v as f32);
+    let reference_v = compiled.airframe.reference_v() as f32;
     let [low, high] = pair.range();
     let mut random = Random::new(20);
     let (mut exact, mut least_norm) = (Tally::default(), Tally::default());

@@ -80,7 +80,7 @@ fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
             Some(power_w) => writeln!(out, "[pair.power]\npower_w = {power_w:?}")?,
             None => writeln!(
                 out,
-                "#   No [pair.power]: the fit is not positive at the least throttles to command."
+                "#   No [pair.power]: the fit is not positive, or does not grow, over the throttles to command."
             )?,
         }
     }

@@ -9,7 +9,7 @@
 
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
-use mixer_compiler::airframe::Basis;
+use mixer_compiler::airframe::{self, Basis};
 use serde::Serialize;
 
 use super::basis::{ThrottleBox, monomials};
@@ -60,8 +60,8 @@ pub struct LeastPower {
     pub full_scale_w: f64,
     /// Rows with power.
     pub points: usize,
-    /// Coefficients of the power map, W: the quartic's in their order and a constant; none where it is not positive over the
-    /// throttles to command, so that no airframe file takes it.
+    /// Coefficients of the power map, W: the quartic's in their order and a constant; none where no airframe file takes
+    /// it, as it is not positive or does not grow over the throttles to command.
     pub power_w: Option<Vec<f64>>,
 }
 
@@ -107,13 +107,10 @@ impl PowerMap {
         dot(&terms(u, l), &self.coefficients)
     }
 
-    /// `[pair.power]`, where it is positive at all throttles that may be commanded.
-    fn of_file(&self, throttle: ThrottleBox) -> Option<Vec<f64>> {
-        const STEPS: usize = 64;
-        let is_positive = throttle
-            .grid(STEPS)
-            .all(|u| throttle.grid(STEPS).all(|l| self.at([u, l]) > 0.0));
-        is_positive.then(|| self.coefficients.iter().map(|&c| ten_digits(c)).collect())
+    /// `[pair.power]`, where an airframe file takes it for the throttles that may be commanded.
+    fn of_file(&self, ThrottleBox { min, max }: ThrottleBox) -> Option<Vec<f64>> {
+        let rounded = self.coefficients.iter().map(|&c| ten_digits(c)).collect();
+        Some(airframe::Power::over(rounded, [min, max]).ok()?.power_w)
     }
 }
 

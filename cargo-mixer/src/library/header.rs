@@ -89,16 +89,12 @@ impl Header<'_> {
             ),
             None => "`voltage_v` is ignored: the airframe has no voltage correction".to_owned(),
         };
-        let reference_v = airframe
-            .voltage
-            .as_ref()
-            .map_or(0.0, |voltage| voltage.reference_v);
         let scale = compiled.scale();
         let macros = [
             ("CHANNELS", airframe.rotors().to_string()),
             ("THROTTLE_MIN", float(airframe.throttle.min as f32)),
             ("THROTTLE_MAX", float(airframe.throttle.max as f32)),
-            ("REFERENCE_V", float(reference_v as f32)),
+            ("REFERENCE_V", float(airframe.reference_v() as f32)),
         ];
         let scales = [
             ("ROLL_NM", scale.roll_nm),

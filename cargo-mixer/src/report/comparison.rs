@@ -92,10 +92,7 @@ pub fn throttles(
     wrench: [f64; 4],
 ) -> (Vec<[f64; 2]>, bool) {
     let airframe = &study.compiled.airframe;
-    let reference_v = airframe
-        .voltage
-        .as_ref()
-        .map_or(0.0, |voltage| voltage.reference_v as f32);
+    let reference_v = airframe.reference_v() as f32;
     let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
     // A study's wrenches are finite.
     let (channels, within) = conventional

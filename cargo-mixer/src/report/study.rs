@@ -99,9 +99,8 @@ impl<'a> Study<'a> {
 
     /// All rotors at the reference voltage.
     pub fn reference(&self) -> Condition {
-        let voltage = self.compiled.airframe.voltage.as_ref();
         Condition {
-            voltage_v: voltage.map_or(0.0, |voltage| voltage.reference_v as f32),
+            voltage_v: self.compiled.airframe.reference_v() as f32,
             health: Health::GOOD,
         }
     }

@@ -486,8 +486,8 @@ fn torque_of_least_power_saves_on_every_full_range_map() {
     assert!(mean > 2.35, "{mean} of {savings:?}");
 }
 
-/// What the compiled mixer of an X8 saves by its power bias over what was recorded: level from 0.3 to 0.7 of full thrust, and
-/// over brisk requests about these.
+/// Saving of recorded power by the power bias of a compiled X8: level from 0.3 to 0.7 of full thrust, and over brisk requests
+/// about these.
 #[test]
 fn the_mixer_saves_what_is_identified() {
     const BRISK: [f64; 2] = [0.05, 0.1];
@@ -509,23 +509,14 @@ fn the_mixer_saves_what_is_identified() {
         let source = Source::new("x8.toml", text.expect("a frame"));
         let with = mixer_compiler::compile(&source).unwrap_or_else(|faults| panic!("{faults}"));
         assert!(with.tables.power_bias_nm_per_n > 0.0, "{}", path.display());
-        let power = with.airframe.pair.power.clone().expect("a power map");
-        let mut without = with.tables.clone();
-        without.power_bias_nm_per_n = 0.0;
-        let volts = with
-            .airframe
-            .voltage
-            .as_ref()
-            .map_or(0.0, |v| v.reference_v as f32);
+        let without = with.tables.without_power_bias();
         let watts = |tables: &MixerTables, wrench: [f64; 4]| -> Option<f64> {
             let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
-            let (throttle, _, saturation) = tables.mix(&setpoint, volts).expect("finite");
-            let units = with.airframe.units.iter();
-            let pairs = units.map(|unit| [unit.upper_channel, unit.lower_channel]);
-            let sum = pairs
-                .map(|pair| power.at(pair.map(|channel| f64::from(throttle[channel]))))
-                .sum();
-            (!saturation.any_axis()).then_some(sum)
+            let mixed = tables.mix(&setpoint, with.airframe.reference_v() as f32);
+            let (throttle, _, saturation) = mixed.expect("finite");
+            let throttle: Vec<f64> = throttle.into_iter().map(f64::from).collect();
+            let watts = with.airframe.power_w(&throttle).expect("a power map");
+            (!saturation.any_axis()).then_some(watts)
         };
         let full = f64::from(with.thrust_range_n[1]);
         let shares = (0..9).map(|k| 0.3 + 0.05 * f64::from(k));

@@ -40,7 +40,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// What the bias saves, percent.
+    /// The saving by the bias, percent.
     pub fn saving_percent(&self) -> f64 {
         100.0 * (1.0 - self.with_j / self.without_j)
     }
@@ -50,22 +50,14 @@ impl Rotors {
     /// The airframe at its reference voltage.
     ///
     /// # Errors
-    /// A file that is refused, or that has no `[voltage]` to take out.
+    /// A file that is refused.
     pub fn new() -> Result<Rotors, Box<dyn Error>> {
-        let (before, rest) = FILE
-            .split_once("[voltage]")
-            .ok_or("the airframe has no [voltage]")?;
-        let (_, after) = rest
-            .split_once("[layout]")
-            .ok_or("the airframe has no [layout]")?;
-        let text = format!("{before}[layout]{after}");
-        let compiled = mixer_compiler::compile(&Source::new("x8-11in-least-power.toml", text))
+        let mut compiled = mixer_compiler::compile(&Source::new("x8-11in-least-power.toml", FILE))
             .map_err(|faults| faults.to_string())?;
+        compiled.airframe.voltage = None;
+        compiled.tables.voltage = None;
         let with = compiled.tables;
-        let without = MixerTables {
-            power_bias_nm_per_n: 0.0,
-            ..with.clone()
-        };
+        let without = with.without_power_bias();
         Ok(Rotors {
             airframe: compiled.airframe,
             with,
@@ -91,32 +83,18 @@ impl Rotors {
     }
 
     fn energy_j(&self, flight: &Flight) -> Result<f64, Box<dyn Error>> {
-        let map = self
-            .airframe
-            .pair
-            .power
-            .as_ref()
-            .ok_or("the airframe has no [pair.power]")?;
-        let units = self.airframe.units.iter();
-        let channels: Vec<[usize; 2]> = units
-            .map(|unit| [unit.upper_channel, unit.lower_channel])
-            .collect();
-        let power = |throttle: &[f64]| -> f64 {
-            let of_unit =
-                |pair: &[usize; 2]| map.at(pair.map(|channel| throttle.get(channel).copied().unwrap_or(0.0)));
-            channels.iter().map(of_unit).sum()
-        };
         let samples = flight.samples.iter();
-        Ok(samples
-            .map(|sample| power(sample.throttle.as_slice()) * PERIOD_S)
-            .sum())
+        let energy: Option<f64> = samples
+            .map(|sample| Some(self.airframe.power_w(sample.throttle.as_slice())? * PERIOD_S))
+            .sum();
+        energy.ok_or_else(|| "the airframe has no [pair.power]".into())
     }
 }
 
 /// The energies of one scenario; prints as a line.
 #[derive(Clone, Debug)]
 pub struct Saving {
-    /// What was flown.
+    /// Air and tilt of the flights.
     pub scenario: Scenario,
     /// One per seed.
     pub flights: Vec<Energy>,
@@ -141,7 +119,7 @@ impl fmt::Display for Saving {
 /// Writes all flights as CSV.
 ///
 /// # Errors
-/// What `to` cannot take.
+/// A failure to write to `to`.
 pub fn write(savings: &[Saving], to: impl Write) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(to);
     writer.write_record(["scenario", "seed", "mixer", "energy_j"])?;

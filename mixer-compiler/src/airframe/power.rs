@@ -17,6 +17,29 @@ pub struct Power {
 }
 
 impl Power {
+    /// A map that holds for throttles from `min` to `max` of both rotors.
+    ///
+    /// # Errors
+    /// What is wrong with it: power that is not positive, or that does not grow from idle to full throttle.
+    pub fn over(power_w: Vec<f64>, [min, max]: [f64; 2]) -> Result<Power, String> {
+        let along = |k: u32| min + (max - min) * f64::from(k) / f64::from(STEPS);
+        let places = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |k| [along(i), along(k)]));
+        let powers = places.map(|at| (value(&power_w, at), at));
+        let (least, [u, l]) = powers.fold((f64::INFINITY, [min; 2]), |least, here| {
+            if here.0 < least.0 { here } else { least }
+        });
+        let [idle, full] = [min, max].map(|throttle| value(&power_w, [throttle; 2]));
+        if least <= 0.0 {
+            Err(format!("is {least:.1} W at (u, l) = ({u:.2}, {l:.2})"))
+        } else if full <= idle {
+            Err(format!(
+                "falls from {idle:.1} W at idle to {full:.1} W at full throttle"
+            ))
+        } else {
+            Ok(Power { power_w })
+        }
+    }
+
     /// Power of both rotors at `[u, l]`, W.
     pub fn at(&self, [u, l]: [f64; 2]) -> f64 {
         value(&self.power_w, [u, l])
@@ -24,7 +47,7 @@ impl Power {
 }
 
 /// Throttles per side of the range at which the power is looked at.
-const STEPS: u32 = 16;
+const STEPS: u32 = 64;
 
 /// Checks `[pair.power]`.
 pub(super) fn check(
@@ -65,32 +88,21 @@ pub(super) fn check(
         return None;
     }
     let Throttle { min, max } = throttle?;
-    let along = |k: u32| min + (max - min) * f64::from(k) / f64::from(STEPS);
-    let places = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |k| [along(i), along(k)]));
-    let (least, [u, l]) =
-        places
-            .map(|at| (value(&power_w, at), at))
-            .fold((f64::INFINITY, [*min; 2]), |least, here| {
-                if here.0 < least.0 { here } else { least }
-            });
-    let [idle, full] = [min, max].map(|throttle| value(&power_w, [*throttle; 2]));
-    let message = if least <= 0.0 {
-        format!("the power of `{key}` is {least:.1} W at (u, l) = ({u:.2}, {l:.2})")
-    } else if full <= idle {
-        format!("the power of `{key}` falls from {idle:.1} W at idle to {full:.1} W at full throttle")
-    } else {
-        return Some(Power { power_w });
-    };
-    faults.push(
-        fault(Code::PowerMap, message)
-            .label("must be positive and grow with the throttles")
-            .help(format!(
-                "the terms are {}, 1, in this order; `cargo mixer identify` writes them for the throttles it states; without \
-                 [pair.power] only the figures of power are missing",
-                Basis::Quartic.terms()
-            )),
-    );
-    None
+    match Power::over(power_w, [*min, *max]) {
+        Ok(power) => Some(power),
+        Err(reason) => {
+            faults.push(
+                fault(Code::PowerMap, format!("the power of `{key}` {reason}"))
+                    .label("must be positive and grow with the throttles")
+                    .help(format!(
+                        "the terms are {}, 1, in this order; `cargo mixer identify` writes them for the throttles it states; without \
+                         [pair.power] only the figures of power are missing",
+                        Basis::Quartic.terms()
+                    )),
+            );
+            None
+        }
+    }
 }
 
 fn value(coefficients: &[f64], [u, l]: [f64; 2]) -> f64 {

@@ -72,10 +72,7 @@ pub(crate) fn delivered_range(
 
 /// What is made of a request for thrust alone at the reference voltage.
 fn mix_bare(airframe: &Airframe, tables: &MixerTables, thrust_n: f32) -> Option<(Wrench, Saturation)> {
-    let voltage_v = airframe
-        .voltage
-        .as_ref()
-        .map_or(0.0, |voltage| voltage.reference_v as f32);
+    let voltage_v = airframe.reference_v() as f32;
     let setpoint = Wrench {
         thrust_n,
         ..Wrench::default()

@@ -99,8 +99,7 @@ impl Checklist<'_> {
 
 /// The mixer's throttles at the reference voltage.
 fn throttles(compiled: &Compiled, wrench: &Wrench) -> Option<Vec<f32>> {
-    let voltage = compiled.airframe.voltage.as_ref();
-    let volts = voltage.map_or(0.0, |voltage| voltage.reference_v as f32);
+    let volts = compiled.airframe.reference_v() as f32;
     compiled
         .tables
         .mix(wrench, volts)

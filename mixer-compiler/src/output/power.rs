@@ -1,11 +1,11 @@
-//! Electrical power in level flight, by the mixer itself and the file's power map: what the power bias saves.
+//! Electrical power in level flight and its saving by the power bias, by the mixer itself and the file's power map.
 
 use std::fmt;
 
 use mixer_rt::Wrench;
 use serde::Serialize;
 
-use crate::airframe::{GRAVITY, Power};
+use crate::airframe::GRAVITY;
 use crate::compiled::Compiled;
 use crate::tables::MixerTables;
 
@@ -21,7 +21,7 @@ pub struct LevelPower {
     pub power_w: f64,
     /// The same with all torques zero, W.
     pub without_bias_w: f64,
-    /// What the bias saves of it, percent.
+    /// The saving by the bias, percent of it.
     pub saving_percent: f64,
     /// By how much longer the flight is, percent.
     pub flight_time_percent: f64,
@@ -32,20 +32,14 @@ pub struct LevelPower {
 impl LevelPower {
     /// Of a compiled airframe; `None` where the file has no power map, or the thrust is not attainable.
     pub fn new(compiled: &Compiled) -> Option<LevelPower> {
-        let power = compiled.airframe.pair.power.as_ref()?;
         let weight = compiled
             .airframe
             .vehicle
             .as_ref()
             .map(|vehicle| GRAVITY * vehicle.mass_kg);
         let thrust_n = weight.unwrap_or(LEVEL * f64::from(compiled.thrust_range_n[1]));
-        let with = &compiled.tables;
-        let without = MixerTables {
-            power_bias_nm_per_n: 0.0,
-            ..with.clone()
-        };
-        let power_w = at(compiled, power, with, thrust_n)?;
-        let without_bias_w = at(compiled, power, &without, thrust_n)?;
+        let power_w = at(compiled, &compiled.tables, thrust_n)?;
+        let without_bias_w = at(compiled, &compiled.tables.without_power_bias(), thrust_n)?;
         Some(LevelPower {
             thrust_n,
             power_w,
@@ -58,25 +52,15 @@ impl LevelPower {
 }
 
 /// Power of all rotors at a level thrust, W; `None` where it is not delivered.
-fn at(compiled: &Compiled, power: &Power, tables: &MixerTables, thrust_n: f64) -> Option<f64> {
+fn at(compiled: &Compiled, tables: &MixerTables, thrust_n: f64) -> Option<f64> {
     let setpoint = Wrench {
         thrust_n: thrust_n as f32,
         ..Wrench::default()
     };
     let airframe = &compiled.airframe;
-    let volts = airframe
-        .voltage
-        .as_ref()
-        .map_or(0.0, |voltage| voltage.reference_v);
-    let (throttle, _, saturation) = tables.mix(&setpoint, volts as f32).ok()?;
-    let of_unit = |channels: [usize; 2]| {
-        let [u, l] = channels.map(|channel| throttle.get(channel).copied().map(f64::from));
-        Some(power.at([u?, l?]))
-    };
-    let units = airframe.units.iter();
-    let powers = units.map(|unit| of_unit([unit.upper_channel, unit.lower_channel]));
-    let sum: Option<f64> = powers.sum();
-    sum.filter(|_| !saturation.any_axis())
+    let (throttle, _, saturation) = tables.mix(&setpoint, airframe.reference_v() as f32).ok()?;
+    let throttle: Vec<f64> = throttle.into_iter().map(f64::from).collect();
+    airframe.power_w(&throttle).filter(|_| !saturation.any_axis())
 }
 
 impl fmt::Display for LevelPower {
