@@ -49,13 +49,18 @@ struct Shape {
     units: usize,
     first_angle_deg: f64,
     first: &'static str,
-    spins: &'static str,
+    spins: Spins,
     axes: Option<&'static str>,
     description: &'static str,
 }
 
-/// Spins of a frame that can cancel torques.
-const ALTERNATE: &str = "they alternate";
+/// How the upper rotors turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Spins {
+    /// Half of them each way, so that they can cancel torques.
+    Alternate,
+    Alike,
+}
 
 impl Frame {
     fn shape(self) -> Shape {
@@ -67,16 +72,16 @@ impl Frame {
             axes,
             description,
         };
-        let (alternate, alike) = (ALTERNATE, "all turn alike");
+        use Spins::{Alike, Alternate};
         match self {
-            Frame::X8 => shape(4, 45.0, "front right", alternate, None, "X8: four coaxial pairs"),
-            Frame::Y6 => shape(3, 60.0, "front right", alike, None, "Y6: three coaxial pairs"),
-            Frame::X12 => shape(6, 30.0, "front right", alternate, None, "X12: six coaxial pairs"),
+            Frame::X8 => shape(4, 45.0, "front right", Alternate, None, "X8: four coaxial pairs"),
+            Frame::Y6 => shape(3, 60.0, "front right", Alike, None, "Y6: three coaxial pairs"),
+            Frame::X12 => shape(6, 30.0, "front right", Alternate, None, "X12: six coaxial pairs"),
             Frame::Bicopter => shape(
                 2,
                 90.0,
                 "right",
-                alternate,
+                Alternate,
                 Some("axes = [\"roll\", \"yaw\", \"thrust\"]  # two units have no lever arm in pitch"),
                 "Two coaxial pairs abreast, pitch left to servos or a tail",
             ),
@@ -84,7 +89,7 @@ impl Frame {
                 1,
                 0.0,
                 "",
-                "",
+                Alike,
                 Some("axes = [\"yaw\", \"thrust\"]          # one unit has no lever arms"),
                 "One coaxial pair on a stand",
             ),
@@ -132,7 +137,7 @@ impl FrameArgs {
         }
         if let Some(bias) = power_bias {
             let line = format!("power_bias_nm_per_n = {bias:?}");
-            let _ = if spins == ALTERNATE {
+            let _ = if spins == Spins::Alternate {
                 writeln!(text, "{line:<38} # least power: torque per thrust of every unit")
             } else {
                 writeln!(
@@ -189,6 +194,10 @@ impl FrameArgs {
             (_, Some(arm)) => arm,
         };
         let channels: Vec<String> = (0..units).map(|k| format!("[{k}, {}]", units + k)).collect();
+        let spins = match spins {
+            Spins::Alternate => "they alternate",
+            Spins::Alike => "all turn alike",
+        };
         let mut text =
             String::from("# The units in a circle, clockwise from the first as seen from above.\n[layout]\n");
         for (value, comment) in [

@@ -52,12 +52,17 @@ impl Turning {
         }
     }
 
+    /// Throttles of the upper and the lower rotor as those of this rotor and the other one, and the other way round.
+    fn in_order(self, [first, second]: [f64; 2]) -> [f64; 2] {
+        match self {
+            Turning::Upper => [first, second],
+            Turning::Lower => [second, first],
+        }
+    }
+
     /// The pair's throttles with the other rotor at rest.
     fn throttles(self, x: f64) -> [f64; 2] {
-        match self {
-            Turning::Upper => [x, 0.0],
-            Turning::Lower => [0.0, x],
-        }
+        self.in_order([x, 0.0])
     }
 
     /// The sign of its torque in the airframe file.
@@ -192,11 +197,8 @@ pub fn from_map(
     warnings: &mut Vec<String>,
 ) -> Result<Alone, Refusal> {
     const FLAG: &str = "--rotor-out-from-map";
-    let [_, rotor, other] = turning.words();
-    let own = |p: &Point| match turning {
-        Turning::Upper => [p.u, p.l],
-        Turning::Lower => [p.l, p.u],
-    };
+    let [run_flag, rotor, other] = turning.words();
+    let own = |p: &Point| turning.in_order([p.u, p.l]);
     let maps = || benches.iter().filter(|b| b.kind == Kind::Pair);
     let level = maps()
         .flat_map(|b| &b.points)
@@ -206,8 +208,7 @@ pub fn from_map(
     let needed = || {
         format!(
             "a map in which the {other} rotor goes down to {LOW} or lower while the {rotor} one takes {FEWEST} throttles; or a \
-             run of the {rotor} rotor alone ({})",
-            turning.words()[0]
+             run of the {rotor} rotor alone ({run_flag})"
         )
     };
     let Some(map) = map.filter(|_| level <= LOW) else {
@@ -219,10 +220,7 @@ pub fn from_map(
     };
     let models = [&pair.thrust_n, &pair.torque_nm].map(|of| Polynomial::of(pair.basis, of));
     let of_other = |x: f64| {
-        let ([u, l], [u0, l0]) = match turning {
-            Turning::Upper => ([x, level], [x, 0.0]),
-            Turning::Lower => ([level, x], [0.0, x]),
-        };
+        let ([u, l], [u0, l0]) = (turning.in_order([x, level]), turning.throttles(x));
         models.each_ref().map(|model| model.at(u, l) - model.at(u0, l0))
     };
     let points = map.points.iter().filter(|p| own(p)[1] <= level + SAME_LEVEL);
@@ -249,10 +247,9 @@ pub fn from_map(
     warnings.push(format!(
         "{FLAG}: the {rotor} rotor alone is from rows of {} in which the {other} one turned at {level:.2}; what that gives, up to \
          {:.1} % of thrust, is taken off by the pair's polynomials. On three real pairs this misses runs of the rotor alone by 1 to \
-         5 % of thrust and 1 to 6 % of torque: a run ({}) is truer",
+         5 % of thrust and 1 to 6 % of torque: a run ({run_flag}) is truer",
         map.file,
-        100.0 * f.abs() / alone.thrust.full_scale,
-        turning.words()[0]
+        100.0 * f.abs() / alone.thrust.full_scale
     ));
     Ok(Alone {
         other_at: Some(level),

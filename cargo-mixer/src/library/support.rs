@@ -1,5 +1,5 @@
-//! What an object would call of the C compiler's run-time library, as functions of its own: the object then needs no
-//! symbol of anybody, and its bits do not depend on whose library is linked.
+//! Functions of the C compiler's run-time library that an object would call, as its own: the object then has no undefined
+//! symbol, and its bits do not depend on the library that is linked.
 //!
 //! LLVM emits calls of memory functions on every target, and of arithmetic where the processor has no instruction for it.
 //! The functions are Rust. Assembly gives each the name that LLVM calls, as a symbol local to the object.
