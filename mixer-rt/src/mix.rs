@@ -36,7 +36,7 @@ impl<const CHANNELS: usize> Default for Mix<CHANNELS> {
 }
 
 impl<const CHANNELS: usize> Mix<CHANNELS> {
-    /// What of `setpoint` was not delivered, per axis; zero where the axis is not flagged. An anti-windup that works by
+    /// The part of `setpoint` that was not delivered, per axis; zero where the axis is not flagged. An anti-windup that works by
     /// amount takes this (PX4: `unallocated_torque`), one that works by direction takes [`Mix::saturation`].
     ///
     /// ```
@@ -53,7 +53,7 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
     pub fn unallocated(&self, setpoint: &Wrench) -> Wrench {
         let (asked, given) = (setpoint.to_array(), self.achieved.to_array());
         Wrench::from_array(Axis::ALL.map(|axis| {
-            if self.saturation.is_short(axis) {
+            if self.saturation.is_flagged(axis) {
                 asked[axis as usize] - given[axis as usize]
             } else {
                 0.0
@@ -205,12 +205,10 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     let airmode = tables.desaturation.airmode;
     let mut efforts = Efforts::default();
     let power_bias = tables.power_bias_nm_per_n;
-    let has_bias = power_bias != 0.0;
-    let mut room = f32::MAX;
-    let mut attained = vertical.least_norm(&at_reference, &mut efforts, has_bias, &mut room);
+    let (mut attained, room) = vertical.least_norm(&at_reference, &mut efforts);
     if attained == Attained::No {
         vertical.desaturate(airmode, &at_reference, &mut efforts);
-    } else if attained == Attained::Yes && has_bias {
+    } else if attained == Attained::Yes && power_bias != 0.0 {
         vertical.add_power_bias(power_bias, room, &mut efforts);
     }
     loop {
@@ -292,7 +290,7 @@ fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
     within
 }
 
-/// What a [`Mix`] holds, for code that is generic over airframes and does not know the number of channels.
+/// Contents of a [`Mix`], for code that is generic over airframes and does not know the number of channels.
 pub trait Outputs {
     /// [`Mix::throttle`], one per channel.
     fn throttle(&self) -> &[f32];
@@ -335,7 +333,7 @@ pub trait Airframe {
     const UNITS: usize;
     /// Number of output channels, two per unit.
     const CHANNELS: usize;
-    /// What one unit of a normalised setpoint asks for: see [`Wrench::from_normalised`].
+    /// The wrench that one unit of a normalised setpoint asks for: see [`Wrench::from_normalised`].
     const SCALE: Wrench;
     /// [`Mix`] for the airframe's number of channels.
     type Mix: Outputs;

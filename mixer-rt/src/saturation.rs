@@ -62,7 +62,7 @@ impl Saturation {
 
     /// True where anything was given up on this axis.
     #[inline]
-    pub(crate) const fn is_short(self, axis: Axis) -> bool {
+    pub(crate) const fn is_flagged(self, axis: Axis) -> bool {
         self.0 & (3 << (2 * axis as u32)) != 0
     }
 

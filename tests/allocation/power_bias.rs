@@ -58,7 +58,7 @@ proptest! {
         })?;
     }
 
-    /// What is delivered without a bias is delivered with it.
+    /// Wrenches that are delivered without a bias are delivered with it.
     #[test]
     fn attainable_wrenches_are_delivered_with_a_bias(
         layout in biased_layout(),

@@ -77,15 +77,7 @@ mod hardware {
 )))]
 use software as hardware;
 
-#[cfg(any(
-    test,
-    not(any(
-        all(target_arch = "arm", target_abi = "eabihf"),
-        target_arch = "aarch64",
-        target_arch = "x86_64",
-        all(any(target_arch = "riscv32", target_arch = "riscv64"), target_feature = "f"),
-    ))
-))]
+#[allow(dead_code, reason = "the tests compare it with the hardware's")]
 mod software {
     /// One result bit per round: the largest integer r with r^2 <= m, where x = m 2^(2e) and m has 48 bits or
     /// so, then round to nearest. (A root is never half-way between two floats.)

@@ -165,35 +165,29 @@ impl Search {
 }
 
 impl Vertical<'_> {
-    /// Writes the least-norm efforts of `request`, and tells whether all are attainable. With `has_room` it lowers `room` to the
-    /// least distance of their torques from the sides, N m; negative beyond.
+    /// Writes the least-norm efforts of `request`. Tells whether all are attainable, and the least distance of their torques from
+    /// the sides, N m; negative beyond.
     #[inline(always)]
-    pub(crate) fn least_norm(
-        &self,
-        request: &Request,
-        efforts: &mut Efforts,
-        has_room: bool,
-        room: &mut f32,
-    ) -> Attained {
+    pub(crate) fn least_norm(&self, request: &Request, efforts: &mut Efforts) -> (Attained, f32) {
         let share = self.torque_share * request.yaw;
         let wrench = [request.roll, request.pitch, request.thrust];
-        let mut attained = Attained::Yes;
+        let (mut attained, mut room) = (Attained::Yes, f32::MAX);
         for (unit, effort) in self.units.iter().zip(efforts) {
             effort.thrust = unit.thrust(&wrench);
             effort.torque = unit.spin * share;
             let [middle, half] = self.border.torques(effort.thrust);
             let outside = (effort.torque - middle).abs() - half;
             if outside > self.border.lost_nm {
-                return Attained::No;
+                return (Attained::No, -outside);
             }
             if outside > 0.0 {
                 attained = Attained::Perhaps;
             }
-            if has_room && -outside < *room {
-                *room = -outside;
+            if -outside < room {
+                room = -outside;
             }
         }
-        attained
+        (attained, room)
     }
 
     /// The wrench of attainable efforts at the voltage's `[k_f, k_Q]`.

@@ -178,7 +178,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         share >= 1.0
     }
 
-    /// What efforts of a unit give, in rows.
+    /// The wrench of a unit's efforts, in rows.
     #[inline(never)]
     fn given(&self, unit: &Unit, efforts: [f32; 2]) -> [f32; 4] {
         let mut wrench = [0.0; 4];

@@ -19,7 +19,7 @@
 use super::closed_form::{Efforts, Vertical};
 use super::general::Variable;
 use crate::rolled;
-use crate::tables::{Tables, Unit};
+use crate::tables::Tables;
 
 /// A polygon's edge of constant thrust is not crossed by torques. They fade before it all the same, as if thrusts moved by
 /// this share of the largest shift (in scaled efforts).
@@ -51,7 +51,7 @@ impl Vertical<'_> {
 }
 
 /// [`Vertical::add_power_bias`] for any frame with all rotors: the units are at their least-norm efforts, within their
-/// polygons. `factors` is `[k_f, k_Q]`.
+/// polygons. `factors` is `[k_f, k_Q]`. Rates of the units are the shift, `[f, Q]` at the reference voltage.
 #[inline(never)]
 pub(crate) fn add_power_bias<P, I, S>(
     tables: &Tables<'_, P, I, S>,
@@ -69,10 +69,11 @@ pub(crate) fn add_power_bias<P, I, S>(
         table.add_wrench([0.0, c * unit.at[0]], factors, &mut wrench);
     }
     let mut largest = [0.0f32; 2];
-    for (unit, table) in units.iter().zip(tables.units) {
+    for (unit, table) in units.iter_mut().zip(tables.units) {
         rolled();
-        let shift = shift(table, &wrench, c * unit.at[0], per_factor);
-        for ((largest, part), per_scale) in largest.iter_mut().zip(shift).zip(per_scale) {
+        let [f, q] = table.efforts(&wrench);
+        unit.rate = [-(f * per_factor[0]), c * unit.at[0] - q * per_factor[1]];
+        for ((largest, part), per_scale) in largest.iter_mut().zip(unit.rate).zip(per_scale) {
             let part = (part * per_scale).abs();
             if part > *largest {
                 *largest = part;
@@ -92,16 +93,8 @@ pub(crate) fn add_power_bias<P, I, S>(
             }
         }
     }
-    for (unit, table) in units.iter_mut().zip(tables.units) {
+    for unit in units {
         rolled();
-        let [f, q] = shift(table, &wrench, c * unit.at[0], per_factor);
-        unit.at = [unit.at[0] + b * f, unit.at[1] + b * q];
+        unit.at = [0, 1].map(|k| unit.at[k] + b * unit.rate[k]);
     }
-}
-
-/// A unit's `[f, Q]` of the shift at the reference voltage, where its own torque is `torque` and all torques give `wrench`.
-#[inline(always)]
-fn shift(table: &Unit, wrench: &[f32; 4], torque: f32, per_factor: [f32; 2]) -> [f32; 2] {
-    let [f, q] = table.efforts(wrench);
-    [-(f * per_factor[0]), torque - q * per_factor[1]]
 }

@@ -49,9 +49,9 @@ const IDENTITY: [[f32; 4]; 4] = [
 /// What a slot of the basis holds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Holds {
-    /// What its row misses.
+    /// The part of its row that is missed.
     Artificial,
-    /// What its row misses, at its price.
+    /// The part of its row that is missed, at its price.
     Elastic,
     /// The share of the edge on which the variable is.
     Edge,
@@ -360,8 +360,7 @@ impl<'a> Simplex<'a> {
             }
         } else {
             // A multiplier is at its price first: its row is missed.
-            let (step, row) = self.first_price(&direction);
-            self.step = step;
+            let (_, row) = self.first_price(&direction);
             column[row & 3] = if direction[row & 3] > 0.0 { 1.0 } else { -1.0 };
             self.slots[slot & 3].holds = Holds::Elastic;
         }

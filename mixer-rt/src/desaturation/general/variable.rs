@@ -64,7 +64,7 @@ pub struct Variable {
     pub(super) gain: [f32; 2],
     /// How the gain changes per unit of the dual step. On a segment, which has no second gain, the second is the torque of a
     /// single rotor's curve beyond its chord, N m.
-    pub(super) rate: [f32; 2],
+    pub(crate) rate: [f32; 2],
     /// The coordinates; after [`allocate`](super::allocate) `[f, Q]`, N and N m at the reference voltage.
     pub(crate) at: [f32; 2],
     /// The dual step at which the variable leaves its corner or its edge.
