@@ -13,7 +13,6 @@ mod cell;
 mod correction;
 mod expansion;
 pub(crate) mod residual;
-mod table;
 mod taylor;
 
 use std::collections::BinaryHeap;
@@ -297,8 +296,8 @@ impl Cell {
 }
 
 #[cfg(test)]
-mod enclosure_tests;
+mod bend_tests;
 #[cfg(test)]
-mod piecewise_tests;
+mod enclosure_tests;
 #[cfg(test)]
 mod tests;

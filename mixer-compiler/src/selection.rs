@@ -113,7 +113,7 @@ fn choose(
         polygon,
         correction,
     };
-    let candidates = Evaluator::candidates(&airframe.inverse.method, airframe.pair.basis);
+    let candidates = Evaluator::candidates(&airframe.inverse.method);
     let mut inversion = Inversion::new(pair, tolerance, candidates.len() == 1);
     let mut best: Option<(Evaluator, MixerTables, f64)> = None;
     for evaluator in candidates {

@@ -47,9 +47,8 @@ pub use desaturation::{Airmode, Desaturation};
 pub use health::Health;
 pub use mix::{Airframe, Mix, Outputs, mix, mix_into, mix_with_health};
 pub use pair::{
-    BilinearSeed, Biquadratic, Cubic, CubicSeed, EightTermSeed, Inverse, Pair, PolynomialInverse,
-    QuadraticSeed, Quantity, Quartic, RootCoordinates, Seed, Seeded, SingleRotor, TableSeed, ThrottleRange,
-    solve,
+    BilinearSeed, Biquadratic, Cubic, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity,
+    Quartic, RootCoordinates, Seed, Seeded, SingleRotor, ThrottleRange, solve,
 };
 pub use saturation::{Direction, Saturation};
 pub use tables::{Tables, Tolerance, Unit};

@@ -3,12 +3,10 @@
 mod forward;
 mod inverse;
 pub(crate) mod rotors;
-mod table_seed;
 
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
 pub use inverse::{
-    BilinearSeed, CubicSeed, EightTermSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed,
-    Seeded, ThrottleRange, solve,
+    BilinearSeed, CubicSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed, Seeded,
+    ThrottleRange, solve,
 };
 pub use rotors::SingleRotor;
-pub use table_seed::TableSeed;

@@ -8,9 +8,7 @@ use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Sub};
 
 use mixer_compiler::tables::{InverseTable, MixerTables};
-use mixer_rt::{
-    Health, Inverse, Pair, Quantity, SHORTAGES, Scalar, TableSeed, Tables, ThrottleRange, Variable, Wrench,
-};
+use mixer_rt::{Health, Inverse, Pair, Quantity, SHORTAGES, Scalar, Tables, ThrottleRange, Variable, Wrench};
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
 
@@ -63,25 +61,16 @@ impl Scalar for Finite {
     fn within(self, low: f32, high: f32) -> Self {
         finite(self.0.within(low, high))
     }
-    fn interpolate(table: &TableSeed, place: [Self; 2]) -> [Self; 2] {
-        table.at(place.map(|x| x.0)).map(finite)
-    }
 }
 
 /// [`mixer_rt::Seeded`]'s and [`mixer_rt::PolynomialInverse`]'s operations on numbers that have to be finite.
 fn evaluate(tables: &MixerTables, efforts: [f32; 2]) -> [f32; 2] {
     let efforts = efforts.map(finite);
     let mut throttles = tables.inverse.guess(efforts).map(|x| tables.throttle.clamp(x));
-    let (steps, residuals) = tables.inverse.steps();
-    for _ in 0..steps {
-        let (mut given, jacobian) = tables.pair.efforts_and_jacobian(throttles);
-        for residual in 0..residuals {
-            if residual > 0 {
-                given = tables.pair.efforts(throttles);
-            }
-            let step = mixer_rt::solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
-            throttles = [0, 1].map(|k| tables.throttle.clamp(throttles[k] + step[k]));
-        }
+    for _ in 0..tables.inverse.steps() {
+        let (given, jacobian) = tables.pair.efforts_and_jacobian(throttles);
+        let step = mixer_rt::solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
+        throttles = [0, 1].map(|k| tables.throttle.clamp(throttles[k] + step[k]));
     }
     throttles.map(|x| x.0)
 }

@@ -8,10 +8,10 @@
 /// * unit 2 at (-0.3181980515339465, -0.31819805153394637, 0.0) m, upper rotor cw: channel 2 upper, 6 lower
 /// * unit 3 at (0.3181980515339463, -0.3181980515339465, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
-/// Inverse map: 8-term seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00677 N and 6.86e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (503 cells).
-/// Largest residual observed over 5688 efforts at the reference voltage: 0.00589 N, 6e-5 N m.
+/// Inverse map: cubic seed in root coordinates, one Newton step.
+/// Proven: each unit's thrust and torque are within 0.00554 N and 5.87e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (554 cells).
+/// Largest residual observed over 5740 efforts at the reference voltage: 0.00489 N, 5.12e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_16in_biquadratic {
     /// Number of coaxial units.
@@ -90,7 +90,7 @@ pub mod x8_16in_biquadratic {
     pub static TABLES: ::mixer_rt::Tables<
         'static,
         ::mixer_rt::Biquadratic,
-        ::mixer_rt::Seeded<::mixer_rt::EightTermSeed, 1>,
+        ::mixer_rt::Seeded<::mixer_rt::CubicSeed, 1>,
         &'static ::mixer_rt::Vertical<'static>,
     > = ::mixer_rt::Tables {
         units: &[
@@ -167,26 +167,30 @@ pub mod x8_16in_biquadratic {
                 x: [0.023797631, -1.4680592, 0.19563453],
                 y: [0.023797631, 1.2310524, 0.14608589],
             },
-            seed: ::mixer_rt::EightTermSeed {
+            seed: ::mixer_rt::CubicSeed {
                 upper: [
-                    -0.94472337,
-                    2.0175152,
-                    1.0691295,
-                    -1.4826715,
-                    -0.39148715,
-                    -0.29584166,
-                    0.52170336,
-                    0.32332477,
+                    -1.0302194,
+                    2.2200458,
+                    1.2622051,
+                    -1.6622436,
+                    -0.5854213,
+                    -0.49337763,
+                    0.57594967,
+                    0.38758466,
+                    0.066516794,
+                    0.07321676,
                 ],
                 lower: [
-                    -0.83142614,
-                    0.9501972,
-                    1.8134834,
-                    -1.1893076,
-                    -0.1918401,
-                    -0.22404024,
-                    0.30639443,
-                    0.24891526,
+                    -0.93106043,
+                    1.3051378,
+                    1.8884587,
+                    -1.3505657,
+                    -0.6023947,
+                    -0.22347493,
+                    0.38774604,
+                    0.26403317,
+                    0.15232214,
+                    -0.0113897305,
                 ],
             },
         },
@@ -606,8 +610,8 @@ pub mod x8_16in_biquadratic {
             yaw_rounding_nm: 0.000022171314,
         },
         tolerance: ::mixer_rt::Tolerance {
-            efforts: [0.006781514, 0.00006884968],
-            wrench: [0.008819663, 0.008819663, 0.00028326502, 0.027717525],
+            efforts: [0.005554171, 0.000058851205],
+            wrench: [0.0072575104, 0.0072575104, 0.00024327113, 0.022808155],
         },
     };
 }

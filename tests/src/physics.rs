@@ -156,7 +156,7 @@ impl Physics {
         starts.into_iter().any(|start| {
             let mut throttles = start;
             for _ in 0..STEPS {
-                throttles = self.pair.newton(throttles, efforts, 1);
+                throttles = self.pair.newton(throttles, efforts);
             }
             let given = self.pair.efforts(throttles);
             (0..2).all(|k| (given[k] - efforts[k]).abs() <= 1e-9 * scale[k])

@@ -61,7 +61,7 @@ impl<'a> Study<'a> {
             .throttles(&tables.pair, &tables.throttle, asked)
             .map(f64::from);
         // Newton's method from there converges in the set; elsewhere it is stopped by the edge of the box.
-        let exact = (0..8).fold(found, |throttles, _| self.pair.newton(throttles, efforts, 1));
+        let exact = (0..8).fold(found, |throttles, _| self.pair.newton(throttles, efforts));
         let (given, scale) = (self.pair.efforts(exact), self.pair.scale());
         let close = (0..2).all(|k| (given[k] - efforts[k]).abs() < 1e-9 * scale[k]);
         close.then_some(found)

@@ -104,25 +104,19 @@ impl PairMap {
         [[by_u[0], by_l[0]], [by_u[1], by_l[1]]]
     }
 
-    /// One Newton step from `throttles` towards `efforts` with `residuals` residuals to its Jacobian, each clamped
-    /// to the range as `mixer-rt` does.
-    pub fn newton(&self, throttles: [f64; 2], [f, q]: [f64; 2], residuals: u8) -> [f64; 2] {
+    /// One Newton step from `throttles` towards `efforts`, clamped to the range as `mixer-rt` does.
+    pub fn newton(&self, [u, l]: [f64; 2], [f, q]: [f64; 2]) -> [f64; 2] {
         let Slopes {
-            value: mut given,
+            value: given,
             by_u: [f_u, q_u],
             by_l: [f_l, q_l],
-        } = self.slopes(throttles);
+        } = self.slopes([u, l]);
         let determinant = f_u * q_l - f_l * q_u;
-        let [mut u, mut l] = throttles;
-        for residual in 0..residuals {
-            if residual > 0 {
-                given = self.efforts([u, l]);
-            }
-            let (missing_f, missing_q) = (f - given[0], q - given[1]);
-            u = self.clamp(u + (missing_f * q_l - missing_q * f_l) / determinant);
-            l = self.clamp(l + (missing_q * f_u - missing_f * q_u) / determinant);
-        }
-        [u, l]
+        let (missing_f, missing_q) = (f - given[0], q - given[1]);
+        [
+            self.clamp(u + (missing_f * q_l - missing_q * f_l) / determinant),
+            self.clamp(l + (missing_q * f_u - missing_f * q_u) / determinant),
+        ]
     }
 
     /// A throttle limited to the range.

@@ -83,7 +83,7 @@ impl Compiled {
                 chosen: evaluator == self.evaluator,
             }
         };
-        Evaluator::candidates(&Method::Auto, basis)
+        Evaluator::candidates(&Method::Auto)
             .into_iter()
             .map(alternative)
             .collect()

@@ -8,7 +8,7 @@ use crate::tables::{
     AttainableTable, BorderTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable,
     VerticalTable,
 };
-use mixer_rt::{BilinearSeed, CubicSeed, EightTermSeed, Facets, QuadraticSeed, TableSeed};
+use mixer_rt::{BilinearSeed, CubicSeed, Facets, QuadraticSeed};
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -303,27 +303,16 @@ fn tables_type(tables: &MixerTables) -> TokenStream {
     let basis = basis(&tables.pair.thrust);
     let inverse = match &tables.inverse {
         InverseTable::Polynomial { .. } => quote!(::mixer_rt::PolynomialInverse<'static>),
-        InverseTable::Seeded {
-            seed,
-            steps,
-            residuals,
-            ..
-        } => seeded_type(seed.type_name(), *steps, *residuals),
+        InverseTable::Seeded { seed, steps, .. } => {
+            let (seed, steps) = (identifier(seed.type_name()), Literal::u8_unsuffixed(*steps));
+            quote!(::mixer_rt::Seeded<::mixer_rt::#seed, #steps>)
+        }
     };
     let way = tables
         .shortcut
         .as_ref()
         .map(|_| quote!(, &'static ::mixer_rt::Vertical<'static>));
     quote!(::mixer_rt::Tables<'static, #basis, #inverse #way>)
-}
-
-fn seeded_type(seed: &str, steps: u8, residuals: u8) -> TokenStream {
-    let (seed, steps) = (identifier(seed), Literal::u8_unsuffixed(steps));
-    if residuals == 1 {
-        return quote!(::mixer_rt::Seeded<::mixer_rt::#seed, #steps>);
-    }
-    let residuals = Literal::u8_unsuffixed(residuals);
-    quote!(::mixer_rt::Seeded<::mixer_rt::#seed, #steps, #residuals>)
 }
 
 fn basis(quantity: &QuantityTable) -> TokenStream {
@@ -368,13 +357,7 @@ fn inverse(inverse: &InverseTable) -> TokenStream {
             let seed = match seed {
                 SeedTable::Bilinear(BilinearSeed { upper, lower }) => coefficients(upper, lower),
                 SeedTable::Quadratic(QuadraticSeed { upper, lower }) => coefficients(upper, lower),
-                SeedTable::EightTerm(EightTermSeed { upper, lower }) => coefficients(upper, lower),
                 SeedTable::Cubic(CubicSeed { upper, lower }) => coefficients(upper, lower),
-                SeedTable::Table(TableSeed { offset, knots }) => {
-                    let offset = vector(offset);
-                    let knots = knots.iter().map(|row| matrix(row));
-                    quote!(offset: #offset, knots: [#(#knots),*])
-                }
             };
             quote! {
                 ::mixer_rt::Seeded {

@@ -9,9 +9,6 @@
 //! m = -J d + G(t; -d)        s = -d + J^-1 (G(t; -d) + r)        R = F(t + s) - F(t*) = G(t; s) + r
 //! ```
 //!
-//! Shamanskii's second residual keeps the Jacobian J of an earlier point; with D = J(t) - J, both G(t; -d) and
-//! G(t; s) gain a term: G(t; -d) - D d and G(t; s) + D s.
-//!
 //! A throttle that leaves the range is limited to its end. The cases "within" and "limited" are followed
 //! separately, each over the part of the cell where it can occur: where a throttle was limited, its deviation is
 //! the end of the range less t*.
@@ -70,12 +67,6 @@ struct Step {
     deviation: Deviation,
     /// Residual after it, where no throttle is limited.
     residual: [Taylor; 2],
-    /// The Jacobian where it started.
-    gradient: [[Taylor; 2]; 2],
-    /// The Jacobian that it used, rounding included.
-    jacobian: [[Taylor; 2]; 2],
-    /// Bound of its error, rounding of coefficients included.
-    jacobian_error: [[f64; 2]; 2],
 }
 
 impl Subject<'_> {
@@ -87,13 +78,13 @@ impl Subject<'_> {
         if !bounded(&deviation) {
             return [f64::INFINITY; 2];
         }
-        let (steps, residuals) = self.inverse.steps();
+        let steps = self.inverse.steps();
         if steps == 0 {
             return local.bound(&deviation, &local.change(&deviation));
         }
         let mut bound = [0.0f64; 2];
         for Case { part, deviation, .. } in local.limited(&deviation) {
-            let found = part.steps(&deviation, steps, residuals);
+            let found = part.steps(&deviation, steps);
             bound = [0, 1].map(|k| bound[k].max(found[k]));
         }
         bound
@@ -117,60 +108,32 @@ impl<'a> Local<'a> {
         }
     }
 
-    /// The bound after `steps` Newton steps of `residuals` residuals each.
-    fn steps(&self, start: &Deviation, steps: u8, residuals: u8) -> [f64; 2] {
-        let Some(step) = self.step(start, None) else {
+    /// The bound after `steps` Newton steps.
+    fn steps(&self, start: &Deviation, steps: u8) -> [f64; 2] {
+        let Some(step) = self.step(start) else {
             return [f64::INFINITY; 2];
         };
-        if residuals == 1 {
-            return self.after(&step, steps);
-        }
-        let mut bound = [0.0f64; 2];
-        for Case { part, deviation, .. } in self.limited(&step.deviation) {
-            let first = part.seen_step(&step, self);
-            let Some(second) = part.step(&deviation, Some(&first)) else {
-                return [f64::INFINITY; 2];
-            };
-            let found = part.after(&second, steps);
-            bound = [0, 1].map(|k| bound[k].max(found[k]));
-        }
-        bound
-    }
-
-    /// The bound after a step and those that follow it, `steps` with this one.
-    fn after(&self, step: &Step, steps: u8) -> [f64; 2] {
         if steps == 1 {
             return self.bound(&step.deviation, &step.residual);
         }
         let mut bound = [0.0f64; 2];
         for Case { part, deviation, .. } in self.limited(&step.deviation) {
-            let found = part.steps(&deviation, steps - 1, 1);
+            let found = part.steps(&deviation, steps - 1);
             bound = [0, 1].map(|k| bound[k].max(found[k]));
         }
         bound
     }
 
-    /// One step from t* + `deviation`, with the Jacobian there or that of an `earlier` step; `None` where nothing can
-    /// be said.
-    fn step(&self, deviation: &Deviation, earlier: Option<&Step>) -> Option<Step> {
+    /// One step from t* + `deviation`; `None` where nothing can be said.
+    fn step(&self, deviation: &Deviation) -> Option<Step> {
         let subject = self.subject;
         // Whatever the runtime has computed so far, it is an f32 without error now.
         let at = [0, 1].map(|k| self.truth[k].plus(&deviation[k]));
         let (given, computed) = subject.pair.efforts_and_jacobian(at);
-        let gradient = [0, 1].map(|k| {
-            let gap = subject.coefficients[k][1];
-            computed[k].map(|slope| slope.real().widened(gap))
-        });
-        let (jacobian, jacobian_error) = match earlier {
-            None => {
-                let error =
-                    [0, 1].map(|k| computed[k].map(|slope| slope.error() + subject.coefficients[k][1]));
-                let jacobian =
-                    [0, 1].map(|k| [0, 1].map(|m: usize| computed[k][m].real().widened(error[k][m])));
-                (jacobian, error)
-            }
-            Some(step) => (step.jacobian, step.jacobian_error),
-        };
+        let jacobian_error =
+            [0, 1].map(|k| computed[k].map(|slope| slope.error() + subject.coefficients[k][1]));
+        let jacobian =
+            [0, 1].map(|k| [0, 1].map(|m: usize| computed[k][m].real().widened(jacobian_error[k][m])));
         let missing = [0, 1].map(|k| self.efforts[k] - given[k]);
         let missing_error = [0, 1].map(|k| missing[k].error() + subject.coefficients[k][0]);
         // The step that the runtime computes from these numbers, and its rounding.
@@ -185,21 +148,11 @@ impl<'a> Local<'a> {
             missing_error[k] + along(0) + along(1)
         });
 
-        // How far an earlier Jacobian is from the one here.
-        let change = earlier
-            .map(|step| [0, 1].map(|k| [0, 1].map(|m: usize| gradient[k][m].plus(&-step.gradient[k][m]))));
         let bend = Bend::new(&self.expansions, self.cell.half, deviation);
+        // G and what rounding adds to it.
         let left_out = |v: &[Taylor; 2]| {
-            let mut sums = bend.remainders(v);
-            for (k, sum) in sums.iter_mut().enumerate() {
-                *sum = sum.widened(slack[k]);
-                if let Some(change) = &change {
-                    *sum = sum
-                        .plus(&change[k][0].product(&v[0]))
-                        .plus(&change[k][1].product(&v[1]));
-                }
-            }
-            sums
+            let sums = bend.remainders(v);
+            [0, 1].map(|k| sums[k].widened(slack[k]))
         };
         let back = deviation.map(|d| -d);
         let after = solve(jacobian, left_out(&back)).map(Taylor::real);
@@ -208,9 +161,6 @@ impl<'a> Local<'a> {
         (bounded(&after) && bounded(&residual)).then_some(Step {
             deviation: after,
             residual,
-            gradient,
-            jacobian,
-            jacobian_error,
         })
     }
 
@@ -254,18 +204,6 @@ impl<'a> Local<'a> {
         cell.centre[axis] = centre;
         cell.half[axis] = (to - centre).max(centre - from).next_up();
         Local::new(self.subject, &cell)
-    }
-
-    /// A step over the cell `whole` over this part of it.
-    fn seen_step(&self, step: &Step, whole: &Local<'_>) -> Step {
-        let pair = |functions: &[Taylor; 2]| functions.each_ref().map(|function| self.seen(function, whole));
-        Step {
-            deviation: pair(&step.deviation),
-            residual: pair(&step.residual),
-            gradient: step.gradient.each_ref().map(pair),
-            jacobian: step.jacobian.each_ref().map(pair),
-            jacobian_error: step.jacobian_error,
-        }
     }
 
     /// A function over the cell of `whole` as a function over this part of it.

@@ -55,7 +55,7 @@ pub(super) fn diagnostic(
     if !reached.iter().all(|bound| bound.is_finite()) {
         return airframe.diagnostic(
             Code::Tolerance,
-            "inverse",
+            "throttle.min",
             format!("nothing can be proven of the {}", evaluator.description()),
             "",
             idle_mend.unwrap_or_else(|| {

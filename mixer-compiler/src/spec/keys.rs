@@ -82,26 +82,12 @@ pub const HIGHEST_DEGREE: usize = 15;
 const METHODS: &[&str] = &[
     "auto",
     "polynomial",
-    "bilinear",
-    "quadratic",
-    "eight-term",
-    "cubic",
-    "table",
     "bilinear-newton",
     "quadratic-newton",
-    "eight-term-newton",
     "cubic-newton",
-    "table-newton",
-    "bilinear-shamanskii",
-    "quadratic-shamanskii",
-    "eight-term-shamanskii",
-    "cubic-shamanskii",
-    "table-shamanskii",
     "bilinear-newton2",
     "quadratic-newton2",
-    "eight-term-newton2",
     "cubic-newton2",
-    "table-newton2",
 ];
 
 /// Names of the evaluators that a file can ask for.

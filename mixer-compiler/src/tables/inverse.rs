@@ -1,8 +1,8 @@
 //! The numbers of an inverse map, whatever its form.
 
 use mixer_rt::{
-    BilinearSeed, CubicSeed, EightTermSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity,
-    RootCoordinates, Scalar, Seed, Seeded, TableSeed, ThrottleRange,
+    BilinearSeed, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity, RootCoordinates,
+    Scalar, Seed, Seeded, ThrottleRange,
 };
 
 use crate::inverse::evaluator::SeedForm;
@@ -30,8 +30,6 @@ pub enum InverseTable {
         seed: SeedTable,
         /// Newton steps.
         steps: u8,
-        /// Residuals per step.
-        residuals: u8,
     },
 }
 
@@ -42,17 +40,13 @@ pub enum SeedTable {
     Bilinear(BilinearSeed),
     /// Six terms per throttle.
     Quadratic(QuadraticSeed),
-    /// Eight terms per throttle.
-    EightTerm(EightTermSeed),
     /// Ten terms per throttle.
     Cubic(CubicSeed),
-    /// Sixteen knots.
-    Table(TableSeed),
 }
 
 impl SeedTable {
     /// Rounds the coefficients of u and of l.
-    fn new(form: SeedForm, offset: [f64; 2], [upper, lower]: [&[f64]; 2]) -> Self {
+    fn new(form: SeedForm, [upper, lower]: [&[f64]; 2]) -> Self {
         fn rounded<const TERMS: usize>(coefficients: &[f64]) -> [f32; TERMS] {
             std::array::from_fn(|index| coefficients.get(index).map_or(0.0, |&c| c as f32))
         }
@@ -65,22 +59,10 @@ impl SeedTable {
                 upper: rounded(upper),
                 lower: rounded(lower),
             }),
-            SeedForm::EightTerm => SeedTable::EightTerm(EightTermSeed {
-                upper: rounded(upper),
-                lower: rounded(lower),
-            }),
             SeedForm::Cubic => SeedTable::Cubic(CubicSeed {
                 upper: rounded(upper),
                 lower: rounded(lower),
             }),
-            SeedForm::Table => {
-                let [upper, lower]: [[f32; 16]; 2] = [rounded(upper), rounded(lower)];
-                let knot = |index: usize| [upper[index], lower[index]];
-                SeedTable::Table(TableSeed {
-                    offset: offset.map(|x| x as f32),
-                    knots: std::array::from_fn(|i| std::array::from_fn(|j| knot(4 * i + j))),
-                })
-            }
         }
     }
 
@@ -89,9 +71,7 @@ impl SeedTable {
         match self {
             SeedTable::Bilinear(_) => "BilinearSeed",
             SeedTable::Quadratic(_) => "QuadraticSeed",
-            SeedTable::EightTerm(_) => "EightTermSeed",
             SeedTable::Cubic(_) => "CubicSeed",
-            SeedTable::Table(_) => "TableSeed",
         }
     }
 
@@ -100,9 +80,7 @@ impl SeedTable {
         match self {
             SeedTable::Bilinear(_) => 2 * 4,
             SeedTable::Quadratic(_) => 2 * 6,
-            SeedTable::EightTerm(_) => 2 * 8,
             SeedTable::Cubic(_) => 2 * 10,
-            SeedTable::Table(_) => 2 + 2 * 16,
         }
     }
 }
@@ -112,9 +90,7 @@ impl Seed for SeedTable {
         match self {
             SeedTable::Bilinear(seed) => seed.guess(x, y),
             SeedTable::Quadratic(seed) => seed.guess(x, y),
-            SeedTable::EightTerm(seed) => seed.guess(x, y),
             SeedTable::Cubic(seed) => seed.guess(x, y),
-            SeedTable::Table(seed) => seed.guess(x, y),
         }
     }
 }
@@ -139,18 +115,15 @@ impl InverseTable {
             FittedInverse::Seeded {
                 seed,
                 steps,
-                residuals,
                 coordinates,
-                offset,
                 coefficients: [upper, lower],
             } => InverseTable::Seeded {
                 coordinates: RootCoordinates {
                     x: coordinates.x.map(|x| x as f32),
                     y: coordinates.y.map(|x| x as f32),
                 },
-                seed: SeedTable::new(*seed, *offset, [upper, lower]),
+                seed: SeedTable::new(*seed, [upper, lower]),
                 steps: *steps,
-                residuals: *residuals,
             },
         }
     }
@@ -163,11 +136,11 @@ impl InverseTable {
         }
     }
 
-    /// Newton steps, and residuals of each.
-    pub fn steps(&self) -> (u8, u8) {
+    /// Newton steps.
+    pub fn steps(&self) -> u8 {
         match self {
-            InverseTable::Polynomial { .. } => (0, 1),
-            InverseTable::Seeded { steps, residuals, .. } => (*steps, *residuals),
+            InverseTable::Polynomial { .. } => 0,
+            InverseTable::Seeded { steps, .. } => *steps,
         }
     }
 
@@ -209,27 +182,25 @@ impl<P: Quantity> Inverse<P> for &InverseTable {
             coordinates,
             seed,
             steps,
-            residuals,
         } = self
         else {
             return self
                 .polynomial()
                 .map_or(efforts, |polynomial| polynomial.throttles(pair, range, efforts));
         };
-        fn seeded<P: Quantity, const STEPS: usize, const RESIDUALS: usize>(
+        fn seeded<P: Quantity, const STEPS: usize>(
             coordinates: RootCoordinates,
             seed: SeedTable,
             pair: &Pair<P>,
             range: &ThrottleRange,
             efforts: [f32; 2],
         ) -> [f32; 2] {
-            Seeded::<SeedTable, STEPS, RESIDUALS> { coordinates, seed }.throttles(pair, range, efforts)
+            Seeded::<SeedTable, STEPS> { coordinates, seed }.throttles(pair, range, efforts)
         }
-        let evaluate = match (steps, residuals) {
-            (0, _) => seeded::<P, 0, 1>,
-            (1, 1) => seeded::<P, 1, 1>,
-            (1, _) => seeded::<P, 1, 2>,
-            _ => seeded::<P, 2, 1>,
+        let evaluate = match steps {
+            0 => seeded::<P, 0>,
+            1 => seeded::<P, 1>,
+            _ => seeded::<P, 2>,
         };
         evaluate(*coordinates, *seed, pair, range, efforts)
     }

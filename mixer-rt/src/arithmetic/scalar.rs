@@ -5,7 +5,7 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
-use crate::{TableSeed, clamp, sqrt};
+use crate::{clamp, sqrt};
 
 /// A number that tables in `f32` are applied to. Every operation stands for one operation in `f32`, rounded to
 /// nearest.
@@ -35,9 +35,6 @@ pub trait Scalar:
     fn within_positive(self, low: f32, high: f32) -> Self {
         self.within(low, high)
     }
-
-    /// [`TableSeed::at`]: the throttles at a place in a table.
-    fn interpolate(table: &TableSeed, place: [Self; 2]) -> [Self; 2];
 }
 
 impl Scalar for f32 {
@@ -70,10 +67,5 @@ impl Scalar for f32 {
         let (bits, low, high) = (self.to_bits() as i32, low.to_bits() as i32, high.to_bits() as i32);
         let bits = if bits > low { bits } else { low };
         f32::from_bits(if bits < high { bits } else { high } as u32)
-    }
-
-    #[inline(always)]
-    fn interpolate(table: &TableSeed, place: [f32; 2]) -> [f32; 2] {
-        table.at(place)
     }
 }

@@ -129,25 +129,6 @@ impl Seed for BilinearSeed {
     }
 }
 
-/// Terms 1, x, y, xy, x2, y2, x2y, xy2.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EightTermSeed {
-    /// Coefficients of the upper throttle.
-    pub upper: [f32; 8],
-    /// Coefficients of the lower throttle.
-    pub lower: [f32; 8],
-}
-
-impl Seed for EightTermSeed {
-    #[inline(always)]
-    fn guess<S: Scalar>(&self, x: S, y: S) -> [S; 2] {
-        let evaluate = |[c, cx, cy, cxy, cx2, cy2, cx2y, cxy2]: [f32; 8]| {
-            ((y * cx2y + cx2) * x + ((y * cxy2 + cxy) * y + cx)) * x + ((y * cy2 + cy) * y + c)
-        };
-        [evaluate(self.upper), evaluate(self.lower)]
-    }
-}
-
 /// Terms 1, x, y, xy, x2, y2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadraticSeed {
@@ -186,32 +167,24 @@ impl Seed for CubicSeed {
     }
 }
 
-/// A seed in root coordinates and `STEPS` Newton steps on the forward map, each with `RESIDUALS` residuals to one
-/// Jacobian: 1 is Newton's method, 2 is Shamanskii's (1967), of third order.
+/// A seed in root coordinates and `STEPS` Newton steps on the forward map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seeded<S, const STEPS: usize, const RESIDUALS: usize = 1> {
+pub struct Seeded<S, const STEPS: usize> {
     /// The coordinates of the seed.
     pub coordinates: RootCoordinates,
     /// The seed.
     pub seed: S,
 }
 
-impl<P: Quantity, S: Seed, const STEPS: usize, const RESIDUALS: usize> Inverse<P>
-    for Seeded<S, STEPS, RESIDUALS>
-{
+impl<P: Quantity, S: Seed, const STEPS: usize> Inverse<P> for Seeded<S, STEPS> {
     #[inline(always)]
     fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
         let [x, y] = self.coordinates.at(efforts);
         let mut throttles = self.seed.guess(x, y).map(|throttle| range.clamp(throttle));
         for _ in 0..STEPS {
-            let (mut given, jacobian) = pair.efforts_and_jacobian(throttles);
-            for residual in 0..RESIDUALS {
-                if residual > 0 {
-                    given = pair.efforts(throttles);
-                }
-                let step = solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
-                throttles = [0, 1].map(|k| range.clamp(throttles[k] + step[k]));
-            }
+            let (given, jacobian) = pair.efforts_and_jacobian(throttles);
+            let step = solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
+            throttles = [0, 1].map(|k| range.clamp(throttles[k] + step[k]));
         }
         throttles
     }

@@ -15,27 +15,18 @@ pub(super) struct Sample {
 #[derive(Debug)]
 pub(super) struct Sampled {
     pub(super) samples: Vec<Sample>,
-    /// Jacobians in units of the tolerances.
-    pub(super) jacobians: Vec<[[f64; 2]; 2]>,
     /// Squares of [`weights`] with an emphasis, once they are needed.
     emphasised: OnceCell<(f64, Vec<f64>)>,
 }
 
 impl Sampled {
-    pub(super) fn new(pair: &PairMap, points: usize, next_to_a_fold: bool, tolerance: [f64; 2]) -> Self {
+    pub(super) fn new(pair: &PairMap, points: usize, next_to_a_fold: bool) -> Self {
         let grid = match next_to_a_fold {
             true => pair.edge_grid(points),
             false => pair.grid(points),
         };
-        let samples = samples(pair, grid);
-        let scaled = |sample: &Sample| {
-            let [by_f, by_q] = pair.jacobian(sample.throttles);
-            [by_f.map(|x| x / tolerance[0]), by_q.map(|x| x / tolerance[1])]
-        };
-        let jacobians = samples.iter().map(scaled).collect();
         Sampled {
-            samples,
-            jacobians,
+            samples: samples(pair, grid),
             emphasised: OnceCell::new(),
         }
     }

@@ -1,10 +1,9 @@
 //! The operations of the runtime on Taylor models.
 
-use mixer_rt::{Scalar, TableSeed};
+use mixer_rt::Scalar;
 
 use super::{Taylor, UP};
 use crate::model::interval::Interval;
-use crate::proof::table;
 
 impl Scalar for Taylor {
     fn constant(value: f32) -> Taylor {
@@ -52,9 +51,5 @@ impl Scalar for Taylor {
         let beyond = (range.high - f64::from(high)).max(f64::from(low) - range.low);
         // Limiting moves a number by no more than it lies outside, and two numbers no further apart.
         if beyond <= 0.0 { self } else { self.widened(beyond) }
-    }
-
-    fn interpolate(table: &TableSeed, place: [Taylor; 2]) -> [Taylor; 2] {
-        table::interpolate(table, place)
     }
 }

@@ -10,8 +10,8 @@
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hprintln;
 use mixer_rt::{
-    BilinearSeed, Biquadratic, Cubic, CubicSeed, EightTermSeed, Inverse, Pair, PolynomialInverse,
-    QuadraticSeed, Quartic, RootCoordinates, Seeded, TableSeed, ThrottleRange, Wrench,
+    BilinearSeed, Biquadratic, Cubic, CubicSeed, Inverse, Pair, PolynomialInverse,
+    QuadraticSeed, Quartic, RootCoordinates, Seeded, ThrottleRange, Wrench,
 };
 use probe::{Counter, Mixer};
 
@@ -56,16 +56,6 @@ const fn numbers<const COUNT: usize>(first: f32) -> [f32; COUNT] {
     numbers
 }
 
-const fn knots() -> [[[f32; 2]; 4]; 4] {
-    let mut knots = [[[0.1; 2]; 4]; 4];
-    let mut k = 0;
-    while k < 16 {
-        knots[k / 4][k % 4] = [0.1 + 0.053 * k as f32, 0.97 - 0.049 * k as f32];
-        k += 1;
-    }
-    knots
-}
-
 static TERMS: [f32; 21] = numbers(0.71);
 static OTHER_TERMS: [f32; 21] = numbers(0.67);
 
@@ -77,21 +67,6 @@ macro_rules! polynomial {
             degree: $degree,
             upper: TERMS.first_chunk::<$terms>().unwrap(),
             lower: OTHER_TERMS.first_chunk::<$terms>().unwrap(),
-        }
-    };
-}
-
-macro_rules! seed {
-    ($seed:ident) => {
-        $seed {
-            upper: numbers(0.41),
-            lower: numbers(0.37),
-        }
-    };
-    (TableSeed,) => {
-        TableSeed {
-            offset: [-0.31, -0.37],
-            knots: knots(),
         }
     };
 }
@@ -128,16 +103,25 @@ macro_rules! count {
     }};
 }
 
-/// A seed alone and with every refinement.
+/// A seed with one and with two Newton steps.
 macro_rules! count_seed {
-    ($counter:ident, $seed:ident, $value:expr, $none:literal, $newton:literal, $shamanskii:literal, $newton2:literal) => {
-        count_seed!($counter, $none, $value, Seeded<$seed, 0>);
-        count_seed!($counter, $newton, $value, Seeded<$seed, 1>);
-        count_seed!($counter, $shamanskii, $value, Seeded<$seed, 1, 2>);
-        count_seed!($counter, $newton2, $value, Seeded<$seed, 2>);
+    ($counter:ident, $seed:ident, $newton:literal, $newton2:literal) => {
+        count_seed!($counter, $seed, $newton, Seeded<$seed, 1>);
+        count_seed!($counter, $seed, $newton2, Seeded<$seed, 2>);
     };
-    ($counter:ident, $name:literal, $value:expr, $type:ty) => {
-        count!($counter, $name, $type, Seeded { coordinates: COORDINATES, seed: $value });
+    ($counter:ident, $seed:ident, $name:literal, $type:ty) => {
+        count!(
+            $counter,
+            $name,
+            $type,
+            Seeded {
+                coordinates: COORDINATES,
+                seed: $seed {
+                    upper: numbers(0.41),
+                    lower: numbers(0.37),
+                }
+            }
+        );
     };
 }
 
@@ -219,49 +203,7 @@ fn print(count: &Count) {
         PolynomialInverse<'static>,
         polynomial!(5, 21)
     );
-    count_seed!(
-        count,
-        BilinearSeed,
-        seed!(BilinearSeed),
-        "bilinear",
-        "bilinear-newton",
-        "bilinear-shamanskii",
-        "bilinear-newton2"
-    );
-    count_seed!(
-        count,
-        QuadraticSeed,
-        seed!(QuadraticSeed),
-        "quadratic",
-        "quadratic-newton",
-        "quadratic-shamanskii",
-        "quadratic-newton2"
-    );
-    count_seed!(
-        count,
-        EightTermSeed,
-        seed!(EightTermSeed),
-        "eight-term",
-        "eight-term-newton",
-        "eight-term-shamanskii",
-        "eight-term-newton2"
-    );
-    count_seed!(
-        count,
-        CubicSeed,
-        seed!(CubicSeed),
-        "cubic",
-        "cubic-newton",
-        "cubic-shamanskii",
-        "cubic-newton2"
-    );
-    count_seed!(
-        count,
-        TableSeed,
-        seed!(TableSeed,),
-        "table",
-        "table-newton",
-        "table-shamanskii",
-        "table-newton2"
-    );
+    count_seed!(count, BilinearSeed, "bilinear-newton", "bilinear-newton2");
+    count_seed!(count, QuadraticSeed, "quadratic-newton", "quadratic-newton2");
+    count_seed!(count, CubicSeed, "cubic-newton", "cubic-newton2");
 }

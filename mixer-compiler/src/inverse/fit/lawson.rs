@@ -2,8 +2,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::fit_efforts::{SMOOTH, dot};
-
 /// Rounds of reweighting.
 pub(super) const ROUNDS: usize = 12;
 
@@ -21,8 +19,8 @@ pub(super) struct Lawson<'a> {
     pub(super) targets: &'a [[f64; 2]],
     /// The weights of the first round.
     pub(super) weights: Vec<f64>,
-    /// Combinations of coefficients that should be zero: they decide where there are no samples.
-    pub(super) smooth: &'a [Vec<f64>],
+    /// True where Newton steps follow, which square the error.
+    pub(super) is_refined: bool,
 }
 
 impl Lawson<'_> {
@@ -54,7 +52,8 @@ impl Lawson<'_> {
             // Lawson's factor is the error itself. Newton steps square the seed's error: its root then.
             let mut sum = 0.0;
             for (weight, error) in weights.iter_mut().zip(&errors) {
-                *weight *= (error / largest).sqrt() + 1e-3;
+                let factor = error / largest;
+                *weight *= if self.is_refined { factor.sqrt() } else { factor } + 1e-3;
                 sum += *weight;
             }
             let scale = weights.len() as f64 / sum;
@@ -79,10 +78,6 @@ impl Lawson<'_> {
                 right[1][i] += weight * term * target[1];
             }
             accumulate(&mut normal, terms, row, weight);
-        }
-        let size = (0..terms).map(|i| normal[i * terms + i]).sum::<f64>() / terms as f64;
-        for row in self.smooth {
-            accumulate(&mut normal, terms, row, SMOOTH * size);
         }
         let scale: Vec<f64> = (0..terms)
             .map(|i| 1.0 / normal[i * terms + i].max(f64::MIN_POSITIVE).sqrt())
@@ -119,4 +114,14 @@ fn accumulate(normal: &mut [f64], terms: usize, row: &[f64], weight: f64) {
         }
         i += 1;
     }
+}
+
+/// The sum of products.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (mut sum, mut i) = (0.0, 0);
+    while i < a.len() {
+        sum += a[i] * b[i];
+        i += 1;
+    }
+    sum
 }
