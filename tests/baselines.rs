@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use mixer_compiler::isolated::IsolatedTables;
-use mixer_rt::{Airmode, Wrench};
+use mixer_rt::{Wrench, tables::Airmode};
 use mixer_tests::{airframes, golden, root};
 
 /// Random setpoints per airframe.

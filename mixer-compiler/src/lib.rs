@@ -98,6 +98,10 @@ fn keep<T>(result: Result<T, Vec<Diagnostic>>, faults: &mut Vec<Diagnostic>) -> 
     result.map_err(|found| faults.extend(found)).ok()
 }
 
+/// The first line of generated Rust: reviews and linters leave out files that have it.
+#[cfg(feature = "format")]
+const GENERATED: &str = "// @generated from an airframe file by mixer-compiler; do not edit.\n";
+
 impl Compiled {
     /// Wrench that one unit of a normalised setpoint asks for: `SCALE` of the generated module.
     pub fn scale(&self) -> mixer_rt::Wrench {
@@ -113,7 +117,7 @@ impl Compiled {
     #[cfg(feature = "format")]
     pub fn rust(&self) -> String {
         match syn::parse2(self.tokens()) {
-            Ok(file) => prettyplease::unparse(&file),
+            Ok(file) => format!("{GENERATED}{}", prettyplease::unparse(&file)),
             // Unformatted Rust is still Rust; the tests keep this from happening.
             Err(_) => self.tokens().to_string(),
         }

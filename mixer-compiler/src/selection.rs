@@ -2,7 +2,10 @@
 
 mod refusal;
 
-use mixer_rt::{Axis, Desaturation, Tolerance};
+use mixer_rt::{
+    Axis,
+    tables::{Desaturation, Tolerance},
+};
 
 use crate::airframe::Airframe;
 use crate::desaturation::attainable::{AreaLoss, Polygon};

@@ -8,9 +8,12 @@ mod inverse;
 mod single;
 
 use mixer_rt::{
-    AttainableSet, Biquadratic, Corner, Cubic, Desaturation, Facets, Health, Pair, Quantity, Quartic,
-    SHORTAGES, Saturation, Scalar, SetpointError, SingleRotor, Tables, ThrottleRange, Tolerance, Unit,
-    Variable, Vertical, VerticalUnit, Voltage, VoltageLaw, Wrench,
+    Health, Saturation, SetpointError, Wrench,
+    tables::{
+        AttainableSet, Biquadratic, Corner, Cubic, Desaturation, Facets, Pair, Quantity, Quartic, SHORTAGES,
+        Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Vertical, VerticalUnit,
+        Voltage, VoltageLaw,
+    },
 };
 
 use crate::airframe::{Airframe, Basis};
@@ -38,11 +41,11 @@ pub struct MixerTables {
     pub voltage: Option<VoltageTable>,
     /// A polygon inside the attainable set.
     pub attainable: AttainableTable,
-    /// Rows of the general path per N m and N: [`mixer_rt::Tables::rows`].
+    /// Rows of the general path per N m and N: [`mixer_rt::tables::Tables::rows`].
     pub rows: [f32; 4],
     /// Priorities of desaturation.
     pub desaturation: Desaturation,
-    /// Least power: [`mixer_rt::Tables::power_bias_nm_per_n`].
+    /// Least power: [`mixer_rt::tables::Tables::power_bias_nm_per_n`].
     pub power_bias_nm_per_n: f32,
     /// A shorter way to desaturate, where the layout allows one.
     pub shortcut: Option<VerticalTable>,
@@ -211,7 +214,7 @@ impl MixerTables {
     /// Mixes with `mixer-rt`, operation by operation as the generated mixer does.
     ///
     /// # Errors
-    /// As [`mixer_rt::mix`].
+    /// As [`mixer_rt::tables::mix`].
     pub fn mix(&self, setpoint: &Wrench, voltage_v: f32) -> Result<AnyMix, SetpointError> {
         self.mix_with_health(setpoint, voltage_v, Health::GOOD)
     }
@@ -219,7 +222,7 @@ impl MixerTables {
     /// [`MixerTables::mix`] with some rotors out.
     ///
     /// # Errors
-    /// As [`mixer_rt::mix`].
+    /// As [`mixer_rt::tables::mix`].
     pub fn mix_with_health(
         &self,
         setpoint: &Wrench,
@@ -228,7 +231,7 @@ impl MixerTables {
     ) -> Result<AnyMix, SetpointError> {
         let mut variables = vec![Variable::default(); self.units.len() + SHORTAGES];
         let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
-        let (achieved, saturation) = mixer_rt::mix_into(
+        let (achieved, saturation) = mixer_rt::tables::mix_into(
             &self.view(),
             setpoint,
             voltage_v,

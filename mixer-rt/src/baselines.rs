@@ -11,7 +11,10 @@
 //! [`IsolatedRotors::sequential`] desaturates F as PX4 does before it clips.
 
 use crate::voltage::Correction;
-use crate::{Airmode, Axis, SetpointError, ThrottleRange, Voltage, Wrench, clamp, sqrt};
+use crate::{
+    Axis, SetpointError, Wrench, clamp, sqrt,
+    tables::{Airmode, ThrottleRange, Voltage},
+};
 
 /// One rotor's share of the allocation.
 #[derive(Clone, Copy, Debug, PartialEq)]

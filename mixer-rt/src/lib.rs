@@ -3,7 +3,8 @@
 //! A coaxial push-pull multirotor has `n` units of two stacked, contra-rotating rotors. The lower rotor works in
 //! the wake of the upper one, so a unit's thrust and torque are polynomials of *both* throttles (Chebbi et al.
 //! 2020, eq. (1)). This crate evaluates what `mixer-compiler` has tabulated from an airframe file. Firmware calls the `mix`
-//! of the module that `mixer_macros::airframe!` or `mixer_compiler::build_script` makes of that file, which calls [`mix()`]:
+//! of the module that `mixer_macros::airframe!` or `mixer_compiler::build_script` makes of that file, which calls
+//! [`tables::mix`]. What firmware handles stands here, what the generated module needs in [`tables`]:
 //!
 //! ```text
 //! setpoint u = [roll, pitch, yaw, thrust]                                     wrench.rs
@@ -32,27 +33,14 @@ mod health;
 mod mix;
 mod pair;
 mod saturation;
-mod tables;
+pub mod tables;
 mod voltage;
 mod wrench;
 
-pub use arithmetic::{Scalar, sqrt};
-pub(crate) use arithmetic::{clamp, rolled};
-pub use desaturation::attainable::{AttainableSet, Corner};
-pub use desaturation::closed_form::{
-    Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortcut, Vertical, VerticalUnit,
-};
-pub use desaturation::general::{FLIPS, PIVOTS, SHORTAGES, Variable};
-pub use desaturation::{Airmode, Desaturation};
+pub(crate) use arithmetic::{clamp, rolled, sqrt};
 pub use health::Health;
-pub use mix::{Airframe, Mix, Outputs, mix, mix_into, mix_with_health};
-pub use pair::{
-    BilinearSeed, Biquadratic, Cubic, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity,
-    Quartic, RootCoordinates, Seed, Seeded, SingleRotor, ThrottleRange, solve,
-};
+pub use mix::{Airframe, Mix, Outputs};
 pub use saturation::{Direction, Saturation};
-pub use tables::{Tables, Tolerance, Unit};
-pub use voltage::{Voltage, VoltageLaw};
 pub use wrench::{Axis, SetpointError, Wrench};
 
 /// The text of this crate by path, for `cargo mixer library`, which compiles it for another target.

@@ -9,7 +9,10 @@ use crate::desaturation::{is_bounded, limited};
 use crate::pair::rotors::Rotors;
 use crate::rolled;
 use crate::voltage::Correction;
-use crate::{Axis, Health, Inverse, Quantity, Saturation, SetpointError, Tables, Unit, Wrench};
+use crate::{
+    Axis, Health, Saturation, SetpointError, Wrench,
+    tables::{Inverse, Quantity, Tables, Unit},
+};
 
 /// What a mix gives.
 #[derive(Clone, Copy, Debug, PartialEq)]

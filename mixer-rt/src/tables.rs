@@ -1,6 +1,19 @@
-//! What the compiler emits for one airframe.
+//! What generated modules consist of: the tables of one airframe, the forms that their parts have, and the functions that
+//! mix by them. Firmware that calls a generated module needs nothing of this.
 
-use crate::{AttainableSet, Desaturation, NoShortcut, Pair, SingleRotor, ThrottleRange, Voltage};
+pub use crate::arithmetic::{Scalar, sqrt};
+pub use crate::desaturation::attainable::{AttainableSet, Corner};
+pub use crate::desaturation::closed_form::{
+    Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortcut, Vertical, VerticalUnit,
+};
+pub use crate::desaturation::general::{FLIPS, PIVOTS, SHORTAGES, Variable};
+pub use crate::desaturation::{Airmode, Desaturation};
+pub use crate::mix::{mix, mix_into, mix_with_health};
+pub use crate::pair::{
+    BilinearSeed, Biquadratic, Cubic, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity,
+    Quartic, RootCoordinates, Seed, Seeded, SingleRotor, ThrottleRange, solve,
+};
+pub use crate::voltage::{Voltage, VoltageLaw};
 
 /// One coaxial unit's share of M and M+.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,10 @@ use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Sub};
 
 use mixer_compiler::tables::{InverseTable, MixerTables};
-use mixer_rt::{Health, Inverse, Pair, Quantity, SHORTAGES, Scalar, Tables, ThrottleRange, Variable, Wrench};
+use mixer_rt::{
+    Health, Wrench,
+    tables::{Inverse, Pair, Quantity, SHORTAGES, Scalar, Tables, ThrottleRange, Variable},
+};
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
 
@@ -63,13 +66,13 @@ impl Scalar for Finite {
     }
 }
 
-/// [`mixer_rt::Seeded`]'s and [`mixer_rt::PolynomialInverse`]'s operations on numbers that have to be finite.
+/// [`mixer_rt::tables::Seeded`]'s and [`mixer_rt::tables::PolynomialInverse`]'s operations on numbers that have to be finite.
 fn evaluate(tables: &MixerTables, efforts: [f32; 2]) -> [f32; 2] {
     let efforts = efforts.map(finite);
     let mut throttles = tables.inverse.guess(efforts).map(|x| tables.throttle.clamp(x));
     for _ in 0..tables.inverse.steps() {
         let (given, jacobian) = tables.pair.efforts_and_jacobian(throttles);
-        let step = mixer_rt::solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
+        let step = mixer_rt::tables::solve(jacobian, [efforts[0] - given[0], efforts[1] - given[1]]);
         throttles = [0, 1].map(|k| tables.throttle.clamp(throttles[k] + step[k]));
     }
     throttles.map(|x| x.0)
@@ -121,7 +124,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         yaw_nm,
         thrust_n,
     };
-    let mixed = mixer_rt::mix_into(&view, &wrench, volts, health, &mut variables, &mut throttle);
+    let mixed = mixer_rt::tables::mix_into(&view, &wrench, volts, health, &mut variables, &mut throttle);
     let (achieved, _) = mixed.expect("finite");
     assert!(
         achieved.to_array().iter().all(|x| x.is_finite()),

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use mixer_compiler::Compiled;
 use mixer_compiler::isolated::IsolatedTables;
 use mixer_compiler::model::PairMap;
-use mixer_rt::{Airmode, Wrench};
+use mixer_rt::{Wrench, tables::Airmode};
 
 use crate::frames::{self, Options};
 use crate::root;
@@ -155,7 +155,7 @@ fn compare(name: &str, compiled: &Compiled) -> [Row; 4] {
                 let efforts = unit
                     .allocation
                     .map(|row| row.iter().zip(setpoint.to_array()).map(|(a, b)| a * b).sum());
-                mixer_rt::Inverse::throttles(&view.inverse, &view.pair, &view.throttle, efforts)
+                mixer_rt::tables::Inverse::throttles(&view.inverse, &view.pair, &view.throttle, efforts)
                     .map(f64::from)
             })
             .collect();

@@ -1,7 +1,10 @@
 //! The same bits on the host and on the target, over many random setpoints: one number is compared for all of them.
 
 use mixer_compiler::Compiled;
-use mixer_rt::{SHORTAGES, Variable, Wrench};
+use mixer_rt::{
+    Wrench,
+    tables::{SHORTAGES, Variable},
+};
 use mixer_setpoints::{Digest, Mixture, RotorsOut};
 
 /// Digest after each tenth of `count` setpoints with `rotors_out`, as the `digest` image prints them.
@@ -16,7 +19,7 @@ pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
             let wrench = Wrench::from_array(setpoint.wrench);
             let mut variables = vec![Variable::default(); tables.units.len() + SHORTAGES];
             let mut throttle = vec![tables.throttle.min; 2 * tables.units.len()];
-            let mixed = mixer_rt::mix_into(
+            let mixed = mixer_rt::tables::mix_into(
                 &tables,
                 &wrench,
                 setpoint.voltage_v,

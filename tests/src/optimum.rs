@@ -20,7 +20,7 @@ mod program;
 
 use microlp::Error;
 use mixer_compiler::model::PairMap;
-use mixer_rt::{Airmode, Health};
+use mixer_rt::{Health, tables::Airmode};
 
 use crate::physics::Physics;
 use program::{Goal, Point, Program, Quantity, Ranges};

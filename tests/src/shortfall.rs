@@ -1,7 +1,7 @@
 //! How far an answer falls short of the optimum.
 
 use microlp::Error;
-use mixer_rt::Airmode;
+use mixer_rt::tables::Airmode;
 
 use crate::optimum::{Optimum, Oracle};
 use crate::request::{Answer, Frame, Request};

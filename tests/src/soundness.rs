@@ -1,6 +1,6 @@
 //! Faults of an answer that no frame and no request excuses, optimal or not.
 
-use mixer_rt::{Airmode, Axis, Direction};
+use mixer_rt::{Axis, Direction, tables::Airmode};
 
 use crate::optimum::Oracle;
 use crate::request::{Answer, Frame, Request};

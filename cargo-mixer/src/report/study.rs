@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::model::PairMap;
-use mixer_rt::{Health, Inverse, Wrench};
+use mixer_rt::{Health, Wrench, tables::Inverse};
 
 use super::number::round_half_digit;
 

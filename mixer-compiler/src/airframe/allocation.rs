@@ -1,6 +1,6 @@
 //! Which axes are controlled, and what gives way when they cannot all be had.
 
-pub use mixer_rt::{Airmode, Axis};
+pub use mixer_rt::{Axis, tables::Airmode};
 use toml::Spanned;
 
 use super::check::{LARGEST_EFFORT, word};

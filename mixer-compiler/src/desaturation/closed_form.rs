@@ -3,7 +3,10 @@
 mod border;
 mod outline;
 
-use mixer_rt::{Airmode, Axis, Facets, VerticalUnit};
+use mixer_rt::{
+    Axis,
+    tables::{Airmode, Facets, VerticalUnit},
+};
 use nalgebra::Vector3;
 
 use crate::airframe::Airframe;

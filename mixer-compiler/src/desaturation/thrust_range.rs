@@ -1,6 +1,6 @@
 //! The range of bare thrust, by the mixer itself: a frame that cannot hover is refused.
 
-use mixer_rt::{Airmode, Axis, Direction, Saturation, Wrench};
+use mixer_rt::{Axis, Direction, Saturation, Wrench, tables::Airmode};
 
 use crate::airframe::Airframe;
 use crate::diagnostic::{Code, Diagnostic};

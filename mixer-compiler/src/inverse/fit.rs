@@ -43,7 +43,7 @@ pub enum FittedInverse {
         thrust: [f64; 2],
         /// Scale and offset of Q to [-1, 1].
         torque: [f64; 2],
-        /// Coefficients of u and of l, in the order of `mixer_rt::PolynomialInverse`.
+        /// Coefficients of u and of l, in the order of `mixer_rt::tables::PolynomialInverse`.
         coefficients: [Vec<f64>; 2],
     },
     /// Coefficients of a seed.
@@ -233,7 +233,7 @@ impl<'a> Inversion<'a> {
     }
 }
 
-/// The terms s^(d-i) t^(i-j) in the order of `mixer_rt::PolynomialInverse`.
+/// The terms s^(d-i) t^(i-j) in the order of `mixer_rt::tables::PolynomialInverse`.
 fn monomials(degree: u8, s: f64, t: f64) -> Vec<f64> {
     let power = |x: f64, exponent: u8| (0..exponent).fold(1.0, |product, _| product * x);
     let mut terms = Vec::new();

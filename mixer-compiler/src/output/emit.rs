@@ -8,7 +8,7 @@ use crate::tables::{
     AttainableTable, BorderTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable,
     VerticalTable,
 };
-use mixer_rt::{BilinearSeed, CubicSeed, Facets, QuadraticSeed};
+use mixer_rt::tables::{BilinearSeed, CubicSeed, Facets, QuadraticSeed};
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -17,7 +17,6 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let mixer = mixer_type(compiled);
     let functions = functions();
     let tables = tables(&compiled.tables);
-    let tables_type = tables_type(&compiled.tables);
     let units = Literal::usize_unsuffixed(compiled.tables.units.len());
     let channels = Literal::usize_unsuffixed(2 * compiled.tables.units.len());
     let [roll, pitch, yaw, thrust] = compiled.scale().to_array().map(float);
@@ -25,12 +24,14 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
         #module_doc
         #[allow(dead_code, unreachable_pub)]
         pub mod #module {
+            use ::mixer_rt::{self as rt, tables};
+
             /// Number of coaxial units.
             pub const UNITS: usize = #units;
             /// Number of output channels, two per unit.
             pub const CHANNELS: usize = #channels;
             /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
-            pub const SCALE: ::mixer_rt::Wrench = ::mixer_rt::Wrench {
+            pub const SCALE: rt::Wrench = rt::Wrench {
                 roll_nm: #roll,
                 pitch_nm: #pitch,
                 yaw_nm: #yaw,
@@ -41,9 +42,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
 
             #functions
 
-            /// The tables; see `mixer_rt::Tables` for their meaning and units.
-            #[doc(hidden)]
-            pub static TABLES: #tables_type = #tables;
+            #tables
         }
     }
 }
@@ -60,25 +59,25 @@ fn mixer_type(compiled: &Compiled) -> TokenStream {
         #[derive(Clone, Copy, Debug, Default)]
         pub struct #mixer;
 
-        impl ::mixer_rt::Airframe for #mixer {
+        impl rt::Airframe for #mixer {
             const NAME: &'static str = #name;
             const UNITS: usize = UNITS;
             const CHANNELS: usize = CHANNELS;
-            const SCALE: ::mixer_rt::Wrench = SCALE;
-            type Mix = ::mixer_rt::Mix<CHANNELS>;
+            const SCALE: rt::Wrench = SCALE;
+            type Mix = rt::Mix<CHANNELS>;
             #[inline]
             fn mix(
-                setpoint: &::mixer_rt::Wrench,
+                setpoint: &rt::Wrench,
                 voltage_v: f32,
-            ) -> ::core::result::Result<Self::Mix, ::mixer_rt::SetpointError> {
+            ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
                 mix(setpoint, voltage_v)
             }
             #[inline]
             fn mix_with_health(
-                setpoint: &::mixer_rt::Wrench,
+                setpoint: &rt::Wrench,
                 voltage_v: f32,
-                health: ::mixer_rt::Health,
-            ) -> ::core::result::Result<Self::Mix, ::mixer_rt::SetpointError> {
+                health: rt::Health,
+            ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
                 mix_with_health(setpoint, voltage_v, health)
             }
         }
@@ -94,10 +93,10 @@ fn functions() -> TokenStream {
         /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a correction.
         #[inline]
         pub fn mix(
-            setpoint: &::mixer_rt::Wrench,
+            setpoint: &rt::Wrench,
             voltage_v: f32,
-        ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-            ::mixer_rt::mix::<{ UNITS + ::mixer_rt::SHORTAGES }, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+        ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+            tables::mix::<{ UNITS + tables::SHORTAGES }, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
         }
 
         /// [`mix`] with the rotors out that `health` names by channel.
@@ -106,11 +105,11 @@ fn functions() -> TokenStream {
         /// As [`mix`].
         #[inline]
         pub fn mix_with_health(
-            setpoint: &::mixer_rt::Wrench,
+            setpoint: &rt::Wrench,
             voltage_v: f32,
-            health: ::mixer_rt::Health,
-        ) -> ::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError> {
-            ::mixer_rt::mix_with_health::<{ UNITS + ::mixer_rt::SHORTAGES }, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
+            health: rt::Health,
+        ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+            tables::mix_with_health::<{ UNITS + tables::SHORTAGES }, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
         }
     }
 }
@@ -159,20 +158,24 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
     lines
 }
 
+/// The tables: a constant per part, and the static that `mixer-rt` reads.
 fn tables(tables: &MixerTables) -> TokenStream {
     let units = tables.units.iter().map(|unit| {
         let allocation = matrix(&unit.allocation);
         let effectiveness = matrix(&unit.effectiveness);
-        let channels = unit.channels.iter().map(|&channel| Literal::u8_unsuffixed(channel));
+        let channels = unit
+            .channels
+            .iter()
+            .map(|&channel| Literal::u8_unsuffixed(channel));
         quote! {
-            ::mixer_rt::Unit { allocation: #allocation, effectiveness: #effectiveness, channels: [#(#channels),*] }
+            tables::Unit { allocation: #allocation, effectiveness: #effectiveness, channels: [#(#channels),*] }
         }
     });
     let thrust = quantity(&tables.pair.thrust);
     let torque = quantity(&tables.pair.torque);
     let singles = tables.singles.iter().map(|single| {
         let (thrust, torque) = (vector(&single.thrust), vector(&single.torque));
-        quote!(::mixer_rt::SingleRotor { thrust: #thrust, torque: #torque })
+        quote!(tables::SingleRotor { thrust: #thrust, torque: #torque })
     });
     let inverse = inverse(&tables.inverse);
     let (min, max) = (float(tables.throttle.min), float(tables.throttle.max));
@@ -180,6 +183,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let attainable = attainable(&tables.attainable);
     let rows = vector(&tables.rows);
     let shortcut = shortcut(tables.shortcut.as_ref());
+    let [basis, inverse_type, shortcut_type] = types(tables);
     let limits = &tables.desaturation;
     let airmode = identifier(&format!("{:?}", limits.airmode));
     let reserve = float(limits.yaw_reserve_nm);
@@ -187,29 +191,46 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let efforts = vector(&tables.tolerance.efforts);
     let wrench = vector(&tables.tolerance.wrench);
     quote! {
-        ::mixer_rt::Tables {
-            units: &[#(#units),*],
-            pair: ::mixer_rt::Pair { thrust: #thrust, torque: #torque },
-            singles: [#(#singles),*],
-            inverse: #inverse,
-            throttle: ::mixer_rt::ThrottleRange { min: #min, max: #max },
-            voltage: #voltage,
-            attainable: #attainable,
+        /// The units: rows of M+, columns of M, output channels.
+        const UNIT_TABLES: [tables::Unit; UNITS] = [#(#units),*];
+        /// The forward map of a unit: thrust and torque as polynomials of both throttles.
+        const PAIR: tables::Pair<#basis> = tables::Pair { thrust: #thrust, torque: #torque };
+        /// What the upper and the lower rotor give alone.
+        const ROTORS_ALONE: [tables::SingleRotor; 2] = [#(#singles),*];
+        /// The inverse map of a unit.
+        const INVERSE: #inverse_type = #inverse;
+        /// The voltage correction.
+        const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = #voltage;
+        /// A polygon inside a unit's attainable set.
+        const ATTAINABLE: tables::AttainableSet<'static> = #attainable;
+        /// The closed form of desaturation, where there is one.
+        const CLOSED_FORM: #shortcut_type = #shortcut;
+
+        /// All tables; see `mixer_rt::tables` for their meaning and units.
+        #[doc(hidden)]
+        pub static TABLES: tables::Tables<'static, #basis, #inverse_type, #shortcut_type> = tables::Tables {
+            units: &UNIT_TABLES,
+            pair: PAIR,
+            singles: ROTORS_ALONE,
+            inverse: INVERSE,
+            throttle: tables::ThrottleRange { min: #min, max: #max },
+            voltage: VOLTAGE,
+            attainable: ATTAINABLE,
             rows: #rows,
-            desaturation: ::mixer_rt::Desaturation {
-                airmode: ::mixer_rt::Airmode::#airmode,
+            desaturation: tables::Desaturation {
+                airmode: tables::Airmode::#airmode,
                 yaw_reserve_nm: #reserve,
             },
             power_bias_nm_per_n: #power_bias,
-            shortcut: #shortcut,
-            tolerance: ::mixer_rt::Tolerance { efforts: #efforts, wrench: #wrench },
-        }
+            shortcut: CLOSED_FORM,
+            tolerance: tables::Tolerance { efforts: #efforts, wrench: #wrench },
+        };
     }
 }
 
 fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     let Some(table) = table else {
-        return quote!(::mixer_rt::NoShortcut);
+        return quote!(tables::NoShortcut);
     };
     let units = table.units.iter().map(|unit| {
         let (allocation, arms, ends) = (vector(&unit.allocation), vector(&unit.arms), vector(&unit.ends));
@@ -219,7 +240,7 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
             .iter()
             .map(|&channel| Literal::u8_unsuffixed(channel));
         quote! {
-            ::mixer_rt::VerticalUnit {
+            tables::VerticalUnit {
                 allocation: #allocation,
                 arms: #arms,
                 spin: #spin,
@@ -233,7 +254,7 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     let facets = |facets: &[Facets]| {
         let facets = facets.iter().map(|facets| {
             let (normal, bounds) = (vector(&facets.normal), vector(&facets.bounds));
-            quote!(::mixer_rt::Facets { normal: #normal, bounds: #bounds })
+            quote!(tables::Facets { normal: #normal, bounds: #bounds })
         });
         quote!(&[#(#facets),*])
     };
@@ -243,7 +264,7 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
     let rounding = float(table.yaw_rounding_nm);
     quote! {
-        &::mixer_rt::Vertical {
+        &tables::Vertical {
             units: &[#(#units),*],
             complete: #complete,
             thrust_n: #thrust,
@@ -262,23 +283,23 @@ fn border(table: &BorderTable) -> TokenStream {
     let corners = vector(&table.corners_n);
     let grids = table.grids.iter().map(|grid| {
         let [offset, per_n] = [grid.offset, grid.per_n].map(float);
-        quote!(::mixer_rt::Grid { offset: #offset, per_n: #per_n })
+        quote!(tables::Grid { offset: #offset, per_n: #per_n })
     });
     let cells = table.cells.iter().map(|cell| {
         let (middle, half) = (vector(&cell.middle), vector(&cell.half));
-        quote!(::mixer_rt::Cell { middle: #middle, half: #half })
+        quote!(tables::Cell { middle: #middle, half: #half })
     });
     let outlines = table.outlines.iter().map(|outline| {
         let slope = float(outline.slope);
         let knots = outline.knots.iter().map(|knot| {
             let [thrust, drop] = [knot.thrust_n, knot.drop].map(float);
-            quote!(::mixer_rt::Knot { thrust_n: #thrust, drop: #drop })
+            quote!(tables::Knot { thrust_n: #thrust, drop: #drop })
         });
-        quote!(::mixer_rt::Outline { slope: #slope, knots: [#(#knots),*] })
+        quote!(tables::Outline { slope: #slope, knots: [#(#knots),*] })
     });
     let lost = float(table.lost_nm);
     quote! {
-        ::mixer_rt::Border {
+        tables::Border {
             corners_n: #corners,
             grids: [#(#grids),*],
             cells: &[#(#cells),*],
@@ -293,33 +314,32 @@ fn attainable(set: &AttainableTable) -> TokenStream {
     let corners = set.corners.iter().map(|corner| {
         let (at, bound) = (vector(&corner.at), float(corner.bound));
         let (edge, before) = (vector(&corner.edge), vector(&corner.before));
-        quote!(::mixer_rt::Corner { at: #at, edge: #edge, before: #before, bound: #bound })
+        quote!(tables::Corner { at: #at, edge: #edge, before: #before, bound: #bound })
     });
-    quote!(::mixer_rt::AttainableSet { scale: #scale, centre: #centre, corners: &[#(#corners),*] })
+    quote!(tables::AttainableSet { scale: #scale, centre: #centre, corners: &[#(#corners),*] })
 }
 
-/// The static type of the tables.
-fn tables_type(tables: &MixerTables) -> TokenStream {
-    let basis = basis(&tables.pair.thrust);
+/// Types of the pair's basis, of the inverse map and of the closed form.
+fn types(tables: &MixerTables) -> [TokenStream; 3] {
     let inverse = match &tables.inverse {
-        InverseTable::Polynomial { .. } => quote!(::mixer_rt::PolynomialInverse<'static>),
+        InverseTable::Polynomial { .. } => quote!(tables::PolynomialInverse<'static>),
         InverseTable::Seeded { seed, steps, .. } => {
             let (seed, steps) = (identifier(seed.type_name()), Literal::u8_unsuffixed(*steps));
-            quote!(::mixer_rt::Seeded<::mixer_rt::#seed, #steps>)
+            quote!(tables::Seeded<tables::#seed, #steps>)
         }
     };
-    let way = tables
-        .shortcut
-        .as_ref()
-        .map(|_| quote!(, &'static ::mixer_rt::Vertical<'static>));
-    quote!(::mixer_rt::Tables<'static, #basis, #inverse #way>)
+    let shortcut = match &tables.shortcut {
+        Some(_) => quote!(&tables::Vertical<'static>),
+        None => quote!(tables::NoShortcut),
+    };
+    [basis(&tables.pair.thrust), inverse, shortcut]
 }
 
 fn basis(quantity: &QuantityTable) -> TokenStream {
     match quantity {
-        QuantityTable::Biquadratic(_) => quote!(::mixer_rt::Biquadratic),
-        QuantityTable::Cubic(_) => quote!(::mixer_rt::Cubic),
-        QuantityTable::Quartic(_) => quote!(::mixer_rt::Quartic),
+        QuantityTable::Biquadratic(_) => quote!(tables::Biquadratic),
+        QuantityTable::Cubic(_) => quote!(tables::Cubic),
+        QuantityTable::Quartic(_) => quote!(tables::Quartic),
     }
 }
 
@@ -340,7 +360,7 @@ fn inverse(inverse: &InverseTable) -> TokenStream {
             let degree = Literal::u8_unsuffixed(*degree);
             let (upper, lower) = (vector(upper), vector(lower));
             quote! {
-                ::mixer_rt::PolynomialInverse {
+                tables::PolynomialInverse {
                     thrust: #thrust,
                     torque: #torque,
                     degree: #degree,
@@ -360,9 +380,9 @@ fn inverse(inverse: &InverseTable) -> TokenStream {
                 SeedTable::Cubic(CubicSeed { upper, lower }) => coefficients(upper, lower),
             };
             quote! {
-                ::mixer_rt::Seeded {
-                    coordinates: ::mixer_rt::RootCoordinates { x: #x, y: #y },
-                    seed: ::mixer_rt::#name { #seed },
+                tables::Seeded {
+                    coordinates: tables::RootCoordinates { x: #x, y: #y },
+                    seed: tables::#name { #seed },
                 }
             }
         }
@@ -384,17 +404,17 @@ fn voltage(tables: &MixerTables) -> TokenStream {
             coefficients,
         } => {
             let (variable, coefficients) = (vector(variable), vector(coefficients));
-            quote!(::mixer_rt::VoltageLaw::Polynomial { variable: #variable, coefficients: &#coefficients })
+            quote!(tables::VoltageLaw::Polynomial { variable: #variable, coefficients: &#coefficients })
         }
         LawTable::Points(points) => {
             let points = matrix(points);
-            quote!(::mixer_rt::VoltageLaw::Points(&#points))
+            quote!(tables::VoltageLaw::Points(&#points))
         }
     };
     let range = vector(&voltage.range_v);
     let [thrust, torque] = [law(&voltage.laws[0]), law(&voltage.laws[1])];
     quote! {
-        ::core::option::Option::Some(::mixer_rt::Voltage { range_v: #range, thrust: #thrust, torque: #torque })
+        ::core::option::Option::Some(tables::Voltage { range_v: #range, thrust: #thrust, torque: #torque })
     }
 }
 

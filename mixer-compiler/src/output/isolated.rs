@@ -5,7 +5,10 @@
 //! (upper -, lower +: a pair's torque is positive where the lower rotor outweighs the upper), a 4 x 2n matrix B.
 
 use mixer_rt::baselines::{IsolatedRotor, IsolatedRotors, ThrustCurve};
-use mixer_rt::{Airmode, SetpointError, ThrottleRange, Wrench};
+use mixer_rt::{
+    SetpointError, Wrench,
+    tables::{Airmode, ThrottleRange},
+};
 use nalgebra::DMatrix;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -144,7 +147,7 @@ impl IsolatedTables {
             rotors: &[#(#rotors),*],
             curve: ::mixer_rt::baselines::ThrustCurve::#curve,
             thrust_n: [#low, #high],
-            throttle: ::mixer_rt::ThrottleRange { min: #min, max: #max },
+            throttle: ::mixer_rt::tables::ThrottleRange { min: #min, max: #max },
             voltage: #voltage,
         })
     }

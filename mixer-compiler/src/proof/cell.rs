@@ -13,7 +13,7 @@
 //! separately, each over the part of the cell where it can occur: where a throttle was limited, its deviation is
 //! the end of the range less t*.
 
-use mixer_rt::{Pair, ThrottleRange, solve};
+use mixer_rt::tables::{Pair, ThrottleRange, solve};
 
 use super::bend::{Bend, squares};
 use super::expansion::{Expansion, Monomials};

@@ -4,7 +4,7 @@
 //! k. Both are enclosed by Taylor models over pieces of the voltage range, the table by running `mixer-rt`'s own
 //! operations; their difference bounds the relative error of k.
 
-use mixer_rt::VoltageLaw as Law;
+use mixer_rt::tables::VoltageLaw as Law;
 
 use super::taylor::Taylor;
 use crate::airframe::{Airframe, VoltageLaw};

@@ -8,7 +8,7 @@ use super::expansion::{Expansion, Monomials};
 use super::*;
 use crate::airframe::Basis;
 use crate::model::interval::Interval;
-use mixer_rt::Scalar;
+use mixer_rt::tables::Scalar;
 
 /// The float x, exactly.
 pub(super) fn exact(x: f64) -> BigRational {

@@ -4,7 +4,7 @@
 //! This observes: it rejects evaluators at little cost, and it tells the proof how sharp a bound can be. A proof
 //! that contradicted it would be wrong.
 
-use mixer_rt::Inverse;
+use mixer_rt::tables::Inverse;
 
 use crate::model::PairMap;
 use crate::tables::MixerTables;

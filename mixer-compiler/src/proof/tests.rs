@@ -4,7 +4,7 @@ use super::enclosure_tests::numbers;
 use super::*;
 use crate::diagnostic::source::Source;
 use crate::tables::{InverseTable, SeedTable};
-use mixer_rt::Inverse;
+use mixer_rt::tables::Inverse;
 
 fn airframe_text(name: &str) -> String {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -173,7 +173,8 @@ fn a_wrong_forward_map_is_refused() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
     for bit in [23, 20, 16] {
         let mut tables = compiled.tables.clone();
-        let crate::tables::QuantityTable::Biquadratic(mixer_rt::Biquadratic(terms)) = &mut tables.pair.thrust
+        let crate::tables::QuantityTable::Biquadratic(mixer_rt::tables::Biquadratic(terms)) =
+            &mut tables.pair.thrust
         else {
             panic!("{:?}", tables.pair)
         };

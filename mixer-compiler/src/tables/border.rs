@@ -1,6 +1,6 @@
 //! The border of a unit's attainable set, as the closed form reads it.
 
-use mixer_rt::{Border, Cell, Grid, Outline};
+use mixer_rt::tables::{Border, Cell, Grid, Outline};
 
 /// [`Border`] with its cells.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! The numbers of an inverse map, whatever its form.
 
-use mixer_rt::{
+use mixer_rt::tables::{
     BilinearSeed, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity, RootCoordinates,
     Scalar, Seed, Seeded, ThrottleRange,
 };

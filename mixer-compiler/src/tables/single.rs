@@ -1,6 +1,6 @@
 //! What a rotor gives alone, rounded.
 
-use mixer_rt::SingleRotor;
+use mixer_rt::tables::SingleRotor;
 
 use crate::airframe::{Airframe, Basis, RotorAlone};
 

@@ -32,7 +32,7 @@ pub use facets::Facets;
 
 use core::hint::black_box;
 
-use crate::{Airmode, Wrench};
+use crate::{Wrench, tables::Airmode};
 
 /// The largest number of units.
 const MOST_UNITS: usize = 4;

@@ -40,7 +40,10 @@ pub use variable::Variable;
 
 use crate::pair::rotors::Rotors;
 use crate::tables::{Tables, Unit};
-use crate::{Desaturation, Quantity, rolled};
+use crate::{
+    rolled,
+    tables::{Desaturation, Quantity},
+};
 use shortage::RAY;
 use simplex::{Budget, Simplex};
 use variable::{Polygon, between, positive};

@@ -13,7 +13,7 @@ use std::time::SystemTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use mixer_compiler::isolated::IsolatedTables;
 use mixer_rt::baselines::IsolatedRotors;
-use mixer_rt::{Airmode, Wrench};
+use mixer_rt::{Wrench, tables::Airmode};
 use mixer_setpoints::{Kind, Requests};
 use mixer_tests::golden;
 use wls::WeightedLeastSquares;
@@ -28,7 +28,10 @@ const REQUESTS: usize = 256;
 
 type Asked = Vec<(Wrench, f32)>;
 
-fn asked<P: mixer_rt::Quantity, I, S>(tables: &mixer_rt::Tables<'_, P, I, S>, kind: Kind) -> Asked {
+fn asked<P: mixer_rt::tables::Quantity, I, S>(
+    tables: &mixer_rt::tables::Tables<'_, P, I, S>,
+    kind: Kind,
+) -> Asked {
     Requests::new(tables, kind, 8)
         .take(REQUESTS)
         .map(|request| (Wrench::from_array(request.wrench), request.voltage_v))

@@ -2,7 +2,10 @@
 
 use mixer_compiler::isolated::IsolatedTables;
 use mixer_rt::baselines::{IsolatedRotors, ThrustCurve};
-use mixer_rt::{Voltage, Wrench, sqrt};
+use mixer_rt::{
+    Wrench,
+    tables::{Voltage, sqrt},
+};
 use wls_alloc::wls::ControlAllocator;
 use wls_alloc::{ExitCode, MatA, VecN};
 

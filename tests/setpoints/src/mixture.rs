@@ -1,6 +1,9 @@
 //! Requests of every kind in turn, and the digest of what a mixer makes of them.
 
-use mixer_rt::{Quantity, Saturation, SetpointError, Tables, Wrench};
+use mixer_rt::{
+    Saturation, SetpointError, Wrench,
+    tables::{Quantity, Tables},
+};
 
 use crate::{Digest, Kind, Ranges, Requests, Setpoint, Setpoints};
 

@@ -1,6 +1,6 @@
 //! Requests to one airframe's mixer, drawn around what it can deliver.
 
-use mixer_rt::{Pair, Quantity, Tables, ThrottleRange, Unit, Voltage};
+use mixer_rt::tables::{Pair, Quantity, Tables, ThrottleRange, Unit, Voltage};
 
 use crate::{Random, Setpoint};
 

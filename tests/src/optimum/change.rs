@@ -1,7 +1,7 @@
 //! How far throttles must move from one request to the next, whichever of the optimal efforts are chosen.
 
 use microlp::{ComparisonOp, Error, OptimizationDirection, Problem, SolveOutcome, Variable};
-use mixer_rt::{Airmode, Health};
+use mixer_rt::{Health, tables::Airmode};
 use nalgebra::{Matrix2, Vector2};
 
 use super::{Optimum, Oracle};

@@ -1,11 +1,11 @@
-//! The attainable torques of a unit at each thrust, as `mixer-rt`'s closed form reads them: see `mixer_rt::Border`.
+//! The attainable torques of a unit at each thrust, as `mixer-rt`'s closed form reads them: see `mixer_rt::tables::Border`.
 //!
 //! With each thrust f a unit has the torques between the nearest points of the border above and below the image of the
 //! throttle box's diagonal u = l, which runs through the set from the idle corner to the full one. (Beside a corner where f
 //! falls along an edge of the throttle box the set reaches further, behind a gap: that is given up.) Both sides are drawn by
 //! chords in equal cells of thrust, lowered where a side bends inwards by what its chords would be outside.
 
-use mixer_rt::{Cell, Grid};
+use mixer_rt::tables::{Cell, Grid};
 
 use super::outline::outline;
 use crate::model::PairMap;

@@ -1,6 +1,6 @@
-//! A side's concave hull in a few straight lines, by which the closed form chooses thrusts: see `mixer_rt::Outline`.
+//! A side's concave hull in a few straight lines, by which the closed form chooses thrusts: see `mixer_rt::tables::Outline`.
 
-use mixer_rt::{Knot, Outline};
+use mixer_rt::tables::{Knot, Outline};
 
 /// Lines of an outline.
 const LINES: usize = Outline::KNOTS + 1;

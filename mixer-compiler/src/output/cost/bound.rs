@@ -4,7 +4,7 @@
 //! where they change the request, or the climb along the null space where they do not; after either the retreat. The
 //! instructions of each part are rounded up from counts of parts; the tests hold the sum to the counts of whole mixers.
 
-use mixer_rt::Outline;
+use mixer_rt::tables::Outline;
 
 use crate::airframe::Basis;
 use crate::compiled::Compiled;
@@ -65,8 +65,8 @@ fn general(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let n = compiled.tables.units.len() as u32;
     let unit = compiled.evaluator.instructions(basis)? + forward(basis) + GENERAL_UNIT;
-    let pivots = u32::from(mixer_rt::PIVOTS) * (PIVOT + n * PIVOT_UNIT);
-    let flips = u32::from(mixer_rt::FLIPS) * (FLIP + n * FLIP_UNIT);
+    let pivots = u32::from(mixer_rt::tables::PIVOTS) * (PIVOT + n * PIVOT_UNIT);
+    let flips = u32::from(mixer_rt::tables::FLIPS) * (FLIP + n * FLIP_UNIT);
     let voltage = if compiled.airframe.voltage.is_some() {
         PER_VOLTAGE
     } else {

@@ -1,6 +1,6 @@
 //! The operations of the runtime on Taylor models.
 
-use mixer_rt::Scalar;
+use mixer_rt::tables::Scalar;
 
 use super::{Taylor, UP};
 use crate::model::interval::Interval;

@@ -15,7 +15,7 @@
 //! that nothing is reversed.
 
 use super::variable::Variable;
-use crate::{Airmode, clamp, rolled, sqrt};
+use crate::{clamp, rolled, sqrt, tables::Airmode};
 
 /// How many shortages there are at most. Each has a [`Variable`] behind those of the units.
 pub const SHORTAGES: usize = 6;

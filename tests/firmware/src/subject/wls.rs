@@ -8,7 +8,7 @@ use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 
 use mixer_rt::baselines::ThrustCurve;
-use mixer_rt::{Health, SetpointError, Wrench, sqrt};
+use mixer_rt::{Health, SetpointError, Wrench, tables::sqrt};
 use wls_alloc::wls::ControlAllocator;
 use wls_alloc::{ExitCode, MatA, VecN};
 
