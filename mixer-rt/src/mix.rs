@@ -15,6 +15,15 @@ use crate::{
 };
 
 /// What a mix gives.
+///
+/// ```
+/// # use mixer_rt::Mix;
+/// /// Commands of a speed controller that takes pulses of 1000 to 2000 microseconds.
+/// fn pulses_us(mix: &Mix<8>) -> [u16; 8] {
+///     mix.throttle.map(|throttle| (1000.0 + 1000.0 * throttle) as u16)
+/// }
+/// assert_eq!(pulses_us(&Mix::default()), [1000; 8]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mix<const CHANNELS: usize> {
@@ -294,6 +303,14 @@ fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
 }
 
 /// Contents of a [`Mix`], for code that is generic over airframes and does not know the number of channels.
+///
+/// ```
+/// # use mixer_rt::{Mix, Outputs};
+/// fn is_idle(outputs: &impl Outputs) -> bool {
+///     outputs.throttle().iter().all(|&throttle| throttle == 0.0)
+/// }
+/// assert!(is_idle(&Mix::<8>::default()));
+/// ```
 pub trait Outputs {
     /// [`Mix::throttle`], one per channel.
     fn throttle(&self) -> &[f32];

@@ -5,6 +5,17 @@ use core::fmt;
 use crate::Axis;
 
 /// The side on which an axis is saturated.
+///
+/// ```
+/// # use mixer_rt::{Axis, Direction, Saturation};
+/// /// The integrator of one axis, held where the mixer cannot follow it.
+/// fn integrate(state: f32, error: f32, axis: Axis, saturation: Saturation) -> f32 {
+///     let direction = if error > 0.0 { Direction::Positive } else { Direction::Negative };
+///     if saturation.is_saturated(axis, direction) { state } else { state + error }
+/// }
+/// assert_eq!(integrate(1.0, 0.5, Axis::Yaw, Saturation::from_bits(1 << 4)), 1.0);
+/// assert_eq!(integrate(1.0, -0.5, Axis::Yaw, Saturation::from_bits(1 << 4)), 0.5);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

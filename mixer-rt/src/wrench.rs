@@ -3,6 +3,12 @@
 use core::fmt;
 
 /// A wrench in the body frame FRD: what the controller asks for, or what the rotors deliver.
+///
+/// ```
+/// # use mixer_rt::Wrench;
+/// let hover = Wrench { thrust_n: 54.0, ..Wrench::default() };
+/// assert_eq!(hover.to_array(), [0.0, 0.0, 0.0, 54.0]);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -95,6 +101,18 @@ impl fmt::Display for Axis {
 }
 
 /// Why a mix was refused. The caller keeps its last outputs or disarms; no throttle is ever made of a NaN.
+///
+/// ```
+/// # use mixer_rt::{Mix, SetpointError};
+/// /// The outputs to command: those of the last good mix where there is no new one.
+/// fn commanded(new: Result<Mix<8>, SetpointError>, last: &mut Mix<8>) -> [f32; 8] {
+///     if let Ok(mix) = new {
+///         *last = mix;
+///     }
+///     last.throttle
+/// }
+/// assert_eq!(commanded(Err(SetpointError::NonFiniteVoltage), &mut Mix::default()), [0.0; 8]);
+/// ```
 // Of whole words, as a mix is: copying a `Result` of other parts takes hundreds of instructions on a Cortex-M.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::alone::Turning;
 use super::date::date_in;
+use super::header::Columns;
 use super::plateau;
 use super::read::{Log, RefusedRow, Sample};
 use super::refusal::Refusal;
@@ -117,22 +118,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         0,
     )?;
     let mut notes = Vec::new();
-    let turning = |s: &Sample, rotor: usize| s.throttle[rotor] > how.stop_throttle;
-    let both =
-        columns.lower.is_some() && [0, 1].map(|r| samples.iter().any(|s| turning(s, r))) == [true, true];
-    let kind = if both { Kind::Pair } else { Kind::SingleRotor };
-    let rotor = usize::from(columns.lower.is_some() && !samples.iter().any(|s| turning(s, 0)));
-    if kind == Kind::SingleRotor && columns.lower.is_some() {
-        notes.push(format!(
-            "the {} rotor stands still throughout: a single rotor",
-            ["lower", "upper"][rotor]
-        ));
-    }
-    if kind == Kind::Pair && !columns.sides_named {
-        notes.push(
-            "the header does not say which rotor is above: the first is taken (--swap exchanges)".into(),
-        );
-    }
+    let Turned { kind, rotor } = turned(&samples, &columns, how.stop_throttle, &mut notes);
 
     let mut kept = samples;
     let before = kept.len();
@@ -156,39 +142,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         Kind::Pair => sign::pair(&name, &columns, &kept, &how.signs, &mut notes)?,
         Kind::SingleRotor => sign::single(&columns, rotor, &kept, &how.signs),
     };
-    let mut points = Vec::new();
-    for (sample, (thrust, torque)) in kept.iter().zip(sums) {
-        let missing = if sample.throttle[rotor].is_nan() || (both && sample.throttle[1].is_nan()) {
-            Some("the throttle is empty")
-        } else if thrust.is_nan() {
-            Some("the thrust is empty")
-        } else if both && torque.is_nan() {
-            Some("the torque is empty")
-        } else {
-            None
-        };
-        if let Some(reason) = missing {
-            refused.push(RefusedRow {
-                file: name.clone(),
-                line: sample.line,
-                reason: reason.into(),
-            });
-            continue;
-        }
-        let [u, l] = match kind {
-            Kind::Pair => sample.throttle,
-            Kind::SingleRotor => [sample.throttle[rotor], 0.0],
-        };
-        points.push(Point {
-            line: sample.line,
-            u,
-            l,
-            thrust,
-            torque,
-            voltage: sample.voltage,
-            power_w: sample.power_w,
-        });
-    }
+    let points = points_of(&name, kind, rotor, kept.iter().zip(sums), &mut refused);
     refused.sort_by_key(|r| r.line);
     if points.is_empty() {
         let first = refused.first().map_or(String::new(), |r| {
@@ -223,6 +177,78 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         notes,
         points,
     })
+}
+
+/// Which rotors of a log turned.
+struct Turned {
+    kind: Kind,
+    /// Of a single rotor: its index among the throttles.
+    rotor: usize,
+}
+
+fn turned(samples: &[Sample], columns: &Columns, stop_throttle: f64, notes: &mut Vec<String>) -> Turned {
+    let turning = |s: &Sample, rotor: usize| s.throttle[rotor] > stop_throttle;
+    let both =
+        columns.lower.is_some() && [0, 1].map(|r| samples.iter().any(|s| turning(s, r))) == [true, true];
+    let kind = if both { Kind::Pair } else { Kind::SingleRotor };
+    let rotor = usize::from(columns.lower.is_some() && !samples.iter().any(|s| turning(s, 0)));
+    if kind == Kind::SingleRotor && columns.lower.is_some() {
+        notes.push(format!(
+            "the {} rotor stands still throughout: a single rotor",
+            ["lower", "upper"][rotor]
+        ));
+    }
+    if kind == Kind::Pair && !columns.sides_named {
+        notes.push(
+            "the header does not say which rotor is above: the first is taken (--swap exchanges)".into(),
+        );
+    }
+    Turned { kind, rotor }
+}
+
+/// The points of rows with all that a fit needs; the others are refused.
+fn points_of<'a>(
+    name: &str,
+    kind: Kind,
+    rotor: usize,
+    rows: impl Iterator<Item = (&'a Sample, (f64, f64))>,
+    refused: &mut Vec<RefusedRow>,
+) -> Vec<Point> {
+    let both = kind == Kind::Pair;
+    let mut points = Vec::new();
+    for (sample, (thrust, torque)) in rows {
+        let missing = if sample.throttle[rotor].is_nan() || (both && sample.throttle[1].is_nan()) {
+            Some("the throttle is empty")
+        } else if thrust.is_nan() {
+            Some("the thrust is empty")
+        } else if both && torque.is_nan() {
+            Some("the torque is empty")
+        } else {
+            None
+        };
+        if let Some(reason) = missing {
+            refused.push(RefusedRow {
+                file: name.to_owned(),
+                line: sample.line,
+                reason: reason.into(),
+            });
+            continue;
+        }
+        let [u, l] = match kind {
+            Kind::Pair => sample.throttle,
+            Kind::SingleRotor => [sample.throttle[rotor], 0.0],
+        };
+        points.push(Point {
+            line: sample.line,
+            u,
+            l,
+            thrust,
+            torque,
+            voltage: sample.voltage,
+            power_w: sample.power_w,
+        });
+    }
+    points
 }
 
 /// A grid whose one rotor repeats its commands and the other does not: its record may have drifted, which no fit sees.

@@ -156,41 +156,32 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     ];
     one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
 
-    let of =
-        |fits: &[Fit; 2]| fold::examine(basis, &fits[0].coefficients, &fits[1].coefficients, throttle_box);
-    let fold = of(&fits);
+    let first_fold = fold_of(basis, &fits, throttle_box);
     let mut cost = None;
-    let mut throttle = throttle_box;
-    if !fold.injective && wishes.monotone {
-        let free = [&fits[0], &fits[1]];
-        let coordinates = [design.coordinates(&thrust), design.coordinates(&torque)];
-        let found = monotone::constrain(&design, free, coordinates, throttle_box).ok_or_else(|| {
-            Refusal::of(
-                label(),
-                "no monotone map was found near the measured one",
-                "a higher idle (--throttle MIN,MAX), another basis, or data without outliers (--robust)",
-            )
-        })?;
-        cost = Some(MonotoneCost {
+    if !first_fold.injective && wishes.monotone {
+        let found = constrained(&design, [&thrust, &torque], &fits, throttle_box)
+            .ok_or_else(|| no_monotone_map(label()))?;
+        let made = MonotoneCost {
             free_thrust_rms: fits[0].residual_rms,
             free_torque_rms: fits[1].residual_rms,
-        });
-        fits = [
-            judge(&design, &thrust, &found.thrust, throttle_box),
-            judge(&design, &torque, &found.torque, throttle_box),
-        ];
-        if let Some(cost) = &cost {
-            doubts::costly_constraint(cost, &points, &fits[1], &mut warnings);
-        }
+        };
+        fits = found;
+        doubts::costly_constraint(&made, &points, &fits[1], &mut warnings);
+        cost = Some(made);
     }
-    let after = if cost.is_some() { of(&fits) } else { fold.clone() };
-    if !after.injective {
-        let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
-        throttle.min = raised(&after, &map, &label, &mut warnings)?;
-    } else {
-        let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
-        throttle.min = clear_of_fold(&map, throttle, &mut warnings);
-    }
+    let fold = match cost {
+        Some(_) => &fold_of(basis, &fits, throttle_box),
+        None => &first_fold,
+    };
+    let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
+    let throttle = ThrottleBox {
+        min: if fold.injective {
+            clear_of_fold(&map, throttle_box, &mut warnings)
+        } else {
+            raised(fold, &map, &label, &mut warnings)?
+        },
+        ..throttle_box
+    };
     let [thrust_fit, torque_fit] = fits;
     judge_quality(&thrust_fit, &torque_fit, &mut warnings);
     let volts = || points.iter().map(|p| p.point.voltage).filter(|v| v.is_finite());
@@ -210,12 +201,39 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         cross_validation: table,
         outliers_left_out: wishes.robust,
         outliers,
-        fold,
+        fold: first_fold,
         monotone: cost,
         normalised_to_v,
         mean_v,
         warnings,
     })
+}
+
+fn fold_of(basis: Basis, [thrust, torque]: &[Fit; 2], throttle_box: ThrottleBox) -> Fold {
+    fold::examine(basis, &thrust.coefficients, &torque.coefficients, throttle_box)
+}
+
+/// The fits nearest to these whose map does not fold; `None` where none was found.
+fn constrained(
+    design: &Design,
+    measured: [&[f64]; 2],
+    fits: &[Fit; 2],
+    throttle_box: ThrottleBox,
+) -> Option<[Fit; 2]> {
+    let coordinates = measured.map(|values| design.coordinates(values));
+    let found = monotone::constrain(design, [&fits[0], &fits[1]], coordinates, throttle_box)?;
+    Some([
+        judge(design, measured[0], &found.thrust, throttle_box),
+        judge(design, measured[1], &found.torque, throttle_box),
+    ])
+}
+
+fn no_monotone_map(files: String) -> Refusal {
+    Refusal::of(
+        files,
+        "no monotone map was found near the measured one",
+        "a higher idle (--throttle MIN,MAX), another basis, or data without outliers (--robust)",
+    )
 }
 
 /// Rounds to a hundredth.

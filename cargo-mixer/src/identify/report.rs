@@ -3,13 +3,15 @@
 use std::fmt::Write as _;
 
 use super::alone::{Alone, AloneFit, Turning};
+use super::bench::Bench;
 use super::cross::Candidate;
 use super::fit::Fit;
+use super::fold::Fold;
 use super::fragment::{exponent_line, provenance, wrapped};
 use super::identified::Identified;
 use super::pair::Pair;
 use super::power::{LeastPower, Power};
-use super::voltage::Exponent;
+use super::voltage::{Exponent, Voltage};
 
 /// The whole report.
 pub fn text(identified: &Identified) -> String {
@@ -22,24 +24,7 @@ pub fn text(identified: &Identified) -> String {
 fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
     writeln!(out, "Data")?;
     for file in &id.files {
-        paragraph(out, "  ", &file.file)?;
-        paragraph(out, "    ", &provenance(file))?;
-        let signs = |signs: &[f64]| {
-            signs
-                .iter()
-                .map(|s| if *s < 0.0 { "-" } else { "+" })
-                .collect::<Vec<_>>()
-                .join(",")
-        };
-        let s = &file.signs;
-        let mut line = format!("signs applied: thrust {} ({})", signs(&s.thrust), s.thrust_policy);
-        if !s.torque.is_empty() {
-            let _ = write!(line, ", torque {} ({})", signs(&s.torque), s.torque_policy);
-        }
-        paragraph(out, "    ", &line)?;
-        for note in &file.notes {
-            paragraph(out, "    ", note)?;
-        }
+        write_file(out, file)?;
     }
     if let Some(pair) = &id.pair {
         write_pair(out, pair)?;
@@ -50,39 +35,8 @@ fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
             paragraph(out, "  ", &line)?;
         }
     }
-    if let Some(v) = &id.voltage {
-        writeln!(
-            out,
-            "\nVoltage  {:.2} to {:.2} V, mean {:.2} V",
-            v.range_v[0], v.range_v[1], v.mean_v
-        )?;
-        for (name, exponent) in v.channels() {
-            match exponent {
-                Exponent::Identified(e) => {
-                    paragraph(out, "  ", &format!("{name}: {}", exponent_line(e)))?;
-                    if let Some([low, high]) = e.low_and_high_throttle {
-                        paragraph(
-                            out,
-                            "    ",
-                            &format!(
-                                "median {low:.2} in the lower half of the throttle range, {high:.2} above"
-                            ),
-                        )?;
-                    }
-                }
-                Exponent::Refused { reason, needed } => {
-                    paragraph(out, "  ", &format!("{name}: no exponent: {reason}"))?;
-                    paragraph(out, "    ", &format!("needed: {needed}"))?;
-                }
-                Exponent::Declared { exponent, .. } => {
-                    writeln!(
-                        out,
-                        "  {name}: exponent {exponent}, declared by --voltage-exponent"
-                    )?;
-                }
-                Exponent::NotMeasured => writeln!(out, "  {name}: not measured")?,
-            }
-        }
+    if let Some(voltage) = &id.voltage {
+        write_voltage(out, voltage)?;
     }
     if let Some(power) = &id.power {
         write_power(out, power)?;
@@ -91,6 +45,62 @@ fn write_report(out: &mut String, id: &Identified) -> std::fmt::Result {
         writeln!(out, "\nTo know")?;
         for warning in &id.warnings {
             paragraph(out, "  * ", warning)?;
+        }
+    }
+    Ok(())
+}
+
+fn write_file(out: &mut String, file: &Bench) -> std::fmt::Result {
+    paragraph(out, "  ", &file.file)?;
+    paragraph(out, "    ", &provenance(file))?;
+    let signs = |signs: &[f64]| {
+        signs
+            .iter()
+            .map(|s| if *s < 0.0 { "-" } else { "+" })
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    let s = &file.signs;
+    let mut line = format!("signs applied: thrust {} ({})", signs(&s.thrust), s.thrust_policy);
+    if !s.torque.is_empty() {
+        let _ = write!(line, ", torque {} ({})", signs(&s.torque), s.torque_policy);
+    }
+    paragraph(out, "    ", &line)?;
+    for note in &file.notes {
+        paragraph(out, "    ", note)?;
+    }
+    Ok(())
+}
+
+fn write_voltage(out: &mut String, v: &Voltage) -> std::fmt::Result {
+    writeln!(
+        out,
+        "\nVoltage  {:.2} to {:.2} V, mean {:.2} V",
+        v.range_v[0], v.range_v[1], v.mean_v
+    )?;
+    for (name, exponent) in v.channels() {
+        match exponent {
+            Exponent::Identified(e) => {
+                paragraph(out, "  ", &format!("{name}: {}", exponent_line(e)))?;
+                if let Some([low, high]) = e.low_and_high_throttle {
+                    paragraph(
+                        out,
+                        "    ",
+                        &format!("median {low:.2} in the lower half of the throttle range, {high:.2} above"),
+                    )?;
+                }
+            }
+            Exponent::Refused { reason, needed } => {
+                paragraph(out, "  ", &format!("{name}: no exponent: {reason}"))?;
+                paragraph(out, "    ", &format!("needed: {needed}"))?;
+            }
+            Exponent::Declared { exponent, .. } => {
+                writeln!(
+                    out,
+                    "  {name}: exponent {exponent}, declared by --voltage-exponent"
+                )?;
+            }
+            Exponent::NotMeasured => writeln!(out, "  {name}: not measured")?,
         }
     }
     Ok(())
@@ -184,6 +194,28 @@ fn paragraph(out: &mut String, indent: &str, text: &str) -> std::fmt::Result {
 }
 
 fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
+    write_cross_validation(out, &pair.cross_validation)?;
+    write_coefficients(out, pair)?;
+    write_statistics(out, pair)?;
+    write_outliers(out, pair)?;
+    write_fold(out, &pair.fold)?;
+    if let Some(cost) = &pair.monotone {
+        let change = |free: f64, now: f64| 100.0 * (now / free - 1.0);
+        writeln!(
+            out,
+            "  kept positive (--monotone): residual rms {:.4} -> {:.4} N ({:+.1} %), {:.5} -> {:.5} N m ({:+.1} %)",
+            cost.free_thrust_rms,
+            pair.thrust.residual_rms,
+            change(cost.free_thrust_rms, pair.thrust.residual_rms),
+            cost.free_torque_rms,
+            pair.torque.residual_rms,
+            change(cost.free_torque_rms, pair.torque.residual_rms)
+        )?;
+    }
+    writeln!(out, "  throttle {} .. {}", pair.throttle.min, pair.throttle.max)
+}
+
+fn write_cross_validation(out: &mut String, candidates: &[Candidate]) -> std::fmt::Result {
     writeln!(out, "\nBasis: error in cross-validation, % of full scale")?;
     writeln!(
         out,
@@ -193,9 +225,13 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
         out,
         "               terms    thrust    torque       thrust    torque     idle"
     )?;
-    for candidate in &pair.cross_validation {
+    for candidate in candidates {
         write_candidate(out, candidate)?;
     }
+    Ok(())
+}
+
+fn write_coefficients(out: &mut String, pair: &Pair) -> std::fmt::Result {
     writeln!(out, "\nModel: {}", pair.basis.name())?;
     writeln!(out, "           thrust, N                            torque, N m")?;
     writeln!(
@@ -211,6 +247,10 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
             cell(&pair.torque)
         )?;
     }
+    Ok(())
+}
+
+fn write_statistics(out: &mut String, pair: &Pair) -> std::fmt::Result {
     writeln!(out)?;
     let both = |of: fn(&Fit) -> f64| (of(&pair.thrust), of(&pair.torque));
     let si = ["N", "N m"];
@@ -241,7 +281,10 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
     if let Some(v) = pair.normalised_to_v {
         writeln!(out, "  all points brought to {v} V by the exponents below")?;
     }
+    Ok(())
+}
 
+fn write_outliers(out: &mut String, pair: &Pair) -> std::fmt::Result {
     writeln!(
         out,
         "\nRows that stand out: {}",
@@ -261,8 +304,10 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
             if pair.outliers_left_out { ", left out" } else { "" }
         )?;
     }
+    Ok(())
+}
 
-    let fold = &pair.fold;
+fn write_fold(out: &mut String, fold: &Fold) -> std::fmt::Result {
     let [u, l] = fold.least_det_at;
     writeln!(
         out,
@@ -296,20 +341,7 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
             None => writeln!(out, "  no idle up to 0.9 of the range is without fold")?,
         }
     }
-    if let Some(cost) = &pair.monotone {
-        let change = |free: f64, now: f64| 100.0 * (now / free - 1.0);
-        writeln!(
-            out,
-            "  kept positive (--monotone): residual rms {:.4} -> {:.4} N ({:+.1} %), {:.5} -> {:.5} N m ({:+.1} %)",
-            cost.free_thrust_rms,
-            pair.thrust.residual_rms,
-            change(cost.free_thrust_rms, pair.thrust.residual_rms),
-            cost.free_torque_rms,
-            pair.torque.residual_rms,
-            change(cost.free_torque_rms, pair.torque.residual_rms)
-        )?;
-    }
-    writeln!(out, "  throttle {} .. {}", pair.throttle.min, pair.throttle.max)
+    Ok(())
 }
 
 fn write_candidate(out: &mut String, c: &Candidate) -> std::fmt::Result {
