@@ -100,7 +100,7 @@ pub fn run(args: &CheckArgs) -> ExitCode {
 /// Refuses a good file for its warnings.
 fn denied(compiled: &Compiled) -> ExitCode {
     let count = compiled.warnings.faults().len();
-    crate::complain(format_args!(
+    crate::print_error(format_args!(
         "{}: {count} {}, and --deny-warnings is given",
         compiled.source_name,
         if count == 1 { "warning" } else { "warnings" }

@@ -45,7 +45,7 @@ pub fn run(args: &GoldenArgs) -> ExitCode {
     } else {
         write(&args.output, &outputs)
     };
-    done.unwrap_or_else(crate::complain)
+    done.unwrap_or_else(crate::print_error)
 }
 
 /// The outputs of all airframes by file name. Everything is compiled before anything is written.
@@ -56,7 +56,7 @@ fn all_outputs(airframes: &[PathBuf]) -> Result<BTreeMap<String, String>, ExitCo
         let compiled = crate::compile(path).map_err(|refusal| refusal.report())?;
         let name = &compiled.airframe.name;
         if let Some(other) = of_name.insert(name.clone(), path) {
-            return Err(crate::complain(format_args!(
+            return Err(crate::print_error(format_args!(
                 "{} and {} are both named {name}: golden outputs are named after the airframe",
                 other.display(),
                 path.display()
@@ -92,15 +92,15 @@ fn write(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<ExitCode, 
         let path = folder.join(file);
         if fs::read_to_string(&path).ok().as_ref() != Some(content) {
             crate::file::write(&path, content)?;
-            crate::remark(format_args!("wrote {}", path.display()));
+            crate::print_note(format_args!("wrote {}", path.display()));
             written += 1;
         }
     }
     if written == 0 {
-        crate::remark(format_args!("{}: nothing has changed", folder.display()));
+        crate::print_note(format_args!("{}: nothing has changed", folder.display()));
     }
     for orphan in compare::orphans(folder, outputs)? {
-        crate::remark(format_args!(
+        crate::print_note(format_args!(
             "{} belongs to none of these airframes: remove it",
             folder.join(orphan).display()
         ));
@@ -114,7 +114,7 @@ fn check(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<ExitCode, 
         return Ok(ExitCode::SUCCESS);
     }
     for difference in &differences {
-        crate::remark(format_args!("{}", folder.join(difference).display()));
+        crate::print_note(format_args!("{}", folder.join(difference).display()));
     }
     Err(format!(
         "{} of {} golden outputs differ; if that is meant, run the command without --check and look at what changes",

@@ -19,7 +19,7 @@ use self::identified::{Settings, identify};
 use self::pair::Wishes;
 use self::read::Reading;
 use self::sign::{SignChoice, SignPolicy};
-use crate::{complain, output, remark};
+use crate::{output, print_error, print_note};
 
 pub mod alone;
 pub mod basis;
@@ -201,37 +201,37 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     let to_stdout = args.output.as_deref() == Some(Path::new("-"));
     let file = args.output.as_deref().filter(|_| !to_stdout);
     if let Some(message) = contradiction(args, file) {
-        complain(message);
+        print_error(message);
         return Err(ExitCode::from(BAD_USAGE));
     }
     if let Some(path) = file {
-        crate::file::not_there(path, args.force).map_err(complain)?;
+        crate::file::not_there(path, args.force).map_err(print_error)?;
     }
     let identified = identify(&args.files, &args.settings()).map_err(|refusals| {
         for refusal in refusals {
-            complain(refusal);
+            print_error(refusal);
         }
         ExitCode::FAILURE
     })?;
     for row in identified.files.iter().flat_map(|f| &f.refused_rows) {
-        remark(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
+        print_note(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
     }
     let fragment = match &args.frame {
         None => fragment::text(&identified),
         Some(frame) => frame
             .airframe(file, &fragment::tables(&identified), identified.power_bias())
             .map_err(|message| {
-                complain(message);
+                print_error(message);
                 ExitCode::from(BAD_USAGE)
             })?,
     };
     let report = if args.json {
-        serde_json::to_string_pretty(&identified).map_err(complain)?
+        serde_json::to_string_pretty(&identified).map_err(print_error)?
     } else {
         report::text(&identified).trim_end().to_string()
     };
     let out = if to_stdout {
-        remark(&report);
+        print_note(&report);
         fragment.trim_end()
     } else {
         &report
@@ -245,10 +245,10 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
             }
         }
         Some(path) => {
-            crate::file::write(path, &fragment).map_err(complain)?;
-            remark(format_args!("wrote {}", path.display()));
+            crate::file::write(path, &fragment).map_err(print_error)?;
+            print_note(format_args!("wrote {}", path.display()));
         }
-        None if !to_stdout && !args.json => remark("\n(nothing written: -o PAIR.toml writes the tables)"),
+        None if !to_stdout && !args.json => print_note("\n(nothing written: -o PAIR.toml writes the tables)"),
         None => {}
     }
     Ok(())

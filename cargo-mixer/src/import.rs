@@ -100,11 +100,11 @@ pub fn run(args: &ImportArgs) -> ExitCode {
     match import(args) {
         Ok(notes) => {
             for note in notes {
-                crate::remark(format_args!("note: {note}"));
+                crate::print_note(format_args!("note: {note}"));
             }
             ExitCode::SUCCESS
         }
-        Err(message) => crate::complain(message),
+        Err(message) => crate::print_error(message),
     }
 }
 

@@ -48,7 +48,7 @@ impl Refusal {
     /// Reports to stderr.
     fn report(&self) -> ExitCode {
         match self {
-            Refusal::Unreadable(message) => complain(message),
+            Refusal::Unreadable(message) => print_error(message),
             Refusal::Faulty(diagnostics) => {
                 show(diagnostics);
                 ExitCode::from(BAD_INPUT)
@@ -58,13 +58,13 @@ impl Refusal {
 }
 
 /// Says on stderr what is wrong; the exit status for a bad input.
-fn complain(message: impl Display) -> ExitCode {
-    remark(format_args!("error: {message}"));
+fn print_error(message: impl Display) -> ExitCode {
+    print_note(format_args!("error: {message}"));
     ExitCode::from(BAD_INPUT)
 }
 
 /// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as in `2>&1 | head`.)
-fn remark(message: impl Display) {
+fn print_note(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(&message.to_string()));
 }
 
@@ -75,7 +75,7 @@ fn show(diagnostics: &Diagnostics) {
     if wanted && io::stderr().is_terminal() {
         let _ = writeln!(io::stderr().lock(), "{}", diagnostics.coloured());
     } else {
-        remark(diagnostics);
+        print_note(diagnostics);
     }
 }
 
@@ -122,11 +122,11 @@ pub fn finish(written: io::Result<()>) -> ExitCode {
 /// What became of an output; the exit status where it failed. A reader that has seen enough (`| head`) is no fault.
 fn output(written: io::Result<()>) -> Result<(), ExitCode> {
     if stdout::was_closed() {
-        return Err(complain("stdout is closed"));
+        return Err(print_error("stdout is closed"));
     }
     match written.and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(complain(format_args!("stdout: {error}")))
+            Err(print_error(format_args!("stdout: {error}")))
         }
         _ => Ok(()),
     }

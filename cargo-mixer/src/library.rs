@@ -95,14 +95,14 @@ pub fn run(args: &LibraryArgs) -> ExitCode {
         match crate::compile(path) {
             Ok(compiled) => match Airframe::new(path, compiled) {
                 Ok(airframe) => airframes.push(airframe),
-                Err(message) => return crate::complain(message),
+                Err(message) => return crate::print_error(message),
             },
             Err(refusal) => return refusal.report(),
         }
     }
     match library(args, &airframes) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(message) => crate::complain(message),
+        Err(message) => crate::print_error(message),
     }
 }
 

@@ -52,7 +52,7 @@ pub fn run(args: &MixArgs) -> ExitCode {
         .iter()
         .find(|channel| usize::from(**channel) >= rotors)
     {
-        crate::complain(format_args!(
+        crate::print_error(format_args!(
             "--failed {channel}: the channels of {} are 0 to {}",
             compiled.airframe.name,
             rotors - 1
@@ -65,16 +65,16 @@ pub fn run(args: &MixArgs) -> ExitCode {
         .fold(Health::GOOD, |health, channel| health.with_failed(*channel));
     let (input, name) = match input(args.setpoints.as_deref()) {
         Ok(input) => input,
-        Err(message) => return crate::complain(message),
+        Err(message) => return crate::print_error(message),
     };
     if let Some(Err(message)) = args
         .output
         .as_deref()
         .map(|path| crate::file::not_there(path, args.force))
     {
-        return crate::complain(message);
+        return crate::print_error(message);
     }
-    let bad_line = |BadLine { line, message }| crate::complain(format_args!("{name}:{line}: {message}"));
+    let bad_line = |BadLine { line, message }| crate::print_error(format_args!("{name}:{line}: {message}"));
     let mixed = match &args.output {
         None => mix(
             &compiled,
@@ -89,7 +89,7 @@ pub fn run(args: &MixArgs) -> ExitCode {
             if mixed.is_ok()
                 && let Err(message) = crate::file::write(path, &String::from_utf8_lossy(&rows))
             {
-                return crate::complain(message);
+                return crate::print_error(message);
             }
             mixed
         }
@@ -97,10 +97,10 @@ pub fn run(args: &MixArgs) -> ExitCode {
     match mixed {
         Ok(0) if args.output.is_none() => crate::finish(Ok(())),
         Ok(0) => ExitCode::SUCCESS,
-        Ok(1) => crate::complain("1 bad row is left out"),
-        Ok(bad) => crate::complain(format_args!("{bad} bad rows are left out")),
+        Ok(1) => crate::print_error("1 bad row is left out"),
+        Ok(bad) => crate::print_error(format_args!("{bad} bad rows are left out")),
         Err(Stopped::Header(bad)) => bad_line(bad),
-        Err(Stopped::Input(error)) => crate::complain(format_args!("{name}: {error}")),
+        Err(Stopped::Input(error)) => crate::print_error(format_args!("{name}: {error}")),
         Err(Stopped::Output(error)) => crate::finish(Err(error)),
     }
 }
@@ -110,7 +110,7 @@ fn input(path: Option<&Path>) -> Result<(Box<dyn Read>, String), String> {
     match path.filter(|path| *path != Path::new("-")) {
         None => {
             if stdin().is_terminal() {
-                crate::remark(format_args!(
+                crate::print_note(format_args!(
                     "waiting for setpoints, a header and rows of {HEADER}; end with Ctrl-D"
                 ));
             }

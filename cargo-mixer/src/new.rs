@@ -33,19 +33,19 @@ const STAND_IN: &str = include_str!("new/stand-in.toml");
 /// Runs the command.
 pub fn run(args: &NewArgs) -> ExitCode {
     if let Err(message) = crate::file::not_there(&args.output, args.force) {
-        return crate::complain(message);
+        return crate::print_error(message);
     }
     let tables = match &args.pair {
         None => STAND_IN.to_owned(),
         Some(path) => match std::fs::read_to_string(path) {
             Ok(text) => text,
-            Err(error) => return crate::complain(format_args!("{}: {error}", path.display())),
+            Err(error) => return crate::print_error(format_args!("{}: {error}", path.display())),
         },
     };
     match args.frame.airframe(Some(&args.output), &tables, None) {
         Ok(text) => write(&args.output, &text),
         Err(message) => {
-            crate::complain(message);
+            crate::print_error(message);
             ExitCode::from(2)
         }
     }
@@ -61,16 +61,16 @@ pub(crate) fn write(path: &std::path::Path, text: &str) -> ExitCode {
     }
     match crate::file::write(path, text) {
         Ok(()) => {
-            crate::remark(format_args!("wrote {}", path.display()));
+            crate::print_note(format_args!("wrote {}", path.display()));
             let schema = path.with_file_name("airframe.schema.json");
             if !schema.exists() {
-                crate::remark(format_args!(
+                crate::print_note(format_args!(
                     "your editor completes and checks it with its schema beside it: cargo mixer schema -o {}",
                     schema.display()
                 ));
             }
             ExitCode::SUCCESS
         }
-        Err(message) => crate::complain(message),
+        Err(message) => crate::print_error(message),
     }
 }

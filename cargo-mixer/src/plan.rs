@@ -67,7 +67,7 @@ fn throttle(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub fn run(args: &PlanArgs) -> ExitCode {
     if args.min >= args.max {
-        crate::complain(format_args!("--min {} is not below --max {}", args.min, args.max));
+        crate::print_error(format_args!("--min {} is not below --max {}", args.min, args.max));
         return ExitCode::from(2);
     }
     let pairs = plan(usize::from(args.levels), args.min, args.max);
@@ -81,10 +81,10 @@ pub fn run(args: &PlanArgs) -> ExitCode {
     let written = crate::file::not_there(path, args.force).and_then(|()| crate::file::write(path, &text));
     match written {
         Ok(()) => {
-            crate::remark(format_args!("wrote {}", path.display()));
+            crate::print_note(format_args!("wrote {}", path.display()));
             ExitCode::SUCCESS
         }
-        Err(message) => crate::complain(message),
+        Err(message) => crate::print_error(message),
     }
 }
 

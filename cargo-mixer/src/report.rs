@@ -56,20 +56,20 @@ pub fn run(args: &ReportArgs) -> ExitCode {
         [] => None,
         files => match BenchPoints::read(&compiled, files) {
             Ok(bench) => Some(bench),
-            Err(refusal) => return crate::complain(refusal),
+            Err(refusal) => return crate::print_error(refusal),
         },
     };
     for doubt in bench.iter().flat_map(|bench| bench.doubts(&compiled)) {
-        crate::remark(format_args!("warning: {doubt}"));
+        crate::print_note(format_args!("warning: {doubt}"));
     }
     let study = Study::new(&compiled, args.thrust);
     let page = page::page(&study, bench.as_ref(), &Origin::now(&args.airframe));
     match crate::file::write(&args.output, &page) {
         Ok(()) => {
-            crate::remark(format_args!("wrote {}", args.output.display()));
+            crate::print_note(format_args!("wrote {}", args.output.display()));
             ExitCode::SUCCESS
         }
-        Err(message) => crate::complain(message),
+        Err(message) => crate::print_error(message),
     }
 }
 
@@ -83,7 +83,7 @@ pub(crate) fn overwriting<'a>(
         _ => input == output,
     };
     inputs.into_iter().any(same).then(|| {
-        crate::complain(format_args!(
+        crate::print_error(format_args!(
             "{} is an input and would be overwritten",
             output.display()
         ));

@@ -27,7 +27,7 @@ pub fn run(args: &SchemaArgs) -> ExitCode {
         None => crate::print(&text),
         Some(path) => match crate::file::write(path, &text) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(message) => crate::complain(message),
+            Err(message) => crate::print_error(message),
         },
     }
 }

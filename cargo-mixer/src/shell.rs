@@ -42,7 +42,7 @@ pub fn man(args: &ManArgs, command: &Command) -> ExitCode {
         Some(name) => match command.find_subcommand(name) {
             Some(found) => page_of(found.clone(), format!("{PROGRAM}-{name}")),
             None => {
-                crate::complain(format_args!("there is no command {name}"));
+                crate::print_error(format_args!("there is no command {name}"));
                 return ExitCode::from(2);
             }
         },

@@ -73,7 +73,7 @@ pub fn run(args: &SweepArgs) -> ExitCode {
     let study = Study::new(&compiled, args.thrust);
     let Sweep { csv, table } = match sweep(&study, args.figure) {
         Ok(sweep) => sweep,
-        Err(message) => return crate::complain(message),
+        Err(message) => return crate::print_error(message),
     };
     match &args.output {
         None => {
@@ -82,7 +82,7 @@ pub fn run(args: &SweepArgs) -> ExitCode {
         }
         Some(path) => match crate::file::write(path, &csv) {
             Ok(()) => crate::finish(write!(stdout().lock(), "{table}")),
-            Err(message) => crate::complain(message),
+            Err(message) => crate::print_error(message),
         },
     }
 }

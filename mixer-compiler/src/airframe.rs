@@ -1,6 +1,7 @@
 //! The checked airframe: a model of which every value is known to make sense.
 
 mod allocation;
+mod basis;
 mod check;
 mod inverse;
 mod layout;
@@ -8,6 +9,7 @@ mod name;
 mod pair;
 mod power;
 mod rotor_alone;
+mod throttle;
 mod unit;
 mod vehicle;
 mod voltage;
@@ -17,15 +19,17 @@ use std::ops::Range;
 use toml::Spanned;
 
 pub use self::allocation::{Airmode, Allocation, Axis};
+pub use self::basis::Basis;
 pub use self::inverse::{EVALUATORS, HIGHEST_DEGREE, Inverse, Method};
-pub use self::pair::{Basis, Pair, Spin};
+pub use self::pair::{Pair, Spin};
 pub use self::power::Power;
 pub use self::rotor_alone::RotorAlone;
+pub use self::throttle::Throttle;
 pub use self::unit::{MOST_UNITS, Unit};
 pub use self::vehicle::{GRAVITY, Vehicle};
 pub use self::voltage::{Voltage, VoltageLaw};
 use crate::diagnostic::source::Source;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, number};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::spec::{self, Places, Spec};
 
 /// An airframe whose values are checked, in SI units. Made by [`Airframe::read`] alone, so that the ranges stated
@@ -54,19 +58,6 @@ pub struct Airframe {
     /// `layout.first_angle_deg` as written, which the units no longer tell.
     pub(crate) first_angle_deg: Option<f64>,
     places: Places,
-}
-
-/// Least room between idle and full throttle: less is a mistake, and none is left in single precision.
-const LEAST_THROTTLE_RANGE: f64 = 0.01;
-
-/// Range of the throttle, 0 <= min < max <= 1, at least 0.01 wide.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Throttle {
-    /// Idle: no rotor is commanded below.
-    pub min: f64,
-    /// Full throttle.
-    pub max: f64,
 }
 
 impl Airframe {
@@ -168,7 +159,10 @@ impl Airframe {
 
 fn check(spec: Spec, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let name = spec.name.as_ref().and_then(|field| name::check(field, faults));
-    let throttle = spec.throttle.as_ref().and_then(|table| throttle(table, faults));
+    let throttle = spec
+        .throttle
+        .as_ref()
+        .and_then(|table| throttle::check(table, faults));
     let pair = spec
         .pair
         .as_ref()
@@ -216,61 +210,6 @@ fn check(spec: Spec, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
             .and_then(|layout| layout.first_angle_deg)
             .map(Spanned::into_inner),
         places,
-    })
-}
-
-fn throttle(table: &spec::Throttle, faults: &mut Vec<Diagnostic>) -> Option<Throttle> {
-    let before = faults.len();
-    for (key, field) in [("min", &table.min), ("max", &table.max)] {
-        if let Some(field) = field
-            && !(0.0..=1.0).contains(field.get_ref())
-        {
-            let help = match *field.get_ref() {
-                percent if (2.0..=100.0).contains(&percent) => {
-                    format!("if per cent were meant, write {}", number(percent / 100.0))
-                }
-                _ => "0 is a rotor at rest, 1 is full throttle".to_string(),
-            };
-            faults.push(
-                Diagnostic::new(
-                    Code::ThrottleRange,
-                    format!("throttle.{key}"),
-                    field.span(),
-                    format!(
-                        "`throttle.{key}` = {} is not between 0 and 1",
-                        number(*field.get_ref())
-                    ),
-                )
-                .label("outside [0, 1]")
-                .help(help),
-            );
-        }
-    }
-    let (min, max) = (table.min.as_ref()?, table.max.as_ref()?);
-    if faults.len() > before {
-        return None;
-    }
-    let (low, high) = (*min.get_ref(), *max.get_ref());
-    if high - low < LEAST_THROTTLE_RANGE {
-        faults.push(
-            Diagnostic::new(
-                Code::ThrottleRange,
-                "throttle.min",
-                min.span(),
-                format!(
-                    "`throttle.min` = {} is not {LEAST_THROTTLE_RANGE} or more below `throttle.max` = {}",
-                    number(low),
-                    number(high)
-                ),
-            )
-            .label("too high, or `max` too low")
-            .help("`min` is the idle, typically 0.05 to 0.15, and `max` is mostly 1"),
-        );
-        return None;
-    }
-    Some(Throttle {
-        min: low + 0.0,
-        max: high,
     })
 }
 

@@ -72,8 +72,8 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
     let in_polygon = thrust_range::thrust_range(&airframe, &tables)?;
-    let (shortcut, lost_between_sides) = closed_form::table(&airframe, &effectiveness).unzip();
-    tables.shortcut = shortcut;
+    let (closed_form, lost_between_sides) = closed_form::table(&airframe, &effectiveness).unzip();
+    tables.closed_form = closed_form;
     let thrust_range_n = thrust_range::delivered_range(&airframe, &tables, in_polygon);
     let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);
     Ok(Compiled {

@@ -24,7 +24,7 @@ use crate::tables::{self, InverseTable, MixerTables, VoltageTable};
 pub(crate) struct Selected {
     /// The evaluator.
     pub(crate) evaluator: Evaluator,
-    /// The tables; a shortcut of desaturation is left open.
+    /// The tables; a closed form of desaturation is left open.
     pub(crate) tables: MixerTables,
     /// What the polygon leaves out.
     pub(crate) lost_area: AreaLoss,
@@ -184,7 +184,7 @@ fn assemble(
             yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,
         },
         power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n as f32,
-        shortcut: None,
+        closed_form: None,
         tolerance: Tolerance {
             efforts: [0.0; 2],
             wrench: [0.0; 4],

@@ -10,8 +10,8 @@ mod single;
 use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
-        AttainableSet, Biquadratic, Corner, Cubic, Desaturation, Facets, Pair, Quantity, Quartic, SHORTAGES,
-        Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Vertical, VerticalUnit,
+        AttainableSet, Biquadratic, ClosedForm, ClosedFormUnit, Corner, Cubic, Desaturation, Facets, Pair,
+        Quantity, Quartic, SHORTAGES, Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable,
         Voltage, VoltageLaw,
     },
 };
@@ -47,8 +47,8 @@ pub struct MixerTables {
     pub desaturation: Desaturation,
     /// Least power: [`mixer_rt::tables::Tables::power_bias_nm_per_n`].
     pub power_bias_nm_per_n: f32,
-    /// A shorter way to desaturate, where the layout allows one.
-    pub shortcut: Option<VerticalTable>,
+    /// The closed form of desaturation, where the layout allows one.
+    pub closed_form: Option<ClosedFormTable>,
     /// What the mixer may miss.
     pub tolerance: Tolerance,
 }
@@ -96,11 +96,11 @@ impl AttainableTable {
     }
 }
 
-/// The shorter way with vertical axes.
+/// The closed form for vertical axes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct VerticalTable {
+pub struct ClosedFormTable {
     /// Shares of C and C+.
-    pub units: Vec<VerticalUnit>,
+    pub units: Vec<ClosedFormUnit>,
     /// True where the airframe serves all axes.
     pub complete: bool,
     /// Least and largest thrust of a unit, N.
@@ -119,10 +119,10 @@ pub struct VerticalTable {
     pub yaw_rounding_nm: f32,
 }
 
-impl VerticalTable {
+impl ClosedFormTable {
     /// The table as `mixer-rt` reads it.
-    pub fn view(&self) -> Vertical<'_> {
-        Vertical {
+    pub fn view(&self) -> ClosedForm<'_> {
+        ClosedForm {
             units: &self.units,
             complete: self.complete,
             thrust_n: self.thrust_n,
@@ -186,7 +186,7 @@ pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
     /// The tables as `mixer-rt` reads them.
-    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<Vertical<'_>>> {
+    pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<ClosedForm<'_>>> {
         Tables {
             units: &self.units,
             pair: self.pair,
@@ -198,7 +198,7 @@ impl MixerTables {
             rows: self.rows,
             desaturation: self.desaturation,
             power_bias_nm_per_n: self.power_bias_nm_per_n,
-            shortcut: self.shortcut.as_ref().map(VerticalTable::view),
+            closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
             tolerance: self.tolerance,
         }
     }
@@ -252,11 +252,11 @@ impl MixerTables {
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
             + 4 + 7 * self.attainable.corners.len()
             + 4 // rows
-            + self.shortcut.as_ref().map_or(0, VerticalTable::floats)
+            + self.closed_form.as_ref().map_or(0, ClosedFormTable::floats)
             + 2 // desaturation
             + 1 // power bias
             + 6; // tolerance
-        let channels = 2 * self.units.len() * (1 + usize::from(self.shortcut.is_some()));
+        let channels = 2 * self.units.len() * (1 + usize::from(self.closed_form.is_some()));
         4 * floats + channels
     }
 }

@@ -10,11 +10,11 @@
 //! [`IsolatedRotors::conventional`] is the paper's comparison (section V): F = B+ u, every throttle clipped.
 //! [`IsolatedRotors::sequential`] desaturates F as PX4 does before it clips.
 
+use crate::desaturation::Airmode;
+use crate::pair::ThrottleRange;
 use crate::voltage::Correction;
-use crate::{
-    Axis, SetpointError, Wrench, clamp, sqrt,
-    tables::{Airmode, ThrottleRange, Voltage},
-};
+use crate::voltage::Voltage;
+use crate::{Axis, SetpointError, Wrench, clamp, sqrt};
 
 /// One rotor's share of the allocation.
 #[derive(Clone, Copy, Debug, PartialEq)]

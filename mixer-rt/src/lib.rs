@@ -30,6 +30,7 @@ mod arithmetic;
 pub mod baselines;
 mod desaturation;
 mod health;
+mod layout;
 mod mix;
 mod pair;
 mod saturation;

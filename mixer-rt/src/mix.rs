@@ -2,17 +2,16 @@
 
 use core::hint::black_box;
 
-use crate::desaturation::closed_form::{Attained, Efforts, Request, Shortcut, Vertical};
+use crate::desaturation::closed_form::{Attained, ClosedForm, DesaturationMethod, Efforts, Request};
 use crate::desaturation::general::{SHORTAGES, Variable, allocate};
 use crate::desaturation::power_bias::add_power_bias;
 use crate::desaturation::{is_bounded, limited};
+use crate::layout::{Tables, Unit};
 use crate::pair::rotors::Rotors;
+use crate::pair::{Inverse, Quantity};
 use crate::rolled;
 use crate::voltage::Correction;
-use crate::{
-    Axis, Health, Saturation, SetpointError, Wrench,
-    tables::{Inverse, Quantity, Tables, Unit},
-};
+use crate::{Axis, Health, Saturation, SetpointError, Wrench};
 
 /// What a mix gives.
 ///
@@ -81,7 +80,13 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
 #[inline(always)]
-pub fn mix<const VARIABLES: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>, S: Shortcut>(
+pub fn mix<
+    const VARIABLES: usize,
+    const CHANNELS: usize,
+    P: Quantity,
+    I: Inverse<P>,
+    S: DesaturationMethod,
+>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -100,7 +105,7 @@ pub fn mix_with_health<
     const CHANNELS: usize,
     P: Quantity,
     I: Inverse<P>,
-    S: Shortcut,
+    S: DesaturationMethod,
 >(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
@@ -108,11 +113,13 @@ pub fn mix_with_health<
     health: Health,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let (achieved, saturation) = match (tables.shortcut.vertical(), health.is_good()) {
-        (Some(vertical), true) => mix_vertical(tables, vertical, setpoint, voltage_v, &mut throttle)?,
+    let (achieved, saturation) = match (tables.closed_form.closed_form(), health.is_good()) {
+        (Some(closed_form), true) => {
+            mix_in_closed_form(tables, closed_form, setpoint, voltage_v, &mut throttle)?
+        }
         _ => {
             let mut variables = [black_box(Variable::default()); VARIABLES];
-            mix_units(
+            mix_in_general(
                 tables,
                 tables.units,
                 setpoint,
@@ -136,7 +143,7 @@ pub fn mix_with_health<
 /// # Errors
 /// As [`mix`]; the buffers are then as they were.
 #[inline(always)]
-pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
+pub fn mix_into<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -144,18 +151,18 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: Shortcut>(
     variables: &mut [Variable],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    if let (Some(vertical), true) = (tables.shortcut.vertical(), health.is_good()) {
-        return mix_vertical(tables, vertical, setpoint, voltage_v, throttle);
+    if let (Some(closed_form), true) = (tables.closed_form.closed_form(), health.is_good()) {
+        return mix_in_closed_form(tables, closed_form, setpoint, voltage_v, throttle);
     }
     let units = variables.len().saturating_sub(SHORTAGES);
     let units = tables.units.get(..units).unwrap_or(tables.units);
     let variables = variables.get_mut(..units.len() + SHORTAGES).unwrap_or_default();
-    mix_units(tables, units, setpoint, voltage_v, health, variables, throttle)
+    mix_in_general(tables, units, setpoint, voltage_v, health, variables, throttle)
 }
 
 /// [`mix_into`] for `units`.
 #[inline(always)]
-fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
+fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     tables: &Tables<'_, P, I, S>,
     units: &[Unit],
     setpoint: &Wrench,
@@ -203,9 +210,9 @@ fn mix_units<P: Quantity, I: Inverse<P>, S: Shortcut>(
 /// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's proof each unit
 /// gives them within the tolerance.
 #[inline(always)]
-fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
+fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
     tables: &Tables<'_, P, I, S>,
-    vertical: &Vertical<'_>,
+    closed_form: &ClosedForm<'_>,
     setpoint: &Wrench,
     voltage_v: f32,
     throttle: &mut [f32],
@@ -217,15 +224,15 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
     let airmode = tables.desaturation.airmode;
     let mut efforts = Efforts::default();
     let power_bias = tables.power_bias_nm_per_n;
-    let (mut attained, room) = vertical.least_norm(&at_reference, &mut efforts);
+    let (mut attained, room) = closed_form.least_norm(&at_reference, &mut efforts);
     if attained == Attained::No {
-        vertical.desaturate(airmode, &at_reference, &mut efforts);
+        closed_form.desaturate(airmode, &at_reference, &mut efforts);
     } else if attained == Attained::Yes && power_bias != 0.0 {
-        vertical.add_power_bias(power_bias, room, &mut efforts);
+        closed_form.add_power_bias(power_bias, room, &mut efforts);
     }
     loop {
         let mut is_near = true;
-        for (unit, effort) in vertical.units.iter().zip(&mut efforts) {
+        for (unit, effort) in closed_form.units.iter().zip(&mut efforts) {
             let wanted = [effort.thrust, effort.torque];
             let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, wanted);
             write(unit.channels, throttles, throttle);
@@ -238,11 +245,11 @@ fn mix_vertical<P: Quantity, I: Inverse<P>, S>(
             break;
         }
         attained = Attained::No;
-        vertical.desaturate(airmode, &at_reference, &mut efforts);
+        closed_form.desaturate(airmode, &at_reference, &mut efforts);
     }
-    let achieved = vertical.wrench(&efforts, factors);
+    let achieved = closed_form.wrench(&efforts, factors);
     let mut saturation = Saturation::NONE;
-    if attained == Attained::No || !vertical.complete {
+    if attained == Attained::No || !closed_form.complete {
         saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
     }
     Ok((achieved, saturation.with_voltage_clamped(clamped)))

@@ -4,87 +4,14 @@
 pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::desaturation::attainable::{AttainableSet, Corner};
 pub use crate::desaturation::closed_form::{
-    Border, Cell, Facets, Grid, Knot, NoShortcut, Outline, Shortcut, Vertical, VerticalUnit,
+    Border, Cell, ClosedForm, ClosedFormUnit, DesaturationMethod, Facets, Grid, Knot, NoClosedForm, Outline,
 };
 pub use crate::desaturation::general::{FLIPS, PIVOTS, SHORTAGES, Variable};
 pub use crate::desaturation::{Airmode, Desaturation};
+pub use crate::layout::{Tables, Tolerance, Unit};
 pub use crate::mix::{mix, mix_into, mix_with_health};
 pub use crate::pair::{
     BilinearSeed, Biquadratic, Cubic, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity,
     Quartic, RootCoordinates, Seed, Seeded, SingleRotor, ThrottleRange, solve,
 };
 pub use crate::voltage::{Voltage, VoltageLaw};
-
-/// One coaxial unit's share of M and M+.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit {
-    /// Rows of the pseudo-inverse M+ (2n x 4, eq. (8)): thrust in N and torque in N m of this unit per
-    /// `[roll, pitch, yaw, thrust]` asked.
-    pub allocation: [[f32; 4]; 2],
-    /// Columns of the effectiveness M (4 x 2n, eq. (5)): `[roll, pitch, yaw, thrust]` per N of this unit's thrust
-    /// and per N m of its torque.
-    pub effectiveness: [[f32; 4]; 2],
-    /// Output indices of the upper and of the lower rotor.
-    pub channels: [u8; 2],
-}
-
-impl Unit {
-    /// This unit's least-norm efforts `[f, Q]` for a wrench `[roll, pitch, yaw, thrust]`: two rows of M+ u.
-    #[inline(always)]
-    pub(crate) fn efforts(&self, wrench: &[f32; 4]) -> [f32; 2] {
-        self.allocation.map(|[roll, pitch, yaw, thrust]| {
-            (roll * wrench[0] + pitch * wrench[1]) + (yaw * wrench[2] + thrust * wrench[3])
-        })
-    }
-
-    /// Adds what `efforts` `[f, Q]` give to a wrench `[roll, pitch, yaw, thrust]` at the voltage's `[k_f, k_Q]`.
-    #[inline(always)]
-    pub(crate) fn add_wrench(&self, efforts: [f32; 2], factors: [f32; 2], wrench: &mut [f32; 4]) {
-        for ((effect, factor), effort) in self.effectiveness.iter().zip(factors).zip(efforts) {
-            let effort = factor * effort;
-            for (wrench, effect) in wrench.iter_mut().zip(effect) {
-                *wrench += effect * effort;
-            }
-        }
-    }
-}
-
-/// What the inverse map may miss; beyond it something has been given up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerance {
-    /// Of one unit's efforts `[f, Q]` at the reference voltage, N and N m.
-    pub efforts: [f32; 2],
-    /// Of the wrench `[roll, pitch, yaw, thrust]`: what those errors add up to, with rounding.
-    pub wrench: [f32; 4],
-}
-
-/// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator of its inverse, `S`
-/// the shorter way to desaturate where there is one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tables<'a, P, I, S = NoShortcut> {
-    /// The units, in the order of the airframe file.
-    pub units: &'a [Unit],
-    /// The forward map of every unit.
-    pub pair: Pair<P>,
-    /// What the upper and the lower rotor of a unit give alone, the other one out.
-    pub singles: [SingleRotor; 2],
-    /// The inverse map of every unit.
-    pub inverse: I,
-    /// The allowed throttles.
-    pub throttle: ThrottleRange,
-    /// The voltage correction; without one k = 1.
-    pub voltage: Option<Voltage<'a>>,
-    /// A polygon inside the attainable set.
-    pub attainable: AttainableSet<'a>,
-    /// Rows of the general path per N m of roll, pitch and yaw and per N of thrust: units over authority at the reference
-    /// voltage, roll and pitch alike; 0 on axes that the airframe does not serve.
-    pub rows: [f32; 4],
-    /// What is given up when a unit cannot follow.
-    pub desaturation: Desaturation,
-    /// Least power: every unit's torque per thrust (N m per N at the reference voltage) while no unit is near its limits.
-    pub power_bias_nm_per_n: f32,
-    /// A shorter way to desaturate while all rotors work.
-    pub shortcut: S,
-    /// What the mixer may miss.
-    pub tolerance: Tolerance,
-}

@@ -1,7 +1,8 @@
 //! The voltage correction: f(V) = k_f(V) f(u, l) and Q(V) = k_Q(V) Q(u, l), k = 1 at the reference voltage.
 //! (The paper multiplies its maps by such a coefficient, section IV-B2.)
 
-use crate::{SetpointError, clamp, tables::Scalar};
+use crate::arithmetic::Scalar;
+use crate::{SetpointError, clamp};
 
 /// How a correction factor depends on voltage. `powf` has no place in a mixer: the compiler fits an exponent law
 /// by a polynomial.

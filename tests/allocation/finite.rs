@@ -112,7 +112,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         rows: view.rows,
         desaturation: view.desaturation,
         power_bias_nm_per_n: view.power_bias_nm_per_n,
-        shortcut: view.shortcut,
+        closed_form: view.closed_form,
         tolerance: view.tolerance,
     };
     let units = tables.units.len();

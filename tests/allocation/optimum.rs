@@ -101,7 +101,7 @@ fn vertical_frames_of_three_and_four_units_reach_the_optimum() {
             let others = (0..4).filter_map(|_| irregular(&mut random, n, 0.0, options));
             let frames: Vec<Frame> = regular.into_iter().chain(others).collect();
             for frame in &frames {
-                assert!(frame.compiled.tables.shortcut.is_some());
+                assert!(frame.compiled.tables.closed_form.is_some());
                 for volts in [REFERENCE_V, frame.draw_volts(&mut random)] {
                     judged.judge(frame, &mut random, (volts, Health::GOOD), 20);
                 }
@@ -178,7 +178,7 @@ fn assert_reaches_the_optimum(frame: &Frame, request: &Request) {
     });
 }
 
-/// Vertical units at `[x, y]`, m.
+/// ClosedForm units at `[x, y]`, m.
 fn vertical<const N: usize>(units: [([f64; 2], bool); N]) -> [Place; N] {
     units.map(|([x, y], clockwise)| at([x, y, 0.0], clockwise))
 }

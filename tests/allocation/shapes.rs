@@ -112,7 +112,7 @@ fn deliver(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) 
 /// null space of an X8's thrusts.
 fn best_yaw(frame: &Frame, answer: &Answer, direction: f64) -> f64 {
     const STEPS: usize = 2000;
-    let table = frame.compiled.tables.shortcut.as_ref().expect("closed form");
+    let table = frame.compiled.tables.closed_form.as_ref().expect("closed form");
     let view = table.view();
     let [roll, pitch, _, thrust] = answer.achieved;
     let least: Vec<f64> = table
@@ -152,7 +152,10 @@ fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally)
         let fault = soundness::fault(frame, &request, &answer).expect("solved");
         // The oracle takes convex hulls, which reach below the least thrust: that is held to the inverse map instead.
         let tables = &frame.compiled.tables;
-        let floor = tables.shortcut.as_ref().map_or(0.0, |table| table.thrust_floor_n);
+        let floor = tables
+            .closed_form
+            .as_ref()
+            .map_or(0.0, |table| table.thrust_floor_n);
         let is_floor = answer.achieved[3] <= f64::from(floor + tables.tolerance.wrench[3]);
         if let Some(fault) = fault.filter(|fault| !(is_floor && fault.starts_with("thrust"))) {
             println!("  {fault}: {request:?} -> {answer:?}");
@@ -240,7 +243,7 @@ fn judge(name: &str, pair: &str, count: usize) -> Tally {
             let lost = frame.compiled.lost_between_sides;
             let lost = lost.unwrap_or_else(|| panic!("{name}, {frame_name}: no closed form"));
             assert!(lost <= LOST, "{name}, {frame_name}: {lost}");
-            let table = frame.compiled.tables.shortcut.as_ref().expect("closed form");
+            let table = frame.compiled.tables.closed_form.as_ref().expect("closed form");
             let floor = f64::from(table.thrust_floor_n);
             if airmode == "disabled" {
                 let above = floor - least_level_thrust(&frame, floor);

@@ -211,9 +211,9 @@ pub mod coaxial_bicopter {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-1.1111112, 0.0, 0.5],
                 arms: [-0.45, 0.0],
                 spin: 1.0,
@@ -222,7 +222,7 @@ pub mod coaxial_bicopter {
                 ends: [0.5782414, 24.787699],
                 channels: [0, 1],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [1.1111112, 0.0, 0.5],
                 arms: [0.45, 0.0],
                 spin: -1.0,
@@ -484,7 +484,7 @@ pub mod coaxial_bicopter {
         'static,
         tables::Biquadratic,
         tables::Seeded<tables::BilinearSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -502,7 +502,7 @@ pub mod coaxial_bicopter {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0030275749, 0.00003889632],
             wrench: [0.0034936774, 0.0, 0.00009889527, 0.0077637276],

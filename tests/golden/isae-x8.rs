@@ -223,9 +223,9 @@ pub mod isae_x8 {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-0.7856694, 0.7856694, 0.25],
                 arms: [-0.3182, 0.3182],
                 spin: 1.0,
@@ -234,7 +234,7 @@ pub mod isae_x8 {
                 ends: [24.787699, 0.5782414],
                 channels: [0, 4],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.7856694, 0.7856694, 0.25],
                 arms: [0.3182, 0.3182],
                 spin: -1.0,
@@ -243,7 +243,7 @@ pub mod isae_x8 {
                 ends: [0.5782414, 24.787699],
                 channels: [1, 5],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.7856694, -0.7856694, 0.25],
                 arms: [0.3182, -0.3182],
                 spin: 1.0,
@@ -252,7 +252,7 @@ pub mod isae_x8 {
                 ends: [24.787699, 0.5782414],
                 channels: [2, 6],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-0.7856694, -0.7856694, 0.25],
                 arms: [-0.3182, -0.3182],
                 spin: -1.0,
@@ -531,7 +531,7 @@ pub mod isae_x8 {
         'static,
         tables::Biquadratic,
         tables::Seeded<tables::BilinearSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -549,7 +549,7 @@ pub mod isae_x8 {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0030275749, 0.00003889632],
             wrench: [0.004940836, 0.004940836, 0.00019779053, 0.015527455],

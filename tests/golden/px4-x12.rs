@@ -253,14 +253,14 @@ pub mod px4_x12 {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: tables::NoShortcut = tables::NoShortcut;
+    const CLOSED_FORM: tables::NoClosedForm = tables::NoClosedForm;
     /// All tables; see `mixer_rt::tables` for their meaning and units.
     #[doc(hidden)]
     pub static TABLES: tables::Tables<
         'static,
         tables::Biquadratic,
         tables::Seeded<tables::BilinearSeed, 1>,
-        tables::NoShortcut,
+        tables::NoClosedForm,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -278,7 +278,7 @@ pub mod px4_x12 {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0030275749, 0.00003889632],
             wrench: [0.015527455, 0.013447165, 0.00029668582, 0.023291184],

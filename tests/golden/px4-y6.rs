@@ -226,9 +226,9 @@ pub mod px4_y6 {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-1.1547344, 0.6666667, 0.33333334],
                 arms: [-0.433, 0.25],
                 spin: 1.0,
@@ -237,7 +237,7 @@ pub mod px4_y6 {
                 ends: [0.5782414, 24.787699],
                 channels: [0, 1],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.0, -1.3333334, 0.33333334],
                 arms: [0.0, -0.5],
                 spin: 1.0,
@@ -246,7 +246,7 @@ pub mod px4_y6 {
                 ends: [0.5782414, 24.787699],
                 channels: [2, 3],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [1.1547344, 0.6666667, 0.33333334],
                 arms: [0.433, 0.25],
                 spin: 1.0,
@@ -512,7 +512,7 @@ pub mod px4_y6 {
         'static,
         tables::Biquadratic,
         tables::Seeded<tables::BilinearSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -530,7 +530,7 @@ pub mod px4_y6 {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0030275749, 0.00003889632],
             wrench: [0.003361694, 0.0038818638, 0.00014834291, 0.011645592],

@@ -195,9 +195,9 @@ pub mod single_pair {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.0, 0.0, 1.0],
                 arms: [0.0, 0.0],
                 spin: 1.0,
@@ -455,7 +455,7 @@ pub mod single_pair {
         'static,
         tables::Biquadratic,
         tables::Seeded<tables::BilinearSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -473,7 +473,7 @@ pub mod single_pair {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0030334904, 0.00003878264],
             wrench: [0.0, 0.0, 0.000039525836, 0.0031244555],

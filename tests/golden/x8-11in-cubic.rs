@@ -209,9 +209,9 @@ pub mod x8_11in_cubic {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-1.1785113, 1.1785113, 0.25],
                 arms: [-0.21213204, 0.21213204],
                 spin: 1.0,
@@ -220,7 +220,7 @@ pub mod x8_11in_cubic {
                 ends: [0.5010402, 18.019484],
                 channels: [0, 4],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-1.1785113, -1.1785113, 0.25],
                 arms: [-0.21213204, -0.21213204],
                 spin: -1.0,
@@ -229,7 +229,7 @@ pub mod x8_11in_cubic {
                 ends: [18.019484, 0.5010402],
                 channels: [1, 5],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [1.1785113, -1.1785113, 0.25],
                 arms: [0.21213204, -0.21213204],
                 spin: 1.0,
@@ -238,7 +238,7 @@ pub mod x8_11in_cubic {
                 ends: [0.5010402, 18.019484],
                 channels: [2, 6],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [1.1785113, 1.1785113, 0.25],
                 arms: [0.21213204, 0.21213204],
                 spin: -1.0,
@@ -597,7 +597,7 @@ pub mod x8_11in_cubic {
         'static,
         tables::Cubic,
         tables::Seeded<tables::BilinearSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -615,7 +615,7 @@ pub mod x8_11in_cubic {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.004298808, 0.00008263585],
             wrench: [0.003703377, 0.003703377, 0.00033353912, 0.017457888],

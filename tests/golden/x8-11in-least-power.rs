@@ -237,9 +237,9 @@ pub mod x8_11in_least_power {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-1.1785113, 1.1785113, 0.25],
                 arms: [-0.21213204, 0.21213204],
                 spin: 1.0,
@@ -248,7 +248,7 @@ pub mod x8_11in_least_power {
                 ends: [0.5082923, 20.042133],
                 channels: [0, 4],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-1.1785113, -1.1785113, 0.25],
                 arms: [-0.21213204, -0.21213204],
                 spin: -1.0,
@@ -257,7 +257,7 @@ pub mod x8_11in_least_power {
                 ends: [20.042133, 0.5082923],
                 channels: [1, 5],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [1.1785113, -1.1785113, 0.25],
                 arms: [0.21213204, -0.21213204],
                 spin: 1.0,
@@ -266,7 +266,7 @@ pub mod x8_11in_least_power {
                 ends: [0.5082923, 20.042133],
                 channels: [2, 6],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [1.1785113, 1.1785113, 0.25],
                 arms: [0.21213204, 0.21213204],
                 spin: -1.0,
@@ -541,7 +541,7 @@ pub mod x8_11in_least_power {
         'static,
         tables::Cubic,
         tables::Seeded<tables::BilinearSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -559,7 +559,7 @@ pub mod x8_11in_least_power {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.00695,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0030757585, 0.00003767197],
             wrench: [0.0035554972, 0.0035554972, 0.0002049678, 0.016760774],

@@ -235,9 +235,9 @@ pub mod x8_16in_biquadratic {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-0.7856742, 0.7856742, 0.25],
                 arms: [-0.31819806, 0.31819806],
                 spin: 1.0,
@@ -246,7 +246,7 @@ pub mod x8_16in_biquadratic {
                 ends: [0.63970786, 42.020985],
                 channels: [0, 4],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-0.7856742, -0.7856742, 0.25],
                 arms: [-0.31819806, -0.31819806],
                 spin: -1.0,
@@ -255,7 +255,7 @@ pub mod x8_16in_biquadratic {
                 ends: [42.020985, 0.63970786],
                 channels: [1, 5],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.7856742, -0.7856742, 0.25],
                 arms: [0.31819806, -0.31819806],
                 spin: 1.0,
@@ -264,7 +264,7 @@ pub mod x8_16in_biquadratic {
                 ends: [0.63970786, 42.020985],
                 channels: [2, 6],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.7856742, 0.7856742, 0.25],
                 arms: [0.31819806, 0.31819806],
                 spin: -1.0,
@@ -591,7 +591,7 @@ pub mod x8_16in_biquadratic {
         'static,
         tables::Biquadratic,
         tables::Seeded<tables::CubicSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -609,7 +609,7 @@ pub mod x8_16in_biquadratic {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.005554171, 0.000058851205],
             wrench: [0.0072575104, 0.0072575104, 0.00024327113, 0.022808155],

@@ -239,9 +239,9 @@ pub mod x8_16in_quartic {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-0.7856742, 0.7856742, 0.25],
                 arms: [-0.31819806, 0.31819806],
                 spin: 1.0,
@@ -250,7 +250,7 @@ pub mod x8_16in_quartic {
                 ends: [2.1893063, 40.27554],
                 channels: [0, 4],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-0.7856742, -0.7856742, 0.25],
                 arms: [-0.31819806, -0.31819806],
                 spin: -1.0,
@@ -259,7 +259,7 @@ pub mod x8_16in_quartic {
                 ends: [40.27554, 2.1893063],
                 channels: [1, 5],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.7856742, -0.7856742, 0.25],
                 arms: [0.31819806, -0.31819806],
                 spin: 1.0,
@@ -268,7 +268,7 @@ pub mod x8_16in_quartic {
                 ends: [2.1893063, 40.27554],
                 channels: [2, 6],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.7856742, 0.7856742, 0.25],
                 arms: [0.31819806, 0.31819806],
                 spin: -1.0,
@@ -603,7 +603,7 @@ pub mod x8_16in_quartic {
         'static,
         tables::Quartic,
         tables::Seeded<tables::QuadraticSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -621,7 +621,7 @@ pub mod x8_16in_quartic {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.004901235, 0.00009582105],
             wrench: [0.0064132763, 0.0064132763, 0.00038961536, 0.020154983],

@@ -231,9 +231,9 @@ pub mod x8_22in_cubic {
         ],
     };
     /// The closed form of desaturation, where there is one.
-    const CLOSED_FORM: &tables::Vertical<'static> = &tables::Vertical {
+    const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-0.58925563, 0.58925563, 0.25],
                 arms: [-0.42426407, 0.42426407],
                 spin: 1.0,
@@ -242,7 +242,7 @@ pub mod x8_22in_cubic {
                 ends: [4.0621815, 58.684956],
                 channels: [0, 4],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [-0.58925563, -0.58925563, 0.25],
                 arms: [-0.42426407, -0.42426407],
                 spin: -1.0,
@@ -251,7 +251,7 @@ pub mod x8_22in_cubic {
                 ends: [58.684956, 4.0621815],
                 channels: [1, 5],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.58925563, -0.58925563, 0.25],
                 arms: [0.42426407, -0.42426407],
                 spin: 1.0,
@@ -260,7 +260,7 @@ pub mod x8_22in_cubic {
                 ends: [4.0621815, 58.684956],
                 channels: [2, 6],
             },
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: [0.58925563, 0.58925563, 0.25],
                 arms: [0.42426407, 0.42426407],
                 spin: -1.0,
@@ -595,7 +595,7 @@ pub mod x8_22in_cubic {
         'static,
         tables::Cubic,
         tables::Seeded<tables::CubicSeed, 1>,
-        &tables::Vertical<'static>,
+        &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
         pair: PAIR,
@@ -613,7 +613,7 @@ pub mod x8_22in_cubic {
             yaw_reserve_nm: 0.0,
         },
         power_bias_nm_per_n: 0.0,
-        shortcut: CLOSED_FORM,
+        closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
             efforts: [0.0040967544, 0.00009497423],
             wrench: [0.0073016714, 0.0073016714, 0.00039403385, 0.017210204],

@@ -63,7 +63,7 @@ impl<'a> Build<'a> {
     /// `core` from its sources.
     fn core(&self, core: &Path) -> Result<(), String> {
         if io::stderr().is_terminal() {
-            crate::remark(format_args!(
+            crate::print_note(format_args!(
                 "compiling core for {} from its sources, half a minute or so",
                 self.target()
             ));

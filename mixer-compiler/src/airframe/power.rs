@@ -1,8 +1,8 @@
 //! The electrical power of one pair over its throttles.
 
-use super::Throttle;
+use super::basis::Basis;
 use super::check::LARGEST_EFFORT;
-use super::pair::Basis;
+use super::throttle::Throttle;
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 use crate::spec::keys::POWER_TERMS;

@@ -2,8 +2,8 @@
 
 use toml::Spanned;
 
-use super::Throttle;
 use super::check::LARGEST_EFFORT;
+use super::throttle::Throttle;
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 

@@ -1,18 +1,18 @@
-//! The table of `mixer-rt`'s shorter way to desaturate, for up to four units with vertical axes.
+//! The table of `mixer-rt`'s closed form of desaturation, for up to four units with vertical axes.
 
 mod border;
 mod outline;
 
 use mixer_rt::{
     Axis,
-    tables::{Airmode, Facets, VerticalUnit},
+    tables::{Airmode, ClosedFormUnit, Facets},
 };
 use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
-use crate::tables::VerticalTable;
+use crate::tables::ClosedFormTable;
 
 /// Of sums of a few f32 products.
 const ROUNDING: f32 = 1e-6;
@@ -23,9 +23,9 @@ const YAW_ROUNDING: f64 = 1e-5;
 /// A unit whose thrust changes by less than this share of the largest along the null space has no part in it.
 const NO_PART: f64 = 1e-5;
 
-/// The table, where the layout and the priorities allow the shorter way, and the share of a unit's attainable set that its
+/// The table, where the layout and the priorities allow a closed form, and the share of a unit's attainable set that its
 /// border leaves out.
-pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Option<(VerticalTable, f64)> {
+pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Option<(ClosedFormTable, f64)> {
     let n = airframe.units.len();
     let allocation = &airframe.allocation;
     let matrix = &effectiveness.matrix;
@@ -63,7 +63,7 @@ pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Optio
     let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
     let (border, lost) = border::border(&pair)?;
     let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
-    let mut table = VerticalTable {
+    let mut table = ClosedFormTable {
         units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
         complete: free.is_empty(),
         thrust_n,
@@ -87,12 +87,12 @@ pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Optio
 }
 
 /// The least and the largest thrust in all (N) without roll and pitch, z as near zero as can be, that can leave yaw at zero.
-fn level_range(table: &VerticalTable) -> Option<[f32; 2]> {
+fn level_range(table: &ClosedFormTable) -> Option<[f32; 2]> {
     const STEPS: usize = 4000;
     let view = table.view();
     let [idle, full] = table.thrust_n;
     let is_level = |thrust_n: f32| {
-        let least_norm = |unit: &VerticalUnit| unit.allocation[2] * thrust_n;
+        let least_norm = |unit: &ClosedFormUnit| unit.allocation[2] * thrust_n;
         let (mut low, mut high) = (-f32::MAX, f32::MAX);
         for unit in table.units.iter().filter(|unit| unit.null != 0.0) {
             let [from, to] = unit.ends.map(|end| (end - least_norm(unit)) * unit.per_null);
@@ -126,7 +126,7 @@ fn units(
     effectiveness: &Effectiveness,
     null: &[f64],
     [least, most]: [f32; 2],
-) -> Vec<VerticalUnit> {
+) -> Vec<ClosedFormUnit> {
     let n = airframe.units.len();
     let Effectiveness {
         matrix,
@@ -135,7 +135,7 @@ fn units(
     } = effectiveness;
     let units = airframe.units.iter().zip(null).enumerate();
     units
-        .map(|(i, (unit, &null))| VerticalUnit {
+        .map(|(i, (unit, &null))| ClosedFormUnit {
             allocation: [0, 1, 3].map(|axis| pseudo_inverse[(i, axis)] as f32),
             arms: [0, 1].map(|axis| matrix[(axis, i)] as f32),
             spin: matrix[(2, n + i)] as f32,

@@ -50,7 +50,7 @@ pub(crate) fn delivered_range(
     tables: &MixerTables,
     within @ [floor, ceiling]: [f32; 2],
 ) -> [f32; 2] {
-    if tables.shortcut.is_none() {
+    if tables.closed_form.is_none() {
         return within;
     }
     let end = |mut inside: f32, mut outside: f32| {

@@ -30,7 +30,7 @@ pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
-    /// Vertical axes and little freedom: a few cases, each solved at once.
+    /// ClosedForm axes and little freedom: a few cases, each solved at once.
     ClosedForm,
     /// Any other layout: a dual simplex method of bounded work.
     General,
@@ -39,7 +39,7 @@ pub enum Kind {
 impl Kind {
     /// The kind of a compiled airframe.
     pub fn of(compiled: &Compiled) -> Kind {
-        match &compiled.tables.shortcut {
+        match &compiled.tables.closed_form {
             Some(_) => Kind::ClosedForm,
             None => Kind::General,
         }

@@ -5,8 +5,8 @@ use quote::quote;
 
 use crate::compiled::Compiled;
 use crate::tables::{
-    AttainableTable, BorderTable, InverseTable, LawTable, MixerTables, QuantityTable, SeedTable,
-    VerticalTable,
+    AttainableTable, BorderTable, ClosedFormTable, InverseTable, LawTable, MixerTables, QuantityTable,
+    SeedTable,
 };
 use mixer_rt::tables::{BilinearSeed, CubicSeed, Facets, QuadraticSeed};
 
@@ -182,8 +182,8 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let voltage = voltage(tables);
     let attainable = attainable(&tables.attainable);
     let rows = vector(&tables.rows);
-    let shortcut = shortcut(tables.shortcut.as_ref());
-    let [basis, inverse_type, shortcut_type] = types(tables);
+    let closed_form = closed_form(tables.closed_form.as_ref());
+    let [basis, inverse_type, closed_form_type] = types(tables);
     let limits = &tables.desaturation;
     let airmode = identifier(&format!("{:?}", limits.airmode));
     let reserve = float(limits.yaw_reserve_nm);
@@ -204,11 +204,11 @@ fn tables(tables: &MixerTables) -> TokenStream {
         /// A polygon inside a unit's attainable set.
         const ATTAINABLE: tables::AttainableSet<'static> = #attainable;
         /// The closed form of desaturation, where there is one.
-        const CLOSED_FORM: #shortcut_type = #shortcut;
+        const CLOSED_FORM: #closed_form_type = #closed_form;
 
         /// All tables; see `mixer_rt::tables` for their meaning and units.
         #[doc(hidden)]
-        pub static TABLES: tables::Tables<'static, #basis, #inverse_type, #shortcut_type> = tables::Tables {
+        pub static TABLES: tables::Tables<'static, #basis, #inverse_type, #closed_form_type> = tables::Tables {
             units: &UNIT_TABLES,
             pair: PAIR,
             singles: ROTORS_ALONE,
@@ -222,15 +222,15 @@ fn tables(tables: &MixerTables) -> TokenStream {
                 yaw_reserve_nm: #reserve,
             },
             power_bias_nm_per_n: #power_bias,
-            shortcut: CLOSED_FORM,
+            closed_form: CLOSED_FORM,
             tolerance: tables::Tolerance { efforts: #efforts, wrench: #wrench },
         };
     }
 }
 
-fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
+fn closed_form(table: Option<&ClosedFormTable>) -> TokenStream {
     let Some(table) = table else {
-        return quote!(tables::NoShortcut);
+        return quote!(tables::NoClosedForm);
     };
     let units = table.units.iter().map(|unit| {
         let (allocation, arms, ends) = (vector(&unit.allocation), vector(&unit.arms), vector(&unit.ends));
@@ -240,7 +240,7 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
             .iter()
             .map(|&channel| Literal::u8_unsuffixed(channel));
         quote! {
-            tables::VerticalUnit {
+            tables::ClosedFormUnit {
                 allocation: #allocation,
                 arms: #arms,
                 spin: #spin,
@@ -264,7 +264,7 @@ fn shortcut(table: Option<&VerticalTable>) -> TokenStream {
     let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
     let rounding = float(table.yaw_rounding_nm);
     quote! {
-        &tables::Vertical {
+        &tables::ClosedForm {
             units: &[#(#units),*],
             complete: #complete,
             thrust_n: #thrust,
@@ -328,11 +328,11 @@ fn types(tables: &MixerTables) -> [TokenStream; 3] {
             quote!(tables::Seeded<tables::#seed, #steps>)
         }
     };
-    let shortcut = match &tables.shortcut {
-        Some(_) => quote!(&tables::Vertical<'static>),
-        None => quote!(tables::NoShortcut),
+    let closed_form = match &tables.closed_form {
+        Some(_) => quote!(&tables::ClosedForm<'static>),
+        None => quote!(tables::NoClosedForm),
     };
-    [basis(&tables.pair.thrust), inverse, shortcut]
+    [basis(&tables.pair.thrust), inverse, closed_form]
 }
 
 fn basis(quantity: &QuantityTable) -> TokenStream {

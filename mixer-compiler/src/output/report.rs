@@ -314,7 +314,7 @@ impl Report<'_> {
         let mut polygon = "desaturation";
         if let Some(lost) = summary.attainable_area_lost_in_closed_form {
             let cells = tables
-                .shortcut
+                .closed_form
                 .as_ref()
                 .map_or(0, |table| table.border.cells.len() - 1);
             writeln!(

@@ -32,14 +32,15 @@ pub use facets::Facets;
 
 use core::hint::black_box;
 
-use crate::{Wrench, tables::Airmode};
+use crate::Wrench;
+use crate::desaturation::Airmode;
 
 /// The largest number of units.
 const MOST_UNITS: usize = 4;
 
 /// One unit's share of M and M+ where the axes are vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VerticalUnit {
+pub struct ClosedFormUnit {
     /// Row of C+: this unit's thrust in N per `[roll, pitch, thrust]`.
     pub allocation: [f32; 3],
     /// Column of C but for thrust, which is 1: `[roll, pitch]` in N m per N of this unit's thrust.
@@ -58,9 +59,9 @@ pub struct VerticalUnit {
 
 /// What a frame with vertical axes and up to four units needs. All at the reference voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertical<'a> {
+pub struct ClosedForm<'a> {
     /// The units, in the order of the airframe file.
-    pub units: &'a [VerticalUnit],
+    pub units: &'a [ClosedFormUnit],
     /// True where the airframe serves all axes: then an attainable request is what the efforts give.
     pub complete: bool,
     /// Least and largest thrust of a unit, N.
@@ -81,35 +82,35 @@ pub struct Vertical<'a> {
     pub yaw_rounding_nm: f32,
 }
 
-/// What an airframe's tables know about a shorter way than the general one.
-pub trait Shortcut {
-    /// The shorter way, where there is one.
-    fn vertical(&self) -> Option<&Vertical<'_>>;
+/// Whether an airframe's tables have a closed form of desaturation, or the general path serves every request.
+pub trait DesaturationMethod {
+    /// The closed form, where there is one.
+    fn closed_form(&self) -> Option<&ClosedForm<'_>>;
 }
 
-/// No shorter way: tilted axes, more than four units, or priorities that couple thrust and yaw.
+/// No closed form: tilted axes, more than four units, or priorities that couple thrust and yaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NoShortcut;
+pub struct NoClosedForm;
 
-impl Shortcut for NoShortcut {
+impl DesaturationMethod for NoClosedForm {
     #[inline(always)]
-    fn vertical(&self) -> Option<&Vertical<'_>> {
+    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
         None
     }
 }
 
 /// By reference, so that an image whose rotors never fail holds this table and not the rest.
-impl Shortcut for &Vertical<'_> {
+impl DesaturationMethod for &ClosedForm<'_> {
     #[inline(always)]
-    fn vertical(&self) -> Option<&Vertical<'_>> {
+    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
         Some(self)
     }
 }
 
 /// Any of these, where it is known at run time only.
-impl Shortcut for Option<Vertical<'_>> {
+impl DesaturationMethod for Option<ClosedForm<'_>> {
     #[inline(always)]
-    fn vertical(&self) -> Option<&Vertical<'_>> {
+    fn closed_form(&self) -> Option<&ClosedForm<'_>> {
         self.as_ref()
     }
 }
@@ -164,7 +165,7 @@ impl Search {
     }
 }
 
-impl Vertical<'_> {
+impl ClosedForm<'_> {
     /// Writes the least-norm efforts of `request`. Tells whether all are attainable, and the least distance of their torques from
     /// the sides, N m; negative beyond.
     #[inline(always)]

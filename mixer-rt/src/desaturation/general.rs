@@ -38,12 +38,11 @@ mod variable;
 pub use shortage::SHORTAGES;
 pub use variable::Variable;
 
+use crate::desaturation::Desaturation;
+use crate::layout::{Tables, Unit};
+use crate::pair::Quantity;
 use crate::pair::rotors::Rotors;
-use crate::tables::{Tables, Unit};
-use crate::{
-    rolled,
-    tables::{Desaturation, Quantity},
-};
+use crate::rolled;
 use shortage::RAY;
 use simplex::{Budget, Simplex};
 use variable::{Polygon, between, positive};

@@ -16,16 +16,16 @@
 //!
 //! With c = 0 the mixer leaves this out, and so does the compiler, as the tables are constants.
 
-use super::closed_form::{Efforts, Vertical};
+use super::closed_form::{ClosedForm, Efforts};
 use super::general::Variable;
+use crate::layout::Tables;
 use crate::rolled;
-use crate::tables::Tables;
 
 /// A polygon's edge of constant thrust is not crossed by torques. They fade before it all the same, as if thrusts moved by
 /// this share of the largest shift (in scaled efforts).
 const FADE: f32 = 0.125;
 
-impl Vertical<'_> {
+impl ClosedForm<'_> {
     /// Moves least-norm `efforts` towards Q = `c` f; `room` is the least distance of a unit's torque from its sides, N m,
     /// >= 0.
     #[inline(always)]
@@ -50,7 +50,7 @@ impl Vertical<'_> {
     }
 }
 
-/// [`Vertical::add_power_bias`] for any frame with all rotors: the units are at their least-norm efforts, within their
+/// [`ClosedForm::add_power_bias`] for any frame with all rotors: the units are at their least-norm efforts, within their
 /// polygons. `factors` is `[k_f, k_Q]`. Rates of the units are the shift, `[f, Q]` at the reference voltage.
 #[inline(never)]
 pub(crate) fn add_power_bias<P, I, S>(

@@ -3,7 +3,7 @@
 //! Each basis is evaluated by Horner's rule as a polynomial in u whose coefficients are polynomials in l; neither
 //! has a constant term, since a stopped pair gives nothing. The order of the terms is that of the airframe file.
 
-use crate::tables::Scalar;
+use crate::arithmetic::Scalar;
 
 /// A quantity of one unit, thrust in N or torque in N m, as a polynomial of the upper throttle `u` and the lower
 /// throttle `l`, both in `[0, 1]`.

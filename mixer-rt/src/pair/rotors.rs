@@ -1,9 +1,8 @@
 //! Which rotors of a unit work, and the curve that a single rotor leaves its unit.
 
-use crate::{
-    Health, sqrt,
-    tables::{Quantity, Tables, ThrottleRange},
-};
+use crate::layout::Tables;
+use crate::pair::{Quantity, ThrottleRange};
+use crate::{Health, sqrt};
 
 /// What a rotor gives alone, the other one of its unit at rest: thrust (N) and torque (N m, signed as on the bench) as
 /// polynomials of its throttle without a constant, coefficients from the fourth power down to the first.

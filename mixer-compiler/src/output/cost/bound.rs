@@ -8,7 +8,7 @@ use mixer_rt::tables::Outline;
 
 use crate::airframe::Basis;
 use crate::compiled::Compiled;
-use crate::tables::VerticalTable;
+use crate::tables::ClosedFormTable;
 
 /// Checks, and voltage where there is a correction.
 const PER_MIX: u32 = 120;
@@ -53,7 +53,7 @@ const FLIP_UNIT: u32 = 8;
 
 /// The bound for a compiled airframe; `None` where there is none yet, or its evaluator has not been counted.
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
-    match &compiled.tables.shortcut {
+    match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
         None => general(compiled),
     }
@@ -83,7 +83,7 @@ fn forward(basis: Basis) -> u32 {
     }
 }
 
-fn closed_form(compiled: &Compiled, table: &VerticalTable) -> Option<u32> {
+fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let evaluator = compiled.evaluator.instructions(basis)?;
     let n = table.units.len() as u32;

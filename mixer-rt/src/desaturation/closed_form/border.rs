@@ -8,7 +8,7 @@
 //! The coarse one tells at which thrusts yaw reaches furthest: each side's concave hull in a few straight lines, of which
 //! only the slopes matter.
 
-use super::{Search, Vertical};
+use super::{ClosedForm, Search};
 
 /// Middle and half the width of the attainable torques at the thrusts of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,7 +88,7 @@ impl Border<'_> {
     }
 }
 
-impl Vertical<'_> {
+impl ClosedForm<'_> {
     /// Least and most yaw at `z` along the units' way; leaves those of each unit.
     #[inline(never)]
     pub(super) fn reach(&self, search: &mut [Search], z: f32) -> [f32; 2] {

@@ -5,7 +5,7 @@
 //! request continuously and the slopes between them are constants, so the end does not jump; where Y is level, z stays at the
 //! nearest point that is best.
 
-use super::{Border, MOST_UNITS, Outline, Search, Vertical};
+use super::{Border, ClosedForm, MOST_UNITS, Outline, Search};
 use crate::rolled;
 
 /// The knots of one unit's side that are ahead.
@@ -50,7 +50,7 @@ impl Border<'_> {
     }
 }
 
-impl Vertical<'_> {
+impl ClosedForm<'_> {
     /// z within `[low, high]` where yaw of the sign `sign` reaches furthest by the coarse sides, seen from `start`.
     #[inline(never)]
     pub(super) fn top(&self, search: &[Search], sign: f32, start: f32, [low, high]: [f32; 2]) -> f32 {

@@ -6,7 +6,7 @@
 
 use core::hint::black_box;
 
-use super::Vertical;
+use super::ClosedForm;
 use crate::rolled;
 
 /// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <= high` for a slope,
@@ -26,7 +26,7 @@ const ROUNDING: f32 = 4e-6;
 /// Steps of the search for the largest rho: at most one per facet, hardly ever more than two.
 const STEPS: u32 = 6;
 
-impl Vertical<'_> {
+impl ClosedForm<'_> {
     /// The largest share of (roll, pitch) up to 1 that some thrust of at most `ceiling` allows, and the thrusts
     /// that it allows.
     #[inline(always)]

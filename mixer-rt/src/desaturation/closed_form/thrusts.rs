@@ -4,7 +4,7 @@
 //! `(yaw - Y(0)) / (Y(z) - Y(0))` of the way. So the thrusts are a Lipschitz function of the request, which they would
 //! not be if z were moved just far enough. Y is nearly concave: where that part is not enough, two more steps mend it.
 
-use super::{Request, Search, Vertical, VerticalUnit};
+use super::{ClosedForm, ClosedFormUnit, Request, Search};
 use crate::{clamp, rolled};
 use core::hint::black_box;
 
@@ -18,7 +18,7 @@ const RETREATS: u32 = 3;
 /// z does not jump where the gain vanishes. Costs up to a quarter of it, 0.02 % of the yaw.
 const GAIN: f32 = 100.0;
 
-impl VerticalUnit {
+impl ClosedFormUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
     #[inline(always)]
     pub(super) fn thrust(&self, wrench: &[f32; 3]) -> f32 {
@@ -33,7 +33,7 @@ fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
     if sign < 0.0 { -least } else { most }
 }
 
-impl Vertical<'_> {
+impl ClosedForm<'_> {
     /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach the request if from any. Where yaw
     /// would be reversed or exceeded they are drawn towards those of the thrust `middle`. Returns where they are on the
     /// units' way and the least and most yaw there, and leaves what each unit gives of it.

@@ -3,11 +3,11 @@
 //!
 //! All as yaw, p_i = s_i Q_i: the least-norm p_i are alike, yaw / n.
 
-use super::{Effort, Search, Vertical};
+use super::{ClosedForm, Effort, Search};
 use crate::clamp;
 use crate::rolled;
 
-impl Vertical<'_> {
+impl ClosedForm<'_> {
     /// Writes the efforts: the thrusts at `z` of the units' way, and the torques that come nearest the `yaw` within what the
     /// units give there, which is `reach` in all.
     #[inline(always)]

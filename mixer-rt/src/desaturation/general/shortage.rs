@@ -15,7 +15,8 @@
 //! that nothing is reversed.
 
 use super::variable::Variable;
-use crate::{clamp, rolled, sqrt, tables::Airmode};
+use crate::desaturation::Airmode;
+use crate::{clamp, rolled, sqrt};
 
 /// How many shortages there are at most. Each has a [`Variable`] behind those of the units.
 pub const SHORTAGES: usize = 6;
