@@ -8,5 +8,6 @@ mod formats;
 mod plan;
 mod power;
 mod refusals;
+mod saving;
 mod sweep;
 mod voltage;
