@@ -49,7 +49,7 @@ pub(crate) fn full_range_maps(data: &Path) -> Vec<PathBuf> {
     maps
 }
 
-fn coaxial(data: &Path, part: &str) -> PathBuf {
+pub(crate) fn coaxial(data: &Path, part: &str) -> PathBuf {
     files(&data.join("newdexterity"), part).remove(0)
 }
 

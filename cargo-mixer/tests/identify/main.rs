@@ -9,5 +9,6 @@ mod plan;
 mod power;
 mod refusals;
 mod saving;
+mod spacings;
 mod sweep;
 mod voltage;
