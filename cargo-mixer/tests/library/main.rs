@@ -128,7 +128,10 @@ fn the_same_airframe_gives_the_same_bytes() {
     let [first, second, temporary] = ["first", "second", "temporary"].map(Folder::new);
     let arguments = ["airframes/px4-y6.toml", "--health"];
     run(&mut library(&arguments, &first.0));
-    run(library(&arguments, &second.0).env("TMPDIR", &temporary.0));
+    // From another folder, by another path.
+    let path = root().join(arguments[0]).canonicalize().unwrap();
+    let mut elsewhere = library(&[&path.display().to_string(), "--health"], &second.0);
+    run(elsewhere.env("TMPDIR", &temporary.0).current_dir(&second.0));
     assert_eq!(temporary.names(), [""; 0], "nothing is left behind");
     let expected = [
         "coaxial_mixer.h",
