@@ -537,6 +537,8 @@ fn single_rotors_are_described_by_three_terms() {
                     percent(f.of_the_pair_rms, f.full_scale),
                     percent(q.of_the_pair_rms, q.full_scale),
                 ]);
+                // Whatever throttle the map begins at.
+                assert!(f.leave_one_out_rms < 0.015 * f.full_scale, "{map}: {f:?}");
                 if map == full {
                     errors.push([
                         percent(f.leave_one_out_rms, f.full_scale),
