@@ -18,8 +18,9 @@ use crate::identify::basis::monomials;
 
 /// Writes the throttle pairs to run on the bench, in an order in which temperature and sag average out
 ///
-/// template     a CSV to fill in, which `cargo mixer identify` reads
-/// rcbenchmark  a script for the RCbenchmark application (series 1780, escA above, escB below); `identify` reads its log
+/// template      a CSV to fill in, which `cargo mixer identify` reads
+/// rcbenchmark   a script for the RCbenchmark application (series 1780, escA above, escB below); `identify` reads its log
+/// flight-stand  a Python script for the Flight Stand software's programming interface; `identify` reads its log
 ///
 /// 5 x 5 levels suffice for the cubic basis, 4 x 4 nearly; 3 x 3 do not determine it.
 #[derive(clap::Args, Debug)]
@@ -37,7 +38,7 @@ pub struct PlanArgs {
     /// The format to write
     #[arg(long, value_enum, default_value_t = Format::Template)]
     format: Format,
-    /// Pulse widths of throttle 0 and 1 in the script, microseconds
+    /// Pulse widths of throttle 0 and 1 in a script, microseconds
     #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = crate::identify::pwm_range)]
     pwm_range: crate::identify::PulseRange,
     /// The file to write, whole or not at all [default: standard output]
@@ -55,6 +56,8 @@ pub enum Format {
     Template,
     /// A script for the RCbenchmark application.
     Rcbenchmark,
+    /// A script for the Flight Stand software.
+    FlightStand,
 }
 
 fn throttle(text: &str) -> Result<f64, String> {
@@ -74,6 +77,7 @@ pub fn run(args: &PlanArgs) -> ExitCode {
     let text = match args.format {
         Format::Template => template(&pairs),
         Format::Rcbenchmark => rcbenchmark(&pairs, args.pwm_range.0),
+        Format::FlightStand => flight_stand(&pairs, args.pwm_range.0),
     };
     let Some(path) = &args.output else {
         return crate::finish(stdout().lock().write_all(text.as_bytes()));
@@ -167,6 +171,18 @@ fn rcbenchmark(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> String {
         .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
         .replace("@STOP@", &pulse(0.0).to_string())
         .replace("@PAIRS@", &pairs.join(",\n"))
+}
+
+fn flight_stand(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> String {
+    let pairs: Vec<String> = pairs
+        .iter()
+        .map(|[u, l]| format!("    [{u:?}, {l:?}],"))
+        .collect();
+    include_str!("plan/flight_stand.py")
+        .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
+        .replace("@LOW@", &low.to_string())
+        .replace("@HIGH@", &high.to_string())
+        .replace("@PAIRS@", &pairs.join("\n"))
 }
 
 #[cfg(test)]

@@ -284,6 +284,9 @@ fn plausible(points: &[Point]) -> Result<(), String> {
     let mut rates: Vec<f64> = points.iter().map(|p| p.power_w / p.thrust).collect();
     rates.sort_by(f64::total_cmp);
     let median = rates[rates.len() / 2];
+    if median < 0.0 {
+        return Err("power is negative: check the sign of voltage and current".into());
+    }
     let [least, most] = PLAUSIBLE_W_PER_N;
     if !(least..=most).contains(&median) {
         return Err(format!(

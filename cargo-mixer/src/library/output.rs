@@ -48,7 +48,7 @@ pub(super) fn check(folder: &Path) -> Result<(), String> {
 pub(super) fn write(folder: &Path, files: &[File]) -> Result<(), String> {
     let made = !folder.exists();
     if made {
-        fs::create_dir(folder).map_err(|error| fault(folder, error))?;
+        fs::create_dir(folder).map_err(|error| fault(folder, format_args!("cannot be made: {error}")))?;
     }
     let staging = folder.join(format!(".cargo-mixer-{}", std::process::id()));
     let written = stage(&staging, files).and_then(|()| publish(&staging, folder, files));
@@ -60,7 +60,10 @@ pub(super) fn write(folder: &Path, files: &[File]) -> Result<(), String> {
 }
 
 fn stage(staging: &Path, files: &[File]) -> Result<(), String> {
-    fs::create_dir(staging).map_err(|error| fault(staging, error))?;
+    fs::create_dir(staging).map_err(|error| {
+        let folder = staging.parent().unwrap_or(staging);
+        fault(folder, format_args!("nothing can be written there: {error}"))
+    })?;
     for file in files {
         let path = staging.join(&file.name);
         fs::write(&path, &file.bytes).map_err(|error| fault(&path, error))?;

@@ -41,11 +41,14 @@ impl Toolchain {
         };
         let compilers: Vec<Compiler> = all.iter().filter_map(|rustc| Compiler::ask(rustc)).collect();
         let Some(first) = compilers.first() else {
-            return Err(
-                "no rustc: the mixer is compiled by this machine's Rust compiler. Install Rust \
-                        (https://rustup.rs), or set RUSTC to its path"
-                    .to_owned(),
-            );
+            // A path that was set by hand is the likelier mistake than a machine without the compiler.
+            let set = all.first().filter(|_| env::var_os("RUSTC").is_some());
+            let place = set.map(|rustc| format!(" at {}, which RUSTC names", rustc.display()));
+            return Err(format!(
+                "no rustc{}: the mixer is compiled by this machine's Rust compiler. Install Rust \
+                 (https://rustup.rs), or set RUSTC to its path",
+                place.unwrap_or_default()
+            ));
         };
         let recent: Vec<&Compiler> = compilers.iter().filter(|compiler| compiler.is_recent()).collect();
         if recent.is_empty() {

@@ -232,3 +232,42 @@ fn mix_takes_files() {
     assert_status(&output, 1);
     assert!(stderr(&output).contains("none.csv"), "{}", stderr(&output));
 }
+
+/// With all rotors `[pair.lower_out]` and `[pair.upper_out]` change no bit; with one out they do. A bias of 0 is none.
+#[test]
+fn rotors_alone_and_a_bias_of_zero_leave_the_bits() {
+    let text = std::fs::read_to_string(root().join("airframes/x8-11in-least-power.toml")).unwrap();
+    let (before, rest) = text.split_once("[pair.lower_out]").unwrap();
+    let (_, after) = rest.split_once("[pair.power]").unwrap();
+    let bias = |value: &str| text.replacen("power_bias_nm_per_n = 0.00695", value, 1);
+    let variants = [
+        ("declared", text.clone()),
+        ("polynomials", format!("{before}[pair.power]{after}")),
+        ("zero", bias("power_bias_nm_per_n = 0.0")),
+        ("none", bias("")),
+    ];
+    let folder = std::env::temp_dir().join(format!("cargo-mixer-bits-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut input = format!("{HEADER},voltage_v\n");
+    for k in 0..500u16 {
+        let x = f32::from(k) / 500.0;
+        let [roll, pitch, yaw] = [17.0, 29.0, 41.0].map(|turns: f32| 1.5 * (turns * x).sin());
+        input += &format!("{roll},{pitch},{},{},{}\n", 0.2 * yaw, 80.0 * x, 9.5 + 2.0 * x);
+    }
+    let [declared, polynomials, zero, none] = variants.map(|(name, text)| {
+        let path = folder.join(format!("{name}.toml"));
+        std::fs::write(&path, text).unwrap();
+        let path = path.display().to_string();
+        [&["mix", path.as_str()][..], &["mix", &path, "--failed", "0"]].map(|arguments| {
+            let output = run_with(arguments, input.as_bytes());
+            assert_status(&output, 0);
+            stdout(&output).to_owned()
+        })
+    });
+    std::fs::remove_dir_all(folder).unwrap();
+    assert_eq!(declared[0], polynomials[0]);
+    assert_ne!(declared[1], polynomials[1]);
+    assert_eq!(zero, none);
+    assert_ne!(declared[0], none[0]);
+    assert_eq!(declared[1], none[1], "there is no bias while a rotor is out");
+}

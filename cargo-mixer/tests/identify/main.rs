@@ -8,5 +8,7 @@ mod formats;
 mod plan;
 mod power;
 mod refusals;
+mod saving;
+mod spacings;
 mod sweep;
 mod voltage;

@@ -124,6 +124,14 @@ fn why_there_is_none_is_told() {
         reason(&falling),
         "power falls with throttle: check the sign and the columns of the current"
     );
+    let reversed = Electrical {
+        header: BOTH.header,
+        row: |[upper, lower]| format!(",14.8,14.8,{},{}", -upper / 14.8, -lower / 14.8),
+    };
+    assert_eq!(
+        reason(&reversed),
+        "power is negative: check the sign of voltage and current"
+    );
     let empty = Electrical {
         header: BOTH.header,
         row: |_| ",14.8,14.8,,".into(),

@@ -128,7 +128,10 @@ fn the_same_airframe_gives_the_same_bytes() {
     let [first, second, temporary] = ["first", "second", "temporary"].map(Folder::new);
     let arguments = ["airframes/px4-y6.toml", "--health"];
     run(&mut library(&arguments, &first.0));
-    run(library(&arguments, &second.0).env("TMPDIR", &temporary.0));
+    // From another folder, by another path.
+    let path = root().join(arguments[0]).canonicalize().unwrap();
+    let mut elsewhere = library(&[&path.display().to_string(), "--health"], &second.0);
+    run(elsewhere.env("TMPDIR", &temporary.0).current_dir(&second.0));
     assert_eq!(temporary.names(), [""; 0], "nothing is left behind");
     let expected = [
         "coaxial_mixer.h",
@@ -215,4 +218,40 @@ fn a_cortex_m0_has_the_bits() {
     // Its flash is where the other boards have all their memory, its stack elsewhere.
     let stack = "-Wl,--defsym=stack_top=0x20004000";
     assert_bits_without_floating_point("thumbv6m-none-eabi", "-mcpu=cortex-m0", "microbit", &[stack]);
+}
+
+/// A companion computer: both self-tests in QEMU's user mode, where a cross compiler and QEMU for it are there.
+#[test]
+fn an_aarch64_computer_has_the_bits() {
+    let tools = ["aarch64-linux-gnu-gcc", "qemu-aarch64"];
+    let is_there = |tool: &&str| Command::new(tool).arg("--version").output().is_ok();
+    if let Some(missing) = tools.iter().find(|tool| !is_there(tool)) {
+        eprintln!("NOT RUN: an_aarch64_computer_has_the_bits needs {missing}");
+        return;
+    }
+    let folder = Folder::new("aarch64");
+    let target = "aarch64-unknown-linux-gnu";
+    run(&mut library(
+        &["airframes/isae-x8.toml", "--health", "--target", target],
+        &folder.0,
+    ));
+    let archive = folder.join("libisae_x8.a");
+    assert_eq!(symbols(&archive), ["T isae_x8_mix", "T isae_x8_mix_with_health"]);
+    let program = folder.join("selftest");
+    let mut compiler = Command::new(tools[0]);
+    compiler.args([
+        "-std=c99",
+        "-O2",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-pedantic",
+        "-static",
+    ]);
+    compiler.arg("-DISAE_X8_SELFTEST_MAIN");
+    compiler.arg(folder.join("isae_x8_selftest.c")).arg(archive);
+    run(compiler.arg("-o").arg(&program));
+    let output = run(Command::new(tools[1]).arg(&program));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.ends_with(" rows, 0 different\n"), "{text}");
 }

@@ -44,8 +44,21 @@ fn bad_input_is_refused_with_one_error() {
     assert!(said.contains("is for windows"), "{said}");
 
     let said = refused(&[X8], &[("RUSTC", "/nonexistent/rustc")], &output);
-    assert!(said.contains("no rustc") && said.contains("rustup.rs"), "{said}");
+    assert!(
+        said.contains("no rustc at /nonexistent/rustc") && said.contains("rustup.rs"),
+        "{said}"
+    );
+    let said = refused(&[X8], &[("PATH", "/nonexistent")], &output);
+    assert!(
+        said.contains("no rustc: ") && said.contains("rustup.rs"),
+        "{said}"
+    );
 
+    for (name, fault) in [("8x", "does not start with a letter"), ("größe", "`ö`")] {
+        let file = renamed(&folder, "name.toml", name);
+        let said = refused(&[&file], &[], &output);
+        assert!(said.contains(fault), "{said}");
+    }
     let string = renamed(&folder, "string.toml", "string");
     let said = refused(&[&string], &[], &output);
     assert!(
@@ -64,6 +77,60 @@ fn bad_input_is_refused_with_one_error() {
     assert!(refused(&[X8], &[], &file).contains("is a file; name a folder"));
     let nowhere = folder.join("none/none");
     assert!(refused(&[X8], &[], &nowhere).contains("there is no folder"));
+}
+
+/// Nobody may write into /proc, root included.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_folder_that_cannot_be_written_is_named() {
+    for (folder, fault) in [
+        ("/proc/self/task", "/proc/self/task: nothing can be written there"),
+        ("/proc/coaxial-mixer", "/proc/coaxial-mixer: cannot be made"),
+    ] {
+        let run = library(&[X8], Path::new(folder)).output().unwrap();
+        let said = String::from_utf8(run.stderr).unwrap();
+        assert_eq!(run.status.code(), Some(1), "{said}");
+        assert!(said.contains(fault) && said.lines().count() == 1, "{said}");
+    }
+}
+
+/// A compiler that answers as another would.
+#[cfg(unix)]
+fn compiler(folder: &Folder, answers: &str) -> String {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    let path = folder.join("rustc");
+    let script = format!("#!/bin/sh\ncase \"$*\" in\n{answers}\nesac\nexec rustc \"$@\"\n");
+    fs::write(&path, script).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    path.display().to_string()
+}
+
+#[test]
+#[cfg(unix)]
+fn what_the_compiler_lacks_is_named_with_how_to_get_it() {
+    let folder = Folder::new("compilers");
+    let output = folder.join("out");
+    let target = "thumbv7m-none-eabi";
+    let bare = compiler(&folder, "*target-libdir* | *sysroot*) echo /nonexistent; exit ;;");
+    let said = refused(&[X8, "--target", target], &[("RUSTC", &bare)], &output);
+    for part in [
+        "has no `core` for thumbv7m-none-eabi",
+        "rustup target add thumbv7m-none-eabi",
+        "rustup component add rust-src",
+        "apt-get install rustc-web rust-web-src",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let old = compiler(
+        &folder,
+        "-vV) echo 'release: 1.63.0'; echo 'host: x86_64-unknown-linux-gnu'; exit ;;",
+    );
+    let said = refused(&[X8], &[("RUSTC", &old)], &output);
+    assert!(
+        said.contains("is 1.63.0: the mixer needs ") && said.contains("rustup update"),
+        "{said}"
+    );
 }
 
 #[test]
