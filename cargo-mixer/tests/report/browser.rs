@@ -22,7 +22,7 @@ for (const svg of document.querySelectorAll('svg[data-hover]:not([data-hover=""]
 </script></body>"#;
 
 /// A page in a window of a phone's width, and what of it is wider than that.
-const PHONE: &str = r#"<iframe src="PAGE" style="width:390px;height:800px;border:0"></iframe><script>
+const PHONE: &str = r#"<iframe src="PAGE" style="width:390px;height:30000px;border:0"></iframe><script>
 addEventListener("load", () => {
   const page = document.querySelector("iframe").contentDocument;
   const wide = [...page.querySelectorAll("section > .wide, .figures > .wide")].filter((box) => box.scrollWidth > box.clientWidth);
@@ -151,7 +151,8 @@ fn pages_fit_a_phone() {
         let html = page(&Study::new(&compiled, None), None, &Origin::default());
         fs::write(&path, html).unwrap();
         let phone = scratch(&format!("{name}-phone.html"));
-        fs::write(&phone, PHONE.replace("PAGE", &format!("{name}-narrow.html"))).unwrap();
+        let framed = path.file_name().unwrap().to_string_lossy();
+        fs::write(&phone, PHONE.replace("PAGE", &framed)).unwrap();
         let (dom, _) = open(&browser, &phone);
         let (_, told) = dom.split_once("<body>").expect("a body");
         let told = told.split("</body>").next().unwrap_or_default();
