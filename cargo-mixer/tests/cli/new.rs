@@ -167,6 +167,15 @@ fn identify_writes_a_whole_airframe() {
     assert_status(&run(&["identify", &bench, "--arm", "0.45"]), 2);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_pipe_is_written_to() {
+    let arguments = ["new", "--frame", "single", "--name", "a", "-o", "/dev/stdout"];
+    let output = run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).contains("name = \"a\""), "{}", stdout(&output));
+}
+
 /// The stand-in for a bench that docs/first-airframe.md takes has no noise: what its rounding leaves is no outlier.
 #[test]
 fn the_stand_in_for_a_bench_has_no_row_that_stands_out() {
