@@ -17,8 +17,8 @@ const MOST_LINKS: usize = 40;
 /// What cannot be written, by its path, and why.
 pub fn write(path: &Path, text: &str) -> Result<(), String> {
     let fault = |reason: &dyn Display| format!("{}: {reason}", path.display());
-    let replaced = target(path).map_err(|error| fault(&error))?;
-    let found = fs::metadata(&replaced).ok();
+    // By the path as given: `/dev/stdout` leads to a pipe that has no path of its own.
+    let found = fs::metadata(path).ok();
     match &found {
         Some(found) if found.is_dir() => return Err(fault(&"is a folder; name a file in it")),
         Some(found) if !found.is_file() => {
@@ -29,6 +29,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
         }
         _ => {}
     }
+    let replaced = target(path).map_err(|error| fault(&error))?;
     let (Some(folder), Some(_)) = (replaced.parent(), replaced.file_name()) else {
         return Err(fault(&"names no file"));
     };

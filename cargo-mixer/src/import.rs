@@ -110,12 +110,7 @@ pub fn run(args: &ImportArgs) -> ExitCode {
 
 /// Writes the airframe file; what its user has to know of it.
 fn import(args: &ImportArgs) -> Result<Vec<String>, String> {
-    if args.output.exists() && !args.force {
-        return Err(format!(
-            "{} is there already; --force overwrites it",
-            args.output.display()
-        ));
-    }
+    crate::file::not_there(&args.output, args.force)?;
     let mut imported = read(args)?;
     let units = pairs::pair(&imported.rotors, &args.upper)?;
     let pair = match &args.pair {

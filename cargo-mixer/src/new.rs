@@ -7,6 +7,7 @@ use mixer_compiler::Source;
 
 use crate::Refusal;
 use crate::frame::FrameArgs;
+use crate::identify::fragment;
 
 /// Writes a complete, commented airframe file of a regular frame
 ///
@@ -38,7 +39,7 @@ pub fn run(args: &NewArgs) -> ExitCode {
     let tables = match &args.pair {
         None => STAND_IN.to_owned(),
         Some(path) => match std::fs::read_to_string(path) {
-            Ok(text) => text,
+            Ok(text) => fragment::without_instructions(&text),
             Err(error) => return crate::print_error(format_args!("{}: {error}", path.display())),
         },
     };

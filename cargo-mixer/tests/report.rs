@@ -316,7 +316,7 @@ fn bench_points_stand_beside_the_model() {
         .filter(|n| n.attribute("class") == Some("bench-dot"));
     // Thrust and torque, each as a surface and as a map.
     assert_eq!(dots.count(), 4 * 100);
-    assert!(page.contains("1 more lie outside the throttle range"));
+    assert!(page.contains("1 more lie below the idle of 0.1"));
     let cells: Vec<&str> = named(document.root(), "td")
         .filter_map(|cell| cell.text())
         .collect();

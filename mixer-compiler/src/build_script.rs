@@ -103,7 +103,7 @@ fn compile_into(
     name.push(".rs");
     let output = directory.join(&name);
     if let Some(first) = made.get(&output)
-        && first != path
+        && fs::canonicalize(first).ok() != fs::canonicalize(path).ok()
     {
         return Err(Error::SameOutput {
             name: name.into(),
@@ -152,8 +152,9 @@ mod tests {
             "{refused}"
         );
         assert_eq!(fs::read_to_string(&output).unwrap(), text);
-        // The same file again is no other.
+        // The same file again is no other, however it is written.
         assert_eq!(compile(&first).unwrap(), output);
+        assert_eq!(compile(&folder.join("b/../a/pair.toml")).unwrap(), output);
         fs::remove_dir_all(folder).unwrap();
     }
 

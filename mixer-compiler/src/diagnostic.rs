@@ -91,7 +91,7 @@ pub struct Diagnostics {
 const MOST_SHOWN: usize = 100;
 
 /// Faults after which a file is not read on: it is no airframe, and reading should not take long.
-pub(crate) const MOST_FAULTS: usize = 1000;
+pub(crate) const MOST_FAULTS: usize = 200;
 
 /// Longest line that is shown, bytes. Of a longer one its place is told alone.
 const LONGEST_LINE: usize = 4096;

@@ -178,15 +178,15 @@ fn colours_are_only_colours() {
 
 /// A file that is no airframe at all does not flood the terminal; the records still hold everything.
 #[test]
-fn faults_by_the_thousand_are_counted() {
-    let text: String = (0..900).map(|k| format!("key{k} = {k}\n")).collect();
+fn faults_by_the_hundred_are_counted() {
+    let text: String = (0..150).map(|k| format!("key{k} = {k}\n")).collect();
     let faults = mixer_compiler::compile(&Source::new("a.toml", text)).unwrap_err();
     // The unknown keys, and four that are missing.
-    assert_eq!(faults.records().len(), 904);
-    assert!(faults.to_string().ends_with("\n\n804 more faults are not shown"));
+    assert_eq!(faults.records().len(), 154);
+    assert!(faults.to_string().ends_with("\n\n54 more faults are not shown"));
     let text: String = (0..9000).map(|k| format!("key{k} = {k}\n")).collect();
     let faults = mixer_compiler::compile(&Source::new("a.toml", text)).unwrap_err();
-    assert_eq!(faults.records().len(), 1004);
+    assert_eq!(faults.records().len(), 204);
     assert!(
         faults
             .to_string()

@@ -67,7 +67,7 @@ pub fn first_difference(held: &str, now: &str) -> String {
         .find(|(_, was, is)| was.to_bits() != is.to_bits());
     match cell {
         Some((column, was, is)) => format!(
-            "{}: {column} was {was:?}, is {is:?}, {:+e} more{others}",
+            "{}: {column} was {was:?}, is {is:?}, by {:+.2e}{others}",
             index + 1,
             f64::from(is) - f64::from(was)
         ),
@@ -95,7 +95,7 @@ mod tests {
         };
         assert_eq!(
             first_difference(&table(0.5, 0), &table(0.625, 4)),
-            "2: throttle_0 was 0.5, is 0.625, +1.25e-1 more"
+            "2: throttle_0 was 0.5, is 0.625, by +1.25e-1"
         );
         assert_eq!(
             first_difference(&table(0.5, 0), &table(0.5, 4)),

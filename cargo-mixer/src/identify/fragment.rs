@@ -12,9 +12,9 @@ use super::voltage::{Estimate, Exponent, Voltage};
 
 /// The fragment: `[throttle]` and `[pair]` where a pair was identified, `[voltage]` where its exponents are sound.
 pub fn text(identified: &Identified) -> String {
-    let mut out = String::new();
-    // Writing to a String cannot fail; the results are dropped.
-    let _ = write_instructions(&mut out, identified).and_then(|()| write_tables(&mut out, identified));
+    let mut out = format!("# Identified by {}.{INSTRUCTIONS}", identified.generator);
+    // Writing to a String cannot fail; the result is dropped.
+    let _ = write_tables(&mut out, identified);
     out
 }
 
@@ -25,18 +25,18 @@ pub fn tables(identified: &Identified) -> String {
     out
 }
 
-fn write_instructions(out: &mut String, id: &Identified) -> std::fmt::Result {
-    writeln!(
-        out,
-        "# Identified by {}. To make an airframe of it, add at the top",
-        id.generator
-    )?;
-    writeln!(out, "#   name = \"my-airframe\"")?;
-    writeln!(out, "# and, for each pair of rotors, at the end")?;
-    writeln!(out, "#   [[unit]]")?;
-    writeln!(out, "#   position_m = [x, y, 0.0]    # forward, right, down")?;
-    writeln!(out, "#   upper_spin = \"cw\"           # seen from above")?;
-    write!(out, "#   channels = [upper, lower]   # outputs")
+/// What a user does with the tables alone.
+const INSTRUCTIONS: &str = " To make an airframe of it, add at the top
+#   name = \"my-airframe\"
+# and, for each pair of rotors, at the end
+#   [[unit]]
+#   position_m = [x, y, 0.0]    # forward, right, down
+#   upper_spin = \"cw\"           # seen from above
+#   channels = [upper, lower]   # outputs";
+
+/// Tables that [`text`] wrote, for a file that has the rest of an airframe.
+pub fn without_instructions(text: &str) -> String {
+    text.replacen(INSTRUCTIONS, "", 1)
 }
 
 fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {

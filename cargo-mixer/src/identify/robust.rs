@@ -18,7 +18,7 @@ use super::polynomial::Polynomial;
 
 /// Rows stand out from this many robust standard deviations on. A polynomial's lack of fit alone reaches five on clean
 /// bench maps; rows of a faulty run have ten to fifty.
-pub const STANDS_OUT: f64 = 6.0;
+const STANDS_OUT: f64 = 6.0;
 /// ... and if they also miss by more than this part of full scale: on data without noise any residual is many
 /// standard deviations.
 const NEGLIGIBLE: f64 = 0.005;
@@ -51,13 +51,22 @@ impl Outlier {
     }
 }
 
+/// Whether a row of this residual stands out of a channel.
+pub fn stands_out(residual: f64, deviations: f64, full_scale: f64) -> bool {
+    deviations.abs() > STANDS_OUT && residual.abs() > NEGLIGIBLE * full_scale
+}
+
+/// Largest value of a channel.
+pub fn full_scale(y: &[f64]) -> f64 {
+    y.iter().fold(0.0, |m, y| m.max(y.abs()))
+}
+
 /// Residuals of suspects against a fit without them, in standard deviations of a prediction there:
 /// (y - fitted) / (sigma sqrt(1 + h)). `clean` is the design of the other rows, `y_clean` their values.
 pub fn against_the_others(clean: &Design, y_clean: &[f64], suspects: &[([f64; 2], f64)]) -> Vec<(f64, f64)> {
     let z = clean.coordinates(y_clean);
     let terms = clean.centred.basis.exponents().len();
-    let full_scale = y_clean.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
-    let scale = robust_scale(&clean.residuals(y_clean, &z), terms, full_scale);
+    let scale = robust_scale(&clean.residuals(y_clean, &z), terms, full_scale(y_clean));
     let polynomial = Polynomial::of(clean.centred.basis, &clean.coefficients(&z));
     let miss = |&([u, l], y): &([f64; 2], f64)| {
         let residual = y - polynomial.at(u, l);
@@ -84,13 +93,13 @@ impl Judged {
 
     /// Whether row `i` stands out.
     pub fn stands_out(&self, i: usize) -> bool {
-        self.deviations(i).abs() > STANDS_OUT && self.residuals[i].abs() > NEGLIGIBLE * self.full_scale
+        stands_out(self.residuals[i], self.deviations(i), self.full_scale)
     }
 }
 
 /// Fits `y` robustly on the design's orthonormal columns.
 pub fn judge(design: &Design, y: &[f64]) -> Judged {
-    let full_scale = y.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
+    let full_scale = full_scale(y);
     let terms = design.centred.basis.exponents().len();
     let mut residuals = design.residuals(y, &design.coordinates(y));
     let huber = |z: f64| if z.abs() <= 1.345 { 1.0 } else { 1.345 / z.abs() };

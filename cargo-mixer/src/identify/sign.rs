@@ -149,6 +149,12 @@ pub fn pair(
                  mirrored, for one that turns clockwise"
                     .into(),
             );
+        } else if total_torque && columns.sides_named {
+            notes.push(
+                "torque is turned, as of an upper rotor that turned counter-clockwise or a sensor mounted that way; \
+                 exchanged columns look the same: make sure which is the upper rotor's (--swap exchanges them)"
+                    .into(),
+            );
         }
     }
     let thrust = signed(
@@ -157,7 +163,7 @@ pub fn pair(
         total_thrust,
         &thrust_signs,
     );
-    if !total_thrust && !columns.sides_named {
+    if !total_thrust {
         compare_sides(samples, thrust_signs, notes);
     }
     let signs = Signs {

@@ -262,13 +262,17 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
         if !bench.outside.is_empty() {
             let [low, _] = study.pair.range();
             let below = |point: &&BenchPoint| point.throttles.iter().any(|t| *t < low);
+            let (all, low) = (bench.outside.len(), shortest(low));
+            let outside = match bench.outside.iter().filter(below).count() {
+                0 => format!("{all} more lie outside the throttle range"),
+                below if below == all => format!("{all} more lie below the idle of {low}"),
+                below => format!(
+                    "{all} more lie outside the throttle range, {below} of them below the idle of {low}"
+                ),
+            };
             let _ = writeln!(
                 text,
-                " {} more lie outside the throttle range, {} of them below the idle of {}: small in the maps of what the model \
-                 misses, and in no number.",
-                bench.outside.len(),
-                bench.outside.iter().filter(below).count(),
-                shortest(low)
+                " {outside}: small in the maps of what the model misses, and in no number."
             );
         }
         text.push_str("</p>\n");

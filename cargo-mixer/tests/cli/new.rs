@@ -154,6 +154,8 @@ fn identify_writes_a_whole_airframe() {
         "new", "--frame", "x8", "--arm", "0.45", "--pair", &pair, "--name", "my-frame", "-o", &other,
     ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = fs::read_to_string(&other).unwrap();
+    assert!(!text.contains("To make an airframe of it"), "{text}");
     let values = |file: &str| fs::read_to_string(file).unwrap().parse::<toml::Table>().unwrap();
     assert_eq!(values(&file), values(&other));
     // Nothing is overwritten by accident.
@@ -163,4 +165,32 @@ fn identify_writes_a_whole_airframe() {
         Some(0)
     );
     assert_status(&run(&["identify", &bench, "--arm", "0.45"]), 2);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_pipe_is_written_to() {
+    let arguments = ["new", "--frame", "single", "--name", "a", "-o", "/dev/stdout"];
+    let output = run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).contains("name = \"a\""), "{}", stdout(&output));
+}
+
+/// The stand-in for a bench that docs/first-airframe.md takes has no noise: what its rounding leaves is no outlier.
+#[test]
+fn the_stand_in_for_a_bench_has_no_row_that_stands_out() {
+    let (bench, pair) = (path("sweep.csv"), path("of-sweep.toml"));
+    let sweep = run(&[
+        "sweep",
+        "airframes/isae-x8.toml",
+        "--figure",
+        "forward",
+        "-o",
+        &bench,
+    ]);
+    assert_eq!(sweep.status.code(), Some(0), "{}", stderr(&sweep));
+    let output = run(&["identify", &bench, "-o", &pair]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told = stdout(&output);
+    assert!(told.contains("Rows that stand out: none"), "{told}");
 }

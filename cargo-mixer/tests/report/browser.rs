@@ -21,6 +21,17 @@ for (const svg of document.querySelectorAll('svg[data-hover]:not([data-hover=""]
 }
 </script></body>"#;
 
+/// A page in a window of a phone's width, and what of it is wider than that.
+const PHONE: &str = r#"<iframe src="PAGE" style="width:390px;height:30000px;border:0"></iframe><script>
+addEventListener("load", () => {
+  const page = document.querySelector("iframe").contentDocument;
+  const wide = [...page.querySelectorAll("section > .wide, .figures > .wide")].filter((box) => box.scrollWidth > box.clientWidth);
+  const names = wide.map((box) => box.closest("section").querySelector("h2").textContent);
+  const root = page.documentElement;
+  document.body.textContent = `${root.scrollWidth} of ${root.clientWidth}: ${[...new Set(names)].join("; ")}`;
+});
+</script>"#;
+
 fn browser() -> Option<PathBuf> {
     let named = env::var_os("MIXER_CHROMIUM").map(PathBuf::from);
     let folders = env::var_os("PATH").unwrap_or_default();
@@ -28,6 +39,19 @@ fn browser() -> Option<PathBuf> {
         .flat_map(|folder| ["chromium", "chromium-browser", "google-chrome"].map(|name| folder.join(name)))
         .find(|path| path.is_file());
     named.or(installed)
+}
+
+/// The browser; without one the test says that it did not run, or fails where it was asked for.
+fn wanted_browser() -> Option<PathBuf> {
+    let found = browser();
+    if found.is_none() {
+        let asked =
+            env::var("MIXER_BROWSER").is_ok_and(|x| x == "1") || env::var("CI").is_ok_and(|x| x == "true");
+        let hint = "no chromium in PATH or MIXER_CHROMIUM: apt-get install chromium";
+        assert!(!asked, "{hint}");
+        println!("NOT RUN: {hint}");
+    }
+    found
 }
 
 /// Opens a page; its DOM after the scripts ran, and the messages on its console.
@@ -45,6 +69,7 @@ fn open(browser: &Path, page: &Path) -> (String, Vec<String>) {
     command.args([
         "--enable-logging=stderr",
         "--virtual-time-budget=4000",
+        "--allow-file-access-from-files",
         "--dump-dom",
     ]);
     command.arg(format!("--user-data-dir={}", profile.display()));
@@ -61,12 +86,7 @@ fn open(browser: &Path, page: &Path) -> (String, Vec<String>) {
 
 #[test]
 fn pages_open_without_errors_and_show_values() {
-    let Some(browser) = browser() else {
-        let asked =
-            env::var("MIXER_BROWSER").is_ok_and(|x| x == "1") || env::var("CI").is_ok_and(|x| x == "true");
-        let hint = "no chromium in PATH or MIXER_CHROMIUM: apt-get install chromium";
-        assert!(!asked, "{hint}");
-        println!("NOT RUN: {hint}");
+    let Some(browser) = wanted_browser() else {
         return;
     };
     for compiled in airframes() {
@@ -117,4 +137,26 @@ fn pages_open_without_errors_and_show_values() {
             .any(|text| text.contains("Content Security Policy")),
         "{messages:#?}"
     );
+}
+
+/// Of the tables that are not folded M alone scrolls, with its two columns per unit.
+#[test]
+fn pages_fit_a_phone() {
+    let Some(browser) = wanted_browser() else {
+        return;
+    };
+    for compiled in airframes() {
+        let name = compiled.airframe.name.clone();
+        let path = scratch(&format!("{name}-narrow.html"));
+        let html = page(&Study::new(&compiled, None), None, &Origin::default());
+        fs::write(&path, html).unwrap();
+        let phone = scratch(&format!("{name}-phone.html"));
+        let framed = path.file_name().unwrap().to_string_lossy();
+        fs::write(&phone, PHONE.replace("PAGE", &framed)).unwrap();
+        let (dom, _) = open(&browser, &phone);
+        let (_, told) = dom.split_once("<body>").expect("a body");
+        let told = told.split("</body>").next().unwrap_or_default();
+        let told = told.strip_prefix("390 of 390: ").unwrap_or(told);
+        assert!(["", "Allocation"].contains(&told.trim()), "{name}: {told}");
+    }
 }

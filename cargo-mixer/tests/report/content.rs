@@ -155,7 +155,7 @@ fn residuals_are_mapped() {
         ..BenchPoints::default()
     };
     let page = page(&study, Some(&bench), &Origin::default());
-    assert!(page.contains("1 more lie outside the throttle range, 1 of them below the idle of 0.1"));
+    assert!(page.contains("1 more lie below the idle of 0.1: small"));
     let document = parsed(&page);
     let maps: Vec<Node> = named(document.root(), "svg")
         .filter(|svg| svg.attribute("aria-label").unwrap().contains("by the model less"))

@@ -8,8 +8,11 @@ use crate::diagnostic::{Code, Diagnostic, number, rounded};
 const MOST_COUNTED_UNITS: usize = 8;
 
 /// Longest plausible arm per root of a unit's largest thrust, m / sqrt(N). Thrust grows with the square of the diameter and
-/// arms with the diameter; PX4's X12, the longest in `airframes/`, has 0.2, arms in centimetres 6 and more.
-const ARM_PER_ROOT_THRUST: f64 = 1.0;
+/// arms with the diameter; PX4's X12, the longest in `airframes/`, has 0.2, arms in decimetres 0.6 and more.
+const ARM_PER_ROOT_THRUST: f64 = 0.5;
+
+/// Shortest arm that centimetres could have meant, m / sqrt(N): real frames have about 0.09.
+const SHORT_ARM_PER_ROOT_THRUST: f64 = 0.02;
 
 /// Arms in centimetres.
 pub(super) fn arms(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
@@ -52,7 +55,11 @@ pub(super) fn arms(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
             rounded(longest)
         ),
         "expected metres",
-        format!("if centimetres were meant, write {written}"),
+        if arm / 100.0 < SHORT_ARM_PER_ROOT_THRUST * facts.scale[0].sqrt() {
+            "write the distance of each mast from the centre of gravity in metres".to_owned()
+        } else {
+            format!("if centimetres were meant, write {written}")
+        },
     ));
 }
 

@@ -36,12 +36,16 @@ fn diagnostic(
     (key, unit, tolerance, largest): (&str, &str, f64, f64),
     most: f64,
 ) -> Diagnostic {
-    let percent = rounded(100.0 * tolerance / largest);
+    // What is past the largest float says that it is.
+    let percent = match 100.0 * (tolerance / largest) {
+        percent if percent.is_finite() => format!("{} %", rounded(percent)),
+        _ => "more than 1e308 %".to_owned(),
+    };
     airframe.diagnostic(
         code,
         key,
         format!(
-            "a tolerance of {} {unit} is {percent} % of a unit's largest effort, {} {unit}",
+            "a tolerance of {} {unit} is {percent} of a unit's largest effort, {} {unit}",
             number(tolerance),
             rounded(largest)
         ),

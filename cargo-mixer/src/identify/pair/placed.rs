@@ -148,7 +148,10 @@ pub(super) fn confirmed(
             torque_residual: q.0,
             torque_deviations: q.1,
         });
-    let stands_out =
-        |o: &Outlier| o.thrust_deviations.abs().max(o.torque_deviations.abs()) > robust::STANDS_OUT;
+    let scales = [&thrust, &torque].map(|y| robust::full_scale(y));
+    let stands_out = |o: &Outlier| {
+        robust::stands_out(o.thrust_residual, o.thrust_deviations, scales[0])
+            || robust::stands_out(o.torque_residual, o.torque_deviations, scales[1])
+    };
     outliers.filter(stands_out).collect()
 }

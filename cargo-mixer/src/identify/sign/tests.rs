@@ -33,9 +33,13 @@ fn totals_are_turned_to_the_convention() {
     let c = columns("upper,lower,thrust_n,torque_nm");
     for (a, b, sign) in [(-1.0, 0.8, 1.0), (1.0, -0.8, -1.0)] {
         let s = samples(a, b);
-        let (signs, sums) = pair("b.csv", &c, &s, &AUTO, &mut Vec::new()).expect("signs");
+        let mut notes = Vec::new();
+        let (signs, sums) = pair("b.csv", &c, &s, &AUTO, &mut notes).expect("signs");
         assert_eq!((signs.thrust, signs.torque), (vec![-1.0], vec![sign]));
         assert!(sums[0].1 > 0.0 && sums[1].1 < 0.0 && sums[0].0 > 0.0);
+        // Exchanged columns turn the torque, too.
+        let exchanged = notes.iter().any(|note| note.contains("exchanged columns"));
+        assert_eq!(exchanged, sign < 0.0, "{notes:?}");
     }
 }
 
@@ -82,10 +86,14 @@ fn constant_and_missing_torque_are_refused() {
 
 #[test]
 fn the_rotor_in_the_wake_is_noticed() {
-    let c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
+    let mut c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
     let mut s = samples(-1.0, 0.8);
     s.iter_mut().for_each(|s| s.rotor_thrust[1] *= 4.0);
-    let mut notes = Vec::new();
-    pair("b.csv", &c, &s, &AUTO, &mut notes).expect("signs");
-    assert!(notes[0].contains("--swap"), "{notes:?}");
+    // A header that names the rotors may be wrong about them.
+    for named in [false, true] {
+        c.sides_named = named;
+        let mut notes = Vec::new();
+        pair("b.csv", &c, &s, &AUTO, &mut notes).expect("signs");
+        assert!(notes[0].contains("--swap"), "{notes:?}");
+    }
 }

@@ -1,11 +1,14 @@
-//! One airframe's golden vectors on the target, with all rotors and with each of them out: one line of result.
+//! One airframe's golden vectors on the target, with all rotors and with each of them out: one line of result, and
+//! QEMU's exit status. Copy it with `harness.rs`; the two paths and the airframe's module are yours.
 #![no_std]
 #![no_main]
 
 mod harness;
 
+use core::panic::PanicInfo;
+
 use cortex_m_rt::entry;
-use cortex_m_semihosting::hprintln;
+use cortex_m_semihosting::{debug, hprintln};
 use harness::differing;
 use mixer_rt::Health;
 
@@ -23,5 +26,23 @@ fn main() -> ! {
         });
     }
     hprintln!("isae-x8: {} vectors, {} differ", rows, differ);
-    probe::exit(differ == 0)
+    exit(differ == 0)
+}
+
+/// Leaves QEMU, or rests on a board.
+fn exit(passed: bool) -> ! {
+    debug::exit(if passed {
+        debug::EXIT_SUCCESS
+    } else {
+        debug::EXIT_FAILURE
+    });
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo) -> ! {
+    hprintln!("{}", info);
+    exit(false)
 }
