@@ -70,6 +70,7 @@ fn every_map_compiles_close_to_its_fold() {
         "{:<19} {:<11} {:>4} {:>7} {:>5}  {:<22} {:>8} {:>8}  {:>6} {:>7}",
         "map", "basis", "max", "min", "ms", "evaluator", "f (N)", "Q (N m)", "lost %", "corners"
     );
+    let mut refused = 0;
     for map in &files {
         for basis in ["biquadratic", "cubic", "quartic"] {
             let identified = maps::identified(map, basis);
@@ -83,8 +84,17 @@ fn every_map_compiles_close_to_its_fold() {
                 let least = ForwardMap::new(&own.pair).least_idle(max);
                 let min = IDLE * least.unwrap_or_else(|| panic!("{what}: folds at every idle"));
                 let started = Instant::now();
-                let compiled = mixer_compiler::compile(&source(&identified, [min, max]))
-                    .unwrap_or_else(|faults| panic!("{what}, from {min}: {faults}"));
+                let compiled = match mixer_compiler::compile(&source(&identified, [min, max])) {
+                    Ok(compiled) => compiled,
+                    Err(faults) => {
+                        println!("{what}, from {min}: {faults}");
+                        // Beyond the throttles of its bench a map may all but fold at full throttle.
+                        let is_told = faults.to_string().contains("lower throttle.max");
+                        assert!(max > measured.unwrap_or(1.0) && is_told, "{what}");
+                        refused += 1;
+                        continue;
+                    }
+                };
                 let [f, q] = compiled.certificate.stated;
                 println!(
                     "{what} {min:>7.5} {:>5}  {:<22} {f:>8.2e} {q:>8.2e}  {:>6.3} {:>7}",
@@ -101,4 +111,8 @@ fn every_map_compiles_close_to_its_fold() {
             }
         }
     }
+    assert!(
+        refused <= 1,
+        "{refused} maps are refused beyond their bench's throttles"
+    );
 }

@@ -301,11 +301,13 @@ fn real_pairs(test: &str) -> Option<Vec<(String, String)>> {
             let least = ForwardMap::new(&own.pair).least_idle(1.0).expect("an idle");
             let idle = IDLE * least;
             let [idle_n, _] = PairMap::new(&own.pair, &own.throttle).efforts([idle; 2]);
-            // Far below the throttles of its bench a map may give a negative thrust.
-            let pair = if idle_n < 0.0 {
+            let widest = maps::with_throttle(&identified, [idle, 1.0]);
+            let text = frames::toml_with_pair(&widest, &places, &channels, Options::default());
+            // Beyond the throttles of its bench a map may give a negative thrust, or all but fold.
+            let pair = if idle_n < 0.0 || frames::compile_text(&text).is_err() {
                 fragment::text(&identified)
             } else {
-                maps::with_throttle(&identified, [idle, 1.0])
+                widest
             };
             pairs.push((format!("{} {basis}", &name[4..23]), pair));
         }

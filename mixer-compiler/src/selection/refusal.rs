@@ -59,7 +59,7 @@ pub(super) fn diagnostic(
             format!("nothing can be proven of the {}", evaluator.description()),
             "",
             idle_mend.unwrap_or_else(|| {
-                "the map almost folds at the edge of the throttle range: raise throttle.min".to_owned()
+                "the map almost folds at the edge of the throttle range: raise throttle.min or lower throttle.max".to_owned()
             }),
         );
     }
