@@ -1,4 +1,5 @@
-//! The mixers for comparison, `mixer_rt::baselines`, against the oracle's of the same rules in double precision.
+//! The mixers for comparison, `mixer_rt::baselines`, against the oracle's of the same rules in
+//! double precision.
 #![allow(missing_docs)]
 
 use std::fs;
@@ -58,7 +59,8 @@ fn isolated_rotors_are_mixed_as_the_oracle_does() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Largest difference of a throttle over setpoints and expected throttles as CSV, and how many rows were clipped.
+/// Largest difference of a throttle over setpoints and expected throttles as CSV, and how many rows
+/// were clipped.
 fn compare(tables: &IsolatedTables, method: &str, asked: &str, expected: &str) -> (f64, usize) {
     let (mut worst, mut clipped) = (0.0f64, 0);
     for (request, expected) in rows(asked).zip(rows(expected)) {

@@ -1,4 +1,5 @@
-//! Compiles every airframe of the project by way of the build script, for `two_ways.rs` and for the README's examples.
+//! Compiles every airframe of the project by way of the build script, for `two_ways.rs` and for the
+//! README's examples.
 
 use std::path::Path;
 use std::{env, fs, io};

@@ -1,4 +1,5 @@
-//! The documents: tables are what their commands write, links lead somewhere, code blocks are what they say.
+//! The documents: tables are what their commands write, links lead somewhere, code blocks are what
+//! they say.
 //!
 //! Rust blocks are run as documentation tests, see `src/lib.rs`.
 #![allow(missing_docs)]
@@ -183,7 +184,8 @@ fn blocks_of_toml_are_read() {
     assert!(airframes > 0, "the README has a whole airframe");
 }
 
-/// The sections of `docs/airframe.md` make one airframe, so that every key in them is one that the compiler knows.
+/// The sections of `docs/airframe.md` make one airframe, so that every key in them is one that the
+/// compiler knows.
 #[test]
 fn the_airframe_page_is_an_airframe() {
     let page = read(&root().join("docs/airframe.md"));

@@ -12,7 +12,8 @@ use mixer_tests::{airframes, digest, evaluators, golden, overhead};
 
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 704;
-/// Below the caller's frame, any airframe: those that desaturate along a path of wrenches need more, the X12 2,272.
+/// Below the caller's frame, any airframe: those that desaturate along a path of wrenches need
+/// more, the X12 2,272.
 const ANY_STACK_LIMIT_BYTES: u64 = 2304;
 /// Code and tables of [`REFERENCE`].
 const SIZE_LIMIT_BYTES: u64 = 9 * 1024;
@@ -141,7 +142,8 @@ fn mixers_are_small_and_cannot_panic() {
     }
 }
 
-/// The compiler sorts evaluators by numbers that were counted; where code has changed since, they must be counted anew.
+/// The compiler sorts evaluators by numbers that were counted; where code has changed since, they
+/// must be counted anew.
 #[test]
 fn evaluators_cost_what_the_compiler_believes() {
     let toolchain = toolchain();
@@ -170,7 +172,8 @@ fn evaluators_cost_what_the_compiler_believes() {
     }
 }
 
-/// The size image proves by linking that no panic is reachable: here is the panic that must not link.
+/// The size image proves by linking that no panic is reachable: here is the panic that must not
+/// link.
 #[test]
 fn a_reachable_panic_does_not_link() {
     let linked = toolchain().build("size", &Variant::with("panic_path"));
@@ -185,9 +188,8 @@ fn panic_symbols_are_found_where_there_are_some() {
     assert!(!image.panic_symbols().is_empty());
 }
 
-/// The flight of `flight::setpoint`: 1200 cycles less three lost ones are mixed; the three are held, and so are the first
-/// forty of a hundred at the end,
-/// after which the rotors stop.
+/// The flight of `flight::setpoint`: 1200 cycles less three lost ones are mixed; the three are
+/// held, and so are the first forty of a hundred at the end, after which the rotors stop.
 #[test]
 fn control_loop_holds_and_then_disarms() {
     let text = Toolchain::for_package("examples/firmware")
@@ -201,9 +203,10 @@ fn control_loop_holds_and_then_disarms() {
     );
 }
 
-/// The flight of `examples/executors`: 1600 cycles, of which three lost ones are held, and of a hundred at the end the first
-/// forty. The bench is the mixer's own model, so both executors give the same numbers if each paces every cycle and passes
-/// voltage and saturation on; an integral that does not stop overshoots to 4.7 rad/s.
+/// The flight of `examples/executors`: 1600 cycles, of which three lost ones are held, and of a
+/// hundred at the end the first forty. The bench is the mixer's own model, so both executors give
+/// the same numbers if each paces every cycle and passes voltage and saturation on; an integral
+/// that does not stop overshoots to 4.7 rad/s.
 #[test]
 fn executors_pace_the_loop_and_stop_the_integral() {
     let toolchain =
@@ -246,8 +249,9 @@ fn executors_pace_the_loop_and_stop_the_integral() {
     }
 }
 
-/// A hundred thousand setpoints per airframe: attainable, saturated, not finite; two thousand with one rotor out, and with
-/// two. Ten times as many where `MIXER_MILLION` names the airframe, or for `all`.
+/// A hundred thousand setpoints per airframe: attainable, saturated, not finite; two thousand with
+/// one rotor out, and with two. Ten times as many where `MIXER_MILLION` names the airframe, or for
+/// `all`.
 #[test]
 fn random_setpoints_have_the_same_bits_as_on_the_host() {
     let toolchain = toolchain();
@@ -285,12 +289,13 @@ fn random_setpoints_have_the_same_bits_as_on_the_host() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// How far a count may be from the held one where another compiler builds the firmware. A search for the dearest
-/// request takes other ways there.
+/// How far a count may be from the held one where another compiler builds the firmware. A search
+/// for the dearest request takes other ways there.
 const OTHER_COMPILER: f64 = 0.03;
 const OTHER_COMPILER_SEARCHED: f64 = 0.15;
 
-/// The counts of `tests/counts.csv`, to the instruction and to the byte, where the same compiler builds the firmware.
+/// The counts of `tests/counts.csv`, to the instruction and to the byte, where the same compiler
+/// builds the firmware.
 #[test]
 fn counts_are_those_held() {
     let toolchain = toolchain();
@@ -381,8 +386,9 @@ fn the_page_of_costs_is_that_of_the_counts() {
     assert_eq!(page, counts::document(&compiler, &held), "{MEND}");
 }
 
-/// No request of any set takes more than the bound that the compiler states, which is not more than three and a half times the worst: no
-/// request that was tried used up all pivots and flips, nor those of level flight.
+/// No request of any set takes more than the bound that the compiler states, which is not more than
+/// three and a half times the worst: no request that was tried used up all pivots and flips, nor
+/// those of level flight.
 #[test]
 fn bounds_hold_what_was_counted() {
     let (_, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));

@@ -1,5 +1,5 @@
-//! The files of the runtime and of the compiler import one another without a circle, so that each can be read before those
-//! that stand above it.
+//! The files of the runtime and of the compiler import one another without a circle, so that each
+//! can be read before those that stand above it.
 #![allow(missing_docs)]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -97,7 +97,8 @@ fn imports(files: &BTreeMap<Module, syn::File>) -> BTreeMap<Module, BTreeSet<Mod
         .collect()
 }
 
-/// What is left when files are taken away that import nothing that is left, again and again: the circles.
+/// What is left when files are taken away that import nothing that is left, again and again: the
+/// circles.
 fn circles(mut imports: BTreeMap<Module, BTreeSet<Module>>) -> BTreeMap<Module, BTreeSet<Module>> {
     loop {
         let left: BTreeSet<Module> = imports.keys().cloned().collect();

@@ -1,5 +1,5 @@
-//! An independent oracle in Python judges the mixers: thousands of random setpoints and voltages, and every golden
-//! vector, against the forward physics of the airframe file.
+//! An independent oracle in Python judges the mixers: thousands of random setpoints and voltages,
+//! and every golden vector, against the forward physics of the airframe file.
 #![allow(missing_docs)]
 
 use std::fmt::Write as _;
@@ -250,7 +250,8 @@ fn setpoints_with_rotors_out_are_mixed_as_the_physics_demand() {
     }
 }
 
-/// Where the file declares what the polynomials at zero give, the bits are those of the file that does not.
+/// Where the file declares what the polynomials at zero give, the bits are those of the file that
+/// does not.
 #[test]
 fn a_declared_curve_is_the_polynomial_where_it_says_the_same() {
     let file = "airframes/isae-x8.toml";

@@ -1,4 +1,5 @@
-//! The packages that are published hold what their user needs, and nothing that reads files outside.
+//! The packages that are published hold what their user needs, and nothing that reads files
+//! outside.
 #![allow(missing_docs)]
 
 use std::fs;

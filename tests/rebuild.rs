@@ -1,5 +1,6 @@
-//! Editing an airframe file rebuilds what was made of it, by the macro and by a build script: a new number arrives in
-//! the program, a fault stops the build and names its place in the file, mending it builds again.
+//! Editing an airframe file rebuilds what was made of it, by the macro and by a build script: a new
+//! number arrives in the program, a fault stops the build and names its place in the file, mending
+//! it builds again.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -68,8 +69,9 @@ impl Package {
         package
     }
 
-    /// Writes one of the airframe files with another coefficient. Cargo compares times of modification, which some
-    /// file systems keep in seconds; setting `time` keeps edits apart without waiting.
+    /// Writes one of the airframe files with another coefficient. Cargo compares times of
+    /// modification, which some file systems keep in seconds; setting `time` keeps edits apart
+    /// without waiting.
     fn edit(&self, file: &str, coefficient: &str, time: SystemTime) {
         assert_eq!(self.airframe.matches(COEFFICIENT).count(), 1);
         let path = self.folder.join(file);

@@ -1,4 +1,5 @@
-//! The macro, the build-script function and the library give the same mixer for every airframe of the project.
+//! The macro, the build-script function and the library give the same mixer for every airframe of
+//! the project.
 
 use std::path::Path;
 use std::{fs, io};
@@ -64,8 +65,8 @@ where
     }
 }
 
-/// The file of the build script is what the library generates, byte for byte. `cargo mixer expand` prints the same:
-/// see `cargo-mixer/tests/cli/main.rs`.
+/// The file of the build script is what the library generates, byte for byte. `cargo mixer expand`
+/// prints the same: see `cargo-mixer/tests/cli/main.rs`.
 fn assert_same_text(path: &str, by_build_script: &str) {
     // The working directory of tests is that of their package, as it is for build scripts.
     let text = fs::read_to_string(path).unwrap();

@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 /// Most links that are followed to a file, as by the kernel.
 const MOST_LINKS: usize = 40;
 
-/// Writes the whole file or none of it: a temporary file beside it, flushed to the disk, takes its name and its
-/// permissions. A link stays a link, one to no file yet gets its file. A file with several names keeps them: it is written
-/// to in place, once the temporary file has shown that there is room. What is no regular file, as a device or a pipe, is
-/// written to and stays what it is.
+/// Writes the whole file or none of it: a temporary file beside it, flushed to the disk, takes its
+/// name and its permissions. A link stays a link, one to no file yet gets its file. A file with
+/// several names keeps them: it is written to in place, once the temporary file has shown that
+/// there is room. What is no regular file, as a device or a pipe, is written to and stays what it
+/// is.
 ///
 /// # Errors
 /// What cannot be written, by its path, and why.
@@ -45,7 +46,8 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
     done.map_err(|error| fault(&error))
 }
 
-/// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to lose.
+/// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to
+/// lose.
 ///
 /// # Errors
 /// A regular file of that name.

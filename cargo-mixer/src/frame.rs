@@ -1,4 +1,5 @@
-//! Regular frames, written as the rest of an airframe file: name, `[layout]`, and what else there is to fill in.
+//! Regular frames, written as the rest of an airframe file: name, `[layout]`, and what else there
+//! is to fill in.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -26,7 +27,8 @@ pub enum Frame {
 #[derive(clap::Args, Clone, Debug)]
 pub struct FrameArgs {
     /// The frame
-    // Not required by itself: `identify` writes the tables alone without it, `new` misses it all the same.
+    // Not required by itself: `identify` writes the tables alone without it, `new` misses it all
+    // the same.
     #[arg(long, value_enum, required = false)]
     pub frame: Frame,
     /// Distance of every pair from the centre of gravity, m; not for a single pair
@@ -98,8 +100,9 @@ impl Frame {
 }
 
 impl FrameArgs {
-    /// A whole airframe file around `tables`, which are `[throttle]`, `[pair]` and, if there is one, `[voltage]`.
-    /// `power_bias` is the torque of least power, N m per N, if it is known; it is written where the frame gains by it.
+    /// A whole airframe file around `tables`, which are `[throttle]`, `[pair]` and, if there is
+    /// one, `[voltage]`. `power_bias` is the torque of least power, N m per N, if it is known; it
+    /// is written where the frame gains by it.
     ///
     /// # Errors
     /// An arm that is missing, or one too many.

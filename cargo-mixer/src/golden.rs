@@ -1,8 +1,8 @@
 //! `cargo mixer golden`: what an airframe compiles to, held in files and compared.
 //!
-//! An airframe has five of them: `NAME.rs`, the generated Rust; `NAME.report.txt`, the report; `NAME.vectors.csv`,
-//! setpoints with the bits that the mixer gives; `NAME.rotors-out.csv`, the same with rotors out; `NAME.vectors.rs`, both as
-//! constants for a test on the target.
+//! An airframe has five of them: `NAME.rs`, the generated Rust; `NAME.report.txt`, the report;
+//! `NAME.vectors.csv`, setpoints with the bits that the mixer gives; `NAME.rotors-out.csv`, the
+//! same with rotors out; `NAME.vectors.rs`, both as constants for a test on the target.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,9 +18,10 @@ pub mod vectors;
 
 /// Writes golden outputs of airframes, or compares them with those that were written
 ///
-/// Per airframe: NAME.rs (the generated Rust), NAME.report.txt, NAME.vectors.csv (setpoints with the bits of throttles,
-/// achieved wrench and saturation), NAME.rotors-out.csv (the same with rotors out) and NAME.vectors.rs (both as constants,
-/// for a test on the target). Keep the folder under version control and run the command with --check in your tests.
+/// Per airframe: NAME.rs (the generated Rust), NAME.report.txt, NAME.vectors.csv (setpoints with
+/// the bits of throttles, achieved wrench and saturation), NAME.rotors-out.csv (the same with
+/// rotors out) and NAME.vectors.rs (both as constants, for a test on the target). Keep the folder
+/// under version control and run the command with --check in your tests.
 #[derive(clap::Args, Debug)]
 pub struct GoldenArgs {
     /// The airframe files
@@ -29,7 +30,8 @@ pub struct GoldenArgs {
     /// The folder of the outputs
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Compare and write nothing; status 1 where an output differs, is missing or belongs to no airframe
+    /// Compare and write nothing; status 1 where an output differs, is missing or belongs to no
+    /// airframe
     #[arg(long)]
     check: bool,
 }

@@ -1,8 +1,9 @@
-//! `cargo mixer identify`: from bench sweeps to the `[throttle]`, `[pair]` and `[voltage]` tables of an airframe file.
+//! `cargo mixer identify`: from bench sweeps to the `[throttle]`, `[pair]` and `[voltage]` tables
+//! of an airframe file.
 //!
-//! files -> [`read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) -> [`voltage`] exponents -> [`pair`]: outliers
-//! ([`robust`]), choice of the basis ([`cross`]), least squares ([`fit`]), [`fold`], [`monotone`] -> [`fragment`],
-//! [`report`].
+//! files -> [`read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) -> [`voltage`]
+//! exponents -> [`pair`]: outliers ([`robust`]), choice of the basis ([`cross`]), least squares
+//! ([`fit`]), [`fold`], [`monotone`] -> [`fragment`], [`report`].
 
 use std::io::{Write as _, stdout};
 use std::path::{Path, PathBuf};
@@ -48,15 +49,17 @@ pub mod voltage;
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
 ///
-/// Reads coaxial maps (`PWM Left`, `PWM Right`, ..), RCbenchmark 1520/1580/1780, Tyto Flight Stand, and the plain
-/// `upper,lower,thrust_n,torque_nm[,voltage_v]` with throttles in [0, 1]. Several files are joined: repeats of one
-/// pair, the same at other voltages, and single-rotor sweeps at two voltages for the exponents.
+/// Reads coaxial maps (`PWM Left`, `PWM Right`, ..), RCbenchmark 1520/1580/1780, Tyto Flight Stand,
+/// and the plain `upper,lower,thrust_n,torque_nm[,voltage_v]` with throttles in [0, 1]. Several
+/// files are joined: repeats of one pair, the same at other voltages, and single-rotor sweeps at
+/// two voltages for the exponents.
 #[derive(Debug, Clone, Args)]
 pub struct IdentifyArgs {
     /// Bench files (CSV).
     #[arg(required = true, value_name = "BENCH.csv")]
     pub files: Vec<PathBuf>,
-    /// Write the tables here, whole or not at all; `-` for standard output (the report then goes to standard error).
+    /// Write the tables here, whole or not at all; `-` for standard output (the report then goes to
+    /// standard error).
     #[arg(short, long, value_name = "PAIR.toml")]
     pub output: Option<PathBuf>,
     /// Overwrite the output if it is there
@@ -83,15 +86,16 @@ pub struct IdentifyArgs {
     /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
     pub pwm_range: Option<PulseRange>,
-    /// A rotor at or below this throttle stands still: a start or stop row; a negative value keeps all rows.
+    /// A rotor at or below this throttle stands still: a start or stop row; a negative value keeps
+    /// all rows.
     #[arg(long, value_name = "THROTTLE", default_value_t = 0.005, value_parser = finite, allow_negative_numbers = true)]
     pub stop_throttle: f64,
     /// Part of each plateau of a streaming log that is dropped at its beginning, in [0, 1).
     #[arg(long, value_name = "PART", default_value_t = 0.33, value_parser = part)]
     pub settle: f64,
-    /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust, torque,
-    /// upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage, current, upper_current, lower_current,
-    /// time.
+    /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust,
+    /// torque, upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage,
+    /// current, upper_current, lower_current, time.
     #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
     pub columns: Vec<(String, String)>,
     /// A unit by hand, as thrust=gf, for a header without one.
@@ -109,17 +113,20 @@ pub struct IdentifyArgs {
     /// Reference voltage, V [default: mean of the rows].
     #[arg(long, value_name = "VOLT", value_parser = positive)]
     pub reference_voltage: Option<f64>,
-    /// A run of the upper rotor alone, the lower one at rest: `[pair.lower_out]`, for when the lower rotor is out.
+    /// A run of the upper rotor alone, the lower one at rest: `[pair.lower_out]`, for when the
+    /// lower rotor is out.
     #[arg(long, value_name = "RUN.csv")]
     pub lower_out: Option<PathBuf>,
     /// A run of the lower rotor alone, likewise: `[pair.upper_out]`.
     #[arg(long, value_name = "RUN.csv")]
     pub upper_out: Option<PathBuf>,
-    /// Without such runs, take the map's rows in which one rotor turns at its lowest throttle (up to 0.15) for the other one alone.
+    /// Without such runs, take the map's rows in which one rotor turns at its lowest throttle (up
+    /// to 0.15) for the other one alone.
     #[arg(long)]
     pub rotor_out_from_map: bool,
-    /// Exponent of thrust and of torque in (V / reference)^k, or one for both: brings the rows to the reference voltage and
-    /// writes `[voltage]` where the files cannot tell one. 1.75 is the median of 104 motors with propellers.
+    /// Exponent of thrust and of torque in (V / reference)^k, or one for both: brings the rows to
+    /// the reference voltage and writes `[voltage]` where the files cannot tell one. 1.75 is the
+    /// median of 104 motors with propellers.
     #[arg(long, value_name = "K[,K]", value_parser = exponents)]
     pub voltage_exponent: Option<DeclaredExponents>,
     /// Date of the measurement, YYYY-MM-DD [default: from the file names].
@@ -254,7 +261,8 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     Ok(())
 }
 
-/// What is wrong with the arguments taken together; `file` is the output unless that is standard output.
+/// What is wrong with the arguments taken together; `file` is the output unless that is standard
+/// output.
 fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
     let Some(output) = file else {
         return (args.json && args.output.is_some())

@@ -24,12 +24,15 @@ use parameters::Parameters;
 
 /// Makes an airframe file of a flight stack's parameters
 ///
-/// FILE is a parameter file of PX4 1.13 or later (CA_ROTOR*, as QGroundControl saves it) or of ArduPilot (FRAME_CLASS,
-/// FRAME_TYPE, MOT_*), or PX4's geometry files (tables `rotors`; those of two layers together, the upper one first).
+/// FILE is a parameter file of PX4 1.13 or later (CA_ROTOR*, as QGroundControl saves it) or of
+/// ArduPilot (FRAME_CLASS, FRAME_TYPE, MOT_*), or PX4's geometry files (tables `rotors`; those of
+/// two layers together, the upper one first).
 ///
-/// PX4:       two rotors in one place are a unit, the one with the smaller z is the upper; KM > 0 turns counter-clockwise;
+/// PX4:       two rotors in one place are a unit, the one with the smaller z is the upper; KM > 0
+/// turns counter-clockwise;
 ///            tilted axes are kept.
-/// ArduPilot: the table of the frame gives angles, spins and layers; --arm gives their distance, which the file lacks.
+/// ArduPilot: the table of the frame gives angles, spins and layers; --arm gives their distance,
+/// which the file lacks.
 ///
 /// What the parameters do not say is named on stderr and in the file.
 #[derive(clap::Args, Debug)]
@@ -44,7 +47,8 @@ pub struct ImportArgs {
     /// Distance of the units from the centre, m: ArduPilot's files do not have it
     #[arg(long, value_name = "METRES")]
     arm: Option<f64>,
-    /// The outputs, from 0, of the upper rotors: where the file does not say which they are, or says it wrongly
+    /// The outputs, from 0, of the upper rotors: where the file does not say which they are, or
+    /// says it wrongly
     #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
     upper: Vec<usize>,
     /// Name of the airframe

@@ -63,13 +63,14 @@ fn print_error(message: impl Display) -> ExitCode {
     ExitCode::from(BAD_INPUT)
 }
 
-/// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as in `2>&1 | head`.)
+/// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as
+/// in `2>&1 | head`.)
 fn print_note(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(&message.to_string()));
 }
 
-/// Shows faults or warnings on stderr; each begins with `error[..]` or `warning[..]` itself. In colours on a terminal, unless
-/// `NO_COLOR` is set (no-color.org).
+/// Shows faults or warnings on stderr; each begins with `error[..]` or `warning[..]` itself. In
+/// colours on a terminal, unless `NO_COLOR` is set (no-color.org).
 fn show(diagnostics: &Diagnostics) {
     let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
     if wanted && io::stderr().is_terminal() {
@@ -79,7 +80,8 @@ fn show(diagnostics: &Diagnostics) {
     }
 }
 
-/// Text without the control characters that a file name may bring to a terminal; lines and tabs stay.
+/// Text without the control characters that a file name may bring to a terminal; lines and tabs
+/// stay.
 fn printable(text: &str) -> String {
     let is_plain = |c: char| !c.is_control() || matches!(c, '\n' | '\t');
     let mut shown = String::with_capacity(text.len());
@@ -119,7 +121,8 @@ pub fn finish(written: io::Result<()>) -> ExitCode {
     output(written).err().unwrap_or(ExitCode::SUCCESS)
 }
 
-/// What became of an output; the exit status where it failed. A reader that has seen enough (`| head`) is no fault.
+/// What became of an output; the exit status where it failed. A reader that has seen enough (`|
+/// head`) is no fault.
 fn output(written: io::Result<()>) -> Result<(), ExitCode> {
     if stdout::was_closed() {
         return Err(print_error("stdout is closed"));

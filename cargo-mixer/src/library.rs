@@ -40,11 +40,12 @@ use toolchain::Toolchain;
 ///   M.cmake           the imported target M
 ///   M_selftest.c      golden bits: M_selftest() counts the rows that differ, 0 where all is well
 ///
-/// The mixer is compiled by this machine's rustc (RUSTC or PATH) for the target: `rustup target add TRIPLE`, or the
-/// sources of `core` (`rustup component add rust-src`). Nothing is downloaded. For a target without a floating-point
-/// unit the object has arithmetic of its own, with the same bits.
+/// The mixer is compiled by this machine's rustc (RUSTC or PATH) for the target: `rustup target add
+/// TRIPLE`, or the sources of `core` (`rustup component add rust-src`). Nothing is downloaded. For
+/// a target without a floating-point unit the object has arithmetic of its own, with the same bits.
 ///
-/// The float ABI is the target's: thumbv7em-none-eabihf goes with -mfloat-abi=hard, thumbv7em-none-eabi with
+/// The float ABI is the target's: thumbv7em-none-eabihf goes with -mfloat-abi=hard,
+/// thumbv7em-none-eabi with
 /// -mfloat-abi=soft or softfp.
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]

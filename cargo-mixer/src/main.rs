@@ -41,7 +41,8 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    // Cargo passes the subcommand's own name to an installed `cargo-mixer`; the repository's alias does not.
+    // Cargo passes the subcommand's own name to an installed `cargo-mixer`; the repository's alias
+    // does not.
     let arguments = std::env::args_os().enumerate();
     let arguments = arguments
         .filter(|(index, word)| *index != 1 || word != "mixer")

@@ -13,9 +13,11 @@ use crate::setpoints::{BadLine, HEADER, HeaderError, Setpoints};
 
 /// Mixes setpoints: CSV to CSV, from stdin to stdout row by row
 ///
-/// In:  a header and rows of roll_nm,pitch_nm,yaw_nm,thrust_n and, if there is one, voltage_v, in any order. Without
+/// In:  a header and rows of roll_nm,pitch_nm,yaw_nm,thrust_n and, if there is one, voltage_v, in
+/// any order. Without
 ///      voltage_v the reference voltage is taken.
-/// Out: throttle_0.., achieved_roll_nm, achieved_pitch_nm, achieved_yaw_nm, achieved_thrust_n, saturation.
+/// Out: throttle_0.., achieved_roll_nm, achieved_pitch_nm, achieved_yaw_nm, achieved_thrust_n,
+/// saturation.
 ///      Numbers read back to the same bits (f32).
 ///      saturation is a sum: 1 roll, 4 pitch, 16 yaw, 64 thrust is achieved below the setpoint; 2, 8, 32, 128 above
 ///      it; 256 the voltage was outside the airframe's range and clamped into it.
@@ -137,8 +139,9 @@ pub enum Stopped {
     Output(io::Error),
 }
 
-/// Mixes every row of `input` into `output` with the rotors that `health` leaves; bad rows go to `bad_line`. Returns
-/// their number. A reader of `output` that has seen enough ends the mixing without an error.
+/// Mixes every row of `input` into `output` with the rotors that `health` leaves; bad rows go to
+/// `bad_line`. Returns their number. A reader of `output` that has seen enough ends the mixing
+/// without an error.
 ///
 /// # Errors
 /// A header that is none, or input or output that fails.
@@ -162,7 +165,8 @@ pub fn mix<T>(
     }
     text.push_str("achieved_roll_nm,achieved_pitch_nm,achieved_yaw_nm,achieved_thrust_n,saturation\n");
     loop {
-        // Whoever waits for an answer before the next setpoint gets it; a file goes through in large pieces.
+        // Whoever waits for an answer before the next setpoint gets it; a file goes through in
+        // large pieces.
         let written = output.write_all(text.as_bytes()).and_then(|()| {
             if setpoints.may_wait() {
                 output.flush()

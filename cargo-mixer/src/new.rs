@@ -11,8 +11,8 @@ use crate::identify::fragment;
 
 /// Writes a complete, commented airframe file of a regular frame
 ///
-/// Without --pair it has the pair of the ISAE X8 (Chebbi et al. 2020) for you to replace: `cargo mixer identify` makes yours
-/// of a bench file.
+/// Without --pair it has the pair of the ISAE X8 (Chebbi et al. 2020) for you to replace: `cargo
+/// mixer identify` makes yours of a bench file.
 #[derive(clap::Args, Debug)]
 pub struct NewArgs {
     #[command(flatten)]
@@ -52,7 +52,8 @@ pub fn run(args: &NewArgs) -> ExitCode {
     }
 }
 
-/// Writes an airframe file that compiles; one that does not is refused with its faults, and nothing is written.
+/// Writes an airframe file that compiles; one that does not is refused with its faults, and nothing
+/// is written.
 pub(crate) fn write(path: &std::path::Path, text: &str) -> ExitCode {
     let source = Source::new(crate::printable(&path.display().to_string()), text);
     match mixer_compiler::compile(&source) {

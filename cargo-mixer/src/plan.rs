@@ -1,10 +1,11 @@
 //! `cargo mixer plan`: the throttle pairs that a bench has to run before `cargo mixer identify`.
 //!
-//! A bench that sweeps one throttle inside the other measures low throttles cold and at a full battery, high ones warm and
-//! at an empty one: whatever drifts with time then looks like an effect of throttle. The plan visits the cells of the
-//! grid, numbered row by row, with a constant stride that is coprime to their number, so that it comes to each once. Of all
-//! strides it takes the one with the least correlation, in size, of the place in the plan and of its square about the
-//! middle with any term of the cubic basis: a drift of up to second order then leaves the terms alone.
+//! A bench that sweeps one throttle inside the other measures low throttles cold and at a full
+//! battery, high ones warm and at an empty one: whatever drifts with time then looks like an effect
+//! of throttle. The plan visits the cells of the grid, numbered row by row, with a constant stride
+//! that is coprime to their number, so that it comes to each once. Of all strides it takes the one
+//! with the least correlation, in size, of the place in the plan and of its square about the middle
+//! with any term of the cubic basis: a drift of up to second order then leaves the terms alone.
 
 use std::fmt::Write as _;
 use std::io::{Write as _, stdout};
@@ -16,11 +17,13 @@ use mixer_compiler::airframe::Basis;
 
 use crate::identify::basis::monomials;
 
-/// Writes the throttle pairs to run on the bench, in an order in which temperature and sag average out
+/// Writes the throttle pairs to run on the bench, in an order in which temperature and sag average
+/// out
 ///
-/// template      a CSV to fill in, which `cargo mixer identify` reads
-/// rcbenchmark   a script for the RCbenchmark application (series 1780, escA above, escB below); `identify` reads its log
-/// flight-stand  a Python script for the Flight Stand software's programming interface; `identify` reads its log
+/// template      a CSV to fill in, which `cargo mixer identify` reads rcbenchmark   a script for
+/// the RCbenchmark application (series 1780, escA above, escB below); `identify` reads its log
+/// flight-stand  a Python script for the Flight Stand software's programming interface; `identify`
+/// reads its log
 ///
 /// 5 x 5 levels suffice for the cubic basis, 4 x 4 nearly; 3 x 3 do not determine it.
 #[derive(clap::Args, Debug)]
@@ -114,7 +117,8 @@ fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// The greatest correlation, in size, of a drift of first or second order in time with a term of the cubic basis.
+/// The greatest correlation, in size, of a drift of first or second order in time with a term of
+/// the cubic basis.
 pub fn drift(pairs: &[[f64; 2]]) -> f64 {
     let middle = 0.5 * (pairs.len() - 1) as f64;
     let time: Vec<f64> = (0..pairs.len()).map(|k| k as f64 - middle).collect();
@@ -142,8 +146,8 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
     product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt()
 }
 
-/// The columns to fill in behind the throttles. Voltage and current are for the supply's sag and for the power map; they may
-/// stay empty.
+/// The columns to fill in behind the throttles. Voltage and current are for the supply's sag and
+/// for the power map; they may stay empty.
 const TO_FILL: [&str; 6] = [
     "thrust_n",
     "torque_nm",

@@ -25,7 +25,8 @@ use self::bench::BenchPoints;
 use self::origin::Origin;
 use self::study::Study;
 
-/// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and tables
+/// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and
+/// tables
 ///
 /// The page needs no network, follows the reader's light or dark scheme, and prints.
 #[derive(clap::Args, Debug)]
@@ -38,7 +39,8 @@ pub struct ReportArgs {
     /// Bench files of the pair, to be shown beside the model
     #[arg(long, value_name = "BENCH.csv")]
     bench: Vec<PathBuf>,
-    /// Total thrust of the comparison at constant thrust, N [default: about 40 % of the largest bare thrust]
+    /// Total thrust of the comparison at constant thrust, N [default: about 40 % of the largest
+    /// bare thrust]
     #[arg(long, value_name = "NEWTON", value_parser = thrust, allow_negative_numbers = true)]
     thrust: Option<f64>,
 }

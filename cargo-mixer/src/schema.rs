@@ -1,4 +1,5 @@
-//! `cargo mixer schema`: the JSON schema of the airframe file, by which editors complete and check it.
+//! `cargo mixer schema`: the JSON schema of the airframe file, by which editors complete and check
+//! it.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,8 +9,9 @@ use serde_json::{Map, Value, json};
 
 /// Prints the JSON schema of the airframe file, by which editors complete and check it
 ///
-/// Beside an airframe that begins with `#:schema ./airframe.schema.json`, as those of `cargo mixer new` do, editors with a TOML
-/// language server (Even Better TOML, Taplo, Tombi) find it by themselves.
+/// Beside an airframe that begins with `#:schema ./airframe.schema.json`, as those of `cargo mixer
+/// new` do, editors with a TOML language server (Even Better TOML, Taplo, Tombi) find it by
+/// themselves.
 #[derive(clap::Args, Debug)]
 pub struct SchemaArgs {
     /// The file to write [default: stdout]

@@ -1,7 +1,9 @@
-//! Setpoints as CSV: a header `roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v]` in any order, then one row per line.
+//! Setpoints as CSV: a header `roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v]` in any order, then one
+//! row per line.
 //!
-//! A row never spans lines, although CSV allows it in quotes: so a stray quote spoils its own row and not all rows
-//! after it, every fault names its line, and a row can be answered as soon as its line has ended.
+//! A row never spans lines, although CSV allows it in quotes: so a stray quote spoils its own row
+//! and not all rows after it, every fault names its line, and a row can be answered as soon as its
+//! line has ended.
 
 use std::io::{self, BufRead, BufReader, Read};
 
@@ -53,7 +55,8 @@ impl<R: Read> Setpoints<R> {
     /// Reads the header.
     ///
     /// # Errors
-    /// An input without one, a column that is missing, unknown or stands twice, or an input that fails.
+    /// An input without one, a column that is missing, unknown or stands twice, or an input that
+    /// fails.
     pub fn new(input: R) -> Result<Self, HeaderError> {
         let mut lines = Lines::new(input);
         let there_is_one = lines.advance().map_err(HeaderError::Io)?;

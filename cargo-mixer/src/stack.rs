@@ -1,5 +1,6 @@
-//! What a flight stack has to know of an airframe: the scales of its normalised setpoints, and the parameters that keep it
-//! from correcting a second time for the rotors' curve and for the battery's voltage.
+//! What a flight stack has to know of an airframe: the scales of its normalised setpoints, and the
+//! parameters that keep it from correcting a second time for the rotors' curve and for the
+//! battery's voltage.
 
 use std::fmt;
 
@@ -29,7 +30,8 @@ pub struct Normalised {
     pub yaw_nm: f32,
     /// All rotors at full throttle, N.
     pub thrust_n: f32,
-    /// Hover throttle (PX4's `MPC_THR_HOVER`, ArduPilot's `MOT_THST_HOVER`) per kilogram of the vehicle.
+    /// Hover throttle (PX4's `MPC_THR_HOVER`, ArduPilot's `MOT_THST_HOVER`) per kilogram of the
+    /// vehicle.
     pub hover_per_kg: f64,
 }
 

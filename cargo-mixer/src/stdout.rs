@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Whether stdout was closed when the program began (`>&-`). The standard library opens `/dev/null` in its place before
-/// `main`, and what is written there is lost without an error. Known on Linux only.
+/// Whether stdout was closed when the program began (`>&-`). The standard library opens `/dev/null`
+/// in its place before `main`, and what is written there is lost without an error. Known on Linux
+/// only.
 pub(crate) fn was_closed() -> bool {
     CLOSED.load(Ordering::Relaxed)
 }

@@ -17,13 +17,14 @@ use crate::report::{overwriting, thrust};
 
 /// Writes the data of a figure as CSV, with units in the header
 ///
-/// yaw         what every unit gives over the yaw range at constant thrust, by the coaxial and by the conventional
+/// yaw         what every unit gives over the yaw range at constant thrust, by the coaxial and by
+/// the conventional
 ///             mixer; prints the static comparison as a table as well (on stderr where the CSV goes to stdout)
-/// attainable  border of one unit's attainable set at the lowest, the reference and the highest voltage
-/// authority   largest delivered torque about each served axis against thrust
-/// forward     thrust and torque of one unit over both throttles, with det J
-/// inverse     throttles over the attainable set, by the emitted tables
-/// error       what the emitted inverse misses over the attainable set
+/// attainable  border of one unit's attainable set at the lowest, the reference and the highest
+/// voltage authority   largest delivered torque about each served axis against thrust forward    
+/// thrust and torque of one unit over both throttles, with det J inverse     throttles over the
+/// attainable set, by the emitted tables error       what the emitted inverse misses over the
+/// attainable set
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
 pub struct SweepArgs {

@@ -1,8 +1,10 @@
-//! From bench files to throttles: identify -> check -> mix over all coaxial maps of `MIXER_BENCH_DATA`.
+//! From bench files to throttles: identify -> check -> mix over all coaxial maps of
+//! `MIXER_BENCH_DATA`.
 //!
-//! The mixer is asked for what the model gives at every bench point inside its throttle range; it must answer with the
-//! commands of that point, and what the bench measured there is what the pair would really have given. The difference
-//! from what was asked is the error of the whole way: of the model, of the tables and of the inverse map.
+//! The mixer is asked for what the model gives at every bench point inside its throttle range; it
+//! must answer with the commands of that point, and what the bench measured there is what the pair
+//! would really have given. The difference from what was asked is the error of the whole way: of
+//! the model, of the tables and of the inverse map.
 
 mod maps;
 
@@ -66,7 +68,8 @@ fn fly(map: &Path, basis: &str) {
             ..Wrench::default()
         };
         let (throttle, achieved, saturation) = compiled.tables.mix(&setpoint, 0.0).expect("finite");
-        // The sides that the mixer knows are inside the attainable set: most where Q hardly changes f, next to a fold.
+        // The sides that the mixer knows are inside the attainable set: most where Q hardly changes
+        // f, next to a fold.
         let missed = (f64::from(achieved.yaw_nm) - q).abs() / full[1];
         let is_border = [point.u, point.l]
             .iter()
@@ -78,8 +81,9 @@ fn fly(map: &Path, basis: &str) {
         if saturation.any_axis() {
             continue;
         }
-        // What these throttles would really give is known where they are the bench's: to the tolerance of the
-        // inverse, seen through the least slope of thrust that a map without a fold leaves.
+        // What these throttles would really give is known where they are the bench's: to the
+        // tolerance of the inverse, seen through the least slope of thrust that a map without a
+        // fold leaves.
         for (throttle, commanded) in throttle.iter().zip([point.u, point.l]) {
             let off = (f64::from(*throttle) - commanded).abs();
             assert!(
@@ -101,7 +105,8 @@ fn fly(map: &Path, basis: &str) {
         "{basis:<14} {count:>6} {:>6.2} {:>6.2}  {:>6.2} {:>6.2}   {name}",
         rms[0], max[0], rms[1], max[1]
     );
-    // The repeat of the corrupt run is sound; the corrupt run itself has rows that are wrong by a fifth.
+    // The repeat of the corrupt run is sound; the corrupt run itself has rows that are wrong by a
+    // fifth.
     if !name.contains("data2021_08_17_10_13_04") {
         assert!(rms[0] < 2.5 && rms[1] < 4.5, "{name}, {basis}: {rms:?} % rms");
     }

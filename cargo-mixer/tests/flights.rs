@@ -1,12 +1,13 @@
-//! Real flights of an X8 with an ordinary mixer: what its thrust command in hover is, over its weight. The logs are not part
-//! of the project: `MIXER_BENCH_DATA` names their folder.
+//! Real flights of an X8 with an ordinary mixer: what its thrust command in hover is, over its
+//! weight. The logs are not part of the project: `MIXER_BENCH_DATA` names their folder.
 
 use std::path::{Path, PathBuf};
 
 /// Declared weight, N: 1.92 kg.
 const WEIGHT_N: f64 = 1.92 * 9.80665;
 
-/// Mean and standard deviation of the vertical thrust command over the weight in hover, and the rows that these are of.
+/// Mean and standard deviation of the vertical thrust command over the weight in hover, and the
+/// rows that these are of.
 fn hover(log: &Path) -> (f64, f64, usize) {
     let mut reader = csv::Reader::from_path(log).unwrap_or_else(|e| panic!("{}: {e}", log.display()));
     let headers = reader.headers().expect("a header").clone();

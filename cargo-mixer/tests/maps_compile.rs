@@ -1,4 +1,5 @@
-//! Every coaxial map of `MIXER_BENCH_DATA` in every basis compiles close to its fold, within the default tolerance.
+//! Every coaxial map of `MIXER_BENCH_DATA` in every basis compiles close to its fold, within the
+//! default tolerance.
 
 mod maps;
 
@@ -88,7 +89,8 @@ fn every_map_compiles_close_to_its_fold() {
                     Ok(compiled) => compiled,
                     Err(faults) => {
                         println!("{what}, from {min}: {faults}");
-                        // Beyond the throttles of its bench a map may all but fold at full throttle.
+                        // Beyond the throttles of its bench a map may all but fold at full
+                        // throttle.
                         let is_told = faults.to_string().contains("lower throttle.max");
                         assert!(max > measured.unwrap_or(1.0) && is_told, "{what}");
                         refused += 1;

@@ -1,5 +1,5 @@
-//! The report page and the data of its figures: well-formed, complete, self-contained, true, and without an error in a
-//! browser.
+//! The report page and the data of its figures: well-formed, complete, self-contained, true, and
+//! without an error in a browser.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -280,7 +280,8 @@ fn assert_status(output: &Output, status: i32, words: &str) {
     assert!(text.contains(words) && !text.contains("panicked"), "{text}");
 }
 
-/// A bench file that is off the model by a known amount: the page shows its points and finds the amount.
+/// A bench file that is off the model by a known amount: the page shows its points and finds the
+/// amount.
 #[test]
 fn bench_points_stand_beside_the_model() {
     let compiled = x8();

@@ -13,7 +13,8 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// What of `value` the schema does not allow, by its path; as much of draft 7 as the schema uses, and no more.
+/// What of `value` the schema does not allow, by its path; as much of draft 7 as the schema uses,
+/// and no more.
 fn faults(schema: &Value, value: &Value, path: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut hold = |holds: bool, rule: &str| {
@@ -120,8 +121,8 @@ fn airframes_are_valid() {
     assert!(count > 20, "{count}");
 }
 
-/// Every kind of fault that the schema knows is refused by the parser, too, and what the schema takes at the ends of its ranges
-/// the parser takes.
+/// Every kind of fault that the schema knows is refused by the parser, too, and what the schema
+/// takes at the ends of its ranges the parser takes.
 #[test]
 fn the_parser_agrees_key_by_key() {
     const UNIT: &str = "[[unit]]\nposition_m = [0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\naxis = [0.0, 0.0, -1.0]\n";

@@ -1,5 +1,5 @@
-//! Any bits as setpoint, voltage and failed rotors, on every airframe and fixture with every airmode: no panic, and
-//! throttles in range or a refusal.
+//! Any bits as setpoint, voltage and failed rotors, on every airframe and fixture with every
+//! airmode: no panic, and throttles in range or a refusal.
 //!
 //! `tests/allocation/properties.rs` does the same with fixed bits on random layouts.
 #![no_main]
@@ -10,7 +10,8 @@ use libfuzzer_sys::fuzz_target;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::{Health, Wrench};
 
-/// ClosedForm axes with and without a shorter way, tilted axes, one to six units, all bases, with and without voltage.
+/// ClosedForm axes with and without a shorter way, tilted axes, one to six units, all bases, with
+/// and without voltage.
 const TEXTS: [&str; 8] = [
     include_str!("../../airframes/coaxial-bicopter.toml"),
     include_str!("../../airframes/isae-x8.toml"),

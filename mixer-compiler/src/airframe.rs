@@ -32,8 +32,8 @@ use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::spec::{self, Places, Spec};
 
-/// An airframe whose values are checked, in SI units. Made by [`Airframe::read`] alone, so that the ranges stated
-/// on the fields hold.
+/// An airframe whose values are checked, in SI units. Made by [`Airframe::read`] alone, so that the
+/// ranges stated on the fields hold.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Airframe {
@@ -47,7 +47,8 @@ pub struct Airframe {
     pub pair: Pair,
     /// Supply voltage; `None` where thrust and torque do not depend on it.
     pub voltage: Option<Voltage>,
-    /// The units in the order of the file: 1 to 32, no two in one place, their channels 0 to 2n - 1 each once.
+    /// The units in the order of the file: 1 to 32, no two in one place, their channels 0 to 2n - 1
+    /// each once.
     pub units: Vec<Unit>,
     /// How to invert the pair's map.
     pub inverse: Inverse,
@@ -65,8 +66,8 @@ impl Airframe {
     ///
     /// # Errors
     ///
-    /// All faults of the file at once: of its shape ([`Spec::read`]) and of its values. Only text that is not TOML
-    /// is refused for that alone.
+    /// All faults of the file at once: of its shape ([`Spec::read`]) and of its values. Only text
+    /// that is not TOML is refused for that alone.
     pub fn read(source: &Source) -> Result<Airframe, Diagnostics> {
         let mut faults = Vec::new();
         let airframe = Spec::read(source, &mut faults).and_then(|spec| check(spec, &mut faults));
@@ -86,8 +87,8 @@ impl Airframe {
         name::type_(&self.name)
     }
 
-    /// The module and the type by which code refers to the airframe of a file that is refused: after the file's `name` where
-    /// that can be read and used, else after the file itself.
+    /// The module and the type by which code refers to the airframe of a file that is refused:
+    /// after the file's `name` where that can be read and used, else after the file itself.
     pub fn names_if_refused(source: &Source) -> [String; 2] {
         name::if_refused(source)
     }
@@ -102,8 +103,8 @@ impl Airframe {
         self.voltage.as_ref().map_or(0.0, |voltage| voltage.reference_v)
     }
 
-    /// Electrical power of all rotors at the reference voltage, W, with a throttle per channel; `None` where the file has no
-    /// `[pair.power]`, or a channel has no throttle.
+    /// Electrical power of all rotors at the reference voltage, W, with a throttle per channel;
+    /// `None` where the file has no `[pair.power]`, or a channel has no throttle.
     pub fn power_w(&self, throttle: &[f64]) -> Option<f64> {
         let map = self.pair.power.as_ref()?;
         let of_unit = |unit: &Unit| {
@@ -114,8 +115,8 @@ impl Airframe {
         self.units.iter().map(of_unit).sum()
     }
 
-    /// The share of a pair's saving by `power_bias_nm_per_n` that is left in hover, as torques must cancel:
-    /// 1 - (sum s / n)^2 with the spins s of n units.
+    /// The share of a pair's saving by `power_bias_nm_per_n` that is left in hover, as torques must
+    /// cancel: 1 - (sum s / n)^2 with the spins s of n units.
     pub fn power_bias_share(&self) -> f64 {
         let spins = self.units.iter().map(|unit| unit.spin_sign(self.pair.upper_spin));
         let mean = spins.sum::<f64>() / self.units.len() as f64;
@@ -127,8 +128,8 @@ impl Airframe {
         self.places.contains_key(key)
     }
 
-    /// Place of a key like `unit[3].channels` in the file, or of the nearest table or array around it that the file
-    /// has; else of the name.
+    /// Place of a key like `unit[3].channels` in the file, or of the nearest table or array around
+    /// it that the file has; else of the name.
     pub fn place(&self, key: &str) -> Option<Range<usize>> {
         let mut key = key;
         loop {

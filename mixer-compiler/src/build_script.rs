@@ -6,8 +6,8 @@
 //! mixer_compiler::build_script::compile("airframes/isae-x8.toml");
 //! ```
 //!
-//! and in the crate: `include!(concat!(env!("OUT_DIR"), "/isae-x8.rs"));`. The generated module is the one that the
-//! macro gives.
+//! and in the crate: `include!(concat!(env!("OUT_DIR"), "/isae-x8.rs"));`. The generated module is
+//! the one that the macro gives.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -62,9 +62,9 @@ impl std::fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Compiles the airframe at `path` (relative to the package) into `OUT_DIR/<file stem>.rs` and has cargo run the
-/// build script again when the file changes. A fault is printed and ends the build script with status 1; a warning is
-/// one of cargo's.
+/// Compiles the airframe at `path` (relative to the package) into `OUT_DIR/<file stem>.rs` and has
+/// cargo run the build script again when the file changes. A fault is printed and ends the build
+/// script with status 1; a warning is one of cargo's.
 pub fn compile(path: impl AsRef<Path>) {
     if let Err(error) = try_compile(path.as_ref()) {
         eprintln!("{error}");
@@ -72,7 +72,8 @@ pub fn compile(path: impl AsRef<Path>) {
     }
 }
 
-/// [`compile`] for build scripts that handle faults themselves. Returns the path of the generated file.
+/// [`compile`] for build scripts that handle faults themselves. Returns the path of the generated
+/// file.
 ///
 /// # Errors
 /// See [`Error`]; nothing is written then.

@@ -1,4 +1,5 @@
-//! Faults in an airframe file and warnings of it: what is wrong, where, by how much, and what would mend it.
+//! Faults in an airframe file and warnings of it: what is wrong, where, by how much, and what would
+//! mend it.
 
 mod code;
 pub mod source;
@@ -87,7 +88,8 @@ pub struct Diagnostics {
     places: Vec<Option<Place>>,
 }
 
-/// Faults that are shown. Nobody reads more at once, and a file that is no airframe at all may have thousands.
+/// Faults that are shown. Nobody reads more at once, and a file that is no airframe at all may have
+/// thousands.
 const MOST_SHOWN: usize = 100;
 
 /// Faults after which a file is not read on: it is no airframe, and reading should not take long.
@@ -198,7 +200,8 @@ impl Diagnostics {
         self.faults.is_empty()
     }
 
-    /// Every diagnostic on one line, for logs that show no more: `x8.toml:4:7: warning[MIX303]: message; help`.
+    /// Every diagnostic on one line, for logs that show no more: `x8.toml:4:7: warning[MIX303]:
+    /// message; help`.
     pub fn lines(&self) -> Vec<String> {
         self.placed()
             .map(|(fault, place)| {
@@ -250,8 +253,8 @@ impl Diagnostics {
             .collect()
     }
 
-    /// The text for `compile_error!`. Editors show its first line alone, so that line says where and what;
-    /// all faults follow as in `Display`.
+    /// The text for `compile_error!`. Editors show its first line alone, so that line says where
+    /// and what; all faults follow as in `Display`.
     pub fn compile_error(&self) -> String {
         let mut errors = self
             .faults
@@ -335,7 +338,8 @@ impl Diagnostics {
         if before.get(line_start..)?.starts_with(BYTE_ORDER_MARK) {
             line_start += BYTE_ORDER_MARK.len_utf8();
         }
-        // One line is enough to find the place, and a caret across lines would push the label away from it.
+        // One line is enough to find the place, and a caret across lines would push the label away
+        // from it.
         let rest = text.get(start..line_end)?;
         let visible = rest.find('\r').unwrap_or(rest.len());
         let mut end = self.source.boundary(span.end).clamp(start, start + visible);

@@ -1,4 +1,5 @@
-//! The inverse map of one unit: the evaluators that can be emitted, and the fit of their coefficients.
+//! The inverse map of one unit: the evaluators that can be emitted, and the fit of their
+//! coefficients.
 
 pub mod evaluator;
 pub(crate) mod fit;

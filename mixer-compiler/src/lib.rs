@@ -1,7 +1,8 @@
 //! Compiler from an airframe file to the tables of a coaxial multirotor mixer.
 //!
-//! Text in, tables or diagnostics out; files, the environment and macros are the business of its three front ends:
-//! `mixer-macros`, [`build_script`] and `cargo mixer`. [`compile`] shows the pipeline.
+//! Text in, tables or diagnostics out; files, the environment and macros are the business of its
+//! three front ends: `mixer-macros`, [`build_script`] and `cargo mixer`. [`compile`] shows the
+//! pipeline.
 
 pub mod airframe;
 #[cfg(feature = "format")]
@@ -39,11 +40,13 @@ pub use output::{alternatives, checklist, cost, hover, power, report};
 pub use proof::Certificate;
 pub use proof::residual::Residual;
 
-/// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse -> proof -> tables.
+/// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse ->
+/// proof -> tables.
 ///
 /// # Errors
-/// All faults that were found, and with faults of later stages the warnings, one of which may be why. Faults of the file itself end the compilation; later stages report together. Warnings
-/// are no faults: they are in [`Compiled::warnings`].
+/// All faults that were found, and with faults of later stages the warnings, one of which may be
+/// why. Faults of the file itself end the compilation; later stages report together. Warnings are
+/// no faults: they are in [`Compiled::warnings`].
 pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
     let airframe = Airframe::read(source)?;
     compile_airframe(source, airframe.clone()).map_err(|mut faults| {

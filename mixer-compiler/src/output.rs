@@ -1,5 +1,5 @@
-//! What is made of a compiled airframe: generated Rust, the report, costs, check lists and comparisons. Nothing of it
-//! reaches back into the compilation.
+//! What is made of a compiled airframe: generated Rust, the report, costs, check lists and
+//! comparisons. Nothing of it reaches back into the compilation.
 
 pub mod alternatives;
 pub mod checklist;

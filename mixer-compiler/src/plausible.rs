@@ -1,8 +1,9 @@
 //! Values that are possible and yet hardly meant: warnings, one rule each, all collected.
 //!
-//! A rule compares a value with what propellers, frames and packs are like. Its limits are chosen so that no file in
-//! `airframes/` warns and none of the fits of real bench maps does (`MIXER_BENCH_DATA=.. cargo nextest run -p
-//! cargo-mixer maps_warn`), while the mistakes that it is for lie far outside: a wrong unit is a factor of four at least.
+//! A rule compares a value with what propellers, frames and packs are like. Its limits are chosen
+//! so that no file in `airframes/` warns and none of the fits of real bench maps does
+//! (`MIXER_BENCH_DATA=.. cargo nextest run -p cargo-mixer maps_warn`), while the mistakes that it
+//! is for lie far outside: a wrong unit is a factor of four at least.
 
 mod geometry;
 mod limits;
@@ -24,7 +25,8 @@ struct Facts<'a> {
     map: PairMap,
     /// Largest thrust (N) and largest absolute torque (N m) of one unit at the reference voltage.
     scale: [f64; 2],
-    /// Least and largest bare thrust at the reference voltage, N; `None` where the airframe is refused.
+    /// Least and largest bare thrust at the reference voltage, N; `None` where the airframe is
+    /// refused.
     thrust_range_n: Option<[f64; 2]>,
 }
 
@@ -60,7 +62,8 @@ pub(crate) fn warnings(
     apply(airframe, Some(effectiveness), Some(thrust_range_n.map(f64::from)))
 }
 
-/// Everything in an airframe that no mixer can be made of which is plausibly a mistake: it may be why.
+/// Everything in an airframe that no mixer can be made of which is plausibly a mistake: it may be
+/// why.
 pub(crate) fn warnings_of_refused(airframe: &Airframe) -> Vec<Diagnostic> {
     apply(airframe, None, None)
 }

@@ -1,12 +1,14 @@
 //! Proof that the emitted inverse keeps its tolerance.
 //!
-//! The claim: for every voltage in the range and every pair of throttles in the throttle box, let E = k F(u, l) be
-//! the efforts that they give. Where the mixer asks for E, rounded to f32, the throttles that the emitted tables
-//! give by the operations of `mixer-rt` lie within the throttle range, and their efforts are within
-//! `stated` of E. F and k are the airframe file's, in exact arithmetic.
+//! The claim: for every voltage in the range and every pair of throttles in the throttle box, let E
+//! = k F(u, l) be the efforts that they give. Where the mixer asks for E, rounded to f32, the
+//! throttles that the emitted tables give by the operations of `mixer-rt` lie within the throttle
+//! range, and their efforts are within `stated` of E. F and k are the airframe file's, in exact
+//! arithmetic.
 //!
-//! The box is cut into cells. On each, `cell.rs` bounds the residual; the worst cell is halved until the largest
-//! bound is close to the largest residual that was observed, or the work allowed is done.
+//! The box is cut into cells. On each, `cell.rs` bounds the residual; the worst cell is halved
+//! until the largest bound is close to the largest residual that was observed, or the work allowed
+//! is done.
 
 mod bend;
 mod cell;
@@ -30,7 +32,8 @@ pub(crate) use taylor::Taylor;
 /// What has been proven of one unit's inverse map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
-    /// Bound of the residual at the reference voltage, `[N, N m]`, the voltage table's error included.
+    /// Bound of the residual at the reference voltage, `[N, N m]`, the voltage table's error
+    /// included.
     pub reference: [f64; 2],
     /// Bound of the residual at every voltage in the range, `[N, N m]`.
     pub stated: [f64; 2],
@@ -53,7 +56,8 @@ impl Certificate {
         (0..2).all(|k| observed.efforts[k] <= self.reference[k])
     }
 
-    /// Share of the tolerance that is left: the lesser of thrust and torque; negative where it does not hold.
+    /// Share of the tolerance that is left: the lesser of thrust and torque; negative where it does
+    /// not hold.
     pub fn margin(&self) -> f64 {
         let left = |k: usize| 1.0 - self.stated[k] / self.tolerance[k];
         left(0).min(left(1))
@@ -77,12 +81,13 @@ const MOST_UNBOUNDED: usize = 300;
 /// Bounds within this factor of the largest observed residual are sharp enough.
 const SHARP: f64 = 1.15;
 
-/// Halvings in a row that improve a bound by less than 1 %, after which rounding is all that is left.
+/// Halvings in a row that improve a bound by less than 1 %, after which rounding is all that is
+/// left.
 const STALE: u8 = 6;
 
-/// Proves what it can of the emitted tables. `observed` says where to stop; it gains the points that the proof
-/// finds worth a look. A tolerance that an observation refutes ends the proof, unless it is to be taken `to_the_end`
-/// for the sake of its bound.
+/// Proves what it can of the emitted tables. `observed` says where to stop; it gains the points
+/// that the proof finds worth a look. A tolerance that an observation refutes ends the proof,
+/// unless it is to be taken `to_the_end` for the sake of its bound.
 pub(crate) fn prove(
     airframe: &Airframe,
     pair: &PairMap,
@@ -155,8 +160,9 @@ pub(crate) fn prove(
     certificate
 }
 
-/// How far the efforts that the runtime computes of its throttles may be from those of the file's map, and the efforts
-/// that the inverse is given from those that were asked: `[N, N m]` at the reference voltage.
+/// How far the efforts that the runtime computes of its throttles may be from those of the file's
+/// map, and the efforts that the inverse is given from those that were asked: `[N, N m]` at the
+/// reference voltage.
 pub(crate) fn rounding(airframe: &Airframe, tables: &MixerTables, correction: &Correction) -> [f64; 2] {
     let subject = Subject::new(airframe, tables, correction);
     let mut largest = [0.0f64; 2];
@@ -235,7 +241,8 @@ impl<'a> Subject<'a> {
                 value += gap;
                 derivative += gap * f64::from(i.max(j));
             }
-            // Throttles near the box stay below 1 + 2^-8; the factor covers the powers of that and rounding.
+            // Throttles near the box stay below 1 + 2^-8; the factor covers the powers of that and
+            // rounding.
             [value, derivative].map(|gap: f64| 1.02 * gap)
         };
         Subject {

@@ -53,7 +53,8 @@ pub(crate) fn select(
     })
 }
 
-/// The evaluator that came closest, and what is proven of it; `None` where there is none of the name asked for.
+/// The evaluator that came closest, and what is proven of it; `None` where there is none of the
+/// name asked for.
 type Best = Option<(Evaluator, Certificate)>;
 
 /// What the tables of an evaluator are judged by.
@@ -66,8 +67,8 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The evaluator with its tables, where they are proven to meet the tolerance. Else what is proven of them: a proof that
-    /// is not `thorough` is given up where it takes long.
+    /// The evaluator with its tables, where they are proven to meet the tolerance. Else what is
+    /// proven of them: a proof that is not `thorough` is given up where it takes long.
     fn accept(
         &self,
         evaluator: Evaluator,
@@ -99,7 +100,8 @@ impl Judge<'_> {
     }
 }
 
-/// Tries the evaluators by their cost. Where none is proven at once, the one that came closest gets a thorough proof.
+/// Tries the evaluators by their cost. Where none is proven at once, the one that came closest gets
+/// a thorough proof.
 fn choose(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
@@ -153,8 +155,8 @@ fn choose(
         .map_err(|certificate| Some((evaluator, certificate)))
 }
 
-/// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage where efforts are
-/// largest.
+/// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage
+/// where efforts are largest.
 fn tolerance_at_reference(airframe: &Airframe, correction: &Correction) -> [f64; 2] {
     let inverse = &airframe.inverse;
     let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
@@ -192,7 +194,8 @@ fn assemble(
     }
 }
 
-/// Units over authority per axis at the reference voltage, roll and pitch alike; 0 on axes that are not served.
+/// Units over authority per axis at the reference voltage, roll and pitch alike; 0 on axes that are
+/// not served.
 fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [f32; 4] {
     let scale = pair.scale();
     let n = airframe.units.len();
@@ -218,7 +221,8 @@ fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [
     })
 }
 
-/// What the mixer may miss where it delivers: what is proven, not what the file allows, so that every shortage is flagged.
+/// What the mixer may miss where it delivers: what is proven, not what the file allows, so that
+/// every shortage is flagged.
 fn proven(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
@@ -227,7 +231,8 @@ fn proven(
     correction: &Correction,
     certificate: &Certificate,
 ) -> Tolerance {
-    // The mixer compares what it computes, not what is: a request that is delivered must not look missed.
+    // The mixer compares what it computes, not what is: a request that is delivered must not look
+    // missed.
     let rounding = proof::rounding(airframe, tables, correction);
     Tolerance {
         efforts: [0, 1].map(|k| ((certificate.reference[k] + rounding[k]) as f32).next_up()),
@@ -235,7 +240,8 @@ fn proven(
     }
 }
 
-/// What the units' misses `stated` add up to on each axis, with the rounding of f32 sums of full efforts.
+/// What the units' misses `stated` add up to on each axis, with the rounding of f32 sums of full
+/// efforts.
 fn wrench_tolerance(
     airframe: &Airframe,
     effectiveness: &Effectiveness,

@@ -1,8 +1,8 @@
 //! The airframe file as written: every field with its place, none of it judged yet.
 //!
-//! The structures mirror the file, version 1. A field is `None` where the file does not have it, and also where
-//! its value was of a wrong shape, which is then among the faults. Whether numbers make sense is for
-//! [`crate::airframe`] to say.
+//! The structures mirror the file, version 1. A field is `None` where the file does not have it,
+//! and also where its value was of a wrong shape, which is then among the faults. Whether numbers
+//! make sense is for [`crate::airframe`] to say.
 
 mod fields;
 pub mod keys;
@@ -18,8 +18,9 @@ use self::fields::Fields;
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where their value
-/// is, arrays, which may run over many lines, where their key is, and tables where their header is.
+/// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where
+/// their value is, arrays, which may run over many lines, where their key is, and tables where
+/// their header is.
 pub type Places = BTreeMap<String, Range<usize>>;
 
 /// Three numbers, each with its place.
@@ -202,8 +203,9 @@ pub struct Vehicle {
 }
 
 impl Spec {
-    /// Reads the file and notes all faults of its shape: syntax, unknown and missing keys, wrong types and lengths,
-    /// numbers that are not finite. `None` where the text is not TOML or empty, so that nothing more can be said of it.
+    /// Reads the file and notes all faults of its shape: syntax, unknown and missing keys, wrong
+    /// types and lengths, numbers that are not finite. `None` where the text is not TOML or empty,
+    /// so that nothing more can be said of it.
     pub fn read(source: &Source, faults: &mut Vec<Diagnostic>) -> Option<Spec> {
         let table = syntax::parse(source, faults)?;
         let places = syntax::places(&table);

@@ -1,7 +1,8 @@
 //! What is emitted, as values: the only place where f64 becomes f32.
 //!
-//! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the generated Rust
-//! holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs `mixer-rt` itself on them.
+//! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the
+//! generated Rust holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs
+//! `mixer-rt` itself on them.
 
 mod border;
 mod inverse;
@@ -370,7 +371,8 @@ pub fn pair_table(airframe: &Airframe) -> Pair<QuantityTable> {
     }
 }
 
-/// Rounds the allowed throttles, never outwards: an idle that f32 cannot represent becomes the next larger one.
+/// Rounds the allowed throttles, never outwards: an idle that f32 cannot represent becomes the next
+/// larger one.
 pub fn throttle_table(airframe: &Airframe) -> ThrottleRange {
     let (min, max) = (airframe.throttle.min as f32, airframe.throttle.max as f32);
     ThrottleRange {

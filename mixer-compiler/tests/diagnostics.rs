@@ -1,8 +1,8 @@
 //! Bad airframe files and what their users are told.
 //!
-//! `diagnostics/NAME.toml` is a bad file, `NAME.txt` what the compiler says of it: the whole text of its
-//! `Display`. `MIXER_BLESS=1 cargo test -p mixer-compiler --test diagnostics` writes the texts anew; read the
-//! difference before committing it.
+//! `diagnostics/NAME.toml` is a bad file, `NAME.txt` what the compiler says of it: the whole text
+//! of its `Display`. `MIXER_BLESS=1 cargo test -p mixer-compiler --test diagnostics` writes the
+//! texts anew; read the difference before committing it.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -66,7 +66,8 @@ fn bad_files_are_refused_in_the_words_agreed() {
     assert!(complaints.is_empty(), "\n{complaints}");
 }
 
-/// Every fault says where, how much and what to do; the machine-readable form agrees with the rendering.
+/// Every fault says where, how much and what to do; the machine-readable form agrees with the
+/// rendering.
 #[test]
 fn faults_are_complete() {
     let mut complaints = String::new();
@@ -108,8 +109,8 @@ fn faults_are_complete() {
     assert!(complaints.is_empty(), "\n{complaints}");
 }
 
-/// Every code is shown by a bad file, but for one: no airframe is known whose map is locally invertible everywhere
-/// and yet not provably injective.
+/// Every code is shown by a bad file, but for one: no airframe is known whose map is locally
+/// invertible everywhere and yet not provably injective.
 #[test]
 fn every_code_has_a_bad_file() {
     let shown: BTreeSet<Code> = names("toml")
@@ -176,7 +177,8 @@ fn colours_are_only_colours() {
     }
 }
 
-/// A file that is no airframe at all does not flood the terminal; the records still hold everything.
+/// A file that is no airframe at all does not flood the terminal; the records still hold
+/// everything.
 #[test]
 fn faults_by_the_hundred_are_counted() {
     let text: String = (0..150).map(|k| format!("key{k} = {k}\n")).collect();

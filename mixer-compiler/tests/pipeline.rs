@@ -41,7 +41,8 @@ fn effectiveness_is_equation_4() {
     assert_eq!(compiled.effectiveness.rank, 4);
 }
 
-/// M M+ = 1, and M+ M is symmetric: the two of Penrose's conditions that are not implied by full rank.
+/// M M+ = 1, and M+ M is symmetric: the two of Penrose's conditions that are not implied by full
+/// rank.
 #[test]
 fn pseudo_inverse_is_the_least_norm_inverse() {
     let tilted = "position_m = [0.3182, 0.3182, 0.0]";
@@ -74,8 +75,8 @@ fn least_idle_is_where_the_model_folds() {
     assert!(faults.faults()[0].help.contains("0.08875"), "{faults}");
 }
 
-/// A request for thrust alone is delivered at both ends of the stated range and not beyond them, in closed form between
-/// arcs and between polylines, and in the general way.
+/// A request for thrust alone is delivered at both ends of the stated range and not beyond them, in
+/// closed form between arcs and between polylines, and in the general way.
 #[test]
 fn bare_thrust_is_what_is_delivered() {
     let bent = [
@@ -112,7 +113,8 @@ fn bare_thrust_is_what_is_delivered() {
     }
 }
 
-/// Looser tolerances get cheaper evaluators, tighter ones more steps; every choice is within its tolerance.
+/// Looser tolerances get cheaper evaluators, tighter ones more steps; every choice is within its
+/// tolerance.
 #[test]
 fn the_tolerance_decides_on_the_evaluator() {
     let mut last = 0;
@@ -139,8 +141,8 @@ fn the_tolerance_decides_on_the_evaluator() {
     }
 }
 
-/// What a refusal offers as a mend must work, and asks for no more than is missing: a tolerance that is met is left as it
-/// is.
+/// What a refusal offers as a mend must work, and asks for no more than is missing: a tolerance
+/// that is met is left as it is.
 #[test]
 fn offered_tolerances_would_do() {
     for (thrust, torque, method, raised) in [
@@ -176,7 +178,8 @@ fn offered_tolerances_would_do() {
     }
 }
 
-/// The tabulated exponent law follows the file's to a few units in the last place of f32 and its tolerance.
+/// The tabulated exponent law follows the file's to a few units in the last place of f32 and its
+/// tolerance.
 #[test]
 fn voltage_laws_are_followed_over_the_whole_range() {
     let compiled = isae_x8(&[]).unwrap();

@@ -1,4 +1,5 @@
-//! Whatever the text, reading it ends in an airframe or in faults that can be shown, never in a panic.
+//! Whatever the text, reading it ends in an airframe or in faults that can be shown, never in a
+//! panic.
 
 use std::fs;
 use std::path::Path;
@@ -213,7 +214,8 @@ fn extremes_are_refused_without_panic() {
     }
 }
 
-/// What is no airframe at all is refused in a time that grows with its length: the square took 7 to 60 s of each.
+/// What is no airframe at all is refused in a time that grows with its length: the square took 7 to
+/// 60 s of each.
 #[test]
 fn long_files_are_refused_soon() {
     let join = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();

@@ -33,7 +33,8 @@ fn hover_is_that_of_the_pair() {
         assert_eq!(axes, ["roll", "pitch", "yaw"]);
         for margin in &at.margins {
             let [least, largest] = margin.torque_nm;
-            // Not quite a mirror image: the pair's torque reaches further to one side, and units share it.
+            // Not quite a mirror image: the pair's torque reaches further to one side, and units
+            // share it.
             assert!(
                 least < 0.0 && largest > 0.0 && (least + largest).abs() < 0.2 * largest,
                 "{margin:?}"

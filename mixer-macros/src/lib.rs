@@ -12,11 +12,13 @@ use proc_macro2::{Ident, Span};
 use quote::{quote, quote_spanned};
 use syn::LitStr;
 
-/// Compiles the airframe file at the given path into a module that is named after the airframe: `mix`, `mix_with_health`
-/// for rotors that are out, their `TABLES`, `UNITS` and `CHANNELS`, and the mixer as a type.
+/// Compiles the airframe file at the given path into a module that is named after the airframe:
+/// `mix`, `mix_with_health` for rotors that are out, their `TABLES`, `UNITS` and `CHANNELS`, and
+/// the mixer as a type.
 ///
-/// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such file, to the folder
-/// of the calling file. The crate that calls the macro depends on `mixer-rt` too.
+/// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such
+/// file, to the folder of the calling file. The crate that calls the macro depends on `mixer-rt`
+/// too.
 ///
 /// ```
 /// use mixer_rt::{Airframe, Health, SetpointError, Wrench};
@@ -44,8 +46,8 @@ use syn::LitStr;
 /// ```
 ///
 /// # Errors
-/// A file that cannot be read or is refused becomes a `compile_error!` at the path, with every fault at its place in
-/// the file. Editing the file rebuilds, whether it was refused or not.
+/// A file that cannot be read or is refused becomes a `compile_error!` at the path, with every
+/// fault at its place in the file. Editing the file rebuilds, whether it was refused or not.
 #[proc_macro]
 pub fn airframe(input: TokenStream) -> TokenStream {
     match syn::parse::<LitStr>(input) {
@@ -70,7 +72,8 @@ fn expand(literal: &LitStr) -> proc_macro2::TokenStream {
                 |compiled| compiled.tokens(),
             ),
     };
-    // Makes the file an input of the build: rustc compiles again when it changes, from a refusal as well.
+    // Makes the file an input of the build: rustc compiles again when it changes, from a refusal as
+    // well.
     let tracked = path.to_string_lossy();
     quote! {
         #tokens
@@ -94,14 +97,16 @@ fn find(given: &Path, span: Span) -> Result<PathBuf, String> {
                 .map_err(|error| format!("{}: {error}", candidate.display()));
         }
     }
-    // The compiler prints the calling file below; absolute paths would differ from machine to machine.
+    // The compiler prints the calling file below; absolute paths would differ from machine to
+    // machine.
     Err(format!(
         "no airframe file `{}`: neither in the package's folder nor in the folder of this source file",
         given.display()
     ))
 }
 
-/// The error at the path literal, and a module of the expected name so that no further errors hide it.
+/// The error at the path literal, and a module of the expected name so that no further errors hide
+/// it.
 fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStream {
     let [module, mixer] = Airframe::names_if_refused(source).map(|name| Ident::new(&name, Span::call_site()));
     let parameters = quote!(_: &::mixer_rt::Wrench, _: f32);

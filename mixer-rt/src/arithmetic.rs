@@ -6,8 +6,9 @@ mod sqrt;
 pub use scalar::Scalar;
 pub use sqrt::sqrt;
 
-/// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take three times the code
-/// and are hardly faster. A loop over an array of four needs the array in a `black_box` as well, as a slice.
+/// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take
+/// three times the code and are hardly faster. A loop over an array of four needs the array in a
+/// `black_box` as well, as a slice.
 #[inline(always)]
 pub(crate) fn rolled() {
     core::hint::black_box(());

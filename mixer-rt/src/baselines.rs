@@ -1,4 +1,5 @@
-//! What flight stacks do with a coaxial frame today, for comparison: every rotor is taken as isolated.
+//! What flight stacks do with a coaxial frame today, for comparison: every rotor is taken as
+//! isolated.
 //!
 //! ```text
 //! thrust of a rotor     F = f(d, 0), the pair's map with the other rotor at rest
@@ -7,8 +8,8 @@
 //! ```
 //!
 //! so u is linear in the 2n thrusts, and each throttle follows from its rotor's thrust alone.
-//! [`IsolatedRotors::conventional`] is the paper's comparison (section V): F = B+ u, every throttle clipped.
-//! [`IsolatedRotors::sequential`] desaturates F as PX4 does before it clips.
+//! [`IsolatedRotors::conventional`] is the paper's comparison (section V): F = B+ u, every throttle
+//! clipped. [`IsolatedRotors::sequential`] desaturates F as PX4 does before it clips.
 
 use crate::desaturation::Airmode;
 use crate::pair::ThrottleRange;
@@ -21,15 +22,16 @@ use crate::{Axis, SetpointError, Wrench, clamp, sqrt};
 pub struct IsolatedRotor {
     /// Its row of B+: thrust, N, per `[roll, pitch, yaw, thrust]` asked.
     pub allocation: [f32; 4],
-    /// The same row with every column divided by PX4's scale for it: the shares in which desaturation changes the
-    /// thrusts of all rotors, the largest of them about 1.
+    /// The same row with every column divided by PX4's scale for it: the shares in which
+    /// desaturation changes the thrusts of all rotors, the largest of them about 1.
     pub direction: [f32; 4],
 }
 
 /// Thrust of a rotor by its throttle d.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ThrustCurve {
-    /// F = (d + shift)2 / per_n - shift2 / per_n, from a d2 + b d with per_n = 1 / a and shift = b / 2a.
+    /// F = (d + shift)2 / per_n - shift2 / per_n, from a d2 + b d with per_n = 1 / a and shift = b
+    /// / 2a.
     Parabola {
         /// 1/N.
         per_n: f32,
@@ -84,15 +86,17 @@ pub struct IsolatedRotors<'a> {
     pub voltage: Option<Voltage<'a>>,
 }
 
-/// Rotors with a smaller share than this are left alone by desaturation (PX4: "weak effectiveness").
+/// Rotors with a smaller share than this are left alone by desaturation (PX4: "weak
+/// effectiveness").
 const WEAK: f32 = 0.2;
 
-/// What yaw may take beyond the largest thrust, as a share of the range (PX4: `MINIMUM_YAW_MARGIN`).
+/// What yaw may take beyond the largest thrust, as a share of the range (PX4:
+/// `MINIMUM_YAW_MARGIN`).
 const YAW_MARGIN: f32 = 0.15;
 
 impl IsolatedRotors<'_> {
-    /// The paper's conventional mixer: least norm, every throttle clipped. Writes a throttle per channel; true if
-    /// none had to be clipped.
+    /// The paper's conventional mixer: least norm, every throttle clipped. Writes a throttle per
+    /// channel; true if none had to be clipped.
     ///
     /// # Errors
     /// A setpoint or voltage that is infinite or NaN; the buffer is then as it was.
@@ -108,8 +112,9 @@ impl IsolatedRotors<'_> {
         Ok(self.throttles(throttle))
     }
 
-    /// Sequential desaturation by the rules of PX4's `ControlAllocationSequentialDesaturation` with the parameter
-    /// `MC_AIRMODE` (PX4 1.13 to 1.16), then clipped. As [`IsolatedRotors::conventional`].
+    /// Sequential desaturation by the rules of PX4's `ControlAllocationSequentialDesaturation` with
+    /// the parameter `MC_AIRMODE` (PX4 1.13 to 1.16), then clipped. As
+    /// [`IsolatedRotors::conventional`].
     ///
     /// # Errors
     /// As [`IsolatedRotors::conventional`].
@@ -169,7 +174,8 @@ impl IsolatedRotors<'_> {
         }
     }
 
-    /// Yaw last: a margin above the range for it, and what it then takes too much is taken from thrust.
+    /// Yaw last: a margin above the range for it, and what it then takes too much is taken from
+    /// thrust.
     #[inline(always)]
     fn add_yaw(&self, yaw: f32, thrusts: &mut [f32]) {
         for (rotor, value) in self.rotors.iter().zip(thrusts.iter_mut()) {
@@ -185,7 +191,8 @@ impl IsolatedRotors<'_> {
         self.slide(Axis::Thrust, Way::Down, [low, high], thrusts);
     }
 
-    /// Changes one axis so that the worst excesses on both sides come out equal; then by half of what is left.
+    /// Changes one axis so that the worst excesses on both sides come out equal; then by half of
+    /// what is left.
     #[inline(never)]
     fn slide(&self, axis: Axis, way: Way, bounds: [f32; 2], thrusts: &mut [f32]) {
         let first = self.gain(axis, bounds, thrusts);

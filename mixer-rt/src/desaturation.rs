@@ -6,9 +6,9 @@
 //!    (airmode roll-pitch-yaw: yaw, then thrust)
 //! ```
 //!
-//! Throughout, yaw stays between the reserve and the request, so it is never reversed or exceeded, and with
-//! airmode disabled the thrust stays below the request, or below the least thrust that the rotors at idle and
-//! the yaw allow.
+//! Throughout, yaw stays between the reserve and the request, so it is never reversed or exceeded,
+//! and with airmode disabled the thrust stays below the request, or below the least thrust that the
+//! rotors at idle and the yaw allow.
 
 pub(crate) mod attainable;
 pub(crate) mod closed_form;
@@ -37,8 +37,8 @@ pub struct Desaturation {
     pub yaw_reserve_nm: f32,
 }
 
-/// Largest torque (N m) and thrust (N) that is looked at: far beyond any rotor, and small enough that no product
-/// overflows.
+/// Largest torque (N m) and thrust (N) that is looked at: far beyond any rotor, and small enough
+/// that no product overflows.
 const REQUEST_LIMIT: f32 = 1e5;
 
 /// True where `request` is finite and within [`REQUEST_LIMIT`].

@@ -1,8 +1,9 @@
 //! Which rotors are out.
 
-/// The rotors that have failed, by output channel. A failed rotor is commanded to stop (throttle 0, below idle) and is taken
-/// to give nothing. Its partner gives what the airframe file says of a rotor alone (`[pair.lower_out]`,
-/// `[pair.upper_out]`); without that, the pair's polynomial with the failed rotor's throttle at zero.
+/// The rotors that have failed, by output channel. A failed rotor is commanded to stop (throttle 0,
+/// below idle) and is taken to give nothing. Its partner gives what the airframe file says of a
+/// rotor alone (`[pair.lower_out]`, `[pair.upper_out]`); without that, the pair's polynomial with
+/// the failed rotor's throttle at zero.
 ///
 /// ```
 /// # use mixer_rt::Health;

@@ -9,18 +9,19 @@ use crate::voltage::Voltage;
 /// One coaxial unit's share of M and M+.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// Rows of the pseudo-inverse M+ (2n x 4, eq. (8)): thrust in N and torque in N m of this unit per
-    /// `[roll, pitch, yaw, thrust]` asked.
+    /// Rows of the pseudo-inverse M+ (2n x 4, eq. (8)): thrust in N and torque in N m of this unit
+    /// per `[roll, pitch, yaw, thrust]` asked.
     pub allocation: [[f32; 4]; 2],
-    /// Columns of the effectiveness M (4 x 2n, eq. (5)): `[roll, pitch, yaw, thrust]` per N of this unit's thrust
-    /// and per N m of its torque.
+    /// Columns of the effectiveness M (4 x 2n, eq. (5)): `[roll, pitch, yaw, thrust]` per N of this
+    /// unit's thrust and per N m of its torque.
     pub effectiveness: [[f32; 4]; 2],
     /// Output indices of the upper and of the lower rotor.
     pub channels: [u8; 2],
 }
 
 impl Unit {
-    /// This unit's least-norm efforts `[f, Q]` for a wrench `[roll, pitch, yaw, thrust]`: two rows of M+ u.
+    /// This unit's least-norm efforts `[f, Q]` for a wrench `[roll, pitch, yaw, thrust]`: two rows
+    /// of M+ u.
     #[inline(always)]
     pub(crate) fn efforts(&self, wrench: &[f32; 4]) -> [f32; 2] {
         self.allocation.map(|[roll, pitch, yaw, thrust]| {
@@ -28,7 +29,8 @@ impl Unit {
         })
     }
 
-    /// Adds what `efforts` `[f, Q]` give to a wrench `[roll, pitch, yaw, thrust]` at the voltage's `[k_f, k_Q]`.
+    /// Adds what `efforts` `[f, Q]` give to a wrench `[roll, pitch, yaw, thrust]` at the voltage's
+    /// `[k_f, k_Q]`.
     #[inline(always)]
     pub(crate) fn add_wrench(&self, efforts: [f32; 2], factors: [f32; 2], wrench: &mut [f32; 4]) {
         for ((effect, factor), effort) in self.effectiveness.iter().zip(factors).zip(efforts) {
@@ -49,8 +51,9 @@ pub struct Tolerance {
     pub wrench: [f32; 4],
 }
 
-/// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator of its inverse, `S`
-/// the desaturation method: `&ClosedForm`, or [`NoClosedForm`] for the general path.
+/// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator
+/// of its inverse, `S` the desaturation method: `&ClosedForm`, or [`NoClosedForm`] for the general
+/// path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tables<'a, P, I, S = NoClosedForm> {
     /// The units, in the order of the airframe file.
@@ -67,12 +70,14 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub voltage: Option<Voltage<'a>>,
     /// A polygon inside the attainable set.
     pub attainable: AttainableSet<'a>,
-    /// Rows of the general path per N m of roll, pitch and yaw and per N of thrust: units over authority at the reference
-    /// voltage, roll and pitch alike; 0 on axes that the airframe does not serve.
+    /// Rows of the general path per N m of roll, pitch and yaw and per N of thrust: units over
+    /// authority at the reference voltage, roll and pitch alike; 0 on axes that the airframe does
+    /// not serve.
     pub rows: [f32; 4],
     /// What is given up when a unit cannot follow.
     pub desaturation: Desaturation,
-    /// Least power: every unit's torque per thrust (N m per N at the reference voltage) while no unit is near its limits.
+    /// Least power: every unit's torque per thrust (N m per N at the reference voltage) while no
+    /// unit is near its limits.
     pub power_bias_nm_per_n: f32,
     /// The closed form of desaturation, used while all rotors work.
     pub closed_form: S,

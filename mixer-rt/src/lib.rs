@@ -1,10 +1,12 @@
 //! Runtime of compiled coaxial multirotor mixers.
 //!
-//! A coaxial push-pull multirotor has `n` units of two stacked, contra-rotating rotors. The lower rotor works in
-//! the wake of the upper one, so a unit's thrust and torque are polynomials of *both* throttles (Chebbi et al.
-//! 2020, eq. (1)). This crate evaluates what `mixer-compiler` has tabulated from an airframe file. Firmware calls the `mix`
-//! of the module that `mixer_macros::airframe!` or `mixer_compiler::build_script` makes of that file, which calls
-//! [`tables::mix`]. What firmware handles stands here, what the generated module needs in [`tables`]:
+//! A coaxial push-pull multirotor has `n` units of two stacked, contra-rotating rotors. The lower
+//! rotor works in the wake of the upper one, so a unit's thrust and torque are polynomials of
+//! *both* throttles (Chebbi et al. 2020, eq. (1)). This crate evaluates what `mixer-compiler` has
+//! tabulated from an airframe file. Firmware calls the `mix` of the module that
+//! `mixer_macros::airframe!` or `mixer_compiler::build_script` makes of that file, which calls
+//! [`tables::mix`]. What firmware handles stands here, what the generated module needs in
+//! [`tables`]:
 //!
 //! ```text
 //! setpoint u = [roll, pitch, yaw, thrust]                                     wrench.rs
@@ -17,12 +19,12 @@
 //!   -> achieved wrench               M (k_f f(u, l), k_Q Q(u, l))             mix.rs
 //! ```
 //!
-//! No heap, no dependencies, no panic path, no `unsafe` but for the hardware square root. All arithmetic is plain
-//! IEEE 754 single precision (`+ - * /` and a correctly rounded square root), so the bits are the same on every
-//! target.
+//! No heap, no dependencies, no panic path, no `unsafe` but for the hardware square root. All
+//! arithmetic is plain IEEE 754 single precision (`+ - * /` and a correctly rounded square root),
+//! so the bits are the same on every target.
 //!
-//! Conventions: body frame FRD (x forward, y right, z down), SI units, clockwise yaw seen from above positive,
-//! thrust positive upwards; throttles inside `[min, max]` within `[0, 1]`.
+//! Conventions: body frame FRD (x forward, y right, z down), SI units, clockwise yaw seen from
+//! above positive, thrust positive upwards; throttles inside `[min, max]` within `[0, 1]`.
 #![no_std]
 
 mod arithmetic;

@@ -47,8 +47,9 @@ impl<const CHANNELS: usize> Default for Mix<CHANNELS> {
 }
 
 impl<const CHANNELS: usize> Mix<CHANNELS> {
-    /// The part of `setpoint` that was not delivered, per axis; zero where the axis is not flagged. An anti-windup that works by
-    /// amount takes this (PX4: `unallocated_torque`), one that works by direction takes [`Mix::saturation`].
+    /// The part of `setpoint` that was not delivered, per axis; zero where the axis is not flagged.
+    /// An anti-windup that works by amount takes this (PX4: `unallocated_torque`), one that works
+    /// by direction takes [`Mix::saturation`].
     ///
     /// ```
     /// # use mixer_rt::{Mix, Saturation, Wrench};
@@ -73,9 +74,10 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
     }
 }
 
-/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n + [`SHORTAGES`]. `voltage_v` is the battery's present
-/// voltage, V: outside the airframe's range it is taken as the nearest within and flagged, zero as well; an airframe
-/// without `[voltage]` ignores it. Any finite setpoint is mixed.
+/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n + [`SHORTAGES`].
+/// `voltage_v` is the battery's present voltage, V: outside the airframe's range it is taken as the
+/// nearest within and flagged, zero as well; an airframe without `[voltage]` ignores it. Any finite
+/// setpoint is mixed.
 ///
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
@@ -94,8 +96,9 @@ pub fn mix<
     mix_with_health::<VARIABLES, CHANNELS, P, I, S>(tables, setpoint, voltage_v, Health::GOOD)
 }
 
-/// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells how much. `VARIABLES` is
-/// not inferred; the generated module has this function without it. Links the general way of desaturation for every frame.
+/// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells
+/// how much. `VARIABLES` is not inferred; the generated module has this function without it. Links
+/// the general way of desaturation for every frame.
 ///
 /// # Errors
 /// As [`mix`].
@@ -137,8 +140,9 @@ pub fn mix_with_health<
     })
 }
 
-/// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `variables` takes one element per unit
-/// and [`SHORTAGES`] more, `throttle` one value per channel. Units or channels beyond a buffer's end are left out.
+/// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `variables`
+/// takes one element per unit and [`SHORTAGES`] more, `throttle` one value per channel. Units or
+/// channels beyond a buffer's end are left out.
 ///
 /// # Errors
 /// As [`mix`]; the buffers are then as they were.
@@ -207,8 +211,8 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     ))
 }
 
-/// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's proof each unit
-/// gives them within the tolerance.
+/// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's
+/// proof each unit gives them within the tolerance.
 #[inline(always)]
 fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
     tables: &Tables<'_, P, I, S>,
@@ -309,7 +313,8 @@ fn is_within(given: [f32; 2], wanted: [f32; 2], tolerance: [f32; 2]) -> bool {
     within
 }
 
-/// Contents of a [`Mix`], for code that is generic over airframes and does not know the number of channels.
+/// Contents of a [`Mix`], for code that is generic over airframes and does not know the number of
+/// channels.
 ///
 /// ```
 /// # use mixer_rt::{Mix, Outputs};
@@ -344,7 +349,8 @@ impl<const CHANNELS: usize> Outputs for Mix<CHANNELS> {
     }
 }
 
-/// An airframe's mixer as a type, for code that is generic over airframes. The compiler implements it.
+/// An airframe's mixer as a type, for code that is generic over airframes. The compiler implements
+/// it.
 ///
 /// ```
 /// # use mixer_rt::{Airframe, Outputs, SetpointError, Wrench};

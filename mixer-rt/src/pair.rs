@@ -1,4 +1,5 @@
-//! One coaxial pair: the efforts `[f, Q]` of two throttles, the throttles of two efforts, and a rotor alone.
+//! One coaxial pair: the efforts `[f, Q]` of two throttles, the throttles of two efforts, and a
+//! rotor alone.
 
 mod forward;
 mod inverse;

@@ -28,7 +28,8 @@ pub enum Direction {
 }
 
 /// What could not be delivered. Bit `2 * axis` is [`Direction::Positive`], bit `2 * axis + 1` is
-/// [`Direction::Negative`], with roll 0, pitch 1, yaw 2, thrust 3; bit 8 says that the voltage was clamped.
+/// [`Direction::Negative`], with roll 0, pitch 1, yaw 2, thrust 3; bit 8 says that the voltage was
+/// clamped.
 // Of 32 bits, so that a mix consists of whole words; see `SetpointError`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

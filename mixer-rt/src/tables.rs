@@ -1,5 +1,6 @@
-//! What generated modules consist of: the tables of one airframe, the forms that their parts have, and the functions that
-//! mix by them. Firmware that calls a generated module needs nothing of this.
+//! What generated modules consist of: the tables of one airframe, the forms that their parts have,
+//! and the functions that mix by them. Firmware that calls a generated module needs nothing of
+//! this.
 
 pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::desaturation::attainable::{AttainableSet, Corner};

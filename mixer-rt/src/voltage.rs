@@ -1,11 +1,11 @@
-//! The voltage correction: f(V) = k_f(V) f(u, l) and Q(V) = k_Q(V) Q(u, l), k = 1 at the reference voltage.
-//! (The paper multiplies its maps by such a coefficient, section IV-B2.)
+//! The voltage correction: f(V) = k_f(V) f(u, l) and Q(V) = k_Q(V) Q(u, l), k = 1 at the reference
+//! voltage. (The paper multiplies its maps by such a coefficient, section IV-B2.)
 
 use crate::arithmetic::Scalar;
 use crate::{SetpointError, clamp};
 
-/// How a correction factor depends on voltage. `powf` has no place in a mixer: the compiler fits an exponent law
-/// by a polynomial.
+/// How a correction factor depends on voltage. `powf` has no place in a mixer: the compiler fits an
+/// exponent law by a polynomial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum VoltageLaw<'a> {
     /// A polynomial in `scale V + offset`, coefficients in descending powers.
@@ -82,7 +82,8 @@ impl Correction {
     /// The correction at `voltage_v`; an airframe without `[voltage]` ignores the voltage.
     ///
     /// # Errors
-    /// [`SetpointError::NonFiniteVoltage`] where the airframe has a correction and the voltage is not finite.
+    /// [`SetpointError::NonFiniteVoltage`] where the airframe has a correction and the voltage is
+    /// not finite.
     #[inline]
     pub(crate) fn at(voltage: Option<&Voltage<'_>>, voltage_v: f32) -> Result<Self, SetpointError> {
         let Some(voltage) = voltage else {

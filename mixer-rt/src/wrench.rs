@@ -41,9 +41,10 @@ impl Wrench {
         }
     }
 
-    /// The wrench of a flight stack's normalised setpoint `[roll, pitch, yaw, thrust]`, torques in [-1, 1] and thrust in
-    /// [0, 1], positive as in [`Wrench`]. `scale` is the `SCALE` of the generated module: thrust 1 is all rotors at full
-    /// throttle, a torque of 1 what PX4's normalised effectiveness makes of it on this frame.
+    /// The wrench of a flight stack's normalised setpoint `[roll, pitch, yaw, thrust]`, torques in
+    /// [-1, 1] and thrust in [0, 1], positive as in [`Wrench`]. `scale` is the `SCALE` of the
+    /// generated module: thrust 1 is all rotors at full throttle, a torque of 1 what PX4's
+    /// normalised effectiveness makes of it on this frame.
     ///
     /// ```
     /// # use mixer_rt::Wrench;
@@ -100,7 +101,8 @@ impl fmt::Display for Axis {
     }
 }
 
-/// Why a mix was refused. The caller keeps its last outputs or disarms; no throttle is ever made of a NaN.
+/// Why a mix was refused. The caller keeps its last outputs or disarms; no throttle is ever made of
+/// a NaN.
 ///
 /// ```
 /// # use mixer_rt::{Mix, SetpointError};
@@ -113,7 +115,8 @@ impl fmt::Display for Axis {
 /// }
 /// assert_eq!(commanded(Err(SetpointError::NonFiniteVoltage), &mut Mix::default()), [0.0; 8]);
 /// ```
-// Of whole words, as a mix is: copying a `Result` of other parts takes hundreds of instructions on a Cortex-M.
+// Of whole words, as a mix is: copying a `Result` of other parts takes hundreds of instructions on
+// a Cortex-M.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(align(4))]

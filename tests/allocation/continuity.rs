@@ -1,5 +1,5 @@
-//! Requests next to each other are answered alike: those near which throttles or what is delivered once jumped, or which
-//! were answered wrongly there.
+//! Requests next to each other are answered alike: those near which throttles or what is delivered
+//! once jumped, or which were answered wrongly there.
 
 use mixer_rt::Health;
 use mixer_tests::frames::Place;
@@ -64,7 +64,8 @@ fn the_last_bit_comes_gradually() {
     }
 }
 
-/// Where roll and pitch leave the thrusts no room at all, rounding leaves them less; the reserve of yaw is kept.
+/// Where roll and pitch leave the thrusts no room at all, rounding leaves them less; the reserve of
+/// yaw is kept.
 #[test]
 fn a_reserve_is_kept_where_thrusts_have_no_room() {
     let vertical = [0.0, 0.0];
@@ -103,7 +104,8 @@ fn no_yaw_comes_of_a_multiplier_that_changes_its_sign() {
     }
 }
 
-/// Less thrust is asked than roll = pitch = 0 needs: from the least thrust on roll and pitch may lower it further.
+/// Less thrust is asked than roll = pitch = 0 needs: from the least thrust on roll and pitch may
+/// lower it further.
 #[test]
 fn roll_and_pitch_leave_the_least_thrust_gradually() {
     let vertical = [0.0, 0.0];
@@ -121,7 +123,8 @@ fn roll_and_pitch_leave_the_least_thrust_gradually() {
     }
 }
 
-/// What has been reached of roll and pitch stays while thrust and yaw are served, also where yaw is at a bound for it.
+/// What has been reached of roll and pitch stays while thrust and yaw are served, also where yaw is
+/// at a bound for it.
 #[test]
 fn the_end_of_roll_and_pitch_is_not_left_again() {
     let places = [
@@ -174,8 +177,9 @@ fn yaw_stops_at_its_bound_where_multipliers_are_large() {
     }
 }
 
-/// At the least thrust two units in the middle of their sets can together give roll, pitch and thrust in almost the same
-/// proportions only. Multipliers of 1e13 told them apart, whose rounding errors were larger than the way.
+/// At the least thrust two units in the middle of their sets can together give roll, pitch and
+/// thrust in almost the same proportions only. Multipliers of 1e13 told them apart, whose rounding
+/// errors were larger than the way.
 #[test]
 fn almost_dependent_units_at_the_least_thrust_do_not_turn_over() {
     let places = [
@@ -193,7 +197,8 @@ fn almost_dependent_units_at_the_least_thrust_do_not_turn_over() {
     }
 }
 
-/// Yaw's reach is almost level about its top. The best of a few thrusts tried was now here and now there.
+/// Yaw's reach is almost level about its top. The best of a few thrusts tried was now here and now
+/// there.
 #[test]
 fn thrusts_at_the_top_of_yaw_follow_the_request() {
     let places = [
@@ -209,8 +214,8 @@ fn thrusts_at_the_top_of_yaw_follow_the_request() {
     }
 }
 
-/// At the end of roll and pitch rounding errors of the wrench cannot be made up for: trying to turned two units to and
-/// fro until the pieces ran out, and what was left of yaw was lost.
+/// At the end of roll and pitch rounding errors of the wrench cannot be made up for: trying to
+/// turned two units to and fro until the pieces ran out, and what was left of yaw was lost.
 #[test]
 fn yaw_at_the_end_of_roll_and_pitch_is_that_of_the_neighbours() {
     let frame = Frame::new(golden::compile("px4-x12").expect("compiles"));

@@ -1,4 +1,5 @@
-//! Requests that no controller sends, voltages that no battery has, and frames at the edge of what makes sense.
+//! Requests that no controller sends, voltages that no battery has, and frames at the edge of what
+//! makes sense.
 
 use mixer_rt::{Axis, Health, SetpointError};
 use mixer_setpoints::Random;

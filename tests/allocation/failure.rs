@@ -1,5 +1,5 @@
-//! An X8 that loses any one rotor keeps a fifth of its roll and pitch and all of its thrust at 60 % of full thrust; the most
-//! that is left of roll, pitch and yaw is printed.
+//! An X8 that loses any one rotor keeps a fifth of its roll and pitch and all of its thrust at 60 %
+//! of full thrust; the most that is left of roll, pitch and yaw is printed.
 
 use mixer_rt::Health;
 use mixer_tests::frames;
@@ -13,7 +13,8 @@ use crate::{REFERENCE_V, compile};
 /// Share of full thrust.
 const HOVER: f64 = 0.6;
 
-/// Roll and pitch that are left in any direction, as shares of what the whole vehicle has at the same thrust.
+/// Roll and pitch that are left in any direction, as shares of what the whole vehicle has at the
+/// same thrust.
 const LEFT: [f32; 4] = [0.01, 0.05, 0.1, 0.2];
 
 /// Directions of (roll, pitch).
@@ -69,8 +70,8 @@ impl Flight {
         optimum.expect("an X8 flies without any one rotor").share
     }
 
-    /// Asserts that roll, pitch and thrust are delivered but for 0.1 % of their authority and what the inverse map may
-    /// miss.
+    /// Asserts that roll, pitch and thrust are delivered but for 0.1 % of their authority and what
+    /// the inverse map may miss.
     fn keeps(&self, [roll, pitch]: [f32; 2]) {
         let achieved = self.fly([roll, pitch, 0.0]).achieved;
         let tolerance = self.frame.compiled.tables.tolerance.wrench;
@@ -142,7 +143,8 @@ fn is_served(frame: &Frame, wrench: [f32; 4], volts: f32, out: [u8; 2]) {
     );
 }
 
-/// Roll and pitch keep their direction and yaw its sign, however much more of roll and pitch there were without.
+/// Roll and pitch keep their direction and yaw its sign, however much more of roll and pitch there
+/// were without.
 #[test]
 fn bounds_come_before_roll_and_pitch() {
     let places = [
@@ -162,7 +164,8 @@ fn bounds_come_before_roll_and_pitch() {
     }
 }
 
-/// Two rotors of two units leave next to no choice: yaw is missed by a bit, not roll turned against the request.
+/// Two rotors of two units leave next to no choice: yaw is missed by a bit, not roll turned against
+/// the request.
 #[test]
 fn roll_is_not_reversed_for_the_last_bit_of_yaw() {
     let places = [

@@ -1,8 +1,9 @@
 //! No number that is not finite arises on the way from a finite setpoint to the throttles.
 //!
-//! The last step limits throttles by comparing bits, which takes a NaN to one end of the range or to the other by its
-//! sign, and the sign of a NaN depends on the processor. So the throttles' range says nothing; what is watched here is
-//! what goes into the inverse map, and every operation within it.
+//! The last step limits throttles by comparing bits, which takes a NaN to one end of the range or
+//! to the other by its sign, and the sign of a NaN depends on the processor. So the throttles'
+//! range says nothing; what is watched here is what goes into the inverse map, and every operation
+//! within it.
 
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Sub};
@@ -66,7 +67,8 @@ impl Scalar for Finite {
     }
 }
 
-/// [`mixer_rt::tables::Seeded`]'s and [`mixer_rt::tables::PolynomialInverse`]'s operations on numbers that have to be finite.
+/// [`mixer_rt::tables::Seeded`]'s and [`mixer_rt::tables::PolynomialInverse`]'s operations on
+/// numbers that have to be finite.
 fn evaluate(tables: &MixerTables, efforts: [f32; 2]) -> [f32; 2] {
     let efforts = efforts.map(finite);
     let mut throttles = tables.inverse.guess(efforts).map(|x| tables.throttle.clamp(x));
@@ -78,7 +80,8 @@ fn evaluate(tables: &MixerTables, efforts: [f32; 2]) -> [f32; 2] {
     throttles.map(|x| x.0)
 }
 
-/// An evaluator that keeps the largest efforts it is asked for, and refuses those that are not finite.
+/// An evaluator that keeps the largest efforts it is asked for, and refuses those that are not
+/// finite.
 struct Watched<'a> {
     inverse: &'a InverseTable,
     largest: Cell<f32>,

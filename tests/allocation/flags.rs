@@ -1,4 +1,5 @@
-//! Yaw that is attainable is delivered and not flagged, what is missed is flagged: on the X8s of `airframes/`.
+//! Yaw that is attainable is delivered and not flagged, what is missed is flagged: on the X8s of
+//! `airframes/`.
 
 use mixer_rt::{Axis, Direction};
 use mixer_tests::frames;
@@ -45,8 +46,8 @@ fn yaw_next_to_the_furthest_is_delivered() {
     }
 }
 
-/// With a tolerance of nearly a tenth of a unit's efforts, which the map is far better than, a shortage is
-/// flagged all the same; so is one of requests far beyond any rotor.
+/// With a tolerance of nearly a tenth of a unit's efforts, which the map is far better than, a
+/// shortage is flagged all the same; so is one of requests far beyond any rotor.
 #[test]
 fn shortages_are_flagged_whatever_the_tolerance() {
     let places = frames::regular(4, 45.0);

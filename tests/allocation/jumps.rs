@@ -1,7 +1,8 @@
-//! Throttles that jump from a request to its neighbour: which of them must, and how often others do.
+//! Throttles that jump from a request to its neighbour: which of them must, and how often others
+//! do.
 //!
-//! `MIXER_SEED=2 PROPTEST_CASES=400 cargo test --release -p mixer-tests --test allocation jumps -- --nocapture` counts them on 400
-//! random frames, 250 pairs of neighbours each.
+//! `MIXER_SEED=2 PROPTEST_CASES=400 cargo test --release -p mixer-tests --test allocation jumps --
+//! --nocapture` counts them on 400 random frames, 250 pairs of neighbours each.
 
 use microlp::Error;
 use mixer_tests::optimum::change;
@@ -29,7 +30,8 @@ pub(crate) enum Motion {
     Small,
     /// By no more than [`FORCED`] times what the priorities themselves force.
     Forced,
-    /// From one optimum to another that is apart from it, as any choice of the best must: [`change::parted`].
+    /// From one optimum to another that is apart from it, as any choice of the best must:
+    /// [`change::parted`].
     Parted,
     /// In no such way; said in words.
     Jump(String),
@@ -60,7 +62,8 @@ impl Motion {
     }
 }
 
-/// A request with up to `out_most` rotors out, and which axis changes to the next one, by 1e-4 of it: 4 for all.
+/// A request with up to `out_most` rotors out, and which axis changes to the next one, by 1e-4 of
+/// it: 4 for all.
 pub(crate) fn neighbours(out_most: usize) -> impl Strategy<Value = (Draw, usize)> {
     (moderate_request(out_most), 0..5_usize)
 }
@@ -77,7 +80,8 @@ pub(crate) fn of(frame: &Frame, (draw, moved): &(Draw, usize)) -> [Request; 2] {
     [request, near]
 }
 
-/// Calls `judge` with pairs of neighbours, up to `out_most` rotors out, and what to say of their frame.
+/// Calls `judge` with pairs of neighbours, up to `out_most` rotors out, and what to say of their
+/// frame.
 fn for_pairs(out_most: usize, mut judge: impl FnMut(&Frame, [Request; 2], &dyn Fn() -> String)) {
     let mut seed = [0; 32];
     seed[..8].copy_from_slice(&number("MIXER_SEED", 1).to_le_bytes());
@@ -117,8 +121,8 @@ fn few_throttles_jump() {
     assert_eq!(jumps, 0);
 }
 
-/// What is left of a unit that has lost a rotor is a curve, on which optima are apart: no oracle says here which jumps are
-/// forced, so all are counted.
+/// What is left of a unit that has lost a rotor is a curve, on which optima are apart: no oracle
+/// says here which jumps are forced, so all are counted.
 #[test]
 fn throttles_rarely_jump_with_rotors_out() {
     let (mut pairs, mut jumps) = (0, 0);

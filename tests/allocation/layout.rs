@@ -1,4 +1,5 @@
-//! Random layouts and requests for proptest. They shrink towards one vertical unit with all rotors working.
+//! Random layouts and requests for proptest. They shrink towards one vertical unit with all rotors
+//! working.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -81,8 +82,8 @@ impl Layout {
         }
     }
 
-    /// The compiled frame; `None` where the compiler refuses it, as it does what cannot hover. The last one is kept,
-    /// since shrinking asks for it again and again.
+    /// The compiled frame; `None` where the compiler refuses it, as it does what cannot hover. The
+    /// last one is kept, since shrinking asks for it again and again.
     pub(crate) fn frame(&self) -> Option<Rc<Frame>> {
         thread_local! {
             static LAST: RefCell<Option<(Layout, Option<Rc<Frame>>)>> = const { RefCell::new(None) };
@@ -143,7 +144,8 @@ pub(crate) fn layout() -> impl Strategy<Value = Layout> {
         })
 }
 
-/// [`layout`] with a power bias of either sign, the largest more than the pair can give at most thrusts.
+/// [`layout`] with a power bias of either sign, the largest more than the pair can give at most
+/// thrusts.
 pub(crate) fn biased_layout() -> impl Strategy<Value = Layout> {
     (layout(), 0.0005..0.02, any::<bool>()).prop_map(|(layout, size, is_negative): (_, f64, _)| Layout {
         power_bias_nm_per_n: if is_negative { -size } else { size },
@@ -204,7 +206,8 @@ impl Draw {
     }
 }
 
-/// Throttles with a distance of `margin` to the ends of the range; without a margin some are at the ends.
+/// Throttles with a distance of `margin` to the ends of the range; without a margin some are at the
+/// ends.
 fn shares(margin: f64) -> BoxedStrategy<Shares> {
     let inside = margin..1.0 - margin;
     if margin > 0.0 {
@@ -214,7 +217,8 @@ fn shares(margin: f64) -> BoxedStrategy<Shares> {
     }
 }
 
-/// Torques of some or all axes up to `size` times the authority, thrust from below zero to above the ceiling.
+/// Torques of some or all axes up to `size` times the authority, thrust from below zero to above
+/// the ceiling.
 fn scaled(size: f64) -> impl Strategy<Value = Asked> {
     let torque = || prop_oneof![1 => Just(0.0), 3 => -size..size];
     (torque(), torque(), torque(), -0.05..1.2)
@@ -243,7 +247,8 @@ pub(crate) fn any_request(out_most: usize) -> impl Strategy<Value = Draw> {
     (asked, -0.2..1.2, out(out_most)).prop_map(|(asked, volts, out)| Draw { asked, volts, out })
 }
 
-/// Requests as a controller in trouble sends them: up to three times the authority, with up to `out_most` rotors out.
+/// Requests as a controller in trouble sends them: up to three times the authority, with up to
+/// `out_most` rotors out.
 pub(crate) fn moderate_request(out_most: usize) -> impl Strategy<Value = Draw> {
     let asked = prop_oneof![
         2 => scaled(0.3),
@@ -253,7 +258,8 @@ pub(crate) fn moderate_request(out_most: usize) -> impl Strategy<Value = Draw> {
     (asked, 0.0..1.0, out(out_most)).prop_map(|(asked, volts, out)| Draw { asked, volts, out })
 }
 
-/// Wrenches of throttles with a distance of `margin` to the ends of their range, with up to `out_most` rotors out.
+/// Wrenches of throttles with a distance of `margin` to the ends of their range, with up to
+/// `out_most` rotors out.
 pub(crate) fn attainable_request(margin: f64, out_most: usize) -> impl Strategy<Value = Draw> {
     (shares(margin), 0.0..1.0, out(out_most)).prop_map(|(shares, volts, out)| Draw {
         asked: Asked::Throttles(shares, 1.0),

@@ -1,4 +1,5 @@
-//! Answers against linear programs over the physical attainable sets, at any voltage and with rotors out.
+//! Answers against linear programs over the physical attainable sets, at any voltage and with
+//! rotors out.
 
 use mixer_rt::Health;
 use mixer_setpoints::Random;
@@ -151,8 +152,8 @@ fn any_frame_reaches_the_optimum() {
     assert!(all.worst.torque <= 0.02, "{:?}", all.worst);
 }
 
-/// Rotors at the ends of their range and a reserve of yaw: the furthest yaw at the thrust asked is found although the
-/// limits of three units lie between z's start and its end.
+/// Rotors at the ends of their range and a reserve of yaw: the furthest yaw at the thrust asked is
+/// found although the limits of three units lie between z's start and its end.
 #[test]
 fn a_reserve_leaves_the_furthest_yaw_at_the_thrust_asked() {
     let places = vertical([

@@ -1,4 +1,5 @@
-//! What the mixer's own polygons allow: answers are the optimum over them where what the polygons leave out decides.
+//! What the mixer's own polygons allow: answers are the optimum over them where what the polygons
+//! leave out decides.
 
 use mixer_rt::{Axis, Health};
 use mixer_tests::optimum::Oracle;
@@ -9,12 +10,12 @@ use proptest::prelude::*;
 use crate::compile;
 use crate::continuity::{all_rotors, place};
 
-/// Share by which a barely attainable wrench is drawn inside to be attainable to the mixer, too, whose polygons leave out a
-/// little at the border.
+/// Share by which a barely attainable wrench is drawn inside to be attainable to the mixer, too,
+/// whose polygons leave out a little at the border.
 const INSIDE: f32 = 0.01;
 
-/// Share of the authority by which an answer may miss the optimum over the mixer's own polygons, rounding, or where the polygons
-/// leave out nothing that counts.
+/// Share of the authority by which an answer may miss the optimum over the mixer's own polygons,
+/// rounding, or where the polygons leave out nothing that counts.
 const OWN: f64 = 1e-3;
 
 /// Fails where an axis is missed by more than the mixer's tolerance.
@@ -40,10 +41,10 @@ pub(crate) fn delivered(frame: &Frame, request: &Request) -> Result<(), TestCase
     Ok(())
 }
 
-/// Fails where more than [`INSIDE`] is missing of what is attainable, or more is given up for that than the priorities
-/// demand: where units have little to spare, half a percent of one axis may be worth a tenth of another. So the wrench
-/// that much nearer to that of half throttles must be delivered, and the answer be the optimum over the mixer's own
-/// polygons.
+/// Fails where more than [`INSIDE`] is missing of what is attainable, or more is given up for that
+/// than the priorities demand: where units have little to spare, half a percent of one axis may be
+/// worth a tenth of another. So the wrench that much nearer to that of half throttles must be
+/// delivered, and the answer be the optimum over the mixer's own polygons.
 pub(crate) fn little_is_missed(
     frame: &Frame,
     request: &Request,
@@ -70,8 +71,8 @@ pub(crate) fn little_is_missed(
     Ok(())
 }
 
-/// Holds the answer to the optimum by `oracle`: over the mixer's own polygons, or, which is more, over their convex hulls or what
-/// is physically attainable.
+/// Holds the answer to the optimum by `oracle`: over the mixer's own polygons, or, which is more,
+/// over their convex hulls or what is physically attainable.
 pub(crate) fn assert_is_optimal(frame: &Frame, request: &Request, oracle: fn(&Frame, f32, Health) -> Oracle) {
     let answer = request.mix(frame).expect("finite");
     let oracle = oracle(frame, request.volts, request.health);
@@ -89,8 +90,9 @@ fn assert_little_is_missed(frame: &Frame, wrench: [f32; 4], volts: f32) {
     little_is_missed(frame, &request, &answer).unwrap_or_else(|fault| panic!("{fault}"));
 }
 
-/// Barely attainable, where what the polygons leave out is little of yaw or of (roll, pitch) and worth a percent of thrust, and
-/// where their convex hulls leave out less: the answer is the optimum over the polygons, which are what the mixer has.
+/// Barely attainable, where what the polygons leave out is little of yaw or of (roll, pitch) and
+/// worth a percent of thrust, and where their convex hulls leave out less: the answer is the
+/// optimum over the polygons, which are what the mixer has.
 #[test]
 fn nothing_is_missed_that_only_the_hulls_of_the_polygons_have() {
     let two = [
@@ -119,8 +121,9 @@ fn nothing_is_missed_that_only_the_hulls_of_the_polygons_have() {
     }
 }
 
-/// The units that are not at corners can together give all but the same wrenches: what roll and pitch gain by telling them apart is
-/// as little as rounding, what yaw loses where they are not told apart is more than a percent.
+/// The units that are not at corners can together give all but the same wrenches: what roll and
+/// pitch gain by telling them apart is as little as rounding, what yaw loses where they are not
+/// told apart is more than a percent.
 #[test]
 fn yaw_is_served_where_units_are_all_but_dependent() {
     let five = [
@@ -208,7 +211,8 @@ fn yaw_is_served_where_units_are_all_but_dependent() {
     }
 }
 
-/// A ten-millionth of roll and pitch is worth a tenth of a percent of thrust here, which is not for the oracle to take.
+/// A ten-millionth of roll and pitch is worth a tenth of a percent of thrust here, which is not for
+/// the oracle to take.
 #[test]
 fn the_optimum_gives_up_nothing_of_roll_and_pitch_for_thrust() {
     let three = [

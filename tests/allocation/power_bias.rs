@@ -1,4 +1,5 @@
-//! Least power: the same promises with a bias, the same wrench as without, and torques that follow the thrusts.
+//! Least power: the same promises with a bias, the same wrench as without, and torques that follow
+//! the thrusts.
 
 use mixer_rt::Health;
 use mixer_tests::frames::{self, AIRMODES, Options, Place};
@@ -40,8 +41,8 @@ fn mix(frame: &Frame, wrench: [f32; 4], volts: f32) -> Answer {
 proptest! {
     #![proptest_config(config())]
 
-    /// Where a bias changes an answer, the answer is sound and delivers what it would without; elsewhere it has its bits. Rotors
-    /// that are out suspend it.
+    /// Where a bias changes an answer, the answer is sound and delivers what it would without;
+    /// elsewhere it has its bits. Rotors that are out suspend it.
     #[test]
     fn biased_answers_are_sound(layout in biased_layout(), draws in many(any_request(1), 200)) {
         let plain = layout.without_power_bias().frame().ok_or_else(|| TestCaseError::reject("no frame"))?;
@@ -67,7 +68,8 @@ proptest! {
         each(&layout, &draws, |frame, draw| delivered(frame, &draw.of(frame)))?;
     }
 
-    /// As without a bias: a relative change of 1e-4 moves no throttle by more than 0.02, but where it must.
+    /// As without a bias: a relative change of 1e-4 moves no throttle by more than 0.02, but where
+    /// it must.
     #[test]
     fn biased_throttles_are_continuous(layout in biased_layout(), pairs in many(neighbours(0), 300)) {
         each(&layout, &pairs, |frame, pair| {
@@ -82,7 +84,8 @@ proptest! {
     }
 }
 
-/// Level at half thrust every unit has Q = c f, in the closed form and in the general way, and the wrench is that without.
+/// Level at half thrust every unit has Q = c f, in the closed form and in the general way, and the
+/// wrench is that without.
 #[test]
 fn level_torques_are_the_bias_times_the_thrust() {
     let frames = [(4, "disabled"), (4, "roll-pitch-yaw"), (6, "disabled")];
@@ -99,7 +102,8 @@ fn level_torques_are_the_bias_times_the_thrust() {
     }
 }
 
-/// With roll, pitch and yaw the torques are c f and their part of yaw, less what c f gives of yaw in all, alike per unit.
+/// With roll, pitch and yaw the torques are c f and their part of yaw, less what c f gives of yaw
+/// in all, alike per unit.
 #[test]
 fn torques_give_the_yaw_asked_beside_the_bias() {
     for (airmode, volts) in AIRMODES.into_iter().zip([REFERENCE_V, 13.2, 16.0]) {
@@ -117,7 +121,8 @@ fn torques_give_the_yaw_asked_beside_the_bias() {
     }
 }
 
-/// Tilted axes couple thrust and torque: the shift is then one of thrusts, too, and still none of the wrench.
+/// Tilted axes couple thrust and torque: the shift is then one of thrusts, too, and still none of
+/// the wrench.
 #[test]
 fn tilted_frames_keep_their_wrench() {
     let places = [
@@ -140,7 +145,8 @@ fn tilted_frames_keep_their_wrench() {
     }
 }
 
-/// Towards the end of yaw the bias fades to none, and nothing jumps on the way; beyond, answers are bit for bit those without.
+/// Towards the end of yaw the bias fades to none, and nothing jumps on the way; beyond, answers are
+/// bit for bit those without.
 #[test]
 fn the_bias_fades_before_yaw_saturates() {
     for (name, places) in regular_frames() {

@@ -1,8 +1,8 @@
 //! What holds for any layout and any request.
 //!
-//! The seed is fixed, so every run checks the same. `PROPTEST_CASES` sets the number of layouts, `PROPTEST_RNG_SEED`
-//! another seed. A failure shows the least layout and request that it could be brought to, as an airframe file and a
-//! wrench.
+//! The seed is fixed, so every run checks the same. `PROPTEST_CASES` sets the number of layouts,
+//! `PROPTEST_RNG_SEED` another seed. A failure shows the least layout and request that it could be
+//! brought to, as an airframe file and a wrench.
 
 use mixer_rt::{Axis, SetpointError};
 use mixer_tests::request::{Frame, Request};
@@ -55,8 +55,9 @@ pub(crate) fn each<D>(
     draws.iter().try_for_each(|draw| property(&frame, draw))
 }
 
-/// Throttles in range, the truth about the achieved wrench, flags by axis and side, no axis reversed or exceeded,
-/// (roll, pitch) in the direction asked, no thrust raised with airmode disabled.
+/// Throttles in range, the truth about the achieved wrench, flags by axis and side, no axis
+/// reversed or exceeded, (roll, pitch) in the direction asked, no thrust raised with airmode
+/// disabled.
 pub(crate) fn sound(frame: &Frame, draw: &Draw) -> Result<(), TestCaseError> {
     let request = draw.of(frame);
     let answer = request.mix(frame).expect("finite");
@@ -88,7 +89,8 @@ proptest! {
         })?;
     }
 
-    /// A relative change of 1e-4 of one axis, or of all, moves no throttle by more than 0.02, but where it must: [`Motion`].
+    /// A relative change of 1e-4 of one axis, or of all, moves no throttle by more than 0.02, but
+    /// where it must: [`Motion`].
     #[test]
     fn throttles_are_continuous_in_the_request(layout in layout(), pairs in many(neighbours(0), 300)) {
         each(&layout, &pairs, |frame, pair| {

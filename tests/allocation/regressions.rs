@@ -1,4 +1,5 @@
-//! Requests that an earlier mixer answered badly: `regressions.toml` has each with its frame and what is expected.
+//! Requests that an earlier mixer answered badly: `regressions.toml` has each with its frame and
+//! what is expected.
 
 use mixer_tests::frames::{AIRMODES, Place};
 use mixer_tests::optimum::Oracle;

@@ -1,5 +1,6 @@
-//! Pairs whose attainable sets are not convex: made up ones, and the real maps of `MIXER_BENCH_DATA` in three bases. On
-//! an X8, where yaw may have several peaks along the null space of the thrusts, on a Y6, and on an X12.
+//! Pairs whose attainable sets are not convex: made up ones, and the real maps of
+//! `MIXER_BENCH_DATA` in three bases. On an X8, where yaw may have several peaks along the null
+//! space of the thrusts, on a Y6, and on an X12.
 
 #[path = "../../cargo-mixer/tests/maps/mod.rs"]
 mod maps;
@@ -21,8 +22,8 @@ use crate::jumps::Motion;
 use crate::polygons::assert_is_optimal;
 use crate::{number, regular_frames};
 
-/// Made up: the lower rotor hardly adds thrust while the upper one is at full throttle, so that the set bends inwards
-/// there.
+/// Made up: the lower rotor hardly adds thrust while the upper one is at full throttle, so that the
+/// set bends inwards there.
 const BENT: [(&str, &str); 2] = [
     (
         "bent, biquadratic",
@@ -108,8 +109,8 @@ fn deliver(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) 
     tally.attainable += count;
 }
 
-/// The most yaw in the direction asked (N m) that the answer's own roll, pitch and thrust leave, by small steps along the
-/// null space of an X8's thrusts.
+/// The most yaw in the direction asked (N m) that the answer's own roll, pitch and thrust leave, by
+/// small steps along the null space of an X8's thrusts.
 fn best_yaw(frame: &Frame, answer: &Answer, direction: f64) -> f64 {
     const STEPS: usize = 2000;
     let table = frame.compiled.tables.closed_form.as_ref().expect("closed form");
@@ -150,7 +151,8 @@ fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally)
         let request = frame.draw(random, 1.0, 0.0);
         let answer = request.mix(frame).expect("finite");
         let fault = soundness::fault(frame, &request, &answer).expect("solved");
-        // The oracle takes convex hulls, which reach below the least thrust: that is held to the inverse map instead.
+        // The oracle takes convex hulls, which reach below the least thrust: that is held to the
+        // inverse map instead.
         let tables = &frame.compiled.tables;
         let floor = tables
             .closed_form
@@ -194,8 +196,8 @@ fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally)
     }
 }
 
-/// The least thrust in all at which equal thrusts f leave no yaw: torques q of the units with one spin, their negative
-/// share of the others.
+/// The least thrust in all at which equal thrusts f leave no yaw: torques q of the units with one
+/// spin, their negative share of the others.
 fn least_level_thrust(frame: &Frame, most: f64) -> f64 {
     const STEPS: usize = 100;
     let pair = &frame.physics.pair;
@@ -356,8 +358,9 @@ fn on_x12<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>, count: u64) -> Ta
     sum
 }
 
-/// Once roll and pitch end one unit is left to give yaw. A bound of yaw was taken for the other where a multiplier that came to
-/// zero had the other's sign by rounding, and one end for the better for what it had gained out of bounds.
+/// Once roll and pitch end one unit is left to give yaw. A bound of yaw was taken for the other
+/// where a multiplier that came to zero had the other's sign by rounding, and one end for the
+/// better for what it had gained out of bounds.
 #[test]
 fn yaw_that_one_unit_is_left_to_give_is_the_optimum() {
     let frame = Frame::new(x12(BENT[0].1, "disabled").expect("compiles"));

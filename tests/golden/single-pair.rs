@@ -17,7 +17,8 @@ pub mod single_pair {
     pub const UNITS: usize = 1;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 2;
-    /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
+    /// What one unit of a normalised setpoint asks for: see
+    /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 0.0,
         pitch_nm: 0.0,
@@ -49,10 +50,12 @@ pub mod single_pair {
             mix_with_health(setpoint, voltage_v, health)
         }
     }
-    /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage (V).
+    /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
+    /// (V).
     ///
     /// # Errors
-    /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a correction.
+    /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
+    /// correction.
     #[inline]
     pub fn mix(
         setpoint: &rt::Wrench,

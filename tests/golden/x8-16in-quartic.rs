@@ -20,7 +20,8 @@ pub mod x8_16in_quartic {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
-    /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
+    /// What one unit of a normalised setpoint asks for: see
+    /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 36.24799,
         pitch_nm: 36.24799,
@@ -52,10 +53,12 @@ pub mod x8_16in_quartic {
             mix_with_health(setpoint, voltage_v, health)
         }
     }
-    /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage (V).
+    /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
+    /// (V).
     ///
     /// # Errors
-    /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a correction.
+    /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
+    /// correction.
     #[inline]
     pub fn mix(
         setpoint: &rt::Wrench,

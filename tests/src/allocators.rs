@@ -1,7 +1,7 @@
 //! Allocators compared on wrenches that random throttles give, so that every one is attainable.
 //!
-//! `tests/measurements/allocators.csv` holds a [`Row`] per frame and allocator. It is written by `cargo xtask allocators`
-//! only.
+//! `tests/measurements/allocators.csv` holds a [`Row`] per frame and allocator. It is written by
+//! `cargo xtask allocators` only.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -67,8 +67,8 @@ pub struct Row {
     pub frame: String,
     /// What allocates.
     pub allocator: String,
-    /// Percent with two decimals: wrenches delivered, mean and worst error as a share of the authority, wrenches whose yaw
-    /// is reversed.
+    /// Percent with two decimals: wrenches delivered, mean and worst error as a share of the
+    /// authority, wrenches whose yaw is reversed.
     pub percent: [String; 4],
 }
 

@@ -1,7 +1,8 @@
-//! The three bases compared on full-range maps of real benches, where `MIXER_BENCH_DATA` names their folder.
+//! The three bases compared on full-range maps of real benches, where `MIXER_BENCH_DATA` names
+//! their folder.
 //!
-//! `tests/measurements/bases.csv` holds a [`Row`] per map and basis. It is written by `cargo xtask bases` only: the bench
-//! files are no part of the project.
+//! `tests/measurements/bases.csv` holds a [`Row`] per map and basis. It is written by `cargo xtask
+//! bases` only: the bench files are no part of the project.
 
 use std::fmt;
 use std::path::{Path, PathBuf};

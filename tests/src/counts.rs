@@ -1,8 +1,9 @@
-//! What a mix costs on the target: instructions, counted one by one by the `counts` image of `tests/firmware`, and
-//! bytes of code, tables and stack.
+//! What a mix costs on the target: instructions, counted one by one by the `counts` image of
+//! `tests/firmware`, and bytes of code, tables and stack.
 //!
-//! `tests/counts.csv` holds a [`Row`] per [`Subject`]. It is written by `cargo run -p mixer-tests --bin counts -- --bless`
-//! only, and begins with the compiler that built the firmware: another one gives other counts.
+//! `tests/counts.csv` holds a [`Row`] per [`Subject`]. It is written by `cargo run -p mixer-tests
+//! --bin counts -- --bless` only, and begins with the compiler that built the firmware: another one
+//! gives other counts.
 
 use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -24,8 +25,9 @@ const TWO_OUT: &str = "two-rotors-out";
 /// A mixer of an airframe.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
-    /// `coaxial`; the same as a library for C: `c-interface`; with one or two rotors out, at random channels:
-    /// `one-rotor-out`, `two-rotors-out`; or a baseline: `conventional`, `sequential`, `wls`.
+    /// `coaxial`; the same as a library for C: `c-interface`; with one or two rotors out, at random
+    /// channels: `one-rotor-out`, `two-rotors-out`; or a baseline: `conventional`, `sequential`,
+    /// `wls`.
     pub mixer: String,
     /// A file of `airframes/`, or one of `tests/firmware/build/frames.rs`.
     pub airframe: String,
@@ -58,8 +60,8 @@ impl Subject {
     }
 }
 
-/// The subjects that every run of the tests compares: all airframes, and on the X8 the baselines of `mixer-rt`, one
-/// rotor out, and the library for C.
+/// The subjects that every run of the tests compares: all airframes, and on the X8 the baselines of
+/// `mixer-rt`, one rotor out, and the library for C.
 pub fn compared(airframes: &[String]) -> Vec<Subject> {
     let airframes = airframes.iter().map(|airframe| Subject::new("coaxial", airframe));
     let others =
@@ -67,9 +69,9 @@ pub fn compared(airframes: &[String]) -> Vec<Subject> {
     airframes.chain(others).collect()
 }
 
-/// All subjects: those compared, two rotors out, the baselines and rotors out on other frames, regular frames of 1 to 8
-/// units, the X8 with five tolerances and with other priorities, a Y6 and an X8 whose attainable sets are not convex, and
-/// Y6s with the pairs of the X8s.
+/// All subjects: those compared, two rotors out, the baselines and rotors out on other frames,
+/// regular frames of 1 to 8 units, the X8 with five tolerances and with other priorities, a Y6 and
+/// an X8 whose attainable sets are not convex, and Y6s with the pairs of the X8s.
 pub fn all(airframes: &[String]) -> Vec<Subject> {
     let mut subjects = compared(airframes);
     subjects.push(Subject::new("wls", "isae-x8"));
@@ -103,8 +105,8 @@ pub struct Row {
     pub values: [u64; COLUMNS.len()],
 }
 
-/// Names of a [`Row`]'s values. `attainable` and `saturated` are sets of as many `requests` each, drawn by
-/// `mixer_setpoints::Requests`; `searched` is what a search for the dearest request found.
+/// Names of a [`Row`]'s values. `attainable` and `saturated` are sets of as many `requests` each,
+/// drawn by `mixer_setpoints::Requests`; `searched` is what a search for the dearest request found.
 pub const COLUMNS: [&str; 10] = [
     "code_b",
     "tables_b",

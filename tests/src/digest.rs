@@ -1,4 +1,5 @@
-//! The same bits on the host and on the target, over many random setpoints: one number is compared for all of them.
+//! The same bits on the host and on the target, over many random setpoints: one number is compared
+//! for all of them.
 
 use mixer_compiler::Compiled;
 use mixer_rt::{
@@ -7,7 +8,8 @@ use mixer_rt::{
 };
 use mixer_setpoints::{Digest, Mixture, RotorsOut};
 
-/// Digest after each tenth of `count` setpoints with `rotors_out`, as the `digest` image prints them.
+/// Digest after each tenth of `count` setpoints with `rotors_out`, as the `digest` image prints
+/// them.
 pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
     let tables = compiled.tables.view();
     let healths = RotorsOut::new(Digest::SEED, 2 * tables.units.len(), rotors_out);

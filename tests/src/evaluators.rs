@@ -1,9 +1,10 @@
-//! What evaluators of the inverse map cost on the target, counted by the `evaluators` image of `tests/firmware`.
+//! What evaluators of the inverse map cost on the target, counted by the `evaluators` image of
+//! `tests/firmware`.
 
 use crate::firmware::{Toolchain, Variant};
 
-/// Name of an evaluator, a polynomial's with its degree, and instructions per unit with a biquadratic, a cubic and a
-/// quartic pair.
+/// Name of an evaluator, a polynomial's with its degree, and instructions per unit with a
+/// biquadratic, a cubic and a quartic pair.
 pub type Count = (String, [u32; 3]);
 
 /// Counts all evaluators, in the image's order.

@@ -64,7 +64,8 @@ pub struct Toolchain {
 }
 
 impl Toolchain {
-    /// The running toolchain if it has the target, else Debian's compiler, which builds `core` from its sources.
+    /// The running toolchain if it has the target, else Debian's compiler, which builds `core` from
+    /// its sources.
     ///
     /// # Errors
     ///
@@ -106,7 +107,8 @@ impl Toolchain {
                 cargo: "/usr/bin/cargo".into(),
                 environment: vec![
                     ("RUSTC", debian.into()),
-                    // `-Zbuild-std` is not stable, and Debian has no other way to a bare-metal `core`.
+                    // `-Zbuild-std` is not stable, and Debian has no other way to a bare-metal
+                    // `core`.
                     ("RUSTC_BOOTSTRAP", "1".into()),
                     (
                         "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER",
@@ -124,8 +126,8 @@ impl Toolchain {
         ))
     }
 
-    /// Builds one image in release mode, its own crate as `variant` says, and returns the path of its ELF file, which is
-    /// that variant's own.
+    /// Builds one image in release mode, its own crate as `variant` says, and returns the path of
+    /// its ELF file, which is that variant's own.
     ///
     /// # Errors
     ///
@@ -181,7 +183,8 @@ impl Toolchain {
     ///
     /// # Errors
     ///
-    /// What the compiler said, or what the image printed before it failed or was stopped for taking too long.
+    /// What the compiler said, or what the image printed before it failed or was stopped for taking
+    /// too long.
     pub fn run(&self, image: &str, variant: &Variant) -> Result<String, String> {
         self.start(image, variant, &self.runner()?, TIME_LIMIT)
     }
@@ -249,7 +252,8 @@ impl Toolchain {
 
     fn command(&self, subcommand: &str, image: &str) -> Command {
         let mut command = Command::new(&self.cargo);
-        // What the toolchain of the tests, or its caller, has set for itself would mislead the other one.
+        // What the toolchain of the tests, or its caller, has set for itself would mislead the
+        // other one.
         for variable in [
             "CARGO_BUILD_TARGET",
             "CARGO_ENCODED_RUSTFLAGS",

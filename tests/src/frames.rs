@@ -58,7 +58,8 @@ pub struct Place {
     pub clockwise: bool,
 }
 
-/// Units at equal angles on a circle of 0.45 m radius, spins alternating, the first at `first_deg` from the nose.
+/// Units at equal angles on a circle of 0.45 m radius, spins alternating, the first at `first_deg`
+/// from the nose.
 pub fn regular(units: usize, first_deg: f64) -> Vec<Place> {
     (0..units)
         .map(|k| {
@@ -91,8 +92,8 @@ pub fn polar(arm_m: f64, angle_deg: f64) -> [f64; 2] {
     [arm_m * cos(angle), arm_m * sin(angle)]
 }
 
-/// An irregular frame: units in about even directions around the centre with arms of 0.2 m to 0.7 m, random
-/// spins, axes tilted by up to `tilt` (about radians).
+/// An irregular frame: units in about even directions around the centre with arms of 0.2 m to 0.7
+/// m, random spins, axes tilted by up to `tilt` (about radians).
 pub fn irregular(random: &mut Random, units: usize, tilt: f64) -> Vec<Place> {
     let start = random.uniform(0.0, 360.0);
     (0..units)
@@ -112,7 +113,8 @@ pub fn irregular(random: &mut Random, units: usize, tilt: f64) -> Vec<Place> {
         .collect()
 }
 
-/// The airframe file of a frame with the paper's pair; unit k has channels `channels[2 k]` and `channels[2 k + 1]`.
+/// The airframe file of a frame with the paper's pair; unit k has channels `channels[2 k]` and
+/// `channels[2 k + 1]`.
 pub fn toml(places: &[Place], channels: &[usize], options: Options) -> String {
     toml_with_pair(PAPER, places, channels, options)
 }

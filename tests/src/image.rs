@@ -43,7 +43,8 @@ impl Image {
         })
     }
 
-    /// Symbols of helpers that a mixer has no need of: arithmetic in software, copying and filling of memory.
+    /// Symbols of helpers that a mixer has no need of: arithmetic in software, copying and filling
+    /// of memory.
     pub fn helper_symbols(&self) -> Vec<&str> {
         let helper = |symbol: &&str| {
             symbol.starts_with("__aeabi_")

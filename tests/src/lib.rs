@@ -1,6 +1,6 @@
-//! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU, looking into its image;
-//! frames and their physics, requests, the optimum of a request, other allocators to measure the mixer against, and the
-//! tables of the documents.
+//! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU,
+//! looking into its image; frames and their physics, requests, the optimum of a request, other
+//! allocators to measure the mixer against, and the tables of the documents.
 
 pub mod allocators;
 pub mod bases;

@@ -2,17 +2,19 @@
 //!
 //! A unit's attainable set is cut into pieces, each stood for by the convex hull of points of it:
 //!
-//! * Both rotors, three units or more: one piece, from points of the border. The programs range over the convex hull:
-//!   what they attain is at least what is physically attainable. (The sum of several sets is nearly convex, whatever
-//!   each of them is.)
-//! * Both rotors, one unit or two, or any number in [`Oracle::exact`]: the images of small cells of the throttle box,
-//!   since on the convex hull a single unit would have 1.3 % more torque than it has, the paper's pair.
+//! * Both rotors, three units or more: one piece, from points of the border. The programs range
+//!   over the convex hull: what they attain is at least what is physically attainable. (The sum of
+//!   several sets is nearly convex, whatever each of them is.)
+//! * Both rotors, one unit or two, or any number in [`Oracle::exact`]: the images of small cells of
+//!   the throttle box, since on the convex hull a single unit would have 1.3 % more torque than it
+//!   has, the paper's pair.
 //! * One rotor: a curve is left, which is anything but convex, as short arcs.
 //!
 //! In place of what is attainable the mixer's own polygons can be put, or their hulls: polygons.rs.
 //!
-//! The optimum over all choices of one piece per unit is found by branch and bound: a run of pieces is relaxed to the
-//! convex hull of all of them; the choice of runs that promises most is halved until single pieces are left.
+//! The optimum over all choices of one piece per unit is found by branch and bound: a run of pieces
+//! is relaxed to the convex hull of all of them; the choice of runs that promises most is halved
+//! until single pieces are left.
 
 pub mod change;
 mod polygons;
@@ -37,8 +39,8 @@ const HALVINGS: u32 = 2;
 /// Units up to which the box is cut.
 const FEW: usize = 2;
 
-/// Room for the solver's own tolerance between one program and the next. Where edges are all but dependent the next priority
-/// gains a million times as much by it.
+/// Room for the solver's own tolerance between one program and the next. Where edges are all but
+/// dependent the next priority gains a million times as much by it.
 const SLACK: f64 = 1e-9;
 
 /// More torque (N m) or thrust (N) than any frame has.
@@ -55,7 +57,8 @@ pub struct Optimum {
     pub thrust_n: f64,
 }
 
-/// What a unit can contribute to `[roll, pitch, yaw, thrust]`: the convex hulls of these points, neighbours in order.
+/// What a unit can contribute to `[roll, pitch, yaw, thrust]`: the convex hulls of these points,
+/// neighbours in order.
 type Pieces<T> = Vec<Vec<T>>;
 
 /// The lexicographic programs of one frame at one voltage, with some rotors out.
@@ -85,8 +88,8 @@ impl Oracle {
         Oracle::cut(physics, allocation, factors, health, physics.units() <= FEW)
     }
 
-    /// As [`Oracle::new`], with the sets of units with both rotors cut into pieces, however many units there are. An
-    /// optimum takes seconds.
+    /// As [`Oracle::new`], with the sets of units with both rotors cut into pieces, however many
+    /// units there are. An optimum takes seconds.
     pub fn exact(
         physics: &Physics,
         allocation: &mixer_compiler::airframe::Allocation,
@@ -180,8 +183,9 @@ impl Oracle {
         }
     }
 
-    /// The least thrust (N) at which roll = pitch = 0 is attainable with a yaw between its reserve and the one asked;
-    /// `None` where there is none. Airmode "disabled" never gives more than this or the thrust asked.
+    /// The least thrust (N) at which roll = pitch = 0 is attainable with a yaw between its reserve
+    /// and the one asked; `None` where there is none. Airmode "disabled" never gives more than this
+    /// or the thrust asked.
     ///
     /// # Errors
     /// The solver gave up.
@@ -190,7 +194,8 @@ impl Oracle {
         Ok(least.map(|point| point.thrust))
     }
 
-    /// Where yaw and thrust may be whatever becomes of roll and pitch; `None` where no thrust leaves them at zero.
+    /// Where yaw and thrust may be whatever becomes of roll and pitch; `None` where no thrust
+    /// leaves them at zero.
     fn allowed(&self, [.., yaw, thrust]: [f64; 4]) -> Result<Option<Ranges>, Error> {
         let mut ranges = self.level(yaw);
         let Some(floor) = self.thrust_floor(yaw)? else {
@@ -245,8 +250,8 @@ impl Oracle {
         }
     }
 
-    /// The optimum of a request; `None` where not even roll = pitch = 0 is attainable within the yaw asked and its
-    /// reserve.
+    /// The optimum of a request; `None` where not even roll = pitch = 0 is attainable within the
+    /// yaw asked and its reserve.
     ///
     /// # Errors
     /// The solver gave up.
@@ -254,8 +259,8 @@ impl Oracle {
         self.optimum_given(request, None)
     }
 
-    /// The optimum with the share of (roll, pitch), if one is given, not above it, and if with it a value of the next
-    /// priority is given, that one as near to it as can be.
+    /// The optimum with the share of (roll, pitch), if one is given, not above it, and if with it a
+    /// value of the next priority is given, that one as near to it as can be.
     ///
     /// # Errors
     /// The solver gave up.
@@ -310,7 +315,8 @@ fn is_out(health: Health, channel: usize) -> bool {
     u8::try_from(channel).is_ok_and(|channel| health.has_failed(channel))
 }
 
-/// The throttles among `border` (anticlockwise) whose efforts are corners of the convex hull of all.
+/// The throttles among `border` (anticlockwise) whose efforts are corners of the convex hull of
+/// all.
 fn bulging(pair: &PairMap, border: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut corners = border;
     loop {
@@ -335,12 +341,14 @@ fn arcs(pair: &PairMap, throttles: fn(f64) -> [f64; 2]) -> Pieces<[f64; 2]> {
     (0..ARCS).map(|k| (2 * k..=2 * k + 2).map(at).collect()).collect()
 }
 
-/// The throttle box as cells, cut only across the edges whose images bend inwards: in both directions
-/// [`HALVINGS`] times, in Morton's order, so that runs are compact; in one direction once more.
+/// The throttle box as cells, cut only across the edges whose images bend inwards: in both
+/// directions [`HALVINGS`] times, in Morton's order, so that runs are compact; in one direction
+/// once more.
 fn cells(pair: &PairMap) -> Pieces<[f64; 2]> {
     let [low, high] = pair.range();
     let at = |share: f64| low + (high - low) * share;
-    // Positive where the image of an edge, followed anticlockwise, bends to the left: det J is positive.
+    // Positive where the image of an edge, followed anticlockwise, bends to the left: det J is
+    // positive.
     let bend = |edge: &dyn Fn(f64) -> [f64; 2]| {
         let [from, middle, to] = [0.0, 0.5, 1.0].map(|share| pair.efforts(edge(at(share))));
         (to[0] - from[0]) * (middle[1] - from[1]) - (to[1] - from[1]) * (middle[0] - from[0])

@@ -1,7 +1,8 @@
 //! The compiler's model of what a mix costs, fitted to `tests/counts.csv`.
 //!
-//! `mixer-compiler/src/output/cost/counted.rs` is written by `cargo run -p mixer-tests --bin counts -- --fit`, and with the
-//! counts themselves by `-- --bless`. It follows from them and from the evaluators' counts alone.
+//! `mixer-compiler/src/output/cost/counted.rs` is written by `cargo run -p mixer-tests --bin counts
+//! -- --fit`, and with the counts themselves by `-- --bless`. It follows from them and from the
+//! evaluators' counts alone.
 
 use std::fs;
 use std::path::PathBuf;
@@ -25,7 +26,8 @@ pub struct Sample {
     pub kind: Kind,
     /// Number of units.
     pub units: usize,
-    /// All thrust axes are vertical: then least norm delivers most wrenches that random throttles give.
+    /// All thrust axes are vertical: then least norm delivers most wrenches that random throttles
+    /// give.
     pub vertical: bool,
     /// With a voltage correction.
     pub voltage: bool,

@@ -1,4 +1,5 @@
-//! What throttles give by the airframe file's own numbers, in f64: what mixers in f32 are judged against.
+//! What throttles give by the airframe file's own numbers, in f64: what mixers in f32 are judged
+//! against.
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{RotorAlone, Voltage};
@@ -61,8 +62,8 @@ impl Physics {
         })
     }
 
-    /// `[roll, pitch, yaw, thrust]` (N m, N) that the units' efforts `[f, Q]` at the reference voltage give under the
-    /// correction `factors`.
+    /// `[roll, pitch, yaw, thrust]` (N m, N) that the units' efforts `[f, Q]` at the reference
+    /// voltage give under the correction `factors`.
     pub fn wrench_of(&self, efforts: impl Iterator<Item = [f64; 2]>, factors: [f64; 2]) -> [f64; 4] {
         let mut wrench = [0.0; 4];
         for (i, efforts) in efforts.enumerate() {
@@ -81,7 +82,8 @@ impl Physics {
         })
     }
 
-    /// `[roll, pitch, yaw, thrust]` (N m, N) that throttles, one per output, give at a battery voltage.
+    /// `[roll, pitch, yaw, thrust]` (N m, N) that throttles, one per output, give at a battery
+    /// voltage.
     pub fn wrench(&self, throttle: &[f32], volts: f32) -> [f64; 4] {
         let efforts = self.channels.iter().map(|channels| {
             let throttles = channels.map(|channel| f64::from(throttle[channel]));
@@ -101,8 +103,8 @@ impl Physics {
         }
     }
 
-    /// The largest `[roll, pitch, yaw, thrust]` at the reference voltage, N m and N: all units at their best,
-    /// whatever the other axes lose.
+    /// The largest `[roll, pitch, yaw, thrust]` at the reference voltage, N m and N: all units at
+    /// their best, whatever the other axes lose.
     pub fn authority(&self) -> [f64; 4] {
         let [f, q] = self.pair.scale();
         let n = self.units();
@@ -113,8 +115,8 @@ impl Physics {
         })
     }
 
-    /// The wrench furthest in `direction` (per axis, of the authority's size) that the frame can give: every unit at
-    /// the best point of its border. A corner of what is attainable.
+    /// The wrench furthest in `direction` (per axis, of the authority's size) that the frame can
+    /// give: every unit at the best point of its border. A corner of what is attainable.
     pub fn furthest(&self, direction: [f64; 4], factors: [f64; 2]) -> [f64; 4] {
         let n = self.units();
         let per = self
@@ -140,8 +142,8 @@ impl Physics {
         self.wrench_of(best, factors)
     }
 
-    /// True where some throttles within the range give the efforts `[f, Q]` at the reference voltage: Newton steps,
-    /// clamped, from the middle and the corners of the range.
+    /// True where some throttles within the range give the efforts `[f, Q]` at the reference
+    /// voltage: Newton steps, clamped, from the middle and the corners of the range.
     pub fn attains(&self, efforts: [f64; 2]) -> bool {
         let [low, high] = self.pair.range();
         let middle = 0.5 * (low + high);

@@ -39,7 +39,8 @@ impl Frame {
         Axis::ALL.map(|axis| self.allocation().controls(axis))
     }
 
-    /// A request of up to `size` times the authority in torque and 1.2 times in thrust, all rotors working.
+    /// A request of up to `size` times the authority in torque and 1.2 times in thrust, all rotors
+    /// working.
     pub fn draw(&self, random: &mut Random, size: f64, volts: f32) -> Request {
         let size = random.uniform(0.0, size);
         let [roll, pitch, yaw, thrust] = self.authority;

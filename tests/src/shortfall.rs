@@ -9,7 +9,8 @@ use crate::request::{Answer, Frame, Request};
 /// Share of the authority by which an answer may fall short.
 pub const ALLOWED: f64 = 0.01;
 
-/// Shortfalls against the optimum, as shares of the authority; negative where more was given than the optimum has.
+/// Shortfalls against the optimum, as shares of the authority; negative where more was given than
+/// the optimum has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shortfall {
     /// Of (roll, pitch) along the direction asked.
@@ -40,12 +41,12 @@ impl Shortfall {
         }
     }
 
-    /// The shortfall of an answer; `None` where the request has no optimum, since not even roll = pitch = 0 is
-    /// attainable.
+    /// The shortfall of an answer; `None` where the request has no optimum, since not even roll =
+    /// pitch = 0 is attainable.
     ///
-    /// A higher priority may be short by a little, or over, and what that buys or costs the lower ones is more than
-    /// it is itself. So a lower priority is short only if it is against both: the optimum, and the best that the
-    /// answer's own higher priorities leave.
+    /// A higher priority may be short by a little, or over, and what that buys or costs the lower
+    /// ones is more than it is itself. So a lower priority is short only if it is against both: the
+    /// optimum, and the best that the answer's own higher priorities leave.
     ///
     /// # Errors
     /// The solver of the oracle gave up.
@@ -108,8 +109,8 @@ impl Shortfall {
         Ok(Some(shortfall))
     }
 
-    /// [`Shortfall::of`] against `hulls`, and where that is more than `allowed` against `sets`: what is missing may be what only
-    /// the convex hulls of the sets have.
+    /// [`Shortfall::of`] against `hulls`, and where that is more than `allowed` against `sets`:
+    /// what is missing may be what only the convex hulls of the sets have.
     ///
     /// # Errors
     /// As [`Shortfall::of`].

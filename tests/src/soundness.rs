@@ -9,7 +9,8 @@ use crate::shortfall::ALLOWED;
 /// Rounding of sums in f32, as a share of the authority.
 const ROUNDING: f64 = 5e-6;
 
-/// Share of the authority by which an axis may be reversed or exceeded, beside what the inverse map may miss.
+/// Share of the authority by which an axis may be reversed or exceeded, beside what the inverse map
+/// may miss.
 const SLACK: f64 = 1e-3;
 
 /// The first fault of an answer, in words; `None` where it is sound.
@@ -23,7 +24,8 @@ pub fn fault(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option
     }
 }
 
-/// As [`fault`], of what an answer says alone: throttles in range, the truth about the wrench, the right flags.
+/// As [`fault`], of what an answer says alone: throttles in range, the truth about the wrench, the
+/// right flags.
 pub fn fault_of_form(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
     throttles(frame, request, answer)
         .or_else(|| truth(frame, request, answer))
@@ -57,8 +59,8 @@ fn truth(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
     })
 }
 
-/// Every axis is flagged on the side on which it was missed by more than the tolerance, and on no other; the voltage is
-/// flagged where it was clamped.
+/// Every axis is flagged on the side on which it was missed by more than the tolerance, and on no
+/// other; the voltage is flagged where it was clamped.
 fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
     let tolerance = frame.compiled.tables.tolerance.wrench.map(f64::from);
     let axes = Axis::ALL.into_iter().enumerate().find_map(|(index, axis)| {
@@ -83,8 +85,9 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
     axes.or_else(|| voltage.then(|| format!("voltage {}: clamped {clamped}", request.volts)))
 }
 
-/// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode "disabled" does not raise
-/// the thrust beyond the request or the floor: all where roll = pitch = 0 is attainable at all within the yaw asked and its reserve.
+/// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode
+/// "disabled" does not raise the thrust beyond the request or the floor: all where roll = pitch = 0
+/// is attainable at all within the yaw asked and its reserve.
 fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<String>, microlp::Error> {
     let served = frame.served();
     let mut asked = request.asked();

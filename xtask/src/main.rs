@@ -1,4 +1,5 @@
-//! `cargo xtask TASK`: the developer's commands behind one door. Each starts a program that stands elsewhere.
+//! `cargo xtask TASK`: the developer's commands behind one door. Each starts a program that stands
+//! elsewhere.
 
 use std::path::Path;
 use std::process::{Command, ExitCode};

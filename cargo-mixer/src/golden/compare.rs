@@ -1,10 +1,12 @@
-//! What differs between golden outputs and those of today: the first difference of every file, and by how much.
+//! What differs between golden outputs and those of today: the first difference of every file, and
+//! by how much.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// What is wrong with each file, one line each, beginning with its name: differing, missing, orphans.
+/// What is wrong with each file, one line each, beginning with its name: differing, missing,
+/// orphans.
 ///
 /// # Errors
 /// The folder cannot be read.

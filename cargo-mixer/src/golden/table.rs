@@ -1,4 +1,5 @@
-//! Vectors as tables: setpoints with what the mixer makes of them, as CSV for reading and as constants for the target.
+//! Vectors as tables: setpoints with what the mixer makes of them, as CSV for reading and as
+//! constants for the target.
 
 use std::fmt::Write as _;
 
@@ -7,7 +8,8 @@ use mixer_rt::{Health, Wrench};
 
 use super::vectors::{RotorsOut, Vector};
 
-/// One vector with what the mixer makes of it: the bits of the floats in the order of the header of [`csv()`], `saturation` last.
+/// One vector with what the mixer makes of it: the bits of the floats in the order of the header of
+/// [`csv()`], `saturation` last.
 pub type Row = Vec<u32>;
 
 /// Rows with all rotors.

@@ -1,6 +1,7 @@
 //! The setpoints of an airframe's golden vectors: always the same for one airframe, all finite.
 //!
-//! They depend on the airframe and not on the mixer, so that a mixer that changes is asked the same as before.
+//! They depend on the airframe and not on the mixer, so that a mixer that changes is asked the same
+//! as before.
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
@@ -15,10 +16,11 @@ pub type Vector = (Wrench, f32);
 pub enum Kind {
     /// Zero, thrusts to beyond the ceiling at voltages to beyond the range, each axis alone.
     ByHand,
-    /// Wrenches of throttles within the range: anywhere, near its ends (where least-norm efforts often do not suffice), and
-    /// about one throttle for all, as in hover.
+    /// Wrenches of throttles within the range: anywhere, near its ends (where least-norm efforts
+    /// often do not suffice), and about one throttle for all, as in hover.
     Attainable,
-    /// Corners of the attainable set at the ends of the voltage's range, and a little inside and outside.
+    /// Corners of the attainable set at the ends of the voltage's range, and a little inside and
+    /// outside.
     Border,
     /// One axis or several far beyond what there is.
     Saturated,
@@ -40,13 +42,15 @@ pub struct RotorsOut {
 /// Wrenches of random throttles.
 const ATTAINABLE: usize = 120;
 
-/// Those throttles keep this share of the range from its ends: a mixer may leave out as little as 0.2 % of the attainable set.
+/// Those throttles keep this share of the range from its ends: a mixer may leave out as little as
+/// 0.2 % of the attainable set.
 const MARGIN: f64 = 0.02;
 
 /// Directions in which corners of the attainable set are taken.
 const DIRECTIONS: usize = 36;
 
-/// A corner's wrench and these shares of the size more of its direction. None on the border itself, for the same reason.
+/// A corner's wrench and these shares of the size more of its direction. None on the border itself,
+/// for the same reason.
 const STEPS: [f64; 3] = [-0.02, -0.004, 0.02];
 
 /// Points of the throttle box's border among which a unit's best is taken.
@@ -186,7 +190,8 @@ impl<'a> Draw<'a> {
             .collect()
     }
 
-    /// The wrench (N m, N) of the units' efforts `[f, Q]` at the reference voltage, under the correction `factors`.
+    /// The wrench (N m, N) of the units' efforts `[f, Q]` at the reference voltage, under the
+    /// correction `factors`.
     fn wrench(&self, efforts: impl ExactSizeIterator<Item = [f64; 2]>, factors: [f64; 2]) -> [f64; 4] {
         let matrix = &self.compiled.effectiveness.matrix;
         let n = efforts.len();
@@ -240,7 +245,8 @@ impl<'a> Draw<'a> {
         (Wrench::from_array(wrench.map(|x| x as f32)), volts as f32)
     }
 
-    /// Every unit at the best point of its border in one direction, which is a corner of the attainable set.
+    /// Every unit at the best point of its border in one direction, which is a corner of the
+    /// attainable set.
     fn corner(&mut self) -> [Vector; 3] {
         let [low, _, high] = self.volts;
         let volts = if self.share() < 0.5 { low } else { high };

@@ -1,8 +1,10 @@
-//! Thrust and torque of one rotor alone, `[pair.lower_out]` and `[pair.upper_out]`, from runs in which the other one stands still.
+//! Thrust and torque of one rotor alone, `[pair.lower_out]` and `[pair.upper_out]`, from runs in
+//! which the other one stands still.
 //!
-//! Model: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor that turns, for thrust and torque, by least squares (QR). Left
-//! out, a point would miss by e_i / (1 - h_i). The polynomials of the pair say the same at a throttle of zero, but are
-//! extrapolated there from the lowest throttle that was measured.
+//! Model: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor that turns, for thrust and torque, by
+//! least squares (QR). Left out, a point would miss by e_i / (1 - h_i). The polynomials of the pair
+//! say the same at a throttle of zero, but are extrapolated there from the lowest throttle that was
+//! measured.
 
 use faer::Mat;
 use serde::Serialize;
@@ -17,7 +19,8 @@ use super::voltage::Voltage;
 
 /// Distinct throttles that three terms take, to judge themselves as well.
 const FEWEST: usize = 6;
-/// Voltages of a run and of the map, as a ratio less 1, above which they belong together only by exponents.
+/// Voltages of a run and of the map, as a ratio less 1, above which they belong together only by
+/// exponents.
 const OTHER_VOLTAGE: f64 = 0.03;
 /// Throttle by which a run may end inside the range that is commanded.
 const SHORT: f64 = 0.05;
@@ -52,7 +55,8 @@ impl Turning {
         }
     }
 
-    /// Throttles of the upper and the lower rotor as those of this rotor and the other one, and the other way round.
+    /// Throttles of the upper and the lower rotor as those of this rotor and the other one, and the
+    /// other way round.
     fn in_order(self, [first, second]: [f64; 2]) -> [f64; 2] {
         match self {
             Turning::Upper => [first, second],
@@ -91,7 +95,8 @@ pub struct Alone {
     pub measured: [f64; 2],
     /// Points.
     pub points: usize,
-    /// Throttle at which the other rotor turned, where these are rows of a map; none where it stood still.
+    /// Throttle at which the other rotor turned, where these are rows of a map; none where it stood
+    /// still.
     pub other_at: Option<f64>,
 }
 
@@ -186,9 +191,9 @@ pub fn identify(
     })
 }
 
-/// Identifies a rotor alone from the rows of a map in which the other one turns at its lowest level. What that one gives there
-/// is taken off by the pair's polynomials, whose own difference from its lowest level to zero is small, while their values at
-/// zero are extrapolated.
+/// Identifies a rotor alone from the rows of a map in which the other one turns at its lowest
+/// level. What that one gives there is taken off by the pair's polynomials, whose own difference
+/// from its lowest level to zero is small, while their values at zero are extrapolated.
 pub fn from_map(
     benches: &[Bench],
     turning: Turning,
@@ -331,7 +336,8 @@ fn falls([a1, a2, a3]: [f64; 3], throttle: ThrottleBox) -> Option<f64> {
         .find(|x| (3.0 * a3 * x + 2.0 * a2) * x + a1 <= 0.0)
 }
 
-/// A warning that the map is extrapolated where a rotor is out; none where both rotors were run alone or it begins low.
+/// A warning that the map is extrapolated where a rotor is out; none where both rotors were run
+/// alone or it begins low.
 pub fn extrapolated(pair: &Pair) -> Option<String> {
     let lowest = pair.measured[0][0].max(pair.measured[1][0]);
     let missing: Vec<&str> = [(&pair.lower_out, "--lower-out"), (&pair.upper_out, "--upper-out")]

@@ -1,10 +1,11 @@
 //! The basis in which a pair's map is solved for.
 //!
-//! Thrust and torque are sums of the monomials u^i l^j of a [`Basis`], which all vanish at rest. To solve in, they are
-//! poor: on throttles from 0.4 to 0.95 they are nearly parallel (condition number 1400 and more). The fit uses products
-//! of Legendre polynomials in the throttles centred on and scaled to the measured box, phi_ij = P_i(x) P_j(y) less its
-//! value at u = l = 0. With (i, j) over the same set as the monomials they span the same space: each set holds with
-//! (i, j) every (i', j') below it, so phi_ij expands in it, and the subtraction removes the constant.
+//! Thrust and torque are sums of the monomials u^i l^j of a [`Basis`], which all vanish at rest. To
+//! solve in, they are poor: on throttles from 0.4 to 0.95 they are nearly parallel (condition
+//! number 1400 and more). The fit uses products of Legendre polynomials in the throttles centred on
+//! and scaled to the measured box, phi_ij = P_i(x) P_j(y) less its value at u = l = 0. With (i, j)
+//! over the same set as the monomials they span the same space: each set holds with (i, j) every
+//! (i', j') below it, so phi_ij expands in it, and the subtraction removes the constant.
 
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::polynomial;
@@ -57,7 +58,8 @@ pub struct Centred {
 }
 
 impl Centred {
-    /// `range` holds the least and the greatest measured throttle of the upper and of the lower rotor.
+    /// `range` holds the least and the greatest measured throttle of the upper and of the lower
+    /// rotor.
     pub fn new(basis: Basis, range: [[f64; 2]; 2]) -> Self {
         let centre = range.map(|[a, b]| 0.5 * (a + b));
         let half = range.map(|[a, b]| (0.5 * (b - a)).max(1e-9));

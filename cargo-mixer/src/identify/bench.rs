@@ -1,8 +1,8 @@
 //! From the samples of a log to the bench points that are fitted.
 //!
-//! In this order: find out whether both rotors turned; drop start and stop rows (a rotor at or below
-//! `stop_throttle`); reduce a streaming log to one mean per plateau of constant command; make signs and sums;
-//! refuse rows with a missing value.
+//! In this order: find out whether both rotors turned; drop start and stop rows (a rotor at or
+//! below `stop_throttle`); reduce a streaming log to one mean per plateau of constant command; make
+//! signs and sums; refuse rows with a missing value.
 
 use serde::Serialize;
 
@@ -251,7 +251,8 @@ fn points_of<'a>(
     points
 }
 
-/// A grid whose one rotor repeats its commands and the other does not: its record may have drifted, which no fit sees.
+/// A grid whose one rotor repeats its commands and the other does not: its record may have drifted,
+/// which no fit sees.
 fn uneven_levels(samples: &[Sample]) -> Option<String> {
     let levels = [0, 1].map(|rotor| {
         let mut us: Vec<i64> = samples

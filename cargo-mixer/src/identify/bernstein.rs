@@ -1,9 +1,10 @@
 //! Bernstein coefficients of a polynomial on a rectangle.
 //!
-//! Row by row and column by column those of one variable. A polynomial lies between its least and its greatest Bernstein
-//! coefficient, and the corner coefficients are its corner values. The compiler's
-//! [`Bivariate`](mixer_compiler::model::polynomial::Bivariate) proves a sign by them; here they are what a programme constrains,
-//! so that they are linear in the polynomial and in floating point.
+//! Row by row and column by column those of one variable. A polynomial lies between its least and
+//! its greatest Bernstein coefficient, and the corner coefficients are its corner values. The
+//! compiler's [`Bivariate`](mixer_compiler::model::polynomial::Bivariate) proves a sign by them;
+//! here they are what a programme constrains, so that they are linear in the polynomial and in
+//! floating point.
 
 use mixer_compiler::model::bernstein::coefficients as one_variable;
 

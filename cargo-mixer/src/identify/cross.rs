@@ -1,11 +1,12 @@
 //! Choice of the basis by cross-validation.
 //!
-//! Two errors are shown, both as root mean square over the points in percent of full scale: leaving out one point, and
-//! leaving out one whole throttle level of one rotor (a level, or a tenth of the points in order of throttle where
-//! commands do not repeat). The second is the harder and the more useful test: a mixer commands throttles between and
-//! beyond the bench's levels, and a basis with too many terms fails it though it passes the first. The choice falls on
-//! the fewest terms whose level error, thrust and torque added, is within one standard error of the least
-//! (Breiman's rule) or within a tenth of it.
+//! Two errors are shown, both as root mean square over the points in percent of full scale: leaving
+//! out one point, and leaving out one whole throttle level of one rotor (a level, or a tenth of the
+//! points in order of throttle where commands do not repeat). The second is the harder and the more
+//! useful test: a mixer commands throttles between and beyond the bench's levels, and a basis with
+//! too many terms fails it though it passes the first. The choice falls on the fewest terms whose
+//! level error, thrust and torque added, is within one standard error of the least (Breiman's rule)
+//! or within a tenth of it.
 
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::ForwardMap;
@@ -54,7 +55,8 @@ impl Errors {
     }
 }
 
-/// The table of these bases, with the choice marked. Without any that the points determine: the first one's reason.
+/// The table of these bases, with the choice marked. Without any that the points determine: the
+/// first one's reason.
 pub fn choose(
     bases: &[Basis],
     points: &[[f64; 2]],
@@ -155,7 +157,8 @@ fn errors(
     })
 }
 
-/// Which points each fold leaves out: the throttle levels of the upper rotor, then those of the lower one.
+/// Which points each fold leaves out: the throttle levels of the upper rotor, then those of the
+/// lower one.
 fn folds(points: &[[f64; 2]]) -> Vec<Vec<bool>> {
     let mut folds = Vec::new();
     for rotor in [0, 1] {

@@ -1,7 +1,7 @@
 //! The date of a measurement, from the file's name.
 
-/// `YYYY-MM-DD` for the first date in a name such as `data2021_08_17_23_41.csv`, `Log_2019-11-05_171350.csv` or
-/// `20210817_map.csv`.
+/// `YYYY-MM-DD` for the first date in a name such as `data2021_08_17_23_41.csv`,
+/// `Log_2019-11-05_171350.csv` or `20210817_map.csv`.
 pub fn date_in(name: &str) -> Option<String> {
     let bytes = name.as_bytes();
     let number = |range: std::ops::Range<usize>| -> Option<u32> {

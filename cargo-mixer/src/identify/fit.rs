@@ -1,10 +1,10 @@
 //! Least squares of one channel, eq. (2) and (3) of the paper, and the statistics of Table I.
 //!
-//! With the centred basis' matrix A = Q R (Householder, faer) and p terms in n points: z = Q'y, R a = z, coefficients
-//! theta = C a with the conversion C to monomials, residual e = y - A a, sigma2 = e'e / (n - p),
-//! cov theta = sigma2 (C R^-1)(C R^-1)', 95 % interval = theta +- t(0.975, n - p) sqrt(diag cov).
-//! The leverage of point i is h_i = |row i of Q|^2; left out, it would miss by e_i / (1 - h_i). A prediction at (u, l)
-//! has the half-width t sigma sqrt(1 + |R^-T phi(u, l)|^2).
+//! With the centred basis' matrix A = Q R (Householder, faer) and p terms in n points: z = Q'y, R a
+//! = z, coefficients theta = C a with the conversion C to monomials, residual e = y - A a, sigma2 =
+//! e'e / (n - p), cov theta = sigma2 (C R^-1)(C R^-1)', 95 % interval = theta +- t(0.975, n - p)
+//! sqrt(diag cov). The leverage of point i is h_i = |row i of Q|^2; left out, it would miss by e_i
+//! / (1 - h_i). A prediction at (u, l) has the half-width t sigma sqrt(1 + |R^-T phi(u, l)|^2).
 
 use faer::Mat;
 use faer::linalg::solvers::Qr;
@@ -76,12 +76,14 @@ impl std::fmt::Display for Deficient {
 
 /// Distinct throttle pairs beyond the number of terms that a fit needs to judge itself.
 const SPARE_PAIRS: usize = 4;
-/// The standard error of the model, anywhere in the box, in units of the residual's standard deviation, above which
-/// the points do not determine the map. A 10 x 10 grid has 0.7 at its corners, a sweep along a line 50 and more.
+/// The standard error of the model, anywhere in the box, in units of the residual's standard
+/// deviation, above which the points do not determine the map. A 10 x 10 grid has 0.7 at its
+/// corners, a sweep along a line 50 and more.
 const UNDETERMINED: f64 = 5.0;
 
 impl Design {
-    /// The design of `basis` at these throttles, to be used on `throttle_box`: refused where it would be a guess.
+    /// The design of `basis` at these throttles, to be used on `throttle_box`: refused where it
+    /// would be a guess.
     pub fn new(basis: Basis, points: &[[f64; 2]], throttle_box: ThrottleBox) -> Result<Self, Deficient> {
         let design = Self::within_its_points(basis, points)?;
         let (factor, [u, l]) = design.worst_factor(throttle_box);
@@ -261,8 +263,9 @@ pub fn fit(design: &Design, y: &[f64], throttle_box: ThrottleBox) -> Fit {
     judge(design, y, &design.coordinates(y), throttle_box)
 }
 
-/// Statistics of given coordinates, those of the least squares or of a constrained fit. Intervals and leave-one-out
-/// errors are those of the unconstrained design; constraints can only narrow them.
+/// Statistics of given coordinates, those of the least squares or of a constrained fit. Intervals
+/// and leave-one-out errors are those of the unconstrained design; constraints can only narrow
+/// them.
 pub fn judge(design: &Design, y: &[f64], z: &[f64], throttle_box: ThrottleBox) -> Fit {
     let n = y.len();
     let terms = design.centred.basis.exponents().len();
@@ -302,14 +305,14 @@ pub fn judge(design: &Design, y: &[f64], z: &[f64], throttle_box: ThrottleBox) -
     }
 }
 
-/// Rounds to ten significant digits: far below any bench's accuracy, and the bits of faer's kernels, which vary with
-/// the processor, do not show in the file.
+/// Rounds to ten significant digits: far below any bench's accuracy, and the bits of faer's
+/// kernels, which vary with the processor, do not show in the file.
 pub fn ten_digits(x: f64) -> f64 {
     format!("{x:.9e}").parse().unwrap_or(x)
 }
 
-/// The 0.975 quantile of Student's t. The crate's bisection stops at a few digits; Newton steps on its distribution
-/// function, which is accurate, finish it.
+/// The 0.975 quantile of Student's t. The crate's bisection stops at a few digits; Newton steps on
+/// its distribution function, which is accurate, finish it.
 pub fn student_t_975(degrees_of_freedom: usize) -> f64 {
     use statrs::distribution::Continuous;
     let Ok(t) = StudentsT::new(0.0, 1.0, degrees_of_freedom.max(1) as f64) else {

@@ -1,8 +1,9 @@
 //! Where the fitted map folds, and the least idle that avoids it.
 //!
-//! The mixer inverts (u, l) -> (f, Q). Where det J = f_u Q_l - f_l Q_u <= 0 two commands give one effort: the map
-//! folds. Whether it does over a box, and from which idle on it does not, is the compiler's proof of
-//! [`injectivity`], so that `check` accepts what is identified here. The regions of the report are drawn on a grid.
+//! The mixer inverts (u, l) -> (f, Q). Where det J = f_u Q_l - f_l Q_u <= 0 two commands give one
+//! effort: the map folds. Whether it does over a box, and from which idle on it does not, is the
+//! compiler's proof of [`injectivity`], so that `check` accepts what is identified here. The
+//! regions of the report are drawn on a grid.
 
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::{self, ForwardMap};
@@ -18,16 +19,18 @@ pub struct Fold {
     pub commanded: ThrottleBox,
     /// Whether the map folds inside it: det J is not proven positive there.
     pub folds: bool,
-    /// Whether the map is proven injective on it, which takes more than det J > 0: `check` refuses a map that is not.
+    /// Whether the map is proven injective on it, which takes more than det J > 0: `check` refuses
+    /// a map that is not.
     pub injective: bool,
     /// Least det J on a grid of the box, N * N m per throttle squared.
     pub least_det: f64,
     /// Where, (u, l).
     pub least_det_at: [f64; 2],
-    /// The connected parts of the box where det J <= 0, worst first; none narrower than half a percent of the box.
+    /// The connected parts of the box where det J <= 0, worst first; none narrower than half a
+    /// percent of the box.
     pub regions: Vec<Region>,
-    /// The least idle of both rotors, at or above the box's, from which on the map is proven injective; none if there is
-    /// none below 0.9 of the box.
+    /// The least idle of both rotors, at or above the box's, from which on the map is proven
+    /// injective; none if there is none below 0.9 of the box.
     pub least_idle: Option<f64>,
 }
 
@@ -44,7 +47,8 @@ pub struct Region {
     pub least_det_at: [f64; 2],
 }
 
-/// det J as a polynomial, of a thrust and a torque in this basis, with as many rows and columns as it can fill.
+/// det J as a polynomial, of a thrust and a torque in this basis, with as many rows and columns as
+/// it can fill.
 pub fn determinant(basis: Basis, thrust: &Polynomial, torque: &Polynomial) -> Polynomial {
     let det = thrust
         .du()
@@ -57,8 +61,8 @@ pub fn determinant(basis: Basis, thrust: &Polynomial, torque: &Polynomial) -> Po
     })
 }
 
-/// The least idle of both rotors from the box's on, rounded up to 1e-5, from which on the map is proven injective; none
-/// if there is none below 0.9 of the box.
+/// The least idle of both rotors from the box's on, rounded up to 1e-5, from which on the map is
+/// proven injective; none if there is none below 0.9 of the box.
 pub fn least_idle(map: &ForwardMap, throttle_box: ThrottleBox) -> Option<f64> {
     let ThrottleBox { min, max } = throttle_box;
     if map.prove_injective(throttle_box.into()).is_ok() {
@@ -68,7 +72,8 @@ pub fn least_idle(map: &ForwardMap, throttle_box: ThrottleBox) -> Option<f64> {
     (idle <= min + 0.9 * (max - min)).then_some(idle)
 }
 
-/// An idle to command, in steps of 0.005: the first from `least` on that is itself proven to do up to `max`.
+/// An idle to command, in steps of 0.005: the first from `least` on that is itself proven to do up
+/// to `max`.
 pub fn round_idle(map: &ForwardMap, least: f64, max: f64) -> Option<f64> {
     const PER_UNIT: f64 = 200.0;
     let first = (least * PER_UNIT - 1e-9).ceil();
@@ -196,7 +201,8 @@ mod tests {
 
     #[test]
     fn a_positive_determinant_is_not_enough() {
-        // f = -u, Q = -l: det J = 1, but a thrust that falls with the throttle is no map that the compiler takes.
+        // f = -u, Q = -l: det J = 1, but a thrust that falls with the throttle is no map that the
+        // compiler takes.
         let minus = |term: &str| {
             let names = Basis::Biquadratic.term_names();
             names

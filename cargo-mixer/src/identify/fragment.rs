@@ -10,7 +10,8 @@ use super::power::Power;
 use super::report;
 use super::voltage::{Estimate, Exponent, Voltage};
 
-/// The fragment: `[throttle]` and `[pair]` where a pair was identified, `[voltage]` where its exponents are sound.
+/// The fragment: `[throttle]` and `[pair]` where a pair was identified, `[voltage]` where its
+/// exponents are sound.
 pub fn text(identified: &Identified) -> String {
     let mut out = format!("# Identified by {}.{INSTRUCTIONS}", identified.generator);
     // Writing to a String cannot fail; the result is dropped.
@@ -199,8 +200,9 @@ fn coefficients(out: &mut String, key: &str, terms: &[String], fit: &Fit) -> std
     writeln!(out, "]")
 }
 
-/// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one exponent only, or
-/// without the voltage of the map, it is written as a comment, for the user to complete.
+/// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one
+/// exponent only, or without the voltage of the map, it is written as a comment, for the user to
+/// complete.
 fn write_voltage(
     out: &mut String,
     voltage: &Voltage,

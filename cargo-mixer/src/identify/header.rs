@@ -1,9 +1,10 @@
 //! Which column holds what: from the header line, or by hand.
 //!
-//! A name is normalised first ([`units::spelled`]); its unit is the last group in brackets, or a suffix of the plain
-//! format (`thrust_n`). Then a column is known by a word of its name (`ESC` or `PWM`, `thrust`, `torque`, `voltage`)
-//! and its rotor by another (`Left`, `A`, `upper`, or a prefix such as `Powertrain 1 - `, which users edit, so that
-//! the first prefix to appear is the first rotor). The first rotor is taken as the upper one unless names say otherwise.
+//! A name is normalised first ([`units::spelled`]); its unit is the last group in brackets, or a
+//! suffix of the plain format (`thrust_n`). Then a column is known by a word of its name (`ESC` or
+//! `PWM`, `thrust`, `torque`, `voltage`) and its rotor by another (`Left`, `A`, `upper`, or a
+//! prefix such as `Powertrain 1 - `, which users edit, so that the first prefix to appear is the
+//! first rotor). The first rotor is taken as the upper one unless names say otherwise.
 
 use self::name::{Name, distinct_prefixes};
 use super::refusal::Refusal;
@@ -37,7 +38,8 @@ pub struct Columns {
     pub rotor_thrust: [Option<Column>; 2],
     /// Torque of the upper and of the lower rotor.
     pub rotor_torque: [Option<Column>; 2],
-    /// Supply voltage (of the upper rotor where each has its own sensor: two sensors differ by their calibration).
+    /// Supply voltage (of the upper rotor where each has its own sensor: two sensors differ by
+    /// their calibration).
     pub voltage: Option<Column>,
     /// Supply voltage of the lower rotor, for its power only.
     pub lower_voltage: Option<Column>,
@@ -188,8 +190,8 @@ impl Columns {
             }
             let Some(slot) = self.slot(role) else { continue };
             if let Some(first) = slot {
-                // Two columns for one role: guessing would be silent. Time is only used to keep rows in order.
-                // Power is a by-product: what is doubtful there refuses no map.
+                // Two columns for one role: guessing would be silent. Time is only used to keep
+                // rows in order. Power is a by-product: what is doubtful there refuses no map.
                 if matches!(quantity, Quantity::Time | Quantity::Current) || role == "lower_voltage" {
                     continue;
                 }

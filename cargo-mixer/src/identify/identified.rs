@@ -40,7 +40,8 @@ pub struct Identified {
     pub power: Option<Power>,
     /// What was read.
     pub files: Vec<Bench>,
-    /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was given.
+    /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was
+    /// given.
     pub reference_v: Option<f64>,
     /// What the user should know.
     pub warnings: Vec<String>,
@@ -276,8 +277,8 @@ fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refus
     }
 }
 
-/// Sag of the supply within one map, as a share of its highest voltage, above which it matters how the voltage of the
-/// flight is measured: thrust then misses by 5 % and more.
+/// Sag of the supply within one map, as a share of its highest voltage, above which it matters how
+/// the voltage of the flight is measured: thrust then misses by 5 % and more.
 const SAG: f64 = 0.03;
 
 /// A warning about a supply that sagged with the load, for the use of `[voltage]`.

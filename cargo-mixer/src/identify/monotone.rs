@@ -1,14 +1,16 @@
 //! The fit whose map does not fold: least squares under det J > 0 over the box.
 //!
-//! In orthonormal coordinates, thrust and torque each divided by the standard deviation of its residual, the least
-//! squares are |x - x0|2 with x0 the free fit. On each cell of the box divided, det J lies above its Bernstein
-//! coefficients c_k, which are bilinear in the thrust's and the torque's coordinates; c_k >= margin on all cells
-//! suffices. Sequential quadratic programming: with g_k the gradient of c_k at x, solve
+//! In orthonormal coordinates, thrust and torque each divided by the standard deviation of its
+//! residual, the least squares are |x - x0|2 with x0 the free fit. On each cell of the box divided,
+//! det J lies above its Bernstein coefficients c_k, which are bilinear in the thrust's and the
+//! torque's coordinates; c_k >= margin on all cells suffices. Sequential quadratic programming:
+//! with g_k the gradient of c_k at x, solve
 //!
 //!   min |x + d - x0|2   subject to   c_k(x) + g_k d >= margin
 //!
-//! (an interior-point solver, clarabel), step to x + a d with the first a of 1, 1/2, 1/4, .. that lowers the exact
-//! penalty |x - x0|2 + rho max_k (margin - c_k)+, and repeat until d is small and the constraints hold.
+//! (an interior-point solver, clarabel), step to x + a d with the first a of 1, 1/2, 1/4, .. that
+//! lowers the exact penalty |x - x0|2 + rho max_k (margin - c_k)+, and repeat until d is small and
+//! the constraints hold.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
@@ -22,9 +24,10 @@ use super::polynomial::Polynomial;
 
 /// Cells per side.
 const CELLS: usize = 8;
-/// det J is kept above this part of its mean over the box. A map that is nearly singular along a line is invertible on
-/// paper only: with 0.02 no evaluator of the compiler meets its usual tolerance on two of three large bench maps; the
-/// step to 0.1 costs two to eight percent more residual.
+/// det J is kept above this part of its mean over the box. A map that is nearly singular along a
+/// line is invertible on paper only: with 0.02 no evaluator of the compiler meets its usual
+/// tolerance on two of three large bench maps; the step to 0.1 costs two to eight percent more
+/// residual.
 const MARGIN: f64 = 0.1;
 const STEPS: usize = 60;
 
@@ -170,14 +173,16 @@ impl Problem {
         let columns: Vec<Vec<f64>> = gradients
             .map(|(p, s)| self.on_cells(&p).into_iter().map(|c| c * s).collect())
             .collect();
-        // Far from their bound constraints cannot bind within a step; leaving them out keeps the programme small.
+        // Far from their bound constraints cannot bind within a step; leaving them out keeps the
+        // programme small.
         let near = 6.0 * margin - values.iter().fold(0.0_f64, |m, c| m.min(*c));
         let active: Vec<usize> = (0..values.len()).filter(|&k| values[k] < near).collect();
         let n = columns.len();
         if active.is_empty() {
             return Some((x0.iter().zip(x).map(|(a, b)| a - b).collect(), 0.0));
         }
-        // clarabel: min 1/2 d'P d + q'd, A d + s = b, s >= 0. Rows divided by the margin for a scale near one.
+        // clarabel: min 1/2 d'P d + q'd, A d + s = b, s >= 0. Rows divided by the margin for a
+        // scale near one.
         let m = active.len();
         let identity = CscMatrix::new(n, n, (0..=n).collect(), (0..n).collect(), vec![2.0; n]);
         let q: Vec<f64> = x.iter().zip(x0).map(|(a, b)| 2.0 * (a - b)).collect();

@@ -49,7 +49,8 @@ pub struct Pair {
     pub thrust_n: Vec<f64>,
     /// Coefficients of torque, N m, positive where the lower rotor outweighs the upper.
     pub torque_nm: Vec<f64>,
-    /// `cw`: the spin of the upper rotor for which that sign of torque is clockwise on the airframe.
+    /// `cw`: the spin of the upper rotor for which that sign of torque is clockwise on the
+    /// airframe.
     pub upper_spin: &'static str,
     /// The upper rotor alone, from `--lower-out`.
     pub lower_out: Option<Alone>,
@@ -312,11 +313,12 @@ fn one_pair(
     Ok(())
 }
 
-/// The idle over the least one at which the map can be inverted. Right at that the inverse bends without bound, and no
-/// tolerance is met.
+/// The idle over the least one at which the map can be inverted. Right at that the inverse bends
+/// without bound, and no tolerance is met.
 const CLEAR: f64 = 1.03;
 
-/// The idle of a map that can be inverted over its box: the box's, or a little more where that is next to a fold.
+/// The idle of a map that can be inverted over its box: the box's, or a little more where that is
+/// next to a fold.
 fn clear_of_fold(map: &ForwardMap, throttle: ThrottleBox, warnings: &mut Vec<String>) -> f64 {
     let least = map.least_idle(throttle.max).unwrap_or(0.0);
     if throttle.min >= CLEAR * least {
@@ -332,7 +334,8 @@ fn clear_of_fold(map: &ForwardMap, throttle: ThrottleBox, warnings: &mut Vec<Str
     min
 }
 
-/// The idle of a map that is not proven injective over its box: a little over the least one, rounded up to 0.005.
+/// The idle of a map that is not proven injective over its box: a little over the least one,
+/// rounded up to 0.005.
 fn raised(
     fold: &Fold,
     map: &ForwardMap,

@@ -1,9 +1,10 @@
 //! Streaming logs: many rows per command, most of them alike.
 //!
-//! Successive rows of a streaming log share their noise, and the first ones after a change of command show a rotor
-//! still speeding up. Fitted row by row they would give intervals several times too narrow around a biased map. So
-//! each plateau of constant command becomes one point, the mean of its rows after a settling time; rows of ramps
-//! between plateaus are dropped. Each channel's mean is over the rows where it is not blank.
+//! Successive rows of a streaming log share their noise, and the first ones after a change of
+//! command show a rotor still speeding up. Fitted row by row they would give intervals several
+//! times too narrow around a biased map. So each plateau of constant command becomes one point, the
+//! mean of its rows after a settling time; rows of ramps between plateaus are dropped. Each
+//! channel's mean is over the rows where it is not blank.
 
 use super::read::Sample;
 
@@ -21,8 +22,8 @@ pub fn is_streaming(samples: &[Sample]) -> bool {
     2 * in_plateaus > samples.len()
 }
 
-/// One mean per plateau, and the number of rows dropped. `settle` is the part of a plateau that is left out at its
-/// beginning, in [0, 1).
+/// One mean per plateau, and the number of rows dropped. `settle` is the part of a plateau that is
+/// left out at its beginning, in [0, 1).
 pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
     let mut points = Vec::new();
     let mut dropped = 0;

@@ -1,7 +1,8 @@
 //! Polynomials in both throttles, in floating point.
 //!
-//! The compiler's [`Bivariate`](mixer_compiler::model::polynomial::Bivariate) carries an interval for each coefficient: it
-//! proves. These are for what only looks for a map, over many candidates, or draws one; proofs come after.
+//! The compiler's [`Bivariate`](mixer_compiler::model::polynomial::Bivariate) carries an interval
+//! for each coefficient: it proves. These are for what only looks for a map, over many candidates,
+//! or draws one; proofs come after.
 
 use mixer_compiler::airframe::Basis;
 
@@ -55,7 +56,8 @@ impl Polynomial {
         }
     }
 
-    /// The same polynomial with room up to u^`degree` l^`degree`, beyond which it must have no terms.
+    /// The same polynomial with room up to u^`degree` l^`degree`, beyond which it must have no
+    /// terms.
     pub fn resized(mut self, degree: usize) -> Polynomial {
         self.c.resize(degree + 1, Vec::new());
         self.c.iter_mut().for_each(|row| row.resize(degree + 1, 0.0));

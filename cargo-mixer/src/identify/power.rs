@@ -1,11 +1,12 @@
 //! Least power: the torque at which a pair gives its thrust for the least electrical power.
 //!
-//! A unit whose torque is not asked for can give its thrust f at any torque that the other units cancel. Q = 0 is not the
-//! cheapest: the lower rotor works in air that already moves. Electrical power (voltage times current, of both rotors) is
-//! fitted as a quartic of both throttles with a constant, as standby takes some; along Q = c f the throttles follow from the
-//! pair's map, and c is the number with the greatest mean saving against Q = 0 over 0.3 to 0.7 of full thrust. A frame can
-//! cancel these torques as far as its upper rotors turn both ways: with spins s of n units the share of the saving that is
-//! left is 1 - (sum s / n)^2, none where all turn alike.
+//! A unit whose torque is not asked for can give its thrust f at any torque that the other units
+//! cancel. Q = 0 is not the cheapest: the lower rotor works in air that already moves. Electrical
+//! power (voltage times current, of both rotors) is fitted as a quartic of both throttles with a
+//! constant, as standby takes some; along Q = c f the throttles follow from the pair's map, and c
+//! is the number with the greatest mean saving against Q = 0 over 0.3 to 0.7 of full thrust. A
+//! frame can cancel these torques as far as its upper rotors turn both ways: with spins s of n
+//! units the share of the saving that is left is 1 - (sum s / n)^2, none where all turn alike.
 
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
@@ -21,15 +22,18 @@ use super::voltage::Voltage;
 
 /// Shares of full thrust at which vehicles hover.
 const SHARES: [f64; 9] = [0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70];
-/// Share of the greatest torque over thrust that a pair must be able to give either way at a thrust that counts.
+/// Share of the greatest torque over thrust that a pair must be able to give either way at a thrust
+/// that counts.
 const ROOM: f64 = 0.1;
 /// How many of them must count.
 const MOST_OF_THEM: usize = 5;
 /// Distinct throttle pairs that a power map of 15 terms takes, to judge itself as well.
 const FEWEST: usize = 19;
-/// Power over thrust, W/N, of propellers that fly: 2 (large ones at idle) to 200 (small ones at full throttle).
+/// Power over thrust, W/N, of propellers that fly: 2 (large ones at idle) to 200 (small ones at
+/// full throttle).
 const PLAUSIBLE_W_PER_N: [f64; 2] = [2.0, 200.0];
-/// Residual rms of the power map, share of the greatest power, above which a saving of a few percent is no finding.
+/// Residual rms of the power map, share of the greatest power, above which a saving of a few
+/// percent is no finding.
 const POOR: f64 = 0.03;
 
 /// The torque of least power that the files give, or the reason why they give none.
@@ -50,7 +54,8 @@ pub enum Power {
 pub struct LeastPower {
     /// c in Q = c f, N m per N; positive where the lower rotor takes more.
     pub bias_nm_per_n: f64,
-    /// Mean saving against Q = 0 over 0.3 to 0.7 of full thrust where upper rotors turn both ways in equal number, percent.
+    /// Mean saving against Q = 0 over 0.3 to 0.7 of full thrust where upper rotors turn both ways
+    /// in equal number, percent.
     pub saving_percent: f64,
     /// Electrical power of one pair at Q = 0 and at Q = c f, W, by share of full thrust.
     pub at: Vec<AtThrust>,
@@ -60,8 +65,9 @@ pub struct LeastPower {
     pub full_scale_w: f64,
     /// Rows with power.
     pub points: usize,
-    /// Coefficients of the power map, W: the quartic's in their order and a constant; none where no airframe file takes
-    /// it, as it is not positive or does not grow over the throttles to command.
+    /// Coefficients of the power map, W: the quartic's in their order and a constant; none where no
+    /// airframe file takes it, as it is not positive or does not grow over the throttles to
+    /// command.
     pub power_w: Option<Vec<f64>>,
 }
 
@@ -151,7 +157,8 @@ impl Map {
         self.thrust[0].at(self.throttle.max, self.throttle.max)
     }
 
-    /// The throttles of (f, Q) within the box, by Newton's method from equal throttles; nothing where there are none.
+    /// The throttles of (f, Q) within the box, by Newton's method from equal throttles; nothing
+    /// where there are none.
     fn throttles(&self, f: f64, q: f64) -> Option<[f64; 2]> {
         let ThrottleBox { min, max } = self.throttle;
         let share = (f / self.full_thrust()).clamp(0.0, 1.0).sqrt();
@@ -185,7 +192,8 @@ pub fn examine(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Pow
 
 fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Result<LeastPower, String> {
     let of_pair = || benches.iter().filter(|b| b.kind == Kind::Pair);
-    // Where the map is brought to a voltage, power is as well: thrust goes with the square of speed, power with its cube.
+    // Where the map is brought to a voltage, power is as well: thrust goes with the square of
+    // speed, power with its cube.
     let exponent = voltage.and_then(|v| v.thrust.value()).map(|k| 1.5 * k);
     let at_reference = |p: &Point| match (pair.normalised_to_v, exponent) {
         (Some(reference), Some(exponent)) => p.power_w / libm::pow(p.voltage / reference, exponent),
@@ -221,7 +229,8 @@ fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Res
     }
     let map = Map::new(pair);
     let full = map.full_thrust();
-    // Torque over thrust with one rotor at its least and the other at full throttle bounds what is worth trying.
+    // Torque over thrust with one rotor at its least and the other at full throttle bounds what is
+    // worth trying.
     let ThrottleBox { min, max } = pair.throttle;
     let most = map.torque[0].at(min, max).abs() / map.thrust[0].at(min, max);
     let without = |share: &f64| {

@@ -1,7 +1,7 @@
 //! One bench file to samples in SI units, streaming.
 //!
-//! A cell that is not a number, or a throttle outside the range, refuses its row, named by file and line. An empty
-//! cell is a missing value: streaming tools leave torque blank in most rows.
+//! A cell that is not a number, or a throttle outside the range, refuses its row, named by file and
+//! line. An empty cell is a missing value: streaming tools leave torque blank in most rows.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -144,8 +144,8 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
         if !more {
             return Ok(log);
         }
-        // The reader stands behind the row's line end (where the row begins it does not know: it skips blank lines
-        // silently). A quoted cell may span lines.
+        // The reader stands behind the row's line end (where the row begins it does not know: it
+        // skips blank lines silently). A quoted cell may span lines.
         let inner = record.iter().flatten().filter(|b| **b == b'\n').count() as u64;
         let line = header_line + rows.position().line() - 1 - inner;
         if record.iter().all(|cell| cell.trim_ascii().is_empty()) {
@@ -252,7 +252,8 @@ impl Cells {
         let pulse = |us: f64| (us - low) / (high - low);
         let throttle = match column.scale {
             Scale::Pulse(to_us) => pulse(raw * to_us),
-            // A column without a unit becomes a pulse width when the range is given and the value cannot be a throttle.
+            // A column without a unit becomes a pulse width when the range is given and the value
+            // cannot be a throttle.
             Scale::Factor(1.0) if self.pwm_given && raw > 1.5 => pulse(raw),
             Scale::Factor(factor) => raw * factor,
         };

@@ -1,14 +1,17 @@
 //! Rows that stand out, and the fit without them.
 //!
-//! Least squares bends towards a wrong row and spreads its error over its neighbours, so outliers are judged by a
-//! robust fit: iteratively reweighted least squares, first with Huber's weights min(1, 1.345/|z|), which find the
-//! neighbourhood, then with Tukey's (1 - (z/4.685)2)2, which forget the outliers (constants for 95 % efficiency at
-//! normal errors). z is the residual over the scale 1.4826 median |e|.
+//! Least squares bends towards a wrong row and spreads its error over its neighbours, so outliers
+//! are judged by a robust fit: iteratively reweighted least squares, first with Huber's weights
+//! min(1, 1.345/|z|), which find the neighbourhood, then with Tukey's (1 - (z/4.685)2)2, which
+//! forget the outliers (constants for 95 % efficiency at normal errors). z is the residual over the
+//! scale 1.4826 median |e|.
 //!
-//! A row suspected by the stiff cubic may only show that the map is richer than a cubic. So suspects are judged once
-//! more in the basis that is finally used, against its fit to all other rows.
+//! A row suspected by the stiff cubic may only show that the map is richer than a cubic. So
+//! suspects are judged once more in the basis that is finally used, against its fit to all other
+//! rows.
 //!
-//! `--robust` leaves the named rows out and fits the rest by least squares, so that every statistic keeps its meaning.
+//! `--robust` leaves the named rows out and fits the rest by least squares, so that every statistic
+//! keeps its meaning.
 
 use mixer_compiler::airframe::Basis;
 use serde::Serialize;
@@ -16,11 +19,11 @@ use serde::Serialize;
 use super::fit::Design;
 use super::polynomial::Polynomial;
 
-/// Rows stand out from this many robust standard deviations on. A polynomial's lack of fit alone reaches five on clean
-/// bench maps; rows of a faulty run have ten to fifty.
+/// Rows stand out from this many robust standard deviations on. A polynomial's lack of fit alone
+/// reaches five on clean bench maps; rows of a faulty run have ten to fifty.
 const STANDS_OUT: f64 = 6.0;
-/// ... and if they also miss by more than this part of full scale: on data without noise any residual is many
-/// standard deviations.
+/// ... and if they also miss by more than this part of full scale: on data without noise any
+/// residual is many standard deviations.
 const NEGLIGIBLE: f64 = 0.005;
 
 /// A row that stands out.
@@ -62,7 +65,8 @@ pub fn full_scale(y: &[f64]) -> f64 {
 }
 
 /// Residuals of suspects against a fit without them, in standard deviations of a prediction there:
-/// (y - fitted) / (sigma sqrt(1 + h)). `clean` is the design of the other rows, `y_clean` their values.
+/// (y - fitted) / (sigma sqrt(1 + h)). `clean` is the design of the other rows, `y_clean` their
+/// values.
 pub fn against_the_others(clean: &Design, y_clean: &[f64], suspects: &[([f64; 2], f64)]) -> Vec<(f64, f64)> {
     let z = clean.coordinates(y_clean);
     let terms = clean.centred.basis.exponents().len();
@@ -142,7 +146,8 @@ fn robust_scale(residuals: &[f64], terms: usize, full_scale: f64) -> f64 {
         .max(f64::MIN_POSITIVE)
 }
 
-/// Weighted least squares in orthonormal coordinates; nothing if the weights leave the system singular.
+/// Weighted least squares in orthonormal coordinates; nothing if the weights leave the system
+/// singular.
 fn weighted(design: &Design, y: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
     use faer::linalg::solvers::SolveLstsq;
     let terms = design.centred.basis.exponents().len();
@@ -154,8 +159,8 @@ fn weighted(design: &Design, y: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
     z.iter().all(|x| x.is_finite()).then_some(z)
 }
 
-/// The basis by which rows are judged when the user leaves the choice open: stiff enough not to bend to three rows in
-/// a hundred, true enough to full-range maps.
+/// The basis by which rows are judged when the user leaves the choice open: stiff enough not to
+/// bend to three rows in a hundred, true enough to full-range maps.
 pub const JUDGING: Basis = Basis::Cubic;
 
 #[cfg(test)]

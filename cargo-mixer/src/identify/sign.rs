@@ -1,16 +1,19 @@
 //! Signs of thrust and torque, and the sum over both rotors.
 //!
-//! The file's thrust is positive upward and its torque positive where the lower rotor outweighs the upper: the upper
-//! rotor then turns clockwise seen from above and drags the airframe counter-clockwise, so torque falls with u and
-//! rises with l. A bench says neither: signs depend on the mounting of its sensors.
+//! The file's thrust is positive upward and its torque positive where the lower rotor outweighs the
+//! upper: the upper rotor then turns clockwise seen from above and drags the airframe
+//! counter-clockwise, so torque falls with u and rises with l. A bench says neither: signs depend
+//! on the mounting of its sensors.
 //!
-//! * auto (reported): thrust is made positive; a torque column per rotor is made negative above and positive below; a
-//!   column of total torque is turned so that it rises with l and falls with u.
-//! * given (`--thrust-sign`, `--torque-sign`): the columns are multiplied by the signs given. Should torque then rise
-//!   with u, the bench had the upper rotor turning counter-clockwise; the map is written mirrored, for an upper rotor
-//!   that turns clockwise, which is the same pair seen in a mirror.
+//! * auto (reported): thrust is made positive; a torque column per rotor is made negative above and
+//!   positive below; a column of total torque is turned so that it rises with l and falls with u.
+//! * given (`--thrust-sign`, `--torque-sign`): the columns are multiplied by the signs given.
+//!   Should torque then rise with u, the bench had the upper rotor turning counter-clockwise; the
+//!   map is written mirrored, for an upper rotor that turns clockwise, which is the same pair seen
+//!   in a mirror.
 //!
-//! A torque that rises with both throttles is a sum of magnitudes and no torque on the airframe: it is refused.
+//! A torque that rises with both throttles is a sum of magnitudes and no torque on the airframe: it
+//! is refused.
 
 use serde::Serialize;
 

@@ -1,9 +1,9 @@
 //! Bytes of a bench file to lines that the CSV reader counts rightly.
 //!
-//! Spreadsheets on old Macs end lines with a lone CR, Windows with CR LF; some tools begin with a byte-order mark.
-//! [`Normalised`] turns every line end into LF and drops the mark while streaming, so that line numbers in messages
-//! are those of an editor. Header names are decoded by [`decode`]: UTF-8 if valid, else Latin-1, in which every byte
-//! is a character. Numbers are ASCII in both.
+//! Spreadsheets on old Macs end lines with a lone CR, Windows with CR LF; some tools begin with a
+//! byte-order mark. [`Normalised`] turns every line end into LF and drops the mark while streaming,
+//! so that line numbers in messages are those of an editor. Header names are decoded by [`decode`]:
+//! UTF-8 if valid, else Latin-1, in which every byte is a character. Numbers are ASCII in both.
 
 use std::io::{self, BufRead, Read};
 

@@ -1,6 +1,7 @@
 //! Units as bench tools write them, and their factor to SI.
 //!
-//! The factors are exact by definition (standard gravity 9.80665 m/s2, pound 0.45359237 kg, inch 25.4 mm).
+//! The factors are exact by definition (standard gravity 9.80665 m/s2, pound 0.45359237 kg, inch
+//! 25.4 mm).
 
 /// Standard gravity, m/s2.
 const G: f64 = 9.80665;

@@ -1,14 +1,15 @@
 //! How thrust and torque follow the supply voltage.
 //!
-//! Model: y = g(u, l) (V / Vref)^k, with g free: one value per throttle level where files share their levels, else a
-//! polynomial. Only rows at *equal throttle* and different voltage then say anything about k; a battery that sags as
-//! throttle rises does not. The fit minimises the sum of w (y - g r^k)2 with g profiled out and w = 1 / max(|y|, a
-//! tenth of full scale)2 (relative errors, but no weight to noise near zero), by Gauss-Newton on the projected
-//! derivative (Kaufman), which also gives the 95 % interval of k.
+//! Model: y = g(u, l) (V / Vref)^k, with g free: one value per throttle level where files share
+//! their levels, else a polynomial. Only rows at *equal throttle* and different voltage then say
+//! anything about k; a battery that sags as throttle rises does not. The fit minimises the sum of w
+//! (y - g r^k)2 with g profiled out and w = 1 / max(|y|, a tenth of full scale)2 (relative errors,
+//! but no weight to noise near zero), by Gauss-Newton on the projected derivative (Kaufman), which
+//! also gives the 95 % interval of k.
 //!
-//! A number is given only if it is sound: voltages at equal throttle differ by at least 8 %, at four or more levels
-//! that span a good part of the range; the rows follow one power; the interval is narrow; the value is one that a
-//! propeller can have. Otherwise the reason is given instead.
+//! A number is given only if it is sound: voltages at equal throttle differ by at least 8 %, at
+//! four or more levels that span a good part of the range; the rows follow one power; the interval
+//! is narrow; the value is one that a propeller can have. Otherwise the reason is given instead.
 
 use std::collections::BTreeMap;
 
@@ -97,7 +98,8 @@ pub struct Estimate {
     pub exponent: f64,
     /// Half-width of its 95 % interval.
     pub ci95: f64,
-    /// `equal throttles` (levels shared by the files) or `joint map` (a polynomial through all of them).
+    /// `equal throttles` (levels shared by the files) or `joint map` (a polynomial through all of
+    /// them).
     pub method: &'static str,
     /// Throttle levels measured at different voltages.
     pub levels: usize,
@@ -182,8 +184,8 @@ pub fn examine(benches: &[Bench], kind: Kind) -> Option<Voltage> {
     })
 }
 
-/// Numbers the distinct throttle pairs, in order of appearance. A grid of cells as wide as a level keeps the search
-/// to a pair's neighbours.
+/// Numbers the distinct throttle pairs, in order of appearance. A grid of cells as wide as a level
+/// keeps the search to a pair's neighbours.
 fn levels(points: &[&Point]) -> Vec<usize> {
     let mut known: Vec<[f64; 2]> = Vec::new();
     let mut cells: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
@@ -288,7 +290,8 @@ fn sound(e: Estimate) -> Exponent {
     Exponent::Identified(e)
 }
 
-/// A polynomial through all rows, where files do not share their levels: refused unless voltage varies on its own.
+/// A polynomial through all rows, where files do not share their levels: refused unless voltage
+/// varies on its own.
 fn joint(rows: &[Row], kind: Kind, reference: f64) -> Result<Option<Estimate>, Exponent> {
     let voltages = || rows.iter().map(|r| r.voltage);
     let (low, high) = voltages().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
@@ -310,7 +313,8 @@ fn joint(rows: &[Row], kind: Kind, reference: f64) -> Result<Option<Estimate>, E
         }
     };
     let columns: Vec<Vec<f64>> = throttles.iter().map(terms).collect();
-    // What throttle does not explain of the logarithm of voltage is all that speaks of the exponent.
+    // What throttle does not explain of the logarithm of voltage is all that speaks of the
+    // exponent.
     let with_constant: Vec<Vec<f64>> = columns.iter().map(|c| [&[1.0][..], c].concat()).collect();
     let logs: Vec<f64> = voltages().map(libm::log).collect();
     let mean = logs.iter().sum::<f64>() / logs.len() as f64;

@@ -1,4 +1,5 @@
-//! ArduPilot's coaxial frames: `FRAME_CLASS`, `FRAME_TYPE`, and the motors' table of each (`AP_MotorsMatrix`).
+//! ArduPilot's coaxial frames: `FRAME_CLASS`, `FRAME_TYPE`, and the motors' table of each
+//! (`AP_MotorsMatrix`).
 
 use mixer_compiler::airframe::Spin;
 

@@ -1,7 +1,7 @@
 //! A flight stack's parameters by name.
 //!
-//! A line is `NAME,VALUE` or `NAME VALUE` (Mission Planner, MAVProxy) or, tab-separated, vehicle, component, name, value and
-//! type (QGroundControl). `#` begins a comment.
+//! A line is `NAME,VALUE` or `NAME VALUE` (Mission Planner, MAVProxy) or, tab-separated, vehicle,
+//! component, name, value and type (QGroundControl). `#` begins a comment.
 
 use std::collections::BTreeMap;
 

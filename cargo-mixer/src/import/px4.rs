@@ -1,4 +1,5 @@
-//! PX4's control allocation: `CA_ROTOR_COUNT`, `CA_ROTORi_PX` and so on, with its defaults where one is missing.
+//! PX4's control allocation: `CA_ROTOR_COUNT`, `CA_ROTORi_PX` and so on, with its defaults where
+//! one is missing.
 
 use mixer_compiler::airframe::Spin;
 

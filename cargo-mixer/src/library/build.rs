@@ -1,4 +1,5 @@
-//! Compiles the runtime with a C interface into one object: three runs of rustc in a folder of their own.
+//! Compiles the runtime with a C interface into one object: three runs of rustc in a folder of
+//! their own.
 
 use std::fs;
 use std::io::{self, IsTerminal as _};
@@ -53,8 +54,9 @@ impl<'a> Build<'a> {
     pub(super) fn object(&self, name: &str, rust: &str) -> Result<Vec<u8>, String> {
         let source = self.folder.join(format!("{name}.rs"));
         fs::write(&source, rust).map_err(|error| fault(&source, &error))?;
-        // Link-time optimisation leaves one object, in which only the interface is global. It is run only where something
-        // is linked, here an archive with the compiler's own helpers, of which nothing is used.
+        // Link-time optimisation leaves one object, in which only the interface is global. It is
+        // run only where something is linked, here an archive with the compiler's own helpers, of
+        // which nothing is used.
         self.compile(name, &source, "staticlib", &["obj", "link"])?;
         let object = self.folder.join(format!("{name}.o"));
         fs::read(&object).map_err(|error| fault(&object, &error))

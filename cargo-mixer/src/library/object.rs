@@ -43,11 +43,12 @@ impl Symbols {
     }
 }
 
-/// A static library as GNU's and LLVM's linkers read it, its index of `functions` (one per member) included. Without
-/// times, owners or folders: the same objects give the same bytes.
+/// A static library as GNU's and LLVM's linkers read it, its index of `functions` (one per member)
+/// included. Without times, owners or folders: the same objects give the same bytes.
 pub(super) fn archive(members: &[(String, Vec<u8>)], functions: &[String]) -> Result<Vec<u8>, String> {
     let too_large = |_| "the library is over 4 GB".to_owned();
-    // Names that do not fit a member's header stand in a member of their own, by their places in it.
+    // Names that do not fit a member's header stand in a member of their own, by their places in
+    // it.
     let mut long_names = String::new();
     let names: Vec<String> = members
         .iter()

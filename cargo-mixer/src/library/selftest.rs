@@ -134,7 +134,8 @@ fn mask(index: usize, rotors: usize) -> u64 {
     }
 }
 
-/// Setpoints and voltages: every axis alone, at once, in and far out of what is attainable, and not finite.
+/// Setpoints and voltages: every axis alone, at once, in and far out of what is attainable, and not
+/// finite.
 fn setpoints(compiled: &Compiled) -> Vec<(Wrench, f32)> {
     let unit = compiled.scale();
     let voltages = compiled.airframe.voltage.as_ref().map_or([12.0; 5], |voltage| {

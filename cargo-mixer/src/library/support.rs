@@ -1,8 +1,9 @@
-//! Functions of the C compiler's run-time library that an object would call, as its own: the object then has no undefined
-//! symbol, and its bits do not depend on the library that is linked.
+//! Functions of the C compiler's run-time library that an object would call, as its own: the object
+//! then has no undefined symbol, and its bits do not depend on the library that is linked.
 //!
-//! LLVM emits calls of memory functions on every target, and of arithmetic where the processor has no instruction for it.
-//! The functions are Rust. Assembly gives each the name that LLVM calls, as a symbol local to the object.
+//! LLVM emits calls of memory functions on every target, and of arithmetic where the processor has
+//! no instruction for it. The functions are Rust. Assembly gives each the name that LLVM calls, as
+//! a symbol local to the object.
 
 #[cfg(test)]
 #[allow(dead_code, reason = "each is called where a target calls it")]
@@ -14,7 +15,8 @@ mod soft_float;
 /// A name that LLVM calls and the function.
 type Alias = (&'static str, &'static str);
 
-/// Run-time ABI for the Arm architecture, section 4.3.4; `memcpy` and `memset` are called there, too.
+/// Run-time ABI for the Arm architecture, section 4.3.4; `memcpy` and `memset` are called there,
+/// too.
 const MEMORY_ARM: &[Alias] = &[
     ("__aeabi_memclr", "memory::clear"),
     ("__aeabi_memclr4", "memory::clear"),
@@ -102,8 +104,8 @@ pub(super) fn rust(target: &str, calls: &[String]) -> String {
 mod tests {
     use super::{integer, soft_float};
 
-    /// Every kind of number: zeros, the least and the largest of the subnormal and the normal ones, halves between
-    /// neighbours, infinity, NaN; then random bits.
+    /// Every kind of number: zeros, the least and the largest of the subnormal and the normal ones,
+    /// halves between neighbours, infinity, NaN; then random bits.
     fn numbers() -> Vec<u32> {
         let magnitudes = [
             0,

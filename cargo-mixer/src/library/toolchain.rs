@@ -1,7 +1,7 @@
 //! The Rust compiler of this machine and its `core` for the target.
 //!
-//! `core` is installed for the target (`rustup target add`), or its sources are (`rustup component add rust-src`,
-//! Debian's rust-web-src) and it is compiled from them.
+//! `core` is installed for the target (`rustup target add`), or its sources are (`rustup component
+//! add rust-src`, Debian's rust-web-src) and it is compiled from them.
 
 use std::env;
 use std::fs;
@@ -32,8 +32,8 @@ pub(super) struct Toolchain {
 }
 
 impl Toolchain {
-    /// The first compiler that has `core` for the target, else the first that has its sources. `RUSTC` names the only one to
-    /// ask, otherwise they are those on the path.
+    /// The first compiler that has `core` for the target, else the first that has its sources.
+    /// `RUSTC` names the only one to ask, otherwise they are those on the path.
     pub(super) fn find(target: Option<&str>) -> Result<Self, String> {
         let all: Vec<PathBuf> = match env::var_os("RUSTC") {
             Some(rustc) => vec![rustc.into()],
@@ -41,7 +41,8 @@ impl Toolchain {
         };
         let compilers: Vec<Compiler> = all.iter().filter_map(|rustc| Compiler::ask(rustc)).collect();
         let Some(first) = compilers.first() else {
-            // A path that was set by hand is the likelier mistake than a machine without the compiler.
+            // A path that was set by hand is the likelier mistake than a machine without the
+            // compiler.
             let set = all.first().filter(|_| env::var_os("RUSTC").is_some());
             let place = set.map(|rustc| format!(" at {}, which RUSTC names", rustc.display()));
             return Err(format!(

@@ -1,5 +1,5 @@
-//! Authority: the largest torque about one axis that the mixer delivers in full, at a total thrust and with no other
-//! torque asked. Found with the compiled mixer itself, not with a model of it.
+//! Authority: the largest torque about one axis that the mixer delivers in full, at a total thrust
+//! and with no other torque asked. Found with the compiled mixer itself, not with a model of it.
 
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::hover::Search;
@@ -77,7 +77,8 @@ fn about_axes(study: &Study<'_>, reach: impl Fn(Axis, f64) -> f64) -> [[f64; 2];
     })
 }
 
-/// The largest delivered torque in one direction, N m; 0 where not even the bare thrust is delivered.
+/// The largest delivered torque in one direction, N m; 0 where not even the bare thrust is
+/// delivered.
 fn reach(
     study: &Study<'_>,
     condition: &Condition,

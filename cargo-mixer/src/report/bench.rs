@@ -1,4 +1,5 @@
-//! Bench points beside the model: read as `identify` reads them, compared at the voltage at which they were measured.
+//! Bench points beside the model: read as `identify` reads them, compared at the voltage at which
+//! they were measured.
 
 use std::path::{Path, PathBuf};
 
@@ -61,8 +62,9 @@ pub struct BenchPoints {
     pub outside_voltage: usize,
 }
 
-/// Largest misfit of a bench of the airframe's own pair, rms over the model's largest effort, of thrust and of torque. Maps of
-/// the pair itself have up to 0.03 and 0.08, those of other pairs 0.1 and more of one of them.
+/// Largest misfit of a bench of the airframe's own pair, rms over the model's largest effort, of
+/// thrust and of torque. Maps of the pair itself have up to 0.03 and 0.08, those of other pairs 0.1
+/// and more of one of them.
 const LARGEST_MISFIT: [f64; 2] = [0.06, 0.12];
 
 /// What remains between model and points.

@@ -1,5 +1,5 @@
-//! Colours of maps: viridis for magnitudes, purple to orange about zero for signed quantities. Both are read alike by
-//! people of every colour vision; viridis also in grey.
+//! Colours of maps: viridis for magnitudes, purple to orange about zero for signed quantities. Both
+//! are read alike by people of every colour vision; viridis also in grey.
 
 use colorous::{Gradient, PURPLE_ORANGE, VIRIDIS};
 

@@ -1,5 +1,6 @@
-//! The static comparison of the paper's section V-A: yaw commands over the available range at constant total thrust,
-//! through the compiled mixer and through the conventional one, and what each coaxial unit then really gives.
+//! The static comparison of the paper's section V-A: yaw commands over the available range at
+//! constant total thrust, through the compiled mixer and through the conventional one, and what
+//! each coaxial unit then really gives.
 
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::isolated::IsolatedTables;
@@ -37,7 +38,8 @@ pub struct Row {
 pub struct Comparison {
     /// Total thrust asked, N.
     pub thrust_n: f64,
-    /// Thrust of each unit in the least-norm efforts for that thrust alone, N: T / n on vertical axes alike.
+    /// Thrust of each unit in the least-norm efforts for that thrust alone, N: T / n on vertical
+    /// axes alike.
     pub share_n: Vec<f64>,
     /// Torque per thrust that the conventional mixer assumes, m.
     pub kappa_m: f64,
@@ -46,8 +48,9 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// `count` yaw commands from the least to the largest that the compiled mixer delivers at the study's thrust;
-    /// `None` where the airframe does not serve yaw, or the thrust leaves no room for any.
+    /// `count` yaw commands from the least to the largest that the compiled mixer delivers at the
+    /// study's thrust; `None` where the airframe does not serve yaw, or the thrust leaves no room
+    /// for any.
     pub fn sweep(study: &Study<'_>, count: usize) -> Option<Self> {
         if !study.serves(Axis::Yaw) {
             return None;
@@ -85,7 +88,8 @@ impl Comparison {
     }
 }
 
-/// Throttles `[u, l]` of every unit by the conventional mixer at the reference voltage, and whether none was limited.
+/// Throttles `[u, l]` of every unit by the conventional mixer at the reference voltage, and whether
+/// none was limited.
 pub fn throttles(
     study: &Study<'_>,
     conventional: &IsolatedTables,

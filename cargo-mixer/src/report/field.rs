@@ -1,8 +1,9 @@
 //! A scalar over the throttle box as a colour map with iso-curves.
 //!
-//! Bands and curves are traced on a grid in the throttle box and drawn through a projection: the identity for forward
-//! maps over (u, l), the forward map itself for maps over the attainable set of (f, Q). The latter needs no masking:
-//! the image of the box is the set, and its border is exact.
+//! Bands and curves are traced on a grid in the throttle box and drawn through a projection: the
+//! identity for forward maps over (u, l), the forward map itself for maps over the attainable set
+//! of (f, Q). The latter needs no masking: the image of the box is the set, and its border is
+//! exact.
 
 use contour::ContourBuilder;
 
@@ -50,8 +51,9 @@ impl Field {
 
     /// Rings around the region where the scalar is at least `level`.
     fn rings(&self, level: f64) -> Lines {
-        // Samples lie in the middle of the crate's cells, and what is beyond the grid counts as below the level: rings
-        // close half a cell outside, which clamping brings back to the border.
+        // Samples lie in the middle of the crate's cells, and what is beyond the grid counts as
+        // below the level: rings close half a cell outside, which clamping brings back to the
+        // border.
         let cell = |x: f64| ((x - 0.5) / (self.side - 1) as f64).clamp(0.0, 1.0);
         let Ok(lines) = ContourBuilder::new(self.side, self.side, true).lines(&self.values, &[level]) else {
             // The only error is a grid of another size.
@@ -182,7 +184,8 @@ fn project_all(lines: &Lines, project: impl Fn([f64; 2]) -> [f64; 2]) -> Lines {
 mod tests {
     use super::*;
 
-    /// Area within rings, by the shoelace formula; rings of one region run one way, holes the other.
+    /// Area within rings, by the shoelace formula; rings of one region run one way, holes the
+    /// other.
     fn area(rings: &Lines) -> f64 {
         let ring = |ring: &Vec<[f64; 2]>| -> f64 {
             ring.windows(2)

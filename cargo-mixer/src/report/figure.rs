@@ -1,8 +1,8 @@
 //! One plot: axes with units, and layers of curves, areas and points, as SVG.
 //!
-//! Colours that belong to the page (ink, grid, series) are CSS classes, so that one picture serves light, dark and
-//! paper; those of colour maps are part of the data and written out. `data-` attributes tell the page's script how
-//! pixels become quantities.
+//! Colours that belong to the page (ink, grid, series) are CSS classes, so that one picture serves
+//! light, dark and paper; those of colour maps are part of the data and written out. `data-`
+//! attributes tell the page's script how pixels become quantities.
 
 mod bar;
 mod path;
@@ -263,7 +263,8 @@ impl Figure {
         }
     }
 
-    /// The colour bar of a map: bands `(low, high, colour)` in ascending order, ticks `(value, text)`.
+    /// The colour bar of a map: bands `(low, high, colour)` in ascending order, ticks `(value,
+    /// text)`.
     pub fn colour_bar(&mut self, label: &str, bands: Vec<(f64, f64, String)>, ticks: Vec<(f64, String)>) {
         self.bar = Bar::new(label, bands, ticks);
     }

@@ -1,4 +1,5 @@
-//! Pictures as files of their own, for documents: a gallery of airframes and the figures of one of them.
+//! Pictures as files of their own, for documents: a gallery of airframes and the figures of one of
+//! them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -19,7 +20,8 @@ use super::{layout, number};
 /// Files by name with their text.
 pub type Files = BTreeMap<String, String>;
 
-/// `gallery.md` and its pictures: layout, yaw sweep and yaw authority of every airframe, in the order given.
+/// `gallery.md` and its pictures: layout, yaw sweep and yaw authority of every airframe, in the
+/// order given.
 pub fn gallery(airframes: &[Compiled]) -> Files {
     let mut files = Files::new();
     let mut page = String::from(
@@ -89,7 +91,8 @@ fn file(figure: &Figure) -> String {
     styled(&figure.svg())
 }
 
-/// A picture with the style that the page would give it, and a ground of its own: documents may be light or dark.
+/// A picture with the style that the page would give it, and a ground of its own: documents may be
+/// light or dark.
 fn styled(svg: &str) -> String {
     let style = format!("<style>\n{FIGURE_STYLE}svg.figure {{ background: var(--paper); }}\n</style>\n");
     match svg.split_once('\n') {

@@ -43,7 +43,8 @@ pub fn layout(airframe: &Airframe) -> Figure {
         let crowded = covers_centre || tilted(unit);
         figure.raw(&drawn(unit, index, [x, y], radius * per_metre, crowded));
     }
-    // Where rotors cover the centre, as on a vehicle of one unit, the arrow stands in front of them.
+    // Where rotors cover the centre, as on a vehicle of one unit, the arrow stands in front of
+    // them.
     let covered = places.iter().any(|p| libm::hypot(p[0], p[1]) < radius);
     let (start, length) = if covered {
         (1.06 * radius * per_metre, 0.3 * radius * per_metre)
@@ -62,7 +63,8 @@ pub fn layout(airframe: &Airframe) -> Figure {
     figure
 }
 
-/// A rotor's radius in the drawing, m: neighbours do not touch. (The file does not know the true one.)
+/// A rotor's radius in the drawing, m: neighbours do not touch. (The file does not know the true
+/// one.)
 fn disk_radius(places: &[[f64; 2]]) -> f64 {
     let mut nearest = f64::INFINITY;
     for (index, a) in places.iter().enumerate() {
@@ -78,8 +80,8 @@ fn disk_radius(places: &[[f64; 2]]) -> f64 {
     }
 }
 
-/// One unit as SVG: two rings with arrows, its number and channels, apart where something else is drawn
-/// between them.
+/// One unit as SVG: two rings with arrows, its number and channels, apart where something else is
+/// drawn between them.
 fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool) -> String {
     let gap = if crowded { 7.0 } else { 0.0 };
     let mut svg = String::new();

@@ -1,4 +1,5 @@
-//! Colour maps: forward (Fig. 3 and 4 of the paper), inverse over the attainable set (Fig. 5), error of the inverse.
+//! Colour maps: forward (Fig. 3 and 4 of the paper), inverse over the attainable set (Fig. 5),
+//! error of the inverse.
 
 use mixer_compiler::report::{Summary, rounded_up};
 
@@ -88,7 +89,8 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     figure
 }
 
-/// Model less measured at every bench point over both throttles; small where it lies outside the throttle range. `None` without points.
+/// Model less measured at every bench point over both throttles; small where it lies outside the
+/// throttle range. `None` without points.
 pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Option<Figure> {
     let residual = |point: &BenchPoint| point.model[effort as usize] - point.measured[effort as usize];
     let largest = bench
@@ -228,7 +230,8 @@ pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
 /// Decades of the error that are told apart below its bound.
 const DECADES: f64 = 2.0;
 
-/// Ticks at 1, 2 and 5 times powers of ten and at the bound itself, placed by their logarithm in units of `bound`.
+/// Ticks at 1, 2 and 5 times powers of ten and at the bound itself, placed by their logarithm in
+/// units of `bound`.
 fn log_ticks(bound: f64) -> Vec<(f64, String)> {
     let lowest = libm::floor(libm::log10(bound) - DECADES) as i32;
     let round = (lowest..lowest + 4).flat_map(|exponent| {

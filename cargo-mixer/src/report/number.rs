@@ -36,7 +36,8 @@ fn signed(text: String) -> String {
     }
 }
 
-/// A positive `x` to the nearest multiple of half its leading digit's unit: 39.5 to 40, 148 to 150, 7.3 to 7.5.
+/// A positive `x` to the nearest multiple of half its leading digit's unit: 39.5 to 40, 148 to 150,
+/// 7.3 to 7.5.
 pub fn round_half_digit(x: f64) -> f64 {
     let half = 0.5 * libm::pow(10.0, libm::floor(libm::log10(x)));
     let rounded = libm::round(x / half) * half;

@@ -13,8 +13,8 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Of a page that is made now of this file. `SOURCE_DATE_EPOCH`, seconds since 1970, stands for now
-    /// (reproducible-builds.org).
+    /// Of a page that is made now of this file. `SOURCE_DATE_EPOCH`, seconds since 1970, stands for
+    /// now (reproducible-builds.org).
     pub fn now(airframe: &Path) -> Self {
         let stated = std::env::var("SOURCE_DATE_EPOCH")
             .ok()
@@ -32,8 +32,8 @@ impl Origin {
     }
 }
 
-/// The date (UTC) of seconds since 1970. Days are counted from 1 March of year 0, so that leap days end their years; 400 years
-/// have 146,097 days.
+/// The date (UTC) of seconds since 1970. Days are counted from 1 March of year 0, so that leap days
+/// end their years; 400 years have 146,097 days.
 fn date(seconds: u64) -> String {
     let days = seconds / 86_400 + 719_468;
     let (cycle, day) = (days / 146_097, days % 146_097);

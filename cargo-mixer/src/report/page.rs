@@ -1,7 +1,7 @@
 //! The page: one self-contained file that needs no network, no script to be read, and prints.
 //!
-//! It is written as XML that is also HTML (every element closed, every attribute quoted), so that it can be checked
-//! by machine.
+//! It is written as XML that is also HTML (every element closed, every attribute quoted), so that
+//! it can be checked by machine.
 
 use std::fmt::Write as _;
 

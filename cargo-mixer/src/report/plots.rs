@@ -1,4 +1,5 @@
-//! Line plots: attainable set against voltage, the yaw sweep of both mixers (Fig. 6), authority against thrust.
+//! Line plots: attainable set against voltage, the yaw sweep of both mixers (Fig. 6), authority
+//! against thrust.
 
 use mixer_compiler::airframe::Axis;
 
@@ -121,7 +122,8 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
     figure
 }
 
-/// Curves of unit thrust that differ, each with the units that share it: symmetric units lie on one another.
+/// Curves of unit thrust that differ, each with the units that share it: symmetric units lie on one
+/// another.
 fn distinct(
     comparison: &Comparison,
     units: usize,
@@ -220,7 +222,8 @@ fn yaw_range(comparison: &Comparison) -> [f64; 2] {
 /// Authority in words, with its class and the curve.
 pub type Case<'a> = (&'a str, &'a str, &'a [Authority]);
 
-/// Authority about one axis against thrust, and what of it other `cases` leave; `None` where the axis is not served.
+/// Authority about one axis against thrust, and what of it other `cases` leave; `None` where the
+/// axis is not served.
 pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis: Axis) -> Option<Figure> {
     if axis == Axis::Thrust || !study.serves(axis) {
         return None;

@@ -53,21 +53,24 @@ impl<'a> Study<'a> {
         self.pair.efforts(self.throttles(square))
     }
 
-    /// Throttles `[u, l]` that the emitted inverse gives for attainable `[f (N), Q (N m)]`; `None` where they are not.
+    /// Throttles `[u, l]` that the emitted inverse gives for attainable `[f (N), Q (N m)]`; `None`
+    /// where they are not.
     pub fn inverse(&self, efforts: [f64; 2]) -> Option<[f64; 2]> {
         let tables = &self.compiled.tables;
         let asked = efforts.map(|effort| effort as f32);
         let found = (&tables.inverse)
             .throttles(&tables.pair, &tables.throttle, asked)
             .map(f64::from);
-        // Newton's method from there converges in the set; elsewhere it is stopped by the edge of the box.
+        // Newton's method from there converges in the set; elsewhere it is stopped by the edge of
+        // the box.
         let exact = (0..8).fold(found, |throttles, _| self.pair.newton(throttles, efforts));
         let (given, scale) = (self.pair.efforts(exact), self.pair.scale());
         let close = (0..2).all(|k| (given[k] - efforts[k]).abs() < 1e-9 * scale[k]);
         close.then_some(found)
     }
 
-    /// What the emitted inverse, run in f32 by `mixer-rt`, misses of the efforts at `throttles`, signed, N and N m.
+    /// What the emitted inverse, run in f32 by `mixer-rt`, misses of the efforts at `throttles`,
+    /// signed, N and N m.
     pub fn error(&self, throttles: [f64; 2]) -> [f64; 2] {
         let tables = &self.compiled.tables;
         let efforts = self.pair.efforts(throttles);
@@ -84,7 +87,8 @@ impl<'a> Study<'a> {
         border
     }
 
-    /// The voltages to show with k_f and k_Q: lowest, reference, highest; `None` where voltage has no effect.
+    /// The voltages to show with k_f and k_Q: lowest, reference, highest; `None` where voltage has
+    /// no effect.
     pub fn voltages(&self) -> Vec<(Option<f64>, [f64; 2])> {
         let Some(voltage) = &self.compiled.airframe.voltage else {
             return vec![(None, [1.0, 1.0])];
@@ -119,8 +123,8 @@ impl<'a> Study<'a> {
         self.compiled.airframe.allocation.controls(axis)
     }
 
-    /// The compiled mixer's throttles `[u, l]` of every unit for `[roll, pitch, yaw (N m), thrust (N)]`, and whether all of it
-    /// is delivered.
+    /// The compiled mixer's throttles `[u, l]` of every unit for `[roll, pitch, yaw (N m), thrust
+    /// (N)]`, and whether all of it is delivered.
     pub fn mix(&self, wrench: [f64; 4], condition: &Condition) -> (Vec<[f64; 2]>, bool) {
         let tables = &self.compiled.tables;
         let setpoint = Wrench::from_array(wrench.map(|x| x as f32));

@@ -1,9 +1,9 @@
-//! A forward map as a surface over both throttles, in parallel projection, with the bench points and how far each is
-//! off (Fig. 3 of the paper).
+//! A forward map as a surface over both throttles, in parallel projection, with the bench points
+//! and how far each is off (Fig. 3 of the paper).
 //!
-//! The eye is above the corner of least throttles. With a and b the shares of u and l of their range and c that of the
-//! quantity, a point is drawn at x = W (a - b), y = D (a + b) + H c, y upwards; patches are painted from the far
-//! corner (large a + b) to the near one.
+//! The eye is above the corner of least throttles. With a and b the shares of u and l of their
+//! range and c that of the quantity, a point is drawn at x = W (a - b), y = D (a + b) + H c, y
+//! upwards; patches are painted from the far corner (large a + b) to the near one.
 
 use std::fmt::Write as _;
 

@@ -17,7 +17,8 @@ use super::study::Study;
 /// Rows of the comparison that the page and the command show of the whole sweep.
 const SHOWN_ROWS: usize = 9;
 
-/// A table: the caption, one header row, rows whose first cell is their name. Cells are markup already.
+/// A table: the caption, one header row, rows whose first cell is their name. Cells are markup
+/// already.
 pub fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> String {
     let mut html = String::from("<div class=\"wide\"><table>");
     let _ = write!(html, "<caption>{caption}</caption><thead><tr>");
@@ -246,7 +247,8 @@ struct Line {
     limited: bool,
 }
 
-/// Units by what both mixers make of them: those that always give the same as one another share their columns.
+/// Units by what both mixers make of them: those that always give the same as one another share
+/// their columns.
 fn alike(comparison: &Comparison) -> Vec<Vec<usize>> {
     let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
     let same = |a: usize, b: usize| {

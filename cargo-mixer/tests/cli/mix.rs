@@ -233,7 +233,8 @@ fn mix_takes_files() {
     assert!(stderr(&output).contains("none.csv"), "{}", stderr(&output));
 }
 
-/// With all rotors `[pair.lower_out]` and `[pair.upper_out]` change no bit; with one out they do. A bias of 0 is none.
+/// With all rotors `[pair.lower_out]` and `[pair.upper_out]` change no bit; with one out they do. A
+/// bias of 0 is none.
 #[test]
 fn rotors_alone_and_a_bias_of_zero_leave_the_bits() {
     let text = std::fs::read_to_string(root().join("airframes/x8-11in-least-power.toml")).unwrap();

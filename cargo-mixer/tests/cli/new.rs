@@ -176,7 +176,8 @@ fn a_pipe_is_written_to() {
     assert!(stdout(&output).contains("name = \"a\""), "{}", stdout(&output));
 }
 
-/// The stand-in for a bench that docs/first-airframe.md takes has no noise: what its rounding leaves is no outlier.
+/// The stand-in for a bench that docs/first-airframe.md takes has no noise: what its rounding
+/// leaves is no outlier.
 #[test]
 fn the_stand_in_for_a_bench_has_no_row_that_stands_out() {
     let (bench, pair) = (path("sweep.csv"), path("of-sweep.toml"));

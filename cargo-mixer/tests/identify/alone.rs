@@ -21,7 +21,8 @@ fn map() -> Bench {
     bench("map.csv", &plain(&rows(1)), &settings(None)).expect("a bench")
 }
 
-/// A run of the upper (0) or of the lower (1) rotor at `volts`, thrust and torque following the 1.75th power of 14.8 V.
+/// A run of the upper (0) or of the lower (1) rotor at `volts`, thrust and torque following the
+/// 1.75th power of 14.8 V.
 fn run(rotor: usize, volts: f64, noise: f64) -> Bench {
     let mut normal = Normal::new(11);
     let mut text = String::from("upper,lower,thrust_n,torque_nm,voltage_v\n");

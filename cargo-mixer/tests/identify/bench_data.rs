@@ -1,4 +1,5 @@
-//! Real bench files, where `MIXER_BENCH_DATA` names their folder. None of them is part of the project.
+//! Real bench files, where `MIXER_BENCH_DATA` names their folder. None of them is part of the
+//! project.
 
 use std::path::{Path, PathBuf};
 
@@ -245,8 +246,8 @@ fn the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats() {
         "greatest difference to the repeat {f:.1} % -> {robust_f:.1} %, torque {q:.1} % -> {robust_q:.1} %"
     );
     assert!((r2 - 0.959).abs() < 0.001 && (robust_r2 - clean.thrust.r2).abs() < 0.001);
-    // What remains is no outlier: the recorded command of the upper rotor drifts by up to 50 us in the second half of
-    // the run, while its speed stays that of the repeat.
+    // What remains is no outlier: the recorded command of the upper rotor drifts by up to 50 us in
+    // the second half of the run, while its speed stays that of the repeat.
     assert!(f > 7.0 && robust_f < 4.5, "{f} {robust_f}");
     assert!(q > 15.0 && robust_q < 8.5, "{q} {robust_q}");
 }
@@ -378,8 +379,9 @@ fn thinned(count: usize) -> Vec<usize> {
         .collect()
 }
 
-/// Root mean square errors of thrust and torque on the rows left out, percent of the greatest value, when a bench runs only
-/// `count` x `count` of the map's 10 x 10 levels; nothing where `identify` refuses so few.
+/// Root mean square errors of thrust and torque on the rows left out, percent of the greatest
+/// value, when a bench runs only `count` x `count` of the map's 10 x 10 levels; nothing where
+/// `identify` refuses so few.
 fn left_out(path: &Path, basis: Basis, count: usize) -> Option<[f64; 2]> {
     let settings = settings(Some(basis));
     let log = read::read_file(path, &settings.reading, |file| file).expect("a log");
@@ -494,7 +496,8 @@ fn single_rotors_are_described_by_three_terms() {
         return;
     };
     let coaxial = |part: &str| coaxial(&data, part);
-    // The upper and the lower rotor's runs, with a full-range map of the same pair and with one from 0.40, where there is one.
+    // The upper and the lower rotor's runs, with a full-range map of the same pair and with one
+    // from 0.40, where there is one.
     let pairs = [
         (
             "_11in_prop_910kv_11V_propdrivev2_single_rotor_good",

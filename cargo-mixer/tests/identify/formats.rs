@@ -36,8 +36,8 @@ fn intervals_hold_the_truth_at_their_rate() {
         held += inside(&pair.thrust_n, &pair.thrust.ci95, &THRUST);
         held += inside(&pair.torque_nm, &pair.torque.ci95, &TORQUE);
     }
-    // 640 coefficients. The eight of one fit go together, so that the standard deviation of the rate is nearer to that
-    // of 160 independent ones: 1.7 %.
+    // 640 coefficients. The eight of one fit go together, so that the standard deviation of the
+    // rate is nearer to that of 160 independent ones: 1.7 %.
     let rate = held as f64 / (SEEDS * 16) as f64;
     assert!(
         (0.95 - rate).abs() < 0.045,
@@ -45,7 +45,8 @@ fn intervals_hold_the_truth_at_their_rate() {
     );
 }
 
-/// One sweep in every format is one map, so that what holds of its intervals in one format holds in all.
+/// One sweep in every format is one map, so that what holds of its intervals in one format holds in
+/// all.
 #[test]
 fn every_format_gives_the_same_map() {
     const SEEDS: u64 = 3;
@@ -115,7 +116,8 @@ fn every_coefficient_of_every_basis_holds_at_its_rate() {
                 held[k] += u64::from((c - truth[k]).abs() <= wide * errors[k]);
             }
         }
-        // The standard deviation of a rate is sqrt(0.95 * 0.05 / 1500) = 0.56 %; four of them among 31 coefficients.
+        // The standard deviation of a rate is sqrt(0.95 * 0.05 / 1500) = 0.56 %; four of them among
+        // 31 coefficients.
         for (term, held) in basis.term_names().iter().zip(held) {
             let rate = held as f64 / SEEDS as f64;
             assert!((rate - 0.95).abs() < 0.0225, "{basis:?} {term}: {rate}");

@@ -1,4 +1,5 @@
-//! `cargo mixer identify`: synthetic sweeps with known truth in every format, refusals, the command, real bench data.
+//! `cargo mixer identify`: synthetic sweeps with known truth in every format, refusals, the
+//! command, real bench data.
 
 mod alone;
 mod bench_data;

@@ -87,8 +87,8 @@ fn a_filled_template_is_identified() {
     }
 }
 
-/// The Flight Stand software as the script sees it: a board per rotor, the lower one mounted upside down, and the pair of the
-/// sweeps behind them. @THRUST@ and @TORQUE@ are its coefficients.
+/// The Flight Stand software as the script sees it: a board per rotor, the lower one mounted upside
+/// down, and the pair of the sweeps behind them. @THRUST@ and @TORQUE@ are its coefficients.
 const FLIGHT_STAND: &str = r#"
 import time
 from types import SimpleNamespace as Any

@@ -18,7 +18,8 @@ const B: f64 = 0.2;
 const E: f64 = 150.0;
 const G: f64 = 0.8;
 
-/// Electrical columns behind `upper,lower,thrust_n,torque_nm`, for the power of the upper and of the lower rotor.
+/// Electrical columns behind `upper,lower,thrust_n,torque_nm`, for the power of the upper and of
+/// the lower rotor.
 struct Electrical {
     header: &'static str,
     row: fn([f64; 2]) -> String,

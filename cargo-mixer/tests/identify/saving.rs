@@ -1,5 +1,5 @@
-//! Saving of recorded power by the power bias of a compiled X8 with the pairs of real full-range maps: level, over drawn
-//! requests, and over the setpoints of real flights.
+//! Saving of recorded power by the power bias of a compiled X8 with the pairs of real full-range
+//! maps: level, over drawn requests, and over the setpoints of real flights.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -93,7 +93,8 @@ fn the_mixer_saves_what_is_identified() {
             path.display()
         );
         level.push(mean(&saved));
-        // Roll and pitch up to this share of a normalised setpoint, yaw up to twice the share, thrust by a fifth.
+        // Roll and pitch up to this share of a normalised setpoint, yaw up to twice the share,
+        // thrust by a fifth.
         for (share, brisk) in BRISK.into_iter().zip(&mut brisk) {
             let mut normal = Normal::new(3);
             let mut energy = [0.0; 2];
@@ -169,10 +170,12 @@ fn rows(log: &Path) -> Vec<Row> {
     reader.into_records().map(row).collect()
 }
 
-/// What one unit of a normalised setpoint is on that vehicle: N of thrust, N m of roll, pitch and yaw, in PX4's manner.
+/// What one unit of a normalised setpoint is on that vehicle: N of thrust, N m of roll, pitch and
+/// yaw, in PX4's manner.
 ///
-/// The logs have each rotor's thrust command T and its normalised command n, up to 0.88. T = a n + b n2 through those above
-/// half gives the thrust at n = 1; the yaw torque that is asked for, over the thrusts by the sense of their rotors, a rotor's torque.
+/// The logs have each rotor's thrust command T and its normalised command n, up to 0.88. T = a n +
+/// b n2 through those above half gives the thrust at n = 1; the yaw torque that is asked for, over
+/// the thrusts by the sense of their rotors, a rotor's torque.
 fn units(flights: &[Vec<Row>]) -> [f64; 4] {
     // The shorter arm: the two axes have one unit.
     const ARM_M: f64 = 0.0881;
@@ -201,8 +204,9 @@ fn units(flights: &[Vec<Row>]) -> [f64; 4] {
     [full, roll_pitch, roll_pitch, full * yaw / squares]
 }
 
-/// Three flights of another group's X8 with tilts of 24 and of 45 degrees, mixed by the pairs of the maps on an X8 frame.
-/// Torques are as the flight's in normalised setpoints. The mean thrust in the air is 0.3 to 0.7 of full thrust, as when level.
+/// Three flights of another group's X8 with tilts of 24 and of 45 degrees, mixed by the pairs of
+/// the maps on an X8 frame. Torques are as the flight's in normalised setpoints. The mean thrust in
+/// the air is 0.3 to 0.7 of full thrust, as when level.
 #[test]
 fn the_mixer_saves_over_logged_flights() {
     const FLIGHTS: [(&str, &str); 3] = [

@@ -1,4 +1,5 @@
-//! A map between two measured spacings of the same rotors, against the map of a spacing between them.
+//! A map between two measured spacings of the same rotors, against the map of a spacing between
+//! them.
 
 use std::path::Path;
 

@@ -67,7 +67,8 @@ pub(crate) fn rows_of(basis: Basis, coefficients: [&[f64]; 2], seed: u64) -> Vec
         let (u, l) = (level(k / 10), level(k % 10));
         let thrust = f.at(u, l) + 0.1 * normal.next();
         let torque = q.at(u, l) + 0.001 * normal.next();
-        // Any split serves, as long as signs are those of a pair: upper torque below zero, lower above.
+        // Any split serves, as long as signs are those of a pair: upper torque below zero, lower
+        // above.
         let lower = torque.max(0.0) + 0.05 + 0.1 * l;
         Row {
             u,
@@ -109,7 +110,8 @@ pub(crate) fn plain(rows: &[Row]) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// newdexterity: CR LF, grams, blanks behind headers, two start rows and a stop row with spin-down thrust.
+/// newdexterity: CR LF, grams, blanks behind headers, two start rows and a stop row with spin-down
+/// thrust.
 fn coaxial_map(rows: &[Row]) -> Vec<u8> {
     let mut text = "PWM Left,PWM Right,Dxl 1 Pos ,Thrust Left [g],Torque Left [Nm],Thrust Right [g],\
                     Torque Right [Nm],Thrust Centre [g],Voltage Left [V],Voltage Right [V],Speed Left [rpm],\
@@ -141,7 +143,8 @@ fn coaxial_map(rows: &[Row]) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// RCbenchmark 1780: BOM, a trailing comma, both rotors' torque and the lower one's thrust with the mounting's sign.
+/// RCbenchmark 1780: BOM, a trailing comma, both rotors' torque and the lower one's thrust with the
+/// mounting's sign.
 fn dual(rows: &[Row]) -> Vec<u8> {
     let mut text =
         "\u{feff}Time (s),ESC A (µs),ESC B (µs),Torque A (N·m),Torque B (N·m),Thrust A (kgf),Thrust B (kgf),\
@@ -211,7 +214,8 @@ fn tabs(rows: &[Row]) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A streaming log: 16 rows per command, blank torque and thrust in most, a rotor that takes four rows to speed up.
+/// A streaming log: 16 rows per command, blank torque and thrust in most, a rotor that takes four
+/// rows to speed up.
 fn streaming(rows: &[Row]) -> Vec<u8> {
     let mut text = "Time (s),ESC A (µs),ESC B (µs),Torque (N·m),Thrust (N),Voltage (V)\n".to_string();
     let mut before = [0.0, 0.0];

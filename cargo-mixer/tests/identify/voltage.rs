@@ -7,7 +7,8 @@ use mixer_compiler::airframe::Basis;
 
 use crate::sweep::{THRUST, TORQUE, bench, plain, rows, settings};
 
-/// The sweep at `volts`, sagging by `sag` V times the mean square of throttle, thrust following 1.7 and torque 1.9.
+/// The sweep at `volts`, sagging by `sag` V times the mean square of throttle, thrust following 1.7
+/// and torque 1.9.
 fn map(name: &str, volts: f64, sag: f64, seed: u64) -> Bench {
     let mut rows = rows(seed);
     for r in &mut rows {

@@ -1,4 +1,5 @@
-//! Frames of `MIXER_BENCH_DATA`: PX4's files, and ArduPilot's frame tables. None of them is part of the project.
+//! Frames of `MIXER_BENCH_DATA`: PX4's files, and ArduPilot's frame tables. None of them is part of
+//! the project.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! `cargo mixer library` from outside: its objects in C and C++ programs, on the host and on a Cortex-M4F in QEMU.
+//! `cargo mixer library` from outside: its objects in C and C++ programs, on the host and on a
+//! Cortex-M4F in QEMU.
 
 mod example;
 mod program;
@@ -11,7 +12,8 @@ use std::process::{Command, Output, Stdio};
 
 use program::{Golden, HOST_COMPILERS};
 
-/// Mean and worst instructions of the X8's golden vectors through the C interface: the goals for the whole mix.
+/// Mean and worst instructions of the X8's golden vectors through the C interface: the goals for
+/// the whole mix.
 const MEAN_LIMIT: u32 = 2_000;
 const WORST_LIMIT: u32 = 5_000;
 
@@ -181,7 +183,8 @@ fn a_cortex_m4f_has_the_golden_bits() {
     assert!(said.contains("is for -mfloat-abi=hard"), "{said}");
 }
 
-/// A processor without a floating-point unit: the X8's self-test, with all rotors and with rotors out, in QEMU.
+/// A processor without a floating-point unit: the X8's self-test, with all rotors and with rotors
+/// out, in QEMU.
 #[track_caller]
 fn assert_bits_without_floating_point(target: &str, processor: &str, machine: &str, options: &[&str]) {
     let folder = Folder::new(target);
@@ -220,7 +223,8 @@ fn a_cortex_m0_has_the_bits() {
     assert_bits_without_floating_point("thumbv6m-none-eabi", "-mcpu=cortex-m0", "microbit", &[stack]);
 }
 
-/// A companion computer: both self-tests in QEMU's user mode, where a cross compiler and QEMU for it are there.
+/// A companion computer: both self-tests in QEMU's user mode, where a cross compiler and QEMU for
+/// it are there.
 #[test]
 fn an_aarch64_computer_has_the_bits() {
     let tools = ["aarch64-linux-gnu-gcc", "qemu-aarch64"];

@@ -132,7 +132,8 @@ impl Golden {
         run(command.arg("-o").arg(program));
     }
 
-    /// A line per airframe, no row different. Returns its numbers, the first being the airframe's index.
+    /// A line per airframe, no row different. Returns its numbers, the first being the airframe's
+    /// index.
     #[track_caller]
     pub(crate) fn assert_same(&self, text: &str) -> Vec<[u32; 5]> {
         assert_eq!(text.lines().count(), self.modules.len(), "{text}");

@@ -1,4 +1,5 @@
-//! `examples/px4` and `examples/ardupilot`, compiled against the declarations in `stand_ins` and driven once.
+//! `examples/px4` and `examples/ardupilot`, compiled against the declarations in `stand_ins` and
+//! driven once.
 
 use std::fs;
 use std::process::Command;

@@ -1,6 +1,7 @@
 //! The page in headless Chromium: no console message, and values under the pointer.
 //!
-//! Without a browser this prints that it did not run; it fails where `MIXER_BROWSER=1` or `CI=true` asks for it.
+//! Without a browser this prints that it did not run; it fails where `MIXER_BROWSER=1` or `CI=true`
+//! asks for it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,7 +13,8 @@ use cargo_mixer::report::study::Study;
 
 use super::{airframes, scratch};
 
-/// Moves the pointer over every picture that answers, and lists what it says in the page's own text.
+/// Moves the pointer over every picture that answers, and lists what it says in the page's own
+/// text.
 const POINTER: &str = r#"<script>
 for (const svg of document.querySelectorAll('svg[data-hover]:not([data-hover=""])')) {
   const [left, top, width, height] = svg.dataset.box.split(" ").map(Number);

@@ -1,4 +1,5 @@
-//! What a page says of its origin, of a rotor out, of the bench; what is folded, and how units are written.
+//! What a page says of its origin, of a rotor out, of the bench; what is folded, and how units are
+//! written.
 
 use super::*;
 
@@ -185,7 +186,8 @@ fn residuals_are_mapped() {
     }
 }
 
-/// Power, the saving and the flight time against Q = 0 in `check` and on the page, of an airframe with a power map.
+/// Power, the saving and the flight time against Q = 0 in `check` and on the page, of an airframe
+/// with a power map.
 #[test]
 fn power_and_its_saving_are_told() {
     let file = "airframes/x8-11in-least-power.toml";

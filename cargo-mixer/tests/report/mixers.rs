@@ -34,7 +34,8 @@ fn the_coaxial_mixer_keeps_every_unit_s_thrust_and_the_conventional_one_does_not
         assert!((row.coaxial.wrench[3] - 40.0).abs() <= 4.0 * tolerance);
         let missed = (row.coaxial.wrench[2] - row.yaw_nm).abs();
         if row.yaw_nm.abs() > YAW_AT_10_N {
-            // Given with unequal thrusts, by the null space of M; the sweep ends where yaw saturates.
+            // Given with unequal thrusts, by the null space of M; the sweep ends where yaw
+            // saturates.
             assert!(missed <= 1e-3, "{missed} N m at {} N m", row.yaw_nm);
             continue;
         }

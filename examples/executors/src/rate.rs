@@ -1,7 +1,8 @@
-//! What runs under both executors: a yaw rate loop in front of the mixer, and the bench that it flies on.
+//! What runs under both executors: a yaw rate loop in front of the mixer, and the bench that it
+//! flies on.
 //!
-//! The loop takes normalised gains, stops its integral where the mixer says that yaw is saturated, and mixes with the last
-//! voltage that was measured.
+//! The loop takes normalised gains, stops its integral where the mixer says that yaw is saturated,
+//! and mixes with the last voltage that was measured.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -101,7 +102,8 @@ impl RateLoop {
         self.cycle < bench::CYCLES
     }
 
-    /// Normalised torque of the PI controller. Its integral stops where the rotors could not follow it.
+    /// Normalised torque of the PI controller. Its integral stops where the rotors could not follow
+    /// it.
     fn torque(&mut self, setpoint: f32, rate: f32) -> f32 {
         let error = setpoint - rate;
         let wound_up = (error > 0.0 && self.saturation.is_saturated(Axis::Yaw, Direction::Positive))
@@ -127,7 +129,8 @@ impl RateLoop {
     }
 }
 
-/// In place of pilot, gyroscope and airframe: a yaw step beyond what the rotors give, and a gyroscope that fails.
+/// In place of pilot, gyroscope and airframe: a yaw step beyond what the rotors give, and a
+/// gyroscope that fails.
 mod bench {
     use super::{PERIOD_S, RATE_HZ};
 

@@ -1,5 +1,5 @@
-//! What the example has in place of a flight controller's peripherals: QEMU's MPS2 board has neither speed
-//! controllers nor a battery. A port to a real board replaces this file.
+//! What the example has in place of a flight controller's peripherals: QEMU's MPS2 board has
+//! neither speed controllers nor a battery. A port to a real board replaces this file.
 
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;

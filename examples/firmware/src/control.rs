@@ -20,8 +20,8 @@ pub(crate) trait Battery {
 /// What one cycle did.
 #[derive(Clone, Copy)]
 pub(crate) enum Cycle {
-    /// Mixed and written: the wrench that the rotors give, and the axes that are saturated, on which the rate controller
-    /// stops integrating.
+    /// Mixed and written: the wrench that the rotors give, and the axes that are saturated, on
+    /// which the rate controller stops integrating.
     Mixed {
         achieved: Wrench,
         saturation: Saturation,
@@ -48,7 +48,8 @@ where
     Outputs: EscOutputs<CHANNELS>,
     Monitor: Battery,
 {
-    /// `patience`: for how many cycles in a row the last throttles are held before the rotors are stopped.
+    /// `patience`: for how many cycles in a row the last throttles are held before the rotors are
+    /// stopped.
     pub(crate) fn new(
         mix: fn(&Wrench, f32) -> Result<Mix<CHANNELS>, SetpointError>,
         outputs: Outputs,

@@ -2,10 +2,11 @@
 
 use mixer_rt::Wrench;
 
-/// The wrench that a rate controller would ask for in cycle `cycle` of the flight; `None` after landing.
+/// The wrench that a rate controller would ask for in cycle `cycle` of the flight; `None` after
+/// landing.
 ///
-/// Hover, roll and pitch, a full yaw step, three lost estimates (held), hover again, and an estimator that fails
-/// for good (disarmed).
+/// Hover, roll and pitch, a full yaw step, three lost estimates (held), hover again, and an
+/// estimator that fails for good (disarmed).
 pub(crate) fn setpoint(cycle: u32) -> Option<Wrench> {
     let hover = Wrench {
         roll_nm: 0.0,

@@ -1,8 +1,9 @@
 //! A control loop with a compiled mixer, as it would stand in a flight controller.
 //!
-//! SysTick paces the loop at 400 Hz. Every cycle takes the rate controller's wrench and the battery's voltage, mixes,
-//! and writes the rotors' speed controllers. A setpoint that is not finite leaves the rotors as they are; when it
-//! lasts, they are stopped. Run it with `cargo run --release`.
+//! SysTick paces the loop at 400 Hz. Every cycle takes the rate controller's wrench and the
+//! battery's voltage, mixes, and writes the rotors' speed controllers. A setpoint that is not
+//! finite leaves the rotors as they are; when it lasts, they are stopped. Run it with `cargo run
+//! --release`.
 #![no_std]
 #![no_main]
 

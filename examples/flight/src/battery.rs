@@ -1,9 +1,10 @@
-//! The battery: voltage falls with the charge that is drawn and, by the internal resistance, with the current.
+//! The battery: voltage falls with the charge that is drawn and, by the internal resistance, with
+//! the current.
 //!
-//! A 4S pack of 5 Ah. V = V_full - slope * charge - R I; a rotor's current goes with the cube of its throttle, as
-//! aerodynamic power goes with the cube of the speed. Hover takes some 16 A, 250 W: 80 W per kilogram, which is
-//! usual for this class. None of these figures is in the paper. Both mixers measure the voltage alike and correct
-//! for it by the same law, the airframe's.
+//! A 4S pack of 5 Ah. V = V_full - slope * charge - R I; a rotor's current goes with the cube of
+//! its throttle, as aerodynamic power goes with the cube of the speed. Hover takes some 16 A, 250
+//! W: 80 W per kilogram, which is usual for this class. None of these figures is in the paper. Both
+//! mixers measure the voltage alike and correct for it by the same law, the airframe's.
 
 use nalgebra::SVector;
 

@@ -1,18 +1,21 @@
-//! The controller, the same for both mixers: a cascade of position PID, attitude P and rate PID at 5 ms, as in PX4.
+//! The controller, the same for both mixers: a cascade of position PID, attitude P and rate PID at
+//! 5 ms, as in PX4.
 //!
-//! It commands a thrust in newtons and torques in newton metres, so that no gain depends on a mixer. The gains are
-//! poles placed on the nominal vehicle with a mixer that delivers what is asked; none was tried out against a flight:
+//! It commands a thrust in newtons and torques in newton metres, so that no gain depends on a
+//! mixer. The gains are poles placed on the nominal vehicle with a mixer that delivers what is
+//! asked; none was tried out against a flight:
 //!
-//! * position, on 1/s^2: a triple pole at -p, from s^3 + 3 p s^2 + 3 p^2 s + p^3; the derivative acts on the measured
-//!   velocity. p is [`HORIZONTAL_POLE`] and [`VERTICAL_POLE`]: delay, filter, attitude loop and rotors lag by some
-//!   0.25 s and 0.13 s, which is 1/(5 p) for both.
+//! * position, on 1/s^2: a triple pole at -p, from s^3 + 3 p s^2 + 3 p^2 s + p^3; the derivative
+//!   acts on the measured velocity. p is [`HORIZONTAL_POLE`] and [`VERTICAL_POLE`]: delay, filter,
+//!   attitude loop and rotors lag by some 0.25 s and 0.13 s, which is 1/(5 p) for both.
 //! * attitude, on 1/s: a pole at -[`ATTITUDE_POLE`], a third of the rate loop's.
-//! * rate, on 1/(J s) behind the rotors' lag: the derivative term cancels the lag, proportional and integral place
-//!   poles at -0.8 w and -0.2 w, w = [`RATE_POLE`], from s^2 + w s + 0.16 w^2. Yaw is a third of roll and pitch,
-//!   because the rotors' torque is small.
+//! * rate, on 1/(J s) behind the rotors' lag: the derivative term cancels the lag, proportional and
+//!   integral place poles at -0.8 w and -0.2 w, w = [`RATE_POLE`], from s^2 + w s + 0.16 w^2. Yaw
+//!   is a third of roll and pitch, because the rotors' torque is small.
 //!
-//! Thrust is the demanded vertical force over the cosine of the present tilt. How the tilt setpoint follows from the
-//! demanded acceleration is a choice that matters to this comparison: see [`Tilt`].
+//! Thrust is the demanded vertical force over the cosine of the present tilt. How the tilt setpoint
+//! follows from the demanded acceleration is a choice that matters to this comparison: see
+//! [`Tilt`].
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3, Vector4};
 
@@ -62,8 +65,9 @@ pub struct Measurement {
 
 /// The tilt setpoint for a demanded acceleration a (z down), gravity g.
 ///
-/// If the mixer under-delivers, the altitude's integrator holds the vehicle up by a lasting upward a_z. A tilt that
-/// counts it in is then too small by the same factor: the mixer's thrust error becomes a gain error in x and y.
+/// If the mixer under-delivers, the altitude's integrator holds the vehicle up by a lasting upward
+/// a_z. A tilt that counts it in is then too small by the same factor: the mixer's thrust error
+/// becomes a gain error in x and y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tilt {
     /// The thrust axis along (a_x, a_y, -g), PX4's default (`MPC_ACC_DECOUPLE` = 1).
@@ -112,7 +116,8 @@ impl Controller {
         Vector4::new(torque.x, torque.y, torque.z, thrust)
     }
 
-    /// Velocity and angular acceleration from the differences to the last sample, filtered to the first order.
+    /// Velocity and angular acceleration from the differences to the last sample, filtered to the
+    /// first order.
     fn differentiate(&mut self, measured: &Measurement) {
         let (position, rate) = self.last.unwrap_or((measured.position, measured.rate));
         let velocity = (measured.position - position) / PERIOD_S;
@@ -150,7 +155,8 @@ impl Controller {
     }
 }
 
-/// The attitude whose thrust axis is along `axis` (world) and whose nose points to `yaw`; none if there is none.
+/// The attitude whose thrust axis is along `axis` (world) and whose nose points to `yaw`; none if
+/// there is none.
 fn attitude_setpoint(axis: &Vector3<f64>, yaw: f64) -> Option<UnitQuaternion<f64>> {
     let down = (-axis).try_normalize(1e-9)?;
     let (sin, cos) = libm::sincos(yaw);
@@ -194,7 +200,8 @@ mod tests {
         let answer = |offset: Vector3<f64>, attitude| {
             Controller::new(Tilt::Decoupled).update(&at(HERE.position + offset, attitude), &HERE)
         };
-        // South of the reference the nose goes down, west of it the right side does, below it thrust rises.
+        // South of the reference the nose goes down, west of it the right side does, below it
+        // thrust rises.
         assert!(answer(-Vector3::x(), level)[1] < -0.1);
         assert!(answer(-Vector3::y(), level)[0] > 0.1);
         assert!(answer(0.1 * Vector3::z(), level)[3] > WEIGHT_N + 1.0);

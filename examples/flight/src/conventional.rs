@@ -1,5 +1,5 @@
-//! The conventional mixer of the paper's section V, every rotor taken as isolated: `mixer_rt::baselines` on the
-//! airframe's tables, in f32 as in a flight controller.
+//! The conventional mixer of the paper's section V, every rotor taken as isolated:
+//! `mixer_rt::baselines` on the airframe's tables, in f32 as in a flight controller.
 
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::isolated::IsolatedTables;
@@ -59,16 +59,17 @@ impl ConventionalMixer {
         })
     }
 
-    /// The same mixer, its thrust commands multiplied by `factor`: what a controller does that knows, from an estimator
-    /// or from a test flight, how much more than the weight it must command in hover.
+    /// The same mixer, its thrust commands multiplied by `factor`: what a controller does that
+    /// knows, from an estimator or from a test flight, how much more than the weight it must
+    /// command in hover.
     #[must_use]
     pub fn with_thrust_factor(mut self, factor: f64) -> Self {
         self.thrust_factor *= factor;
         self
     }
 
-    /// Throttles for the wrench `[roll, pitch, yaw (N m), thrust (N)]` at `voltage_v`, limited to the range, and
-    /// whether any was limited.
+    /// Throttles for the wrench `[roll, pitch, yaw (N m), thrust (N)]` at `voltage_v`, limited to
+    /// the range, and whether any was limited.
     ///
     /// # Errors
     /// A wrench or voltage that is not finite.

@@ -1,8 +1,10 @@
-//! Electrical energy of the manoeuvre with the power bias and without: `airframes/x8-11in-least-power.toml` on the paper's vehicle.
+//! Electrical energy of the manoeuvre with the power bias and without:
+//! `airframes/x8-11in-least-power.toml` on the paper's vehicle.
 //!
-//! The ISAE X8 has no map of electrical power, so its rotors give way to those of an airframe that has one, identified from
-//! a bench; mass, inertia, controller and manoeuvre stay. The supply is held at the reference voltage, at which the power map
-//! is. Energy is the map's, over the throttles that the mixer commands.
+//! The ISAE X8 has no map of electrical power, so its rotors give way to those of an airframe that
+//! has one, identified from a bench; mass, inertia, controller and manoeuvre stay. The supply is
+//! held at the reference voltage, at which the power map is. Energy is the map's, over the
+//! throttles that the mixer commands.
 
 use std::error::Error;
 use std::fmt;

@@ -1,6 +1,8 @@
-//! Fig. 8, 9 and 10 of the paper as SVG, the conventional mixer on the left and the coaxial one on the right.
+//! Fig. 8, 9 and 10 of the paper as SVG, the conventional mixer on the left and the coaxial one on
+//! the right.
 //!
-//! Blue and vermilion of Okabe and Ito's palette, black for what is given: told apart with any colour vision.
+//! Blue and vermilion of Okabe and Ito's palette, black for what is given: told apart with any
+//! colour vision.
 
 use std::error::Error;
 use std::ops::Range;
@@ -41,7 +43,8 @@ struct Row {
     lines: Vec<Line>,
 }
 
-/// File names and texts of the three figures of a pair of flights. Axes are the same for all scenarios.
+/// File names and texts of the three figures of a pair of flights. Axes are the same for all
+/// scenarios.
 ///
 /// # Errors
 /// What the drawing library cannot draw.

@@ -1,11 +1,12 @@
 //! The classical fourth-order Runge-Kutta step.
 //!
-//! Integrator crates keep a trajectory, choose the step or own the loop; here a controller with its own clock holds
-//! the throttles between 5 ms samples, so that one step is all that is needed.
+//! Integrator crates keep a trajectory, choose the step or own the loop; here a controller with its
+//! own clock holds the throttles between 5 ms samples, so that one step is all that is needed.
 
 use std::ops::{Add, Mul};
 
-/// The state after `step` seconds of dx/dt = `derivative(x)`. The local error is of the fifth order in the step.
+/// The state after `step` seconds of dx/dt = `derivative(x)`. The local error is of the fifth order
+/// in the step.
 pub fn runge_kutta<S>(state: S, step: f64, derivative: impl Fn(&S) -> S) -> S
 where
     S: Copy + Add<Output = S> + Mul<f64, Output = S>,

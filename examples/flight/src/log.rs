@@ -10,7 +10,8 @@ use crate::tracking::TrackingError;
 /// Periods from one row of a flight's log to the next: 20 ms.
 const EVERY: usize = 4;
 
-/// Writes a flight: reference, what was flown, command, throttles, voltage; every 20 ms, SI units, yaw in degrees.
+/// Writes a flight: reference, what was flown, command, throttles, voltage; every 20 ms, SI units,
+/// yaw in degrees.
 ///
 /// # Errors
 /// What `to` cannot take.

@@ -15,7 +15,8 @@ use flight::mixer::Method;
 use flight::table::{Comparison, NOTES};
 use flight::vehicle;
 
-/// Flies the ISAE X8 through the paper's manoeuvre with the coaxial and with the conventional mixer.
+/// Flies the ISAE X8 through the paper's manoeuvre with the coaxial and with the conventional
+/// mixer.
 #[derive(Parser)]
 struct Arguments {
     /// Number of seeds: rotor mismatch and air differ from seed to seed

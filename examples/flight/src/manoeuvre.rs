@@ -1,7 +1,8 @@
 //! The paper's manoeuvre: hover at constant x and y, steps in z, a yaw profile (Fig. 8, 9).
 //!
-//! The paper prints neither the times nor the yaw angles; it states a 1.5 m phase and a limited yaw rate. Here z goes
-//! 1.0, 1.5, 1.0 m, and yaw goes to 90, 0, -90 and 0 degrees at 45 degrees/s within the 1.5 m phase.
+//! The paper prints neither the times nor the yaw angles; it states a 1.5 m phase and a limited yaw
+//! rate. Here z goes 1.0, 1.5, 1.0 m, and yaw goes to 90, 0, -90 and 0 degrees at 45 degrees/s
+//! within the 1.5 m phase.
 
 use std::ops::Range;
 

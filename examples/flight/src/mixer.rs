@@ -55,7 +55,8 @@ impl Mixer {
         })
     }
 
-    /// Throttle per channel for `[roll, pitch, yaw (N m), thrust (N)]`, and whether anything was saturated.
+    /// Throttle per channel for `[roll, pitch, yaw (N m), thrust (N)]`, and whether anything was
+    /// saturated.
     ///
     /// # Errors
     /// A wrench or voltage that is not finite.

@@ -1,5 +1,5 @@
-//! The pair's map, eq. (1), once more: the plant reads the coefficients from the file and shares no arithmetic with the
-//! compiler, whose f64 map the tables were fitted to.
+//! The pair's map, eq. (1), once more: the plant reads the coefficients from the file and shares no
+//! arithmetic with the compiler, whose f64 map the tables were fitted to.
 
 use mixer_compiler::airframe;
 

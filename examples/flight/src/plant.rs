@@ -1,6 +1,7 @@
 //! The plant: six degrees of freedom under the coaxial map of the airframe file.
 //!
-//! With R the rotation from body to world, m the mass, J the inertia, r_i and a_i position and thrust axis of unit i:
+//! With R the rotation from body to world, m the mass, J the inertia, r_i and a_i position and
+//! thrust axis of unit i:
 //!
 //! ```text
 //! m dv/dt     = m g e_z + R sum_i a_i f_i + F
@@ -10,9 +11,10 @@
 //! f_i = (1 + flutter_i) k_f(V) f(e_upper, e_lower),   Q_i = k_Q(V) Q(e_upper, e_lower)
 //! ```
 //!
-//! f and Q are eq. (1) with the f64 coefficients of the file: the map that the coaxial mixer inverts. Unlike the mixer
-//! it has no f32 tables, and its rotors lag and differ. Left out, since the paper gives nothing to model them by: drag, ground
-//! effect, wake between units, the rotors' own angular momentum (it cancels in a contra-rotating pair).
+//! f and Q are eq. (1) with the f64 coefficients of the file: the map that the coaxial mixer
+//! inverts. Unlike the mixer it has no f32 tables, and its rotors lag and differ. Left out, since
+//! the paper gives nothing to model them by: drag, ground effect, wake between units, the rotors'
+//! own angular momentum (it cancels in a contra-rotating pair).
 
 use mixer_compiler::airframe::{Airframe, Voltage};
 use nalgebra::{Quaternion, SVector, Vector3};
@@ -54,8 +56,9 @@ pub struct Plant {
 }
 
 impl Plant {
-    /// The plant of `airframe`, whose channels must be 0 to 7 (those beyond stand still). `mismatch` is each rotor's
-    /// relative deviation in effective throttle, 0.01 being a rotor that turns one per cent faster than commanded.
+    /// The plant of `airframe`, whose channels must be 0 to 7 (those beyond stand still).
+    /// `mismatch` is each rotor's relative deviation in effective throttle, 0.01 being a rotor that
+    /// turns one per cent faster than commanded.
     pub fn new(airframe: &Airframe, mismatch: SVector<f64, ROTORS>) -> Self {
         let units = airframe.units.iter().map(|unit| Unit {
             position_m: Vector3::from(unit.position_m),

@@ -1,4 +1,5 @@
-//! The printed tables: Table II over the seeds beside the paper's, thrust command against weight (Fig. 10).
+//! The printed tables: Table II over the seeds beside the paper's, thrust command against weight
+//! (Fig. 10).
 
 use std::fmt;
 

@@ -7,7 +7,8 @@ use crate::manoeuvre::{HIGH_PHASE_S, HOVER_S};
 use crate::mixer::Method;
 use crate::vehicle::WEIGHT_N;
 
-/// Errors over the columns x, y, z: x and y over the whole manoeuvre, z over the 1.5 m phase (section V-B).
+/// Errors over the columns x, y, z: x and y over the whole manoeuvre, z over the 1.5 m phase
+/// (section V-B).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackingError {
     /// Mean squared error, m2.
@@ -69,7 +70,8 @@ impl Flight {
         }))
     }
 
-    /// Mean commanded thrust over weight in the first hover (Fig. 10): 1 if the mixer delivers what is asked.
+    /// Mean commanded thrust over weight in the first hover (Fig. 10): 1 if the mixer delivers what
+    /// is asked.
     pub fn hover_thrust(&self) -> f64 {
         let hover = self
             .samples

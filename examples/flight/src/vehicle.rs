@@ -1,4 +1,5 @@
-//! The ISAE-SUPAERO X8: its airframe file, and what section V-B of the paper and this simulation add to it.
+//! The ISAE-SUPAERO X8: its airframe file, and what section V-B of the paper and this simulation
+//! add to it.
 
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
@@ -25,7 +26,8 @@ pub const GRAVITY_M_S2: f64 = 9.80665;
 /// Weight, N: the thrust that hover takes.
 pub const WEIGHT_N: f64 = MASS_KG * GRAVITY_M_S2;
 
-/// Time constant of a rotor's first-order lag, s. The paper gives none; 0.05 s is usual for 10 inch propellers.
+/// Time constant of a rotor's first-order lag, s. The paper gives none; 0.05 s is usual for 10 inch
+/// propellers.
 pub const ROTOR_LAG_S: f64 = 0.05;
 
 /// Reads the airframe file in f64: the plant's model of the rotors.

@@ -1,4 +1,5 @@
-//! The closed loop: deterministic, stable for every seed, and with the differences that the mixers make.
+//! The closed loop: deterministic, stable for every seed, and with the differences that the mixers
+//! make.
 //!
 //! One test per scenario, because flying is what takes the time here.
 
@@ -50,7 +51,8 @@ fn assert_common(flights: &[FlightPair]) {
     for pair in flights {
         assert_stable(&pair.coaxial);
         assert_stable(&pair.conventional);
-        // Eight rotors, each 1 % off in speed and hence some 2 % in thrust: 0.7 % of deviation, three times.
+        // Eight rotors, each 1 % off in speed and hence some 2 % in thrust: 0.7 % of deviation,
+        // three times.
         let coaxial = pair.coaxial.hover_thrust();
         assert!((coaxial - 1.0).abs() < 0.021, "seed {}: {coaxial}", pair.seed);
         let conventional = pair.conventional.hover_thrust();
@@ -81,7 +83,8 @@ fn in_still_air_the_conventional_mixer_couples_more() {
         tilt: Tilt::Decoupled,
     });
     assert_common(&flights);
-    // Mismatch decides how much; on average over the seeds every axis is calmer with the coaxial mixer.
+    // Mismatch decides how much; on average over the seeds every axis is calmer with the coaxial
+    // mixer.
     for axis in 0..3 {
         let ratio = ratio(&flights, MAE, axis);
         assert!(ratio.mean < 0.9, "axis {axis}: {ratio:?}");
@@ -99,8 +102,8 @@ fn with_decoupled_tilt_unsteady_air_tells_the_mixers_apart_in_z_alone() {
         let ratio = ratio(&flights, MSE, axis);
         assert!((ratio.mean - 1.0).abs() < 0.03, "axis {axis}: {ratio:?}");
     }
-    // A loop of 1 / 1.19 of the gain lets slow disturbances through 1.19 times, 1 / 0.71 when squared; less damping
-    // near the crossover does the rest.
+    // A loop of 1 / 1.19 of the gain lets slow disturbances through 1.19 times, 1 / 0.71 when
+    // squared; less damping near the crossover does the rest.
     let z = ratio(&flights, MSE, 2);
     assert!((0.55..0.75).contains(&z.mean) && z.deviation < 0.05, "{z:?}");
 }

@@ -116,7 +116,8 @@ fn the_plant_gives_the_wrench_that_the_coaxial_mixer_was_asked_for() {
             state.throttle = throttle;
         }
         let (force, torque) = plant.rotor_wrench(&state, &SVector::zeros());
-        // The file's tolerance per unit, times k_f < 1.25: 0.0125 N on four units, 1.25e-4 N m likewise.
+        // The file's tolerance per unit, times k_f < 1.25: 0.0125 N on four units, 1.25e-4 N m
+        // likewise.
         for (axis, arm) in [(0, 0.3182), (1, 0.3182)] {
             assert!(
                 (torque[axis] - asked[axis]).abs() < 4.0 * 0.0125 * arm,

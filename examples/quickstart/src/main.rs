@@ -1,4 +1,5 @@
-//! Mixes a short sequence of setpoints for the ISAE X8: hover, climb, roll, yaw, more yaw than there is.
+//! Mixes a short sequence of setpoints for the ISAE X8: hover, climb, roll, yaw, more yaw than
+//! there is.
 
 mixer_macros::airframe!("../../airframes/isae-x8.toml");
 

@@ -14,7 +14,8 @@ const AIRMODES: [(&str, Airmode); 3] = [
     ("roll-pitch-yaw", Airmode::RollPitchYaw),
 ];
 
-/// Largest torque per thrust of a pair, N m per N: a propeller of 2 m with the other one at rest has a tenth.
+/// Largest torque per thrust of a pair, N m per N: a propeller of 2 m with the other one at rest
+/// has a tenth.
 const LARGEST_POWER_BIAS: f64 = 1.0;
 
 /// `[allocation]` with its defaults.
@@ -27,8 +28,8 @@ pub struct Allocation {
     pub axes: Vec<Axis>,
     /// Yaw moment kept available either way, N m, 0 to 1e6, and 0 where yaw is not controlled.
     pub yaw_reserve_nm: f64,
-    /// Torque per thrust of every unit for the least power, N m per N at the reference voltage, -1 to 1, and 0 where yaw
-    /// is not controlled.
+    /// Torque per thrust of every unit for the least power, N m per N at the reference voltage, -1
+    /// to 1, and 0 where yaw is not controlled.
     pub power_bias_nm_per_n: f64,
 }
 

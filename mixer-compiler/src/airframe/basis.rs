@@ -27,8 +27,8 @@ impl Basis {
         }
     }
 
-    /// Exponents (of u, of l) of each term, in the order of the file's coefficients. No term is constant: rotors
-    /// that stand still give nothing.
+    /// Exponents (of u, of l) of each term, in the order of the file's coefficients. No term is
+    /// constant: rotors that stand still give nothing.
     pub fn exponents(self) -> &'static [(u8, u8)] {
         match self {
             // u2l2, u2l, u2, ul2, ul, u, l2, l

@@ -135,7 +135,8 @@ fn polynomial(
     faults: &mut Vec<Diagnostic>,
 ) -> Option<Method> {
     let Some(field) = &inverse.degree else {
-        // A degree of a wrong shape was reported and leaves no field; saying that it is missing would be wrong.
+        // A degree of a wrong shape was reported and leaves no field; saying that it is missing
+        // would be wrong.
         if !faults.iter().any(|fault| fault.key == "inverse.degree") {
             faults.push(
                 Diagnostic::new(

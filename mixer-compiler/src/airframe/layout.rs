@@ -1,9 +1,11 @@
-//! The short form for regular frames: units on a circle, expanded to the `[[unit]]` tables that it stands for.
+//! The short form for regular frames: units on a circle, expanded to the `[[unit]]` tables that it
+//! stands for.
 //!
-//! Unit k stands at the angle first + k 360/n degrees, clockwise from the nose as seen from above, so at
-//! x = arm cos, y = arm sin. Upper rotors alternate from `first_spin` on where the count is even; where it is odd,
-//! two neighbours would have to agree, and all turn like the first, as on a Y6. `spins` says otherwise.
-//! Outputs are k for the upper and n + k for the lower rotor unless `channels` says otherwise.
+//! Unit k stands at the angle first + k 360/n degrees, clockwise from the nose as seen from above,
+//! so at x = arm cos, y = arm sin. Upper rotors alternate from `first_spin` on where the count is
+//! even; where it is odd, two neighbours would have to agree, and all turn like the first, as on a
+//! Y6. `spins` says otherwise. Outputs are k for the upper and n + k for the lower rotor unless
+//! `channels` says otherwise.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -16,13 +18,15 @@ use super::unit::{FARTHEST_M, MOST_UNITS};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::spec::{Channels, Layout, Unit};
 
-/// Coordinates below this share of the arm are the rounding of sin and cos at multiples of 90 degrees.
+/// Coordinates below this share of the arm are the rounding of sin and cos at multiples of 90
+/// degrees.
 const ROUNDING: f64 = 1e-12;
 
 /// Nearest neighbours on the circle, m.
 const NEAREST_M: f64 = 1e-3;
 
-/// The units of a layout, or `None` after noting why there are none. `bench_spin` is the default of `first_spin`.
+/// The units of a layout, or `None` after noting why there are none. `bench_spin` is the default of
+/// `first_spin`.
 pub(crate) fn expand(
     layout: &Layout,
     bench_spin: Option<Spin>,

@@ -10,8 +10,8 @@ use crate::diagnostic::{Code, Diagnostic, quoted};
 /// Longest name, in characters.
 const LONGEST: usize = 64;
 
-/// Words that a Rust module or type cannot be called (keywords of all editions, the primitive types and the crates
-/// that generated code refers to), and names that Windows keeps for devices.
+/// Words that a Rust module or type cannot be called (keywords of all editions, the primitive types
+/// and the crates that generated code refers to), and names that Windows keeps for devices.
 const RESERVED: &[&str] = &[
     "abstract", "alloc", "as", "async", "aux", "await", "become", "bool", "box", "break", "char", "con",
     "const", "continue", "core", "crate", "do", "dyn", "else", "enum", "extern", "f32", "f64", "false",
@@ -27,7 +27,8 @@ pub(super) fn module(name: &str) -> String {
     name.replace('-', "_")
 }
 
-/// `isae-x8` as a Rust type: `IsaeX8`. Between digits the separator stays, so that `x-1-1` and `x-11` differ.
+/// `isae-x8` as a Rust type: `IsaeX8`. Between digits the separator stays, so that `x-1-1` and
+/// `x-11` differ.
 pub(super) fn type_(name: &str) -> String {
     let mut type_name = String::with_capacity(name.len());
     for part in name.split(['-', '_']) {

@@ -11,8 +11,8 @@ use crate::spec::keys::POWER_TERMS;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Power {
-    /// Coefficients, W: the quartic's in their order, then a constant, as standby takes some. The power is positive over the
-    /// throttle range.
+    /// Coefficients, W: the quartic's in their order, then a constant, as standby takes some. The
+    /// power is positive over the throttle range.
     pub power_w: Vec<f64>,
 }
 
@@ -20,7 +20,8 @@ impl Power {
     /// A map that holds for throttles from `min` to `max` of both rotors.
     ///
     /// # Errors
-    /// What is wrong with it: power that is not positive, or that does not grow from idle to full throttle.
+    /// What is wrong with it: power that is not positive, or that does not grow from idle to full
+    /// throttle.
     pub fn over(power_w: Vec<f64>, [min, max]: [f64; 2]) -> Result<Power, String> {
         let along = |k: u32| min + (max - min) * f64::from(k) / f64::from(STEPS);
         let places = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |k| [along(i), along(k)]));

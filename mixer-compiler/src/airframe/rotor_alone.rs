@@ -7,14 +7,15 @@ use super::throttle::Throttle;
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
-/// `[pair.lower_out]` or `[pair.upper_out]`: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor that turns.
+/// `[pair.lower_out]` or `[pair.upper_out]`: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor
+/// that turns.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RotorAlone {
     /// a1, a2, a3 of the thrust, N; it grows with the throttle over the throttle range.
     pub thrust_n: [f64; 3],
-    /// a1, a2, a3 of the torque, N m, signed as on the bench: at full throttle below 0 for the upper rotor, above for the
-    /// lower one.
+    /// a1, a2, a3 of the torque, N m, signed as on the bench: at full throttle below 0 for the
+    /// upper rotor, above for the lower one.
     pub torque_nm: [f64; 3],
 }
 
@@ -100,7 +101,8 @@ fn value([a1, a2, a3]: [f64; 3], x: f64) -> f64 {
     ((a3 * x + a2) * x + a1) * x
 }
 
-/// The least slope over the throttle range, N, and the throttle where it is: the slope is a parabola.
+/// The least slope over the throttle range, N, and the throttle where it is: the slope is a
+/// parabola.
 fn least_slope([a1, a2, a3]: [f64; 3], throttle: &Throttle) -> (f64, f64) {
     let slope = |x: f64| (3.0 * a3 * x + 2.0 * a2) * x + a1;
     let vertex = (-a2 / (3.0 * a3)).clamp(throttle.min, throttle.max);

@@ -3,7 +3,8 @@
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
-/// Least room between idle and full throttle: less is a mistake, and none is left in single precision.
+/// Least room between idle and full throttle: less is a mistake, and none is left in single
+/// precision.
 const LEAST_THROTTLE_RANGE: f64 = 0.01;
 
 /// Range of the throttle, 0 <= min < max <= 1, at least 0.01 wide.

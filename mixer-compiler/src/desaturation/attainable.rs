@@ -1,7 +1,9 @@
-//! A small convex polygon inside the attainable set of one unit, which the general path allocates over.
+//! A small convex polygon inside the attainable set of one unit, which the general path allocates
+//! over.
 //!
-//! The set's border is the image of the throttle box's border, since the forward map is injective. The polygon starts as
-//! the largest convex part of the set. Then corners are dropped, each time the one that loses least area.
+//! The set's border is the image of the throttle box's border, since the forward map is injective.
+//! The polygon starts as the largest convex part of the set. Then corners are dropped, each time
+//! the one that loses least area.
 
 mod convex;
 
@@ -9,15 +11,16 @@ use crate::model::PairMap;
 use crate::tables::AttainableTable;
 use convex::convex_part;
 
-/// Border points per edge of the box. Where the border bends inwards it leaves the chords of its points by the square of
-/// their distance, at corners of the paper's set by 1e-6 of its size.
+/// Border points per edge of the box. Where the border bends inwards it leaves the chords of its
+/// points by the square of their distance, at corners of the paper's set by 1e-6 of its size.
 const SAMPLES: usize = 512;
 
 /// Every so many of them make the convex part.
 const COARSE: usize = 4;
 
-/// Corners at most, and the share of the area that dropping one may lose below that. Corners cost time where efforts of least norm
-/// are held to the polygon; with 0.4 % instead 23 requests of 1,992 missed the optimum by more than 1 %, with this 16 (the test
+/// Corners at most, and the share of the area that dropping one may lose below that. Corners cost
+/// time where efforts of least norm are held to the polygon; with 0.4 % instead 23 requests of
+/// 1,992 missed the optimum by more than 1 %, with this 16 (the test
 /// `any_frame_reaches_the_optimum`, the costs of shortages changed at the same time).
 const MOST_CORNERS: usize = 8;
 const LOSS: f64 = 1.5e-3;
@@ -76,8 +79,8 @@ impl Polygon {
     }
 }
 
-/// The polygon with the corners dropped that lose least, down to [`MOST_CORNERS`] and on while one loses no more than
-/// `allowed` of twice the area.
+/// The polygon with the corners dropped that lose least, down to [`MOST_CORNERS`] and on while one
+/// loses no more than `allowed` of twice the area.
 fn fewer_corners(polygon: &[[f64; 2]], allowed: f64) -> Vec<[f64; 2]> {
     let mut corners = polygon.to_vec();
     while corners.len() > 3 {
@@ -117,8 +120,9 @@ fn moments(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
     (area, moment.map(|m| m / area))
 }
 
-/// Twice the area that a closed border of an even number of points per edge encloses. Chords of a smooth border lose the
-/// square of their length: that of every other point tells how much (Richardson).
+/// Twice the area that a closed border of an even number of points per edge encloses. Chords of a
+/// smooth border lose the square of their length: that of every other point tells how much
+/// (Richardson).
 pub(crate) fn border_area(border: &[[f64; 2]]) -> f64 {
     let every_other: Vec<[f64; 2]> = border.iter().copied().step_by(2).collect();
     let (fine, coarse) = (moments(border).0, moments(&every_other).0);

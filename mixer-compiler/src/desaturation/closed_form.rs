@@ -20,11 +20,12 @@ const ROUNDING: f32 = 1e-6;
 /// Yaw that counts as none, as a share of the units' largest torques.
 const YAW_ROUNDING: f64 = 1e-5;
 
-/// A unit whose thrust changes by less than this share of the largest along the null space has no part in it.
+/// A unit whose thrust changes by less than this share of the largest along the null space has no
+/// part in it.
 const NO_PART: f64 = 1e-5;
 
-/// The table, where the layout and the priorities allow a closed form, and the share of a unit's attainable set that its
-/// border leaves out.
+/// The table, where the layout and the priorities allow a closed form, and the share of a unit's
+/// attainable set that its border leaves out.
 pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Option<(ClosedFormTable, f64)> {
     let n = airframe.units.len();
     let allocation = &airframe.allocation;
@@ -86,7 +87,8 @@ pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Optio
     Some((table, lost))
 }
 
-/// The least and the largest thrust in all (N) without roll and pitch, z as near zero as can be, that can leave yaw at zero.
+/// The least and the largest thrust in all (N) without roll and pitch, z as near zero as can be,
+/// that can leave yaw at zero.
 fn level_range(table: &ClosedFormTable) -> Option<[f32; 2]> {
     const STEPS: usize = 4000;
     let view = table.view();
@@ -147,8 +149,9 @@ fn units(
         .collect()
 }
 
-/// The facets of the zonotope of all thrusts, slopes and walls: every two units span a pair of them, or one unit and the
-/// `free` axis, or both of these where the airframe serves neither roll nor pitch.
+/// The facets of the zonotope of all thrusts, slopes and walls: every two units span a pair of
+/// them, or one unit and the `free` axis, or both of these where the airframe serves neither roll
+/// nor pitch.
 fn facets(
     columns: &[Vector3<f64>],
     free: &[Vector3<f64>],
@@ -191,8 +194,8 @@ fn facets(
     (slopes, walls)
 }
 
-/// Thrusts that give no roll, pitch and thrust but along the `free` axes, the largest being 1; zeros where there are
-/// none.
+/// Thrusts that give no roll, pitch and thrust but along the `free` axes, the largest being 1;
+/// zeros where there are none.
 fn null_vector(columns: &[Vector3<f64>], free: &[Vector3<f64>]) -> Vec<f64> {
     let [a, b, c, d] = &[columns, free].concat()[..] else {
         return vec![0.0; columns.len()];

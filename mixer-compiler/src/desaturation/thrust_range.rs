@@ -12,8 +12,8 @@ const BEYOND_N: f32 = 1e5;
 /// Halvings of the thrusts between one that is delivered and one that is not.
 const HALVINGS: usize = 24;
 
-/// Least and largest thrust without roll, pitch and yaw, N at the reference voltage, within the polygon that the general
-/// way knows of the attainable set.
+/// Least and largest thrust without roll, pitch and yaw, N at the reference voltage, within the
+/// polygon that the general way knows of the attainable set.
 ///
 /// # Errors
 /// A layout that cannot hover: at no thrust, or at a single one only, the served torques vanish.
@@ -43,8 +43,8 @@ pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<
     }
 }
 
-/// The same with the tables that are emitted, whose closed form may know more of the attainable set than the polygon:
-/// from the ends `within` the polygon outwards.
+/// The same with the tables that are emitted, whose closed form may know more of the attainable set
+/// than the polygon: from the ends `within` the polygon outwards.
 pub(crate) fn delivered_range(
     airframe: &Airframe,
     tables: &MixerTables,

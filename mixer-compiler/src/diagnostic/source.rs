@@ -27,8 +27,8 @@ impl Source {
         }
     }
 
-    /// The place of a byte offset. Offsets past the end or inside a character are moved back to the nearest
-    /// character boundary.
+    /// The place of a byte offset. Offsets past the end or inside a character are moved back to the
+    /// nearest character boundary.
     pub fn place(&self, offset: usize) -> Place {
         let before = &self.text[..self.boundary(offset)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -43,7 +43,8 @@ impl Source {
         }
     }
 
-    /// The places of ascending byte offsets, in one pass over the text; those of descending ones are found each by itself.
+    /// The places of ascending byte offsets, in one pass over the text; those of descending ones
+    /// are found each by itself.
     pub(crate) fn places(&self, offsets: impl Iterator<Item = Option<usize>>) -> Vec<Option<Place>> {
         let mut counted = 0;
         let mut place = Place { line: 1, column: 1 };

@@ -1,7 +1,7 @@
 //! Words and numbers as a user would write them, and what the user may have meant.
 
-/// The candidate nearest to `word`: within a third of its letters in edits, case and separators aside, or else one
-/// that continues it (`arm` for `arm_m`). `None` where nothing is near.
+/// The candidate nearest to `word`: within a third of its letters in edits, case and separators
+/// aside, or else one that continues it (`arm` for `arm_m`). `None` where nothing is near.
 pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Distances cost the product of the lengths; no key is nearly this long.
     if word.len() > 64 {
@@ -55,7 +55,8 @@ pub(crate) fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// A number as the file may have it: no `.0`, an exponent only where zeros would have to be counted.
+/// A number as the file may have it: no `.0`, an exponent only where zeros would have to be
+/// counted.
 pub(crate) fn number(x: f64) -> String {
     if x != 0.0 && !(1e-4..1e7).contains(&x.abs()) {
         format!("{x:e}")

@@ -1,9 +1,10 @@
 //! Fits of the inverse map: efforts (f, Q) to throttles (u, l).
 //!
-//! Samples are throttles on a grid with the efforts they give, so the whole attainable set is covered, its border
-//! included. Fits are least squares with Lawson's weights: after each solution every sample's weight is multiplied
-//! by a power of its error in the efforts, *measured after the evaluator's Newton steps*, which drives the fit
-//! towards the least possible maximum of what the mixer really misses.
+//! Samples are throttles on a grid with the efforts they give, so the whole attainable set is
+//! covered, its border included. Fits are least squares with Lawson's weights: after each solution
+//! every sample's weight is multiplied by a power of its error in the efforts, *measured after the
+//! evaluator's Newton steps*, which drives the fit towards the least possible maximum of what the
+//! mixer really misses.
 
 mod coordinates;
 mod lawson;
@@ -74,8 +75,8 @@ pub(crate) struct Inversion<'a> {
 }
 
 impl<'a> Inversion<'a> {
-    /// Inversion of `pair` to `tolerance` `[N, N m]`. Unless it is to be `thorough`, a fit that cannot meet the
-    /// tolerance is given up early.
+    /// Inversion of `pair` to `tolerance` `[N, N m]`. Unless it is to be `thorough`, a fit that
+    /// cannot meet the tolerance is given up early.
     pub(crate) fn new(pair: &'a PairMap, tolerance: [f64; 2], thorough: bool) -> Self {
         let fold = next_to_a_fold(pair);
         Inversion {
@@ -88,7 +89,8 @@ impl<'a> Inversion<'a> {
         }
     }
 
-    /// Fits an evaluator. Returns it with its largest error over the samples in units of the tolerance.
+    /// Fits an evaluator. Returns it with its largest error over the samples in units of the
+    /// tolerance.
     pub(crate) fn fit(&mut self, evaluator: Evaluator) -> (FittedInverse, f64) {
         match evaluator {
             Evaluator::Polynomial { degree } => self.fit_polynomial(degree),
@@ -96,8 +98,8 @@ impl<'a> Inversion<'a> {
         }
     }
 
-    /// Fits a seed for Newton steps, in the best of the starts' coordinates; where not much is missing then,
-    /// coordinates are searched for this very form.
+    /// Fits a seed for Newton steps, in the best of the starts' coordinates; where not much is
+    /// missing then, coordinates are searched for this very form.
     fn fit_seed(&mut self, seed: SeedForm, steps: u8) -> (FittedInverse, f64) {
         let mut best = (self.start(0), Start::ALL[0], f64::INFINITY);
         for (index, start) in Start::ALL.into_iter().enumerate() {

@@ -1,7 +1,8 @@
 //! Bernstein coefficients of a polynomial of one variable, in f64.
 //!
-//! On [0, 1] the power s^i is the sum over k >= i of C(k, i) / C(n, i) B_k(s). A polynomial lies between its least and
-//! its greatest Bernstein coefficient, and the first and the last are its values at the ends.
+//! On [0, 1] the power s^i is the sum over k >= i of C(k, i) / C(n, i) B_k(s). A polynomial lies
+//! between its least and its greatest Bernstein coefficient, and the first and the last are its
+//! values at the ends.
 
 /// Power coefficients in t, at least one, to as many Bernstein coefficients on [a, b].
 pub fn coefficients(power: &[f64], [a, b]: [f64; 2]) -> Vec<f64> {

@@ -1,11 +1,13 @@
 //! Effectiveness M and its pseudo-inverse M+.
 //!
-//! A unit at r with unit thrust axis a gives the force f a and, about the centre of gravity, the torque r x (f a);
-//! the reaction of its rotors adds -s Q a (for a = (0, 0, -1): s Q about z, clockwise positive). Thrust counts
-//! upwards, T = -f a_z. With eta = [f_1 .. f_n, Q_1 .. Q_n] this is u = M eta, M being 4 x 2n (eq. (5)); for
-//! vertical axes its rows are eq. (4). The least-norm solution is eta = M+ u (eq. (7), (8)).
+//! A unit at r with unit thrust axis a gives the force f a and, about the centre of gravity, the
+//! torque r x (f a); the reaction of its rotors adds -s Q a (for a = (0, 0, -1): s Q about z,
+//! clockwise positive). Thrust counts upwards, T = -f a_z. With eta = [f_1 .. f_n, Q_1 .. Q_n] this
+//! is u = M eta, M being 4 x 2n (eq. (5)); for vertical axes its rows are eq. (4). The least-norm
+//! solution is eta = M+ u (eq. (7), (8)).
 //!
-//! An airframe may leave axes out: their rows are dropped before inversion and their columns of M+ are zero.
+//! An airframe may leave axes out: their rows are dropped before inversion and their columns of M+
+//! are zero.
 
 use nalgebra::{DMatrix, Matrix4xX, MatrixXx4};
 
@@ -25,7 +27,8 @@ pub struct Effectiveness {
     pub condition: f64,
 }
 
-/// Singular values below this share of the largest count as zero: geometry is known to a millimetre in a metre.
+/// Singular values below this share of the largest count as zero: geometry is known to a millimetre
+/// in a metre.
 const RANK_TOLERANCE: f64 = 1e-6;
 
 impl Effectiveness {
@@ -89,13 +92,14 @@ fn matrix(airframe: &Airframe) -> Matrix4xX<f64> {
     matrix
 }
 
-/// Rounding residues of the SVD (a few units in the last place of the largest entry) become the zeros they stand
-/// for: symmetric frames then have sparse tables.
+/// Rounding residues of the SVD (a few units in the last place of the largest entry) become the
+/// zeros they stand for: symmetric frames then have sparse tables.
 fn clean(x: f64, largest: f64) -> f64 {
     if x.abs() < 1e-14 * largest { 0.0 } else { x }
 }
 
-/// The order in which axes claim the layout: what comes later is what a deficient layout cannot produce.
+/// The order in which axes claim the layout: what comes later is what a deficient layout cannot
+/// produce.
 const CLAIMS: [Axis; 4] = [Axis::Thrust, Axis::Roll, Axis::Pitch, Axis::Yaw];
 
 /// Names the axes that cannot be produced: those whose row adds nothing to the rows before it.

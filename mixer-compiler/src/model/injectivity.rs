@@ -1,15 +1,16 @@
 //! Can the forward map be inverted over the whole throttle box?
 //!
-//! Locally it can where det J > 0, J the Jacobian of (f, Q) by (u, l). Globally a map with a P-matrix Jacobian
-//! (all principal minors positive) is injective on a box (Gale and Nikaido 1965). The principal minors of J itself
-//! need not be positive, but those of
+//! Locally it can where det J > 0, J the Jacobian of (f, Q) by (u, l). Globally a map with a
+//! P-matrix Jacobian (all principal minors positive) is injective on a box (Gale and Nikaido 1965).
+//! The principal minors of J itself need not be positive, but those of
 //!
 //! ```text
 //! g = f/F - a Q/T,   h = Q/T + b f/F      a, b >= 0,  F, T scales
 //! ```
 //!
-//! are, for some a and b, when dg/du > 0 and dh/dl > 0; and det d(g, h) = (1 + a b) det J / (F T). An invertible
-//! linear change of the outputs changes nothing about injectivity. All signs are proven by [`Bivariate`].
+//! are, for some a and b, when dg/du > 0 and dh/dl > 0; and det d(g, h) = (1 + a b) det J / (F T).
+//! An invertible linear change of the outputs changes nothing about injectivity. All signs are
+//! proven by [`Bivariate`].
 
 use crate::airframe::{Airframe, Basis, Pair};
 use crate::diagnostic::{Code, Diagnostic, rounded};
@@ -71,7 +72,8 @@ impl ForwardMap {
         let determinant = thrust[0]
             .times(&torque[1])
             .plus(minus, &thrust[1].times(&torque[0]));
-        // The size of thrust is its value at full throttle, that of torque its range over the diagonal's ends.
+        // The size of thrust is its value at full throttle, that of torque its range over the
+        // diagonal's ends.
         let corner = |coefficients: &[f64], u: f64, l: f64| value(exponents, coefficients, u, l).abs();
         let size = |c: &[f64]| {
             corner(c, 1.0, 1.0)
@@ -143,7 +145,8 @@ impl ForwardMap {
         0.5 * (value.low + value.high)
     }
 
-    /// The worst of the point found, the corners and a grid, so that the message shows the heart of the fold.
+    /// The worst of the point found, the corners and a grid, so that the message shows the heart of
+    /// the fold.
     fn fold(&self, ThrottleBox { low, high }: ThrottleBox, found: [f64; 2]) -> Fold {
         let corners = [[low, low], [low, high], [high, low], [high, high]];
         if corners.into_iter().all(|at| self.determinant_at(at) < 0.0) {
@@ -193,8 +196,8 @@ impl ForwardMap {
     }
 }
 
-/// Proves that the airframe's forward map can be inverted over its throttle range; returns the proof and the least
-/// idle for which it holds.
+/// Proves that the airframe's forward map can be inverted over its throttle range; returns the
+/// proof and the least idle for which it holds.
 ///
 /// # Errors
 /// A fold, at `throttle.min` with the least idle that would do, or a torque of the wrong sign.

@@ -1,7 +1,8 @@
 //! Interval arithmetic with outward rounding.
 //!
-//! Each operation rounds to nearest and then moves both ends one float outwards, which encloses the exact result
-//! (round to nearest is at most half a unit in the last place off). Exact zeros stay exact.
+//! Each operation rounds to nearest and then moves both ends one float outwards, which encloses the
+//! exact result (round to nearest is at most half a unit in the last place off). Exact zeros stay
+//! exact.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -106,7 +107,8 @@ impl Mul for Interval {
 mod tests {
     use super::*;
 
-    /// Sums and products of floats with 26-bit mantissas are exact in f64 when few: a reference without rounding.
+    /// Sums and products of floats with 26-bit mantissas are exact in f64 when few: a reference
+    /// without rounding.
     #[test]
     fn encloses_exact_results() {
         let mut state = 7u64;

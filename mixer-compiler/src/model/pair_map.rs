@@ -1,4 +1,5 @@
-//! The forward map of one unit in f64, with its Jacobian: what inverses are fitted to and checked against.
+//! The forward map of one unit in f64, with its Jacobian: what inverses are fitted to and checked
+//! against.
 
 use crate::airframe::{Pair, Throttle};
 
@@ -50,7 +51,8 @@ impl PairMap {
 
     /// Efforts `[f, Q]` at throttles `[u, l]`, N and N m.
     pub fn efforts(&self, [u, l]: [f64; 2]) -> [f64; 2] {
-        // Plain loops, here and below: fits in builds without optimisation spend half of their time here.
+        // Plain loops, here and below: fits in builds without optimisation spend half of their time
+        // here.
         let (mut f, mut q) = (0.0, 0.0);
         let mut i = self.rows;
         while i > 0 {
@@ -124,14 +126,14 @@ impl PairMap {
         throttle.clamp(self.range[0], self.range[1])
     }
 
-    /// Throttles on a `points` x `points` grid over the range that is denser towards the edges (Chebyshev's
-    /// extrema), corners included.
+    /// Throttles on a `points` x `points` grid over the range that is denser towards the edges
+    /// (Chebyshev's extrema), corners included.
     pub fn grid(&self, points: usize) -> Vec<[f64; 2]> {
         squared(&self.nodes(points))
     }
 
-    /// [`PairMap::grid`] with two more lines along every edge of the box: next to a fold an inverse bends within
-    /// less than the grid's first step.
+    /// [`PairMap::grid`] with two more lines along every edge of the box: next to a fold an inverse
+    /// bends within less than the grid's first step.
     pub fn edge_grid(&self, points: usize) -> Vec<[f64; 2]> {
         let [low, high] = self.range;
         let mut nodes = self.nodes(points);
@@ -156,8 +158,9 @@ impl PairMap {
         (0..points).map(node).collect()
     }
 
-    /// `points` throttles along the border of the box, anticlockwise in the plane of (f, Q): since det J > 0 the
-    /// map keeps the sense of rotation. Starts at idle, corners included once each; `points` is per edge.
+    /// `points` throttles along the border of the box, anticlockwise in the plane of (f, Q): since
+    /// det J > 0 the map keeps the sense of rotation. Starts at idle, corners included once each;
+    /// `points` is per edge.
     pub fn border(&self, points: usize) -> Vec<[f64; 2]> {
         let [low, high] = self.range;
         let at = |k: usize| low + (high - low) * k as f64 / points as f64;
@@ -169,8 +172,8 @@ impl PairMap {
         border
     }
 
-    /// The efforts `[f, Q]` along the border of the attainable set, over [`PairMap::scale`]; points as in
-    /// [`PairMap::border`].
+    /// The efforts `[f, Q]` along the border of the attainable set, over [`PairMap::scale`]; points
+    /// as in [`PairMap::border`].
     pub(crate) fn scaled_border(&self, points: usize) -> Vec<[f64; 2]> {
         let scale = self.scale();
         let scaled = |throttles| {
@@ -180,8 +183,8 @@ impl PairMap {
         self.border(points).into_iter().map(scaled).collect()
     }
 
-    /// The efforts `[f, Q]` on the box's diagonal, which runs through the attainable set from its idle corner to its full
-    /// one, in `steps` steps.
+    /// The efforts `[f, Q]` on the box's diagonal, which runs through the attainable set from its
+    /// idle corner to its full one, in `steps` steps.
     pub(crate) fn diagonal(&self, steps: usize) -> impl Iterator<Item = [f64; 2]> {
         let [low, high] = self.range;
         (0..=steps).map(move |k| self.efforts([low + (high - low) * k as f64 / steps as f64; 2]))

@@ -1,8 +1,9 @@
 //! Polynomials of both throttles, and their sign over a box.
 //!
-//! On a box, a polynomial written in the Bernstein basis lies between its smallest and its largest coefficient.
-//! Halving the box by de Casteljau's scheme makes those bounds converge quadratically, so a sign is proven in a
-//! few halvings. Coefficients are intervals throughout: what is proven holds in exact arithmetic.
+//! On a box, a polynomial written in the Bernstein basis lies between its smallest and its largest
+//! coefficient. Halving the box by de Casteljau's scheme makes those bounds converge quadratically,
+//! so a sign is proven in a few halvings. Coefficients are intervals throughout: what is proven
+//! holds in exact arithmetic.
 
 use crate::model::bernstein::binomial;
 use crate::model::interval::Interval;
@@ -46,8 +47,8 @@ pub enum Sign {
 const MOST_BOXES: usize = 4096;
 
 impl Bivariate {
-    /// From terms `(exponent of u, exponent of l)` and their coefficients, taken as exact; one that is not finite may
-    /// be any number, so that nothing is proven of it.
+    /// From terms `(exponent of u, exponent of l)` and their coefficients, taken as exact; one that
+    /// is not finite may be any number, so that nothing is proven of it.
     pub fn from_terms(exponents: &[(u8, u8)], coefficients: &[f64]) -> Self {
         let most = |pick: fn(&(u8, u8)) -> u8| exponents.iter().map(pick).max().map_or(0, usize::from);
         let mut rows = vec![vec![Interval::ZERO; most(|e| e.1) + 1]; most(|e| e.0) + 1];
@@ -199,8 +200,8 @@ impl Bivariate {
     }
 }
 
-/// Bernstein coefficients on `[low, high]` of `sum c[i] x^i`: substitute `x = low + (high - low) t` (Horner), then
-/// `b[k] = sum over i <= k of C(k, i) / C(n, i) c[i]`.
+/// Bernstein coefficients on `[low, high]` of `sum c[i] x^i`: substitute `x = low + (high - low) t`
+/// (Horner), then `b[k] = sum over i <= k of C(k, i) / C(n, i) c[i]`.
 fn univariate_bernstein(coefficients: &[Interval], throttle: ThrottleBox) -> Vec<Interval> {
     let degree = coefficients.len() - 1;
     let low = Interval::exact(throttle.low);
@@ -250,8 +251,9 @@ impl Patch {
         [middle, [u0, l0], [u0, l1], [u1, l0], [u1, l1]]
     }
 
-    /// Halves the longer side. The middle is a float; de Casteljau at one half is about the exact middle, which
-    /// differs by rounding only, and corners are used for refutation, never for the proof.
+    /// Halves the longer side. The middle is a float; de Casteljau at one half is about the exact
+    /// middle, which differs by rounding only, and corners are used for refutation, never for the
+    /// proof.
     fn halves(self) -> [Patch; 2] {
         let along_u = self.high[0] - self.low[0] >= self.high[1] - self.low[1];
         let axis = usize::from(!along_u);

@@ -1,7 +1,7 @@
 //! The voltage correction as the runtime evaluates it.
 //!
-//! Polynomials and points are taken over; an exponent law k = (V / Vref)^e is fitted over the range by Chebyshev
-//! interpolation, since there is no power function in a mixer.
+//! Polynomials and points are taken over; an exponent law k = (V / Vref)^e is fitted over the range
+//! by Chebyshev interpolation, since there is no power function in a mixer.
 
 use crate::airframe::{Airframe, Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic};
@@ -28,7 +28,8 @@ pub fn largest_factors(airframe: &Airframe) -> [f64; 2] {
         .fold([0.0, 0.0], |[f, q], [k_f, k_q]| [k_f.max(f), k_q.max(q)])
 }
 
-/// Correction factors `[k_f, k_Q]` at voltages over the whole range, both ends and the points of a law included.
+/// Correction factors `[k_f, k_Q]` at voltages over the whole range, both ends and the points of a
+/// law included.
 pub fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
     let Some(voltage) = &airframe.voltage else {
         return vec![[1.0, 1.0]];

@@ -1,7 +1,8 @@
-//! Every evaluator for one airframe, with what it costs and what it misses: why the choice fell as it did.
+//! Every evaluator for one airframe, with what it costs and what it misses: why the choice fell as
+//! it did.
 //!
-//! This fits and proves all of them, which takes seconds without optimisation. It is for reports; [`compile`]
-//! stops at the first that is proven.
+//! This fits and proves all of them, which takes seconds without optimisation. It is for reports;
+//! [`compile`] stops at the first that is proven.
 //!
 //! [`compile`]: crate::compile
 

@@ -1,5 +1,6 @@
-//! What to look at on the bench before the first flight: which output drives which rotor, how it turns, and which outputs
-//! rise for roll, pitch, yaw and thrust. Mirrored spins and exchanged channels are found so.
+//! What to look at on the bench before the first flight: which output drives which rotor, how it
+//! turns, and which outputs rise for roll, pitch, yaw and thrust. Mirrored spins and exchanged
+//! channels are found so.
 
 use std::fmt;
 
@@ -60,7 +61,8 @@ impl fmt::Display for Checklist<'_> {
 }
 
 impl Checklist<'_> {
-    /// The outputs that rise where the axis is asked, most of all first; `None` where it is not served or not delivered.
+    /// The outputs that rise where the axis is asked, most of all first; `None` where it is not
+    /// served or not delivered.
     pub fn rising(&self, axis: Axis) -> Option<Vec<String>> {
         let compiled = self.0;
         if !compiled.airframe.allocation.controls(axis) {

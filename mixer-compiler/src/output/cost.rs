@@ -1,15 +1,17 @@
 //! What a mix costs on a Cortex-M4F.
 //!
-//! The inverse map is counted on its own, evaluator by evaluator ([`crate::inverse::evaluator::cost`]). A mix of n units that
-//! delivers the request by least norm takes about
+//! The inverse map is counted on its own, evaluator by evaluator
+//! ([`crate::inverse::evaluator::cost`]). A mix of n units that delivers the request by least norm
+//! takes about
 //!
 //! ```text
 //! per_mix + n (per_unit + evaluator) + per_voltage where the airframe has a voltage correction
 //! ```
 //!
-//! instructions, the median over attainable requests. The overheads are fitted to whole mixers, counted request by
-//! request in QEMU, apart for the [`Kind`]s of mixers; for those in closed form the mean over attainable requests is
-//! modelled likewise. Any other request costs at most what the code does at most (`cost/bound.rs`).
+//! instructions, the median over attainable requests. The overheads are fitted to whole mixers,
+//! counted request by request in QEMU, apart for the [`Kind`]s of mixers; for those in closed form
+//! the mean over attainable requests is modelled likewise. Any other request costs at most what the
+//! code does at most (`cost/bound.rs`).
 
 mod bound;
 mod counted;
@@ -61,7 +63,8 @@ pub struct Counted {
     pub per_voltage: f64,
     /// Requests that least norm delivers, of mixers that desaturate in closed form.
     pub closed_form: Overhead,
-    /// The mean over attainable requests of the same mixers, some of which least norm does not deliver.
+    /// The mean over attainable requests of the same mixers, some of which least norm does not
+    /// deliver.
     pub closed_form_mean: Overhead,
     /// Requests that least norm delivers, of all other mixers.
     pub general: Overhead,
@@ -92,7 +95,8 @@ impl Counted {
         (kind == Kind::ClosedForm).then_some(self.closed_form_mean)
     }
 
-    /// Instructions of a mix with as many `units`, whose evaluator takes `one` instructions for each.
+    /// Instructions of a mix with as many `units`, whose evaluator takes `one` instructions for
+    /// each.
     pub fn mix(&self, overhead: Overhead, units: usize, one: u32, voltage: bool) -> f64 {
         let voltage = if voltage { self.per_voltage } else { 0.0 };
         overhead.per_mix + units as f64 * (overhead.per_unit + f64::from(one)) + voltage
@@ -116,13 +120,15 @@ pub struct Cost {
     pub delivered_instructions: Option<u32>,
     /// Largest error of this estimate over counted frames, as a share.
     pub delivered_error: f64,
-    /// The mean of mixes of attainable requests, estimated; `None` where it depends on the frame too much.
+    /// The mean of mixes of attainable requests, estimated; `None` where it depends on the frame
+    /// too much.
     pub attainable_instructions: Option<u32>,
     /// Largest error of this estimate over counted frames, as a share.
     pub attainable_error: Option<f64>,
     /// How the mixer desaturates.
     pub desaturation: Kind,
-    /// The most that any request takes, by what the code does at most; `None` where no bound is stated.
+    /// The most that any request takes, by what the code does at most; `None` where no bound is
+    /// stated.
     pub bound_instructions: Option<u32>,
     /// Bytes of the inverse map's own constants.
     pub inverse_bytes: usize,
@@ -160,7 +166,8 @@ impl Cost {
     }
 }
 
-/// Instructions of a mix that delivers the request by least norm, were the inverse map evaluated by `evaluator`.
+/// Instructions of a mix that delivers the request by least norm, were the inverse map evaluated by
+/// `evaluator`.
 pub fn delivered(compiled: &Compiled, evaluator: Evaluator) -> Option<u32> {
     mix(compiled, evaluator, COUNTED.delivered(Kind::of(compiled)))
 }

@@ -30,7 +30,8 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             pub const UNITS: usize = #units;
             /// Number of output channels, two per unit.
             pub const CHANNELS: usize = #channels;
-            /// What one unit of a normalised setpoint asks for: see `mixer_rt::Wrench::from_normalised`.
+            /// What one unit of a normalised setpoint asks for: see
+            /// `mixer_rt::Wrench::from_normalised`.
             pub const SCALE: rt::Wrench = rt::Wrench {
                 roll_nm: #roll,
                 pitch_nm: #pitch,
@@ -87,10 +88,12 @@ fn mixer_type(compiled: &Compiled) -> TokenStream {
 /// The functions that firmware calls: the same for all airframes.
 fn functions() -> TokenStream {
     quote! {
-        /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage (V).
+        /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
+        /// (V).
         ///
         /// # Errors
-        /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a correction.
+        /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
+        /// correction.
         #[inline]
         pub fn mix(
             setpoint: &rt::Wrench,

@@ -1,4 +1,5 @@
-//! The vehicle in hover, by the mixer itself: throttles, what is left of roll, pitch and yaw, thrust over weight.
+//! The vehicle in hover, by the mixer itself: throttles, what is left of roll, pitch and yaw,
+//! thrust over weight.
 
 use std::fmt;
 
@@ -11,7 +12,8 @@ use crate::compiled::Compiled;
 /// How finely a largest torque is looked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Search {
-    /// Torques tried over the whole range. The largest that is delivered counts, whatever was missed before it.
+    /// Torques tried over the whole range. The largest that is delivered counts, whatever was
+    /// missed before it.
     pub steps: usize,
     /// Halvings from there to the next one tried.
     pub halvings: usize,
@@ -24,7 +26,8 @@ impl Search {
         halvings: 12,
     };
 
-    /// The largest number up to `end` that is `delivered`, whatever is missed before it; 0 where not even 0 is.
+    /// The largest number up to `end` that is `delivered`, whatever is missed before it; 0 where
+    /// not even 0 is.
     pub fn largest(self, end: f64, delivered: impl Fn(f64) -> bool) -> f64 {
         let step = end / self.steps as f64;
         let Some(last) = (0..=self.steps).rev().find(|&k| delivered(k as f64 * step)) else {
@@ -68,7 +71,8 @@ pub struct HoverAt {
     pub upper_throttle: Option<f64>,
     /// Mean throttle of the lower rotors, likewise.
     pub lower_throttle: Option<f64>,
-    /// Largest torques `[negative, positive]` about the served axes that are delivered with the weight, each alone, N m.
+    /// Largest torques `[negative, positive]` about the served axes that are delivered with the
+    /// weight, each alone, N m.
     pub margins: Vec<Margin>,
 }
 
@@ -107,7 +111,8 @@ impl Hover {
 }
 
 impl HoverAt {
-    /// What is left beside a thrust of `weight_n` N at a voltage, V; any where the airframe ignores it.
+    /// What is left beside a thrust of `weight_n` N at a voltage, V; any where the airframe ignores
+    /// it.
     pub fn new(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Self {
         let tables = &compiled.tables;
         // Throttles where all of the wrench is delivered.

@@ -1,8 +1,10 @@
-//! Tables of the mixers that take every rotor of a coaxial frame as isolated: what [`mixer_rt::baselines`] runs on.
+//! Tables of the mixers that take every rotor of a coaxial frame as isolated: what
+//! [`mixer_rt::baselines`] runs on.
 //!
-//! Its thrust is the upper rotor's alone, f(d, 0); kappa of its torque is by least squares of |Q(d, 0)| = kappa
-//! f(d, 0) over the throttle range. Rotor k of unit i contributes the column M_f,i -/+ kappa M_Q,i to the wrench
-//! (upper -, lower +: a pair's torque is positive where the lower rotor outweighs the upper), a 4 x 2n matrix B.
+//! Its thrust is the upper rotor's alone, f(d, 0); kappa of its torque is by least squares of |Q(d,
+//! 0)| = kappa f(d, 0) over the throttle range. Rotor k of unit i contributes the column M_f,i -/+
+//! kappa M_Q,i to the wrench (upper -, lower +: a pair's torque is positive where the lower rotor
+//! outweighs the upper), a 4 x 2n matrix B.
 
 use mixer_rt::baselines::{IsolatedRotor, IsolatedRotors, ThrustCurve};
 use mixer_rt::{
@@ -43,8 +45,8 @@ pub struct IsolatedTables {
     pub voltage: Option<VoltageTable>,
     /// kappa = Q / f of one rotor, m.
     pub kappa_m: f64,
-    /// B, 4 x 2n: `[roll, pitch, yaw, thrust]` per N of the rotor at an output channel. Axes that are not served
-    /// are zero.
+    /// B, 4 x 2n: `[roll, pitch, yaw, thrust]` per N of the rotor at an output channel. Axes that
+    /// are not served are zero.
     pub effectiveness: DMatrix<f64>,
 }
 
@@ -124,8 +126,8 @@ impl IsolatedTables {
         Ok((throttle, within))
     }
 
-    /// A Rust expression of type `mixer_rt::baselines::IsolatedRotors<'static>`; `voltage` is the expression of its
-    /// voltage correction.
+    /// A Rust expression of type `mixer_rt::baselines::IsolatedRotors<'static>`; `voltage` is the
+    /// expression of its voltage correction.
     pub fn tokens(&self, voltage: &TokenStream) -> TokenStream {
         let rotors = self.rotors.iter().map(|rotor| {
             let IsolatedRotor {
@@ -191,8 +193,9 @@ fn pseudo_inverse(columns: &DMatrix<f64>) -> DMatrix<f64> {
         .unwrap_or_else(|_| DMatrix::zeros(columns.ncols(), columns.nrows()))
 }
 
-/// What PX4 divides the columns of B+ by (`updateControlAllocationMatrixScale`): roll and pitch by the larger of
-/// their root mean squares times sqrt 2, yaw by its largest share, thrust by its mean. 1 for a column of zeros.
+/// What PX4 divides the columns of B+ by (`updateControlAllocationMatrixScale`): roll and pitch by
+/// the larger of their root mean squares times sqrt 2, yaw by its largest share, thrust by its
+/// mean. 1 for a column of zeros.
 fn desaturation_scale(allocation: &DMatrix<f64>) -> [f64; 4] {
     let column = |axis: usize| -> Vec<f64> {
         let shares = (0..allocation.nrows()).map(|rotor| allocation[(rotor, axis)].abs());

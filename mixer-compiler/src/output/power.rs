@@ -1,4 +1,5 @@
-//! Electrical power in level flight and its saving by the power bias, by the mixer itself and the file's power map.
+//! Electrical power in level flight and its saving by the power bias, by the mixer itself and the
+//! file's power map.
 
 use std::fmt;
 
@@ -30,7 +31,8 @@ pub struct LevelPower {
 }
 
 impl LevelPower {
-    /// Of a compiled airframe; `None` where the file has no power map, or the thrust is not attainable.
+    /// Of a compiled airframe; `None` where the file has no power map, or the thrust is not
+    /// attainable.
     pub fn new(compiled: &Compiled) -> Option<LevelPower> {
         let weight = compiled
             .airframe

@@ -47,14 +47,16 @@ pub struct Summary {
     pub condition: f64,
     /// Served axes.
     pub axes: Vec<&'static str>,
-    /// Share of the attainable set's area that the mixer's polygon inside it leaves out, what its inward bends cost
-    /// included.
+    /// Share of the attainable set's area that the mixer's polygon inside it leaves out, what its
+    /// inward bends cost included.
     pub attainable_area_lost: f64,
     /// What the inward bends cost alone, of any convex polygon.
     pub attainable_area_lost_to_convexity: f64,
-    /// Share of it that the sides leave out which the mixer reads instead where it desaturates in closed form.
+    /// Share of it that the sides leave out which the mixer reads instead where it desaturates in
+    /// closed form.
     pub attainable_area_lost_in_closed_form: Option<f64>,
-    /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque, N.
+    /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque,
+    /// N.
     pub thrust_range_n: [f32; 2],
     /// The vehicle in hover; null where the file has no mass.
     pub hover: Option<Hover>,

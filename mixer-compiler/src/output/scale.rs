@@ -1,8 +1,10 @@
-//! What one unit of a normalised setpoint is: N m per unit of roll, pitch and yaw, N per unit of thrust.
+//! What one unit of a normalised setpoint is: N m per unit of roll, pitch and yaw, N per unit of
+//! thrust.
 //!
-//! Flight stacks speak [-1, 1] and [0, 1]. PX4 gives these numbers their meaning by normalising its mixing matrix
-//! (`ControlAllocationPseudoInverse::updateControlAllocationMatrixScale`). A rotor is taken as isolated there; with the
-//! largest thrust c and the largest torque d of each rotor, its columns of the effectiveness B are
+//! Flight stacks speak [-1, 1] and [0, 1]. PX4 gives these numbers their meaning by normalising its
+//! mixing matrix (`ControlAllocationPseudoInverse::updateControlAllocationMatrixScale`). A rotor is
+//! taken as isolated there; with the largest thrust c and the largest torque d of each rotor, its
+//! columns of the effectiveness B are
 //!
 //! ```text
 //! B_upper = c M_f - d M_Q,   B_lower = c M_f + d M_Q,   c = f(max, max) / 2,   d = (Q(min, max) - Q(max, min)) / 2
@@ -16,7 +18,8 @@
 //! thrust        the mean of the absolute entries
 //! ```
 //!
-//! Hence one unit of a setpoint asks for the reciprocals, and a stack's gains keep their meaning on this frame.
+//! Hence one unit of a setpoint asks for the reciprocals, and a stack's gains keep their meaning on
+//! this frame.
 
 use mixer_rt::Wrench;
 use nalgebra::DMatrix;
@@ -25,13 +28,15 @@ use crate::airframe::Airframe;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 
-/// Below this share of a column's largest entry a rotor has no part in an axis: rounding of the decomposition.
+/// Below this share of a column's largest entry a rotor has no part in an axis: rounding of the
+/// decomposition.
 const NO_SHARE: f64 = 1e-9;
 
 /// Singular values below this share of the largest count as zero, as for M.
 const RANK_TOLERANCE: f64 = 1e-6;
 
-/// Wrench that one unit of a normalised setpoint asks for at the reference voltage; zero on axes that are not served.
+/// Wrench that one unit of a normalised setpoint asks for at the reference voltage; zero on axes
+/// that are not served.
 pub(crate) fn scale(airframe: &Airframe, effectiveness: &Effectiveness) -> Wrench {
     let columns = rotor_columns(airframe, effectiveness);
     let svd = columns.svd(true, true);
@@ -113,7 +118,8 @@ mod tests {
         );
     }
 
-    /// By hand, from PX4's formulas: with eight rotors at (+-a, +-a), every entry of B+ is 1/(8 c a), 1/(8 d), 1/(8 c).
+    /// By hand, from PX4's formulas: with eight rotors at (+-a, +-a), every entry of B+ is 1/(8 c
+    /// a), 1/(8 d), 1/(8 c).
     #[test]
     fn an_x8_has_the_scales_of_px4() {
         let scale = file("isae-x8");

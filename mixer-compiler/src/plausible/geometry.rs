@@ -7,8 +7,9 @@ use crate::diagnostic::{Code, Diagnostic, number, rounded};
 /// Units of the largest frames whose costs were counted.
 const MOST_COUNTED_UNITS: usize = 8;
 
-/// Longest plausible arm per root of a unit's largest thrust, m / sqrt(N). Thrust grows with the square of the diameter and
-/// arms with the diameter; PX4's X12, the longest in `airframes/`, has 0.2, arms in decimetres 0.6 and more.
+/// Longest plausible arm per root of a unit's largest thrust, m / sqrt(N). Thrust grows with the
+/// square of the diameter and arms with the diameter; PX4's X12, the longest in `airframes/`, has
+/// 0.2, arms in decimetres 0.6 and more.
 const ARM_PER_ROOT_THRUST: f64 = 0.5;
 
 /// Shortest arm that centimetres could have meant, m / sqrt(N): real frames have about 0.09.
@@ -95,8 +96,8 @@ pub(super) fn radians(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     ));
 }
 
-/// Least share of the units' thrust that must be left without roll and pitch. Without an offset it is 0.95 to 1 on real
-/// maps: what a torque of zero costs.
+/// Least share of the units' thrust that must be left without roll and pitch. Without an offset it
+/// is 0.95 to 1 on real maps: what a torque of zero costs.
 const BALANCED_SHARE: f64 = 0.65;
 
 /// A centre of gravity so far off that most of the thrust is only there with roll or pitch.

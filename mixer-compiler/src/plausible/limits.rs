@@ -8,7 +8,8 @@ use crate::model::PairMap;
 /// Share of a unit's largest effort above which a tolerance is a mistake.
 const WIDE: f64 = 0.01;
 
-/// Share above which it is refused. The evaluators are fitted to the tolerance; nothing is left to fit to here.
+/// Share above which it is refused. The evaluators are fitted to the tolerance; nothing is left to
+/// fit to here.
 const ABSURD: f64 = 0.1;
 
 /// The tolerances as `[key, unit, tolerance, largest effort]`.

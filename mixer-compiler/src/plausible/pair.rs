@@ -3,9 +3,9 @@
 use super::Facts;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 
-/// The range of Q over the largest f of one unit, m: 0.016 to 0.034 on maps of 11 to 22 inch. It is about the propeller's
-/// diameter over 17, so that these limits stand for 4 to 40 inch. The nearest unit that may be mistaken, pounds of force,
-/// is a factor of 4.4 away.
+/// The range of Q over the largest f of one unit, m: 0.016 to 0.034 on maps of 11 to 22 inch. It is
+/// about the propeller's diameter over 17, so that these limits stand for 4 to 40 inch. The nearest
+/// unit that may be mistaken, pounds of force, is a factor of 4.4 away.
 const RATIO_M: [f64; 2] = [0.005, 0.065];
 
 /// Largest thrust of one unit that is taken for newtons. Beyond it both may be in gram-force.
@@ -46,7 +46,8 @@ pub(super) fn units(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
         }
         return;
     }
-    // Too much torque for the thrust: the thrust is in a larger unit, or the torque in a smaller one.
+    // Too much torque for the thrust: the thrust is in a larger unit, or the torque in a smaller
+    // one.
     let plausible = |ratio: f64| (low..=high).contains(&ratio);
     let thrusts = THRUST_UNITS
         .iter()
@@ -83,8 +84,9 @@ pub(super) fn units(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     ));
 }
 
-/// Torque falls with the upper throttle and rises with the lower one. Where both are exchanged, det J is negative and the
-/// file is refused. The corner of the fold tells nothing: real maps fold at (full, idle), the paper's at (idle, full).
+/// Torque falls with the upper throttle and rises with the lower one. Where both are exchanged, det
+/// J is negative and the file is refused. The corner of the fold tells nothing: real maps fold at
+/// (full, idle), the paper's at (idle, full).
 pub(super) fn slopes(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     let [low, high] = facts.map.range();
     let torque = |u, l| facts.map.efforts([u, l])[1];
@@ -107,7 +109,8 @@ pub(super) fn slopes(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     ));
 }
 
-/// The wake costs thrust: both rotors give less than the sum of each alone. On real maps the share is 0.77 to 0.92.
+/// The wake costs thrust: both rotors give less than the sum of each alone. On real maps the share
+/// is 0.77 to 0.92.
 pub(super) fn sum_of_rotors(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     let [low, high] = facts.map.range();
     let thrust = |u, l| facts.map.efforts([u, l])[0];
@@ -130,7 +133,8 @@ pub(super) fn sum_of_rotors(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     ));
 }
 
-/// Largest share of a unit's thrust that is on at idle. A map that was measured from a throttle of 0.4 on has 0.26 there.
+/// Largest share of a unit's thrust that is on at idle. A map that was measured from a throttle of
+/// 0.4 on has 0.26 there.
 const IDLE_SHARE: f64 = 0.28;
 
 /// A high idle leaves little thrust to control with.

@@ -5,7 +5,8 @@ use crate::diagnostic::{Code, Diagnostic, number, rounded};
 
 const KEY: &str = "allocation.power_bias_nm_per_n";
 
-/// Share of a frame's saving below which there is none: upper rotors that all turn alike leave nothing to cancel torques with.
+/// Share of a frame's saving below which there is none: upper rotors that all turn alike leave
+/// nothing to cancel torques with.
 const NO_SHARE: f64 = 1e-6;
 
 /// A bias that the pair cannot give at half of its largest thrust, about where vehicles hover.

@@ -31,7 +31,8 @@ pub(super) fn single_cell(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     ));
 }
 
-/// Powers of the voltage that propellers follow: 1 to 2.5, and what a narrow range leaves uncertain.
+/// Powers of the voltage that propellers follow: 1 to 2.5, and what a narrow range leaves
+/// uncertain.
 const EXPONENTS: [f64; 2] = [0.8, 2.7];
 
 /// The power of the voltage that a law follows over its range.

@@ -7,8 +7,8 @@ use crate::diagnostic::{Code, Diagnostic, number, rounded};
 /// Share of the largest bare thrust above which hover leaves too little for control.
 const HIGH: f64 = 0.8;
 
-/// Too heavy to hover at the lowest voltage, or so light that it rises at idle at the highest, or with little thrust left at
-/// the reference voltage.
+/// Too heavy to hover at the lowest voltage, or so light that it rises at idle at the highest, or
+/// with little thrust left at the reference voltage.
 pub(super) fn hover(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     let airframe = facts.airframe;
     let (Some(vehicle), Some([floor, ceiling])) = (&airframe.vehicle, facts.thrust_range_n) else {

@@ -1,19 +1,23 @@
-//! What a linear model of both quantities misses, G of [`expansion`](super::expansion), about one point.
+//! What a linear model of both quantities misses, G of [`expansion`](super::expansion), about one
+//! point.
 
 use super::expansion::{Curvature, Derivatives, Expansion, beyond_linear, powers};
 use super::taylor::Taylor;
 
 /// Both quantities around t = t* + d.
 pub(super) enum Bend {
-    /// Bounds of the second derivatives, for all t within reach: what they leave open grows with d3.
+    /// Bounds of the second derivatives, for all t within reach: what they leave open grows with
+    /// d3.
     Bounds(Box<[Curvature; 2]>),
-    /// All derivatives as functions over the cell: what they leave open shrinks with the cell, whatever d is.
+    /// All derivatives as functions over the cell: what they leave open shrinks with the cell,
+    /// whatever d is.
     Functions(Box<[Derivatives; 2]>),
 }
 
 impl Bend {
-    /// Around t* + `deviation` over a cell of the half widths `half`: bounds, unless they say too little. Next to a
-    /// fold they do, since a small residual of m leaves a large error of the throttles there.
+    /// Around t* + `deviation` over a cell of the half widths `half`: bounds, unless they say too
+    /// little. Next to a fold they do, since a small residual of m leaves a large error of the
+    /// throttles there.
     pub(super) fn new(expansions: &[Expansion; 2], half: [f64; 2], deviation: &[Taylor; 2]) -> Self {
         let size = deviation.map(|d| d.magnitude());
         let reach = [0, 1].map(|k| half[k] + size[k]);

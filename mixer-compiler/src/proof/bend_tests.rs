@@ -13,7 +13,8 @@ fn small(n: i64) -> BigRational {
     BigRational::from_integer(n.into())
 }
 
-/// G(t; v) = F(t + v) - F(t) - J(t) v, small steps (bounds of the second derivatives) and large ones (functions).
+/// G(t; v) = F(t + v) - F(t) - J(t) v, small steps (bounds of the second derivatives) and large
+/// ones (functions).
 #[test]
 fn what_a_linear_model_misses_is_enclosed() {
     let mut next = numbers();

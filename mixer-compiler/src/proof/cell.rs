@@ -1,17 +1,18 @@
 //! The residual over one cell of throttles.
 //!
-//! Let t* run through the cell and e = F(t*) be its efforts. The runtime computes throttles t near t*; d = t - t*
-//! is its deviation, R = F(t) - F(t*) its residual. The first guess is evaluated over Taylor models, which gives d
-//! with its rounding error. A Newton step solves J s = m, m = e - F(t) as far as rounding allows: J s = m + r with
-//! r bounded below. By Taylor's formula (G in [`expansion`](super::expansion)), without any approximation:
+//! Let t* run through the cell and e = F(t*) be its efforts. The runtime computes throttles t near
+//! t*; d = t - t* is its deviation, R = F(t) - F(t*) its residual. The first guess is evaluated
+//! over Taylor models, which gives d with its rounding error. A Newton step solves J s = m, m = e -
+//! F(t) as far as rounding allows: J s = m + r with r bounded below. By Taylor's formula (G in
+//! [`expansion`](super::expansion)), without any approximation:
 //!
 //! ```text
 //! m = -J d + G(t; -d)        s = -d + J^-1 (G(t; -d) + r)        R = F(t + s) - F(t*) = G(t; s) + r
 //! ```
 //!
-//! A throttle that leaves the range is limited to its end. The cases "within" and "limited" are followed
-//! separately, each over the part of the cell where it can occur: where a throttle was limited, its deviation is
-//! the end of the range less t*.
+//! A throttle that leaves the range is limited to its end. The cases "within" and "limited" are
+//! followed separately, each over the part of the cell where it can occur: where a throttle was
+//! limited, its deviation is the end of the range less t*.
 
 use mixer_rt::tables::{Pair, ThrottleRange, solve};
 
@@ -169,8 +170,8 @@ impl<'a> Local<'a> {
         [0, 1].map(|k| self.cell.half[k] + deviation[k].magnitude())
     }
 
-    /// Half a unit in the last place of throttles below the largest: at or above it they are limited, and limiting
-    /// to a float commutes with rounding.
+    /// Half a unit in the last place of throttles below the largest: at or above it they are
+    /// limited, and limiting to a float commutes with rounding.
     fn last_half_unit(&self) -> f64 {
         let below = self.subject.throttle.max.next_down();
         0.5 * f64::from(below.next_up() - below)
@@ -180,7 +181,8 @@ impl<'a> Local<'a> {
         [self.subject.throttle.min, self.subject.throttle.max].map(f64::from)
     }
 
-    /// Case by case, the parts of the cell and the deviations there after both throttles have been limited.
+    /// Case by case, the parts of the cell and the deviations there after both throttles have been
+    /// limited.
     fn limited(&self, deviation: &Deviation) -> Vec<Case<'a>> {
         let mut cases = vec![Case {
             part: *self,
@@ -245,9 +247,9 @@ impl<'a> Local<'a> {
         bound
     }
 
-    /// Bounds of |R| where limiting leaves each throttle a share of its `deviation`, between 0 and 1: R is the
-    /// linear interpolation between what it is without limiting, `free`, and without the limited throttles, but for
-    /// an eighth of F_uu du2 or F_ll dl2.
+    /// Bounds of |R| where limiting leaves each throttle a share of its `deviation`, between 0 and
+    /// 1: R is the linear interpolation between what it is without limiting, `free`, and without
+    /// the limited throttles, but for an eighth of F_uu du2 or F_ll dl2.
     fn shares(&self, free: &[f64; 2], deviation: &Deviation, limited: [bool; 2]) -> [f64; 2] {
         let size = deviation.map(|d| d.magnitude());
         let reach = self.reach(deviation);
@@ -265,7 +267,8 @@ impl<'a> Local<'a> {
         })
     }
 
-    /// How far t* may lie outside the range, which in f32 may be narrower than the box by a rounding.
+    /// How far t* may lie outside the range, which in f32 may be narrower than the box by a
+    /// rounding.
     fn beyond(&self, axis: usize) -> f64 {
         let ([low, high], truth) = (self.range(), self.truth[axis].range());
         (truth.high - high).max(low - truth.low).max(0.0)
@@ -314,7 +317,8 @@ impl<'a> Case<'a> {
             }
         };
         case([low - range.high, high - range.low], None);
-        // A throttle that is limited had passed the end: t* is no further from there than the deviation goes.
+        // A throttle that is limited had passed the end: t* is no further from there than the
+        // deviation goes.
         if place.high > high {
             case([high - range.high, truth.high], Some(high));
         }

@@ -1,8 +1,8 @@
 //! What the voltage correction adds to the efforts that the inverse is given.
 //!
-//! The mixer divides efforts by the tabulated k, in f32. The inverse is right about efforts divided by the file's
-//! k. Both are enclosed by Taylor models over pieces of the voltage range, the table by running `mixer-rt`'s own
-//! operations; their difference bounds the relative error of k.
+//! The mixer divides efforts by the tabulated k, in f32. The inverse is right about efforts divided
+//! by the file's k. Both are enclosed by Taylor models over pieces of the voltage range, the table
+//! by running `mixer-rt`'s own operations; their difference bounds the relative error of k.
 
 use mixer_rt::tables::VoltageLaw as Law;
 
@@ -93,7 +93,8 @@ fn larger(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Piece by piece over `[low, high]` V; `piece` is given the voltage and the piece's centre and half width.
+/// Piece by piece over `[low, high]` V; `piece` is given the voltage and the piece's centre and
+/// half width.
 fn over([low, high]: [f64; 2], piece: impl Fn(Taylor, [f64; 2]) -> Piece) -> Bound {
     let half = 0.5 * (high - low) / PIECES as f64;
     let none = Bound {
@@ -132,8 +133,9 @@ fn truth(law: &VoltageLaw, reference_v: f64, volts: Taylor, [centre, half]: [f64
     }
 }
 
-/// (V / Vref)^e = k0 (1 + e d + e (e - 1) / 2 d2 + e (e - 1) (e - 2) / 6 d3 (1 + x)^(e - 3)) with d = V / V0 - 1 and
-/// x between 0 and d. `libm`'s power is within one unit in the last place; eight are allowed here.
+/// (V / Vref)^e = k0 (1 + e d + e (e - 1) / 2 d2 + e (e - 1) (e - 2) / 6 d3 (1 + x)^(e - 3)) with d
+/// = V / V0 - 1 and x between 0 and d. `libm`'s power is within one unit in the last place; eight
+/// are allowed here.
 fn power(e: f64, reference_v: f64, centre: f64, half: f64) -> Taylor {
     let k0 = libm::pow(centre / reference_v, e);
     let d = half / centre;
@@ -149,8 +151,8 @@ fn power(e: f64, reference_v: f64, centre: f64, half: f64) -> Taylor {
     Taylor::new(coefficients, k0 * (rest * 1.0001 + rounding))
 }
 
-/// Every line of the table against the line of the file. Where rounding has moved a corner, the file is on the
-/// neighbouring line for a moment.
+/// Every line of the table against the line of the file. Where rounding has moved a corner, the
+/// file is on the neighbouring line for a moment.
 fn between_points(law: &VoltageLaw, table: &[[f32; 2]], [low, high]: [f64; 2]) -> Bound {
     let mut bound = Bound {
         error: 0.0,

@@ -68,8 +68,8 @@ impl Taylor {
     }
 }
 
-/// Random straight-line programs over random cells, at random points of the cells: values within the enclosures and
-/// f32 results within the error bounds, judged in exact rational arithmetic.
+/// Random straight-line programs over random cells, at random points of the cells: values within
+/// the enclosures and f32 results within the error bounds, judged in exact rational arithmetic.
 #[test]
 fn taylor_models_enclose_exact_and_f32_results() {
     let mut next = numbers();
@@ -167,7 +167,8 @@ fn taylor_models_enclose_exact_and_f32_results() {
     assert!(steps > 1500, "{steps}");
 }
 
-/// Roots: the square of what is enclosed must enclose the radicand, which exact arithmetic can tell.
+/// Roots: the square of what is enclosed must enclose the radicand, which exact arithmetic can
+/// tell.
 #[test]
 fn roots_are_enclosed() {
     let mut next = numbers();

@@ -1,8 +1,8 @@
 //! A quantity of the pair, expanded about the centre of a cell.
 //!
-//! The quantities are polynomials, so Taylor's formula is exact: with the coefficients p_ij of the offsets from the
-//! centre, every derivative is known over the cell and around it. For a point t and a step v the part of the
-//! quantity that a linear model misses is
+//! The quantities are polynomials, so Taylor's formula is exact: with the coefficients p_ij of the
+//! offsets from the centre, every derivative is known over the cell and around it. For a point t
+//! and a step v the part of the quantity that a linear model misses is
 //!
 //! ```text
 //! G(t; v) = F(t + v) - F(t) - J(t) v = sum over i + j >= 2 of F^(i,j)(t) / (i! j!) vu^i vl^j
@@ -50,13 +50,14 @@ pub(super) struct Expansion {
     p: [[f64; SIZE]; SIZE],
     degree: [usize; 2],
     half: [f64; 2],
-    /// Bound of the rounding in any value or derivative read from here: each coefficient is a sum of products
-    /// built in at most 16 operations, throttles are at most 1, cells at most one half, and the binomial
-    /// coefficients of degree 4 sum up to less than 2^8.
+    /// Bound of the rounding in any value or derivative read from here: each coefficient is a sum
+    /// of products built in at most 16 operations, throttles are at most 1, cells at most one half,
+    /// and the binomial coefficients of degree 4 sum up to less than 2^8.
     slack: f64,
 }
 
-/// Second derivatives `[F_uu / 2, F_ul, F_ll / 2]` around a cell, each as centre and radius, and the higher terms.
+/// Second derivatives `[F_uu / 2, F_ul, F_ll / 2]` around a cell, each as centre and radius, and
+/// the higher terms.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curvature {
     centre: [f64; 3],
@@ -170,7 +171,8 @@ impl Expansion {
         })
     }
 
-    /// F^(i,j) / (i! j!) within `reach` of the centre: its value there and how far it may go from it.
+    /// F^(i,j) / (i! j!) within `reach` of the centre: its value there and how far it may go from
+    /// it.
     fn coefficient(&self, [i, j]: [usize; 2], reach: [f64; 2]) -> [f64; 2] {
         let mut radius = self.slack;
         let mut size_u = 1.0;
@@ -212,12 +214,13 @@ pub(super) fn powers(v: &[Taylor; 2], degree: usize) -> Powers {
     powers
 }
 
-/// F^(i,j)(t) / (i! j!) for i + j >= 2 as functions over the cell, by exponents; `None` where they vanish.
+/// F^(i,j)(t) / (i! j!) for i + j >= 2 as functions over the cell, by exponents; `None` where they
+/// vanish.
 pub(super) type Derivatives = [[Option<Taylor>; SIZE]; SIZE];
 
 impl Expansion {
-    /// The higher derivatives at a point t; `offset` are the [`powers`] of its distance from the centre, of the second
-    /// degree at least.
+    /// The higher derivatives at a point t; `offset` are the [`powers`] of its distance from the
+    /// centre, of the second degree at least.
     pub(super) fn derivatives(&self, offset: &Powers) -> Derivatives {
         let mut derivatives = [[None; SIZE]; SIZE];
         for (i, row) in derivatives.iter_mut().enumerate().take(self.degree[0] + 1) {
@@ -258,8 +261,8 @@ pub(super) fn beyond_linear(derivatives: &Derivatives, v: &Powers) -> Taylor {
 }
 
 impl Curvature {
-    /// True where the bounds of [`Curvature::remainder`] say little of an offset of this `size`: what they leave open
-    /// does not shrink with the cell.
+    /// True where the bounds of [`Curvature::remainder`] say little of an offset of this `size`:
+    /// what they leave open does not shrink with the cell.
     pub(super) fn is_vague(&self, size: [f64; 2]) -> bool {
         const SHARE: f64 = 0.03;
         let squares = [size[0] * size[0], size[0] * size[1], size[1] * size[1]];
@@ -271,7 +274,8 @@ impl Curvature {
         open > SHARE * known
     }
 
-    /// G(t; v) for t within reach of the centre. `squares` are vu2, vu vl, vl2 and `size` bounds |vu|, |vl|.
+    /// G(t; v) for t within reach of the centre. `squares` are vu2, vu vl, vl2 and `size` bounds
+    /// |vu|, |vl|.
     pub(super) fn remainder(&self, squares: &[Taylor; 3], size: [f64; 2]) -> Taylor {
         let mut sum = Taylor::ball(self.higher_terms(size));
         for ((square, &centre), &radius) in squares.iter().zip(&self.centre).zip(&self.radius) {
@@ -294,7 +298,8 @@ impl Curvature {
         sum * UP
     }
 
-    /// How far the quantity may lie from a straight line over an offset v along one axis: F'' v2 / 8.
+    /// How far the quantity may lie from a straight line over an offset v along one axis: F'' v2 /
+    /// 8.
     pub(super) fn bend(&self, axis: usize, v: f64) -> f64 {
         let half = self.centre[2 * axis].abs() + self.radius[2 * axis];
         0.25 * half * v * v * UP

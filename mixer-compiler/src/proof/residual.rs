@@ -1,8 +1,8 @@
 //! What the emitted inverse misses, over a dense grid of the whole attainable set.
 //!
-//! The tables are run through `mixer-rt` itself in f32; the forward map that judges them is the file's, in f64.
-//! This observes: it rejects evaluators at little cost, and it tells the proof how sharp a bound can be. A proof
-//! that contradicted it would be wrong.
+//! The tables are run through `mixer-rt` itself in f32; the forward map that judges them is the
+//! file's, in f64. This observes: it rejects evaluators at little cost, and it tells the proof how
+//! sharp a bound can be. A proof that contradicted it would be wrong.
 
 use mixer_rt::tables::Inverse;
 

@@ -1,18 +1,21 @@
-//! Taylor models of degree two: functions of a point in a cell, with bounds of all that is left out.
+//! Taylor models of degree two: functions of a point in a cell, with bounds of all that is left
+//! out.
 //!
-//! A cell is the image of a, b in [-1, 1]. A [`Taylor`] stands for a real function of (a, b) and encloses it:
+//! A cell is the image of a, b in [-1, 1]. A [`Taylor`] stands for a real function of (a, b) and
+//! encloses it:
 //!
 //! ```text
 //! |x(a, b) - (c + ca a + cb b + caa a2 + cab a b + cbb b2)| <= remainder
 //! ```
 //!
-//! It stands as well for what the runtime computes in its place: `|x in f32 - x| <= error`, by the standard model
-//! fl(x) = x (1 + e), sharpened to half a unit in the last place of the largest result. As it implements
-//! [`Scalar`], `mixer-rt` itself runs over it.
+//! It stands as well for what the runtime computes in its place: `|x in f32 - x| <= error`, by the
+//! standard model fl(x) = x (1 + e), sharpened to half a unit in the last place of the largest
+//! result. As it implements [`Scalar`], `mixer-rt` itself runs over it.
 //!
-//! Coefficients are computed in f64, rounded to nearest. Each is a sum of at most four products, so their errors
-//! add up to less than 8 x 2^-53 times the product of the factors' norms, which goes to the remainder. Remainders
-//! and errors are sums of fewer than 40 non-negative terms; the factor [`UP`] makes up for their rounding.
+//! Coefficients are computed in f64, rounded to nearest. Each is a sum of at most four products, so
+//! their errors add up to less than 8 x 2^-53 times the product of the factors' norms, which goes
+//! to the remainder. Remainders and errors are sums of fewer than 40 non-negative terms; the factor
+//! [`UP`] makes up for their rounding.
 
 mod scalar;
 
@@ -250,7 +253,8 @@ impl Taylor {
         product
     }
 
-    /// The product with a number within `radius` of `centre`, with no operation of the runtime behind it.
+    /// The product with a number within `radius` of `centre`, with no operation of the runtime
+    /// behind it.
     pub(crate) fn times(&self, centre: f64, radius: f64) -> Taylor {
         self.scaled(centre).widened(self.magnitude() * radius)
     }
@@ -279,8 +283,9 @@ impl Taylor {
         }
     }
 
-    /// `p(x)` for a function with value, slope and half its second derivative `[p0, p1, p2]` at the centre c, and
-    /// a bound of what Taylor's formula leaves. The coefficients may be off by a few roundings.
+    /// `p(x)` for a function with value, slope and half its second derivative `[p0, p1, p2]` at the
+    /// centre c, and a bound of what Taylor's formula leaves. The coefficients may be off by a few
+    /// roundings.
     fn composed(&self, [p0, p1, p2]: [f64; 3], rest: f64) -> Taylor {
         let variable = Taylor {
             c: 0.0,

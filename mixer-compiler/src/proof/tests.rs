@@ -30,8 +30,9 @@ fn prove_again(compiled: &crate::compiled::Compiled, tables: &MixerTables) -> Ce
     )
 }
 
-/// Every basis and every kind of evaluator: no residual at any of 40,000 throttles and voltages, as the mixer
-/// corrects for them, is above the proven bound, and the bound is not far above the residuals.
+/// Every basis and every kind of evaluator: no residual at any of 40,000 throttles and voltages, as
+/// the mixer corrects for them, is above the proven bound, and the bound is not far above the
+/// residuals.
 #[test]
 fn nothing_is_observed_beyond_the_bound() {
     let isae = airframe_text("airframes/isae-x8.toml");
@@ -101,8 +102,8 @@ fn nothing_is_observed_beyond_the_bound() {
             );
             assert!(certificate.stated[m] <= airframe_tolerance(airframe)[m], "{name}");
         }
-        // Rounding, the voltage table's included, is some 2e-5 N: where the bound is well above, it is within a
-        // quarter of what was seen.
+        // Rounding, the voltage table's included, is some 2e-5 N: where the bound is well above, it
+        // is within a quarter of what was seen.
         let sharp = compiled.residual.efforts[0] > 2e-4;
         let ratio = certificate.over_observed(&compiled.residual);
         assert!(
@@ -119,8 +120,8 @@ fn airframe_tolerance(airframe: &Airframe) -> [f64; 2] {
     ]
 }
 
-/// Any bit of any number of the inverse and of the forward map: either the flip changes next to nothing, or the
-/// proof fails, and it never claims less than what the flipped tables really do.
+/// Any bit of any number of the inverse and of the forward map: either the flip changes next to
+/// nothing, or the proof fails, and it never claims less than what the flipped tables really do.
 #[test]
 fn flipped_bits_are_refused_where_they_matter() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
@@ -167,7 +168,8 @@ fn flipped_bits_are_refused_where_they_matter() {
     assert!(refused >= 14 * 3 && harmless >= 14, "{refused} {harmless}");
 }
 
-/// A Newton step corrects the seed whatever the forward table says of it: a wrong forward table must show.
+/// A Newton step corrects the seed whatever the forward table says of it: a wrong forward table
+/// must show.
 #[test]
 fn a_wrong_forward_map_is_refused() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
@@ -183,7 +185,8 @@ fn a_wrong_forward_map_is_refused() {
     }
 }
 
-/// A voltage table that is off must show in full; off by more than the tolerance leaves, it is refused.
+/// A voltage table that is off must show in full; off by more than the tolerance leaves, it is
+/// refused.
 #[test]
 fn a_wrong_voltage_table_is_refused() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
@@ -210,7 +213,8 @@ fn too_small_a_tolerance_is_refused() {
     assert!(faults.to_string().contains("is proven within"), "{faults}");
 }
 
-/// Where the map folds, no Newton step can be bounded: the proof itself notices, not only the stage before it.
+/// Where the map folds, no Newton step can be bounded: the proof itself notices, not only the stage
+/// before it.
 #[test]
 fn a_fold_cannot_be_proven() {
     let mut compiled = compiled(airframe_text("airframes/isae-x8.toml"));
@@ -220,8 +224,8 @@ fn a_fold_cannot_be_proven() {
     assert!(!certificate.holds(), "{certificate:?}");
 }
 
-/// At a tolerance near rounding level: what the runtime computes of its own throttles is off by no more than it allows
-/// for, and it allows for little more.
+/// At a tolerance near rounding level: what the runtime computes of its own throttles is off by no
+/// more than it allows for, and it allows for little more.
 #[test]
 fn delivered_efforts_do_not_look_missed() {
     let text = airframe_text("airframes/isae-x8.toml")

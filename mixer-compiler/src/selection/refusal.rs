@@ -1,4 +1,5 @@
-//! What a user is told whose tolerance no evaluator meets. What is offered as a mend has been tried.
+//! What a user is told whose tolerance no evaluator meets. What is offered as a mend has been
+//! tried.
 
 use super::{Best, choose};
 use crate::airframe::{Airframe, Method};
@@ -7,15 +8,16 @@ use crate::model::effectiveness::Effectiveness;
 use crate::model::injectivity::ForwardMap;
 use crate::tables::VoltageTable;
 
-/// Factors on the bounds that were reached: with other tolerances fits weigh thrust and torque differently, and may
-/// come out a little worse.
+/// Factors on the bounds that were reached: with other tolerances fits weigh thrust and torque
+/// differently, and may come out a little worse.
 const FACTORS: [f64; 5] = [1.02, 1.06, 1.15, 1.4, 2.0];
 
-/// Factors on the least idle at which the map can be inverted. All fits of ten real maps compile at the first; an idle
-/// above the last is not near the fold.
+/// Factors on the least idle at which the map can be inverted. All fits of ten real maps compile at
+/// the first; an idle above the last is not near the fold.
 const IDLES: [f64; 2] = [1.03, 1.1];
 
-/// The least of [`IDLES`] above the file's own that meets the tolerances, upwards to 1e-4; `None` far from the fold.
+/// The least of [`IDLES`] above the file's own that meets the tolerances, upwards to 1e-4; `None`
+/// far from the fold.
 fn better_idle(airframe: &Airframe, meets: impl Fn(&Airframe) -> bool) -> Option<f64> {
     let least = ForwardMap::new(&airframe.pair).least_idle(airframe.throttle.max)?;
     IDLES

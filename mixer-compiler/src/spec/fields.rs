@@ -61,7 +61,8 @@ impl<'a, 'f> Fields<'a, 'f> {
         Some(Spanned::new(item.place, value))
     }
 
-    /// Reports required keys that are absent, except where a misspelt key was reported in their stead.
+    /// Reports required keys that are absent, except where a misspelt key was reported in their
+    /// stead.
     pub(crate) fn require(&mut self) {
         for key in self.shape.keys.iter().filter(|key| key.required) {
             if self.key_place(key.name).is_none() {
@@ -159,7 +160,8 @@ impl<'a, 'f> Fields<'a, 'f> {
         self.faults.push(fault);
     }
 
-    /// The key that an unknown one is likely to be meant for, rather one that the table still lacks.
+    /// The key that an unknown one is likely to be meant for, rather one that the table still
+    /// lacks.
     fn nearest(&self, key: &str) -> Option<&'static str> {
         let names = || self.shape.keys.iter().map(|key| key.name);
         nearest(key, names().filter(|name| !self.table.contains_key(*name))).or_else(|| nearest(key, names()))
@@ -216,7 +218,8 @@ impl<'a, 'f> Fields<'a, 'f> {
             header => (format!("in `{header}`"), format!("`{header}`")),
         };
         let home = keys::ALL.iter().find(|shape| shape.key(name).is_some());
-        // What is spelt as a key of another table is that key, unless this table lacks one that is nearly spelt so.
+        // What is spelt as a key of another table is that key, unless this table lacks one that is
+        // nearly spelt so.
         let near = near.filter(|near| home.is_none() || !self.table.contains_key(*near));
         let elsewhere = keys::ALL.iter().find_map(|shape| {
             let names = shape.keys.iter().map(|key| key.name);

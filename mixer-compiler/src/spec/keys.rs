@@ -1,4 +1,5 @@
-//! The keys of the airframe file, version 1: what the parser knows, advice shows, and the schema for editors says.
+//! The keys of the airframe file, version 1: what the parser knows, advice shows, and the schema
+//! for editors says.
 
 /// A key or a table of the file.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +21,8 @@ pub struct Key {
 pub enum Kind {
     /// Any text.
     Text,
-    /// The name of a Rust module: lower-case letters and digits in parts joined by single `-` or `_`.
+    /// The name of a Rust module: lower-case letters and digits in parts joined by single `-` or
+    /// `_`.
     Name,
     /// One of these words.
     Word(&'static [&'static str]),

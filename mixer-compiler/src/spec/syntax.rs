@@ -11,8 +11,8 @@ use crate::diagnostic::{Code, Diagnostic, quoted};
 /// What the parser says of a key that is there twice; the rest of the file is read all the same.
 const DUPLICATE: &str = "duplicate key";
 
-/// Faults of the TOML itself that are noted. What follows the first ones mostly follows from them, and a file of another
-/// kind has one on every line.
+/// Faults of the TOML itself that are noted. What follows the first ones mostly follows from them,
+/// and a file of another kind has one on every line.
 const MOST: usize = 100;
 
 /// Parses the text and notes its faults. `None` where they leave the values in doubt.
@@ -26,7 +26,8 @@ pub(super) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     }
 
     errors.sort_by_key(start);
-    // Lines are counted on from error to error: from the start for each it would take the square of the text's length.
+    // Lines are counted on from error to error: from the start for each it would take the square of
+    // the text's length.
     let (mut line, mut counted) = (1, 0);
     let mut last_line = 0;
     let mut noted = 0;
@@ -34,9 +35,9 @@ pub(super) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
         let offset = source.boundary(start(error));
         line += newlines(&source.text, counted..offset);
         counted = offset;
-        // The parser goes on within the line and within an array that is never closed, and trips over the
-        // consequences of the first fault; a table that is there twice repeats its keys line by line. Those are no
-        // further faults of the user's.
+        // The parser goes on within the line and within an array that is never closed, and trips
+        // over the consequences of the first fault; a table that is there twice repeats its keys
+        // line by line. Those are no further faults of the user's.
         let follows = line == last_line || (error.message() == DUPLICATE && line == last_line + 1);
         last_line = line;
         if follows {

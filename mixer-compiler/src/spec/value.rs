@@ -39,8 +39,8 @@ impl<'a> Item<'a> {
     }
 }
 
-/// Where to point for a value: at the value itself, but for an array, which may run over many lines, at its key.
-/// (What the parser takes for the place of a table is its header.)
+/// Where to point for a value: at the value itself, but for an array, which may run over many
+/// lines, at its key. (What the parser takes for the place of a table is its header.)
 pub(super) fn place_of(key: Range<usize>, value: &Spanned<DeValue<'_>>) -> Range<usize> {
     match value.get_ref() {
         DeValue::Array(_) => key,

@@ -1,14 +1,15 @@
 //! The arithmetic of the forward and the inverse map.
 //!
-//! At run time a [`Scalar`] is an `f32` and every method is one or two instructions. The compiler runs the same
-//! functions over numbers that carry bounds, so what it proves is about these very operations, in this order.
+//! At run time a [`Scalar`] is an `f32` and every method is one or two instructions. The compiler
+//! runs the same functions over numbers that carry bounds, so what it proves is about these very
+//! operations, in this order.
 
 use core::ops::{Add, Div, Mul, Sub};
 
 use crate::{clamp, sqrt};
 
-/// A number that tables in `f32` are applied to. Every operation stands for one operation in `f32`, rounded to
-/// nearest.
+/// A number that tables in `f32` are applied to. Every operation stands for one operation in `f32`,
+/// rounded to nearest.
 pub trait Scalar:
     Copy
     + Add<Output = Self>
@@ -50,7 +51,8 @@ impl Scalar for f32 {
 
     #[inline(always)]
     fn root(self) -> f32 {
-        // All bits cleared where the sign is set: on a Cortex-M one instruction, where a comparison takes four.
+        // All bits cleared where the sign is set: on a Cortex-M one instruction, where a comparison
+        // takes four.
         let bits = self.to_bits();
         sqrt(f32::from_bits(bits & !((bits as i32 >> 31) as u32)))
     }
@@ -62,8 +64,8 @@ impl Scalar for f32 {
 
     #[inline(always)]
     fn within_positive(self, low: f32, high: f32) -> f32 {
-        // Numbers of one sign are ordered as their bits are: on a Cortex-M a comparison of integers takes three
-        // instructions less.
+        // Numbers of one sign are ordered as their bits are: on a Cortex-M a comparison of integers
+        // takes three instructions less.
         let (bits, low, high) = (self.to_bits() as i32, low.to_bits() as i32, high.to_bits() as i32);
         let bits = if bits > low { bits } else { low };
         f32::from_bits(if bits < high { bits } else { high } as u32)

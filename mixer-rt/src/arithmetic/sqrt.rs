@@ -1,9 +1,11 @@
 //! The square root, correctly rounded on every target, hence the same bits everywhere.
 //!
-//! `core` has no stable square root. Cores with an IEEE 754 square root instruction use it; the rest compute the
-//! same bits with integers. WebAssembly has the instruction, but stable Rust has no way to it.
+//! `core` has no stable square root. Cores with an IEEE 754 square root instruction use it; the
+//! rest compute the same bits with integers. WebAssembly has the instruction, but stable Rust has
+//! no way to it.
 
-/// The correctly rounded square root of `x >= 0`. Negative numbers, which the runtime never passes, give NaN.
+/// The correctly rounded square root of `x >= 0`. Negative numbers, which the runtime never passes,
+/// give NaN.
 #[inline(always)]
 pub fn sqrt(x: f32) -> f32 {
     hardware::sqrt(x)
@@ -14,8 +16,8 @@ mod hardware {
     #[inline(always)]
     #[allow(unsafe_code)]
     pub(super) fn sqrt(x: f32) -> f32 {
-        // Through a core register: on stable, `asm!` does not know that the target has FPU registers to name as
-        // operands.
+        // Through a core register: on stable, `asm!` does not know that the target has FPU
+        // registers to name as operands.
         let bits: u32;
         // SAFETY: reads and writes the named registers only. The hard-float ABI implies the FPU.
         unsafe {
@@ -79,8 +81,8 @@ use software as hardware;
 
 #[allow(dead_code, reason = "the tests compare it with the hardware's")]
 mod software {
-    /// One result bit per round: the largest integer r with r^2 <= m, where x = m 2^(2e) and m has 48 bits or
-    /// so, then round to nearest. (A root is never half-way between two floats.)
+    /// One result bit per round: the largest integer r with r^2 <= m, where x = m 2^(2e) and m has
+    /// 48 bits or so, then round to nearest. (A root is never half-way between two floats.)
     pub(super) fn sqrt(x: f32) -> f32 {
         if x == 0.0 || x.is_nan() || x == f32::INFINITY {
             return x;

@@ -1,4 +1,5 @@
-//! The attainable set of one unit as a small convex polygon in (f, Q), which the general path allocates over.
+//! The attainable set of one unit as a small convex polygon in (f, Q), which the general path
+//! allocates over.
 
 /// A corner of a unit's polygon with the edge that leaves it, anticlockwise, in scaled efforts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

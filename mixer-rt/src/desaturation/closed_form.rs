@@ -1,8 +1,9 @@
-//! Allocation and desaturation in closed form where all thrust axes are vertical and there are at most four units.
+//! Allocation and desaturation in closed form where all thrust axes are vertical and there are at
+//! most four units.
 //!
-//! Roll, pitch and thrust then depend on the units' thrusts alone, w = C f with w = (roll, pitch, thrust), and yaw
-//! on their torques alone, yaw = sum s_i Q_i with s_i = 1 or -1. So the order of priority falls apart into small
-//! problems:
+//! Roll, pitch and thrust then depend on the units' thrusts alone, w = C f with w = (roll, pitch,
+//! thrust), and yaw on their torques alone, yaw = sum s_i Q_i with s_i = 1 or -1. So the order of
+//! priority falls apart into small problems:
 //!
 //! ```text
 //! 1. w within the zonotope of the thrusts in [a, b]^n                          vertical/facets.rs
@@ -11,15 +12,17 @@
 //! 4. the torques within [Q_min(f), Q_max(f)]                                   vertical/torques.rs
 //! ```
 //!
-//! Step 3 chooses by a coarse concave description of Q_max and -Q_min ([`Outline`]); all others, and what is given in the
-//! end, follow a fine one that lies inside the attainable set ([`Border`]).
+//! Step 3 chooses by a coarse concave description of Q_max and -Q_min ([`Outline`]); all others,
+//! and what is given in the end, follow a fine one that lies inside the attainable set
+//! ([`Border`]).
 //!
-//! Near a corner of the zonotope yaw may not even reach zero (with all rotors at the ceiling every unit has the
-//! torque Q(1, 1)). There the thrusts are drawn towards the middle until it does: thrust, roll and pitch give way
-//! together, by less than the corner's torque is worth.
+//! Near a corner of the zonotope yaw may not even reach zero (with all rotors at the ceiling every
+//! unit has the torque Q(1, 1)). There the thrusts are drawn towards the middle until it does:
+//! thrust, roll and pitch give way together, by less than the corner's torque is worth.
 //!
-//! Every loop is over units, facets, or knots, or has a fixed number of steps. Where yaw comes before thrust, or a reserve
-//! of it before roll and pitch, the problems are not apart, and the general way serves the airframe.
+//! Every loop is over units, facets, or knots, or has a fixed number of steps. Where yaw comes
+//! before thrust, or a reserve of it before roll and pitch, the problems are not apart, and the
+//! general way serves the airframe.
 
 mod border;
 mod climb;
@@ -51,7 +54,8 @@ pub struct ClosedFormUnit {
     pub null: f32,
     /// 1 / N; 0 where N is.
     pub per_null: f32,
-    /// The ends of the range of thrust, N: where the least and the largest multiple of N would lead.
+    /// The ends of the range of thrust, N: where the least and the largest multiple of N would
+    /// lead.
     pub ends: [f32; 2],
     /// Output indices of the upper and of the lower rotor.
     pub channels: [u8; 2],
@@ -62,7 +66,8 @@ pub struct ClosedFormUnit {
 pub struct ClosedForm<'a> {
     /// The units, in the order of the airframe file.
     pub units: &'a [ClosedFormUnit],
-    /// True where the airframe serves all axes: then an attainable request is what the efforts give.
+    /// True where the airframe serves all axes: then an attainable request is what the efforts
+    /// give.
     pub complete: bool,
     /// Least and largest thrust of a unit, N.
     pub thrust_n: [f32; 2],
@@ -82,7 +87,8 @@ pub struct ClosedForm<'a> {
     pub yaw_rounding_nm: f32,
 }
 
-/// Whether an airframe's tables have a closed form of desaturation, or the general path serves every request.
+/// Whether an airframe's tables have a closed form of desaturation, or the general path serves
+/// every request.
 pub trait DesaturationMethod {
     /// The closed form, where there is one.
     fn closed_form(&self) -> Option<&ClosedForm<'_>>;
@@ -166,8 +172,8 @@ impl Search {
 }
 
 impl ClosedForm<'_> {
-    /// Writes the least-norm efforts of `request`. Tells whether all are attainable, and the least distance of their torques from
-    /// the sides, N m; negative beyond.
+    /// Writes the least-norm efforts of `request`. Tells whether all are attainable, and the least
+    /// distance of their torques from the sides, N m; negative beyond.
     #[inline(always)]
     pub(crate) fn least_norm(&self, request: &Request, efforts: &mut Efforts) -> (Attained, f32) {
         let share = self.torque_share * request.yaw;

@@ -1,12 +1,14 @@
-//! Allocation and desaturation of any frame: tilted axes, any number of units, rotors out, every airmode, a reserve of yaw.
+//! Allocation and desaturation of any frame: tilted axes, any number of units, rotors out, every
+//! airmode, a reserve of yaw.
 //!
 //! # Problem
 //!
-//! Every unit's attainable set is a small convex polygon inside the real one; a unit with a single rotor has a curve.
-//! A request is served as far as these allow by one linear programme ([`simplex`]), whose shortages have costs that are so
-//! far apart that they act as priorities ([`shortage`]): roll and pitch, which are short together so that their direction
-//! stays, before thrust before yaw, or yaw before thrust. There is no variable for an axis that is exceeded or reversed, but
-//! for thrust, which only roll and pitch may raise.
+//! Every unit's attainable set is a small convex polygon inside the real one; a unit with a single
+//! rotor has a curve. A request is served as far as these allow by one linear programme
+//! ([`simplex`]), whose shortages have costs that are so far apart that they act as priorities
+//! ([`shortage`]): roll and pitch, which are short together so that their direction stays, before
+//! thrust before yaw, or yaw before thrust. There is no variable for an axis that is exceeded or
+//! reversed, but for thrust, which only roll and pitch may raise.
 //!
 //! # Iteration
 //!
@@ -17,16 +19,18 @@
 //! 4. towards the efforts of least norm as far as the polygons allow
 //! ```
 //!
-//! A small bias on every unit's efforts makes the optimum unique, so that it is a Lipschitz function of the request. The
-//! step of 4 is complete where 1 would have answered, hence nothing jumps there.
+//! A small bias on every unit's efforts makes the optimum unique, so that it is a Lipschitz
+//! function of the request. The step of 4 is complete where 1 would have answered, hence nothing
+//! jumps there.
 //!
-//! So that requests within the attainable set do not end at corners, the programme looks beyond them: along the ray from
-//! the units' centres through the request, at a small reward. Its answer is drawn back by as much.
+//! So that requests within the attainable set do not end at corners, the programme looks beyond
+//! them: along the ray from the units' centres through the request, at a small reward. Its answer
+//! is drawn back by as much.
 //!
 //! # Bound
 //!
-//! [`PIVOTS`] and [`FLIPS`] bound the work of 2 and 3, [`ROUNDS`] that of the curves. No loop depends on anything
-//! else than these, the number of units and the corners of polygons.
+//! [`PIVOTS`] and [`FLIPS`] bound the work of 2 and 3, [`ROUNDS`] that of the curves. No loop
+//! depends on anything else than these, the number of units and the corners of polygons.
 
 use core::hint::black_box;
 
@@ -62,15 +66,16 @@ const BUDGET: Budget = Budget {
     flips: 64,
 };
 
-/// Budget of the programme for level flight, which is solved where that of the request ends first. In 600,000 trials over 15
-/// frames and healths level flight took 13 pivots and 29 moves at most.
+/// Budget of the programme for level flight, which is solved where that of the request ends first.
+/// In 600,000 trials over 15 frames and healths level flight took 13 pivots and 29 moves at most.
 const LEVEL_BUDGET: Budget = Budget {
     pivots: 14,
     flips: 32,
 };
 
-/// The multipliers at the start, per row of the request's distance from the centres: so units start at corners on the
-/// request's side. Chosen for the fewest pivots (0.005 to 1 differ by less than a tenth).
+/// The multipliers at the start, per row of the request's distance from the centres: so units start
+/// at corners on the request's side. Chosen for the fewest pivots (0.005 to 1 differ by less than a
+/// tenth).
 const AHEAD: f32 = 2e-2;
 
 /// Curves are met to this share of the torque's scale.
@@ -88,10 +93,11 @@ struct Frame<'a, 't, P, I, S> {
     is_whole: bool,
 }
 
-/// Writes attainable efforts (`[f, Q]` at the reference voltage, N and N m, in the variables) that serve `request` (`[roll,
-/// pitch, yaw, thrust]`, bounded) in the order of priority. `factors` is `[k_f, k_Q]`. There is a variable per unit, which
-/// has the unit's rotors, and [`SHORTAGES`] more. `is_whole` tells that all rotors work. True where these are the efforts of
-/// least norm, with all rotors.
+/// Writes attainable efforts (`[f, Q]` at the reference voltage, N and N m, in the variables) that
+/// serve `request` (`[roll, pitch, yaw, thrust]`, bounded) in the order of priority. `factors` is
+/// `[k_f, k_Q]`. There is a variable per unit, which has the unit's rotors, and [`SHORTAGES`] more.
+/// `is_whole` tells that all rotors work. True where these are the efforts of least norm, with all
+/// rotors.
 #[inline(never)]
 pub(crate) fn allocate<P: Quantity, I, S>(
     tables: &Tables<'_, P, I, S>,
@@ -145,8 +151,9 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         [[high[0] - low[0], high[1] - low[1]], low]
     }
 
-    /// Moves units towards the efforts of least norm for a wrench in N m and N, as far as all polygons allow; true if they arrive.
-    /// With `from_centre` they start at the centre; then their coordinates mean nothing if they do not arrive.
+    /// Moves units towards the efforts of least norm for a wrench in N m and N, as far as all
+    /// polygons allow; true if they arrive. With `from_centre` they start at the centre; then their
+    /// coordinates mean nothing if they do not arrive.
     #[inline(never)]
     fn towards_least_norm(&self, wrench: &[f32; 4], variables: &mut [Variable], from_centre: bool) -> bool {
         let scale = self.tables.attainable.scale;
@@ -257,8 +264,8 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         }
     }
 
-    /// Takes single rotors from their chords to their curves at the thrusts that they have come to when drawn back by `share`;
-    /// false where they were there.
+    /// Takes single rotors from their chords to their curves at the thrusts that they have come to
+    /// when drawn back by `share`; false where they were there.
     #[inline(never)]
     fn bend(&self, simplex: &mut Simplex<'_>, share: f32) -> bool {
         let tables = self.tables;

@@ -1,18 +1,21 @@
-//! Least power: where the efforts of least norm are attainable, the torques start from Q = c f instead of 0.
+//! Least power: where the efforts of least norm are attainable, the torques start from Q = c f
+//! instead of 0.
 //!
-//! c is the airframe's `power_bias_nm_per_n`. What of the torques c f changes the wrench is taken off again by M+, so the
-//! efforts move along
+//! c is the airframe's `power_bias_nm_per_n`. What of the torques c f changes the wrench is taken
+//! off again by M+, so the efforts move along
 //!
 //! ```text
 //! shift = eta - M+ M eta     with eta = [0 .. 0, c f_1 .. c f_n]
 //! ```
 //!
-//! which leaves the wrench on all served axes as it is, whatever the axes of thrust. With vertical ones it is
-//! Q_i = c f_i - s_i sum (s_j c f_j) / n, and no thrust moves. c holds at the reference voltage.
+//! which leaves the wrench on all served axes as it is, whatever the axes of thrust. With vertical
+//! ones it is Q_i = c f_i - s_i sum (s_j c f_j) / n, and no thrust moves. c holds at the reference
+//! voltage.
 //!
-//! They move by b shift. b is the room of the unit nearest its border over the largest shift of any unit, at most 1. So no
-//! unit leaves the attainable set, whatever the direction of its own shift, and b reaches 0 with the room: where the first
-//! unit reaches its border, desaturation begins, and nothing jumps there.
+//! They move by b shift. b is the room of the unit nearest its border over the largest shift of any
+//! unit, at most 1. So no unit leaves the attainable set, whatever the direction of its own shift,
+//! and b reaches 0 with the room: where the first unit reaches its border, desaturation begins, and
+//! nothing jumps there.
 //!
 //! With c = 0 the mixer leaves this out, and so does the compiler, as the tables are constants.
 
@@ -21,12 +24,13 @@ use super::general::Variable;
 use crate::layout::Tables;
 use crate::rolled;
 
-/// A polygon's edge of constant thrust is not crossed by torques. They fade before it all the same, as if thrusts moved by
-/// this share of the largest shift (in scaled efforts).
+/// A polygon's edge of constant thrust is not crossed by torques. They fade before it all the same,
+/// as if thrusts moved by this share of the largest shift (in scaled efforts).
 const FADE: f32 = 0.125;
 
 impl ClosedForm<'_> {
-    /// Moves least-norm `efforts` towards Q = `c` f; `room` is the least distance of a unit's torque from its sides, N m,
+    /// Moves least-norm `efforts` towards Q = `c` f; `room` is the least distance of a unit's
+    /// torque from its sides, N m,
     /// >= 0.
     #[inline(always)]
     pub(crate) fn add_power_bias(&self, c: f32, room: f32, efforts: &mut Efforts) {
@@ -50,8 +54,9 @@ impl ClosedForm<'_> {
     }
 }
 
-/// [`ClosedForm::add_power_bias`] for any frame with all rotors: the units are at their least-norm efforts, within their
-/// polygons. `factors` is `[k_f, k_Q]`. Rates of the units are the shift, `[f, Q]` at the reference voltage.
+/// [`ClosedForm::add_power_bias`] for any frame with all rotors: the units are at their least-norm
+/// efforts, within their polygons. `factors` is `[k_f, k_Q]`. Rates of the units are the shift,
+/// `[f, Q]` at the reference voltage.
 #[inline(never)]
 pub(crate) fn add_power_bias<P, I, S>(
     tables: &Tables<'_, P, I, S>,

@@ -1,17 +1,19 @@
 //! The forward map of one unit: total thrust and torque as polynomials of both throttles (eq. (1)).
 //!
-//! Each basis is evaluated by Horner's rule as a polynomial in u whose coefficients are polynomials in l; neither
-//! has a constant term, since a stopped pair gives nothing. The order of the terms is that of the airframe file.
+//! Each basis is evaluated by Horner's rule as a polynomial in u whose coefficients are polynomials
+//! in l; neither has a constant term, since a stopped pair gives nothing. The order of the terms is
+//! that of the airframe file.
 
 use crate::arithmetic::Scalar;
 
-/// A quantity of one unit, thrust in N or torque in N m, as a polynomial of the upper throttle `u` and the lower
-/// throttle `l`, both in `[0, 1]`.
+/// A quantity of one unit, thrust in N or torque in N m, as a polynomial of the upper throttle `u`
+/// and the lower throttle `l`, both in `[0, 1]`.
 pub trait Quantity {
     /// The value at `(u, l)`.
     fn value<S: Scalar>(&self, u: S, l: S) -> S;
 
-    /// The value at `(u, l)` and its derivatives by `u` and by `l`. The value has the bits of [`Quantity::value`].
+    /// The value at `(u, l)` and its derivatives by `u` and by `l`. The value has the bits of
+    /// [`Quantity::value`].
     fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3];
 }
 

@@ -1,14 +1,15 @@
 //! The inverse map of one unit: efforts (f, Q) at the reference voltage to throttles (u, l).
 //!
-//! The inverse behaves like a square root, so a polynomial in (f, Q) converges slowly. In the coordinates
+//! The inverse behaves like a square root, so a polynomial in (f, Q) converges slowly. In the
+//! coordinates
 //!
 //! ```text
 //! x = sqrt(x0 f + x1 Q + x2)        y = sqrt(y0 f + y1 Q + y2)
 //! ```
 //!
-//! it is almost bilinear; a seed there and a Newton step on the forward map reach millinewtons. Outside the
-//! attainable set the radicands, the seed and every iterate are clamped, so the result is continuous and always a
-//! pair of throttles within the range.
+//! it is almost bilinear; a seed there and a Newton step on the forward map reach millinewtons.
+//! Outside the attainable set the radicands, the seed and every iterate are clamped, so the result
+//! is continuous and always a pair of throttles within the range.
 
 use crate::arithmetic::Scalar;
 use crate::pair::{Pair, Quantity};
@@ -32,12 +33,13 @@ impl ThrottleRange {
 
 /// An evaluator of the inverse map.
 pub trait Inverse<P> {
-    /// Throttles `[u, l]` within `range` at which `pair` gives `[f, Q]` (N, N m at the reference voltage), or
-    /// throttles near by where it cannot.
+    /// Throttles `[u, l]` within `range` at which `pair` gives `[f, Q]` (N, N m at the reference
+    /// voltage), or throttles near by where it cannot.
     fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2];
 }
 
-/// The paper's evaluator (section IV-B2): a polynomial in (f, Q) of given total degree for each throttle.
+/// The paper's evaluator (section IV-B2): a polynomial in (f, Q) of given total degree for each
+/// throttle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PolynomialInverse<'a> {
     /// Scale and offset of f: the polynomial's first variable is `scale f + offset`, in [-1, 1].
@@ -46,8 +48,8 @@ pub struct PolynomialInverse<'a> {
     pub torque: [f32; 2],
     /// Total degree d.
     pub degree: u8,
-    /// Coefficients of the upper throttle, (d + 1)(d + 2) / 2 of them: for i = 0..=d (descending powers d - i of
-    /// the first variable), for j = 0..=i (descending powers i - j of the second).
+    /// Coefficients of the upper throttle, (d + 1)(d + 2) / 2 of them: for i = 0..=d (descending
+    /// powers d - i of the first variable), for j = 0..=i (descending powers i - j of the second).
     pub upper: &'a [f32],
     /// Coefficients of the lower throttle, likewise.
     pub lower: &'a [f32],
@@ -62,8 +64,10 @@ impl PolynomialInverse<'_> {
         [self.evaluate(self.upper, s, t), self.evaluate(self.lower, s, t)]
     }
 
-    /// Horner's rule in both variables; powers of the first variable without all their coefficients are left out.
-    // Compilers unroll these loops where the degree is known; those of nested ranges of it not all of them do.
+    /// Horner's rule in both variables; powers of the first variable without all their coefficients
+    /// are left out.
+    // Compilers unroll these loops where the degree is known; those of nested ranges of it not all
+    // of them do.
     #[inline(always)]
     fn evaluate<S: Scalar>(&self, coefficients: &[f32], s: S, t: S) -> S {
         let mut rest = coefficients;
@@ -191,8 +195,8 @@ impl<P: Quantity, S: Seed, const STEPS: usize> Inverse<P> for Seeded<S, STEPS> {
     }
 }
 
-/// The step (du, dl) with J (du, dl) = `missing`, by Cramer's rule. The compiler has proven det J > 0 over the
-/// range, so the quotient is finite.
+/// The step (du, dl) with J (du, dl) = `missing`, by Cramer's rule. The compiler has proven det J >
+/// 0 over the range, so the quotient is finite.
 #[inline(always)]
 pub fn solve<S: Scalar>([[f_u, f_l], [q_u, q_l]]: [[S; 2]; 2], [f, q]: [S; 2]) -> [S; 2] {
     let per_det = (f_u * q_l - f_l * q_u).reciprocal();

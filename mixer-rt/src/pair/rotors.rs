@@ -4,8 +4,9 @@ use crate::layout::Tables;
 use crate::pair::{Quantity, ThrottleRange};
 use crate::{Health, sqrt};
 
-/// What a rotor gives alone, the other one of its unit at rest: thrust (N) and torque (N m, signed as on the bench) as
-/// polynomials of its throttle without a constant, coefficients from the fourth power down to the first.
+/// What a rotor gives alone, the other one of its unit at rest: thrust (N) and torque (N m, signed
+/// as on the bench) as polynomials of its throttle without a constant, coefficients from the fourth
+/// power down to the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SingleRotor {
     /// Of thrust.
@@ -44,8 +45,8 @@ pub(crate) enum Rotors {
     None,
 }
 
-/// Newton steps that invert a single rotor's thrust. The start is exact for a thrust that grows with the square of the
-/// throttle, which bench maps follow to a few percent.
+/// Newton steps that invert a single rotor's thrust. The start is exact for a thrust that grows
+/// with the square of the throttle, which bench maps follow to a few percent.
 const STEPS: usize = 3;
 
 impl Rotors {
@@ -95,13 +96,14 @@ impl Rotors {
         }
     }
 
-    /// The efforts `[f, Q]` (N, N m) of a unit whose single rotor is at the least and at the largest throttle.
+    /// The efforts `[f, Q]` (N, N m) of a unit whose single rotor is at the least and at the
+    /// largest throttle.
     pub(crate) fn ends(self, singles: &[SingleRotor; 2], range: &ThrottleRange) -> [[f32; 2]; 2] {
         [range.min, range.max].map(|throttle| self.curve(singles).efforts(throttle))
     }
 
-    /// The throttles within the range at which a unit with a single rotor gives the thrust `f` (N): Newton's method on the
-    /// rotor's polynomial, each step limited to the range.
+    /// The throttles within the range at which a unit with a single rotor gives the thrust `f` (N):
+    /// Newton's method on the rotor's polynomial, each step limited to the range.
     #[inline(never)]
     pub(crate) fn invert(self, singles: &[SingleRotor; 2], range: &ThrottleRange, f: f32) -> [f32; 2] {
         let [[least, _], [most, _]] = self.ends(singles, range);

@@ -1,7 +1,8 @@
 //! Host time per mix as ratios within one run: `cargo bench -p mixer-tests`.
 //!
-//! Criterion prints nanoseconds per 256 requests; what is comparable between machines is the ratio of one mixer's to
-//! another's, which a table at the end gives. The requests are those of `mixer_setpoints::Requests`, the same for all mixers of an airframe.
+//! Criterion prints nanoseconds per 256 requests; what is comparable between machines is the ratio
+//! of one mixer's to another's, which a table at the end gives. The requests are those of
+//! `mixer_setpoints::Requests`, the same for all mixers of an airframe.
 #![allow(missing_docs)]
 
 mod ratios;

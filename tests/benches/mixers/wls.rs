@@ -1,4 +1,5 @@
-//! Isolated rotors with the allocator of the crate `wls-alloc`, set up as for the firmware's counts.
+//! Isolated rotors with the allocator of the crate `wls-alloc`, set up as for the firmware's
+//! counts.
 
 use mixer_compiler::isolated::IsolatedTables;
 use mixer_rt::baselines::{IsolatedRotors, ThrustCurve};
@@ -22,7 +23,8 @@ pub(crate) trait Allocate<const ROTORS: usize> {
     /// From the effectiveness in shares of each axis's authority.
     fn new(matrix: &MatA<4, ROTORS>) -> Self;
 
-    /// Thrusts as shares of a rotor's range, and whether the solver converged. It starts from its last solution.
+    /// Thrusts as shares of a rotor's range, and whether the solver converged. It starts from its
+    /// last solution.
     fn solve(&mut self, request: &VecN<4>) -> ([f32; ROTORS], bool);
 }
 

@@ -1,4 +1,5 @@
-//! Airframes that are measured and nothing else: how cost grows with units and with tolerance, and what other priorities cost.
+//! Airframes that are measured and nothing else: how cost grows with units and with tolerance, and
+//! what other priorities cost.
 
 use std::fmt::Write as _;
 
@@ -17,8 +18,8 @@ torque_nm = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720]
 upper_spin = "cw"
 "#;
 
-/// A made-up pair, whose lower rotor hardly adds thrust while the upper one is at full throttle: its attainable set bends
-/// inwards.
+/// A made-up pair, whose lower rotor hardly adds thrust while the upper one is at full throttle:
+/// its attainable set bends inwards.
 const BENT: &str = r#"
 [throttle]
 min = 0.25
@@ -38,10 +39,10 @@ thrust_exponent = 1.75
 torque_exponent = 1.75
 "#;
 
-/// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N, with yaw before thrust, and
-/// with a reserve of yaw; a Y6 and an X8 with a made-up pair whose attainable set bends inwards; frames of 4, 6 and 8 units whose
-/// axes lean by 6 degrees along their circle, to and fro. The Y6s with the pairs of
-/// `airframes/x8-*.toml` are those of [`y6`].
+/// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N,
+/// with yaw before thrust, and with a reserve of yaw; a Y6 and an X8 with a made-up pair whose
+/// attainable set bends inwards; frames of 4, 6 and 8 units whose axes lean by 6 degrees along
+/// their circle, to and fro. The Y6s with the pairs of `airframes/x8-*.toml` are those of [`y6`].
 pub(crate) fn all() -> Vec<(String, String)> {
     let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(PAIR, units, "")));
     let tolerances = [

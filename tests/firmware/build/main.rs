@@ -1,8 +1,9 @@
 //! Lays out the images' memory and prepares what they mix.
 //!
-//! `airframes/*.toml` decides which airframes there are. Written to OUT_DIR: `memory.x`, `golden.rs` (airframes and
-//! vectors of the `golden` image), `subject.rs` (the airframe that `--cfg airframe="<name>"` selects for the `counts` and
-//! the `size` image), and the requests of the `counts` image.
+//! `airframes/*.toml` decides which airframes there are. Written to OUT_DIR: `memory.x`,
+//! `golden.rs` (airframes and vectors of the `golden` image), `subject.rs` (the airframe that
+//! `--cfg airframe="<name>"` selects for the `counts` and the `size` image), and the requests of
+//! the `counts` image.
 
 mod frames;
 mod golden;
@@ -45,7 +46,8 @@ fn main() {
 
 fn generate() -> Result<(), String> {
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
-    // What is as it was keeps its time: an airframe written anew would have cargo run this script again for every image.
+    // What is as it was keeps its time: an airframe written anew would have cargo run this script
+    // again for every image.
     let write = |file: &str, text: &str| {
         let path = out.join(file);
         if fs::read_to_string(&path).is_ok_and(|held| held == text) {

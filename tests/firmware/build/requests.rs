@@ -1,5 +1,5 @@
-//! The requests of the `counts` image. The host draws them: on the target the generator would share functions
-//! with the mixer, and the compiler would inline them differently than in a user's image.
+//! The requests of the `counts` image. The host draws them: on the target the generator would share
+//! functions with the mixer, and the compiler would inline them differently than in a user's image.
 
 use std::fs;
 use std::path::Path;
@@ -12,8 +12,8 @@ use crate::Measured;
 const COUNT: usize = 2_000;
 const SEED: u64 = 8;
 
-/// Writes `<name>.attainable` and `<name>.saturated` to `out`: roll, pitch, yaw, thrust and voltage as
-/// little-endian f32, request by request.
+/// Writes `<name>.attainable` and `<name>.saturated` to `out`: roll, pitch, yaw, thrust and voltage
+/// as little-endian f32, request by request.
 pub(crate) fn write(measured: &Measured, out: &Path) -> Result<(), String> {
     let Measured { name, path, compiled } = measured;
     println!("cargo::rerun-if-changed={}", path.display());

@@ -1,8 +1,10 @@
-//! Random setpoints and a digest of what a mixer makes of them, the same on the host and on the target.
+//! Random setpoints and a digest of what a mixer makes of them, the same on the host and on the
+//! target.
 //!
-//! Both sides draw the same sequence from the same seed and compare one number, where a table of golden vectors would
-//! not fit into flash. Only integer arithmetic and one rounded f32 operation at a time, so the bits do not depend on
-//! the machine. [`Requests`] are drawn around what one airframe's mixer can deliver, from its own tables.
+//! Both sides draw the same sequence from the same seed and compare one number, where a table of
+//! golden vectors would not fit into flash. Only integer arithmetic and one rounded f32 operation
+//! at a time, so the bits do not depend on the machine. [`Requests`] are drawn around what one
+//! airframe's mixer can deliver, from its own tables.
 #![no_std]
 
 mod mixture;
@@ -51,8 +53,8 @@ const SPECIAL: [f32; 12] = [
     f32::NEG_INFINITY,
 ];
 
-/// Endless sequence of setpoints. One in sixteen has an axis replaced by a special number: signed zero, subnormal,
-/// far outside every range, not finite.
+/// Endless sequence of setpoints. One in sixteen has an axis replaced by a special number: signed
+/// zero, subnormal, far outside every range, not finite.
 #[derive(Clone, Debug)]
 pub struct Setpoints {
     random: Random,
@@ -96,8 +98,8 @@ impl Digest {
     /// Where the sequences of setpoints and of rotors out start whose digests are compared.
     pub const SEED: u64 = 17;
 
-    /// How many setpoints are compared: a hundred thousand, or a `million`; with rotors out, which takes longer, a
-    /// fiftieth of that.
+    /// How many setpoints are compared: a hundred thousand, or a `million`; with rotors out, which
+    /// takes longer, a fiftieth of that.
     pub const fn setpoints(million: bool, rotors_out: u32) -> usize {
         let all_turning = if million { 1_000_000 } else { 100_000 };
         if rotors_out == 0 {

@@ -7,7 +7,8 @@ use mixer_rt::{
 
 use crate::{Digest, Kind, Ranges, Requests, Setpoint, Setpoints};
 
-/// Endless sequence: attainable requests, saturated ones, and setpoints that may not be finite, in turn.
+/// Endless sequence: attainable requests, saturated ones, and setpoints that may not be finite, in
+/// turn.
 #[derive(Clone, Debug)]
 pub struct Mixture<'a, P> {
     attainable: Requests<'a, P>,

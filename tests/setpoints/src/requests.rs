@@ -7,12 +7,12 @@ use crate::{Random, Setpoint};
 /// Which requests to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// What random throttles give by the airframe's own forward map, so that every one can be delivered (to
-    /// rounding). The voltage lies in its range.
+    /// What random throttles give by the airframe's own forward map, so that every one can be
+    /// delivered (to rounding). The voltage lies in its range.
     Attainable,
-    /// Anything a controller may ask, most of it out of reach: up to four times the authority on all axes or on one
-    /// alone, zeros, wrenches on and just beyond the border of the attainable ones, absurd numbers. All finite. One
-    /// voltage in eight lies outside its range.
+    /// Anything a controller may ask, most of it out of reach: up to four times the authority on
+    /// all axes or on one alone, zeros, wrenches on and just beyond the border of the attainable
+    /// ones, absurd numbers. All finite. One voltage in eight lies outside its range.
     Saturated,
 }
 
@@ -25,7 +25,8 @@ pub struct Requests<'a, P> {
     units: &'a [Unit],
     throttle: ThrottleRange,
     voltage: Option<&'a Voltage<'a>>,
-    /// The largest wrench on each axis at the reference voltage: all units at their best, whatever the others lose.
+    /// The largest wrench on each axis at the reference voltage: all units at their best, whatever
+    /// the others lose.
     authority: [f32; 4],
 }
 

@@ -1,4 +1,5 @@
-//! Compares allocators on attainable wrenches and writes `tests/measurements/allocators.csv`: `cargo xtask allocators`.
+//! Compares allocators on attainable wrenches and writes `tests/measurements/allocators.csv`:
+//! `cargo xtask allocators`.
 
 use std::process::ExitCode;
 

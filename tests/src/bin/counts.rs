@@ -85,7 +85,8 @@ fn print() -> Result<(), String> {
     Ok(())
 }
 
-/// Writes the page of counts, fits the compiler's model to them, writes it and says how well it does.
+/// Writes the page of counts, fits the compiler's model to them, writes it and says how well it
+/// does.
 fn fit(compiler: &str, rows: &[Row]) -> Result<(), String> {
     let page = counts::page();
     std::fs::write(&page, counts::document(compiler, rows))

@@ -1,4 +1,5 @@
-//! Writes the tables of the documents from the airframes and the measurements held: `cargo xtask tables`.
+//! Writes the tables of the documents from the airframes and the measurements held: `cargo xtask
+//! tables`.
 
 use std::fs;
 use std::process::ExitCode;

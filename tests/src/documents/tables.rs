@@ -146,7 +146,8 @@ pub(super) fn accuracy() -> Result<String, String> {
 /// Yaw commands of [`static_comparison`], from zero to the largest.
 const YAW_COMMANDS: usize = 9;
 
-/// Section V-A of the paper: yaw commands at constant thrust, and what units of each spin really give.
+/// Section V-A of the paper: yaw commands at constant thrust, and what units of each spin really
+/// give.
 pub(super) fn static_comparison() -> Result<String, String> {
     let compiled = golden::compile(PAPER)?;
     let study = Study::new(&compiled, None);
@@ -250,12 +251,14 @@ pub(super) fn bases() -> Result<String, String> {
     ))
 }
 
-/// One flight of `tests/measurements/flight.csv` or `energy.csv`: scenario, seed, mixer and figures.
+/// One flight of `tests/measurements/flight.csv` or `energy.csv`: scenario, seed, mixer and
+/// figures.
 struct Flight {
     scenario: String,
     seed: String,
     mixer: String,
-    /// Nine errors of Table II (MSE, MAE, MaxAE of x, y, z), then hover thrust over weight; or the energy, J.
+    /// Nine errors of Table II (MSE, MAE, MaxAE of x, y, z), then hover thrust over weight; or the
+    /// energy, J.
     figures: Vec<f64>,
 }
 

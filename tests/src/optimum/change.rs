@@ -1,4 +1,5 @@
-//! How far throttles must move from one request to the next, whichever of the optimal efforts are chosen.
+//! How far throttles must move from one request to the next, whichever of the optimal efforts are
+//! chosen.
 
 use microlp::{ComparisonOp, Error, OptimizationDirection, Problem, SolveOutcome, Variable};
 use mixer_rt::{Health, tables::Airmode};
@@ -21,10 +22,11 @@ struct Corner {
     throttles: [f64; 2],
 }
 
-/// The change of a throttle that the priorities themselves force between two requests at one voltage, all rotors working:
-/// the least possible largest one between any optimal efforts of the one and any of the other, over the convex hulls of the
-/// mixer's own polygons, about the throttles of `answer`. Where an optimum is so steep that the rounding error of a higher priority
-/// forces more, that. `None` where a request has no optimum.
+/// The change of a throttle that the priorities themselves force between two requests at one
+/// voltage, all rotors working: the least possible largest one between any optimal efforts of the
+/// one and any of the other, over the convex hulls of the mixer's own polygons, about the throttles
+/// of `answer`. Where an optimum is so steep that the rounding error of a higher priority forces
+/// more, that. `None` where a request has no optimum.
 ///
 /// # Errors
 /// The solver gave up.
@@ -48,9 +50,10 @@ pub fn forced(frame: &Frame, requests: [&Request; 2], answer: &Answer) -> Result
     Ok(Some(forced.max(between(frame, volts, wrenches, answer)?)))
 }
 
-/// True where two answers to requests at one voltage, all rotors working, are optima that lie apart, so that any choice of the best
-/// must jump: each is the best over the mixer's own polygons, but for rounding, and half way between the throttles of the two nothing
-/// is as good for either request.
+/// True where two answers to requests at one voltage, all rotors working, are optima that lie
+/// apart, so that any choice of the best must jump: each is the best over the mixer's own polygons,
+/// but for rounding, and half way between the throttles of the two nothing is as good for either
+/// request.
 ///
 /// # Errors
 /// The solver gave up.
@@ -114,7 +117,8 @@ fn given_up(frame: &Frame, asked: [f64; 4], optimum: &Optimum) -> [(f64, Option<
 }
 
 impl Optimum {
-    /// True where it is better than another by more than `margin`, a share of the authority, in the order of priority.
+    /// True where it is better than another by more than `margin`, a share of the authority, in the
+    /// order of priority.
     fn is_better_than(&self, other: &Optimum, frame: &Frame, asked: [f64; 4], margin: f64) -> bool {
         let short = |optimum: &Optimum| {
             let wrench = optimum.wrench(asked);

@@ -1,4 +1,5 @@
-//! The programs over the polygons that a mixer has for the attainable sets of units with both rotors.
+//! The programs over the polygons that a mixer has for the attainable sets of units with both
+//! rotors.
 
 use mixer_rt::Health;
 use nalgebra::Vector2;
@@ -13,16 +14,16 @@ impl Oracle {
         over(frame, volts, health, |_, polygon, _| vec![polygon.to_vec()])
     }
 
-    /// Over the polygons themselves, which may bend inwards: cut into triangles about their centre, from which all of them is
-    /// seen. An optimum takes seconds.
+    /// Over the polygons themselves, which may bend inwards: cut into triangles about their centre,
+    /// from which all of them is seen. An optimum takes seconds.
     pub fn of_exact_polygons(frame: &Frame, volts: f32, health: Health) -> Self {
         over(frame, volts, health, |_, polygon, centre| {
             triangles(polygon, centre)
         })
     }
 
-    /// Over the parts of the polygons in which no throttle is further than `reach` from these, one per output, by the derivative
-    /// there.
+    /// Over the parts of the polygons in which no throttle is further than `reach` from these, one
+    /// per output, by the derivative there.
     pub fn of_polygons_near(frame: &Frame, throttles: &[f64], volts: f32, reach: f64) -> Self {
         over(frame, volts, Health::GOOD, |i, polygon, centre| {
             let at = frame.physics.channels[i].map(|channel| throttles[channel]);
@@ -51,7 +52,8 @@ fn triangles(polygon: &[[f64; 2]], centre: [f64; 2]) -> Pieces<[f64; 2]> {
     edges.map(|(&start, &end)| vec![centre, start, end]).collect()
 }
 
-/// What of a convex polygon lies in the square of `reach` to either side of zero (Sutherland, Hodgman 1974).
+/// What of a convex polygon lies in the square of `reach` to either side of zero (Sutherland,
+/// Hodgman 1974).
 fn within_box(mut polygon: Vec<[f64; 2]>, reach: f64) -> Vec<[f64; 2]> {
     for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
         let depth = |point: [f64; 2]| reach - sign * point[axis];
@@ -72,7 +74,8 @@ fn within_box(mut polygon: Vec<[f64; 2]>, reach: f64) -> Vec<[f64; 2]> {
     polygon
 }
 
-/// Over the pieces `cut` of the polygon of a unit, given the unit's index, the polygon's corners and its centre, N and N m.
+/// Over the pieces `cut` of the polygon of a unit, given the unit's index, the polygon's corners
+/// and its centre, N and N m.
 fn over(
     frame: &Frame,
     volts: f32,

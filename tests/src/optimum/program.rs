@@ -1,4 +1,5 @@
-//! One linear program: the best share of (roll, pitch), yaw or thrust that convex sets of contributions allow.
+//! One linear program: the best share of (roll, pitch), yaw or thrust that convex sets of
+//! contributions allow.
 
 use microlp::{ComparisonOp, Error, OptimizationDirection, Problem, SolveOutcome, Variable};
 
@@ -55,8 +56,8 @@ impl Point {
     }
 }
 
-/// The sets that the units' contributions `[roll, pitch, yaw, thrust]` are taken from, by the points whose convex
-/// combinations they are, and the axes that are looked at.
+/// The sets that the units' contributions `[roll, pitch, yaw, thrust]` are taken from, by the
+/// points whose convex combinations they are, and the axes that are looked at.
 pub(super) struct Program {
     pub(super) sets: Vec<Vec<[f64; 4]>>,
     pub(super) served: [bool; 4],
@@ -69,8 +70,8 @@ pub(super) struct Program {
 impl Program {
     /// The optimum, `None` where nothing is feasible.
     ///
-    /// Where little is feasible or nothing the solver may make out neither. Then the rows are let go at a price, and
-    /// feasible is what needs none of that.
+    /// Where little is feasible or nothing the solver may make out neither. Then the rows are let
+    /// go at a price, and feasible is what needs none of that.
     ///
     /// # Errors
     /// The solver gave up all the same.
@@ -81,7 +82,8 @@ impl Program {
         }
     }
 
-    /// What one of a variable is worth: a share as much as its torque, so that the prices above are high everywhere.
+    /// What one of a variable is worth: a share as much as its torque, so that the prices above are
+    /// high everywhere.
     fn worth(&self, quantity: Quantity) -> f64 {
         match quantity {
             Quantity::Share => (0..2)

@@ -118,8 +118,8 @@ pub(super) fn distinct_prefixes(names: &[Name]) -> Vec<&str> {
     prefixes
 }
 
-/// Splits `force fz (thrust) (n)` into its text and the unit in its last brackets, `thrust n` (from `thrust_n`) into
-/// text and suffix.
+/// Splits `force fz (thrust) (n)` into its text and the unit in its last brackets, `thrust n` (from
+/// `thrust_n`) into text and suffix.
 fn split_unit(text: &str) -> (String, Option<String>) {
     for (open, close) in [('(', ')'), ('[', ']')] {
         if let (Some(inner), Some(start)) = (text.strip_suffix(close), text.rfind(open)) {

@@ -1,4 +1,5 @@
-//! What a fit may hide from its user: files of different pairs, throttles that were not measured, a costly constraint.
+//! What a fit may hide from its user: files of different pairs, throttles that were not measured, a
+//! costly constraint.
 
 use super::super::basis::ThrottleBox;
 use super::super::fit::Fit;
@@ -8,8 +9,9 @@ use super::placed::Placed;
 /// Full throttle, but for what pulse widths are rounded to.
 const FULL: f64 = 0.995;
 
-/// What files differ by that each fits well, rms about their common map, as a share of the greatest thrust. Repeats on another
-/// day differ by 0.004 to 0.008 so, real pairs of one propeller at other spacings or with another motor by as much.
+/// What files differ by that each fits well, rms about their common map, as a share of the greatest
+/// thrust. Repeats on another day differ by 0.004 to 0.008 so, real pairs of one propeller at other
+/// spacings or with another motor by as much.
 const APART: f64 = 0.01;
 
 /// Cost of the shape constraint in torque, as a share of the greatest torque.
@@ -25,8 +27,8 @@ pub(super) fn coverage(throttle: ThrottleBox, warnings: &mut Vec<String>) {
     }
 }
 
-/// Files that each fit well, and together less so: of different pairs. `together` and `apart` are the residuals of thrust,
-/// rms.
+/// Files that each fit well, and together less so: of different pairs. `together` and `apart` are
+/// the residuals of thrust, rms.
 pub(super) fn joined_files(
     files: &[&str],
     [together, apart]: [f64; 2],
@@ -45,7 +47,8 @@ pub(super) fn joined_files(
     ));
 }
 
-/// What det J > 0 costs in torque, and where: the row that it moves furthest from what was measured.
+/// What det J > 0 costs in torque, and where: the row that it moves furthest from what was
+/// measured.
 pub(super) fn costly_constraint(
     cost: &MonotoneCost,
     points: &[Placed],

@@ -100,8 +100,8 @@ pub(super) fn without<'a>(points: &[Placed<'a>], out: &[bool]) -> Vec<Placed<'a>
         .collect()
 }
 
-/// Which rows stand out of a robust fit of either channel. None if the points do not determine the basis: the reason
-/// follows when one is chosen.
+/// Which rows stand out of a robust fit of either channel. None if the points do not determine the
+/// basis: the reason follows when one is chosen.
 pub(super) fn suspects(basis: Basis, points: &[Placed], throttle_box: ThrottleBox) -> Vec<bool> {
     let Ok(design) = Design::new(basis, &places(points), throttle_box) else {
         return vec![false; points.len()];

@@ -63,7 +63,8 @@ pub(super) fn profile(rows: &[&Row], g: &Regressors, reference: f64) -> Option<E
     let degrees = rows.len().checked_sub(unknowns).filter(|&d| d > 0)?;
     let full = rows.iter().fold(0.0_f64, |m, r| m.max(r.y.abs()));
     let count = rows.iter().map(|r| r.level + 1).max()?;
-    // The weight is the level's, not the row's: else of two rows the smaller would weigh more and bias g.
+    // The weight is the level's, not the row's: else of two rows the smaller would weigh more and
+    // bias g.
     let mut of_level = vec![(0.0, 0.0); count];
     for r in rows {
         of_level[r.level].0 += r.y;

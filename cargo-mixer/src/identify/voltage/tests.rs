@@ -26,7 +26,8 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
     }
 }
 
-/// A sweep at `volts` less a sag of `sag` V at full throttle, thrust 10 u2 (V/12)^k with relative noise.
+/// A sweep at `volts` less a sag of `sag` V at full throttle, thrust 10 u2 (V/12)^k with relative
+/// noise.
 fn sweep(volts: f64, sag: f64, k: f64, throttles: impl Iterator<Item = f64>, noise: f64) -> Vec<Point> {
     let point = |(i, u): (usize, f64)| {
         let voltage = volts - sag * u * u;

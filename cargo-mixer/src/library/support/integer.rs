@@ -15,8 +15,8 @@ pub(super) extern "C" fn leading_zeros(mut value: u32) -> u32 {
 pub(super) extern "C" fn multiply_long(a: u64, b: u64) -> u64 {
     let (a_high, a_low) = ((a >> 32) as u32, a as u32);
     let (b_high, b_low) = ((b >> 32) as u32, b as u32);
-    // Of the lower words all 64 bits, by halves of 16 bits.
-    // One half is opaque: LLVM takes the whole for a product of 64 bits otherwise, which is a call of this function.
+    // Of the lower words all 64 bits, by halves of 16 bits. One half is opaque: LLVM takes the
+    // whole for a product of 64 bits otherwise, which is a call of this function.
     let a1 = core::hint::black_box(a_low >> 16) & 0xffff;
     let (a0, b1, b0) = (a_low & 0xffff, b_low >> 16, b_low & 0xffff);
     let middle = a1 * b0 + ((a0 * b0) >> 16);

@@ -1,4 +1,5 @@
-// Copying and filling. The accesses are volatile: a plain loop would become a call of the very function.
+// Copying and filling. The accesses are volatile: a plain loop would become a call of the very
+// function.
 
 pub(super) unsafe extern "C" fn copy(to: *mut u8, from: *const u8, bytes: usize) -> *mut u8 {
     let mut at = 0;

@@ -1,8 +1,8 @@
-// Arithmetic of IEEE 754 binary32 in integers, rounded to nearest even, subnormal numbers included: the bits of a
-// floating-point unit. A NaN is `NAN`, whatever its operands' are.
+// Arithmetic of IEEE 754 binary32 in integers, rounded to nearest even, subnormal numbers included:
+// the bits of a floating-point unit. A NaN is `NAN`, whatever its operands' are.
 //
-// Part of every object for a processor without that unit. LLVM calls the functions by the names of the Arm run-time ABI
-// (RTABI32, tables 4 to 9), which `support.rs` gives them.
+// Part of every object for a processor without that unit. LLVM calls the functions by the names of
+// the Arm run-time ABI (RTABI32, tables 4 to 9), which `support.rs` gives them.
 
 const SIGN: u32 = 1 << 31;
 const INFINITY: u32 = 0xff << 23;

@@ -1,4 +1,5 @@
-//! Polylines in pixels: fewer points where they are not seen, and a place for the value of an iso-curve.
+//! Polylines in pixels: fewer points where they are not seen, and a place for the value of an
+//! iso-curve.
 
 /// Points nearer than this to a chord are left out, px.
 const UNSEEN: f64 = 0.1;

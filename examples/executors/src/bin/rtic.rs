@@ -1,4 +1,5 @@
-//! The rate loop as an RTIC task: SysTick runs it at the highest priority, the idle task measures the battery.
+//! The rate loop as an RTIC task: SysTick runs it at the highest priority, the idle task measures
+//! the battery.
 //!
 //! `cargo run --release --features rtic --bin rtic`
 #![no_std]
@@ -17,7 +18,8 @@ use core::panic::PanicInfo;
 use cortex_m_rt as _;
 use cortex_m_semihosting::{debug, hprintln};
 
-/// What RTIC asks of a device: the board has no crate of its own, and no interrupt but SysTick is used.
+/// What RTIC asks of a device: the board has no crate of its own, and no interrupt but SysTick is
+/// used.
 mod device {
     pub(crate) const NVIC_PRIO_BITS: u8 = 3;
 }

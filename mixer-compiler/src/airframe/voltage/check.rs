@@ -10,7 +10,8 @@ use super::least::{LEAST_FACTOR, below_least};
 use crate::diagnostic::{Code, Diagnostic, any_of, number, rounded};
 use crate::spec;
 
-/// How far k may be from 1 at the reference voltage: coefficients and points are written to three or four digits.
+/// How far k may be from 1 at the reference voltage: coefficients and points are written to three
+/// or four digits.
 const REFERENCE_TOLERANCE: f64 = 1e-3;
 
 /// Steepest power that is taken for a law. Thrust follows about V^1.75; V^3 would be power.
@@ -22,8 +23,8 @@ const HIGHEST_DEGREE: usize = 8;
 /// Below this, nothing turns.
 const LEAST_V: f64 = 0.1;
 
-/// Least distance of two voltages over the higher one, of the range's ends and of neighbouring points: in single precision
-/// their difference is then true to a thousandth.
+/// Least distance of two voltages over the higher one, of the range's ends and of neighbouring
+/// points: in single precision their difference is then true to a thousandth.
 const LEAST_STEP: f64 = 1e-4;
 
 /// Above this, millivolts were meant.

@@ -12,7 +12,8 @@ pub(super) struct Supply {
     pub(super) range_v: [f64; 2],
 }
 
-/// Largest k over the range: ten times the voltage by the square. No pack does that, and larger ones overflow.
+/// Largest k over the range: ten times the voltage by the square. No pack does that, and larger
+/// ones overflow.
 const LARGEST_FACTOR: f64 = 100.0;
 
 /// Voltages at which polynomials are looked at, over the range.

@@ -1,5 +1,5 @@
-//! How thrust and torque follow the supply voltage: f(V) = k_f(V) f, Q(V) = k_Q(V) Q, with k = 1 at the
-//! reference voltage.
+//! How thrust and torque follow the supply voltage: f(V) = k_f(V) f, Q(V) = k_Q(V) Q, with k = 1 at
+//! the reference voltage.
 
 /// A law k(V) for thrust or torque.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,8 @@ fn between_points(points: &[[f64; 2]], volts: f64) -> f64 {
 pub struct Voltage {
     /// Voltage of the bench model, V, within the range.
     pub reference_v: f64,
-    /// Lowest and highest voltage in flight, V, 0.1 <= lowest < highest <= 1000. Beyond it the mixer clamps and flags.
+    /// Lowest and highest voltage in flight, V, 0.1 <= lowest < highest <= 1000. Beyond it the
+    /// mixer clamps and flags.
     pub range_v: [f64; 2],
     /// Law of the thrust, positive over the range (k >= 1e-3), 1 within 1e-3 at the reference.
     pub thrust: VoltageLaw,

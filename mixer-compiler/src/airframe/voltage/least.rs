@@ -1,8 +1,9 @@
 //! Proof that a polynomial law leaves thrust and torque over the whole voltage range.
 //!
-//! A polynomial lies between the least and the greatest of its Bernstein coefficients, so what is left of it above a
-//! least factor is positive where all of these are. Where they are not, the interval is halved (de Casteljau) until they
-//! are, or until an end of an interval is itself not positive.
+//! A polynomial lies between the least and the greatest of its Bernstein coefficients, so what is
+//! left of it above a least factor is positive where all of these are. Where they are not, the
+//! interval is halved (de Casteljau) until they are, or until an end of an interval is itself not
+//! positive.
 
 use super::law::horner;
 use crate::model::bernstein;
@@ -10,8 +11,8 @@ use crate::model::bernstein;
 /// Least k over the range. The mixer divides by k; below this a rotor hardly turns.
 pub(super) const LEAST_FACTOR: f64 = 1e-3;
 
-/// Where on [a, b] the polynomial is not above the least factor, and its value there; `None` where it is proven to
-/// be. The place is that of the least value among the found one and a fine grid.
+/// Where on [a, b] the polynomial is not above the least factor, and its value there; `None` where
+/// it is proven to be. The place is that of the least value among the found one and a fine grid.
 pub(super) fn below_least(coefficients: &[f64], [a, b]: [f64; 2]) -> Option<(f64, f64)> {
     let mut above = coefficients.to_vec();
     *above.first_mut()? -= LEAST_FACTOR;

@@ -1,12 +1,14 @@
-//! The largest convex part of a set: the hull of its border, cut along a tangent wherever the border still runs through
-//! it.
+//! The largest convex part of a set: the hull of its border, cut along a tangent wherever the
+//! border still runs through it.
 
 use super::{cross, distance};
 
-/// A border point deeper than this inside the polygon, in units of the set's size, makes a cut necessary.
+/// A border point deeper than this inside the polygon, in units of the set's size, makes a cut
+/// necessary.
 const DEPTH: f64 = 3e-6;
 
-/// Cuts that are made at most; border points left inside after that count as corners of the set's convex part.
+/// Cuts that are made at most; border points left inside after that count as corners of the set's
+/// convex part.
 const CUTS: usize = 64;
 
 /// A convex polygon inside a closed border, both anticlockwise.
@@ -43,8 +45,8 @@ fn hull(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     lower
 }
 
-/// The border point deepest inside the polygon with the outward normal of the polygon's edge next to it; `None`
-/// where none is deeper than [`DEPTH`].
+/// The border point deepest inside the polygon with the outward normal of the polygon's edge next
+/// to it; `None` where none is deeper than [`DEPTH`].
 fn deepest(border: &[[f64; 2]], polygon: &[[f64; 2]]) -> Option<([f64; 2], [f64; 2])> {
     let mut found = None;
     let mut depth = DEPTH;

@@ -25,8 +25,8 @@ fn pairs() -> Vec<(String, PairMap)> {
         .collect()
 }
 
-/// The area of an injective map's image is the integral of det J, here by Simpson's rule, which is exact for the low
-/// degrees.
+/// The area of an injective map's image is the integral of det J, here by Simpson's rule, which is
+/// exact for the low degrees.
 fn area(pair: &PairMap) -> f64 {
     const POINTS: usize = 41;
     let [low, high] = pair.range();

@@ -1,9 +1,11 @@
-//! The attainable torques of a unit at each thrust, as `mixer-rt`'s closed form reads them: see `mixer_rt::tables::Border`.
+//! The attainable torques of a unit at each thrust, as `mixer-rt`'s closed form reads them: see
+//! `mixer_rt::tables::Border`.
 //!
-//! With each thrust f a unit has the torques between the nearest points of the border above and below the image of the
-//! throttle box's diagonal u = l, which runs through the set from the idle corner to the full one. (Beside a corner where f
-//! falls along an edge of the throttle box the set reaches further, behind a gap: that is given up.) Both sides are drawn by
-//! chords in equal cells of thrust, lowered where a side bends inwards by what its chords would be outside.
+//! With each thrust f a unit has the torques between the nearest points of the border above and
+//! below the image of the throttle box's diagonal u = l, which runs through the set from the idle
+//! corner to the full one. (Beside a corner where f falls along an edge of the throttle box the set
+//! reaches further, behind a gap: that is given up.) Both sides are drawn by chords in equal cells
+//! of thrust, lowered where a side bends inwards by what its chords would be outside.
 
 use mixer_rt::tables::{Cell, Grid};
 
@@ -20,20 +22,23 @@ const POINTS: usize = 96;
 /// Most cells of a grid; a divisor of [`POINTS`].
 const MOST_CELLS: usize = 32;
 
-/// What the cells may lose at any thrust, as a share of the largest torque: a grid has the fewest cells for that, or the
-/// most there may be.
+/// What the cells may lose at any thrust, as a share of the largest torque: a grid has the fewest
+/// cells for that, or the most there may be.
 const LOSS: f64 = 2e-3;
 
 /// What chords keep from the border for rounding, as a share of the largest torque.
 const MARGIN: f64 = 1e-5;
 
-/// Largest slope of a side, in its largest torque per largest thrust. Steeper ones make jumps of the torque.
+/// Largest slope of a side, in its largest torque per largest thrust. Steeper ones make jumps of
+/// the torque.
 const STEEPEST: f64 = 16.0;
 
-/// What the cells lose at most, as a share of the largest torque: beyond it the general way serves better.
+/// What the cells lose at most, as a share of the largest torque: beyond it the general way serves
+/// better.
 const MOST_LOST: f64 = 0.05;
 
-/// Both sides, Q_max(f) and -Q_min(f), at thrusts between the corners, as shares of the largest thrust and torque.
+/// Both sides, Q_max(f) and -Q_min(f), at thrusts between the corners, as shares of the largest
+/// thrust and torque.
 struct Sides {
     /// Where the grids begin and the last one ends.
     corners: [f64; 4],
@@ -45,8 +50,8 @@ struct Sides {
 /// A thrust, Q_max and -Q_min there.
 type Knot = [f64; 3];
 
-/// The border, and the share of the attainable set's area that is outside its cells; `None` where thrust does not grow along
-/// the diagonal, or the cells lose much.
+/// The border, and the share of the attainable set's area that is outside its cells; `None` where
+/// thrust does not grow along the diagonal, or the cells lose much.
 pub(super) fn border(pair: &PairMap) -> Option<(BorderTable, f64)> {
     let scale = pair.scale();
     let sides = Sides::new(pair)?;
@@ -96,8 +101,8 @@ pub(super) fn border(pair: &PairMap) -> Option<(BorderTable, f64)> {
     Some((table, 1.0 - area / whole_area(pair)))
 }
 
-/// The knots as `mixer-rt` reads them. The last cell goes on as the one before it, so that half the width is negative beyond
-/// the largest thrust, as it is before the first cell.
+/// The knots as `mixer-rt` reads them. The last cell goes on as the one before it, so that half the
+/// width is negative beyond the largest thrust, as it is before the first cell.
 fn cells(knots: &[Knot], torque: f64) -> Vec<Cell> {
     let rounded: Vec<[f32; 2]> = knots
         .iter()
@@ -165,7 +170,8 @@ impl Sides {
         self.largest_gap(&knots)
     }
 
-    /// Lowers knots until their chords are inside. The border's first and last knot, where both sides meet, stay.
+    /// Lowers knots until their chords are inside. The border's first and last knot, where both
+    /// sides meet, stay.
     fn lower(&self, knots: &mut [Knot]) {
         let ends = [self.thrusts[0], self.thrusts[3 * POINTS]];
         let is_end = |knot: &Knot| ends.contains(&knot[0]);
@@ -190,7 +196,8 @@ impl Sides {
         }
     }
 
-    /// How far a side is above the chord between two knots at the points in their cell, and where in the cell these are.
+    /// How far a side is above the chord between two knots at the points in their cell, and where
+    /// in the cell these are.
     fn above(&self, from: Knot, to: Knot, side: usize) -> impl Iterator<Item = (f64, f64)> {
         let first = self.thrusts.partition_point(|&f| f <= from[0]);
         let end = self.thrusts.partition_point(|&f| f < to[0]);
@@ -214,7 +221,8 @@ impl Sides {
     }
 }
 
-/// The nearest points of a closed `border` above the diagonal, `sign` Q, at the `thrusts`; at both ends the torques `ends`.
+/// The nearest points of a closed `border` above the diagonal, `sign` Q, at the `thrusts`; at both
+/// ends the torques `ends`.
 fn side(border: &[[f64; 2]], diagonal: &[[f64; 2]], thrusts: &[f64], sign: f64, ends: [f64; 2]) -> Vec<f64> {
     let n = border.len();
     let middle: Vec<f64> = thrusts.iter().map(|&f| sign * linear(diagonal, f)).collect();

@@ -1,4 +1,5 @@
-//! A side's concave hull in a few straight lines, by which the closed form chooses thrusts: see `mixer_rt::tables::Outline`.
+//! A side's concave hull in a few straight lines, by which the closed form chooses thrusts: see
+//! `mixer_rt::tables::Outline`.
 
 use mixer_rt::tables::{Knot, Outline};
 
@@ -67,7 +68,8 @@ fn thinned(mut hull: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     hull
 }
 
-/// Both ends and at most [`Outline::KNOTS`] corners between, so that the largest gap between the hull and the lines is least.
+/// Both ends and at most [`Outline::KNOTS`] corners between, so that the largest gap between the
+/// hull and the lines is least.
 fn fewest_gaps(hull: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let n = hull.len();
     let gap = |i: usize, j: usize| {

@@ -3,8 +3,8 @@
 use super::Evaluator;
 use crate::airframe::Basis;
 
-/// Instructions per unit, by the name in airframe files (a polynomial's with its degree), with a biquadratic, a cubic
-/// and a quartic pair. Counted in QEMU by
+/// Instructions per unit, by the name in airframe files (a polynomial's with its degree), with a
+/// biquadratic, a cubic and a quartic pair. Counted in QEMU by
 ///
 /// ```sh
 /// cargo run --release -p mixer-tests --bin evaluators
@@ -23,12 +23,13 @@ pub const INSTRUCTIONS: [(&str, [u32; 3]); 9] = [
     ("cubic-newton2", [233, 247, 328]),
 ];
 
-/// Cycles of a division or a square root beyond those of other instructions (Cortex-M4 Technical Reference Manual,
-/// table 7-1: 14 for VDIV.F32 and VSQRT.F32, 1 for VADD.F32 and VMUL.F32).
+/// Cycles of a division or a square root beyond those of other instructions (Cortex-M4 Technical
+/// Reference Manual, table 7-1: 14 for VDIV.F32 and VSQRT.F32, 1 for VADD.F32 and VMUL.F32).
 const LONG: u32 = 13;
 
 impl Evaluator {
-    /// Instructions that one unit takes on a Cortex-M4F. `None` for polynomials of a degree that has not been counted.
+    /// Instructions that one unit takes on a Cortex-M4F. `None` for polynomials of a degree that
+    /// has not been counted.
     pub fn instructions(self, basis: Basis) -> Option<u32> {
         let column = Basis::ALL.iter().position(|&known| known == basis)?;
         let name = match self {
@@ -39,8 +40,9 @@ impl Evaluator {
         Some(counts[column])
     }
 
-    /// About the cycles that one unit takes on a Cortex-M4F: instructions counted, and what divisions and roots take
-    /// longer than others. `None` for polynomials of a degree that has not been counted.
+    /// About the cycles that one unit takes on a Cortex-M4F: instructions counted, and what
+    /// divisions and roots take longer than others. `None` for polynomials of a degree that has not
+    /// been counted.
     pub fn cost(self, basis: Basis) -> Option<u32> {
         Some(self.instructions(basis)? + LONG * self.divisions_and_roots())
     }

@@ -1,9 +1,10 @@
 //! The root coordinates in which the inverse is almost bilinear.
 //!
-//! If f and Q were quadratic forms of (u, l), two combinations f/F - p Q/T and f/F + r Q/T would be perfect squares
-//! of linear forms in u and l: p and -r are the generalised eigenvalues of the two forms. Their roots x and y would
-//! be linear in (u, l), and the inverse linear in (x, y). Real pairs deviate: offsets c1, c2 keep the radicands
-//! positive, and (p, r, c1, c2) are searched from there (Nelder and Mead 1965) for the least error of a fit.
+//! If f and Q were quadratic forms of (u, l), two combinations f/F - p Q/T and f/F + r Q/T would be
+//! perfect squares of linear forms in u and l: p and -r are the generalised eigenvalues of the two
+//! forms. Their roots x and y would be linear in (u, l), and the inverse linear in (x, y). Real
+//! pairs deviate: offsets c1, c2 keep the radicands positive, and (p, r, c1, c2) are searched from
+//! there (Nelder and Mead 1965) for the least error of a fit.
 
 use super::sample::{Sample, samples, weights};
 use crate::model::PairMap;
@@ -43,8 +44,8 @@ const EVALUATIONS: usize = 220;
 pub(super) struct Start {
     /// Terms of the fit: 4 or 6.
     terms: usize,
-    /// Errors count by det J to the power `-emphasis`: where it is small, a Newton step bears smaller errors of its
-    /// seed.
+    /// Errors count by det J to the power `-emphasis`: where it is small, a Newton step bears
+    /// smaller errors of its seed.
     pub(super) emphasis: f64,
 }
 
@@ -89,8 +90,8 @@ impl Coordinates {
         plane.coordinates(&minimise(start, EDGE, EVALUATIONS, objective, |_, _| false))
     }
 
-    /// Searches on from here for the least `error`, until it is below 1 with something to spare, or will not become
-    /// so: half of the evaluations must bring it half of the way.
+    /// Searches on from here for the least `error`, until it is below 1 with something to spare, or
+    /// will not become so: half of the evaluations must bring it half of the way.
     pub fn improved(&self, pair: &PairMap, evaluations: usize, error: impl Fn(&Coordinates) -> f64) -> Self {
         let plane = Plane::new(pair);
         let start = [
@@ -141,8 +142,8 @@ impl Plane {
         -least
     }
 
-    /// From (p, r, c1, c2). Radicands stay positive: where one were limited to zero, the fit would have a kink that
-    /// hides between the samples.
+    /// From (p, r, c1, c2). Radicands stay positive: where one were limited to zero, the fit would
+    /// have a kink that hides between the samples.
     fn coordinates(&self, [p, r, c1, c2]: &[f64; 4]) -> Coordinates {
         let offset = |by_q: f64, offset: f64| offset.max(self.least(by_q) + POSITIVE);
         Coordinates {
@@ -152,8 +153,8 @@ impl Plane {
     }
 }
 
-/// p and r from pure quadratic forms fitted to thrust and torque: det(A - p B) = 0 for the positive root p and the
-/// negative root -r, A and B the forms of f/F and Q/T.
+/// p and r from pure quadratic forms fitted to thrust and torque: det(A - p B) = 0 for the positive
+/// root p and the negative root -r, A and B the forms of f/F and Q/T.
 fn eigenvalues(samples: &[Sample], scale: [f64; 2]) -> [f64; 2] {
     let [a, b] = [0, 1].map(|k| quadratic_form(samples, |sample| sample.efforts[k] / scale[k]));
     // det [[a0 - p b0, (a1 - p b1)/2], [.., a2 - p b2]] = 0
@@ -190,8 +191,8 @@ fn quadratic_form(samples: &[Sample], value: impl Fn(&Sample) -> f64) -> [f64; 3
         .map_or([1.0, 0.0, 1.0], |factors| factors.solve(&right).into())
 }
 
-/// The sum of sixth powers of the weighted throttle errors of a least-squares fit: close to the maximum, yet smooth.
-/// The terms are 1, x, y, xy and, with `TERMS` = 6, x2 and y2.
+/// The sum of sixth powers of the weighted throttle errors of a least-squares fit: close to the
+/// maximum, yet smooth. The terms are 1, x, y, xy and, with `TERMS` = 6, x2 and y2.
 fn fit_error<const TERMS: usize>(samples: &[Sample], weights: &[f64], coordinates: &Coordinates) -> f64 {
     let mut normal = [[0.0f64; TERMS]; TERMS];
     let mut right = [[0.0f64; TERMS]; 2];
@@ -202,7 +203,8 @@ fn fit_error<const TERMS: usize>(samples: &[Sample], weights: &[f64], coordinate
         let mut row = [0.0; TERMS];
         row.copy_from_slice(&all[..TERMS]);
         let square = weight * weight;
-        // Plain loops: the search runs through here hundreds of times in builds without optimisation.
+        // Plain loops: the search runs through here hundreds of times in builds without
+        // optimisation.
         let mut i = 0;
         while i < TERMS {
             let weighted = square * row[i];
@@ -237,8 +239,8 @@ fn fit_error<const TERMS: usize>(samples: &[Sample], weights: &[f64], coordinate
     sum
 }
 
-/// Solves a symmetric positive definite system given by its upper triangle, with two right-hand sides, by Gauss
-/// elimination without pivoting.
+/// Solves a symmetric positive definite system given by its upper triangle, with two right-hand
+/// sides, by Gauss elimination without pivoting.
 fn solve_symmetric<const TERMS: usize>(
     mut rows: [[f64; TERMS]; TERMS],
     mut right: [[f64; TERMS]; 2],
@@ -271,8 +273,8 @@ fn solve_symmetric<const TERMS: usize>(
     Some(right)
 }
 
-/// Nelder and Mead's simplex search with their coefficients 1, 2, 1/2, 1/2; `enough` may end it early, given the
-/// evaluations so far and the least value.
+/// Nelder and Mead's simplex search with their coefficients 1, 2, 1/2, 1/2; `enough` may end it
+/// early, given the evaluations so far and the least value.
 fn minimise(
     start: [f64; 4],
     edge: f64,

@@ -24,8 +24,8 @@ pub(super) struct Lawson<'a> {
 }
 
 impl Lawson<'_> {
-    /// The best coefficients found, per target, and their largest `error(sample, fitted targets)`. Errors of more
-    /// than `hopeless` after a few rounds end the fit.
+    /// The best coefficients found, per target, and their largest `error(sample, fitted targets)`.
+    /// Errors of more than `hopeless` after a few rounds end the fit.
     pub(super) fn fit(
         &self,
         rounds: usize,
@@ -49,7 +49,8 @@ impl Lawson<'_> {
             if round + 1 >= PATIENCE && best.1 > hopeless {
                 break;
             }
-            // Lawson's factor is the error itself. Newton steps square the seed's error: its root then.
+            // Lawson's factor is the error itself. Newton steps square the seed's error: its root
+            // then.
             let mut sum = 0.0;
             for (weight, error) in weights.iter_mut().zip(&errors) {
                 let factor = error / largest;
@@ -64,9 +65,9 @@ impl Lawson<'_> {
         best
     }
 
-    /// Weighted least squares by the normal equations, scaled to a unit diagonal. Their condition is the square of
-    /// the terms'; coefficients that suffer from it are those that hardly matter, and what is emitted is checked
-    /// point by point afterwards.
+    /// Weighted least squares by the normal equations, scaled to a unit diagonal. Their condition
+    /// is the square of the terms'; coefficients that suffer from it are those that hardly matter,
+    /// and what is emitted is checked point by point afterwards.
     fn solve(&self, weights: &[f64]) -> [Vec<f64>; 2] {
         let terms = self.rows[0].len();
         let mut normal = vec![0.0; terms * terms];
@@ -98,8 +99,8 @@ impl Lawson<'_> {
     }
 }
 
-/// Adds a row's products, weighted, to the lower triangle. (Plain loops: this is what a build without optimisation
-/// spends its time on.)
+/// Adds a row's products, weighted, to the lower triangle. (Plain loops: this is what a build
+/// without optimisation spends its time on.)
 fn accumulate(normal: &mut [f64], terms: usize, row: &[f64], weight: f64) {
     let mut i = 0;
     while i < terms {

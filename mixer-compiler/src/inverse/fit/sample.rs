@@ -31,8 +31,8 @@ impl Sampled {
         }
     }
 
-    /// First weights of a fit whose errors count by det J to the power `-emphasis`; one emphasis other than 0 is
-    /// remembered.
+    /// First weights of a fit whose errors count by det J to the power `-emphasis`; one emphasis
+    /// other than 0 is remembered.
     pub(super) fn weights(&self, pair: &PairMap, emphasis: f64) -> Vec<f64> {
         let squared = || {
             let weights = weights(pair, &self.samples, emphasis);

@@ -1,8 +1,10 @@
-//! The most instructions that a mix takes, whatever is asked: the sum of what the code does at most.
+//! The most instructions that a mix takes, whatever is asked: the sum of what the code does at
+//! most.
 //!
-//! In closed form that is least norm, an attempt at it next to the border, and one of two ways: the facets in several steps
-//! where they change the request, or the climb along the null space where they do not; after either the retreat. The
-//! instructions of each part are rounded up from counts of parts; the tests hold the sum to the counts of whole mixers.
+//! In closed form that is least norm, an attempt at it next to the border, and one of two ways: the
+//! facets in several steps where they change the request, or the climb along the null space where
+//! they do not; after either the retreat. The instructions of each part are rounded up from counts
+//! of parts; the tests hold the sum to the counts of whole mixers.
 
 use mixer_rt::tables::Outline;
 
@@ -17,7 +19,8 @@ const PER_VOLTAGE: u32 = 78;
 /// One unit's least norm, its throttles written, and its share of the achieved wrench.
 const PER_UNIT: u32 = 90;
 
-/// A step of the facets' linear programme, and one pair of facets in it. As many steps as in `mixer-rt`.
+/// A step of the facets' linear programme, and one pair of facets in it. As many steps as in
+/// `mixer-rt`.
 const STEP: u32 = 30;
 const FACETS: u32 = 18;
 const STEPS: u32 = 6;
@@ -25,7 +28,8 @@ const STEPS: u32 = 6;
 /// The range of the null space, one unit.
 const NULL_RANGE: u32 = 40;
 
-/// How far yaw reaches: a call, and one unit in it. Calls at the start, in the climb, and in the retreat.
+/// How far yaw reaches: a call, and one unit in it. Calls at the start, in the climb, and in the
+/// retreat.
 const REACH: u32 = 35;
 const REACH_UNIT: u32 = 45;
 const CLIMB: u32 = 3;
@@ -51,7 +55,8 @@ const PIVOT_UNIT: u32 = 80;
 const FLIP: u32 = 150;
 const FLIP_UNIT: u32 = 8;
 
-/// The bound for a compiled airframe; `None` where there is none yet, or its evaluator has not been counted.
+/// The bound for a compiled airframe; `None` where there is none yet, or its evaluator has not been
+/// counted.
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
@@ -59,8 +64,8 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     }
 }
 
-/// The general path with all rotors: least norm, the pivots and flips that are allowed for the request and for level flight, and
-/// what follows them.
+/// The general path with all rotors: least norm, the pivots and flips that are allowed for the
+/// request and for level flight, and what follows them.
 fn general(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let n = compiled.tables.units.len() as u32;

@@ -1,4 +1,5 @@
-//! Written by `cargo run -p mixer-tests --bin counts -- --fit` from `tests/counts.csv`; do not edit.
+//! Written by `cargo run -p mixer-tests --bin counts -- --fit` from `tests/counts.csv`; do not
+//! edit.
 
 use super::{Counted, Overhead};
 

@@ -27,7 +27,8 @@ impl Scalar for Taylor {
 
     fn root(self) -> Taylor {
         let Interval { low, high } = self.range();
-        // The radicand is limited to zero, in f32 and in truth: limits bring numbers no further apart.
+        // The radicand is limited to zero, in f32 and in truth: limits bring numbers no further
+        // apart.
         if low <= 0.0 || low.is_nan() {
             let above = high.max(0.0).sqrt() * UP;
             let error = self.error.sqrt();
@@ -49,7 +50,8 @@ impl Scalar for Taylor {
     fn within(self, low: f32, high: f32) -> Taylor {
         let range = self.range();
         let beyond = (range.high - f64::from(high)).max(f64::from(low) - range.low);
-        // Limiting moves a number by no more than it lies outside, and two numbers no further apart.
+        // Limiting moves a number by no more than it lies outside, and two numbers no further
+        // apart.
         if beyond <= 0.0 { self } else { self.widened(beyond) }
     }
 }

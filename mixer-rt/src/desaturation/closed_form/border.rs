@@ -1,12 +1,13 @@
 //! The attainable torques of a unit at its thrust: [Q_min(f), Q_max(f)].
 //!
-//! Two descriptions. The fine one limits what a unit gives: the middle and half the width of the range, both linear in
-//! cells of thrust, so that one look-up without a loop gives both sides. Its chords lie inside the attainable set. The cells
-//! are equal between the idle corner, the two corners of the set where one rotor idles and the other is at full throttle,
-//! and the full corner, since the sides bend sharply there and hardly anywhere else.
+//! Two descriptions. The fine one limits what a unit gives: the middle and half the width of the
+//! range, both linear in cells of thrust, so that one look-up without a loop gives both sides. Its
+//! chords lie inside the attainable set. The cells are equal between the idle corner, the two
+//! corners of the set where one rotor idles and the other is at full throttle, and the full corner,
+//! since the sides bend sharply there and hardly anywhere else.
 //!
-//! The coarse one tells at which thrusts yaw reaches furthest: each side's concave hull in a few straight lines, of which
-//! only the slopes matter.
+//! The coarse one tells at which thrusts yaw reaches furthest: each side's concave hull in a few
+//! straight lines, of which only the slopes matter.
 
 use super::{ClosedForm, Search};
 
@@ -67,8 +68,8 @@ pub struct Border<'a> {
 }
 
 impl Border<'_> {
-    /// Middle and half the width of the attainable torques at the thrust `f`, N m; the latter is negative where `f` is not
-    /// attainable.
+    /// Middle and half the width of the attainable torques at the thrust `f`, N m; the latter is
+    /// negative where `f` is not attainable.
     #[inline(always)]
     pub fn torques(&self, f: f32) -> [f32; 2] {
         let [first, second] = self.corners_n;

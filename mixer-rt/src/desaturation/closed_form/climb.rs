@@ -1,9 +1,10 @@
 //! z where yaw reaches furthest.
 //!
-//! By the coarse sides Y(z), the furthest yaw, is a sum of concave functions of straight lines. From the start z goes the way
-//! on which Y grows, from knot to knot, until it does not: at most all units' knots, each met once. The knots move with the
-//! request continuously and the slopes between them are constants, so the end does not jump; where Y is level, z stays at the
-//! nearest point that is best.
+//! By the coarse sides Y(z), the furthest yaw, is a sum of concave functions of straight lines.
+//! From the start z goes the way on which Y grows, from knot to knot, until it does not: at most
+//! all units' knots, each met once. The knots move with the request continuously and the slopes
+//! between them are constants, so the end does not jump; where Y is level, z stays at the nearest
+//! point that is best.
 
 use super::{Border, ClosedForm, MOST_UNITS, Outline, Search};
 use crate::rolled;
@@ -42,7 +43,8 @@ impl Ahead<'_> {
 }
 
 impl Border<'_> {
-    /// The side in which a unit that has `turn` yaw per torque in the direction looked at gives most.
+    /// The side in which a unit that has `turn` yaw per torque in the direction looked at gives
+    /// most.
     #[inline(always)]
     fn outline(&self, turn: f32) -> &Outline {
         let [largest, least] = &self.outlines;
@@ -51,7 +53,8 @@ impl Border<'_> {
 }
 
 impl ClosedForm<'_> {
-    /// z within `[low, high]` where yaw of the sign `sign` reaches furthest by the coarse sides, seen from `start`.
+    /// z within `[low, high]` where yaw of the sign `sign` reaches furthest by the coarse sides,
+    /// seen from `start`.
     #[inline(never)]
     pub(super) fn top(&self, search: &[Search], sign: f32, start: f32, [low, high]: [f32; 2]) -> f32 {
         let none = Ahead {
@@ -81,7 +84,8 @@ impl ClosedForm<'_> {
             }
             growth += slope * unit.null;
         }
-        // Towards more thrust a unit passes the knots above it, towards less those below it, one just met included.
+        // Towards more thrust a unit passes the knots above it, towards less those below it, one
+        // just met included.
         let direction = if growth < 0.0 { -1.0 } else { 1.0 };
         growth *= direction;
         let end = if direction < 0.0 {

@@ -1,16 +1,17 @@
 //! The attainable (roll, pitch, thrust).
 //!
-//! The thrusts lie in [a, b]^n, so w = C f lies in a zonotope, whose facets the compiler tabulates in pairs,
-//! `low <= d w <= high`. For a given direction of (roll, pitch) a facet is a line in the plane of (rho, thrust): the
-//! largest rho, and then the thrust nearest the request, are a linear program in two unknowns.
+//! The thrusts lie in [a, b]^n, so w = C f lies in a zonotope, whose facets the compiler tabulates
+//! in pairs, `low <= d w <= high`. For a given direction of (roll, pitch) a facet is a line in the
+//! plane of (rho, thrust): the largest rho, and then the thrust nearest the request, are a linear
+//! program in two unknowns.
 
 use core::hint::black_box;
 
 use super::ClosedForm;
 use crate::rolled;
 
-/// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <= high` for a slope,
-/// without the thrust for a wall.
+/// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <=
+/// high` for a slope, without the thrust for a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facets {
     /// The normal's components along roll and pitch.
@@ -19,16 +20,16 @@ pub struct Facets {
     pub bounds: [f32; 2],
 }
 
-/// A gap between thrust bounds that is below this share of a unit's largest thrust is none: sums of four have errors of
-/// that size.
+/// A gap between thrust bounds that is below this share of a unit's largest thrust is none: sums of
+/// four have errors of that size.
 const ROUNDING: f32 = 4e-6;
 
 /// Steps of the search for the largest rho: at most one per facet, hardly ever more than two.
 const STEPS: u32 = 6;
 
 impl ClosedForm<'_> {
-    /// The largest share of (roll, pitch) up to 1 that some thrust of at most `ceiling` allows, and the thrusts
-    /// that it allows.
+    /// The largest share of (roll, pitch) up to 1 that some thrust of at most `ceiling` allows, and
+    /// the thrusts that it allows.
     #[inline(always)]
     pub(super) fn share(&self, roll: f32, pitch: f32, ceiling: f32) -> (f32, [f32; 2]) {
         let mut share = 1.0;

@@ -1,8 +1,9 @@
 //! The thrusts: f = C+ w + z N.
 //!
-//! Where z has room and yaw does not reach the request, z moves towards where yaw reaches furthest, only the part
-//! `(yaw - Y(0)) / (Y(z) - Y(0))` of the way. So the thrusts are a Lipschitz function of the request, which they would
-//! not be if z were moved just far enough. Y is nearly concave: where that part is not enough, two more steps mend it.
+//! Where z has room and yaw does not reach the request, z moves towards where yaw reaches furthest,
+//! only the part `(yaw - Y(0)) / (Y(z) - Y(0))` of the way. So the thrusts are a Lipschitz function
+//! of the request, which they would not be if z were moved just far enough. Y is nearly concave:
+//! where that part is not enough, two more steps mend it.
 
 use super::{ClosedForm, ClosedFormUnit, Request, Search};
 use crate::{clamp, rolled};
@@ -14,8 +15,9 @@ const CLIMBS: u32 = 2;
 /// .. and towards the middle. All but the first are twice as long as a straight line asks for.
 const RETREATS: u32 = 3;
 
-/// In yaw that counts as none: what z's way must gain to be gone in full. A way of less gain is gone in part, so that
-/// z does not jump where the gain vanishes. Costs up to a quarter of it, 0.02 % of the yaw.
+/// In yaw that counts as none: what z's way must gain to be gone in full. A way of less gain is
+/// gone in part, so that z does not jump where the gain vanishes. Costs up to a quarter of it, 0.02
+/// % of the yaw.
 const GAIN: f32 = 100.0;
 
 impl ClosedFormUnit {
@@ -34,9 +36,10 @@ fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
 }
 
 impl ClosedForm<'_> {
-    /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach the request if from any. Where yaw
-    /// would be reversed or exceeded they are drawn towards those of the thrust `middle`. Returns where they are on the
-    /// units' way and the least and most yaw there, and leaves what each unit gives of it.
+    /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach the request
+    /// if from any. Where yaw would be reversed or exceeded they are drawn towards those of the
+    /// thrust `middle`. Returns where they are on the units' way and the least and most yaw there,
+    /// and leaves what each unit gives of it.
     #[inline(always)]
     pub(super) fn attainable_thrusts(
         &self,
@@ -67,8 +70,9 @@ impl ClosedForm<'_> {
         (z, reach)
     }
 
-    /// Moves z from a point where yaw does not reach `wanted` towards where it reaches furthest within `range`. Returns z and
-    /// the least and most yaw there, and leaves what each unit gives of it.
+    /// Moves z from a point where yaw does not reach `wanted` towards where it reaches furthest
+    /// within `range`. Returns z and the least and most yaw there, and leaves what each unit gives
+    /// of it.
     #[inline(always)]
     fn climb(
         &self,
@@ -110,8 +114,9 @@ impl ClosedForm<'_> {
         (z, reach)
     }
 
-    /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to where the facets allow
-    /// them; false where that changes them, so that z has no room. Leaves the units' way, z.
+    /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to
+    /// where the facets allow them; false where that changes them, so that z has no room. Leaves
+    /// the units' way, z.
     #[inline(always)]
     fn within_facets(&self, request: &Request, ceiling: f32, search: &mut [Search]) -> ([f32; 2], bool) {
         let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
@@ -121,8 +126,8 @@ impl ClosedForm<'_> {
         (self.null_range(search, &wrench), has_room)
     }
 
-    /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way. Returns z's range: from more to
-    /// less where rounding leaves none.
+    /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way.
+    /// Returns z's range: from more to less where rounding leaves none.
     #[inline(always)]
     fn null_range(&self, search: &mut [Search], wrench: &[f32; 3]) -> [f32; 2] {
         let (mut low, mut high) = (-f32::MAX, f32::MAX);
@@ -143,11 +148,13 @@ impl ClosedForm<'_> {
         [low, high]
     }
 
-    /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, towards those of `middle_n` until it reaches it.
-    /// Returns where they are on their new way and the least and most yaw there, and leaves what each unit gives of it.
+    /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, towards those of
+    /// `middle_n` until it reaches it. Returns where they are on their new way and the least and
+    /// most yaw there, and leaves what each unit gives of it.
     ///
-    /// A straight line from the middle crosses `needed` inside where the sides are concave: then a second one from there
-    /// is nearer. Where they are not it may cross outside, by little: then the steps go inwards.
+    /// A straight line from the middle crosses `needed` inside where the sides are concave: then a
+    /// second one from there is nearer. Where they are not it may cross outside, by little: then
+    /// the steps go inwards.
     #[inline(never)]
     fn retreat(
         &self,

@@ -1,5 +1,5 @@
-//! The torques: the least-norm ones, clipped to what the thrusts allow, and what that leaves of the yaw in proportion
-//! to room.
+//! The torques: the least-norm ones, clipped to what the thrusts allow, and what that leaves of the
+//! yaw in proportion to room.
 //!
 //! All as yaw, p_i = s_i Q_i: the least-norm p_i are alike, yaw / n.
 
@@ -8,8 +8,8 @@ use crate::clamp;
 use crate::rolled;
 
 impl ClosedForm<'_> {
-    /// Writes the efforts: the thrusts at `z` of the units' way, and the torques that come nearest the `yaw` within what the
-    /// units give there, which is `reach` in all.
+    /// Writes the efforts: the thrusts at `z` of the units' way, and the torques that come nearest
+    /// the `yaw` within what the units give there, which is `reach` in all.
     #[inline(always)]
     pub(super) fn torques(
         &self,

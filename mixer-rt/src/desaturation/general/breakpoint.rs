@@ -1,14 +1,15 @@
 //! The breakpoints of a dual step: where variables leave their corners or edges.
 //!
-//! A long step passes the first one again and again. Two are kept, so that only every other passage looks through all variables.
+//! A long step passes the first one again and again. Two are kept, so that only every other passage
+//! looks through all variables.
 
 use super::variable::positive;
 
 /// The index of no variable.
 pub(super) const NONE: u8 = u8::MAX;
 
-/// A variable's breakpoint. The bits of floats are in their order, but for negative ones, which all come first; that
-/// spares the transfers of comparisons between floats.
+/// A variable's breakpoint. The bits of floats are in their order, but for negative ones, which all
+/// come first; that spares the transfers of comparisons between floats.
 #[derive(Clone, Copy)]
 pub(super) struct Breakpoint {
     pub(super) bits: i32,

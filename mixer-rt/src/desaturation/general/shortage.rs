@@ -1,6 +1,7 @@
 //! What a request may fall short of, and at which cost.
 //!
-//! Costs per row of shortage have fixed ratios, which act as priorities and bound how steep the answer is in the request:
+//! Costs per row of shortage have fixed ratios, which act as priorities and bound how steep the
+//! answer is in the request:
 //!
 //! ```text
 //! yaw beyond the reserve   1          (airmode roll-pitch-yaw: 20)
@@ -10,9 +11,9 @@
 //! the reserve of yaw   10000
 //! ```
 //!
-//! A higher priority is given up where that gains more of the next one than these ratios. Roll and pitch are one
-//! shortage, along their request, so that their direction stays. A shortage runs from nothing to all that was asked for, so
-//! that nothing is reversed.
+//! A higher priority is given up where that gains more of the next one than these ratios. Roll and
+//! pitch are one shortage, along their request, so that their direction stays. A shortage runs from
+//! nothing to all that was asked for, so that nothing is reversed.
 
 use super::variable::Variable;
 use crate::desaturation::Airmode;
@@ -28,8 +29,8 @@ pub(super) const LEVEL: usize = 2;
 pub(super) const RAY: usize = 4;
 const WITHOUT_RESERVE: usize = 5;
 
-/// How far beyond the request the ray reaches, as a share of the request's distance from the centre, and the reward per
-/// row.
+/// How far beyond the request the ray reaches, as a share of the request's distance from the
+/// centre, and the reward per row.
 pub(super) const REACH: f32 = 1.0;
 const REWARD: f32 = 0.02;
 
@@ -53,9 +54,9 @@ const LEAST_WIDTH_OF_THRUST: f32 = 0.1;
 /// A unit's bias: small beside the least cost, large beside rounding.
 const BIAS: f32 = 4e-3;
 
-/// Writes the units' biases and, behind the units, the shortages of a request in rows, which is limited to what is looked at;
-/// returns how many shortages there are. `centre` is what the units' centres give, `reserve` the yaw that is kept before roll
-/// and pitch, in rows.
+/// Writes the units' biases and, behind the units, the shortages of a request in rows, which is
+/// limited to what is looked at; returns how many shortages there are. `centre` is what the units'
+/// centres give, `reserve` the yaw that is kept before roll and pitch, in rows.
 #[inline(never)]
 pub(super) fn write(
     variables: &mut [Variable],

@@ -8,17 +8,20 @@
 //!  with  sum_i B_i y_i = w               rows roll, pitch, yaw, thrust
 //! ```
 //!
-//! Units and shortages are variables alike ([`variable`](super::variable)); the bias of a shortage is its cost, negative.
+//! Units and shortages are variables alike ([`variable`](super::variable)); the bias of a shortage
+//! is its cost, negative.
 //!
-//! Multipliers lambda of the rows put every variable at the corner with the largest gain (B_i^T lambda + bias_i) . y_i. Such a
-//! choice is optimal but misses the rows. Four slots of the basis make up for that: each is the place along a variable's
-//! edge, or one of two slots of a unit that is free in its polygon. A pivot takes the slot that is furthest outside its
-//! bounds, moves lambda in the direction that brings it back, and lets the variable whose gain turns first take the slot. A
-//! variable at a corner moves to its next corner instead, as long as the slot stays outside (long steps, Maros 2003). A
-//! slot that has no variable yet is artificial: its bounds are both zero.
+//! Multipliers lambda of the rows put every variable at the corner with the largest gain (B_i^T
+//! lambda + bias_i) . y_i. Such a choice is optimal but misses the rows. Four slots of the basis
+//! make up for that: each is the place along a variable's edge, or one of two slots of a unit that
+//! is free in its polygon. A pivot takes the slot that is furthest outside its bounds, moves lambda
+//! in the direction that brings it back, and lets the variable whose gain turns first take the
+//! slot. A variable at a corner moves to its next corner instead, as long as the slot stays outside
+//! (long steps, Maros 2003). A slot that has no variable yet is artificial: its bounds are both
+//! zero.
 //!
-//! Any lambda may be the start: nothing has to be known about the frame or its health. Work is bounded by the numbers of pivots
-//! and of moves to other corners that are allowed.
+//! Any lambda may be the start: nothing has to be known about the frame or its health. Work is
+//! bounded by the numbers of pivots and of moves to other corners that are allowed.
 
 use core::hint::black_box;
 
@@ -32,8 +35,8 @@ use crate::rolled;
 const TOLERANCE: f32 = 3e-5;
 const TOLERANCE_OF_POLYGON: f32 = 1e-5;
 
-/// Multipliers up to which the rows are met. Where not even roll = pitch = yaw = 0 is attainable, rows are missed at these
-/// prices, which differ so that the answer is unique.
+/// Multipliers up to which the rows are met. Where not even roll = pitch = yaw = 0 is attainable,
+/// rows are missed at these prices, which differ so that the answer is unique.
 const PRICES: [f32; 4] = [4e4, 3.7e4, 3.4e4, 3.1e4];
 
 /// The bit of a float's sign.
@@ -109,8 +112,8 @@ pub(super) struct Simplex<'a> {
 }
 
 impl<'a> Simplex<'a> {
-    /// Starts with artificial slots and with the variables, whose gains are their biases, at the corners that `multipliers`
-    /// make best.
+    /// Starts with artificial slots and with the variables, whose gains are their biases, at the
+    /// corners that `multipliers` make best.
     #[inline(never)]
     pub(super) fn start(
         variables: &'a mut [Variable],
@@ -176,7 +179,8 @@ impl<'a> Simplex<'a> {
         self.slots.iter().position(|slot| *slot == wanted).unwrap_or(0) & 3
     }
 
-    /// The slot furthest outside its bounds, each measured by how far lambda moves to bring it back (steepest edge).
+    /// The slot furthest outside its bounds, each measured by how far lambda moves to bring it back
+    /// (steepest edge).
     #[inline(never)]
     fn furthest_outside(&self) -> Option<Leaving> {
         let mut found = Leaving {
@@ -235,7 +239,8 @@ impl<'a> Simplex<'a> {
         [0, 1, 2, 3].map(|k| corner.outward([first[k], second[k]]))
     }
 
-    /// Moves the leaving variable to its bound; returns the slot that becomes free and the direction of lambda.
+    /// Moves the leaving variable to its bound; returns the slot that becomes free and the
+    /// direction of lambda.
     #[inline(never)]
     fn release(&mut self, leaving: &Leaving) -> (usize, [f32; 4]) {
         let slot = leaving.slot & 3;
@@ -270,7 +275,8 @@ impl<'a> Simplex<'a> {
         (slot, self.inverse[slot].map(|part| leaving.sign * part))
     }
 
-    /// Finds the breakpoints of all variables in a direction of lambda; returns those that come first.
+    /// Finds the breakpoints of all variables in a direction of lambda; returns those that come
+    /// first.
     #[inline(never)]
     fn look_ahead(&mut self, direction: &[f32; 4], limit: f32) -> FirstTwo {
         let mut found = FirstTwo::new(limit);
@@ -295,8 +301,8 @@ impl<'a> Simplex<'a> {
         found
     }
 
-    /// Passes breakpoints in a direction of lambda while the leaving variable stays outside its bounds; returns the dual
-    /// step and the entering variable, [`NONE`] where nothing enters.
+    /// Passes breakpoints in a direction of lambda while the leaving variable stays outside its
+    /// bounds; returns the dual step and the entering variable, [`NONE`] where nothing enters.
     #[inline(never)]
     fn long_step(&mut self, direction: &[f32; 4], mut violation: f32) -> (f32, u8) {
         let limit = self.first_price(direction).0;
@@ -404,7 +410,8 @@ impl<'a> Simplex<'a> {
         self.inverse[slot & 3] = row;
     }
 
-    /// Changes the coordinates of two slots: place along an edge and distance from it, thrust and torque.
+    /// Changes the coordinates of two slots: place along an edge and distance from it, thrust and
+    /// torque.
     #[inline(never)]
     fn turn(&mut self, first: usize, second: usize, [e0, e1]: [f32; 2]) {
         for k in 0..black_box(4_usize) {

@@ -1,8 +1,10 @@
-//! One variable of the simplex method: a unit in its attainable polygon, or a shortage on its segment.
+//! One variable of the simplex method: a unit in its attainable polygon, or a shortage on its
+//! segment.
 //!
-//! A variable has two coordinates y in a convex set of at most eight corners, and gives the rows B y. For a unit with both
-//! rotors these are its scaled thrust and torque. A unit with one rotor, and a shortage, is on a segment: y = (x, 1) with x in
-//! [0, 1], where the second column of B is what it gives at x = 0.
+//! A variable has two coordinates y in a convex set of at most eight corners, and gives the rows B
+//! y. For a unit with both rotors these are its scaled thrust and torque. A unit with one rotor,
+//! and a shortage, is on a segment: y = (x, 1) with x in [0, 1], where the second column of B is
+//! what it gives at x = 0.
 
 use core::hint::black_box;
 
@@ -62,10 +64,11 @@ pub struct Variable {
     pub(super) columns: [[f32; 4]; 2],
     /// B^T lambda and a bias: what more of each coordinate is worth.
     pub(super) gain: [f32; 2],
-    /// How the gain changes per unit of the dual step. On a segment, which has no second gain, the second is the torque of a
-    /// single rotor's curve beyond its chord, N m.
+    /// How the gain changes per unit of the dual step. On a segment, which has no second gain, the
+    /// second is the torque of a single rotor's curve beyond its chord, N m.
     pub(crate) rate: [f32; 2],
-    /// The coordinates; after [`allocate`](super::allocate) `[f, Q]`, N and N m at the reference voltage.
+    /// The coordinates; after [`allocate`](super::allocate) `[f, Q]`, N and N m at the reference
+    /// voltage.
     pub(crate) at: [f32; 2],
     /// The dual step at which the variable leaves its corner or its edge.
     pub(super) breakpoint: f32,
@@ -203,7 +206,8 @@ impl Variable {
         }
     }
 
-    /// Takes the last dual step, and finds the breakpoint in a direction of lambda. By rounding it may be just below zero.
+    /// Takes the last dual step, and finds the breakpoint in a direction of lambda. By rounding it
+    /// may be just below zero.
     #[inline(always)]
     pub(super) fn look_ahead(&mut self, corners: &[Corner], last_step: f32, direction: &[f32; 4]) -> f32 {
         let mut breakpoint = NEVER;
@@ -264,7 +268,8 @@ impl Variable {
         }
     }
 
-    /// Moves on to the corner at the end of its way; returns the breakpoint there, `step` or after it.
+    /// Moves on to the corner at the end of its way; returns the breakpoint there, `step` or after
+    /// it.
     #[inline(always)]
     pub(super) fn flip(&mut self, set: &[Corner], step: f32) -> f32 {
         self.corner = if self.is_forward {

@@ -1,6 +1,6 @@
-//! Mixes random setpoints, as many as `Digest::setpoints` says (`--cfg million` for a million), and prints the digest of all
-//! results after each tenth. The host computes the same; see `tests/src/digest.rs`. Which mixer and how many rotors out: see
-//! `src/subject`.
+//! Mixes random setpoints, as many as `Digest::setpoints` says (`--cfg million` for a million), and
+//! prints the digest of all results after each tenth. The host computes the same; see
+//! `tests/src/digest.rs`. Which mixer and how many rotors out: see `src/subject`.
 #![no_std]
 #![no_main]
 

@@ -1,9 +1,10 @@
 //! Counts the instructions of every evaluator of the inverse map, for one unit, in every basis.
 //!
-//! Prints a line per evaluator and basis: its name in airframe files (a polynomial's with its degree), the basis, and
-//! the mean over efforts all over the attainable set, rounded. A stretch in which the efforts are merely copied is
-//! subtracted. What an evaluator costs does not depend on the numbers in its tables, so these are arbitrary, but for the forward map,
-//! which is the paper's in all bases.
+//! Prints a line per evaluator and basis: its name in airframe files (a polynomial's with its
+//! degree), the basis, and the mean over efforts all over the attainable set, rounded. A stretch in
+//! which the efforts are merely copied is subtracted. What an evaluator costs does not depend on
+//! the numbers in its tables, so these are arbitrary, but for the forward map, which is the paper's
+//! in all bases.
 #![no_std]
 #![no_main]
 

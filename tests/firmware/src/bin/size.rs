@@ -1,11 +1,13 @@
 //! One mixer and nothing else.
 //!
-//! Built with a mixer chosen (see `src/subject`) this image reads a setpoint and a voltage from registers, mixes, and writes
-//! the result to registers; built without, it does nothing. The difference between the two in `.text` and
-//! `.rodata` is what the mixer adds to an image: code, tables, and the two dozen loads and stores around it.
+//! Built with a mixer chosen (see `src/subject`) this image reads a setpoint and a voltage from
+//! registers, mixes, and writes the result to registers; built without, it does nothing. The
+//! difference between the two in `.text` and `.rodata` is what the mixer adds to an image: code,
+//! tables, and the two dozen loads and stores around it.
 //!
-//! Except for `wls`, whose crate can panic, the image links only if no panic can be reached: the panic handler calls a function that does not exist.
-//! `--cfg panic_path` adds an index that may be out of range, so that a test can see the link fail.
+//! Except for `wls`, whose crate can panic, the image links only if no panic can be reached: the
+//! panic handler calls a function that does not exist. `--cfg panic_path` adds an index that may be
+//! out of range, so that a test can see the link fail.
 #![no_std]
 #![no_main]
 

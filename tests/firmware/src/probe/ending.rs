@@ -18,7 +18,8 @@ pub fn exit(passed: bool) -> ! {
     }
 }
 
-/// What `measure` says of its measurements; false, with a line that says why, where instructions cannot be counted.
+/// What `measure` says of its measurements; false, with a line that says why, where instructions
+/// cannot be counted.
 pub fn with_counter(measure: impl FnOnce(Counter) -> bool) -> bool {
     match Counter::new() {
         Ok(counter) => measure(counter),

@@ -1,15 +1,16 @@
 //! Instructions counted with a timer of the board under QEMU's instruction counter.
 //!
-//! With `-icount shift=10` every instruction takes 2^10 = 1024 ns of virtual time, and timer 0 of the MPS2 board (Arm
-//! CMSDK APB timer) counts down at 25 MHz, one tick per 40 ns. A stretch of n instructions therefore lasts n * 25.6
-//! ticks, and n = ticks * 40 / 1024 rounded to the nearest whole number. A reading is less than one tick off at
-//! either end, far below the 12.8 ticks that would round wrongly, so the count is exact to the instruction. The timer
-//! has 32 bits: 167 million instructions. (SysTick's 24 bits come round after 655,360.)
+//! With `-icount shift=10` every instruction takes 2^10 = 1024 ns of virtual time, and timer 0 of
+//! the MPS2 board (Arm CMSDK APB timer) counts down at 25 MHz, one tick per 40 ns. A stretch of n
+//! instructions therefore lasts n * 25.6 ticks, and n = ticks * 40 / 1024 rounded to the nearest
+//! whole number. A reading is less than one tick off at either end, far below the 12.8 ticks that
+//! would round wrongly, so the count is exact to the instruction. The timer has 32 bits: 167
+//! million instructions. (SysTick's 24 bits come round after 655,360.)
 //!
-//! Both readings and what lies between them stand in one piece of assembly: the compiler can schedule nothing of its own
-//! into the stretch. Two readings that follow one another directly are one instruction apart, the second reading
-//! itself; this cost is measured once and subtracted. [`Counter::new`] then counts one hundred `nop`s and accepts no
-//! other answer.
+//! Both readings and what lies between them stand in one piece of assembly: the compiler can
+//! schedule nothing of its own into the stretch. Two readings that follow one another directly are
+//! one instruction apart, the second reading itself; this cost is measured once and subtracted.
+//! [`Counter::new`] then counts one hundred `nop`s and accepts no other answer.
 
 use core::arch::{asm, naked_asm};
 
@@ -22,8 +23,8 @@ const TIMER: *mut u32 = 0x4000_0000 as *mut u32;
 /// Length of the stretch that [`Counter::new`] checks itself with.
 pub const NOPS: u32 = 100;
 
-/// A mixer behind the C calling convention, so that assembly can call it: setpoint (`T`, whatever else it is asked by),
-/// where to write the result, voltage.
+/// A mixer behind the C calling convention, so that assembly can call it: setpoint (`T`, whatever
+/// else it is asked by), where to write the result, voltage.
 pub type Mixer<T = Wrench> = unsafe extern "C" fn(*const T, *mut (), f32);
 
 /// The timer, running, with the cost of a measurement known.
@@ -58,8 +59,8 @@ macro_rules! ticks {
 impl Counter {
     /// Starts the timer, measures an empty stretch, and checks the count of one hundred `nop`s.
     pub fn new() -> Result<Counter, Inexact> {
-        // SAFETY: device registers that nothing else in these images uses; two loads of one that may be read at any
-        // time; `nop` touches nothing.
+        // SAFETY: device registers that nothing else in these images uses; two loads of one that
+        // may be read at any time; `nop` touches nothing.
         let (current, empty, nops) = unsafe {
             let [control, value, reload] = [TIMER, TIMER.add(1), TIMER.add(2)];
             reload.write_volatile(u32::MAX);
@@ -88,7 +89,8 @@ impl Counter {
     /// `output` must be what `mix` writes its result to.
     pub unsafe fn count<T>(&self, mix: Mixer<T>, setpoint: &T, output: *mut (), voltage_v: f32) -> u32 {
         let (mix, setpoint) = (mix as *const (), (&raw const *setpoint).cast());
-        // SAFETY: the timer may be read at any time; the setpoint is what `mix` takes, and the caller answers for `output`.
+        // SAFETY: the timer may be read at any time; the setpoint is what `mix` takes, and the
+        // caller answers for `output`.
         let ticks = unsafe { ticks_of_call(mix, setpoint, output, self.current, voltage_v) };
         instructions(ticks).saturating_sub(self.overhead)
     }

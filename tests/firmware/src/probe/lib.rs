@@ -1,4 +1,5 @@
-//! What one call of a mixer costs under QEMU: instructions and stack. Also how the images that measure it end.
+//! What one call of a mixer costs under QEMU: instructions and stack. Also how the images that
+//! measure it end.
 #![no_std]
 
 mod ending;

@@ -1,4 +1,5 @@
-//! High-water mark of the stack: paint below the stack pointer, call, look how deep the paint is gone.
+//! High-water mark of the stack: paint below the stack pointer, call, look how deep the paint is
+//! gone.
 
 use core::arch::naked_asm;
 
@@ -9,15 +10,17 @@ const PAINTED: usize = 8192;
 /// As a float this is a NaN, which no mixer stores.
 const PAINT: u32 = 0x7fc0_5ac4;
 
-/// Mixes once and returns how many bytes below the caller's stack pointer were written: the mixer's own frame, its
-/// saved registers and everything it calls. The result is the caller's and not counted.
+/// Mixes once and returns how many bytes below the caller's stack pointer were written: the mixer's
+/// own frame, its saved registers and everything it calls. The result is the caller's and not
+/// counted.
 ///
 /// # Safety
 ///
 /// `output` must be what `mix` writes its result to, and no interrupt may be enabled.
 pub unsafe fn high_water<T>(mix: Mixer<T>, setpoint: &T, output: *mut (), voltage_v: f32) -> usize {
     let (mix, setpoint) = (mix as *const (), (&raw const *setpoint).cast());
-    // SAFETY: paints free memory, far above the lower end of the 4 MiB of RAM; the caller answers for the rest.
+    // SAFETY: paints free memory, far above the lower end of the 4 MiB of RAM; the caller answers
+    // for the rest.
     let top = unsafe { painted_call(mix, setpoint, output, voltage_v) };
     let mut at = top - PAINTED;
     // SAFETY: the same stretch of RAM, in words as it was painted.
@@ -27,7 +30,8 @@ pub unsafe fn high_water<T>(mix: Mixer<T>, setpoint: &T, output: *mut (), voltag
     top - at
 }
 
-/// Paints below its own frame, calls `mix`, and returns where that frame ends: the stack pointer at the call.
+/// Paints below its own frame, calls `mix`, and returns where that frame ends: the stack pointer at
+/// the call.
 #[unsafe(naked)]
 unsafe extern "C" fn painted_call(
     mix: *const (),

@@ -1,5 +1,5 @@
-//! The mixer of `cargo mixer library`, called as a C program calls it. The tests make the library, link it, and give its
-//! function this name.
+//! The mixer of `cargo mixer library`, called as a C program calls it. The tests make the library,
+//! link it, and give its function this name.
 
 use core::mem::MaybeUninit;
 
@@ -49,7 +49,8 @@ pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32, _: Health) -> Mixed {
         thrust_n,
     };
     let mut output = MaybeUninit::<Output>::uninit();
-    // SAFETY: both pointers are to what the header says; the output is written where the status is 0.
+    // SAFETY: both pointers are to what the header says; the output is written where the status is
+    // 0.
     unsafe {
         match c_interface_mix(&setpoint, voltage_v, output.as_mut_ptr()) {
             0 => {

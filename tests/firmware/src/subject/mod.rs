@@ -1,6 +1,6 @@
-//! The mixer that an image measures: one airframe's, `--cfg airframe --cfg airframe="<name>"`, or what flight stacks do
-//! with that airframe, in addition `--cfg baseline --cfg baseline="conventional"`, `"sequential"` or `"wls"`, or its library
-//! for C, `"c-interface"`. With
+//! The mixer that an image measures: one airframe's, `--cfg airframe --cfg airframe="<name>"`, or
+//! what flight stacks do with that airframe, in addition `--cfg baseline --cfg
+//! baseline="conventional"`, `"sequential"` or `"wls"`, or its library for C, `"c-interface"`. With
 //! `--cfg rotors_out="1"` or `"2"` the airframe's mixer is asked with so many rotors out.
 
 #[cfg(baseline = "c-interface")]

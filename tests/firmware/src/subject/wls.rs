@@ -1,8 +1,9 @@
-//! Isolated rotors with the allocator of the crate `wls-alloc`: weighted least squares within the bounds, by an
-//! active-set method that starts from its last solution, as in its documentation.
+//! Isolated rotors with the allocator of the crate `wls-alloc`: weighted least squares within the
+//! bounds, by an active-set method that starts from its last solution, as in its documentation.
 //!
-//! Thrusts are shares of a rotor's range, axes shares of their authority. Weights: roll and pitch before thrust before
-//! yaw. The voltage correction and the thrust curve are those of `mixer_rt::baselines`.
+//! Thrusts are shares of a rotor's range, axes shares of their authority. Weights: roll and pitch
+//! before thrust before yaw. The voltage correction and the thrust curve are those of
+//! `mixer_rt::baselines`.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;

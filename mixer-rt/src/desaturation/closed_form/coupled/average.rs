@@ -1,21 +1,24 @@
-//! The last step of a climb, so that neighbouring requests whose programs end with other tangents end near each other.
+//! The last step of a climb, so that neighbouring requests whose programs end with other tangents
+//! end near each other.
 //!
-//! Where Y is smooth the corner of the last tangents may be far from the best point although Y is within CLOSE of them:
-//! for a quadratic Y, the tangents at two points meet in the middle between these, wherever the best point is. The
-//! average of the tangents' points, each weighted by what its row is worth, is then the best point: there the slopes are
-//! those that the program asks for. Where Y has an edge the corner is the best point. So the step goes from the
-//! corner towards the average as far as Y rises, and gains no more than there is between Y and the tangents.
+//! Where Y is smooth the corner of the last tangents may be far from the best point although Y is
+//! within CLOSE of them: for a quadratic Y, the tangents at two points meet in the middle between
+//! these, wherever the best point is. The average of the tangents' points, each weighted by what
+//! its row is worth, is then the best point: there the slopes are those that the program asks for.
+//! Where Y has an edge the corner is the best point. So the step goes from the corner towards the
+//! average as far as Y rises, and gains no more than there is between Y and the tangents.
 
 use super::super::TorqueLimit;
 use super::super::program::Corner;
 use super::{Climb, Program, Tangent};
 
-/// What the tangents are worth together where yaw is not capped, but for rounding: the cap takes the rest of one.
+/// What the tangents are worth together where yaw is not capped, but for rounding: the cap takes
+/// the rest of one.
 const UNCAPPED: f32 = 0.999;
 
 impl<S: TorqueLimit> Climb<'_, '_, S> {
-    /// Moves `best` from the corner, where Y has the tangent `here` and is `gap` below the corner's tangents, towards the
-    /// average of their points.
+    /// Moves `best` from the corner, where Y has the tangent `here` and is `gap` below the corner's
+    /// tangents, towards the average of their points.
     #[inline(never)]
     pub(super) fn approach_average(
         &mut self,

@@ -33,7 +33,8 @@ impl Request {
     };
 }
 
-/// Requests as the build script has written them, to as many rotors less as the subject is asked with.
+/// Requests as the build script has written them, to as many rotors less as the subject is asked
+/// with.
 pub(crate) fn requests(bytes: &'static [u8]) -> impl Iterator<Item = Request> {
     let healths = RotorsOut::new(SEED, subject::airframe::CHANNELS, subject::ROTORS_OUT);
     bytes.chunks_exact(20).zip(healths).map(|(row, health)| {
@@ -105,7 +106,8 @@ impl Tally {
         };
         let mut output = MaybeUninit::<Mixed>::uninit();
         let pointer = output.as_mut_ptr().cast();
-        // SAFETY: the output is of the type that `mix` writes, which it does in every call; no interrupt is enabled.
+        // SAFETY: the output is of the type that `mix` writes, which it does in every call; no
+        // interrupt is enabled.
         let (instructions, stack, mixed) = unsafe {
             (
                 counter.count(mix, &asked, pointer, request.voltage_v),

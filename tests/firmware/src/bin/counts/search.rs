@@ -43,8 +43,8 @@ impl<'a> Search<'a> {
         tally
     }
 
-    /// Varies the dearest requests so far by all magnitudes, one value or all at a time, and keeps what costs more: it
-    /// follows the branches of a mixer to where several are taken at once.
+    /// Varies the dearest requests so far by all magnitudes, one value or all at a time, and keeps
+    /// what costs more: it follows the branches of a mixer to where several are taken at once.
     pub(crate) fn vary(&mut self) -> Tally {
         let mut tally = Tally::new();
         for (_, request) in self.pool {
@@ -92,7 +92,8 @@ impl Random {
         self.bits() as i32 as f32 * (1.0 / 2_147_483_648.0)
     }
 
-    /// Changes values by up to 2^-`halvings` of themselves: 0 to 3 an axis, 4 the voltage, from 5 on all of them.
+    /// Changes values by up to 2^-`halvings` of themselves: 0 to 3 an axis, 4 the voltage, from 5
+    /// on all of them.
     fn vary(&mut self, mut request: Request, halvings: u32, which: u32) -> Request {
         let mut size = 1.0;
         for _ in 0..halvings {

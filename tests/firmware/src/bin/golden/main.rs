@@ -1,11 +1,12 @@
-//! Mixes the golden vectors of every airframe, with all rotors and with one out, and compares every bit with what the host
-//! computed.
+//! Mixes the golden vectors of every airframe, with all rotors and with one out, and compares every
+//! bit with what the host computed.
 //!
-//! Prints one line per airframe: vectors, mismatches, instructions per mix (mean and worst over the vectors) and
-//! stack per mix. Exit status 0 if every bit agrees and every non-finite setpoint is refused.
+//! Prints one line per airframe: vectors, mismatches, instructions per mix (mean and worst over the
+//! vectors) and stack per mix. Exit status 0 if every bit agrees and every non-finite setpoint is
+//! refused.
 //!
-//! A count runs from the call of the mixer to its return, both included. The voltage and two pointers (setpoint,
-//! result) go in registers.
+//! A count runs from the call of the mixer to its return, both included. The voltage and two
+//! pointers (setpoint, result) go in registers.
 #![no_std]
 #![no_main]
 
@@ -91,8 +92,8 @@ impl Check {
             };
             let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
             let pointer = output.as_mut_ptr().cast();
-            // SAFETY: the output is of the type that `mix` writes, which it does in every call; no interrupt is
-            // enabled.
+            // SAFETY: the output is of the type that `mix` writes, which it does in every call; no
+            // interrupt is enabled.
             let (instructions, bytes, mixed) = unsafe {
                 let bytes = probe::high_water(mix, &setpoint, pointer, voltage_v);
                 (

@@ -1,4 +1,5 @@
-//! Golden vectors on the target. Copy this file, and the `NAME.vectors.rs` that `cargo mixer golden` writes.
+//! Golden vectors on the target. Copy this file, and the `NAME.vectors.rs` that `cargo mixer
+//! golden` writes.
 
 use mixer_rt::{Mix, SetpointError, Wrench};
 

@@ -1,5 +1,6 @@
-//! One airframe's golden vectors on the target, with all rotors and with each of them out: one line of result, and
-//! QEMU's exit status. Copy it with `harness.rs`; the two paths and the airframe's module are yours.
+//! One airframe's golden vectors on the target, with all rotors and with each of them out: one line
+//! of result, and QEMU's exit status. Copy it with `harness.rs`; the two paths and the airframe's
+//! module are yours.
 #![no_std]
 #![no_main]
 
