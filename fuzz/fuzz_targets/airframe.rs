@@ -7,7 +7,8 @@ use libfuzzer_sys::fuzz_target;
 use mixer_compiler::Source;
 
 fuzz_target!(|bytes: &[u8]| {
-    let compiled = Source::from_bytes("airframe.toml", bytes.to_vec()).and_then(|source| mixer_compiler::compile(&source));
+    let compiled = Source::from_bytes("airframe.toml", bytes.to_vec())
+        .and_then(|source| mixer_compiler::compile(&source));
     match compiled {
         Ok(compiled) => assert!(!compiled.tokens().is_empty()),
         Err(faults) => assert!(!faults.to_string().is_empty()),

@@ -10,7 +10,13 @@
 
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hprintln;
-use mixer_rt::{Wrench, tables::{BilinearSeed, Biquadratic, Cubic, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quartic, RootCoordinates, Seeded, ThrottleRange}};
+use mixer_rt::{
+    Wrench,
+    tables::{
+        BilinearSeed, Biquadratic, Cubic, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed,
+        Quartic, RootCoordinates, Seeded, ThrottleRange,
+    },
+};
 use probe::{Counter, Mixer};
 
 static RANGE: ThrottleRange = ThrottleRange { min: 0.1, max: 1.0 };
