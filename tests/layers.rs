@@ -126,6 +126,32 @@ fn files_import_one_another_without_a_circle() {
     }
 }
 
+/// The order of ARCHITECTURE.md.
+#[test]
+fn modules_of_the_compiler_use_only_those_before_them() {
+    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a page");
+    let (_, order) = page
+        .split_once("only those before them in this order:")
+        .expect("the order");
+    let (order, _) = order.split_once('.').expect("a sentence");
+    let order: Vec<&str> = order
+        .split(',')
+        .map(|name| name.trim().trim_matches('`'))
+        .collect();
+    assert!(order.len() > 8, "{order:?}");
+    let place = |module: &Module| order.iter().position(|name| *name == module[0]);
+
+    let mut found = BTreeMap::new();
+    files(&root().join("mixer-compiler/src"), &Vec::new(), &mut found);
+    for (module, targets) in imports(&found) {
+        for target in targets {
+            if let (Some(above), Some(below)) = (place(&module), place(&target)) {
+                assert!(below <= above, "{module:?} uses {target:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_circle_is_found() {
     let file = |text: &str| syn::parse_file(text).expect("Rust");

@@ -5,6 +5,7 @@
 //! pipeline.
 
 pub mod airframe;
+pub mod bounds;
 #[cfg(feature = "format")]
 pub mod build_script;
 mod compiled;

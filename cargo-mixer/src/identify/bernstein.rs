@@ -6,7 +6,7 @@
 //! here they are what a programme constrains, so that they are linear in the polynomial and in
 //! floating point.
 
-use mixer_compiler::model::bernstein::coefficients as one_variable;
+use mixer_compiler::bounds::bernstein::coefficients as one_variable;
 
 use super::polynomial::Polynomial;
 

@@ -13,8 +13,8 @@
 //! proven by [`Bivariate`].
 
 use crate::airframe::{Airframe, Basis, Pair};
+use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
-use crate::model::interval::Interval;
 use crate::model::polynomial::{Bivariate, Sign, ThrottleBox};
 
 /// The pair's forward map with what the proof needs of it.

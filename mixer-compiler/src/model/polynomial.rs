@@ -5,8 +5,8 @@
 //! so a sign is proven in a few halvings. Coefficients are intervals throughout: what is proven
 //! holds in exact arithmetic.
 
-use crate::model::bernstein::binomial;
-use crate::model::interval::Interval;
+use crate::bounds::bernstein::binomial;
+use crate::bounds::interval::Interval;
 
 /// A polynomial `sum c[i][j] u^i l^j` with as many coefficients in every row.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use num_traits::{Signed, ToPrimitive, Zero};
 use super::expansion::{Expansion, Monomials};
 use super::*;
 use crate::airframe::Basis;
-use crate::model::interval::Interval;
+use crate::bounds::interval::Interval;
 use mixer_rt::tables::Scalar;
 
 /// The float x, exactly.

@@ -21,7 +21,7 @@ mod scalar;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::model::interval::Interval;
+use crate::bounds::interval::Interval;
 
 /// See the module.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@
 //! positive.
 
 use super::law::horner;
-use crate::model::bernstein;
+use crate::bounds::bernstein;
 
 /// Least k over the range. The mixer divides by k; below this a rotor hardly turns.
 pub(super) const LEAST_FACTOR: f64 = 1e-3;

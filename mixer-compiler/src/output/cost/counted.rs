@@ -1,5 +1,4 @@
-//! Written by `cargo run -p mixer-tests --bin counts -- --fit` from `tests/counts.csv`; do not
-//! edit.
+//! Written by `cargo run -p mixer-tests --bin counts -- --fit` from `tests/counts.csv`; do not edit.
 
 use super::{Counted, Overhead};
 

@@ -3,7 +3,7 @@
 use mixer_rt::tables::Scalar;
 
 use super::{Taylor, UP};
-use crate::model::interval::Interval;
+use crate::bounds::interval::Interval;
 
 impl Scalar for Taylor {
     fn constant(value: f32) -> Taylor {
