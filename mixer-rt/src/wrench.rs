@@ -64,6 +64,12 @@ impl Wrench {
 }
 
 /// An axis of the [`Wrench`].
+///
+/// ```
+/// # use mixer_rt::{Axis, Wrench};
+/// let wrench = Wrench { yaw_nm: 0.3, ..Wrench::default() };
+/// assert_eq!(wrench.to_array()[Axis::Yaw as usize], 0.3);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
