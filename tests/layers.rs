@@ -97,8 +97,8 @@ fn imports(files: &BTreeMap<Module, syn::File>) -> BTreeMap<Module, BTreeSet<Mod
         .collect()
 }
 
-/// What is left when files are taken away that import nothing that is left, again and again: the
-/// circles.
+/// The circles: the files that remain where those that import no remaining file are taken away,
+/// again and again.
 fn circles(mut imports: BTreeMap<Module, BTreeSet<Module>>) -> BTreeMap<Module, BTreeSet<Module>> {
     loop {
         let left: BTreeSet<Module> = imports.keys().cloned().collect();

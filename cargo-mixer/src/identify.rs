@@ -261,7 +261,7 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     Ok(())
 }
 
-/// What is wrong with the arguments taken together; `file` is the output unless that is standard
+/// The fault of the arguments taken together; `file` is the output unless that is standard
 /// output.
 fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
     let Some(output) = file else {

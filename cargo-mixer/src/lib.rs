@@ -121,7 +121,7 @@ pub fn finish(written: io::Result<()>) -> ExitCode {
     output(written).err().unwrap_or(ExitCode::SUCCESS)
 }
 
-/// What became of an output; the exit status where it failed. A reader that has seen enough (`|
+/// Result of an output; the exit status where it failed. A reader that has seen enough (`|
 /// head`) is no fault.
 fn output(written: io::Result<()>) -> Result<(), ExitCode> {
     if stdout::was_closed() {

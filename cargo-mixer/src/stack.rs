@@ -1,4 +1,4 @@
-//! What a flight stack has to know of an airframe: the scales of its normalised setpoints, and the
+//! Numbers of an airframe that a flight stack takes: the scales of its normalised setpoints, and the
 //! parameters that keep it from correcting a second time for the rotors' curve and for the
 //! battery's voltage.
 

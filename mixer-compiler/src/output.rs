@@ -1,4 +1,4 @@
-//! What is made of a compiled airframe: generated Rust, the report, costs, check lists and
+//! Outputs of a compiled airframe: generated Rust, the report, costs, check lists and
 //! comparisons. Nothing of it reaches back into the compilation.
 
 pub mod alternatives;

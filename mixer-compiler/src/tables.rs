@@ -50,7 +50,7 @@ pub struct MixerTables {
     pub power_bias_nm_per_n: f32,
     /// The closed form of desaturation, where the layout allows one.
     pub closed_form: Option<ClosedFormTable>,
-    /// What the mixer may miss.
+    /// Largest errors of the mixer.
     pub tolerance: Tolerance,
 }
 

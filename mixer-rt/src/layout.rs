@@ -42,7 +42,7 @@ impl Unit {
     }
 }
 
-/// What the inverse map may miss; beyond it something has been given up.
+/// Largest error of the inverse map; beyond it something has been given up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Of one unit's efforts `[f, Q]` at the reference voltage, N and N m.
@@ -60,7 +60,7 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub units: &'a [Unit],
     /// The forward map of every unit.
     pub pair: Pair<P>,
-    /// What the upper and the lower rotor of a unit give alone, the other one out.
+    /// Thrust and torque of the upper and of the lower rotor of a unit, the other one out.
     pub singles: [SingleRotor; 2],
     /// The inverse map of every unit.
     pub inverse: I,
@@ -74,13 +74,13 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     /// authority at the reference voltage, roll and pitch alike; 0 on axes that the airframe does
     /// not serve.
     pub rows: [f32; 4],
-    /// What is given up when a unit cannot follow.
+    /// Priorities where a unit cannot follow.
     pub desaturation: Desaturation,
     /// Least power: every unit's torque per thrust (N m per N at the reference voltage) while no
     /// unit is near its limits.
     pub power_bias_nm_per_n: f32,
     /// The closed form of desaturation, used while all rotors work.
     pub closed_form: S,
-    /// What the mixer may miss.
+    /// Largest errors of the mixer.
     pub tolerance: Tolerance,
 }

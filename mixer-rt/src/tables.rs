@@ -1,4 +1,4 @@
-//! What generated modules consist of: the tables of one airframe, the forms that their parts have,
+//! Contents of generated modules: the tables of one airframe, the forms that their parts have,
 //! and the functions that mix by them. Firmware that calls a generated module needs nothing of
 //! this.
 

@@ -118,7 +118,7 @@ pub mod single_pair {
             0.072,
         ]),
     };
-    /// What the upper and the lower rotor give alone.
+    /// Thrust and torque of the upper and of the lower rotor alone.
     const ROTORS_ALONE: [tables::SingleRotor; 2] = [
         tables::SingleRotor {
             thrust: [0.0, 0.0, 12.3604, 2.764],

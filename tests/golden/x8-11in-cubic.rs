@@ -138,7 +138,7 @@ pub mod x8_11in_cubic {
             0.04840858,
         ]),
     };
-    /// What the upper and the lower rotor give alone.
+    /// Thrust and torque of the upper and of the lower rotor alone.
     const ROTORS_ALONE: [tables::SingleRotor; 2] = [
         tables::SingleRotor {
             thrust: [0.0, -1.568439, 10.38016, 2.109963],

@@ -138,7 +138,7 @@ pub mod x8_11in_least_power {
             0.0605524,
         ]),
     };
-    /// What the upper and the lower rotor give alone.
+    /// Thrust and torque of the upper and of the lower rotor alone.
     const ROTORS_ALONE: [tables::SingleRotor; 2] = [
         tables::SingleRotor {
             thrust: [0.0, 0.2383842, 10.55819, 2.003318],

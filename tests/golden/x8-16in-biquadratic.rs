@@ -136,7 +136,7 @@ pub mod x8_16in_biquadratic {
             0.3005523,
         ]),
     };
-    /// What the upper and the lower rotor give alone.
+    /// Thrust and torque of the upper and of the lower rotor alone.
     const ROTORS_ALONE: [tables::SingleRotor; 2] = [
         tables::SingleRotor {
             thrust: [0.0, 0.0, 25.32957, 0.1466085],

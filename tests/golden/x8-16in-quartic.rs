@@ -148,7 +148,7 @@ pub mod x8_16in_quartic {
             -0.003942542,
         ]),
     };
-    /// What the upper and the lower rotor give alone.
+    /// Thrust and torque of the upper and of the lower rotor alone.
     const ROTORS_ALONE: [tables::SingleRotor; 2] = [
         tables::SingleRotor {
             thrust: [5.017811, -27.33077, 51.63577, -4.662869],

@@ -138,7 +138,7 @@ pub mod x8_22in_cubic {
             -0.4766169,
         ]),
     };
-    /// What the upper and the lower rotor give alone.
+    /// Thrust and torque of the upper and of the lower rotor alone.
     const ROTORS_ALONE: [tables::SingleRotor; 2] = [
         tables::SingleRotor {
             thrust: [0.0, -21.87007, 60.47546, 2.633585],

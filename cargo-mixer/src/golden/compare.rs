@@ -1,11 +1,11 @@
-//! What differs between golden outputs and those of today: the first difference of every file, and
+//! Differences between golden outputs and those of today: the first difference of every file, and
 //! by how much.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// What is wrong with each file, one line each, beginning with its name: differing, missing,
+/// The faults of each file, one line each, beginning with its name: differing, missing,
 /// orphans.
 ///
 /// # Errors

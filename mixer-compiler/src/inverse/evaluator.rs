@@ -32,7 +32,7 @@ pub enum SeedForm {
     Cubic,
 }
 
-/// What `method = "auto"` tries, by what it costs with a pair of any basis.
+/// The evaluators that `method = "auto"` tries, by their cost: the order is that of any basis.
 const CANDIDATES: [Evaluator; 6] = [
     seeded(SeedForm::Bilinear, 1),
     seeded(SeedForm::Quadratic, 1),
@@ -107,7 +107,7 @@ impl SeedForm {
         }
     }
 
-    /// What the coefficients are multiplied by at (x, y), in the order of `mixer-rt`'s seeds.
+    /// The terms at (x, y), in the order of `mixer-rt`'s coefficients.
     pub fn row(self, x: f64, y: f64) -> Vec<f64> {
         let (x2, y2) = (x * x, y * y);
         let all = [1.0, x, y, x * y, x2, y2, x2 * y, x * y2, x2 * x, y2 * y];

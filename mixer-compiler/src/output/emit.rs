@@ -198,7 +198,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
         const UNIT_TABLES: [tables::Unit; UNITS] = [#(#units),*];
         /// The forward map of a unit: thrust and torque as polynomials of both throttles.
         const PAIR: tables::Pair<#basis> = tables::Pair { thrust: #thrust, torque: #torque };
-        /// What the upper and the lower rotor give alone.
+        /// Thrust and torque of the upper and of the lower rotor alone.
         const ROTORS_ALONE: [tables::SingleRotor; 2] = [#(#singles),*];
         /// The inverse map of a unit.
         const INVERSE: #inverse_type = #inverse;

@@ -1,5 +1,5 @@
-//! What a linear model of both quantities misses, G of [`expansion`](super::expansion), about one
-//! point.
+//! The remainder of a linear model of both quantities about one point: G of
+//! [`expansion`](super::expansion).
 
 use super::expansion::{Curvature, Derivatives, Expansion, beyond_linear, powers};
 use super::taylor::Taylor;

@@ -1,4 +1,4 @@
-//! What a linear model misses, against exact rational arithmetic.
+//! The remainder of a linear model, against exact rational arithmetic.
 
 use num_rational::BigRational;
 use num_traits::Signed;

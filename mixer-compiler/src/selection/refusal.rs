@@ -1,5 +1,4 @@
-//! What a user is told whose tolerance no evaluator meets. What is offered as a mend has been
-//! tried.
+//! The refusal of a tolerance that no evaluator meets. Every mend that it offers has been tried.
 
 use super::{Best, choose};
 use crate::airframe::{Airframe, Method};

@@ -1,4 +1,4 @@
-//! What a fit may hide from its user: files of different pairs, throttles that were not measured, a
+//! Doubts that the statistics of a fit do not show: files of different pairs, throttles that were not measured, a
 //! costly constraint.
 
 use super::super::basis::ThrottleBox;
@@ -47,7 +47,7 @@ pub(super) fn joined_files(
     ));
 }
 
-/// What det J > 0 costs in torque, and where: the row that it moves furthest from what was
+/// The cost in torque of det J > 0, and where: the row that it moves furthest from what was
 /// measured.
 pub(super) fn costly_constraint(
     cost: &MonotoneCost,
