@@ -53,8 +53,9 @@ impl Lawson<'_> {
             // then.
             let mut sum = 0.0;
             for (weight, error) in weights.iter_mut().zip(&errors) {
-                let factor = error / largest;
-                *weight *= if self.is_refined { factor.sqrt() } else { factor } + 1e-3;
+                let share = error / largest;
+                let factor = if self.is_refined { share.sqrt() } else { share };
+                *weight *= factor + 1e-3;
                 sum += *weight;
             }
             let scale = weights.len() as f64 / sum;
