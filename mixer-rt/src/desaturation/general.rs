@@ -7,8 +7,8 @@
 //! rotor has a curve. A request is served as far as these allow by one linear programme
 //! ([`simplex`]), whose shortages have costs that are so far apart that they act as priorities
 //! ([`shortage`]): roll and pitch, which are short together so that their direction stays, before
-//! thrust before yaw, or yaw before thrust. There is no variable for an axis that is exceeded or
-//! reversed, but for thrust, which only roll and pitch may raise.
+//! thrust before yaw, or yaw before thrust. A shortage ends at nothing and at all that was asked
+//! for, so no axis is reversed or exceeded, but for thrust, which roll and pitch may raise.
 //!
 //! # Iteration
 //!
@@ -47,7 +47,7 @@ use crate::layout::{Tables, Unit};
 use crate::pair::Quantity;
 use crate::pair::rotors::Rotors;
 use crate::rolled;
-use shortage::RAY;
+use shortage::{RAY, ThrustPrice};
 use simplex::{Budget, Simplex};
 use variable::{Polygon, between, positive};
 
@@ -111,7 +111,7 @@ pub(crate) fn allocate<P: Quantity, I, S>(
     let units = variables.len().saturating_sub(SHORTAGES);
     let is_least_norm = is_whole && frame.towards_least_norm(request, variables, true);
     if !is_least_norm {
-        frame.programme(request, variables, units);
+        frame.serve(request, variables, units);
     }
     for unit in variables.iter_mut().take(units) {
         rolled();
@@ -211,57 +211,74 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         centre.map(|row| -row)
     }
 
-    /// The linear programme: writes the units' coordinates.
+    /// Writes the units' coordinates that serve `request`.
     #[inline(always)]
-    fn programme(&self, request: &[f32; 4], variables: &mut [Variable], units: usize) {
-        let tables = self.tables;
+    fn serve(&self, request: &[f32; 4], variables: &mut [Variable], units: usize) {
         let centre = self.prepare(variables);
         let mut wanted = [0, 1, 2, 3].map(|k| request[k] * self.rows[k]);
+        let rounds = if self.is_whole { 0 } else { ROUNDS };
+        let price = ThrustPrice::of(self.tables.desaturation.airmode);
+        let Some(share) = self.programme(&mut wanted, &centre, variables, units, price, rounds) else {
+            self.level(wanted[3], variables.get_mut(..units).unwrap_or_default(), price);
+            return;
+        };
+        let mut less = [0.0; 4];
+        for unit in variables.iter_mut().take(units) {
+            rolled();
+            unit.at = between(self.polygon.inside(unit.rotors), unit.at, share);
+            unit.subtract(unit.at, &mut less);
+        }
+        if self.is_whole {
+            for (less, row) in less.iter_mut().zip(self.rows) {
+                *less = if row > 0.0 { -*less / row } else { 0.0 };
+            }
+            self.towards_least_norm(&less, variables, false);
+        }
+    }
+
+    /// The linear programme for a request in rows, which is limited to what is looked at. Writes the
+    /// variables' coordinates, and returns the share to which they have to be drawn back; `None`
+    /// where the budget ends first.
+    #[inline(never)]
+    fn programme(
+        &self,
+        wanted: &mut [f32; 4],
+        centre: &[f32; 4],
+        variables: &mut [Variable],
+        units: usize,
+        price: ThrustPrice,
+        mut rounds: u8,
+    ) -> Option<f32> {
         let Desaturation {
             airmode,
             yaw_reserve_nm,
-        } = tables.desaturation;
+        } = self.tables.desaturation;
         let reserve = yaw_reserve_nm * self.rows[2];
-        let shortages = shortage::write(variables, units, &mut wanted, &centre, airmode, reserve);
+        shortage::write(variables, units, wanted, centre, airmode, reserve);
         let ahead = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - centre[k]));
-        let present = variables.get_mut(..units + shortages).unwrap_or_default();
-        let mut simplex = Simplex::start(present, self.polygon, &wanted, &ahead, BUDGET);
-        let mut rounds = if self.is_whole { 0 } else { ROUNDS };
-        let (mut is_solved, mut share) = (false, 1.0);
+        let mut simplex = Simplex::start(variables, self.polygon, wanted, &ahead, price, BUDGET);
+        let mut share = None;
         while simplex.solve() {
             simplex.place();
-            is_solved = true;
             let beyond = simplex.variables.get(units + RAY).map_or(0.0, |ray| ray.at[0]);
-            share = 1.0 / (1.0 + positive(beyond) * shortage::REACH);
-            if rounds == 0 || !self.bend(&mut simplex, share) {
+            let drawn_back = 1.0 / (1.0 + positive(beyond) * shortage::REACH);
+            share = Some(drawn_back);
+            if rounds == 0 || !self.bend(&mut simplex, drawn_back) {
                 break;
             }
             rounds -= 1;
         }
-        if !is_solved {
-            // The programme has changed the gains.
-            shortage::write(variables, units, &mut wanted, &centre, airmode, reserve);
-            let level = [0.0, 0.0, 0.0, wanted[3]];
-            let present = variables.get_mut(..units + shortage::LEVEL).unwrap_or_default();
-            let mut simplex = Simplex::start(present, self.polygon, &level, &[0.0; 4], LEVEL_BUDGET);
-            simplex.solve();
-            simplex.place();
-            return;
-        }
-        for (index, variable) in variables.iter_mut().take(units + shortages).enumerate() {
-            rolled();
-            if index < units {
-                variable.at = between(self.polygon.inside(variable.rotors), variable.at, share);
-            } else if index != units + RAY {
-                variable.subtract([share * variable.at[0], 0.0], &mut wanted);
-            }
-        }
-        if self.is_whole {
-            for (wanted, row) in wanted.iter_mut().zip(self.rows) {
-                *wanted = if row > 0.0 { *wanted / row } else { 0.0 };
-            }
-            self.towards_least_norm(&wanted, variables, false);
-        }
+        share
+    }
+
+    /// Level flight at a thrust in rows: the units alone, without shortages.
+    #[inline(never)]
+    fn level(&self, thrust: f32, units: &mut [Variable], price: ThrustPrice) {
+        shortage::write_biases(units);
+        let wanted = [0.0, 0.0, 0.0, thrust];
+        let mut simplex = Simplex::start(units, self.polygon, &wanted, &[0.0; 4], price, LEVEL_BUDGET);
+        simplex.solve();
+        simplex.place();
     }
 
     /// Takes single rotors from their chords to their curves at the thrusts that they have come to

@@ -48,12 +48,12 @@ const GENERAL: u32 = 2500;
 const GENERAL_UNIT: u32 = 600;
 
 /// A pivot of the simplex method, and one unit in it.
-const PIVOT: u32 = 1200;
-const PIVOT_UNIT: u32 = 80;
+const PIVOT: u32 = 1050;
+const PIVOT_UNIT: u32 = 90;
 
 /// A move to another corner, and one unit in the search for the next.
-const FLIP: u32 = 150;
-const FLIP_UNIT: u32 = 8;
+const FLIP: u32 = 130;
+const FLIP_UNIT: u32 = 5;
 
 /// The bound for a compiled airframe; `None` where there is none yet, or its evaluator has not been
 /// counted.

@@ -1,14 +1,15 @@
-//! The breakpoints of a dual step: where variables leave their corners or edges.
+//! The breakpoints of a dual step: where variables leave their corners or edges, and where the first
+//! row is at its price.
 //!
 //! A long step passes the first one again and again. Two are kept, so that only every other passage
 //! looks through all variables.
 
 use super::variable::positive;
 
-/// The index of no variable.
-pub(super) const NONE: u8 = u8::MAX;
+/// The index of row 0 in the place of a variable; those of the other rows follow.
+pub(super) const ROW: u8 = 252;
 
-/// A variable's breakpoint. The bits of floats are in their order, but for negative ones, which all
+/// The breakpoint of a variable or a row. The bits of floats are in their order, but for negative ones, which all
 /// come first; that spares the transfers of comparisons between floats.
 #[derive(Clone, Copy)]
 pub(super) struct Breakpoint {
@@ -32,11 +33,10 @@ pub(super) const UNKNOWN: i32 = i32::MIN;
 pub(super) struct FirstTwo(pub(super) [Breakpoint; 2]);
 
 impl FirstTwo {
-    /// Before any variable is considered: the end of the dual step.
+    /// Before any variable is considered: that of a row, which ends the dual step.
     #[inline(always)]
-    pub(super) fn new(limit: f32) -> Self {
-        let bits = limit.to_bits() as i32;
-        FirstTwo([Breakpoint { bits, variable: NONE }; 2])
+    pub(super) fn new(limit: Breakpoint) -> Self {
+        FirstTwo([limit; 2])
     }
 
     /// Takes a variable's breakpoint in if it is one of the two.

@@ -18,15 +18,17 @@
 //! in the direction that brings it back, and lets the variable whose gain turns first take the
 //! slot. A variable at a corner moves to its next corner instead, as long as the slot stays outside
 //! (long steps, Maros 2003). A slot that has no variable yet is artificial: its bounds are both
-//! zero.
+//! zero. Lambda stays within a price per row. Where it comes to that first, the row is missed: what
+//! it is missed by takes the slot, without a limit.
 //!
 //! Any lambda may be the start: nothing has to be known about the frame or its health. Work is
 //! bounded by the numbers of pivots and of moves to other corners that are allowed.
 
 use core::hint::black_box;
 
-use super::breakpoint::{FirstTwo, NONE, UNKNOWN};
-use super::variable::{NEVER, Place, Polygon, Variable, corner, dot, next, positive};
+use super::breakpoint::{Breakpoint, FirstTwo, ROW, UNKNOWN};
+use super::shortage::{TORQUE_PRICES, ThrustPrice};
+use super::variable::{NEVER, Place, Polygon, Variable, corner, dot, next};
 use crate::desaturation::attainable::Corner;
 use crate::pair::rotors::Rotors;
 use crate::rolled;
@@ -35,12 +37,8 @@ use crate::rolled;
 const TOLERANCE: f32 = 3e-5;
 const TOLERANCE_OF_POLYGON: f32 = 1e-5;
 
-/// Multipliers up to which the rows are met. Where not even roll = pitch = yaw = 0 is attainable,
-/// rows are missed at these prices, which differ so that the answer is unique.
-const PRICES: [f32; 4] = [4e4, 3.7e4, 3.4e4, 3.1e4];
-
-/// The bit of a float's sign.
-const SIGN: u32 = 1 << 31;
+/// Rates of multipliers below this are rounding.
+const LEAST_RATE: f32 = 1e-4;
 
 const IDENTITY: [[f32; 4]; 4] = [
     [1.0, 0.0, 0.0, 0.0],
@@ -104,6 +102,7 @@ pub(super) struct Simplex<'a> {
     /// w less all that does not depend on the basis.
     pub(super) residual: [f32; 4],
     multipliers: [f32; 4],
+    thrust_price: ThrustPrice,
     /// The values of the slots.
     values: [f32; 4],
     /// The last dual step, which the gains do not yet have.
@@ -120,6 +119,7 @@ impl<'a> Simplex<'a> {
         polygon: Polygon<'a>,
         wanted: &[f32; 4],
         multipliers: &[f32; 4],
+        thrust_price: ThrustPrice,
         budget: Budget,
     ) -> Self {
         let mut residual = *wanted;
@@ -127,7 +127,7 @@ impl<'a> Simplex<'a> {
             rolled();
             let worth = variable.transposed(multipliers);
             variable.gain = [0, 1].map(|k| variable.gain[k] + worth[k]);
-            (variable.rate, variable.place) = ([0.0; 2], Place::Corner);
+            (variable.rate, variable.place, variable.is_forward) = ([0.0; 2], Place::Corner, true);
             let set = polygon.set(variable.rotors);
             variable.choose_corner(set);
             variable.subtract(corner(set, variable.corner).at, &mut residual);
@@ -139,6 +139,7 @@ impl<'a> Simplex<'a> {
             inverse: IDENTITY,
             residual,
             multipliers: *multipliers,
+            thrust_price,
             values: [0.0; 4],
             step: 0.0,
             budget,
@@ -149,9 +150,7 @@ impl<'a> Simplex<'a> {
     #[inline(never)]
     pub(super) fn solve(&mut self) -> bool {
         loop {
-            let values = black_box(self.values.as_mut_slice());
-            for (value, row) in values.iter_mut().zip(&self.inverse) {
-                rolled();
+            for (value, row) in self.values.iter_mut().zip(&self.inverse) {
                 *value = dot(row, &self.residual);
             }
             let Some(leaving) = self.furthest_outside() else {
@@ -278,7 +277,7 @@ impl<'a> Simplex<'a> {
     /// Finds the breakpoints of all variables in a direction of lambda; returns those that come
     /// first.
     #[inline(never)]
-    fn look_ahead(&mut self, direction: &[f32; 4], limit: f32) -> FirstTwo {
+    fn look_ahead(&mut self, direction: &[f32; 4], limit: Breakpoint) -> FirstTwo {
         let mut found = FirstTwo::new(limit);
         for (index, variable) in (0u8..).zip(self.variables.iter_mut()) {
             rolled();
@@ -292,7 +291,7 @@ impl<'a> Simplex<'a> {
 
     /// The breakpoints that come first.
     #[inline(always)]
-    fn first_two(&self, limit: f32) -> FirstTwo {
+    fn first_two(&self, limit: Breakpoint) -> FirstTwo {
         let mut found = FirstTwo::new(limit);
         for (index, variable) in (0u8..).zip(self.variables.iter()) {
             rolled();
@@ -302,16 +301,16 @@ impl<'a> Simplex<'a> {
     }
 
     /// Passes breakpoints in a direction of lambda while the leaving variable stays outside its
-    /// bounds; returns the dual step and the entering variable, [`NONE`] where nothing enters.
+    /// bounds; returns the dual step and what enters: a variable, or the shortage of a row.
     #[inline(never)]
     fn long_step(&mut self, direction: &[f32; 4], mut violation: f32) -> (f32, u8) {
-        let limit = self.first_price(direction).0;
+        let limit = self.first_price(direction);
         let FirstTwo([mut first, mut second]) = self.look_ahead(direction, limit);
         loop {
             let step = first.step();
             let has_ended = self.budget.flips == 0;
             let Some((variable, set, residual)) = self.parts(first.variable) else {
-                return (step, NONE);
+                return (step, first.variable);
             };
             if has_ended || variable.place == Place::Edge {
                 return (step, first.variable);
@@ -321,7 +320,7 @@ impl<'a> Simplex<'a> {
             if violation <= 0.0 {
                 return (step, first.variable);
             }
-            variable.subtract(way, residual);
+            variable.subtract_inline(way, residual);
             first.bits = variable.flip(set, step).to_bits() as i32;
             self.budget.flips -= 1;
             if second.bits == UNKNOWN {
@@ -349,7 +348,10 @@ impl<'a> Simplex<'a> {
                 way = [-e1, e0];
             } else {
                 (variable.corner, way) = variable.way(set);
-                variable.place = Place::Edge;
+                variable.place = match variable.rotors {
+                    Rotors::Both => Place::Edge,
+                    _ => Place::Free,
+                };
                 if variable.is_forward {
                     way = way.map(|part| -part);
                 } else {
@@ -366,12 +368,11 @@ impl<'a> Simplex<'a> {
             }
         } else {
             // A multiplier is at its price first: its row is missed.
-            let (_, row) = self.first_price(&direction);
-            column[row & 3] = if direction[row & 3] > 0.0 { 1.0 } else { -1.0 };
+            let row = usize::from(entering & 3);
+            column[row] = if direction[row] > 0.0 { 1.0 } else { -1.0 };
             self.slots[slot & 3].holds = Holds::Elastic;
         }
-        for (multiplier, part) in self.multipliers.iter_mut().zip(black_box(direction.as_slice())) {
-            rolled();
+        for (multiplier, part) in self.multipliers.iter_mut().zip(direction) {
             *multiplier += self.step * part;
         }
         self.exchange(slot, &column);
@@ -380,19 +381,24 @@ impl<'a> Simplex<'a> {
         }
     }
 
-    /// The dual step at which the first multiplier is at its price, and its row.
+    /// The dual step at which the first multiplier is at its row's price.
     #[inline(never)]
-    fn first_price(&self, direction: &[f32; 4]) -> (f32, usize) {
-        let (mut least, mut row) = (NEVER, 0);
+    fn first_price(&self, direction: &[f32; 4]) -> Breakpoint {
+        let [.., thrust] = *direction;
+        let ThrustPrice { too_little, too_much } = self.thrust_price;
+        let [roll, pitch, yaw] = TORQUE_PRICES;
+        let prices = [roll, pitch, yaw, if thrust > 0.0 { too_little } else { too_much }];
+        let (mut least, mut variable) = (NEVER, ROW);
         for k in 0..4 {
             let rate = direction[k];
-            let multiplier = self.multipliers[k].to_bits() ^ (rate.to_bits() & SIGN);
-            let room = PRICES[k] - f32::from_bits(multiplier);
-            if room < least * rate.abs() {
-                (least, row) = (room / rate.abs(), k);
+            let multiplier = self.multipliers[k];
+            let room = prices[k] - if rate > 0.0 { multiplier } else { -multiplier };
+            if room < least * (rate.abs() - LEAST_RATE) {
+                (least, variable) = (room / rate.abs(), ROW | k as u8);
             }
         }
-        (positive(least), row)
+        let bits = least.to_bits() as i32;
+        Breakpoint { bits, variable }
     }
 
     /// Puts a column into a slot: a rank-1 update of the inverse.
@@ -414,8 +420,7 @@ impl<'a> Simplex<'a> {
     /// torque.
     #[inline(never)]
     fn turn(&mut self, first: usize, second: usize, [e0, e1]: [f32; 2]) {
-        for k in 0..black_box(4_usize) {
-            rolled();
+        for k in 0..4 {
             let (x, y) = (self.inverse[first & 3][k & 3], self.inverse[second & 3][k & 3]);
             self.inverse[first & 3][k & 3] = e0 * x + e1 * y;
             self.inverse[second & 3][k & 3] = e1 * x - e0 * y;

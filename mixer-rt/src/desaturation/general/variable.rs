@@ -51,9 +51,9 @@ const ORIGIN: [Corner; 1] = [Corner {
 pub(super) enum Place {
     /// At a corner: no slot of the basis.
     Corner,
-    /// On the edge that leaves its corner: one slot.
+    /// On the edge that leaves its corner: one slot. A unit with both rotors only.
     Edge,
-    /// Anywhere: two slots.
+    /// Anywhere in its set: two slots, or the one of a segment. It has no gain.
     Free,
 }
 
@@ -177,10 +177,27 @@ pub(super) fn positive(x: f32) -> f32 {
     if x > 0.0 { x } else { 0.0 }
 }
 
+/// The dual step at which the gain along `way` turns positive.
+#[inline(always)]
+fn turning(way: [f32; 2], gain: [f32; 2], rate: [f32; 2]) -> f32 {
+    let slope = dot2(way, rate);
+    if slope > LEAST_SLOPE {
+        -dot2(way, gain) / slope
+    } else {
+        NEVER
+    }
+}
+
 impl Variable {
     /// Takes what coordinates give from `rows`.
     #[inline(never)]
-    pub(super) fn subtract(&self, [y0, y1]: [f32; 2], rows: &mut [f32; 4]) {
+    pub(super) fn subtract(&self, at: [f32; 2], rows: &mut [f32; 4]) {
+        self.subtract_inline(at, rows);
+    }
+
+    /// As [`subtract`](Self::subtract), for the loop that runs most often.
+    #[inline(always)]
+    pub(super) fn subtract_inline(&self, [y0, y1]: [f32; 2], rows: &mut [f32; 4]) {
         let [first, second] = &self.columns;
         for ((row, first), second) in rows.iter_mut().zip(first).zip(second) {
             *row -= first * y0 + second * y1;
@@ -211,23 +228,11 @@ impl Variable {
     #[inline(always)]
     pub(super) fn look_ahead(&mut self, corners: &[Corner], last_step: f32, direction: &[f32; 4]) -> f32 {
         let mut breakpoint = NEVER;
-        let is_segment = self.rotors != Rotors::Both;
-        // A variable that is free in all its dimensions has no gain.
-        if self.place == Place::Corner || (self.place == Place::Edge && !is_segment) {
+        if self.place != Place::Free {
             let rate = dot(&self.columns[0], direction);
             let gain = self.gain[0] + last_step * self.rate[0];
             (self.gain[0], self.rate[0]) = (gain, rate);
-            self.is_forward = true;
-            if is_segment {
-                let (gain, slope) = if self.corner == 0 {
-                    (-gain, rate)
-                } else {
-                    (gain, -rate)
-                };
-                if slope > LEAST_SLOPE {
-                    breakpoint = gain / slope;
-                }
-            } else {
+            if self.rotors == Rotors::Both {
                 let rate = [rate, dot(&self.columns[1], direction)];
                 let gain = [gain, self.gain[1] + last_step * self.rate[1]];
                 (self.gain[1], self.rate[1]) = (gain[1], rate[1]);
@@ -238,18 +243,22 @@ impl Variable {
                         breakpoint = corner.outward(gain) / slope;
                     }
                 } else {
-                    let slope = dot2(corner.edge, rate);
-                    if slope > LEAST_SLOPE {
-                        breakpoint = -dot2(corner.edge, gain) / slope;
-                    }
-                    let slope = -dot2(corner.before, rate);
-                    if slope > LEAST_SLOPE {
-                        let backward = dot2(corner.before, gain) / slope;
-                        if backward < breakpoint {
-                            breakpoint = backward;
-                            self.is_forward = false;
-                        }
-                    }
+                    // The gain turns towards its rate: anticlockwise it meets the corner's own edge.
+                    self.is_forward = gain[0] * rate[1] > gain[1] * rate[0];
+                    breakpoint = if self.is_forward {
+                        turning(corner.edge, gain, rate)
+                    } else {
+                        turning(corner.before.map(|part| -part), gain, rate)
+                    };
+                }
+            } else {
+                let (gain, slope) = if self.corner == 0 {
+                    (-gain, rate)
+                } else {
+                    (gain, -rate)
+                };
+                if slope > LEAST_SLOPE {
+                    breakpoint = gain / slope;
                 }
             }
         }
@@ -278,12 +287,8 @@ impl Variable {
             before(set, self.corner)
         };
         let (_, way) = self.way(set);
-        let slope = dot2(way, self.rate);
-        let mut breakpoint = NEVER;
-        if slope > LEAST_SLOPE {
-            breakpoint = -dot2(way, self.gain) / slope;
-            breakpoint = if breakpoint > step { breakpoint } else { step };
-        }
+        let breakpoint = turning(way, self.gain, self.rate);
+        let breakpoint = if breakpoint > step { breakpoint } else { step };
         self.breakpoint = breakpoint;
         breakpoint
     }
