@@ -15,6 +15,7 @@
 //! | `power_bias.rs` | least power: the wrench stays, torques follow thrusts, fading before anything saturates |
 //! | `shapes.rs` | the same on attainable sets that are not convex, real ones with `MIXER_BENCH_DATA` |
 //! | `flags.rs` | attainable yaw is delivered without a flag, and shortages are flagged |
+//! | `interior_point.rs` | a second allocator, an interior point method on the throttles: seldom better |
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
 #![allow(missing_docs)]
 
@@ -24,6 +25,7 @@ mod delivery;
 mod failure;
 mod finite;
 mod flags;
+mod interior_point;
 mod jumps;
 mod layout;
 mod optimum;

@@ -12,6 +12,7 @@ pub mod firmware;
 pub mod frames;
 pub mod golden;
 pub mod image;
+pub mod interior_point;
 pub mod optimum;
 pub mod overhead;
 pub mod physics;

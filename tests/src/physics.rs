@@ -93,7 +93,7 @@ impl Physics {
     }
 
     /// What a unit gives: a rotor below idle is out.
-    fn given(&self, throttles: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn given(&self, throttles: [f64; 2]) -> [f64; 2] {
         let idle = self.pair.range()[0];
         let is_out = throttles.map(|throttle| throttle < 0.999 * idle);
         match (is_out, &self.alone) {
