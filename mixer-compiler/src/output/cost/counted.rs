@@ -16,8 +16,8 @@ pub const COUNTED: Counted = Counted {
         error: 0.125,
     },
     general: Overhead {
-        per_mix: 201.4,
-        per_unit: 296.7,
-        error: 0.028,
+        per_mix: 161.3,
+        per_unit: 298.5,
+        error: 0.03,
     },
 };
