@@ -218,7 +218,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         let mut wanted = [0, 1, 2, 3].map(|k| request[k] * self.rows[k]);
         let rounds = if self.is_whole { 0 } else { ROUNDS };
         let price = ThrustPrice::of(self.tables.desaturation.airmode);
-        let Some(share) = self.programme(&mut wanted, &centre, variables, units, price, rounds) else {
+        let Some(share) = self.programme(&mut wanted, &centre, variables, price, rounds) else {
             self.level(wanted[3], variables.get_mut(..units).unwrap_or_default(), price);
             return;
         };
@@ -245,10 +245,10 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         wanted: &mut [f32; 4],
         centre: &[f32; 4],
         variables: &mut [Variable],
-        units: usize,
         price: ThrustPrice,
         mut rounds: u8,
     ) -> Option<f32> {
+        let units = variables.len().saturating_sub(SHORTAGES);
         let Desaturation {
             airmode,
             yaw_reserve_nm,

@@ -190,7 +190,7 @@ impl<'a> Simplex<'a> {
             second: 0,
         };
         let mut best = 0.0;
-        for (index, (slot, value)) in self.slots.iter().zip(self.values).enumerate() {
+        for (index, (slot, &value)) in self.slots.iter().zip(&self.values).enumerate() {
             rolled();
             let mut consider = |violation: f32, sign: f32, size: &[f32; 4], edge: u8, second: usize| {
                 let score = violation * violation;
