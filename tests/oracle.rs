@@ -12,7 +12,7 @@ use mixer_rt::Health;
 use mixer_tests::{airframes, golden, root};
 
 /// Random setpoints per airframe.
-const SETPOINTS: usize = 3000;
+const SETPOINTS: usize = 1500;
 
 fn oracle(arguments: &[&str]) -> Output {
     Command::new("python3")

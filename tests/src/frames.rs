@@ -6,7 +6,8 @@ use mixer_compiler::{Compiled, Source};
 
 use mixer_setpoints::Random;
 
-/// The `[throttle]`, `[pair]` and `[voltage]` of `airframes/isae-x8.toml`.
+/// The paper's pair, as in `airframes/isae-x8.toml`, with exponents that differ, so that a test sees
+/// which factor is applied.
 const PAPER: &str = r#"
 [throttle]
 min = 0.1
