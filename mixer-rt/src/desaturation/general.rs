@@ -42,7 +42,6 @@ mod variable;
 pub use shortage::SHORTAGES;
 pub use variable::Variable;
 
-use crate::desaturation::Desaturation;
 use crate::layout::{Tables, Unit};
 use crate::pair::Quantity;
 use crate::pair::rotors::Rotors;
@@ -89,6 +88,7 @@ struct Frame<'a, 't, P, I, S> {
     /// `[k_f, k_Q]`.
     factors: [f32; 2],
     polygon: Polygon<'a>,
+    price: ThrustPrice,
     /// True where all rotors work.
     is_whole: bool,
 }
@@ -133,6 +133,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
                 corners: tables.attainable.corners,
                 centre: tables.attainable.centre,
             },
+            price: ThrustPrice::of(tables.desaturation.airmode),
             is_whole,
         }
     }
@@ -217,9 +218,8 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         let centre = self.prepare(variables);
         let mut wanted = [0, 1, 2, 3].map(|k| request[k] * self.rows[k]);
         let rounds = if self.is_whole { 0 } else { ROUNDS };
-        let price = ThrustPrice::of(self.tables.desaturation.airmode);
-        let Some(share) = self.programme(&mut wanted, &centre, variables, price, rounds) else {
-            self.level(wanted[3], variables.get_mut(..units).unwrap_or_default(), price);
+        let Some(share) = self.programme(&mut wanted, &centre, variables, rounds) else {
+            self.level(wanted[3], variables.get_mut(..units).unwrap_or_default());
             return;
         };
         let mut less = [0.0; 4];
@@ -245,18 +245,14 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         wanted: &mut [f32; 4],
         centre: &[f32; 4],
         variables: &mut [Variable],
-        price: ThrustPrice,
         mut rounds: u8,
     ) -> Option<f32> {
         let units = variables.len().saturating_sub(SHORTAGES);
-        let Desaturation {
-            airmode,
-            yaw_reserve_nm,
-        } = self.tables.desaturation;
-        let reserve = yaw_reserve_nm * self.rows[2];
-        shortage::write(variables, units, wanted, centre, airmode, reserve);
+        let desaturation = &self.tables.desaturation;
+        let reserve = desaturation.yaw_reserve_nm * self.rows[2];
+        shortage::write(variables, units, wanted, centre, desaturation.airmode, reserve);
         let ahead = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - centre[k]));
-        let mut simplex = Simplex::start(variables, self.polygon, wanted, &ahead, price, BUDGET);
+        let mut simplex = Simplex::start(variables, self.polygon, wanted, &ahead, self.price, BUDGET);
         let mut share = None;
         while simplex.solve() {
             simplex.place();
@@ -273,10 +269,10 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
 
     /// Level flight at a thrust in rows: the units alone, without shortages.
     #[inline(never)]
-    fn level(&self, thrust: f32, units: &mut [Variable], price: ThrustPrice) {
+    fn level(&self, thrust: f32, units: &mut [Variable]) {
         shortage::write_biases(units);
         let wanted = [0.0, 0.0, 0.0, thrust];
-        let mut simplex = Simplex::start(units, self.polygon, &wanted, &[0.0; 4], price, LEVEL_BUDGET);
+        let mut simplex = Simplex::start(units, self.polygon, &wanted, &[0.0; 4], self.price, LEVEL_BUDGET);
         simplex.solve();
         simplex.place();
     }

@@ -48,9 +48,10 @@ const IDENTITY: [[f32; 4]; 4] = [
 ];
 
 /// What a slot of the basis holds.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 enum Holds {
     /// The part of its row that is missed.
+    #[default]
     Artificial,
     /// The part of its row that is missed, at its price.
     Elastic,
@@ -62,18 +63,14 @@ enum Holds {
 }
 
 /// A slot of the basis.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
 struct Slot {
     holds: Holds,
     variable: u8,
 }
 
-const ARTIFICIAL: Slot = Slot {
-    holds: Holds::Artificial,
-    variable: 0,
-};
-
 /// A slot outside its bounds.
+#[derive(Default)]
 struct Leaving {
     slot: usize,
     /// 1 where it is too large, -1 where it is too small.
@@ -135,7 +132,7 @@ impl<'a> Simplex<'a> {
         Simplex {
             variables,
             polygon,
-            slots: [ARTIFICIAL; 4],
+            slots: [Slot::default(); 4],
             inverse: IDENTITY,
             residual,
             multipliers: *multipliers,
@@ -182,13 +179,7 @@ impl<'a> Simplex<'a> {
     /// (steepest edge).
     #[inline(never)]
     fn furthest_outside(&self) -> Option<Leaving> {
-        let mut found = Leaving {
-            slot: 0,
-            sign: 1.0,
-            violation: 0.0,
-            edge: 0,
-            second: 0,
-        };
+        let mut found = Leaving::default();
         let mut best = 0.0;
         for (index, (slot, &value)) in self.slots.iter().zip(&self.values).enumerate() {
             rolled();
@@ -307,21 +298,20 @@ impl<'a> Simplex<'a> {
         let limit = self.first_price(direction);
         let FirstTwo([mut first, mut second]) = self.look_ahead(direction, limit);
         loop {
-            let step = first.step();
-            let has_ended = self.budget.flips == 0;
-            let Some((variable, set, residual)) = self.parts(first.variable) else {
-                return (step, first.variable);
-            };
-            if has_ended || variable.place == Place::Edge {
-                return (step, first.variable);
+            let entering = (first.step(), first.variable);
+            if self.budget.flips == 0 {
+                return entering;
             }
+            let Some((variable, set, residual)) = self.parts(first.variable) else {
+                return entering;
+            };
             let (_, way) = variable.way(set);
             violation -= (way[0] * variable.rate[0] + way[1] * variable.rate[1]).abs();
-            if violation <= 0.0 {
-                return (step, first.variable);
+            if variable.place == Place::Edge || violation <= 0.0 {
+                return entering;
             }
             variable.subtract_inline(way, residual);
-            first.bits = variable.flip(set, step).to_bits() as i32;
+            first.bits = variable.flip(set, entering.0).to_bits() as i32;
             self.budget.flips -= 1;
             if second.bits == UNKNOWN {
                 FirstTwo([first, second]) = self.first_two(limit);
