@@ -16,7 +16,7 @@ pub const COUNTED: Counted = Counted {
         error: 0.125,
     },
     general: Overhead {
-        per_mix: 161.3,
+        per_mix: 169.4,
         per_unit: 298.5,
         error: 0.03,
     },

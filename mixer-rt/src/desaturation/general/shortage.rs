@@ -20,7 +20,7 @@ use super::variable::{Variable, positive};
 use crate::desaturation::Airmode;
 use crate::{clamp, rolled, sqrt};
 
-/// How many shortages there are at most. Each has a [`Variable`] behind those of the units.
+/// How many shortages there are. Each has a [`Variable`] behind those of the units.
 pub const SHORTAGES: usize = 3;
 
 /// The shortage along the ray.
