@@ -6,17 +6,10 @@ use mixer_compiler::{Compiled, Source};
 
 use mixer_setpoints::Random;
 
-/// The paper's pair, as in `airframes/isae-x8.toml`, with exponents that differ, so that a test sees
-/// which factor is applied.
-const PAPER: &str = r#"
-[throttle]
-min = 0.1
-max = 1.0
-[pair]
-basis = "biquadratic"
-thrust_n  = [5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363]
-torque_nm = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720]
-upper_spin = "cw"
+pub mod counted;
+
+/// The paper's voltage with exponents that differ, so that a test sees which factor is applied.
+const VOLTAGE: &str = r#"
 [voltage]
 reference_v = 14.8
 range_v = [12.8, 16.8]
@@ -117,7 +110,7 @@ pub fn irregular(random: &mut Random, units: usize, tilt: f64) -> Vec<Place> {
 /// The airframe file of a frame with the paper's pair; unit k has channels `channels[2 k]` and
 /// `channels[2 k + 1]`.
 pub fn toml(places: &[Place], channels: &[usize], options: Options) -> String {
-    toml_with_pair(PAPER, places, channels, options)
+    toml_with_pair(&[counted::PAPER, VOLTAGE].concat(), places, channels, options)
 }
 
 /// As [`toml()`], with these `[throttle]`, `[pair]` and, if any, `[voltage]`.

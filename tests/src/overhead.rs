@@ -12,10 +12,8 @@ use mixer_compiler::cost::{Cost, Counted, Kind, Overhead};
 use nalgebra::{DMatrix, DVector};
 
 use crate::counts::Row;
+use crate::frames::counted;
 use crate::{frames, golden, root};
-
-#[path = "../firmware/build/frames.rs"]
-mod measured;
 
 /// A counted mixer with what its cost is modelled by.
 #[derive(Clone, Debug)]
@@ -108,11 +106,11 @@ const PARAMETERS: usize = 7;
 /// # Errors
 /// An airframe that is not there, is refused, or has an evaluator that has not been counted.
 pub fn samples(rows: &[Row]) -> Result<Vec<Sample>, String> {
-    let mut measured = measured::all();
+    let mut measured = counted::all();
     let airframes = crate::airframes().map_err(|error| format!("airframes/: {error}"))?;
     measured.extend(airframes.iter().filter_map(|name| {
         let text = std::fs::read_to_string(root().join(format!("airframes/{name}.toml"))).ok()?;
-        measured::y6(name, &text)
+        counted::y6(name, &text)
     }));
     let coaxial = rows.iter().filter(|row| row.subject.mixer == "coaxial");
     coaxial

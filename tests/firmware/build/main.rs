@@ -5,6 +5,8 @@
 //! `--cfg airframe="<name>"` selects for the `counts` and the `size` image), and the requests of
 //! the `counts` image.
 
+#[path = "../../src/frames/counted.rs"]
+#[allow(unreachable_pub, reason = "the tests' library shows them")]
 mod frames;
 mod golden;
 mod isolated;

@@ -1,13 +1,13 @@
 //! Airframes that are measured and nothing else: how cost grows with units and with tolerance, and
-//! what other priorities cost.
+//! what other priorities cost. The build script of `tests/firmware` includes this file.
 
 use std::fmt::Write as _;
 
 /// Name of all of them, hence of their modules.
 const NAME: &str = "measured";
 
-/// The paper's pair, as in `airframes/isae-x8.toml`.
-const PAIR: &str = r#"
+/// The paper's `[throttle]` and `[pair]`, as in `airframes/isae-x8.toml`.
+pub const PAPER: &str = r#"
 [throttle]
 min = 0.1
 max = 1.0
@@ -43,8 +43,8 @@ torque_exponent = 1.75
 /// with yaw before thrust, and with a reserve of yaw; a Y6 and an X8 with a made-up pair whose
 /// attainable set bends inwards; frames of 4, 6 and 8 units whose axes lean by 6 degrees along
 /// their circle, to and fro. The Y6s with the pairs of `airframes/x8-*.toml` are those of [`y6`].
-pub(crate) fn all() -> Vec<(String, String)> {
-    let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(PAIR, units, "")));
+pub fn all() -> Vec<(String, String)> {
+    let sizes = (1..=8).map(|units| (format!("regular-{units}"), regular(PAPER, units, "")));
     let tolerances = [
         ("0.1", "9e-4"),
         ("0.01", "1e-4"),
@@ -55,7 +55,7 @@ pub(crate) fn all() -> Vec<(String, String)> {
     let tolerances = tolerances.into_iter().map(|(thrust_n, torque_nm)| {
         let inverse =
             format!("[inverse]\nthrust_tolerance_n = {thrust_n}\ntorque_tolerance_nm = {torque_nm}\n");
-        (format!("tolerance-{thrust_n}"), regular(PAIR, 4, &inverse))
+        (format!("tolerance-{thrust_n}"), regular(PAPER, 4, &inverse))
     });
     let priorities = [
         ("roll-pitch-yaw", "airmode = \"roll-pitch-yaw\""),
@@ -68,7 +68,7 @@ pub(crate) fn all() -> Vec<(String, String)> {
     let priorities = priorities.map(|(name, allocation)| {
         (
             name.to_owned(),
-            regular(PAIR, 4, &format!("[allocation]\n{allocation}\n")),
+            regular(PAPER, 4, &format!("[allocation]\n{allocation}\n")),
         )
     });
     let bent = [3, 4].map(|units| (format!("bent-{units}"), regular(BENT, units, "")));
@@ -78,7 +78,7 @@ pub(crate) fn all() -> Vec<(String, String)> {
 }
 
 /// A Y6 with the pair of an X8 with a short `[layout]`, and its name; `None` for other airframes.
-pub(crate) fn y6(name: &str, text: &str) -> Option<(String, String)> {
+pub fn y6(name: &str, text: &str) -> Option<(String, String)> {
     let pair = name.strip_prefix("x8-")?;
     let text = text.replace(
         "units = 4\nfirst_angle_deg = 45.0",
@@ -114,7 +114,7 @@ fn regular(pair: &str, units: u32, options: &str) -> String {
 )]
 fn tilted(units: u32) -> String {
     const LEAN: f64 = 0.1;
-    let mut text = format!("name = {NAME:?}\n{PAIR}{VOLTAGE}");
+    let mut text = format!("name = {NAME:?}\n{PAPER}{VOLTAGE}");
     for k in 0..units {
         let angle = std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(units);
         let (side, spin) = if k % 2 == 0 { (LEAN, "cw") } else { (-LEAN, "ccw") };
