@@ -29,7 +29,7 @@ pub struct Subject {
     /// channels: `one-rotor-out`, `two-rotors-out`; or a baseline: `conventional`, `sequential`,
     /// `wls`.
     pub mixer: String,
-    /// A file of `airframes/`, or one of `tests/firmware/build/frames.rs`.
+    /// A file of `airframes/`, or one of `tests/src/frames/counted.rs`.
     pub airframe: String,
 }
 
@@ -289,7 +289,7 @@ pub fn document(compiler: &str, rows: &[Row]) -> String {
          * worst: the most of these, and of a search for more\n\n\
          Mixers: `coaxial` is this one, `c-interface` is its library for C with a caller who copies the throttles, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (attainable: with all \
          rotors); `conventional` (the paper's), `sequential` (after PX4) and `wls` (the crate `wls-alloc`) take rotors as isolated. Airframes are files of `airframes/`, \
-         `y6-*` with the pairs of the `x8-*`, and frames of `tests/firmware/build/frames.rs`.\n\n\
+         `y6-*` with the pairs of the `x8-*`, and frames of `tests/src/frames/counted.rs`.\n\n\
          | mixer | airframe | attainable, mean | saturated, mean | worst | code | tables | stack |\n\
          |---|---|---:|---:|---:|---:|---:|---:|\n"
     );
