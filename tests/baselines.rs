@@ -11,7 +11,7 @@ use mixer_rt::{Wrench, tables::Airmode};
 use mixer_tests::{airframes, golden, root};
 
 /// Random setpoints per airframe.
-const SETPOINTS: &str = "500";
+const SETPOINTS: &str = "200";
 /// The oracle prints seven decimals; a throttle is an f32 of thrusts up to some hundred newtons.
 const TOLERANCE: f64 = 5e-6;
 
