@@ -9,8 +9,8 @@ use super::variable::positive;
 /// The index of row 0 in the place of a variable; those of the other rows follow.
 pub(super) const ROW: u8 = 252;
 
-/// The breakpoint of a variable or a row. The bits of floats are in their order, but for negative ones, which all
-/// come first; that spares the transfers of comparisons between floats.
+/// The breakpoint of a variable or a row. The bits of floats are in their order, but for negative
+/// ones, which all come first; that spares the transfers of comparisons between floats.
 #[derive(Clone, Copy)]
 pub(super) struct Breakpoint {
     pub(super) bits: i32,

@@ -8,7 +8,7 @@
 //! too little thrust       20          (1)
 //! roll and pitch         400
 //! too much thrust       2000 disabled, 20 roll-pitch, 1 roll-pitch-yaw
-//! the reserve of yaw   10000
+//! the reserve of yaw   34000
 //! ```
 //!
 //! A higher priority is given up where that gains more of the next one than these ratios. Roll and
@@ -26,7 +26,7 @@ pub const SHORTAGES: usize = 3;
 /// The shortage along the ray.
 pub(super) const RAY: usize = 2;
 
-/// What a row of thrust costs.
+/// What a row of thrust costs: less or more of it than was asked.
 #[derive(Clone, Copy)]
 pub(super) struct ThrustPrice {
     pub(super) too_little: f32,
@@ -42,9 +42,9 @@ const THRUST: f32 = 20.0;
 const LEVEL_TORQUE: f32 = 20.0 * THRUST;
 const FORBIDDEN: f32 = 5.0 * LEVEL_TORQUE;
 
-/// The price of missing roll, of missing pitch, and of yaw within its reserve or beyond nothing. It
-/// is above all costs: so these are met where anything else can be given up. They differ so that
-/// the answer is unique where not even level flight is attainable.
+/// Prices of roll, pitch and yaw beyond what their shortages give up: of the reserve of yaw, and of
+/// an axis that is reversed or exceeded. They are above all costs, so that anything else is given
+/// up first, and differ, so that the answer is unique where not even level flight is attainable.
 pub(super) const TORQUE_PRICES: [f32; 3] = [4e4, 3.7e4, 3.4e4];
 
 /// Requests are looked at up to this share of the authority, and thrust from just below none.
