@@ -15,7 +15,7 @@ const BETTER: f64 = 0.01;
 /// Share of the authority that a higher priority may differ by, and the next one still counts.
 const EQUAL: f64 = 0.001;
 
-/// What of a request each priority misses, as shares of the authority, in their order.
+/// Shortages of an answer in the order of priority, as shares of the authority.
 fn missed(frame: &Frame, request: &Request, given: [f64; 4]) -> [f64; 3] {
     let (asked, authority) = (request.asked(), frame.authority);
     let torque = (asked[0] * asked[0] + asked[1] * asked[1]).sqrt();

@@ -101,8 +101,7 @@ pub fn allocate(frame: &Frame, request: &Request) -> [f64; 4] {
     for _ in 0..CORRECTIONS {
         problem.correct(&inverse);
     }
-    let given = problem.given();
-    std::array::from_fn(|axis| given.iter().map(|unit| unit[axis]).sum())
+    problem.given()
 }
 
 impl<'a> Problem<'a> {
@@ -136,61 +135,49 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The throttles of all units, with `x` in the place of one rotor's unknown.
-    fn throttles(&self, replaced: Option<(usize, f64)>) -> Vec<[f64; 2]> {
-        let [low, high] = self
-            .frame
-            .physics
-            .pair
-            .range()
-            .map(|throttle| throttle * throttle);
+    /// The throttle at x.
+    fn throttle(&self, x: f64) -> f64 {
+        let range = self.frame.physics.pair.range();
+        let [low, high] = range.map(|throttle| throttle * throttle);
+        (low + x * (high - low)).sqrt()
+    }
+
+    /// Throttles `[u, l]` per unit; 0 for a rotor that is out.
+    fn throttles(&self) -> Vec<[f64; 2]> {
         let mut throttles = vec![[0.0; 2]; self.frame.physics.units()];
-        for (index, (unit, side, unknown)) in self.rotors.iter().enumerate() {
-            let x = match replaced {
-                Some((rotor, x)) if rotor == index => x,
-                _ => unknown.x,
-            };
-            throttles[*unit][*side] = (low + x * (high - low)).sqrt();
+        for (unit, side, unknown) in &self.rotors {
+            throttles[*unit][*side] = self.throttle(unknown.x);
         }
         throttles
     }
 
-    /// What a unit gives, N m and N.
-    fn of_unit(&self, unit: usize, throttles: &[[f64; 2]]) -> [f64; 4] {
+    /// The wrench of all units, N m and N.
+    fn given(&self) -> [f64; 4] {
         let physics = &self.frame.physics;
-        physics.contribution(unit, physics.given(throttles[unit]), self.factors)
-    }
-
-    /// What all units give, N m and N.
-    fn given(&self) -> Vec<[f64; 4]> {
-        let throttles = self.throttles(None);
-        (0..throttles.len())
-            .map(|unit| self.of_unit(unit, &throttles))
-            .collect()
+        let efforts = self.throttles().into_iter().map(|unit| physics.given(unit));
+        physics.wrench_of(efforts, self.factors)
     }
 
     fn in_rows(&self, wrench: [f64; 4]) -> Vector4<f64> {
         Vector4::from_fn(|axis, _| self.rows[axis] * wrench[axis])
     }
 
-    /// What the rows still miss.
+    /// The wanted rows less those of units and shortages.
     fn residual(&self) -> Vector4<f64> {
-        let given: Vector4<f64> = self.given().into_iter().map(|unit| self.in_rows(unit)).sum();
-        let short: Vector4<f64> = self
-            .shortages
-            .iter()
-            .map(|(short, _)| short.column * short.x)
-            .sum();
-        self.wanted - given - short
+        let shortages = self.shortages.iter();
+        let short: Vector4<f64> = shortages.map(|(short, _)| short.column * short.x).sum();
+        self.wanted - self.in_rows(self.given()) - short
     }
 
     /// First and second derivative of the rows by a rotor's unknown.
     fn derivatives(&self, rotor: usize) -> [Vector4<f64>; 2] {
-        let (unit, _, unknown) = &self.rotors[rotor];
+        let physics = &self.frame.physics;
+        let (unit, side, unknown) = &self.rotors[rotor];
+        let mut throttles = self.throttles()[*unit];
         let h = 1e-4_f64.min(0.5 * unknown.x).min(0.5 * (1.0 - unknown.x));
         let [less, at, more] = [-h, 0.0, h].map(|change| {
-            let throttles = self.throttles(Some((rotor, unknown.x + change)));
-            self.in_rows(self.of_unit(*unit, &throttles))
+            throttles[*side] = self.throttle(unknown.x + change);
+            self.in_rows(physics.contribution(*unit, physics.given(throttles), self.factors))
         });
         [(more - less) / (2.0 * h), (more - 2.0 * at + less) / (h * h)]
     }
@@ -253,8 +240,8 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// What a request in rows may fall short of: roll and pitch together, thrust, thrust that is too
-/// much, yaw beyond the reserve, and the reserve.
+/// The shortages of a request in rows, with their costs: of roll and pitch together, of thrust, of
+/// yaw beyond the reserve, and of the reserve; and the excess of thrust.
 fn shortages(frame: &Frame, wanted: Vector4<f64>, reserve: f64, units: f64) -> Vec<(Unknown, f64)> {
     let airmode = frame.allocation().airmode;
     let (thrust_cost, yaw_cost) = match airmode {

@@ -26,7 +26,7 @@ pub const SHORTAGES: usize = 3;
 /// The shortage along the ray.
 pub(super) const RAY: usize = 2;
 
-/// What a row of thrust costs: less or more of it than was asked.
+/// Prices per row of thrust that is missing and of thrust that was not asked for.
 #[derive(Clone, Copy)]
 pub(super) struct ThrustPrice {
     pub(super) too_little: f32,
