@@ -19,6 +19,7 @@ pub mod frame;
 pub mod golden;
 pub mod identify;
 pub mod import;
+pub mod isolated;
 pub mod library;
 pub mod mix;
 pub mod new;

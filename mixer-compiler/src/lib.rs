@@ -35,8 +35,6 @@ pub use compiled::Compiled;
 pub use desaturation::attainable::AreaLoss;
 pub use diagnostic::source::Source;
 pub use inverse::evaluator;
-#[cfg(feature = "baselines")]
-pub use output::isolated;
 pub use output::{alternatives, checklist, cost, hover, power, report};
 pub use proof::Certificate;
 pub use proof::residual::Residual;

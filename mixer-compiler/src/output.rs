@@ -6,8 +6,6 @@ pub mod checklist;
 pub mod cost;
 pub(crate) mod emit;
 pub mod hover;
-#[cfg(feature = "baselines")]
-pub mod isolated;
 pub mod power;
 pub mod report;
 pub(crate) mod scale;

@@ -28,8 +28,6 @@
 #![no_std]
 
 mod arithmetic;
-#[cfg(feature = "baselines")]
-pub mod baselines;
 mod desaturation;
 mod health;
 mod layout;

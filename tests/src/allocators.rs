@@ -6,8 +6,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use cargo_mixer::isolated::IsolatedTables;
 use mixer_compiler::Compiled;
-use mixer_compiler::isolated::IsolatedTables;
 use mixer_compiler::model::PairMap;
 use mixer_rt::{Wrench, tables::Airmode};
 

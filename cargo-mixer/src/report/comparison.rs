@@ -3,11 +3,11 @@
 //! each coaxial unit then really gives.
 
 use mixer_compiler::airframe::Axis;
-use mixer_compiler::isolated::IsolatedTables;
 use mixer_rt::Wrench;
 
 use super::authority;
 use super::study::Study;
+use crate::isolated::IsolatedTables;
 
 /// What one mixer makes of one yaw command.
 #[derive(Clone, Debug, PartialEq)]

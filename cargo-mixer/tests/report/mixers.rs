@@ -3,10 +3,10 @@
 use std::fs;
 use std::process::Command;
 
+use cargo_mixer::isolated::IsolatedTables;
 use cargo_mixer::report::comparison::{self, Comparison};
 use cargo_mixer::report::number::range;
 use cargo_mixer::report::study::Study;
-use mixer_compiler::isolated::IsolatedTables;
 
 use super::{compiled, root, scratch, x8};
 

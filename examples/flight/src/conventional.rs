@@ -1,8 +1,8 @@
 //! The conventional mixer of the paper's section V, every rotor taken as isolated:
-//! `mixer_rt::baselines` on the airframe's tables, in f32 as in a flight controller.
+//! `isolated_rotors` on the airframe's tables, in f32 as in a flight controller.
 
+use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::Airframe;
-use mixer_compiler::isolated::IsolatedTables;
 use mixer_compiler::model::effectiveness::Effectiveness;
 use mixer_compiler::model::voltage;
 use mixer_compiler::tables::VoltageTable;

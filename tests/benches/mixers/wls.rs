@@ -1,8 +1,7 @@
 //! Isolated rotors with the allocator of the crate `wls-alloc`, set up as for the firmware's
 //! counts.
 
-use mixer_compiler::isolated::IsolatedTables;
-use mixer_rt::baselines::{IsolatedRotors, ThrustCurve};
+use cargo_mixer::isolated::{IsolatedRotors, IsolatedTables, ThrustCurve};
 use mixer_rt::{
     Wrench,
     tables::{Voltage, sqrt},

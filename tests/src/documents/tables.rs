@@ -1,8 +1,8 @@
 //! The tables, in Markdown.
 
+use cargo_mixer::isolated::IsolatedTables;
 use cargo_mixer::report::comparison::{Answer, Comparison, throttles};
 use cargo_mixer::report::study::Study;
-use mixer_compiler::isolated::IsolatedTables;
 use mixer_compiler::report::{Summary, rounded_up};
 
 use crate::counts;

@@ -1,4 +1,4 @@
-//! The mixers of `mixer_rt::baselines`.
+//! The mixers of `isolated_rotors`.
 
 use mixer_rt::{Health, SetpointError, Wrench};
 

@@ -3,12 +3,12 @@
 //!
 //! Thrusts are shares of a rotor's range, axes shares of their authority. Weights: roll and pitch
 //! before thrust before yaw. The voltage correction and the thrust curve are those of
-//! `mixer_rt::baselines`.
+//! `isolated_rotors`.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 
-use mixer_rt::baselines::ThrustCurve;
+use isolated_rotors::ThrustCurve;
 use mixer_rt::{Health, SetpointError, Wrench, tables::sqrt};
 use wls_alloc::wls::ControlAllocator;
 use wls_alloc::{ExitCode, MatA, VecN};

@@ -1,25 +1,21 @@
 //! Tables of the mixers that take every rotor of a coaxial frame as isolated: what
-//! [`mixer_rt::baselines`] runs on.
+//! [`IsolatedRotors`] runs on.
 //!
 //! Its thrust is the upper rotor's alone, f(d, 0); kappa of its torque is by least squares of |Q(d,
 //! 0)| = kappa f(d, 0) over the throttle range. Rotor k of unit i contributes the column M_f,i -/+
 //! kappa M_Q,i to the wrench (upper -, lower +: a pair's torque is positive where the lower rotor
 //! outweighs the upper), a 4 x 2n matrix B.
 
-use mixer_rt::baselines::{IsolatedRotor, IsolatedRotors, ThrustCurve};
-use mixer_rt::{
-    SetpointError, Wrench,
-    tables::{Airmode, ThrottleRange},
-};
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Airframe;
+use mixer_compiler::model::PairMap;
+use mixer_compiler::model::effectiveness::Effectiveness;
+use mixer_compiler::tables::{self, VoltageTable};
+use mixer_rt::tables::{Airmode, ThrottleRange};
+use mixer_rt::{SetpointError, Wrench};
 use nalgebra::DMatrix;
-use proc_macro2::TokenStream;
-use quote::quote;
 
-use crate::airframe::Airframe;
-use crate::compiled::Compiled;
-use crate::model::PairMap;
-use crate::model::effectiveness::Effectiveness;
-use crate::tables::{self, VoltageTable};
+use super::rotors::{IsolatedRotor, IsolatedRotors, ThrustCurve};
 
 /// Throttles at which kappa is fitted.
 const POINTS: u32 = 51;
@@ -124,34 +120,6 @@ impl IsolatedTables {
             .view()
             .sequential(airmode, setpoint, voltage_v, &mut throttle)?;
         Ok((throttle, within))
-    }
-
-    /// A Rust expression of type `mixer_rt::baselines::IsolatedRotors<'static>`; `voltage` is the
-    /// expression of its voltage correction.
-    pub fn tokens(&self, voltage: &TokenStream) -> TokenStream {
-        let rotors = self.rotors.iter().map(|rotor| {
-            let IsolatedRotor {
-                allocation,
-                direction,
-            } = rotor;
-            quote!(::mixer_rt::baselines::IsolatedRotor {
-                allocation: [#(#allocation),*],
-                direction: [#(#direction),*],
-            })
-        });
-        let curve = match &self.curve {
-            ThrustCurve::Parabola { per_n, shift } => quote!(Parabola { per_n: #per_n, shift: #shift }),
-            ThrustCurve::Polynomial(coefficients) => quote!(Polynomial([#(#coefficients),*])),
-        };
-        let [low, high] = self.thrust_n;
-        let ThrottleRange { min, max } = self.throttle;
-        quote!(::mixer_rt::baselines::IsolatedRotors {
-            rotors: &[#(#rotors),*],
-            curve: ::mixer_rt::baselines::ThrustCurve::#curve,
-            thrust_n: [#low, #high],
-            throttle: ::mixer_rt::tables::ThrottleRange { min: #min, max: #max },
-            voltage: #voltage,
-        })
     }
 }
 

@@ -1,4 +1,4 @@
-//! The mixers for comparison, `mixer_rt::baselines`, against the oracle's of the same rules in
+//! The mixers for comparison, `cargo_mixer::isolated`, against the oracle's of the same rules in
 //! double precision.
 #![allow(missing_docs)]
 
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use mixer_compiler::isolated::IsolatedTables;
+use cargo_mixer::isolated::IsolatedTables;
 use mixer_rt::{Wrench, tables::Airmode};
 use mixer_tests::{airframes, golden, root};
 
@@ -45,7 +45,7 @@ fn isolated_rotors_are_mixed_as_the_oracle_does() {
         let path = format!("airframes/{airframe}.toml");
         let tables = IsolatedTables::new(&golden::compile(&airframe).unwrap_or_else(|e| panic!("{e}")));
         let asked = oracle(&["draw", &path, SETPOINTS, "5"]);
-        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{airframe}.baselines.csv"));
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{airframe}.isolated.csv"));
         fs::write(&file, &asked).expect("scratch folder");
         for method in ["conventional", "disabled", "roll-pitch", "roll-pitch-yaw"] {
             let expected = oracle(&["isolated", &path, method, &file.display().to_string()]);

@@ -11,11 +11,8 @@
 //! [`IsolatedRotors::conventional`] is the paper's comparison (section V): F = B+ u, every throttle
 //! clipped. [`IsolatedRotors::sequential`] desaturates F as PX4 does before it clips.
 
-use crate::desaturation::Airmode;
-use crate::pair::ThrottleRange;
-use crate::voltage::Correction;
-use crate::voltage::Voltage;
-use crate::{Axis, SetpointError, Wrench, clamp, sqrt};
+use mixer_rt::tables::{Airmode, ThrottleRange, Voltage, sqrt};
+use mixer_rt::{Axis, SetpointError, Wrench};
 
 /// One rotor's share of the allocation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,8 +157,12 @@ impl IsolatedRotors<'_> {
                 return Err(SetpointError::NonFinite(axis));
             }
         }
-        let Correction { factors, .. } = Correction::at(self.voltage.as_ref(), voltage_v)?;
-        let per_factor = 1.0 / factors[0];
+        let factor = match &self.voltage {
+            None => 1.0,
+            Some(_) if !voltage_v.is_finite() => return Err(SetpointError::NonFiniteVoltage),
+            Some(voltage) => voltage.thrust.factor(limited(voltage_v, voltage.range_v)),
+        };
+        let per_factor = 1.0 / factor;
         Ok(request.map(|value| value * per_factor))
     }
 
@@ -205,14 +206,14 @@ impl IsolatedRotors<'_> {
     }
 
     #[inline(always)]
-    fn gain(&self, axis: Axis, [low, high]: [f32; 2], thrusts: &[f32]) -> f32 {
+    fn gain(&self, axis: Axis, bounds: [f32; 2], thrusts: &[f32]) -> f32 {
         let (mut least, mut most) = (0.0, 0.0);
         for (rotor, value) in self.rotors.iter().zip(thrusts) {
             let share = rotor.direction.get(axis as usize).copied().unwrap_or(0.0);
             if share.abs() < WEAK {
                 continue;
             }
-            let bound = clamp(*value, low, high);
+            let bound = limited(*value, bounds);
             if bound != *value {
                 let gain = (bound - value) / share;
                 least = if gain < least { gain } else { least };
@@ -240,6 +241,13 @@ impl IsolatedRotors<'_> {
         }
         within
     }
+}
+
+/// `x` within bounds. (`f32::clamp` has a panic path.)
+#[inline(always)]
+fn limited(x: f32, [low, high]: [f32; 2]) -> f32 {
+    let x = if x > low { x } else { low };
+    if x < high { x } else { high }
 }
 
 /// Which way desaturation may change an axis.
