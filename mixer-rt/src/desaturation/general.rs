@@ -46,9 +46,9 @@ use crate::layout::{Tables, Unit};
 use crate::pair::Quantity;
 use crate::pair::rotors::Rotors;
 use crate::rolled;
-use shortage::{RAY, ThrustPrice};
+use shortage::RAY;
 use simplex::{Budget, Simplex};
-use variable::{Polygon, between, positive};
+use variable::{between, inside, positive};
 
 /// Pivots of the general path at most, level flight included.
 pub const PIVOTS: u8 = BUDGET.pivots + LEVEL_BUDGET.pivots;
@@ -72,11 +72,6 @@ const LEVEL_BUDGET: Budget = Budget {
     flips: 32,
 };
 
-/// The multipliers at the start, per row of the request's distance from the centres: so units start
-/// at corners on the request's side. Chosen for the fewest pivots (0.005 to 1 differ by less than a
-/// tenth).
-const AHEAD: f32 = 2e-2;
-
 /// Curves are met to this share of the torque's scale.
 const TOUCHING: f32 = 1e-4;
 
@@ -87,8 +82,6 @@ struct Frame<'a, 't, P, I, S> {
     rows: [f32; 4],
     /// `[k_f, k_Q]`.
     factors: [f32; 2],
-    polygon: Polygon<'a>,
-    price: ThrustPrice,
     /// True where all rotors work.
     is_whole: bool,
 }
@@ -129,11 +122,6 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             tables,
             rows: [roll / thrust, pitch / thrust, yaw / torque, lift / thrust],
             factors: [thrust, torque],
-            polygon: Polygon {
-                corners: tables.attainable.corners,
-                centre: tables.attainable.centre,
-            },
-            price: ThrustPrice::of(tables.desaturation.airmode),
             is_whole,
         }
     }
@@ -157,17 +145,17 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     /// coordinates mean nothing if they do not arrive.
     #[inline(never)]
     fn towards_least_norm(&self, wrench: &[f32; 4], variables: &mut [Variable], from_centre: bool) -> bool {
-        let scale = self.tables.attainable.scale;
-        let per_effort = [0, 1].map(|k| 1.0 / (self.factors[k] * scale[k]));
+        let attainable = &self.tables.attainable;
+        let per_effort = [0, 1].map(|k| 1.0 / (self.factors[k] * attainable.scale[k]));
         let mut share = 1.0;
         for (unit, table) in variables.iter_mut().zip(self.tables.units) {
             rolled();
             if from_centre {
-                unit.at = self.polygon.centre;
+                unit.at = attainable.centre;
             }
             let efforts = table.efforts(wrench);
             unit.rate = [0, 1].map(|k| efforts[k] * per_effort[k] - unit.at[k]);
-            for corner in self.polygon.corners {
+            for corner in attainable.corners {
                 rolled();
                 let out = corner.outward(unit.rate);
                 if out > 0.0 {
@@ -199,6 +187,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     /// Gives units their columns; returns what they give at their centres, in rows.
     #[inline(never)]
     fn prepare(&self, variables: &mut [Variable]) -> [f32; 4] {
+        let attainable = &self.tables.attainable;
         let mut centre = [0.0; 4];
         for (unit, table) in variables.iter_mut().zip(self.tables.units) {
             rolled();
@@ -207,7 +196,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
                 rolled();
                 *column = self.given(table, efforts);
             }
-            unit.subtract(self.polygon.inside(unit.rotors), &mut centre);
+            unit.subtract(inside(attainable.centre, unit.rotors), &mut centre);
         }
         centre.map(|row| -row)
     }
@@ -222,17 +211,26 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             self.level(wanted[3], variables.get_mut(..units).unwrap_or_default());
             return;
         };
+        self.draw_back(share, variables, units);
+    }
+
+    /// Draws the units back to a share of the way from their centres, and from there moves them
+    /// towards the efforts of least norm for the same wrench.
+    #[inline(never)]
+    fn draw_back(&self, share: f32, variables: &mut [Variable], units: usize) {
+        let attainable = &self.tables.attainable;
         let mut less = [0.0; 4];
         for unit in variables.iter_mut().take(units) {
             rolled();
-            unit.at = between(self.polygon.inside(unit.rotors), unit.at, share);
+            unit.at = between(inside(attainable.centre, unit.rotors), unit.at, share);
             unit.subtract(unit.at, &mut less);
         }
         if self.is_whole {
-            for (less, row) in less.iter_mut().zip(self.rows) {
-                *less = if row > 0.0 { -*less / row } else { 0.0 };
-            }
-            self.towards_least_norm(&less, variables, false);
+            let wrench = [0, 1, 2, 3].map(|k| {
+                let row = self.rows[k];
+                if row > 0.0 { -less[k] / row } else { 0.0 }
+            });
+            self.towards_least_norm(&wrench, variables, false);
         }
     }
 
@@ -251,8 +249,14 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         let desaturation = &self.tables.desaturation;
         let reserve = desaturation.yaw_reserve_nm * self.rows[2];
         shortage::write(variables, units, wanted, centre, desaturation.airmode, reserve);
-        let ahead = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - centre[k]));
-        let mut simplex = Simplex::start(variables, self.polygon, wanted, &ahead, self.price, BUDGET);
+        let mut simplex = Simplex::start(
+            variables,
+            self.tables.attainable.corners,
+            wanted,
+            centre,
+            desaturation.airmode,
+            BUDGET,
+        );
         let mut share = None;
         while simplex.solve() {
             simplex.place();
@@ -272,7 +276,14 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     fn level(&self, thrust: f32, units: &mut [Variable]) {
         shortage::write_biases(units);
         let wanted = [0.0, 0.0, 0.0, thrust];
-        let mut simplex = Simplex::start(units, self.polygon, &wanted, &[0.0; 4], self.price, LEVEL_BUDGET);
+        let mut simplex = Simplex::start(
+            units,
+            self.tables.attainable.corners,
+            &wanted,
+            &wanted,
+            self.tables.desaturation.airmode,
+            LEVEL_BUDGET,
+        );
         simplex.solve();
         simplex.place();
     }

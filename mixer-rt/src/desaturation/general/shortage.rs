@@ -85,7 +85,7 @@ pub(super) fn write_biases(units: &mut [Variable]) {
 /// Writes the units' biases and, behind the units, the shortages of a request in rows, which is
 /// limited to what is looked at. `centre` is what the units' centres give, `reserve` the yaw that
 /// is kept before roll and pitch, in rows.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn write(
     variables: &mut [Variable],
     units: usize,

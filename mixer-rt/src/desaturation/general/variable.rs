@@ -35,7 +35,7 @@ const SEGMENT: [Corner; 2] = [
     },
 ];
 
-/// A point inside it.
+/// The point inside it that [`inside`] gives.
 const MIDDLE: [f32; 2] = [0.5, 1.0];
 
 /// The set of a unit without rotors.
@@ -100,32 +100,23 @@ impl Default for Variable {
     }
 }
 
-/// The polygon that units with both rotors have, and a point inside it.
-#[derive(Clone, Copy)]
-pub(super) struct Polygon<'a> {
-    pub(super) corners: &'a [Corner],
-    pub(super) centre: [f32; 2],
+/// The corners of the set of a unit with these rotors; with both it is the polygon with `corners`.
+#[inline(always)]
+pub(super) fn set(corners: &[Corner], rotors: Rotors) -> &[Corner] {
+    match rotors {
+        Rotors::Both => corners,
+        Rotors::None => &ORIGIN,
+        _ => &SEGMENT,
+    }
 }
 
-impl<'a> Polygon<'a> {
-    /// The corners of a variable's set.
-    #[inline(always)]
-    pub(super) fn set(&self, rotors: Rotors) -> &'a [Corner] {
-        match rotors {
-            Rotors::Both => self.corners,
-            Rotors::None => &ORIGIN,
-            _ => &SEGMENT,
-        }
-    }
-
-    /// A point inside it.
-    #[inline(always)]
-    pub(super) fn inside(&self, rotors: Rotors) -> [f32; 2] {
-        match rotors {
-            Rotors::Both => self.centre,
-            Rotors::None => [0.0; 2],
-            _ => MIDDLE,
-        }
+/// A point inside the set of a unit with these rotors; with both it is `centre`.
+#[inline(always)]
+pub(super) fn inside(centre: [f32; 2], rotors: Rotors) -> [f32; 2] {
+    match rotors {
+        Rotors::Both => centre,
+        Rotors::None => [0.0; 2],
+        _ => MIDDLE,
     }
 }
 
