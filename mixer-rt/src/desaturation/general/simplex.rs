@@ -274,16 +274,13 @@ impl<'a> Simplex<'a> {
         (slot, self.inverse[slot].map(|part| leaving.sign * part))
     }
 
-    /// Finds the breakpoints of all variables in a direction of lambda; returns those that come
-    /// first.
+    /// Takes the last dual step, and finds the breakpoints of all variables in a direction of lambda.
     #[inline(never)]
-    fn look_ahead(&mut self, direction: &[f32; 4], limit: Breakpoint) -> FirstTwo {
-        let mut found = FirstTwo::new(limit);
-        for (index, variable) in (0u8..).zip(self.variables.iter_mut()) {
+    fn look_ahead(&mut self, direction: &[f32; 4]) {
+        for variable in self.variables.iter_mut() {
             rolled();
-            found.consider(index, variable.look_ahead(self.corners, self.step, direction));
+            variable.look_ahead(self.corners, self.step, direction);
         }
-        found
     }
 
     /// The breakpoints that come first.
@@ -300,8 +297,8 @@ impl<'a> Simplex<'a> {
     /// Passes breakpoints in a direction of lambda while the leaving variable stays outside its
     /// bounds; returns the dual step and what enters: a variable, or the shortage of a row.
     #[inline(never)]
-    fn long_step(&mut self, limit: Breakpoint, found: FirstTwo, mut violation: f32) -> (f32, u8) {
-        let FirstTwo([mut first, mut second]) = found;
+    fn long_step(&mut self, limit: Breakpoint, mut violation: f32) -> (f32, u8) {
+        let FirstTwo([mut first, mut second]) = self.first_two(limit);
         loop {
             let entering = (first.step(), first.variable);
             if self.budget.flips == 0 {
@@ -332,8 +329,8 @@ impl<'a> Simplex<'a> {
     fn pivot(&mut self, leaving: &Leaving) {
         let (slot, direction) = self.release(leaving);
         let limit = self.first_price(&direction);
-        let found = self.look_ahead(&direction, limit);
-        let (step, entering) = self.long_step(limit, found, leaving.violation);
+        self.look_ahead(&direction);
+        let (step, entering) = self.long_step(limit, leaving.violation);
         let mut column = [0.0; 4];
         let mut is_freed = false;
         self.step = step;
@@ -450,18 +447,17 @@ impl<'a> Simplex<'a> {
             rolled();
             variable.at = corner(set(self.corners, variable.rotors), variable.corner).at;
         }
-        let (slots, values) = (self.slots, self.values);
-        for (slot, &value) in black_box(slots.as_slice())
+        for (slot, &value) in black_box(self.slots.as_slice())
             .iter()
-            .zip(black_box(values.as_slice()))
+            .zip(black_box(self.values.as_slice()))
         {
             rolled();
-            let Some((variable, set, _)) = self.parts(slot.variable) else {
+            let Some(variable) = self.variables.get_mut(usize::from(slot.variable)) else {
                 continue;
             };
             match slot.holds {
                 Holds::Edge => {
-                    let edge = corner(set, variable.corner).edge;
+                    let edge = corner(set(self.corners, variable.rotors), variable.corner).edge;
                     variable.at = [0, 1].map(|k| variable.at[k] + value * edge[k]);
                 }
                 Holds::First => variable.at[0] = value,

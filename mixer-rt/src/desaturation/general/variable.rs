@@ -217,7 +217,7 @@ impl Variable {
     /// Takes the last dual step, and finds the breakpoint in a direction of lambda. By rounding it
     /// may be just below zero.
     #[inline(always)]
-    pub(super) fn look_ahead(&mut self, corners: &[Corner], last_step: f32, direction: &[f32; 4]) -> f32 {
+    pub(super) fn look_ahead(&mut self, corners: &[Corner], last_step: f32, direction: &[f32; 4]) {
         let mut breakpoint = NEVER;
         if self.place != Place::Free {
             let rate = dot(&self.columns[0], direction);
@@ -254,7 +254,6 @@ impl Variable {
             }
         }
         self.breakpoint = breakpoint;
-        breakpoint
     }
 
     /// The edge along which it leaves its corner: its index and its direction from here.
