@@ -316,8 +316,8 @@ fn attainable(set: &AttainableTable) -> TokenStream {
     let (scale, centre) = (vector(&set.scale), vector(&set.centre));
     let corners = set.corners.iter().map(|corner| {
         let (at, bound) = (vector(&corner.at), float(corner.bound));
-        let (edge, before) = (vector(&corner.edge), vector(&corner.before));
-        quote!(tables::Corner { at: #at, edge: #edge, before: #before, bound: #bound })
+        let (edge, back) = (vector(&corner.edge), vector(&corner.back));
+        quote!(tables::Corner { at: #at, edge: #edge, back: #back, bound: #bound })
     });
     quote!(tables::AttainableSet { scale: #scale, centre: #centre, corners: &[#(#corners),*] })
 }

@@ -8,8 +8,8 @@ pub struct Corner {
     pub at: [f32; 2],
     /// From here to the next corner.
     pub edge: [f32; 2],
-    /// From the corner before to here.
-    pub before: [f32; 2],
+    /// From here to the corner before.
+    pub back: [f32; 2],
     /// Points `[f, q]` on this edge's inner side have `edge[1] f - edge[0] q <= bound`.
     pub bound: f32,
 }
@@ -22,7 +22,7 @@ impl Corner {
         Corner {
             at,
             edge,
-            before: [at[0] - before[0], at[1] - before[1]],
+            back: [before[0] - at[0], before[1] - at[1]],
             bound: edge[1] * at[0] - edge[0] * at[1],
         }
     }

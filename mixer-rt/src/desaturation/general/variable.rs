@@ -24,13 +24,13 @@ const SEGMENT: [Corner; 2] = [
     Corner {
         at: [0.0, 1.0],
         edge: [1.0, 0.0],
-        before: [-1.0, 0.0],
+        back: [1.0, 0.0],
         bound: 0.0,
     },
     Corner {
         at: [1.0, 1.0],
         edge: [-1.0, 0.0],
-        before: [1.0, 0.0],
+        back: [-1.0, 0.0],
         bound: 0.0,
     },
 ];
@@ -42,7 +42,7 @@ const MIDDLE: [f32; 2] = [0.5, 1.0];
 const ORIGIN: [Corner; 1] = [Corner {
     at: [0.0; 2],
     edge: [0.0; 2],
-    before: [0.0; 2],
+    back: [0.0; 2],
     bound: 0.0,
 }];
 
@@ -239,7 +239,7 @@ impl Variable {
                     breakpoint = if self.is_forward {
                         turning(corner.edge, gain, rate)
                     } else {
-                        turning(corner.before.map(|part| -part), gain, rate)
+                        turning(corner.back, gain, rate)
                     };
                 }
             } else {
@@ -263,7 +263,7 @@ impl Variable {
         if self.is_forward {
             (self.corner, corner.edge)
         } else {
-            (before(set, self.corner), corner.before.map(|part| -part))
+            (before(set, self.corner), corner.back)
         }
     }
 
