@@ -18,15 +18,18 @@ pub(super) struct Breakpoint {
 }
 
 impl Breakpoint {
+    /// It has to be looked for.
+    pub(super) const UNKNOWN: Breakpoint = Breakpoint {
+        bits: i32::MIN,
+        variable: ROW,
+    };
+
     /// The dual step there, zero where rounding has put it below.
     #[inline(always)]
     pub(super) fn step(self) -> f32 {
         positive(f32::from_bits(self.bits as u32))
     }
 }
-
-/// The bits of a breakpoint that has to be looked for.
-pub(super) const UNKNOWN: i32 = i32::MIN;
 
 /// The two breakpoints that come first.
 #[derive(Clone, Copy)]

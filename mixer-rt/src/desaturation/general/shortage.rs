@@ -106,9 +106,11 @@ pub(super) fn write(
     } else {
         pitch.abs()
     };
-    let share = if largest > limit { limit / largest } else { 1.0 };
-    wanted[0] *= share;
-    wanted[1] *= share;
+    if largest > limit {
+        let share = limit / largest;
+        wanted[0] *= share;
+        wanted[1] *= share;
+    }
     wanted[2] = clamp(wanted[2], -limit, limit);
     wanted[3] = clamp(wanted[3], LEAST_THRUST * n, MOST_THRUST * n);
     let [roll, pitch, yaw, _] = *wanted;

@@ -26,7 +26,7 @@
 
 use core::hint::black_box;
 
-use super::breakpoint::{Breakpoint, FirstTwo, ROW, UNKNOWN};
+use super::breakpoint::{Breakpoint, FirstTwo, ROW};
 use super::shortage::{TORQUE_PRICES, ThrustPrice};
 use super::variable::{NEVER, Place, Variable, corner, dot, next, set};
 use crate::desaturation::Airmode;
@@ -159,9 +159,10 @@ impl<'a> Simplex<'a> {
             for (value, row) in self.values.iter_mut().zip(&self.inverse) {
                 *value = dot(row, &self.residual);
             }
-            let Some(leaving) = self.furthest_outside() else {
+            let leaving = self.furthest_outside();
+            if leaving.violation <= 0.0 {
                 return true;
-            };
+            }
             if self.budget.pivots == 0 {
                 return false;
             }
@@ -185,9 +186,9 @@ impl<'a> Simplex<'a> {
     }
 
     /// The slot furthest outside its bounds, each measured by how far lambda moves to bring it back
-    /// (steepest edge).
+    /// (steepest edge). Without a violation where all are within.
     #[inline(never)]
-    fn furthest_outside(&self) -> Option<Leaving> {
+    fn furthest_outside(&self) -> Leaving {
         let mut found = Leaving::default();
         let mut best = 0.0;
         for (index, (slot, &value)) in self.slots.iter().zip(&self.values).enumerate() {
@@ -228,7 +229,7 @@ impl<'a> Simplex<'a> {
                 consider(violation, sign, &self.inverse[index & 3], 0, 0);
             }
         }
-        if best > 0.0 { Some(found) } else { None }
+        found
     }
 
     /// The row of the inverse for how far a free unit is beyond an edge.
@@ -298,8 +299,11 @@ impl<'a> Simplex<'a> {
     /// bounds; returns the dual step and what enters: a variable, or the shortage of a row.
     #[inline(never)]
     fn long_step(&mut self, limit: Breakpoint, mut violation: f32) -> (f32, u8) {
-        let FirstTwo([mut first, mut second]) = self.first_two(limit);
+        let (mut first, mut second) = (Breakpoint::UNKNOWN, Breakpoint::UNKNOWN);
         loop {
+            if first.bits == Breakpoint::UNKNOWN.bits {
+                FirstTwo([first, second]) = self.first_two(limit);
+            }
             let entering = (first.step(), first.variable);
             if self.budget.flips == 0 {
                 return entering;
@@ -315,11 +319,8 @@ impl<'a> Simplex<'a> {
             variable.subtract_inline(way, residual);
             first.bits = variable.flip(set, entering.0).to_bits() as i32;
             self.budget.flips -= 1;
-            if second.bits == UNKNOWN {
-                FirstTwo([first, second]) = self.first_two(limit);
-            } else if first.bits > second.bits {
-                first = second;
-                second.bits = UNKNOWN;
+            if second.bits == Breakpoint::UNKNOWN.bits || first.bits > second.bits {
+                (first, second) = (second, Breakpoint::UNKNOWN);
             }
         }
     }
