@@ -38,6 +38,7 @@ const RULES: &[Rule] = &[
     pair::slopes,
     pair::sum_of_rotors,
     pair::idle,
+    pair::power,
     geometry::arms,
     geometry::radians,
     geometry::centre_of_gravity,

@@ -122,6 +122,8 @@ catalogue! {
     NotCoaxial = 302,
     /// An idle at which a large share of the thrust is always on.
     HighIdle = 303,
+    /// Power and thrust in a ratio that no pair has: the power is in another unit.
+    PowerUnits = 304,
     /// An arm far longer than the thrust makes plausible.
     LongArm = 310,
     /// An angle that looks like radians.

@@ -157,3 +157,50 @@ pub(super) fn idle(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
         "an idle is typically 0.05 to 0.15; measure the pair from there on",
     ));
 }
+
+/// The range of f over the power of one pair at full throttle, N/W: 0.041 to 0.099 on maps of 11 to
+/// 22 inch.
+const THRUST_PER_POWER: [f64; 2] = [0.01, 0.5];
+
+/// Units of power in place of watts, with their size in W.
+const POWER_UNITS: [(&str, f64); 2] = [("mW", 0.001), ("kW", 1000.0)];
+
+/// Thrust over power tells the unit of the power, unless that of the thrust is in doubt.
+pub(super) fn power(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    let Some(power) = &facts.airframe.pair.power else {
+        return;
+    };
+    if found.iter().any(|warning| warning.code == Code::PairUnits) {
+        return;
+    }
+    let [_, full] = facts.map.range();
+    let [thrust, _] = facts.map.efforts([full; 2]);
+    let watts = power.at([full; 2]);
+    let [low, high] = THRUST_PER_POWER;
+    let plausible = |watts: f64| (low..=high).contains(&(thrust / watts));
+    if plausible(watts) {
+        return;
+    }
+    let unit = POWER_UNITS.iter().find(|(_, size)| plausible(watts * size));
+    let help = match unit {
+        Some((unit, size)) => format!(
+            "it would be plausible if power_w is in {unit} (multiply by {})",
+            number(*size)
+        ),
+        None => "check the unit of power_w (W, of both rotors)".to_owned(),
+    };
+    found.push(facts.airframe.diagnostic(
+        Code::PowerUnits,
+        "pair.power.power_w",
+        format!(
+            "at full throttle one unit takes {} W for {} N, {} N/W; pairs of 4 to 40 inch give {} to {} N/W",
+            rounded(watts),
+            rounded(thrust),
+            rounded(thrust / watts),
+            number(low),
+            number(high)
+        ),
+        "in another unit?",
+        help,
+    ));
+}
