@@ -16,8 +16,8 @@ pub const COUNTED: Counted = Counted {
         error: 0.125,
     },
     general: Overhead {
-        per_mix: 169.4,
-        per_unit: 298.5,
+        per_mix: 145.0,
+        per_unit: 301.6,
         error: 0.03,
     },
 };
