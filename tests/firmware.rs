@@ -358,7 +358,7 @@ fn the_model_of_a_mix_is_that_of_the_counts() {
     let written = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     assert!(
         fitted == COUNTED && written == overhead::text(&compiler, &fitted),
-        "{} does not follow from tests/counts.csv: {fitted:?}; `cargo run -p mixer-tests --bin counts -- --fit`",
+        "{} does not follow from tests/counts.csv: {fitted:?}; `cargo xtask counts --fit`",
         path.display()
     );
     for sample in &samples {
@@ -409,4 +409,4 @@ fn bounds_hold_what_was_counted() {
 const MODEL_ERROR: f64 = 0.13;
 
 const MEND: &str =
-    "if the change is meant, `cargo run -p mixer-tests --bin counts -- --bless` and look at the difference";
+    "if the change is meant, `cargo xtask counts --bless` and look at the difference";

@@ -79,14 +79,16 @@ fn golden_vectors_cover_what_they_should() {
                     let expected = if compiled.airframe.units.len() > 1 { 20 } else { 0 };
                     assert!(helped >= expected, "{name} {kind:?}: {helped}");
                 }
-                // Those outside are a third; of two steps inside, the lesser may be within what a mixer leaves out.
+                // Those outside are a third; of two steps inside, the lesser may be within what a
+                // mixer leaves out.
                 Kind::Border => assert!(
                     (list.len() / 3..=2 * list.len() / 3).contains(&saturated),
                     "{name} {kind:?}: {saturated}"
                 ),
                 // A part of the random ones is attainable.
                 Kind::Saturated => assert!(5 * saturated >= 4 * list.len(), "{name} {kind:?}: {saturated}"),
-                // Thrust of 40 % of the ceiling and roll, pitch and yaw of next to nothing are delivered.
+                // Thrust of 40 % of the ceiling and roll, pitch and yaw of next to nothing are
+                // delivered.
                 Kind::Faint => assert!(saturated >= 18, "{name} {kind:?}: {saturated}"),
             }
         }

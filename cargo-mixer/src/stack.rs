@@ -1,5 +1,5 @@
-//! Numbers of an airframe that a flight stack takes: the scales of its normalised setpoints, and the
-//! parameters that keep it from correcting a second time for the rotors' curve and for the
+//! Numbers of an airframe that a flight stack takes: the scales of its normalised setpoints, and
+//! the parameters that keep it from correcting a second time for the rotors' curve and for the
 //! battery's voltage.
 
 use std::fmt;

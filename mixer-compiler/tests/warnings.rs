@@ -1,8 +1,8 @@
 //! Airframe files that are accepted and yet hardly meant, and what their users are told.
 //!
 //! `warnings/NAME.toml` is such a file, `NAME.txt` the warnings that the compiler has of it.
-//! `MIXER_BLESS=1 cargo test
-//! -p mixer-compiler --test warnings` writes the texts anew; read the difference before committing it.
+//! `MIXER_BLESS=1 cargo test -p mixer-compiler --test warnings` writes the texts anew; read the
+//! difference before committing it.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;

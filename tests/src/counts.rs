@@ -282,7 +282,7 @@ pub fn page() -> PathBuf {
 /// The text of that page.
 pub fn document(compiler: &str, rows: &[Row]) -> String {
     let mut text = format!(
-        "# Costs\n\nWritten by `cargo run -p mixer-tests --bin counts -- --fit` from `tests/counts.csv`. Instructions per mix on a \
+        "# Costs\n\nWritten by `cargo xtask counts --fit` from `tests/counts.csv`. Instructions per mix on a \
          Cortex-M4F, counted in QEMU with firmware of {compiler}; bytes of code, tables and stack of an image that holds this mixer only.\n\n\
          * attainable: 2,000 wrenches that random throttles give, at random voltages\n\
          * saturated: 2,000 requests up to four times the authority, one axis alone, on and beyond the border\n\

@@ -1,8 +1,8 @@
 //! Rotor mismatch and the air of the room, drawn per seed; equal for both mixers.
 //!
-//! *Still* air does nothing: what is left are the mixer's own errors. *Unsteady* air stands for what the paper calls
-//! the aerodynamic effects of a rather small flying area: a horizontal and vertical force, and
-//! flutter of each unit's thrust, each a first-order Gauss-Markov process,
+//! *Still* air does nothing: what is left are the mixer's own errors. *Unsteady* air stands for
+//! what the paper calls the aerodynamic effects of a rather small flying area: a horizontal and
+//! vertical force, and flutter of each unit's thrust, each a first-order Gauss-Markov process,
 //!
 //! ```text
 //! x[k+1] = a x[k] + sqrt(1 - a^2) sigma n[k],   a = exp(-step / T)

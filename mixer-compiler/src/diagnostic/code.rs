@@ -4,12 +4,13 @@ use std::fmt;
 
 macro_rules! catalogue {
     ($(#[doc = $meaning:literal] $code:ident = $number:literal,)+) => {
-        /// Every kind of fault that the compiler reports. A code keeps its number and its meaning for good, so that
-        /// it can be searched for and scripts can rely on it.
+        /// Every kind of fault that the compiler reports. A code keeps its number and its meaning
+        /// for good, so that it can be searched for and scripts can rely on it.
         ///
-        /// Below 100: the file is not in the form of an airframe file. From 100: a value cannot be an airframe's.
-        /// From 200: the airframe is sound in itself, but no mixer can be made of it. From 300: warnings; the airframe
-        /// compiles, but a value is hardly the one that was meant.
+        /// Below 100: the file is not in the form of an airframe file. From 100: a value cannot be
+        /// an airframe's. From 200: the airframe is sound in itself, but no mixer can be made of
+        /// it. From 300: warnings; the airframe compiles, but a value is hardly the one that was
+        /// meant.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
         pub enum Code {

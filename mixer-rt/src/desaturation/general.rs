@@ -15,7 +15,7 @@
 //! ```text
 //! 1. efforts of least norm; where they are inside all polygons they are the answer
 //! 2. the programme for the request; the curves of single rotors take the place of their chords
-//! 3. where the budget of pivots has ended first: the programme for level flight at the thrust asked
+//! 3. where the budget of pivots ends first: the programme for level flight at the thrust asked
 //! 4. towards the efforts of least norm as far as the polygons allow
 //! ```
 //!
@@ -234,9 +234,9 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         }
     }
 
-    /// The linear programme for a request in rows, which is limited to what is looked at. Writes the
-    /// variables' coordinates, and returns the share to which they have to be drawn back; `None`
-    /// where the budget ends first.
+    /// The linear programme for a request in rows, which is limited to what is looked at. Writes
+    /// the variables' coordinates, and returns the share to which they have to be drawn back;
+    /// `None` where the budget ends first.
     #[inline(never)]
     fn programme(
         &self,

@@ -1,11 +1,12 @@
 //! Prints what a mix costs on a Cortex-M4F, counted in QEMU.
 //!
 //! ```text
-//! cargo run -p mixer-tests --bin counts                      all subjects
-//! cargo run -p mixer-tests --bin counts -- isae-x8 regular-3 only these airframes
-//! cargo run -p mixer-tests --bin counts -- c-interface,isae-x8 only this row, as tests/counts.csv has it too
-//! cargo run -p mixer-tests --bin counts -- --bless           all of them, and writes tests/counts.csv and what --fit does
-//! cargo run -p mixer-tests --bin counts -- --fit             counts nothing; from tests/counts.csv writes docs/costs.md and the compiler's model
+//! cargo xtask counts                      all subjects
+//! cargo xtask counts isae-x8 regular-3    only these airframes
+//! cargo xtask counts c-interface,isae-x8  only this row, named as tests/counts.csv names it
+//! cargo xtask counts --bless              all; writes tests/counts.csv and what --fit writes
+//! cargo xtask counts --fit                counts nothing; writes docs/costs.md and the compiler's
+//!                                         model of cost from tests/counts.csv
 //! ```
 
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
-//! Doubts that the statistics of a fit do not show: files of different pairs, throttles that were not measured, a
-//! costly constraint.
+//! Doubts that the statistics of a fit do not show: files of different pairs, throttles that were
+//! not measured, a costly constraint.
 
 use super::super::basis::ThrottleBox;
 use super::super::fit::Fit;

@@ -1,5 +1,5 @@
-//! The breakpoints of a dual step: where variables leave their corners or edges, and where the first
-//! row is at its price.
+//! The breakpoints of a dual step: where variables leave their corners or edges, and where the
+//! first row is at its price.
 //!
 //! A long step passes the first one again and again. Two are kept, so that only every other passage
 //! looks through all variables.

@@ -38,9 +38,9 @@ use crate::rolled;
 const TOLERANCE: f32 = 3e-5;
 const TOLERANCE_OF_POLYGON: f32 = 1e-5;
 
-/// The multipliers at the start, per row of the request's distance from the units' centres: so units
-/// start at corners on the request's side. Chosen for the fewest pivots (0.005 to 1 differ by less
-/// than a tenth).
+/// The multipliers at the start, per row of the request's distance from the units' centres: so
+/// units start at corners on the request's side. Chosen for the fewest pivots (0.005 to 1 differ by
+/// less than a tenth).
 const AHEAD: f32 = 2e-2;
 
 /// Rates of multipliers below this are rounding.
@@ -275,7 +275,8 @@ impl<'a> Simplex<'a> {
         (slot, self.inverse[slot].map(|part| leaving.sign * part))
     }
 
-    /// Takes the last dual step, and finds the breakpoints of all variables in a direction of lambda.
+    /// Takes the last dual step, and finds the breakpoints of all variables in a direction of
+    /// lambda.
     #[inline(never)]
     fn look_ahead(&mut self, direction: &[f32; 4]) {
         for variable in self.variables.iter_mut() {

@@ -234,7 +234,8 @@ impl Variable {
                         breakpoint = corner.outward(gain) / slope;
                     }
                 } else {
-                    // The gain turns towards its rate: anticlockwise it meets the corner's own edge.
+                    // The gain turns towards its rate: anticlockwise it meets the corner's own
+                    // edge.
                     self.is_forward = gain[0] * rate[1] > gain[1] * rate[0];
                     breakpoint = if self.is_forward {
                         turning(corner.edge, gain, rate)
