@@ -166,7 +166,7 @@ fn evaluators_cost_what_the_compiler_believes() {
             assert!(
                 counted.abs_diff(stated) <= stated / 20,
                 "{name} takes {counted} instructions, mixer-compiler/src/inverse/evaluator/cost.rs says {stated}: run \
-                 `cargo run --release -p mixer-tests --bin evaluators`"
+                 `cargo xtask evaluators`"
             );
         }
     }
@@ -408,5 +408,4 @@ fn bounds_hold_what_was_counted() {
 /// As a share of what was counted.
 const MODEL_ERROR: f64 = 0.13;
 
-const MEND: &str =
-    "if the change is meant, `cargo xtask counts --bless` and look at the difference";
+const MEND: &str = "if the change is meant, `cargo xtask counts --bless` and look at the difference";

@@ -23,10 +23,10 @@ use crate::airframe::Airframe;
 use crate::model::PairMap;
 use crate::proof::residual::Residual;
 use crate::tables::MixerTables;
-use cell::{Cell, Subject};
+use cell::{Subject, ThrottleCell};
 use expansion::Monomials;
 
-pub(crate) use correction::Correction;
+pub(crate) use correction::CorrectionBounds;
 pub(crate) use taylor::Taylor;
 
 /// What has been proven of one unit's inverse map.
@@ -92,7 +92,7 @@ pub(crate) fn prove(
     airframe: &Airframe,
     pair: &PairMap,
     tables: &MixerTables,
-    correction: &Correction,
+    correction: &CorrectionBounds,
     observed: &mut Residual,
     to_the_end: bool,
 ) -> Certificate {
@@ -103,7 +103,7 @@ pub(crate) fn prove(
         [0, 1].map(|k| (SHARP * observed.efforts[k]).min(tolerance[k] / correction.largest[k]))
     };
     let mut goal = aim(observed);
-    let whole = Cell::grid([airframe.throttle.min, airframe.throttle.max], START);
+    let whole = ThrottleCell::grid([airframe.throttle.min, airframe.throttle.max], START);
     let mut cells = whole.len();
     let mut open: BinaryHeap<Open> = whole
         .into_iter()
@@ -163,10 +163,12 @@ pub(crate) fn prove(
 /// How far the efforts that the runtime computes of its throttles may be from those of the file's
 /// map, and the efforts that the inverse is given from those that were asked: `[N, N m]` at the
 /// reference voltage.
-pub(crate) fn rounding(airframe: &Airframe, tables: &MixerTables, correction: &Correction) -> [f64; 2] {
+pub(crate) fn rounding(airframe: &Airframe, tables: &MixerTables, correction: &CorrectionBounds) -> [f64; 2] {
     let subject = Subject::new(airframe, tables, correction);
     let mut largest = [0.0f64; 2];
-    for Cell { centre, half } in Cell::grid([airframe.throttle.min, airframe.throttle.max], START) {
+    for ThrottleCell { centre, half } in
+        ThrottleCell::grid([airframe.throttle.min, airframe.throttle.max], START)
+    {
         let at = [0, 1].map(|k: usize| Taylor::coordinate(centre[k], half[k], k == 1));
         for (k, efforts) in tables.pair.efforts(at).into_iter().enumerate() {
             let asked = efforts.magnitude() * subject.input[k];
@@ -178,7 +180,7 @@ pub(crate) fn rounding(airframe: &Airframe, tables: &MixerTables, correction: &C
 
 /// A cell with its bound.
 struct Open {
-    cell: Cell,
+    cell: ThrottleCell,
     bound: [f64; 2],
     /// The larger bound in units of its goal.
     excess: f64,
@@ -186,7 +188,7 @@ struct Open {
 }
 
 impl Open {
-    fn new(subject: &Subject<'_>, cell: Cell, goal: [f64; 2]) -> Self {
+    fn new(subject: &Subject<'_>, cell: ThrottleCell, goal: [f64; 2]) -> Self {
         let open = Open {
             cell,
             bound: subject.residual(&cell),
@@ -232,7 +234,7 @@ impl PartialEq for Open {
 impl Eq for Open {}
 
 impl<'a> Subject<'a> {
-    fn new(airframe: &Airframe, tables: &'a MixerTables, correction: &Correction) -> Self {
+    fn new(airframe: &Airframe, tables: &'a MixerTables, correction: &CorrectionBounds) -> Self {
         let (pair, basis) = (&airframe.pair, airframe.pair.basis);
         let gap = |terms: &[f64], rounded: &[f32]| {
             let (mut value, mut derivative) = (0.0, 0.0);
@@ -262,9 +264,9 @@ impl<'a> Subject<'a> {
     }
 }
 
-impl Cell {
+impl ThrottleCell {
     /// `side` x `side` cells that cover the box.
-    fn grid([low, high]: [f64; 2], side: usize) -> Vec<Cell> {
+    fn grid([low, high]: [f64; 2], side: usize) -> Vec<ThrottleCell> {
         let edge = |k: usize| {
             if k == side {
                 high
@@ -280,7 +282,7 @@ impl Cell {
         (0..side * side)
             .map(|index| {
                 let ((u, half_u), (l, half_l)) = (span(index / side), span(index % side));
-                Cell {
+                ThrottleCell {
                     centre: [u, l],
                     half: [half_u, half_l],
                 }
@@ -289,7 +291,7 @@ impl Cell {
     }
 
     /// Two cells that cover this one, cut across the longer side.
-    fn halves(&self) -> [Cell; 2] {
+    fn halves(&self) -> [ThrottleCell; 2] {
         let axis = usize::from(self.half[1] > self.half[0]);
         let half = (0.5 * self.half[axis]).next_up();
         [-half, half].map(|offset| {

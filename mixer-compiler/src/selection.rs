@@ -16,7 +16,7 @@ use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage;
 use crate::proof::residual::Residual;
-use crate::proof::{self, Certificate, Correction};
+use crate::proof::{self, Certificate, CorrectionBounds};
 use crate::tables::{self, InverseTable, MixerTables, VoltageTable};
 
 /// An evaluator with its tables and what is known about them.
@@ -63,7 +63,7 @@ struct Judge<'a> {
     effectiveness: &'a Effectiveness,
     pair: &'a PairMap,
     polygon: &'a Polygon,
-    correction: Correction,
+    correction: CorrectionBounds,
 }
 
 impl Judge<'_> {
@@ -109,7 +109,7 @@ fn choose(
 ) -> Result<Selected, Best> {
     let pair = &PairMap::new(&airframe.pair, &airframe.throttle);
     let polygon = &Polygon::new(pair);
-    let correction = Correction::new(airframe, voltage);
+    let correction = CorrectionBounds::new(airframe, voltage);
     let tolerance = tolerance_at_reference(airframe, &correction);
     let judge = Judge {
         airframe,
@@ -157,7 +157,7 @@ fn choose(
 
 /// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage
 /// where efforts are largest.
-fn tolerance_at_reference(airframe: &Airframe, correction: &Correction) -> [f64; 2] {
+fn tolerance_at_reference(airframe: &Airframe, correction: &CorrectionBounds) -> [f64; 2] {
     let inverse = &airframe.inverse;
     let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
     std::array::from_fn(|k| stated[k] / correction.largest[k])
@@ -228,7 +228,7 @@ fn proven(
     effectiveness: &Effectiveness,
     pair: &PairMap,
     tables: &MixerTables,
-    correction: &Correction,
+    correction: &CorrectionBounds,
     certificate: &Certificate,
 ) -> Tolerance {
     // The mixer compares what it computes, not what is: a request that is delivered must not look

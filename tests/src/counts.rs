@@ -1,8 +1,8 @@
 //! What a mix costs on the target: instructions, counted one by one by the `counts` image of
 //! `tests/firmware`, and bytes of code, tables and stack.
 //!
-//! `tests/counts.csv` holds a [`Row`] per [`Subject`]. It is written by `cargo run -p mixer-tests
-//! --bin counts -- --bless` only, and begins with the compiler that built the firmware: another one
+//! `tests/counts.csv` holds a [`Row`] per [`Subject`]. It is written by `cargo xtask counts
+//! --bless` only, and begins with the compiler that built the firmware: another one
 //! gives other counts.
 
 use std::fmt;

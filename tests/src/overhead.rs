@@ -7,7 +7,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::cost::{Cost, Counted, Kind, Overhead};
+use mixer_compiler::cost::{Cost, Counted, DesaturationKind, Overhead};
 use nalgebra::{DMatrix, DVector};
 
 use crate::counts::Row;
@@ -20,7 +20,7 @@ pub struct Sample {
     /// As in [`Row::subject`].
     pub airframe: String,
     /// How it desaturates.
-    pub kind: Kind,
+    pub kind: DesaturationKind,
     /// Number of units.
     pub units: usize,
     /// All thrust axes are vertical: then least norm delivers most wrenches that random throttles
@@ -49,9 +49,9 @@ impl Sample {
     /// The quantities that there is a model of.
     pub fn quantities(&self) -> &'static [Quantity] {
         match self.kind {
-            Kind::ClosedForm => &[Quantity::Delivered, Quantity::Attainable],
-            Kind::General if self.vertical => &[Quantity::Delivered],
-            Kind::General => &[],
+            DesaturationKind::ClosedForm => &[Quantity::Delivered, Quantity::Attainable],
+            DesaturationKind::General if self.vertical => &[Quantity::Delivered],
+            DesaturationKind::General => &[],
         }
     }
 
@@ -82,9 +82,9 @@ impl Sample {
     fn factors(&self, quantity: Quantity) -> [f64; PARAMETERS] {
         let mut factors = [0.0; PARAMETERS];
         let overhead = match (self.kind, quantity) {
-            (Kind::ClosedForm, Quantity::Delivered) => CLOSED_FORM,
-            (Kind::ClosedForm, Quantity::Attainable) => CLOSED_FORM_MEAN,
-            (Kind::General, _) => GENERAL,
+            (DesaturationKind::ClosedForm, Quantity::Delivered) => CLOSED_FORM,
+            (DesaturationKind::ClosedForm, Quantity::Attainable) => CLOSED_FORM_MEAN,
+            (DesaturationKind::General, _) => GENERAL,
         };
         factors[overhead] = 1.0;
         factors[overhead + 1] = self.units as f64;
@@ -129,7 +129,7 @@ fn sample(compiled: &Compiled, row: &Row) -> Option<Sample> {
     let one = compiled.evaluator.instructions(compiled.airframe.pair.basis)?;
     Some(Sample {
         airframe: row.subject.airframe.clone(),
-        kind: Kind::of(compiled),
+        kind: DesaturationKind::of(compiled),
         units,
         vertical: compiled
             .airframe
@@ -184,7 +184,7 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
         closed_form_mean: overhead(CLOSED_FORM_MEAN),
         general: overhead(GENERAL),
     };
-    let error = |kinds: &[Kind], of: Quantity| {
+    let error = |kinds: &[DesaturationKind], of: Quantity| {
         let errors = known
             .iter()
             .filter(|(sample, quantity)| kinds.contains(&sample.kind) && *quantity == of)
@@ -193,9 +193,9 @@ pub fn fit(samples: &[Sample]) -> Result<Counted, String> {
         (1e3 * errors.fold(0.0, f64::max)).ceil() / 1e3
     };
     let errors = [
-        error(&[Kind::ClosedForm], Quantity::Delivered),
-        error(&[Kind::ClosedForm], Quantity::Attainable),
-        error(&[Kind::General], Quantity::Delivered),
+        error(&[DesaturationKind::ClosedForm], Quantity::Delivered),
+        error(&[DesaturationKind::ClosedForm], Quantity::Attainable),
+        error(&[DesaturationKind::General], Quantity::Delivered),
     ];
     counted.closed_form.error = errors[0];
     counted.closed_form_mean.error = errors[1];

@@ -15,7 +15,7 @@ use crate::inverse::fit::Inversion;
 use crate::model::PairMap;
 use crate::output::cost;
 use crate::proof::residual::Residual;
-use crate::proof::{self, Correction};
+use crate::proof::{self, CorrectionBounds};
 use crate::tables::{InverseTable, MixerTables};
 
 /// One evaluator as it would be emitted.
@@ -58,7 +58,7 @@ impl Compiled {
     /// All evaluators that `method = "auto"` tries, in its order: by cost.
     pub fn front(&self) -> Vec<Alternative> {
         let pair = PairMap::new(&self.airframe.pair, &self.airframe.throttle);
-        let correction = Correction::new(&self.airframe, self.tables.voltage.as_ref());
+        let correction = CorrectionBounds::new(&self.airframe, self.tables.voltage.as_ref());
         let basis = self.airframe.pair.basis;
         let inverse = &self.airframe.inverse;
         let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! instructions, the median over attainable requests. The overheads are fitted to whole mixers,
-//! counted request by request in QEMU, apart for the [`Kind`]s of mixers; for those in closed form
+//! counted request by request in QEMU, apart for the [`DesaturationKind`]s of mixers; for those in closed form
 //! the mean over attainable requests is modelled likewise. Any other request costs at most what the
 //! code does at most (`cost/bound.rs`).
 
@@ -31,27 +31,27 @@ pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
 /// How a mixer brings a request within the attainable set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum DesaturationKind {
     /// ClosedForm axes and little freedom: a few cases, each solved at once.
     ClosedForm,
     /// Any other layout: a dual simplex method of bounded work.
     General,
 }
 
-impl Kind {
+impl DesaturationKind {
     /// The kind of a compiled airframe.
-    pub fn of(compiled: &Compiled) -> Kind {
+    pub fn of(compiled: &Compiled) -> DesaturationKind {
         match &compiled.tables.closed_form {
-            Some(_) => Kind::ClosedForm,
-            None => Kind::General,
+            Some(_) => DesaturationKind::ClosedForm,
+            None => DesaturationKind::General,
         }
     }
 
     /// For people, after "desaturates".
     pub fn description(self) -> &'static str {
         match self {
-            Kind::ClosedForm => "in closed form",
-            Kind::General => "by a bounded simplex method",
+            DesaturationKind::ClosedForm => "in closed form",
+            DesaturationKind::General => "by a bounded simplex method",
         }
     }
 }
@@ -83,16 +83,16 @@ pub struct Overhead {
 
 impl Counted {
     /// The overhead of requests that least norm delivers.
-    pub fn delivered(&self, kind: Kind) -> Overhead {
+    pub fn delivered(&self, kind: DesaturationKind) -> Overhead {
         match kind {
-            Kind::ClosedForm => self.closed_form,
-            Kind::General => self.general,
+            DesaturationKind::ClosedForm => self.closed_form,
+            DesaturationKind::General => self.general,
         }
     }
 
     /// The overhead of the mean over attainable requests, where there is a model of it.
-    pub fn attainable(&self, kind: Kind) -> Option<Overhead> {
-        (kind == Kind::ClosedForm).then_some(self.closed_form_mean)
+    pub fn attainable(&self, kind: DesaturationKind) -> Option<Overhead> {
+        (kind == DesaturationKind::ClosedForm).then_some(self.closed_form_mean)
     }
 
     /// Instructions of a mix with as many `units`, whose evaluator takes `one` instructions for
@@ -126,7 +126,7 @@ pub struct Cost {
     /// Largest error of this estimate over counted frames, as a share.
     pub attainable_error: Option<f64>,
     /// How the mixer desaturates.
-    pub desaturation: Kind,
+    pub desaturation: DesaturationKind,
     /// The most that any request takes, by what the code does at most; `None` where no bound is
     /// stated.
     pub bound_instructions: Option<u32>,
@@ -141,7 +141,7 @@ impl Cost {
     pub fn new(compiled: &Compiled) -> Self {
         let basis = compiled.airframe.pair.basis;
         let units = compiled.airframe.units.len();
-        let kind = Kind::of(compiled);
+        let kind = DesaturationKind::of(compiled);
         let bound_instructions = bound::bound(compiled);
         let all = |one: Option<u32>| one.map(|one| one * units as u32);
         let inverse_instructions = compiled.evaluator.instructions(basis);
@@ -169,7 +169,11 @@ impl Cost {
 /// Instructions of a mix that delivers the request by least norm, were the inverse map evaluated by
 /// `evaluator`.
 pub fn delivered(compiled: &Compiled, evaluator: Evaluator) -> Option<u32> {
-    mix(compiled, evaluator, COUNTED.delivered(Kind::of(compiled)))
+    mix(
+        compiled,
+        evaluator,
+        COUNTED.delivered(DesaturationKind::of(compiled)),
+    )
 }
 
 fn mix(compiled: &Compiled, evaluator: Evaluator, overhead: Overhead) -> Option<u32> {

@@ -74,15 +74,15 @@ pub struct Summary {
 #[derive(Clone, Debug, Serialize)]
 pub struct RotorOut {
     /// The upper rotor turns.
-    pub lower_out: RotorAlone,
+    pub lower_out: RotorAloneSource,
     /// The lower rotor turns.
-    pub upper_out: RotorAlone,
+    pub upper_out: RotorAloneSource,
 }
 
 /// Where that comes from.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "snake_case", tag = "by")]
-pub enum RotorAlone {
+pub enum RotorAloneSource {
     /// The file's `[pair.lower_out]` or `[pair.upper_out]`.
     Declared,
     /// The pair's polynomials at a throttle of zero of the rotor that is out.
@@ -92,19 +92,19 @@ pub enum RotorAlone {
     },
 }
 
-impl RotorAlone {
+impl RotorAloneSource {
     fn new(is_declared: bool, idle: f64) -> Self {
         if is_declared {
-            RotorAlone::Declared
+            RotorAloneSource::Declared
         } else {
-            RotorAlone::Extrapolated { from_throttle: idle }
+            RotorAloneSource::Extrapolated { from_throttle: idle }
         }
     }
 
     fn in_words(&self) -> String {
         match self {
-            RotorAlone::Declared => "as declared in the file".to_owned(),
-            RotorAlone::Extrapolated { from_throttle } => {
+            RotorAloneSource::Declared => "as declared in the file".to_owned(),
+            RotorAloneSource::Extrapolated { from_throttle } => {
                 format!("by the pair's polynomials, extrapolated from {from_throttle:?} to 0")
             }
         }
@@ -169,8 +169,8 @@ impl Summary {
             power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n,
             power: LevelPower::new(compiled),
             rotor_out: RotorOut {
-                lower_out: RotorAlone::new(airframe.pair.lower_out.is_some(), airframe.throttle.min),
-                upper_out: RotorAlone::new(airframe.pair.upper_out.is_some(), airframe.throttle.min),
+                lower_out: RotorAloneSource::new(airframe.pair.lower_out.is_some(), airframe.throttle.min),
+                upper_out: RotorAloneSource::new(airframe.pair.upper_out.is_some(), airframe.throttle.min),
             },
             cost: Cost::new(compiled),
         }
@@ -336,7 +336,7 @@ impl Report<'_> {
         let [floor, ceiling] = summary.thrust_range_n;
         writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;
         let [lower, upper] =
-            [&summary.rotor_out.lower_out, &summary.rotor_out.upper_out].map(RotorAlone::in_words);
+            [&summary.rotor_out.lower_out, &summary.rotor_out.upper_out].map(RotorAloneSource::in_words);
         if lower == upper {
             writeln!(f, "rotor out       the other one {lower}")?;
         } else {

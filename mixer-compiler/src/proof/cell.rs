@@ -36,7 +36,7 @@ pub(super) struct Subject<'a> {
 
 /// A box of throttles.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cell {
+pub(super) struct ThrottleCell {
     pub(super) centre: [f64; 2],
     pub(super) half: [f64; 2],
 }
@@ -48,7 +48,7 @@ type Deviation = [Taylor; 2];
 #[derive(Clone, Copy)]
 struct Local<'a> {
     subject: &'a Subject<'a>,
-    cell: Cell,
+    cell: ThrottleCell,
     expansions: [Expansion; 2],
     truth: [Taylor; 2],
     efforts: [Taylor; 2],
@@ -72,7 +72,7 @@ struct Step {
 
 impl Subject<'_> {
     /// Bounds of |R| over the cell, `[N, N m]`; infinite where the cell is too large to tell.
-    pub(super) fn residual(&self, cell: &Cell) -> [f64; 2] {
+    pub(super) fn residual(&self, cell: &ThrottleCell) -> [f64; 2] {
         let local = Local::new(self, cell);
         let guess = self.inverse.guess(local.efforts);
         let deviation: Deviation = [0, 1].map(|k| guess[k].computed().plus(&-local.truth[k]));
@@ -93,7 +93,7 @@ impl Subject<'_> {
 }
 
 impl<'a> Local<'a> {
-    fn new(subject: &'a Subject<'a>, cell: &Cell) -> Self {
+    fn new(subject: &'a Subject<'a>, cell: &ThrottleCell) -> Self {
         let expansions = [0, 1].map(|k| Expansion::new(&subject.monomials[k], cell.centre, cell.half));
         let efforts = [0, 1].map(|k| {
             let value: Taylor = expansions[k].value();

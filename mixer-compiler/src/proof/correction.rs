@@ -12,7 +12,7 @@ use crate::tables::{LawTable, VoltageTable};
 
 /// Bounds over the voltage range, of thrust and of torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Correction {
+pub(crate) struct CorrectionBounds {
     /// Relative error of the efforts that the inverse is given.
     pub input: [f64; 2],
     /// Largest correction factor.
@@ -25,12 +25,12 @@ const UNIT: f64 = 1.0 / 16_777_216.0;
 /// Pieces of the range, or of a line between two points.
 const PIECES: usize = 24;
 
-impl Correction {
+impl CorrectionBounds {
     /// Of an airframe with its tabulated correction.
     pub(crate) fn new(airframe: &Airframe, table: Option<&VoltageTable>) -> Self {
         let (Some(voltage), Some(table)) = (&airframe.voltage, table) else {
             // The request is rounded, and times 1 / 1.
-            return Correction {
+            return CorrectionBounds {
                 input: [UNIT; 2],
                 largest: [1.0; 2],
             };
@@ -47,7 +47,7 @@ impl Correction {
             }),
             LawTable::Points(points) => between_points(laws[k], points, range),
         });
-        Correction {
+        CorrectionBounds {
             // The request, the reciprocal of k and the product are rounded.
             input: bounds.map(|bound| {
                 let table = bound.error / (1.0 - bound.error);

@@ -18,7 +18,7 @@ fn compiled(text: String) -> crate::compiled::Compiled {
 
 fn prove_again(compiled: &crate::compiled::Compiled, tables: &MixerTables) -> Certificate {
     let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
-    let correction = Correction::new(&compiled.airframe, tables.voltage.as_ref());
+    let correction = CorrectionBounds::new(&compiled.airframe, tables.voltage.as_ref());
     let mut observed = compiled.residual;
     prove(
         &compiled.airframe,

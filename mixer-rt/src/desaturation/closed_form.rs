@@ -153,7 +153,7 @@ pub(crate) enum Attained {
 
 /// What is kept of a unit while its efforts are being found.
 #[derive(Clone, Copy, Default)]
-struct Search {
+struct ThrustLine {
     /// A straight way of thrusts: where it starts, N, ..
     from: f32,
     /// .. and where to, N per unit of the way.
@@ -163,7 +163,7 @@ struct Search {
     most: f32,
 }
 
-impl Search {
+impl ThrustLine {
     /// The thrust at `z` along the way, N.
     #[inline(always)]
     fn thrust(&self, z: f32) -> f32 {
@@ -219,12 +219,12 @@ impl ClosedForm<'_> {
     #[inline(never)]
     pub(crate) fn desaturate(&self, airmode: Airmode, request: &Request, efforts: &mut Efforts) {
         // So that nothing is known about how often the loops run: see `rolled`.
-        let mut search = [Search::default(); MOST_UNITS];
-        let search = search.get_mut(..self.units.len()).unwrap_or_default();
-        let (vertical, efforts, search) = black_box((self, efforts.as_mut_slice(), search));
-        let limits = vertical.thrust_limits(airmode, request.thrust);
-        let found = vertical.attainable_thrusts(request, limits, search);
-        vertical.torques(search, efforts, request.yaw, found);
+        let mut lines = [ThrustLine::default(); MOST_UNITS];
+        let lines = lines.get_mut(..self.units.len()).unwrap_or_default();
+        let (closed_form, efforts, lines) = black_box((self, efforts.as_mut_slice(), lines));
+        let limits = closed_form.thrust_limits(airmode, request.thrust);
+        let found = closed_form.attainable_thrusts(request, limits, lines);
+        closed_form.torques(lines, efforts, request.yaw, found);
     }
 
     /// The most thrust that may be given, and a thrust well inside below it, N.

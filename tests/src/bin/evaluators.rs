@@ -1,6 +1,6 @@
 //! Prints what every evaluator of the inverse map costs on a Cortex-M4F, per unit, as
-//! `mixer-compiler/src/inverse/evaluator/cost.rs` states it: `cargo run --release -p mixer-tests
-//! --bin evaluators`.
+//! `mixer-compiler/src/inverse/evaluator/cost.rs` states it: `cargo xtask
+//! evaluators`.
 
 use std::process::ExitCode;
 

@@ -7,7 +7,7 @@ use crate::airframe::Basis;
 /// biquadratic, a cubic and a quartic pair. Counted in QEMU by
 ///
 /// ```sh
-/// cargo run --release -p mixer-tests --bin evaluators
+/// cargo xtask evaluators
 /// ```
 ///
 /// which prints these lines; the firmware test fails where they are no longer true.

@@ -9,7 +9,7 @@
 //! The coarse one tells at which thrusts yaw reaches furthest: each side's concave hull in a few
 //! straight lines, of which only the slopes matter.
 
-use super::{ClosedForm, Search};
+use super::{ClosedForm, ThrustLine};
 
 /// Middle and half the width of the attainable torques at the thrusts of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,13 +92,13 @@ impl Border<'_> {
 impl ClosedForm<'_> {
     /// Least and most yaw at `z` along the units' way; leaves those of each unit.
     #[inline(never)]
-    pub(super) fn reach(&self, search: &mut [Search], z: f32) -> [f32; 2] {
+    pub(super) fn reach(&self, lines: &mut [ThrustLine], z: f32) -> [f32; 2] {
         let mut reach = [0.0, 0.0];
-        for (unit, state) in self.units.iter().zip(search) {
-            let [middle, half] = self.border.torques(state.thrust(z));
+        for (unit, line) in self.units.iter().zip(lines) {
+            let [middle, half] = self.border.torques(line.thrust(z));
             let middle = unit.spin * middle;
-            (state.least, state.most) = (middle - half, middle + half);
-            reach = [reach[0] + state.least, reach[1] + state.most];
+            (line.least, line.most) = (middle - half, middle + half);
+            reach = [reach[0] + line.least, reach[1] + line.most];
         }
         reach
     }

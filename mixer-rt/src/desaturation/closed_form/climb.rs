@@ -6,7 +6,7 @@
 //! between them are constants, so the end does not jump; where Y is level, z stays at the nearest
 //! point that is best.
 
-use super::{Border, ClosedForm, MOST_UNITS, Outline, Search};
+use super::{Border, ClosedForm, MOST_UNITS, Outline, ThrustLine};
 use crate::rolled;
 
 /// The knots of one unit's side that are ahead.
@@ -56,7 +56,7 @@ impl ClosedForm<'_> {
     /// z within `[low, high]` where yaw of the sign `sign` reaches furthest by the coarse sides,
     /// seen from `start`.
     #[inline(never)]
-    pub(super) fn top(&self, search: &[Search], sign: f32, start: f32, [low, high]: [f32; 2]) -> f32 {
+    pub(super) fn top(&self, lines: &[ThrustLine], sign: f32, start: f32, [low, high]: [f32; 2]) -> f32 {
         let none = Ahead {
             outline: &self.border.outlines[0],
             next: f32::MAX,
@@ -69,10 +69,10 @@ impl ClosedForm<'_> {
         };
         let mut ahead = [none; MOST_UNITS];
         let mut growth = 0.0;
-        for ((unit, state), ahead) in self.units.iter().zip(search).zip(&mut ahead) {
+        for ((unit, line), ahead) in self.units.iter().zip(lines).zip(&mut ahead) {
             rolled();
             ahead.outline = self.border.outline(sign * unit.spin);
-            ahead.start = state.thrust(start);
+            ahead.start = line.thrust(start);
             let mut slope = ahead.outline.slope;
             for knot in &ahead.outline.knots {
                 rolled();

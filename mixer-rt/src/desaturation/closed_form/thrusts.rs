@@ -5,7 +5,7 @@
 //! of the request, which they would not be if z were moved just far enough. Y is nearly concave:
 //! where that part is not enough, two more steps mend it.
 
-use super::{ClosedForm, ClosedFormUnit, Request, Search};
+use super::{ClosedForm, ClosedFormUnit, Request, ThrustLine};
 use crate::{clamp, rolled};
 use core::hint::black_box;
 
@@ -45,11 +45,11 @@ impl ClosedForm<'_> {
         &self,
         request: &Request,
         [ceiling, middle]: [f32; 2],
-        search: &mut [Search],
+        lines: &mut [ThrustLine],
     ) -> (f32, [f32; 2]) {
-        let ([low, high], has_room) = self.within_facets(request, ceiling, search);
+        let ([low, high], has_room) = self.within_facets(request, ceiling, lines);
         let mut z = clamp(0.0, low, if high > low { high } else { low });
-        let mut reach = self.reach(search, z);
+        let mut reach = self.reach(lines, z);
         // The limit of yaw that the request violates, if any.
         let sign = if request.yaw > reach[1] {
             1.0
@@ -60,12 +60,12 @@ impl ClosedForm<'_> {
         };
         let wanted = sign * request.yaw;
         if has_room && high > low {
-            (z, reach) = self.climb(search, sign, (z, reach), [low, high], wanted);
+            (z, reach) = self.climb(lines, sign, (z, reach), [low, high], wanted);
         }
         // Beyond zero yaw is reversed, beyond the request it is exceeded.
         let needed = if wanted < 0.0 { wanted } else { 0.0 };
         if needed - furthest(reach, sign) > self.yaw_rounding_nm {
-            (z, reach) = self.retreat(search, sign, (z, reach), needed, middle);
+            (z, reach) = self.retreat(lines, sign, (z, reach), needed, middle);
         }
         (z, reach)
     }
@@ -76,17 +76,17 @@ impl ClosedForm<'_> {
     #[inline(always)]
     fn climb(
         &self,
-        search: &mut [Search],
+        lines: &mut [ThrustLine],
         sign: f32,
         (mut z, mut reach): (f32, [f32; 2]),
         range: [f32; 2],
         wanted: f32,
     ) -> (f32, [f32; 2]) {
-        let top = self.top(search, sign, z, range);
+        let top = self.top(lines, sign, z, range);
         if top == z {
             return (z, reach);
         }
-        let at_top = self.reach(search, top);
+        let at_top = self.reach(lines, top);
         let most = furthest(at_top, sign);
         let whole = GAIN * self.yaw_rounding_nm;
         if most <= wanted && most - furthest(reach, sign) >= whole {
@@ -104,7 +104,7 @@ impl ClosedForm<'_> {
             part = if part < 1.0 { part } else { 1.0 };
             part *= if gain < whole { gain / whole } else { 1.0 };
             z += part * (top - z);
-            reach = self.reach(search, z);
+            reach = self.reach(lines, z);
             let here = furthest(reach, sign);
             if here >= wanted || here >= most {
                 break;
@@ -118,23 +118,23 @@ impl ClosedForm<'_> {
     /// where the facets allow them; false where that changes them, so that z has no room. Leaves
     /// the units' way, z.
     #[inline(always)]
-    fn within_facets(&self, request: &Request, ceiling: f32, search: &mut [Search]) -> ([f32; 2], bool) {
+    fn within_facets(&self, request: &Request, ceiling: f32, lines: &mut [ThrustLine]) -> ([f32; 2], bool) {
         let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
         let thrust = clamp(request.thrust, low, high);
         let wrench = [share * request.roll, share * request.pitch, thrust];
         let has_room = share == 1.0 && thrust == request.thrust;
-        (self.null_range(search, &wrench), has_room)
+        (self.null_range(lines, &wrench), has_room)
     }
 
     /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way.
     /// Returns z's range: from more to less where rounding leaves none.
     #[inline(always)]
-    fn null_range(&self, search: &mut [Search], wrench: &[f32; 3]) -> [f32; 2] {
+    fn null_range(&self, lines: &mut [ThrustLine], wrench: &[f32; 3]) -> [f32; 2] {
         let (mut low, mut high) = (-f32::MAX, f32::MAX);
-        for (unit, state) in self.units.iter().zip(search) {
+        for (unit, line) in self.units.iter().zip(lines) {
             rolled();
             let f = unit.thrust(wrench);
-            (state.from, state.along) = (f, unit.null);
+            (line.from, line.along) = (f, unit.null);
             if unit.per_null != 0.0 {
                 let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
                 low = if from > low { from } else { low };
@@ -158,24 +158,24 @@ impl ClosedForm<'_> {
     #[inline(never)]
     fn retreat(
         &self,
-        search: &mut [Search],
+        lines: &mut [ThrustLine],
         sign: f32,
         (z, mut reach): (f32, [f32; 2]),
         needed: f32,
         middle_n: f32,
     ) -> (f32, [f32; 2]) {
-        for (unit, state) in self.units.iter().zip(search.iter_mut()) {
+        for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
             rolled();
-            let thrust = state.thrust(z);
-            state.from = unit.allocation[2] * middle_n;
-            state.along = thrust - state.from;
+            let thrust = line.thrust(z);
+            line.from = unit.allocation[2] * middle_n;
+            line.along = thrust - line.from;
         }
         let outside = furthest(reach, sign) - needed;
-        let inside = furthest(self.reach(search, 0.0), sign) - needed;
+        let inside = furthest(self.reach(lines, 0.0), sign) - needed;
         let inside = if inside > 0.0 { inside } else { 0.0 };
         let mut at = inside / (inside - outside);
         for step in 0..black_box(RETREATS) {
-            reach = self.reach(search, at);
+            reach = self.reach(lines, at);
             let here = furthest(reach, sign) - needed;
             if here < 0.0 {
                 at *= clamp(1.0 + 2.0 * here / (inside - here), 0.0, 1.0);
@@ -185,6 +185,6 @@ impl ClosedForm<'_> {
                 return (at, reach);
             }
         }
-        (at, self.reach(search, at))
+        (at, self.reach(lines, at))
     }
 }

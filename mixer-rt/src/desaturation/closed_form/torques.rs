@@ -3,7 +3,7 @@
 //!
 //! All as yaw, p_i = s_i Q_i: the least-norm p_i are alike, yaw / n.
 
-use super::{ClosedForm, Effort, Search};
+use super::{ClosedForm, Effort, ThrustLine};
 use crate::clamp;
 use crate::rolled;
 
@@ -13,7 +13,7 @@ impl ClosedForm<'_> {
     #[inline(always)]
     pub(super) fn torques(
         &self,
-        search: &[Search],
+        lines: &[ThrustLine],
         efforts: &mut [Effort],
         yaw: f32,
         (z, reach): (f32, [f32; 2]),
@@ -21,20 +21,20 @@ impl ClosedForm<'_> {
         let yaw = clamp(yaw, reach[0], reach[1]);
         let share = self.torque_share * yaw;
         let mut given = 0.0;
-        for (effort, state) in efforts.iter_mut().zip(search) {
+        for (effort, line) in efforts.iter_mut().zip(lines) {
             rolled();
-            effort.torque = clamp(share, state.least, state.most);
+            effort.torque = clamp(share, line.least, line.most);
             given += effort.torque;
         }
         let missing = yaw - given;
         let end = if missing < 0.0 { reach[0] } else { reach[1] };
         // Zero where there is no room.
         let part = clamp(missing / (end - given), 0.0, 1.0);
-        for ((unit, effort), state) in self.units.iter().zip(efforts).zip(search) {
+        for ((unit, effort), line) in self.units.iter().zip(efforts).zip(lines) {
             rolled();
             let p = effort.torque;
-            let end = if missing < 0.0 { state.least } else { state.most };
-            effort.thrust = state.thrust(z);
+            let end = if missing < 0.0 { line.least } else { line.most };
+            effort.thrust = line.thrust(z);
             effort.torque = unit.spin * (p + part * (end - p));
         }
     }

@@ -28,7 +28,7 @@ use core::hint::black_box;
 
 use super::breakpoint::{Breakpoint, FirstTwo, ROW};
 use super::shortage::{TORQUE_PRICES, ThrustPrice};
-use super::variable::{NEVER, Place, Variable, corner, dot, next, set};
+use super::variable::{NEVER, Position, Variable, corner, dot, next, set};
 use crate::desaturation::Airmode;
 use crate::desaturation::attainable::Corner;
 use crate::pair::rotors::Rotors;
@@ -133,7 +133,7 @@ impl<'a> Simplex<'a> {
             rolled();
             let worth = variable.transposed(&multipliers);
             variable.gain = [0, 1].map(|k| variable.gain[k] + worth[k]);
-            (variable.rate, variable.place, variable.is_forward) = ([0.0; 2], Place::Corner, true);
+            (variable.rate, variable.position, variable.is_forward) = ([0.0; 2], Position::Corner, true);
             let set = set(corners, variable.rotors);
             variable.choose_corner(set);
             variable.subtract(corner(set, variable.corner).at, &mut residual);
@@ -254,7 +254,7 @@ impl<'a> Simplex<'a> {
             self.turn(slot, second, [e0 * per_square, e1 * per_square]);
             self.slots[slot].holds = Holds::Edge;
             if let Some((unit, _, residual)) = self.parts(variable) {
-                (unit.place, unit.corner) = (Place::Edge, leaving.edge);
+                (unit.position, unit.corner) = (Position::Edge, leaving.edge);
                 (unit.gain, unit.rate) = ([0.0; 2], [0.0; 2]);
                 unit.subtract(corner.at, residual);
             }
@@ -263,7 +263,7 @@ impl<'a> Simplex<'a> {
         if holds == Holds::Edge
             && let Some((variable, set, residual)) = self.parts(variable)
         {
-            variable.place = Place::Corner;
+            variable.position = Position::Corner;
             if variable.rotors != Rotors::Both {
                 (variable.gain[0], variable.rate[0]) = (0.0, 0.0);
             }
@@ -314,7 +314,7 @@ impl<'a> Simplex<'a> {
             };
             let (_, way) = variable.way(set);
             violation -= (way[0] * variable.rate[0] + way[1] * variable.rate[1]).abs();
-            if variable.place == Place::Edge || violation <= 0.0 {
+            if variable.position == Position::Edge || violation <= 0.0 {
                 return entering;
             }
             variable.subtract_inline(way, residual);
@@ -338,15 +338,15 @@ impl<'a> Simplex<'a> {
         self.step = step;
         if let Some((variable, set, residual)) = self.parts(entering) {
             let mut way;
-            is_freed = variable.place == Place::Edge;
+            is_freed = variable.position == Position::Edge;
             if is_freed {
                 let [e0, e1] = corner(set, variable.corner).edge;
                 way = [-e1, e0];
             } else {
                 (variable.corner, way) = variable.way(set);
-                variable.place = match variable.rotors {
-                    Rotors::Both => Place::Edge,
-                    _ => Place::Free,
+                variable.position = match variable.rotors {
+                    Rotors::Both => Position::Edge,
+                    _ => Position::Free,
                 };
                 if variable.is_forward {
                     way = way.map(|part| -part);
@@ -432,7 +432,7 @@ impl<'a> Simplex<'a> {
             return;
         };
         let corner = corner(set, unit.corner);
-        unit.place = Place::Free;
+        unit.position = Position::Free;
         unit.subtract(corner.at.map(|part| -part), residual);
         self.turn(along, slot, corner.edge);
         self.slots[along].holds = Holds::First;

@@ -48,7 +48,7 @@ const ORIGIN: [Corner; 1] = [Corner {
 
 /// Where in its set a variable is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum Position {
     /// At a corner: no slot of the basis.
     Corner,
     /// On the edge that leaves its corner: one slot. A unit with both rotors only.
@@ -72,7 +72,7 @@ pub struct Variable {
     pub(crate) at: [f32; 2],
     /// The dual step at which the variable leaves its corner or its edge.
     pub(super) breakpoint: f32,
-    pub(super) place: Place,
+    pub(super) position: Position,
     /// Index of its corner.
     pub(super) corner: u8,
     /// True where it leaves its corner along the corner's own edge, false along the edge before it.
@@ -92,7 +92,7 @@ impl Default for Variable {
             rate: [zero; 2],
             at: [zero; 2],
             breakpoint: zero,
-            place: Place::Corner,
+            position: Position::Corner,
             corner: 0,
             is_forward: false,
             rotors: Rotors::Upper,
@@ -219,7 +219,7 @@ impl Variable {
     #[inline(always)]
     pub(super) fn look_ahead(&mut self, corners: &[Corner], last_step: f32, direction: &[f32; 4]) {
         let mut breakpoint = NEVER;
-        if self.place != Place::Free {
+        if self.position != Position::Free {
             let rate = dot(&self.columns[0], direction);
             let gain = self.gain[0] + last_step * self.rate[0];
             (self.gain[0], self.rate[0]) = (gain, rate);
@@ -228,7 +228,7 @@ impl Variable {
                 let gain = [gain, self.gain[1] + last_step * self.rate[1]];
                 (self.gain[1], self.rate[1]) = (gain[1], rate[1]);
                 let corner = corner(corners, self.corner);
-                if self.place == Place::Edge {
+                if self.position == Position::Edge {
                     let slope = -corner.outward(rate);
                     if slope > LEAST_SLOPE_OF_EDGE {
                         breakpoint = corner.outward(gain) / slope;
