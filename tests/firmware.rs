@@ -290,7 +290,7 @@ fn random_setpoints_have_the_same_bits_as_on_the_host() {
 }
 
 /// How far a count may be from the held one where another compiler builds the firmware. A search
-/// for the dearest request takes other ways there.
+/// for the most expensive request takes another path there.
 const OTHER_COMPILER: f64 = 0.03;
 const OTHER_COMPILER_SEARCHED: f64 = 0.15;
 

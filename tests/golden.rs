@@ -80,7 +80,7 @@ fn golden_vectors_cover_what_they_should() {
                     assert!(helped >= expected, "{name} {kind:?}: {helped}");
                 }
                 // Those outside are a third; of two steps inside, the lesser may be within what a
-                // mixer leaves out.
+                // polygon loses.
                 Kind::Border => assert!(
                     (list.len() / 3..=2 * list.len() / 3).contains(&saturated),
                     "{name} {kind:?}: {saturated}"

@@ -10,7 +10,7 @@ use libfuzzer_sys::fuzz_target;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::{Health, Wrench};
 
-/// ClosedForm axes with and without a shorter way, tilted axes, one to six units, all bases, with
+/// Vertical axes with and without a closed form, tilted axes, one to six units, all bases, with
 /// and without voltage.
 const TEXTS: [&str; 8] = [
     include_str!("../../airframes/coaxial-bicopter.toml"),

@@ -31,9 +31,9 @@ pub struct Compiled {
     pub thrust_range_n: [f32; 2],
     /// What it is proven to miss at most.
     pub certificate: Certificate,
-    /// What the polygon inside the attainable set leaves out.
+    /// Share of the attainable set's area that the polygon of the general path loses.
     pub lost_area: AreaLoss,
-    /// What the sides leave out that desaturation in closed form reads instead; `None` without it.
+    /// Share of it that the sides of the closed form lose; `None` without a closed form.
     pub lost_between_sides: Option<f64>,
     /// What is emitted.
     pub tables: MixerTables,

@@ -26,7 +26,7 @@ pub(crate) struct Selected {
     pub(crate) evaluator: Evaluator,
     /// The tables; a closed form of desaturation is left open.
     pub(crate) tables: MixerTables,
-    /// What the polygon leaves out.
+    /// Share of the attainable set's area that the polygon loses.
     pub(crate) lost_area: AreaLoss,
     /// What was observed.
     pub(crate) residual: Residual,

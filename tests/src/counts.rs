@@ -2,8 +2,8 @@
 //! `tests/firmware`, and bytes of code, tables and stack.
 //!
 //! `tests/counts.csv` holds a [`Row`] per [`Subject`]. It is written by `cargo xtask counts
-//! --bless` only, and begins with the compiler that built the firmware: another one
-//! gives other counts.
+//! --bless` only, and begins with the compiler that built the firmware: another one gives other
+//! counts.
 
 use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -96,7 +96,7 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
 }
 
 /// What one subject costs. Instructions of all requests of a set (`_sum`), of its middle
-/// one (`_median`) and of its dearest (`_worst`), bytes.
+/// one (`_median`) and of its most expensive (`_worst`), bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Whose cost.
@@ -106,7 +106,8 @@ pub struct Row {
 }
 
 /// Names of a [`Row`]'s values. `attainable` and `saturated` are sets of as many `requests` each,
-/// drawn by `mixer_setpoints::Requests`; `searched` is what a search for the dearest request found.
+/// drawn by `mixer_setpoints::Requests`; `searched` is what a search for the most expensive request
+/// found.
 pub const COLUMNS: [&str; 10] = [
     "code_b",
     "tables_b",

@@ -24,8 +24,8 @@ const YAW_ROUNDING: f64 = 1e-5;
 /// part in it.
 const NO_PART: f64 = 1e-5;
 
-/// The table, where the layout and the priorities allow a closed form, and the share of a unit's
-/// attainable set that its border leaves out.
+/// The table, where the layout and the priorities allow a closed form, and the share of the area of
+/// a unit's attainable set that its border loses.
 pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Option<(ClosedFormTable, f64)> {
     let n = airframe.units.len();
     let allocation = &airframe.allocation;

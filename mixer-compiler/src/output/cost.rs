@@ -9,7 +9,7 @@
 //! ```
 //!
 //! instructions, the median over attainable requests. The overheads are fitted to whole mixers,
-//! counted request by request in QEMU, apart for the [`DesaturationKind`]s of mixers; for those in closed form
+//! counted request by request in QEMU, apart for each [`DesaturationKind`]. For those in closed form
 //! the mean over attainable requests is modelled likewise. Any other request costs at most what the
 //! code does at most (`cost/bound.rs`).
 
@@ -32,7 +32,7 @@ pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DesaturationKind {
-    /// ClosedForm axes and little freedom: a few cases, each solved at once.
+    /// Vertical axes and up to four units: a few cases, each solved at once.
     ClosedForm,
     /// Any other layout: a dual simplex method of bounded work.
     General,

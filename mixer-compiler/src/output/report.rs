@@ -47,13 +47,12 @@ pub struct Summary {
     pub condition: f64,
     /// Served axes.
     pub axes: Vec<&'static str>,
-    /// Share of the attainable set's area that the mixer's polygon inside it leaves out, what its
-    /// inward bends cost included.
+    /// Share of the attainable set's area that the polygon of the general path loses, its inward
+    /// bends included.
     pub attainable_area_lost: f64,
-    /// What the inward bends cost alone, of any convex polygon.
+    /// Share that any convex polygon loses to the inward bends.
     pub attainable_area_lost_to_convexity: f64,
-    /// Share of it that the sides leave out which the mixer reads instead where it desaturates in
-    /// closed form.
+    /// Share of that area that the sides of the closed form lose; `None` without a closed form.
     pub attainable_area_lost_in_closed_form: Option<f64>,
     /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque,
     /// N.

@@ -17,7 +17,7 @@ const APART: f64 = 0.01;
 /// Cost of the shape constraint in torque, as a share of the greatest torque.
 const COSTLY: f64 = 0.05;
 
-/// What the measured range leaves out.
+/// Throttles below and above those that were measured.
 pub(super) fn coverage(throttle: ThrottleBox, warnings: &mut Vec<String>) {
     if throttle.max < FULL {
         warnings.push(format!(

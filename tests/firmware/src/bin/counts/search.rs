@@ -6,7 +6,7 @@ use crate::measurement::{Request, Tally, requests};
 
 /// Requests of a set at most.
 const SET: usize = 4_000;
-/// Dearest requests that the search varies.
+/// Most expensive requests that the search varies.
 const POOL: usize = 16;
 /// The search ends after as many variations or instructions.
 const ROUNDS: u32 = 20_000;
@@ -15,7 +15,7 @@ const BUDGET: u64 = 80_000_000;
 /// A request and what it cost.
 type Costly = (u32, Request);
 
-/// Keeps the dearest requests of what it measures.
+/// Keeps the most expensive requests of what it measures.
 pub(crate) struct Search<'a> {
     counter: &'a Counter,
     pool: [Costly; POOL],
@@ -43,8 +43,8 @@ impl<'a> Search<'a> {
         tally
     }
 
-    /// Varies the dearest requests so far by all magnitudes, one value or all at a time, and keeps
-    /// what costs more: it follows the branches of a mixer to where several are taken at once.
+    /// Varies the most expensive requests so far by all magnitudes, one value or all at a time, and
+    /// keeps what costs more: it follows the branches of a mixer to where several are taken at once.
     pub(crate) fn vary(&mut self) -> Tally {
         let mut tally = Tally::new();
         for (_, request) in self.pool {
