@@ -11,6 +11,7 @@ use cargo_mixer::identify::read::{self, Reading};
 use cargo_mixer::identify::refusal::Refusal;
 use cargo_mixer::identify::sign::{SignChoice, SignPolicy};
 use mixer_compiler::airframe::Basis;
+use mixer_setpoints::Random;
 
 /// Table I of the paper.
 pub(crate) const THRUST: [f64; 8] = [
@@ -18,24 +19,17 @@ pub(crate) const THRUST: [f64; 8] = [
 ];
 pub(crate) const TORQUE: [f64; 8] = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720];
 
-/// Normal numbers from a seed: a linear congruential generator and Box-Muller.
-pub(crate) struct Normal(u64);
+/// Normal numbers from a seed, by Box and Muller.
+pub(crate) struct Normal(Random);
 
 impl Normal {
     pub(crate) fn new(seed: u64) -> Self {
-        let mut this = Normal(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d);
-        for _ in 0..8 {
-            this.uniform();
-        }
-        this
+        Normal(Random::new(seed))
     }
 
+    /// In (0, 1).
     pub(crate) fn uniform(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+        ((self.0.bits() >> 11) as f64 + 0.5) / (1u64 << 53) as f64
     }
 
     pub(crate) fn next(&mut self) -> f64 {
