@@ -7,7 +7,6 @@ use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::{shortfall::Shortfall, soundness};
 
-use crate::degenerate::at;
 use crate::{REFERENCE_V, compile};
 
 /// Share of full thrust.
@@ -121,60 +120,5 @@ fn an_x8_without_a_rotor_still_flies() {
             // Yaw is left on either side.
             assert!(yaw[0] < -0.1 && yaw[1] > 0.1, "{channel}: {yaw:?}");
         }
-    }
-}
-
-/// The answer with two rotors out is sound and as good as the best.
-fn is_served(frame: &Frame, wrench: [f32; 4], volts: f32, out: [u8; 2]) {
-    let request = Request {
-        wrench,
-        volts,
-        health: crate::out(&out),
-    };
-    let answer = request.mix(frame).expect("finite");
-    let fault = soundness::fault(frame, &request, &answer).expect("solved");
-    assert_eq!(fault, None, "{request:?} -> {answer:?}");
-    let factors = frame.physics.factors(volts);
-    let oracle = Oracle::new(&frame.physics, frame.allocation(), factors, request.health);
-    let shortfall = Shortfall::of(&answer, &request, frame, &oracle).expect("solved");
-    assert!(
-        shortfall.is_some_and(|shortfall| !shortfall.misses()),
-        "{shortfall:?}: {request:?} -> {answer:?}"
-    );
-}
-
-/// Roll and pitch keep their direction and yaw its sign, however much more of roll and pitch there
-/// were without.
-#[test]
-fn bounds_come_before_roll_and_pitch() {
-    let places = [
-        at([0.10404, 0.33985, 0.0], true),
-        at([-0.19497, -0.45436, 0.0], false),
-        at([0.67324, -0.12371, 0.0], false),
-    ];
-    let frame = compile(&places, "roll-pitch-yaw", 0.0);
-    for step in 0..10 {
-        let roll = 8.0 + 0.1 * step as f32;
-        is_served(
-            &frame,
-            [roll, -0.5 * roll, 0.33150822, 68.18394],
-            14.118658,
-            [0, 3],
-        );
-    }
-}
-
-/// Two rotors of two units leave next to no choice: yaw is missed by a bit, not roll turned against
-/// the request.
-#[test]
-fn roll_is_not_reversed_for_the_last_bit_of_yaw() {
-    let places = [
-        at([0.11161627293905381, -0.4204218152755296, 0.0], true),
-        at([0.054747908847903023, 0.42679751567294166, 0.0], false),
-    ];
-    let frame = compile(&places, "roll-pitch", 0.0);
-    for step in 0..10 {
-        let roll = 0.7 * step as f32;
-        is_served(&frame, [roll, 0.0, 0.0, 14.163997], 17.584852, [0, 2]);
     }
 }

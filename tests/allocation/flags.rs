@@ -6,7 +6,7 @@ use mixer_tests::frames;
 use mixer_tests::golden;
 use mixer_tests::request::Frame;
 
-use crate::continuity::all_rotors;
+use crate::all_rotors;
 
 fn frame(name: &str) -> Frame {
     Frame::new(golden::compile(name).unwrap_or_else(|faults| panic!("{faults}")))

@@ -5,7 +5,6 @@
 //! |---|---|
 //! | `delivery.rs` | wrenches of random throttles: delivered |
 //! | `optimum.rs` | linear programs: few requests short by 1 % of any axis' authority |
-//! | `continuity.rs` | requests near which throttles or what is delivered once jumped: answered as their neighbours are |
 //! | `regressions.rs`, `.toml` | requests that an earlier mixer answered badly, as data |
 //! | `jumps.rs` | throttles that jump from a request to its neighbour: those that must; others are counted |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
@@ -19,7 +18,6 @@
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
 #![allow(missing_docs)]
 
-mod continuity;
 mod degenerate;
 mod delivery;
 mod failure;
@@ -37,7 +35,7 @@ mod shapes;
 
 use mixer_rt::Health;
 use mixer_tests::frames::{self, Options, Place};
-use mixer_tests::request::Frame;
+use mixer_tests::request::{Frame, Request};
 
 /// Of the frames' `[voltage]`.
 const REFERENCE_V: f32 = 14.8;
@@ -63,6 +61,22 @@ fn number(variable: &str, default: u64) -> u64 {
 fn out(channels: &[u8]) -> Health {
     let channels = channels.iter();
     channels.fold(Health::GOOD, |health, channel| health.with_failed(*channel))
+}
+
+fn place(position: [f64; 3], axis: [f64; 2], clockwise: bool) -> Place {
+    Place {
+        position,
+        axis: [axis[0], axis[1], -1.0],
+        clockwise,
+    }
+}
+
+fn all_rotors(wrench: [f32; 4], volts: f32) -> Request {
+    Request {
+        wrench,
+        volts,
+        health: Health::GOOD,
+    }
 }
 
 fn compile(places: &[Place], airmode: &'static str, yaw_reserve_nm: f64) -> Frame {

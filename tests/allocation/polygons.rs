@@ -8,7 +8,7 @@ use mixer_tests::shortfall::Shortfall;
 use proptest::prelude::*;
 
 use crate::compile;
-use crate::continuity::{all_rotors, place};
+use crate::{all_rotors, place};
 
 /// Share by which a barely attainable wrench is drawn inside to be attainable to the mixer, too,
 /// whose polygons leave out a little at the border.
@@ -118,96 +118,6 @@ fn nothing_is_missed_that_only_the_hulls_of_the_polygons_have() {
         let volts = 12.8;
         let wrench = frame.physics.wrench(&throttles, volts).map(|value| value as f32);
         assert_little_is_missed(&frame, wrench, volts);
-    }
-}
-
-/// The units that are not at corners can together give all but the same wrenches: what roll and
-/// pitch gain by telling them apart is as little as rounding, what yaw loses where they are not
-/// told apart is more than a percent.
-#[test]
-fn yaw_is_served_where_units_are_all_but_dependent() {
-    let five = [
-        place(
-            [-0.05765831, -0.25156966, -0.04199732],
-            [0.07774938, 0.03916135],
-            true,
-        ),
-        place(
-            [0.25997197, -0.16623774, -0.02521311],
-            [-0.01667376, -0.07180378],
-            false,
-        ),
-        place(
-            [0.41603721, 0.20852045, 0.01564486],
-            [-0.01331326, -0.02349470],
-            true,
-        ),
-        place(
-            [-0.05483321, 0.45301068, 0.01359283],
-            [0.06630826, -0.07497497],
-            true,
-        ),
-        place(
-            [-0.49935372, 0.16076363, -0.01812808],
-            [-0.07605438, -0.03041751],
-            false,
-        ),
-    ];
-    let eight = [
-        place(
-            [0.28638235, 0.51017202, -0.02616863],
-            [0.05606949, 0.04446046],
-            true,
-        ),
-        place(
-            [-0.08540948, 0.30771637, 0.02352849],
-            [0.03775874, 0.05813704],
-            false,
-        ),
-        place(
-            [-0.29181423, 0.12800551, -0.04772641],
-            [-0.00306600, 0.00096930],
-            true,
-        ),
-        place(
-            [-0.66178603, -0.08149608, 0.03182107],
-            [-0.01386754, 0.06534881],
-            false,
-        ),
-        place(
-            [-0.09983987, -0.33462786, -0.04088692],
-            [-0.02963568, 0.04582441],
-            false,
-        ),
-        place(
-            [0.04523658, -0.38500399, 0.04694180],
-            [0.05724209, -0.04516663],
-            true,
-        ),
-        place(
-            [0.50855832, -0.23916334, 0.00066031],
-            [-0.03729668, -0.07629784],
-            true,
-        ),
-        place(
-            [0.40893997, 0.10214931, 0.03488488],
-            [0.01401430, -0.05654245],
-            true,
-        ),
-    ];
-    for (frame, wrench, volts) in [
-        (
-            compile(&five, "disabled", 0.03),
-            [-5.018_381_6, 2.208_331, -0.604_422_75, 10.451_086],
-            14.8,
-        ),
-        (
-            compile(&eight, "disabled", 0.0),
-            [25.043_081, 15.385_539, -1.829_544_4, 94.597_56],
-            14.766_66,
-        ),
-    ] {
-        assert_is_optimal(&frame, &all_rotors(wrench, volts), Oracle::of_polygons);
     }
 }
 

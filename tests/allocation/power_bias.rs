@@ -6,12 +6,12 @@ use mixer_tests::frames::{self, AIRMODES, Options, Place};
 use mixer_tests::request::{Answer, Frame, Request};
 use proptest::prelude::*;
 
-use crate::continuity::{all_rotors, place};
 use crate::jumps::{self, Motion, neighbours};
 use crate::layout::{any_request, attainable_request, biased_layout};
 use crate::polygons::delivered;
 use crate::properties::{config, each, many, sound};
 use crate::{REFERENCE_V, regular_frames};
+use crate::{all_rotors, place};
 
 /// A usual bias of the paper's pair, N m per N.
 const BIAS: f64 = 0.004;

@@ -17,7 +17,7 @@ use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
 
-use crate::continuity::all_rotors;
+use crate::all_rotors;
 use crate::jumps::Motion;
 use crate::polygons::assert_is_optimal;
 use crate::{number, regular_frames};
