@@ -76,7 +76,7 @@ fn least_idle_is_where_the_model_folds() {
 }
 
 /// A request for thrust alone is delivered at both ends of the stated range and not beyond them, in
-/// closed form between arcs and between polylines, and in the general way.
+/// closed form and on the general path.
 #[test]
 fn bare_thrust_is_what_is_delivered() {
     let bent = [

@@ -98,7 +98,7 @@ pub fn mix<
 
 /// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells
 /// how much. `VARIABLES` is not inferred; the generated module has this function without it. Links
-/// the general way of desaturation for every frame.
+/// the general path of desaturation for every frame.
 ///
 /// # Errors
 /// As [`mix`].

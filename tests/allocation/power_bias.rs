@@ -84,7 +84,7 @@ proptest! {
     }
 }
 
-/// Level at half thrust every unit has Q = c f, in the closed form and in the general way, and the
+/// Level at half thrust every unit has Q = c f, in closed form and on the general path, and the
 /// wrench is that without.
 #[test]
 fn level_torques_are_the_bias_times_the_thrust() {

@@ -13,7 +13,7 @@ const BEYOND_N: f32 = 1e5;
 const HALVINGS: usize = 24;
 
 /// Least and largest thrust without roll, pitch and yaw, N at the reference voltage, within the
-/// polygon that the general way knows of the attainable set.
+/// polygon that the general path knows of the attainable set.
 ///
 /// # Errors
 /// A layout that cannot hover: at no thrust, or at a single one only, the served torques vanish.

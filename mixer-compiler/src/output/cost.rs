@@ -9,9 +9,9 @@
 //! ```
 //!
 //! instructions, the median over attainable requests. The overheads are fitted to whole mixers,
-//! counted request by request in QEMU, apart for each [`DesaturationKind`]. For those in closed form
-//! the mean over attainable requests is modelled likewise. Any other request costs at most what the
-//! code does at most (`cost/bound.rs`).
+//! counted request by request in QEMU, apart for each [`DesaturationKind`]. For those in closed
+//! form the mean over attainable requests is modelled likewise. Any other request costs at most
+//! what the code does at most (`cost/bound.rs`).
 
 mod bound;
 mod counted;

@@ -6,10 +6,10 @@
 //! priority falls apart into small problems:
 //!
 //! ```text
-//! 1. w within the zonotope of the thrusts in [a, b]^n                          vertical/facets.rs
-//! 2. f = C+ w + z N, N the null space of C, with z as near zero as can be      vertical/thrusts.rs
-//! 3. z towards where yaw reaches furthest, if it does not reach the request    vertical/climb.rs
-//! 4. the torques within [Q_min(f), Q_max(f)]                                   vertical/torques.rs
+//! 1. w within the zonotope of the thrusts in [a, b]^n                       closed_form/facets.rs
+//! 2. f = C+ w + z N, N the null space of C, with z as near zero as can be   closed_form/thrusts.rs
+//! 3. z towards where yaw reaches furthest, if it does not reach the request closed_form/climb.rs
+//! 4. the torques within [Q_min(f), Q_max(f)]                                closed_form/torques.rs
 //! ```
 //!
 //! Step 3 chooses by a coarse concave description of Q_max and -Q_min ([`Outline`]); all others,
@@ -21,8 +21,8 @@
 //! thrust, roll and pitch give way together, by less than the corner's torque is worth.
 //!
 //! Every loop is over units, facets, or knots, or has a fixed number of steps. Where yaw comes
-//! before thrust, or a reserve of it before roll and pitch, the problems are not apart, and the
-//! general way serves the airframe.
+//! before thrust, or a reserve of it before roll and pitch, the problems cannot be separated, and
+//! the general path serves the airframe.
 
 mod border;
 mod climb;
@@ -151,20 +151,21 @@ pub(crate) enum Attained {
     No,
 }
 
-/// What is kept of a unit while its efforts are being found.
+/// A unit's thrust along a line of all units' thrusts, which runs through the null space or towards
+/// the middle, by the coordinate z; and its yaw at one z.
 #[derive(Clone, Copy, Default)]
 struct ThrustLine {
-    /// A straight way of thrusts: where it starts, N, ..
+    /// At z = 0, N.
     from: f32,
-    /// .. and where to, N per unit of the way.
+    /// N per unit of z.
     along: f32,
-    /// Least and most yaw that the unit gives at the point of the way looked at, N m.
+    /// Least and most yaw that the unit gives at the z looked at, N m.
     least: f32,
     most: f32,
 }
 
 impl ThrustLine {
-    /// The thrust at `z` along the way, N.
+    /// The thrust at `z`, N.
     #[inline(always)]
     fn thrust(&self, z: f32) -> f32 {
         self.from + z * self.along

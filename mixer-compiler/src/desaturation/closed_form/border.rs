@@ -33,7 +33,7 @@ const MARGIN: f64 = 1e-5;
 /// the torque.
 const STEEPEST: f64 = 16.0;
 
-/// What the cells lose at most, as a share of the largest torque: beyond it the general way serves
+/// What the cells lose at most, as a share of the largest torque: beyond it the general path serves
 /// better.
 const MOST_LOST: f64 = 0.05;
 

@@ -90,7 +90,7 @@ impl Border<'_> {
 }
 
 impl ClosedForm<'_> {
-    /// Least and most yaw at `z` along the units' way; leaves those of each unit.
+    /// Least and most yaw at `z` of the lines of thrusts; writes those of each unit there.
     #[inline(never)]
     pub(super) fn reach(&self, lines: &mut [ThrustLine], z: f32) -> [f32; 2] {
         let mut reach = [0.0, 0.0];

@@ -1,10 +1,10 @@
 //! z where yaw reaches furthest.
 //!
 //! By the coarse sides Y(z), the furthest yaw, is a sum of concave functions of straight lines.
-//! From the start z goes the way on which Y grows, from knot to knot, until it does not: at most
-//! all units' knots, each met once. The knots move with the request continuously and the slopes
-//! between them are constants, so the end does not jump; where Y is level, z stays at the nearest
-//! point that is best.
+//! From the start z goes in the direction in which Y grows, from knot to knot, until it does not:
+//! at most all units' knots, each met once. The knots move with the request continuously and the
+//! slopes between them are constants, so the end does not jump; where Y is level, z stays at the
+//! nearest point that is best.
 
 use super::{Border, ClosedForm, MOST_UNITS, Outline, ThrustLine};
 use crate::rolled;

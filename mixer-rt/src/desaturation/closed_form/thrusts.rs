@@ -15,9 +15,9 @@ const CLIMBS: u32 = 2;
 /// .. and towards the middle. All but the first are twice as long as a straight line asks for.
 const RETREATS: u32 = 3;
 
-/// In yaw that counts as none: what z's way must gain to be gone in full. A way of less gain is
-/// gone in part, so that z does not jump where the gain vanishes. Costs up to a quarter of it, 0.02
-/// % of the yaw.
+/// The gain of yaw, in units of what counts as none, from which z goes to the top in full. With
+/// less it goes a part, so that z does not jump where the gain vanishes. Costs up to a quarter of
+/// it, 0.02 % of the yaw.
 const GAIN: f32 = 100.0;
 
 impl ClosedFormUnit {
@@ -38,8 +38,8 @@ fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
 impl ClosedForm<'_> {
     /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach the request
     /// if from any. Where yaw would be reversed or exceeded they are drawn towards those of the
-    /// thrust `middle`. Returns where they are on the units' way and the least and most yaw there,
-    /// and leaves what each unit gives of it.
+    /// thrust `middle`. Returns their z on the lines of thrusts and the least and most yaw there;
+    /// writes the lines with each unit's yaw.
     #[inline(always)]
     pub(super) fn attainable_thrusts(
         &self,
@@ -115,8 +115,8 @@ impl ClosedForm<'_> {
     }
 
     /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to
-    /// where the facets allow them; false where that changes them, so that z has no room. Leaves
-    /// the units' way, z.
+    /// where the facets allow them; false where that changes them, so that z has no room. Writes
+    /// the lines of thrusts.
     #[inline(always)]
     fn within_facets(&self, request: &Request, ceiling: f32, lines: &mut [ThrustLine]) -> ([f32; 2], bool) {
         let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
@@ -126,8 +126,8 @@ impl ClosedForm<'_> {
         (self.null_range(lines, &wrench), has_room)
     }
 
-    /// Starts at the least-norm thrusts of `[roll, pitch, thrust]`, with z as the units' way.
-    /// Returns z's range: from more to less where rounding leaves none.
+    /// Lines from the least-norm thrusts of `[roll, pitch, thrust]` through the null space. Returns
+    /// the range of z; its first end is the larger one where rounding leaves no range.
     #[inline(always)]
     fn null_range(&self, lines: &mut [ThrustLine], wrench: &[f32; 3]) -> [f32; 2] {
         let (mut low, mut high) = (-f32::MAX, f32::MAX);
@@ -149,8 +149,8 @@ impl ClosedForm<'_> {
     }
 
     /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, towards those of
-    /// `middle_n` until it reaches it. Returns where they are on their new way and the least and
-    /// most yaw there, and leaves what each unit gives of it.
+    /// `middle_n` until it reaches it. Returns their z on the new lines and the least and most yaw
+    /// there; writes the lines with each unit's yaw.
     ///
     /// A straight line from the middle crosses `needed` inside where the sides are concave: then a
     /// second one from there is nearer. Where they are not it may cross outside, by little: then

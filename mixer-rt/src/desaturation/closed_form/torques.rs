@@ -8,7 +8,7 @@ use crate::clamp;
 use crate::rolled;
 
 impl ClosedForm<'_> {
-    /// Writes the efforts: the thrusts at `z` of the units' way, and the torques that come nearest
+    /// Writes the efforts: the thrusts at `z` of their lines, and the torques that come nearest
     /// the `yaw` within what the units give there, which is `reach` in all.
     #[inline(always)]
     pub(super) fn torques(

@@ -4,8 +4,8 @@
 //! and the worst of their instructions, the deepest stack, and the request that cost most (roll,
 //! pitch, yaw, thrust, voltage as f32 bits). The sets are `attainable` and `saturated`, drawn by
 //! the host (`mixer_setpoints::Requests`), and `searched`: what a random search for the most
-//! expensive requests tries. Only one airframe is linked, as in a user's image: what is inlined depends on
-//! who else calls it.
+//! expensive requests tries. Only one airframe is linked, as in a user's image: what is inlined
+//! depends on who else calls it.
 #![no_std]
 #![no_main]
 

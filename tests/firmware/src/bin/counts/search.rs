@@ -44,7 +44,8 @@ impl<'a> Search<'a> {
     }
 
     /// Varies the most expensive requests so far by all magnitudes, one value or all at a time, and
-    /// keeps what costs more: it follows the branches of a mixer to where several are taken at once.
+    /// keeps what costs more: it follows the branches of a mixer to where several are taken at
+    /// once.
     pub(crate) fn vary(&mut self) -> Tally {
         let mut tally = Tally::new();
         for (_, request) in self.pool {
