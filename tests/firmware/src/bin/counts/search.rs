@@ -1,5 +1,6 @@
 //! A search for the requests that cost most.
 
+use mixer_setpoints::Random;
 use probe::Counter;
 
 use crate::measurement::{Request, Tally, requests};
@@ -11,6 +12,10 @@ const POOL: usize = 16;
 /// The search ends after as many variations or instructions.
 const ROUNDS: u32 = 20_000;
 const BUDGET: u64 = 80_000_000;
+
+/// Steps of 2^-0 to 2^-23 of a value.
+const HALVINGS: u32 = 24;
+const SIGNED: [f32; 2] = [-1.0, 1.0];
 
 /// A request and what it cost.
 type Costly = (u32, Request);
@@ -51,11 +56,11 @@ impl<'a> Search<'a> {
         for (_, request) in self.pool {
             self.measure(&mut tally, request);
         }
-        let mut random = Random(1);
+        let mut random = Random::new(1);
         for _ in 0..ROUNDS {
-            let draw = random.bits();
-            let (_, request) = self.pool[draw as usize % POOL];
-            let varied = random.vary(request, (draw >> 8) % 24, (draw >> 16) % 8);
+            let (_, request) = self.pool[random.below(POOL)];
+            let (halvings, which) = (random.index(HALVINGS), random.index(8));
+            let varied = vary(&mut random, request, halvings, which);
             if varied.wrench.iter().all(|value| value.is_finite()) {
                 self.measure(&mut tally, varied);
             }
@@ -77,37 +82,20 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Xorshift (Marsaglia 2003), 32 bits.
-struct Random(u32);
-
-impl Random {
-    fn bits(&mut self) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0
+/// Changes values by up to 2^-`halvings` of themselves: 0 to 3 an axis, 4 the voltage, from 5 on all
+/// of them.
+fn vary(random: &mut Random, mut request: Request, halvings: u32, which: u32) -> Request {
+    let mut size = 1.0;
+    for _ in 0..halvings {
+        size *= 0.5;
     }
-
-    /// Uniform in [-1, 1).
-    fn signed(&mut self) -> f32 {
-        self.bits() as i32 as f32 * (1.0 / 2_147_483_648.0)
+    for (axis, value) in (0..).zip(request.wrench.iter_mut()) {
+        if which == axis || which > 4 {
+            *value += size * random.between(SIGNED) * *value;
+        }
     }
-
-    /// Changes values by up to 2^-`halvings` of themselves: 0 to 3 an axis, 4 the voltage, from 5
-    /// on all of them.
-    fn vary(&mut self, mut request: Request, halvings: u32, which: u32) -> Request {
-        let mut size = 1.0;
-        for _ in 0..halvings {
-            size *= 0.5;
-        }
-        for (axis, value) in (0..).zip(request.wrench.iter_mut()) {
-            if which == axis || which > 4 {
-                *value += size * self.signed() * *value;
-            }
-        }
-        if which > 3 {
-            request.voltage_v += 0.1 * size * self.signed() * request.voltage_v;
-        }
-        request
+    if which > 3 {
+        request.voltage_v += 0.1 * size * random.between(SIGNED) * request.voltage_v;
     }
+    request
 }
