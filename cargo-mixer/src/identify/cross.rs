@@ -198,16 +198,19 @@ mod tests {
             .collect()
     }
 
-    /// Noise of 1 part in 200 of full scale.
+    /// Noise of 1 part in 200 of full scale, from a linear congruential generator.
     fn noisy(basis: Basis, coefficients: &[f64], seed: u64) -> Vec<f64> {
-        let mut random = mixer_setpoints::Random::new(seed);
+        let mut state = seed;
         let polynomial = Polynomial::of(basis, coefficients);
         let clean: Vec<f64> = grid().iter().map(|p| polynomial.at(p[0], p[1])).collect();
         let full = clean.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
-        clean
-            .iter()
-            .map(|y| y + 0.01 * full * random.uniform(-0.5, 0.5))
-            .collect()
+        let mut noise = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        clean.iter().map(|y| y + 0.01 * full * noise()).collect()
     }
 
     fn chosen(thrust: &[f64], torque: &[f64]) -> Basis {

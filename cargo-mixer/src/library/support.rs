@@ -102,8 +102,6 @@ pub(super) fn rust(target: &str, calls: &[String]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use mixer_setpoints::Random;
-
     use super::{integer, soft_float};
 
     /// Every kind of number: zeros, the least and the largest of the subnormal and the normal ones,
@@ -147,11 +145,23 @@ mod tests {
             .into_iter()
             .flat_map(|bits| [bits, bits | 1 << 31])
             .collect();
-        let mut random = Random::new(7);
-        numbers.extend((0..200).map(|_| random.bits() as u32));
+        let mut random = Random(7);
+        numbers.extend((0..200).map(|_| random.next() as u32));
         // Of the same size, where addition cancels.
-        numbers.extend((0..200).map(|_| random.bits() as u32 & 0x81ff_ffff | 0x3f00_0000));
+        numbers.extend((0..200).map(|_| random.next() as u32 & 0x81ff_ffff | 0x3f00_0000));
         numbers
+    }
+
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> u64 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            self.0.rotate_left(29) ^ self.0 >> 17
+        }
     }
 
     #[track_caller]
@@ -197,21 +207,21 @@ mod tests {
             assert_same(soft_float::from_unsigned(a), a as f32, [a, 0]);
             assert_same(soft_float::from_signed(a as i32), a as i32 as f32, [a, 0]);
         }
-        let mut random = Random::new(1);
+        let mut random = Random(1);
         for _ in 0..1_000_000 {
-            let bits = random.bits();
+            let bits = random.next();
             assert_pair(bits as u32, (bits >> 32) as u32);
         }
     }
 
     #[test]
     fn words_of_64_bits_are_made_of_words_of_32() {
-        let mut random = Random::new(3);
+        let mut random = Random(3);
         for round in 0..100_000 {
             // Of every length.
-            let [a, b] = [0, 6].map(|turn| random.bits() >> (round >> turn & 63));
+            let [a, b] = [0, 6].map(|turn| random.next() >> (round >> turn & 63));
             assert_eq!(integer::multiply_long(a, b), a.wrapping_mul(b));
-            let shift = random.bits() as u32 & 63;
+            let shift = random.next() as u32 & 63;
             assert_eq!(integer::shift_left_long(a, shift), a << shift);
             assert_eq!(integer::shift_right_long(a, shift), a >> shift);
             assert_same(soft_float::from_long(a), a as f32, [a as u32, (a >> 32) as u32]);
