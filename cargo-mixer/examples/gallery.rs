@@ -1,4 +1,4 @@
-//! Draws the pictures of `docs/` anew: `cargo run -p cargo-mixer --example gallery`.
+//! Draws the pictures of `docs/`: `cargo xtask gallery`.
 
 use std::error::Error;
 use std::fs;

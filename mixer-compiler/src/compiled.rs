@@ -19,24 +19,24 @@ pub struct Compiled {
     pub airframe: Airframe,
     /// M and M+.
     pub effectiveness: Effectiveness,
-    /// That the forward map can be inverted.
+    /// Proof that the forward map can be inverted.
     pub injectivity: Injectivity,
-    /// The least idle at which it can.
+    /// Least idle at which the forward map can be inverted.
     pub least_idle: f64,
     /// The chosen evaluator.
     pub evaluator: Evaluator,
-    /// What it was observed to miss.
+    /// Largest errors observed of the evaluator's tables.
     pub residual: Residual,
     /// Least and largest thrust that is delivered without torque at the reference voltage, N.
     pub thrust_range_n: [f32; 2],
-    /// What it is proven to miss at most.
+    /// Proven bounds of the evaluator's errors.
     pub certificate: Certificate,
     /// Share of the attainable set's area that the polygon of the general path loses.
     pub lost_area: AreaLoss,
-    /// Share of it that the sides of the closed form lose; `None` without a closed form.
+    /// Share of that area that the sides of the closed form lose; `None` without a closed form.
     pub lost_between_sides: Option<f64>,
     /// What is emitted.
     pub tables: MixerTables,
-    /// What is plausibly a mistake and yet compiles.
+    /// Values that compile and are probably mistakes.
     pub warnings: Diagnostics,
 }

@@ -39,8 +39,8 @@ pub use output::{alternatives, checklist, cost, hover, power, report};
 pub use proof::Certificate;
 pub use proof::residual::Residual;
 
-/// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> inverse ->
-/// proof -> tables.
+/// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> voltage ->
+/// inverse -> tables -> proof -> closed form -> warnings.
 ///
 /// # Errors
 /// All faults that were found, and with faults of later stages the warnings, one of which may be

@@ -1,4 +1,4 @@
-//! Values that are possible and yet hardly meant: warnings, one rule each, all collected.
+//! Warnings: values that are possible and probably mistakes. One rule each, all collected.
 //!
 //! A rule compares a value with what propellers, frames and packs are like. Its limits are chosen
 //! so that no file in `airframes/` warns and none of the fits of real bench maps does
@@ -54,7 +54,7 @@ const RULES: &[Rule] = &[
     vehicle::hover,
 ];
 
-/// Everything in an airframe that compiles which is plausibly a mistake.
+/// Warnings of an airframe that compiles.
 pub(crate) fn warnings(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
@@ -63,8 +63,7 @@ pub(crate) fn warnings(
     apply(airframe, Some(effectiveness), Some(thrust_range_n.map(f64::from)))
 }
 
-/// Everything in an airframe that no mixer can be made of which is plausibly a mistake: it may be
-/// why.
+/// Warnings of an airframe that is refused: one of them may be the reason.
 pub(crate) fn warnings_of_refused(airframe: &Airframe) -> Vec<Diagnostic> {
     apply(airframe, None, None)
 }
@@ -93,7 +92,7 @@ fn apply(
     found
 }
 
-/// Refuses tolerances that leave nothing to meet.
+/// Refuses tolerances that are too wide to mean anything.
 ///
 /// # Errors
 /// A tolerance above a tenth of a unit's largest effort.

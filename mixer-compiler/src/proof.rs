@@ -51,7 +51,7 @@ impl Certificate {
         (0..2).all(|k| self.stated[k] <= self.tolerance[k])
     }
 
-    /// False where something was observed that is said to be impossible: then the proof is wrong.
+    /// False where a residual was observed above its proven bound: then the proof is wrong.
     pub fn agrees(&self, observed: &Residual) -> bool {
         (0..2).all(|k| observed.efforts[k] <= self.reference[k])
     }
@@ -85,9 +85,9 @@ const SHARP: f64 = 1.15;
 /// left.
 const STALE: u8 = 6;
 
-/// Proves what it can of the emitted tables. `observed` says where to stop; it gains the points
-/// that the proof finds worth a look. A tolerance that an observation refutes ends the proof,
-/// unless it is to be taken `to_the_end` for the sake of its bound.
+/// Proves a bound of the errors of the emitted tables. Cells are halved until the bound is close to
+/// the largest `observed` residual, to which the centres of the worst cells are added. A residual
+/// above the tolerance ends the proof, unless `to_the_end` asks for the bound all the same.
 pub(crate) fn prove(
     airframe: &Airframe,
     pair: &PairMap,

@@ -163,7 +163,7 @@ fn tolerance_at_reference(airframe: &Airframe, correction: &CorrectionBounds) ->
     std::array::from_fn(|k| stated[k] / correction.largest[k])
 }
 
-/// Rounds everything.
+/// The tables of a fitted inverse. The closed form and the tolerance are filled in later.
 fn assemble(
     airframe: &Airframe,
     effectiveness: &Effectiveness,

@@ -1,4 +1,6 @@
-//! What is emitted, as values: the only place where f64 becomes f32.
+//! What is emitted, as values. M, M+, the pair, its inverse, the voltage laws and the polygon
+//! become f32 here; the closed form does in `desaturation`, priorities and tolerances do in
+//! `selection`.
 //!
 //! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the
 //! generated Rust holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs

@@ -13,8 +13,8 @@ use quote::{quote, quote_spanned};
 use syn::LitStr;
 
 /// Compiles the airframe file at the given path into a module that is named after the airframe:
-/// `mix`, `mix_with_health` for rotors that are out, their `TABLES`, `UNITS` and `CHANNELS`, and
-/// the mixer as a type.
+/// `mix`, `mix_with_health` for rotors that are out, the constants `UNITS`, `CHANNELS` and `SCALE`,
+/// and the mixer as a type.
 ///
 /// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such
 /// file, to the folder of the calling file. The crate that calls the macro depends on `mixer-rt`

@@ -1,4 +1,4 @@
-//! What desaturation gives up first, and the requests that it looks at.
+//! Priorities of desaturation, the highest first, and the limit of requests.
 //!
 //! ```text
 //! 1. roll and pitch      the largest rho in [0, 1] such that rho (roll, pitch) is attainable
@@ -6,9 +6,9 @@
 //!    (airmode roll-pitch-yaw: yaw, then thrust)
 //! ```
 //!
-//! Throughout, yaw stays between the reserve and the request, so it is never reversed or exceeded,
-//! and with airmode disabled the thrust stays below the request, or below the least thrust that the
-//! rotors at idle and the yaw allow.
+//! Yaw is never reversed and never exceeds the request; its reserve is kept before everything else.
+//! With airmode disabled the thrust does not exceed the request, or the least thrust that the idle
+//! and the yaw allow, if that is more.
 
 pub(crate) mod attainable;
 pub(crate) mod closed_form;
@@ -37,7 +37,7 @@ pub struct Desaturation {
     pub yaw_reserve_nm: f32,
 }
 
-/// Largest torque (N m) and thrust (N) that is looked at: far beyond any rotor, and small enough
+/// Requests are limited to this torque (N m) and thrust (N): far beyond any rotor, and small enough
 /// that no product overflows.
 const REQUEST_LIMIT: f32 = 1e5;
 

@@ -42,7 +42,7 @@ impl Unit {
     }
 }
 
-/// Largest error of the inverse map; beyond it something has been given up.
+/// Largest error of a request that is delivered. A larger one means that something was given up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Of one unit's efforts `[f, Q]` at the reference voltage, N and N m.
@@ -70,9 +70,9 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub voltage: Option<Voltage<'a>>,
     /// A polygon inside the attainable set.
     pub attainable: AttainableSet<'a>,
-    /// Rows of the general path per N m of roll, pitch and yaw and per N of thrust: units over
-    /// authority at the reference voltage, roll and pitch alike; 0 on axes that the airframe does
-    /// not serve.
+    /// Factors from roll, pitch, yaw (N m) and thrust (N) to the rows of the general path: number
+    /// of units over the vehicle's authority on the axis at the reference voltage. Roll and pitch
+    /// share the larger authority of the two; 0 on axes that the airframe does not serve.
     pub rows: [f32; 4],
     /// Priorities where a unit cannot follow.
     pub desaturation: Desaturation,

@@ -211,8 +211,10 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     ))
 }
 
-/// [`mix_into`] with vertical axes and all rotors. The efforts are attainable, so by the compiler's
-/// proof each unit gives them within the tolerance.
+/// [`mix_into`] in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
+/// are tried: where the inverse map misses them, the request is desaturated and inverted again. All
+/// other efforts are attainable, so by the compiler's proof each unit gives them within the
+/// tolerance.
 #[inline(always)]
 fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
     tables: &Tables<'_, P, I, S>,
@@ -259,7 +261,7 @@ fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
     Ok((achieved, saturation.with_voltage_clamped(clamped)))
 }
 
-/// The setpoint as `[roll, pitch, yaw, thrust]`, and the same within what is looked at.
+/// The setpoint as `[roll, pitch, yaw, thrust]`, and the same limited so that no product overflows.
 #[inline(always)]
 fn bounded(setpoint: &Wrench) -> Result<([f32; 4], [f32; 4]), SetpointError> {
     let request = setpoint.to_array();
@@ -291,7 +293,8 @@ fn write(channels: [u8; 2], throttles: [f32; 2], outputs: &mut [f32]) {
     }
 }
 
-/// `request` over `[k_f, k_Q]`: with vertical axes all but yaw is thrust.
+/// `request` at the reference voltage, by `[1 / k_f, 1 / k_Q]`: with vertical axes roll, pitch and
+/// thrust come from the thrusts alone and yaw from the torques alone.
 #[inline(always)]
 fn at_reference([roll, pitch, yaw, thrust]: [f32; 4], [per_thrust, per_torque]: [f32; 2]) -> Request {
     Request {

@@ -44,7 +44,7 @@ fn attainable_wrenches_are_delivered_at_any_voltage_and_order_of_channels() {
 }
 
 /// Wrenches of throttles every second of which is at an end of its range: the border of what is
-/// attainable. ClosedForm and tilted frames of three to eight units with real pairs. Misses are
+/// attainable. Vertical and tilted frames of three to eight units with real pairs. Misses are
 /// what the convex polygons lose of sets that bend inwards, nearly all on frames of three units,
 /// which have no other efforts for the same wrench.
 #[test]

@@ -1,5 +1,5 @@
-//! Allocation and desaturation: what is attainable is delivered, what is not is given up in the
-//! stated order.
+//! Allocation and desaturation: what is attainable is delivered, other requests are cut by
+//! priority.
 //!
 //! | file | holds the mixer to |
 //! |---|---|

@@ -179,7 +179,7 @@ fn assert_reaches_the_optimum(frame: &Frame, request: &Request) {
     });
 }
 
-/// ClosedForm units at `[x, y]`, m.
+/// Vertical units at `[x, y]`, m.
 fn vertical<const N: usize>(units: [([f64; 2], bool); N]) -> [Place; N] {
     units.map(|([x, y], clockwise)| at([x, y, 0.0], clockwise))
 }

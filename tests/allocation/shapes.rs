@@ -330,7 +330,7 @@ fn sets_of_real_pairs_are_used() {
     hold(&sum);
 }
 
-/// An X12, which desaturates along a path.
+/// An X12, which desaturates on the general path.
 fn x12(pair: &str, airmode: &'static str) -> Result<Compiled, String> {
     let places = frames::regular(6, 30.0);
     let channels: Vec<usize> = (0..2 * places.len()).collect();

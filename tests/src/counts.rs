@@ -60,8 +60,8 @@ impl Subject {
     }
 }
 
-/// The subjects that every run of the tests compares: all airframes, and on the X8 the baselines of
-/// `mixer-rt`, one rotor out, and the library for C.
+/// The subjects that every run of the tests compares: all airframes, and on the X8 the mixers of
+/// isolated rotors, one rotor out, and the library for C.
 pub fn compared(airframes: &[String]) -> Vec<Subject> {
     let airframes = airframes.iter().map(|airframe| Subject::new("coaxial", airframe));
     let others =

@@ -8,7 +8,8 @@ use mixer_setpoints::Random;
 
 pub mod counted;
 
-/// The paper's voltage with exponents that differ, so that a test sees which factor is applied.
+/// The voltage of `airframes/isae-x8.toml` with exponents that differ, so that a test sees which
+/// factor is applied.
 const VOLTAGE: &str = r#"
 [voltage]
 reference_v = 14.8

@@ -1,4 +1,4 @@
-//! Which axes are controlled, and what gives way when they cannot all be had.
+//! `[allocation]`: the controlled axes, and their priorities where a request is not attainable.
 
 pub use mixer_rt::{Axis, tables::Airmode};
 use toml::Spanned;
@@ -26,7 +26,8 @@ pub struct Allocation {
     pub airmode: Airmode,
     /// The controlled axes in the order of the wrench, each once, the thrust among them.
     pub axes: Vec<Axis>,
-    /// Yaw moment kept available either way, N m, 0 to 1e6, and 0 where yaw is not controlled.
+    /// Yaw torque kept available in both directions, N m, 0 to 1e6, and 0 where yaw is not
+    /// controlled.
     pub yaw_reserve_nm: f64,
     /// Torque per thrust of every unit for the least power, N m per N at the reference voltage, -1
     /// to 1, and 0 where yaw is not controlled.

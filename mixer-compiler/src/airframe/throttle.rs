@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
-/// Least room between idle and full throttle: less is a mistake, and none is left in single
+/// Least range from idle to full throttle. A narrower one is a mistake and may vanish in single
 /// precision.
 const LEAST_THROTTLE_RANGE: f64 = 0.01;
 

@@ -11,18 +11,20 @@ use crate::model::PairMap;
 use crate::tables::AttainableTable;
 use convex::convex_part;
 
-/// Border points per edge of the box. Where the border bends inwards it leaves the chords of its
-/// points by the square of their distance, at corners of the paper's set by 1e-6 of its size.
+/// Border points per edge of the box. Where the border bends inwards, chords between its points are
+/// outside by the square of the points' distance: 1e-6 of the set's size at the paper's corners.
 const SAMPLES: usize = 512;
 
 /// Every so many of them make the convex part.
 const COARSE: usize = 4;
 
-/// Corners at most, and the share of the area that dropping one may lose below that. Corners cost
-/// time where efforts of least norm are held to the polygon; with 0.4 % instead 23 requests of
-/// 1,992 missed the optimum by more than 1 %, with this 16 (the test
-/// `any_frame_reaches_the_optimum`, the costs of shortages changed at the same time).
+/// Most corners of the polygon.
 const MOST_CORNERS: usize = 8;
+
+/// Share of the area that dropping one more corner may lose. Corners cost time where efforts of
+/// least norm are compared with the polygon. When this was chosen, 23 of 1,992 requests missed the
+/// optimum by more than 1 % with 0.4 %, and 16 with this (test `any_frame_reaches_the_optimum`; the
+/// costs of shortages changed at the same time).
 const LOSS: f64 = 1.5e-3;
 
 /// Drawn in towards the centre by this share, for rounding.
@@ -129,7 +131,8 @@ pub(crate) fn border_area(border: &[[f64; 2]]) -> f64 {
     fine + (fine - coarse) / 3.0
 }
 
-/// The centroid, with Q = 0 where that is as well inside: then bare thrust needs no torque.
+/// The centroid, moved to Q = 0 unless that is much nearer the border: then bare thrust needs no
+/// torque.
 fn centre(polygon: &[[f64; 2]]) -> [f64; 2] {
     let (_, [f, q]) = moments(polygon);
     let depth = |point: [f64; 2]| {

@@ -18,7 +18,7 @@ const HALVINGS: usize = 24;
 /// # Errors
 /// A layout that cannot hover: at no thrust, or at a single one only, the served torques vanish.
 pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<[f32; 2], Vec<Diagnostic>> {
-    // Where thrust gives way to the torques.
+    // In this airmode thrust is given up before the torques.
     let mut tables = tables.clone();
     tables.desaturation.airmode = Airmode::RollPitchYaw;
     let bare = |thrust_n: f32| {
@@ -43,8 +43,8 @@ pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<
     }
 }
 
-/// The same with the tables that are emitted, whose closed form may know more of the attainable set
-/// than the polygon: from the ends `within` the polygon outwards.
+/// [`thrust_range`] of the tables that are emitted. Their closed form may cover more of the
+/// attainable set than the polygon: the search goes outwards from the ends `within` the polygon.
 pub(crate) fn delivered_range(
     airframe: &Airframe,
     tables: &MixerTables,
@@ -70,7 +70,7 @@ pub(crate) fn delivered_range(
     [end(floor, floor - span), end(ceiling, ceiling + span)]
 }
 
-/// What is made of a request for thrust alone at the reference voltage.
+/// Achieved wrench and saturation of a request for thrust alone at the reference voltage.
 fn mix_bare(airframe: &Airframe, tables: &MixerTables, thrust_n: f32) -> Option<(Wrench, Saturation)> {
     let voltage_v = airframe.reference_v() as f32;
     let setpoint = Wrench {

@@ -145,8 +145,7 @@ impl ForwardMap {
         0.5 * (value.low + value.high)
     }
 
-    /// The worst of the point found, the corners and a grid, so that the message shows the heart of
-    /// the fold.
+    /// The point with the least det J among the one found, the corners and a grid, for the message.
     fn fold(&self, ThrottleBox { low, high }: ThrottleBox, found: [f64; 2]) -> Fold {
         let corners = [[low, low], [low, high], [high, low], [high, high]];
         if corners.into_iter().all(|at| self.determinant_at(at) < 0.0) {

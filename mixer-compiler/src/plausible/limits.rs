@@ -37,7 +37,7 @@ fn diagnostic(
     (key, unit, tolerance, largest): (&str, &str, f64, f64),
     most: f64,
 ) -> Diagnostic {
-    // What is past the largest float says that it is.
+    // A percentage beyond the largest float is written as a bound.
     let percent = match 100.0 * (tolerance / largest) {
         percent if percent.is_finite() => format!("{} %", rounded(percent)),
         _ => "more than 1e308 %".to_owned(),

@@ -15,7 +15,7 @@ pub(super) fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap()
 }
 
-/// Numbers in [-1, 1] by a fixed congruential generator.
+/// Numbers in [-1, 1) by xorshift64, the same in every run.
 pub(super) fn numbers() -> impl FnMut() -> f64 {
     let mut state = 0x2545_f491_4f6c_dd1du64;
     move || {

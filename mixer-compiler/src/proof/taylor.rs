@@ -36,7 +36,7 @@ pub(crate) struct Taylor {
     error: f64,
 }
 
-/// More than fewer than 40 roundings to nearest can take away.
+/// Factor above what fewer than 40 roundings to nearest can take away.
 const UP: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 /// Eight roundings of one half unit each.

@@ -12,13 +12,12 @@
 //! 4. the torques within [Q_min(f), Q_max(f)]                                closed_form/torques.rs
 //! ```
 //!
-//! Step 3 chooses by a coarse concave description of Q_max and -Q_min ([`Outline`]); all others,
-//! and what is given in the end, follow a fine one that lies inside the attainable set
-//! ([`Border`]).
+//! Step 3 uses a coarse concave approximation of Q_max and -Q_min ([`Outline`]). All other steps
+//! use a fine one that lies inside the attainable set ([`Border`]).
 //!
-//! Near a corner of the zonotope yaw may not even reach zero (with all rotors at the ceiling every
-//! unit has the torque Q(1, 1)). There the thrusts are drawn towards the middle until it does:
-//! thrust, roll and pitch give way together, by less than the corner's torque is worth.
+//! Near a corner of the zonotope even zero yaw may be out of range: with all rotors at full
+//! throttle every unit has the torque Q(1, 1). There the thrusts are drawn towards the middle of
+//! the set until zero yaw is in range, which cuts thrust, roll and pitch together.
 //!
 //! Every loop is over units, facets, or knots, or has a fixed number of steps. Where yaw comes
 //! before thrust, or a reserve of it before roll and pitch, the problems cannot be separated, and
@@ -54,8 +53,8 @@ pub struct ClosedFormUnit {
     pub null: f32,
     /// 1 / N; 0 where N is.
     pub per_null: f32,
-    /// The ends of the range of thrust, N: where the least and the largest multiple of N would
-    /// lead.
+    /// The ends of the range of thrust, N: first the one at the least z, then the one at the
+    /// largest, so descending where `null` is negative.
     pub ends: [f32; 2],
     /// Output indices of the upper and of the lower rotor.
     pub channels: [u8; 2],
@@ -146,7 +145,7 @@ pub(crate) type Efforts = [Effort; MOST_UNITS];
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Attained {
     Yes,
-    /// They are nearer the border than the tables tell: the inverse map knows.
+    /// They are nearer the border than the error of the tables: the inverse map decides.
     Perhaps,
     No,
 }
@@ -219,7 +218,7 @@ impl ClosedForm<'_> {
     /// Writes attainable efforts that serve `request` in the order of priority.
     #[inline(never)]
     pub(crate) fn desaturate(&self, airmode: Airmode, request: &Request, efforts: &mut Efforts) {
-        // So that nothing is known about how often the loops run: see `rolled`.
+        // Hides the number of units, so that the compiler does not unroll the loops: see `rolled`.
         let mut lines = [ThrustLine::default(); MOST_UNITS];
         let lines = lines.get_mut(..self.units.len()).unwrap_or_default();
         let (closed_form, efforts, lines) = black_box((self, efforts.as_mut_slice(), lines));

@@ -7,8 +7,9 @@
 //! rotor has a curve. A request is served as far as these allow by one linear programme
 //! ([`simplex`]), whose shortages have costs that are so far apart that they act as priorities
 //! ([`shortage`]): roll and pitch, which are short together so that their direction stays, before
-//! thrust before yaw, or yaw before thrust. A shortage ends at nothing and at all that was asked
-//! for, so no axis is reversed or exceeded, but for thrust, which roll and pitch may raise.
+//! thrust before yaw, or yaw before thrust. A shortage lies between nothing and all that was
+//! asked for, so no axis is reversed or exceeded. Thrust is the exception: roll and pitch may raise
+//! it.
 //!
 //! # Iteration
 //!
@@ -72,7 +73,7 @@ const LEVEL_BUDGET: Budget = Budget {
     flips: 32,
 };
 
-/// Curves are met to this share of the torque's scale.
+/// Largest distance of a single rotor's torque from its curve, as a share of the torque's scale.
 const TOUCHING: f32 = 1e-4;
 
 /// A frame at one voltage.
@@ -234,7 +235,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         }
     }
 
-    /// The linear programme for a request in rows, which is limited to what is looked at. Writes
+    /// The linear programme for a request in rows. Limits the request ([`shortage::write`]), writes
     /// the variables' coordinates, and returns the share to which they have to be drawn back;
     /// `None` where the budget ends first.
     #[inline(never)]

@@ -1,8 +1,8 @@
 //! Least power: where the efforts of least norm are attainable, the torques start from Q = c f
 //! instead of 0.
 //!
-//! c is the airframe's `power_bias_nm_per_n`. What of the torques c f changes the wrench is taken
-//! off again by M+, so the efforts move along
+//! c is the airframe's `power_bias_nm_per_n`. M+ takes off the part of the torques c f that
+//! would change the wrench, so the efforts move along
 //!
 //! ```text
 //! shift = eta - M+ M eta     with eta = [0 .. 0, c f_1 .. c f_n]
@@ -24,14 +24,14 @@ use super::general::Variable;
 use crate::layout::Tables;
 use crate::rolled;
 
-/// A polygon's edge of constant thrust is not crossed by torques. They fade before it all the same,
-/// as if thrusts moved by this share of the largest shift (in scaled efforts).
+/// Torques cannot cross a polygon's edge of constant thrust. So that the bias fades before such an
+/// edge as well, thrusts count as moved by this share of the largest shift of a torque (in scaled
+/// efforts).
 const FADE: f32 = 0.125;
 
 impl ClosedForm<'_> {
-    /// Moves least-norm `efforts` towards Q = `c` f; `room` is the least distance of a unit's
-    /// torque from its sides, N m,
-    /// >= 0.
+    /// Moves least-norm `efforts` towards Q = `c` f. `room` is the least distance of a unit's
+    /// torque from its sides, N m, not negative.
     #[inline(always)]
     pub(crate) fn add_power_bias(&self, c: f32, room: f32, efforts: &mut Efforts) {
         let mut yaw = 0.0;

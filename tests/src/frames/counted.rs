@@ -31,7 +31,7 @@ torque_nm = [-0.012, 0.004, 0.003, 0.011, -0.135, 0.002, 0.128, -0.004, 0.003]
 upper_spin = "cw"
 "#;
 
-/// The paper's voltage, as in `airframes/isae-x8.toml`.
+/// The voltage of `airframes/isae-x8.toml`.
 const VOLTAGE: &str = r#"[voltage]
 reference_v = 14.8
 range_v = [12.8, 16.8]

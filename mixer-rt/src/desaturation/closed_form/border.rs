@@ -23,7 +23,7 @@ pub struct Cell {
 /// Equal cells: thrust f is in cell `offset + per_n f`, rounded down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// The cell of no thrust, were there one.
+    /// Place of zero thrust in cells, extrapolated; cells are counted through all grids.
     pub offset: f32,
     /// Cells per N.
     pub per_n: f32,
@@ -34,14 +34,14 @@ pub struct Grid {
 pub struct Knot {
     /// N.
     pub thrust_n: f32,
-    /// By how much less the side grows beyond it, N m per N, >= 0.
+    /// Decrease of the side's slope at this thrust, N m per N, >= 0.
     pub drop: f32,
 }
 
 /// A coarse concave description of one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outline {
-    /// How the side grows before the first knot, N m per N.
+    /// Slope of the side before the first knot, N m per N.
     pub slope: f32,
     /// In the order of the thrust.
     pub knots: [Knot; Outline::KNOTS],

@@ -1,23 +1,23 @@
 //! The thrusts: f = C+ w + z N.
 //!
-//! Where z has room and yaw does not reach the request, z moves towards where yaw reaches furthest,
-//! only the part `(yaw - Y(0)) / (Y(z) - Y(0))` of the way. So the thrusts are a Lipschitz function
-//! of the request, which they would not be if z were moved just far enough. Y is nearly concave:
-//! where that part is not enough, two more steps mend it.
+//! Where z has room and the requested yaw is out of range at the start, z moves towards the z of
+//! the largest yaw, by the part `(yaw - Y(start)) / (Y(top) - Y(start))` of the way. This makes the
+//! thrusts a Lipschitz function of the request; moving z just far enough would not. Y is nearly
+//! concave: where that part is not enough, a second step of twice the length follows.
 
 use super::{ClosedForm, ClosedFormUnit, Request, ThrustLine};
 use crate::{clamp, rolled};
 use core::hint::black_box;
 
-/// Steps towards the furthest yaw, ..
+/// Most steps towards the largest yaw. The second is twice as long as a straight line asks for.
 const CLIMBS: u32 = 2;
 
-/// .. and towards the middle. All but the first are twice as long as a straight line asks for.
+/// Most steps of the retreat. Steps inwards are twice as long as a straight line asks for.
 const RETREATS: u32 = 3;
 
-/// The gain of yaw, in units of what counts as none, from which z goes to the top in full. With
-/// less it goes a part, so that z does not jump where the gain vanishes. Costs up to a quarter of
-/// it, 0.02 % of the yaw.
+/// Gain of yaw, in units of `yaw_rounding_nm`, from which z moves to the top in full. For a smaller
+/// gain it moves a part of the way, so that z does not jump where the gain vanishes. That costs at
+/// most a quarter of this gain, 0.025 % of the authority in yaw.
 const GAIN: f32 = 100.0;
 
 impl ClosedFormUnit {
@@ -36,8 +36,8 @@ fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
 }
 
 impl ClosedForm<'_> {
-    /// Finds attainable thrusts of at most `ceiling` in all, from which yaw can reach the request
-    /// if from any. Where yaw would be reversed or exceeded they are drawn towards those of the
+    /// Finds attainable thrusts, at most `ceiling` in sum, that bring the requested yaw into range
+    /// if any do. Where yaw would be reversed or exceeded they are drawn towards those of the total
     /// thrust `middle`. Returns their z on the lines of thrusts and the least and most yaw there;
     /// writes the lines with each unit's yaw.
     #[inline(always)]

@@ -1,5 +1,5 @@
-//! The torques: the least-norm ones, clipped to what the thrusts allow, and what that leaves of the
-//! yaw in proportion to room.
+//! The torques: least norm, clipped to what the thrusts allow. Yaw that is then missing is shared
+//! among the units in proportion to their room.
 //!
 //! All as yaw, p_i = s_i Q_i: the least-norm p_i are alike, yaw / n.
 

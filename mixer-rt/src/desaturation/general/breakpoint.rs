@@ -9,8 +9,9 @@ use super::variable::positive;
 /// The index of row 0 in the place of a variable; those of the other rows follow.
 pub(super) const ROW: u8 = 252;
 
-/// The breakpoint of a variable or a row. The bits of floats are in their order, but for negative
-/// ones, which all come first; that spares the transfers of comparisons between floats.
+/// The breakpoint of a variable or a row, as the bits of an f32. As integers the bits of positive
+/// floats have the floats' order, and those of negative ones come first. Comparing them spares
+/// transfers from the floating-point unit.
 #[derive(Clone, Copy)]
 pub(super) struct Breakpoint {
     pub(super) bits: i32,
@@ -18,7 +19,7 @@ pub(super) struct Breakpoint {
 }
 
 impl Breakpoint {
-    /// It has to be looked for.
+    /// Not known yet: a search is needed.
     pub(super) const UNKNOWN: Breakpoint = Breakpoint {
         bits: i32::MIN,
         variable: ROW,

@@ -42,12 +42,12 @@ const THRUST: f32 = 20.0;
 const LEVEL_TORQUE: f32 = 20.0 * THRUST;
 const FORBIDDEN: f32 = 5.0 * LEVEL_TORQUE;
 
-/// Prices of roll, pitch and yaw beyond what their shortages give up: of the reserve of yaw, and of
-/// an axis that is reversed or exceeded. They are above all costs, so that anything else is given
-/// up first, and differ, so that the answer is unique where not even level flight is attainable.
+/// Prices per row of roll, pitch and yaw that no shortage covers: yaw within its reserve, and an
+/// axis that is reversed or exceeded. They are above all costs, so that these are given up last.
+/// They differ, so that the answer is unique where not even level flight is attainable.
 pub(super) const TORQUE_PRICES: [f32; 3] = [4e4, 3.7e4, 3.4e4];
 
-/// Requests are looked at up to this share of the authority, and thrust from just below none.
+/// Requests are limited to this share of the authority, thrust to a range from just below zero.
 const LIMIT: f32 = 1.1;
 const LEAST_THRUST: f32 = -0.05;
 const MOST_THRUST: f32 = 1.05;

@@ -34,7 +34,7 @@ use crate::desaturation::attainable::Corner;
 use crate::pair::rotors::Rotors;
 use crate::rolled;
 
-/// Slots further outside their bounds are brought back: of an edge's length, or of a row.
+/// Slots within this distance of their bounds are left alone: of an edge's length, or of a row.
 const TOLERANCE: f32 = 3e-5;
 const TOLERANCE_OF_POLYGON: f32 = 1e-5;
 

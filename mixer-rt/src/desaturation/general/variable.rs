@@ -35,7 +35,7 @@ const SEGMENT: [Corner; 2] = [
     },
 ];
 
-/// The point inside it that [`inside`] gives.
+/// A point inside [`SEGMENT`], for [`inside`].
 const MIDDLE: [f32; 2] = [0.5, 1.0];
 
 /// The set of a unit without rotors.
@@ -62,7 +62,7 @@ pub(super) enum Position {
 pub struct Variable {
     /// B: rows per coordinate.
     pub(super) columns: [[f32; 4]; 2],
-    /// B^T lambda and a bias: what more of each coordinate is worth.
+    /// B^T lambda plus the bias: gain of the objective per unit of each coordinate.
     pub(super) gain: [f32; 2],
     /// How the gain changes per unit of the dual step. On a segment, which has no second gain, the
     /// second is the torque of a single rotor's curve beyond its chord, N m.
