@@ -126,6 +126,27 @@ fn files_import_one_another_without_a_circle() {
     }
 }
 
+#[test]
+fn every_file_is_a_module() {
+    for package in ["mixer-rt", "mixer-compiler"] {
+        let mut found = BTreeMap::new();
+        files(&root().join(package).join("src"), &Vec::new(), &mut found);
+        for module in found.keys() {
+            let Some((name, above)) = module.split_last() else {
+                continue;
+            };
+            let declares = |file: &syn::File| {
+                let mut items = file.items.iter();
+                items.any(|item| matches!(item, Item::Mod(item) if item.ident == name))
+            };
+            assert!(
+                found.get(above).is_some_and(declares),
+                "{package}: nothing declares {module:?}"
+            );
+        }
+    }
+}
+
 /// The order of ARCHITECTURE.md.
 #[test]
 fn modules_of_the_compiler_use_only_those_before_them() {

@@ -5,8 +5,6 @@ use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
 use mixer_tests::request::{Frame, Request};
 
-use crate::regular_frames;
-
 /// Pairs of the airframes: the paper's, and those identified from bench maps.
 const PAIRS: [&str; 5] = [
     "isae-x8",
@@ -20,7 +18,7 @@ const PAIRS: [&str; 5] = [
 fn attainable_wrenches_are_delivered_at_any_voltage_and_order_of_channels() {
     const COUNT: usize = 2000;
     let mut random = Random::new(1);
-    for (name, places) in regular_frames() {
+    for (name, places) in frames::regular_frames() {
         let mut channels: Vec<usize> = (0..2 * places.len()).collect();
         random.shuffle(&mut channels);
         let text = frames::toml(&places, &channels, Options::default());

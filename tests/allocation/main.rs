@@ -40,15 +40,6 @@ use mixer_tests::request::{Frame, Request};
 /// Of the frames' `[voltage]`.
 const REFERENCE_V: f32 = 14.8;
 
-fn regular_frames() -> [(&'static str, Vec<Place>); 4] {
-    [
-        ("X8", frames::regular(4, 45.0)),
-        ("Y6", frames::regular(3, 60.0)),
-        ("X10", frames::regular(5, 0.0)),
-        ("X12", frames::regular(6, 30.0)),
-    ]
-}
-
 /// The number that an environment variable is set to, else `default`.
 fn number(variable: &str, default: u64) -> u64 {
     let set = std::env::var(variable);

@@ -6,11 +6,11 @@ use mixer_tests::frames::{self, AIRMODES, Options, Place};
 use mixer_tests::request::{Answer, Frame, Request};
 use proptest::prelude::*;
 
+use crate::REFERENCE_V;
 use crate::jumps::{self, Motion, neighbours};
 use crate::layout::{any_request, attainable_request, biased_layout};
 use crate::polygons::delivered;
 use crate::properties::{config, each, many, sound};
-use crate::{REFERENCE_V, regular_frames};
 use crate::{all_rotors, place};
 
 /// A usual bias of the paper's pair, N m per N.
@@ -149,7 +149,7 @@ fn tilted_frames_keep_their_wrench() {
 /// bit for bit those without.
 #[test]
 fn the_bias_fades_before_yaw_saturates() {
-    for (name, places) in regular_frames() {
+    for (name, places) in frames::regular_frames() {
         if name == "Y6" {
             continue; // no freedom in level flight
         }

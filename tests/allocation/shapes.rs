@@ -19,8 +19,8 @@ use mixer_tests::soundness;
 
 use crate::all_rotors;
 use crate::jumps::Motion;
+use crate::number;
 use crate::polygons::assert_is_optimal;
-use crate::{number, regular_frames};
 
 /// Made up: the lower rotor hardly adds thrust while the upper one is at full throttle, so that the
 /// set bends inwards there.
@@ -228,7 +228,7 @@ fn least_level_thrust(frame: &Frame, most: f64) -> f64 {
 fn judge(name: &str, pair: &str, count: usize) -> Tally {
     let mut tally = Tally::default();
     let mut random = Random::new(21);
-    for (frame_name, places) in regular_frames().into_iter().take(2) {
+    for (frame_name, places) in frames::regular_frames().into_iter().take(2) {
         for airmode in ["disabled", "roll-pitch"] {
             let mut channels: Vec<usize> = (0..2 * places.len()).collect();
             random.shuffle(&mut channels);

@@ -97,14 +97,8 @@ pub fn text(rows: &[Row]) -> String {
 /// # Errors
 /// A frame that does not compile.
 pub fn measure() -> Result<Vec<Row>, String> {
-    let shapes = [
-        ("X8", frames::regular(4, 45.0)),
-        ("Y6", frames::regular(3, 60.0)),
-        ("X10", frames::regular(5, 0.0)),
-        ("X12", frames::regular(6, 30.0)),
-    ];
     let mut rows = Vec::new();
-    for (name, places) in shapes {
+    for (name, places) in frames::regular_frames() {
         let compiled = frames::compile(&places, Options::default()).map_err(|faults| faults.to_string())?;
         rows.extend(compare(name, &compiled));
     }

@@ -53,6 +53,16 @@ pub struct Place {
     pub clockwise: bool,
 }
 
+/// Regular frames by name: an X8, a Y6, an X10 and an X12.
+pub fn regular_frames() -> [(&'static str, Vec<Place>); 4] {
+    [
+        ("X8", regular(4, 45.0)),
+        ("Y6", regular(3, 60.0)),
+        ("X10", regular(5, 0.0)),
+        ("X12", regular(6, 30.0)),
+    ]
+}
+
 /// Units at equal angles on a circle of 0.45 m radius, spins alternating, the first at `first_deg`
 /// from the nose.
 pub fn regular(units: usize, first_deg: f64) -> Vec<Place> {
