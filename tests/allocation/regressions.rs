@@ -81,6 +81,35 @@ fn assert_is_steady(frame: &Frame, [request, next]: [&Request; 2]) {
     assert!(change <= 0.02, "{change}: {answer:?}, then {moved:?}");
 }
 
+/// Yaw changes by no more than 1 % of its authority between the two.
+fn assert_yaw_is_steady(frame: &Frame, [request, next]: [&Request; 2]) {
+    let [answer, next] = [request, next].map(|request| request.mix(frame).expect("finite"));
+    let change = (answer.achieved[2] - next.achieved[2]).abs();
+    assert!(
+        change <= 0.01 * frame.authority[2],
+        "{request:?}: {:?} and {:?}",
+        answer.achieved,
+        next.achieved
+    );
+}
+
+/// Each request with the next one: of the list, or with 1e-4 more on the case's axis.
+fn neighbours(case: &Table, requests: &[Request]) -> Vec<[Request; 2]> {
+    let Some(axis) = case.get("neighbour") else {
+        assert!(requests.len() > 1, "a neighbour is missing");
+        return requests.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    };
+    let axes = ["roll", "pitch", "yaw", "thrust"];
+    let axis = axes.iter().position(|name| axis.as_str() == Some(name));
+    let axis = axis.expect("an axis");
+    let next = |request: &Request| {
+        let mut next = *request;
+        next.wrench[axis] *= 1.0 + 1e-4;
+        [*request, next]
+    };
+    requests.iter().map(next).collect()
+}
+
 /// No axis is reversed or exceeded.
 fn assert_is_sound(frame: &Frame, request: &Request) {
     let answer = request.mix(frame).expect("finite");
@@ -131,12 +160,12 @@ fn what_was_answered_badly_once_is_answered_well() {
             })
             .collect();
         match word(case, "expect") {
-            "steady" => {
-                assert!(requests.len() > 1, "a neighbour is missing");
-                for pair in requests.windows(2) {
-                    assert_is_steady(&frame, [&pair[0], &pair[1]]);
-                }
-            }
+            "steady" => neighbours(case, &requests)
+                .iter()
+                .for_each(|[request, next]| assert_is_steady(&frame, [request, next])),
+            "steady-yaw" => neighbours(case, &requests)
+                .iter()
+                .for_each(|[request, next]| assert_yaw_is_steady(&frame, [request, next])),
             "sound" => requests
                 .iter()
                 .for_each(|request| assert_is_sound(&frame, request)),
@@ -149,6 +178,9 @@ fn what_was_answered_badly_once_is_answered_well() {
             "optimal" => requests
                 .iter()
                 .for_each(|request| assert_is_optimal(&frame, request, Oracle::of_exact_polygons)),
+            "optimal-over-hulls" => requests
+                .iter()
+                .for_each(|request| assert_is_optimal(&frame, request, Oracle::of_polygons)),
             other => panic!("nothing is {other}"),
         }
         count += 1;
