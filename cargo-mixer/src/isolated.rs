@@ -1,6 +1,6 @@
-//! What flight stacks do with a coaxial frame today, for comparison: every rotor is taken as
-//! isolated. The report draws the conventional mixer; the crate `isolated-rotors` (`tests/`) has
-//! these two files for firmware and tests, and is not published.
+//! Mixers of today's flight stacks, for comparison. They take every rotor of a coaxial frame as
+//! isolated. The report draws the conventional one. The unpublished crate `tests/isolated-rotors`
+//! compiles these two files for firmware and the flight simulation.
 
 mod rotors;
 mod tables;

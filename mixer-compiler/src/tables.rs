@@ -1,4 +1,4 @@
-//! What is emitted, as values. M, M+, the pair, its inverse, the voltage laws and the polygon
+//! The emitted tables, as values. M, M+, the pair, its inverse, the voltage laws and the polygon
 //! become f32 here; the closed form does in `desaturation`, priorities and tolerances do in
 //! `selection`.
 //!

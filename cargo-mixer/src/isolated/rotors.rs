@@ -1,5 +1,4 @@
-//! What flight stacks do with a coaxial frame today, for comparison: every rotor is taken as
-//! isolated.
+//! Two mixers that take every rotor as isolated, on the tables of one frame.
 //!
 //! ```text
 //! thrust of a rotor     F = f(d, 0), the pair's map with the other rotor at rest

@@ -1,5 +1,6 @@
-//! The mixers that take every rotor of a coaxial frame as isolated, for firmware and tests. The
-//! files are those of `cargo mixer report`, which is published and cannot depend on this crate.
+//! The mixers that take every rotor of a coaxial frame as isolated, for firmware and the flight
+//! simulation. The files are those of `cargo mixer report`, which is published and cannot depend on
+//! this crate.
 #![cfg_attr(not(feature = "tables"), no_std)]
 
 #[path = "../../../cargo-mixer/src/isolated/rotors.rs"]

@@ -33,8 +33,8 @@ const MARGIN: f64 = 1e-5;
 /// the torque.
 const STEEPEST: f64 = 16.0;
 
-/// What the cells lose at most, as a share of the largest torque: beyond it the general path serves
-/// better.
+/// Largest loss of the cells, as a share of the largest torque. Beyond it the general path serves
+/// the airframe better.
 const MOST_LOST: f64 = 0.05;
 
 /// Both sides, Q_max(f) and -Q_min(f), at thrusts between the corners, as shares of the largest

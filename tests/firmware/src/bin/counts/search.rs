@@ -82,8 +82,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Changes values by up to 2^-`halvings` of themselves: 0 to 3 an axis, 4 the voltage, from 5 on all
-/// of them.
+/// Changes values by up to 2^-`halvings` of themselves: 0 to 3 an axis, 4 the voltage, from 5 on
+/// all of them.
 fn vary(random: &mut Random, mut request: Request, halvings: u32, which: u32) -> Request {
     let mut size = 1.0;
     for _ in 0..halvings {
