@@ -73,8 +73,11 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual,
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
-    let in_polygon = thrust_range::thrust_range(&airframe, &tables)?;
+    let (in_polygon, level) = thrust_range::thrust_range(&airframe, &tables)?;
     let (closed_form, lost_between_sides) = closed_form::table(&airframe, &effectiveness).unzip();
+    if closed_form.is_none() {
+        tables.level = level;
+    }
     tables.closed_form = closed_form;
     let thrust_range_n = thrust_range::delivered_range(&airframe, &tables, in_polygon);
     let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);

@@ -17,7 +17,7 @@ use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage;
 use crate::proof::residual::Residual;
 use crate::proof::{self, Certificate, CorrectionBounds};
-use crate::tables::{self, InverseTable, MixerTables, VoltageTable};
+use crate::tables::{self, InverseTable, LevelFlightTable, MixerTables, VoltageTable};
 
 /// An evaluator with its tables and what is known about them.
 #[derive(Clone, Debug)]
@@ -163,7 +163,8 @@ fn tolerance_at_reference(airframe: &Airframe, correction: &CorrectionBounds) ->
     std::array::from_fn(|k| stated[k] / correction.largest[k])
 }
 
-/// The tables of a fitted inverse. The closed form and the tolerance are filled in later.
+/// The tables of a fitted inverse. Level flight, the closed form and the tolerance are filled in
+/// later.
 fn assemble(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
@@ -180,10 +181,12 @@ fn assemble(
         throttle: tables::throttle_table(airframe),
         voltage,
         attainable: polygon.table(),
+        level: LevelFlightTable::default(),
         rows: rows(airframe, effectiveness, pair),
         desaturation: Desaturation {
             airmode: airframe.allocation.airmode,
             yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,
+            pivots: pivots(airframe.units.len(), effectiveness.is_vertical()),
         },
         power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n as f32,
         closed_form: None,
@@ -192,6 +195,13 @@ fn assemble(
             wrench: [0.0; 4],
         },
     }
+}
+
+/// Pivots of the general path while all rotors work: so many that about 1 saturated request in
+/// 20,000 needs more (random requests on regular frames). With tilted axes programmes are longer.
+fn pivots(units: usize, is_vertical: bool) -> u8 {
+    let units = units as u8;
+    8 + if is_vertical { units / 2 } else { units }
 }
 
 /// Units over authority per axis at the reference voltage, roll and pitch alike; 0 on axes that are

@@ -13,9 +13,9 @@ mod single;
 use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
-        AttainableSet, Biquadratic, ClosedForm, ClosedFormUnit, Corner, Cubic, Desaturation, Facets, Pair,
-        Quantity, Quartic, SHORTAGES, Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable,
-        Voltage, VoltageLaw,
+        AttainableSet, Biquadratic, ClosedForm, ClosedFormUnit, Corner, Cubic, Desaturation, Facets,
+        LevelFlight, Pair, Quantity, Quartic, SHORTAGES, Scalar, SingleRotor, Tables, ThrottleRange,
+        Tolerance, Unit, Variable, Voltage, VoltageLaw,
     },
 };
 
@@ -44,6 +44,8 @@ pub struct MixerTables {
     pub voltage: Option<VoltageTable>,
     /// A polygon inside the attainable set.
     pub attainable: AttainableTable,
+    /// Level flight.
+    pub level: LevelFlightTable,
     /// Rows of the general path per N m and N: [`mixer_rt::tables::Tables::rows`].
     pub rows: [f32; 4],
     /// Priorities of desaturation.
@@ -92,10 +94,52 @@ impl AttainableTable {
         }
     }
 
+    /// The set drawn in towards its centre by a share.
+    pub(crate) fn drawn_in(&self, share: f32) -> Self {
+        let n = self.corners.len();
+        let point = |k: usize| {
+            let at = self.corners[k % n].at;
+            [0, 1].map(|axis| at[axis] + share * (self.centre[axis] - at[axis]))
+        };
+        let corners = (0..n).map(|k| Corner::between(point(k + n - 1), point(k), point(k + 1)));
+        AttainableTable {
+            corners: corners.collect(),
+            ..*self
+        }
+    }
+
     /// The corners `[f, Q]`, N and N m.
     pub fn corners(&self) -> Vec<[f32; 2]> {
         let corner = |corner: &Corner| [corner.at[0] * self.scale[0], corner.at[1] * self.scale[1]];
         self.corners.iter().map(corner).collect()
+    }
+}
+
+/// Level flight of all units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LevelFlightTable {
+    /// Least and largest thrust, N at the reference voltage.
+    pub thrust_n: [f32; 2],
+    /// Every unit's efforts `[f, Q]` at these two, scaled as the attainable set.
+    pub efforts: Vec<[[f32; 2]; 2]>,
+}
+
+impl LevelFlightTable {
+    /// Rounds every unit's efforts (N, N m) at two thrusts (N).
+    pub fn new(thrust_n: [f32; 2], efforts: &[[[f64; 2]; 2]], scale: [f32; 2]) -> Self {
+        let scaled = |efforts: [f64; 2]| [0, 1].map(|k| (efforts[k] / f64::from(scale[k])) as f32);
+        LevelFlightTable {
+            thrust_n,
+            efforts: efforts.iter().map(|ends| ends.map(scaled)).collect(),
+        }
+    }
+
+    /// Level flight as `mixer-rt` reads it.
+    pub fn view(&self) -> LevelFlight<'_> {
+        LevelFlight {
+            thrust_n: self.thrust_n,
+            efforts: &self.efforts,
+        }
     }
 }
 
@@ -198,6 +242,7 @@ impl MixerTables {
             throttle: self.throttle,
             voltage: self.voltage.as_ref().map(VoltageTable::view),
             attainable: self.attainable.view(),
+            level: self.level.view(),
             rows: self.rows,
             desaturation: self.desaturation,
             power_bias_nm_per_n: self.power_bias_nm_per_n,
@@ -254,6 +299,7 @@ impl MixerTables {
             + 2 // throttle range
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
             + 4 + 7 * self.attainable.corners.len()
+            + 2 + 4 * self.level.efforts.len()
             + 4 // rows
             + self.closed_form.as_ref().map_or(0, ClosedFormTable::floats)
             + 2 // desaturation

@@ -35,6 +35,9 @@ pub struct Desaturation {
     pub airmode: Airmode,
     /// The yaw torque that is kept available before roll and pitch, N m, >= 0.
     pub yaw_reserve_nm: f32,
+    /// Pivots of the general path at most while all rotors work. Where they do not suffice, the
+    /// request is served by least norm as far as that goes.
+    pub pivots: u8,
 }
 
 /// Requests are limited to this torque (N m) and thrust (N): far beyond any rotor, and small enough

@@ -1,7 +1,7 @@
 //! The tables of one airframe as a whole.
 
 use crate::desaturation::Desaturation;
-use crate::desaturation::attainable::AttainableSet;
+use crate::desaturation::attainable::{AttainableSet, LevelFlight};
 use crate::desaturation::closed_form::NoClosedForm;
 use crate::pair::{Pair, SingleRotor, ThrottleRange};
 use crate::voltage::Voltage;
@@ -70,6 +70,8 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub voltage: Option<Voltage<'a>>,
     /// A polygon inside the attainable set.
     pub attainable: AttainableSet<'a>,
+    /// Efforts of level flight inside these polygons.
+    pub level: LevelFlight<'a>,
     /// Factors from roll, pitch, yaw (N m) and thrust (N) to the rows of the general path: number
     /// of units over the vehicle's authority on the axis at the reference voltage. Roll and pitch
     /// share the larger authority of the two; 0 on axes that the airframe does not serve.

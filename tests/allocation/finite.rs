@@ -112,6 +112,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         throttle: view.throttle,
         voltage: view.voltage,
         attainable: view.attainable,
+        level: view.level,
         rows: view.rows,
         desaturation: view.desaturation,
         power_bias_nm_per_n: view.power_bias_nm_per_n,

@@ -12,8 +12,8 @@ use proptest::test_runner::RngSeed;
 
 use crate::jumps::{self, Motion, neighbours};
 use crate::layout::{Draw, Layout, any_request, attainable_request, layout};
-use crate::out;
 use crate::polygons::delivered;
+use crate::{REFERENCE_V, out};
 
 /// Each layout takes a compilation, about 0.1 s.
 const LAYOUTS: u32 = 32;
@@ -59,9 +59,13 @@ pub(crate) fn each<D>(
 /// reversed or exceeded, (roll, pitch) in the direction asked, no thrust raised with airmode
 /// disabled.
 pub(crate) fn sound(frame: &Frame, draw: &Draw) -> Result<(), TestCaseError> {
-    let request = draw.of(frame);
+    sound_above(frame, &draw.of(frame), 0.0)
+}
+
+/// As [`sound`], but that the thrust may be raised to `least_n`.
+fn sound_above(frame: &Frame, request: &Request, least_n: f64) -> Result<(), TestCaseError> {
     let answer = request.mix(frame).expect("finite");
-    let fault = soundness::fault(frame, &request, &answer);
+    let fault = soundness::fault_above(frame, request, &answer, least_n);
     let fault = fault.map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
     prop_assert_eq!(fault, None, "{:?} -> {:?}", request, answer);
     Ok(())
@@ -78,6 +82,26 @@ proptest! {
     #[test]
     fn answers_with_rotors_out_are_sound(layout in layout(), draws in many(any_request(2), 100)) {
         each(&layout, &draws, sound)?;
+    }
+
+    /// Also where the pivots do not suffice, but that thrust is raised to stored level flight. With
+    /// tilted axes that is level at the reference voltage.
+    #[test]
+    fn answers_with_few_pivots_are_sound(layout in layout(), draws in many((any_request(0), 0u8..6), 200)) {
+        let frame = layout.frame().filter(|frame| frame.compiled.tables.closed_form.is_none());
+        let frame = frame.ok_or_else(|| TestCaseError::reject("no frame, or a closed form"))?;
+        for (draw, pivots) in &draws {
+            let mut compiled = frame.compiled.clone();
+            compiled.tables.desaturation.pivots = *pivots;
+            let frame = Frame::new(compiled);
+            let mut request = draw.of(&frame);
+            if !frame.compiled.effectiveness.is_vertical() {
+                request.volts = REFERENCE_V;
+            }
+            let level_n = f64::from(frame.compiled.tables.level.thrust_n[0]);
+            let least_n = level_n * frame.physics.factors(request.volts)[0];
+            sound_above(&frame, &request, least_n)?;
+        }
     }
 
     /// The wrench of throttles that keep 2 % off the ends of their range.

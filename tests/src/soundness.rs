@@ -18,9 +18,22 @@ const SLACK: f64 = 1e-3;
 /// # Errors
 /// The solver of the oracle gave up.
 pub fn fault(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<String>, microlp::Error> {
+    fault_above(frame, request, answer, 0.0)
+}
+
+/// As [`fault`], of an answer that may raise the thrust up to `least_thrust_n`.
+///
+/// # Errors
+/// The solver of the oracle gave up.
+pub fn fault_above(
+    frame: &Frame,
+    request: &Request,
+    answer: &Answer,
+    least_thrust_n: f64,
+) -> Result<Option<String>, microlp::Error> {
     match fault_of_form(frame, request, answer) {
         Some(fault) => Ok(Some(fault)),
-        None => overstepping(frame, request, answer),
+        None => overstepping(frame, request, answer, least_thrust_n),
     }
 }
 
@@ -88,7 +101,12 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
 /// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode
 /// "disabled" does not raise the thrust beyond the request or the floor: all where roll = pitch = 0
 /// is attainable at all within the yaw asked and its reserve.
-fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<String>, microlp::Error> {
+fn overstepping(
+    frame: &Frame,
+    request: &Request,
+    answer: &Answer,
+    least_thrust_n: f64,
+) -> Result<Option<String>, microlp::Error> {
     let served = frame.served();
     let mut asked = request.asked();
     for (asked, _) in asked.iter_mut().zip(served).filter(|(_, served)| !served) {
@@ -133,7 +151,7 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Opt
         return Ok(None);
     };
     // The mixer's own floor is that of what it has of the attainable set.
-    let most = floor + ALLOWED * frame.authority[3];
+    let most = floor.max(least_thrust_n) + ALLOWED * frame.authority[3];
     if raised && answer.achieved[3] > most {
         let given = answer.achieved[3];
         fault = Some(format!(

@@ -30,14 +30,7 @@ pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Optio
     let n = airframe.units.len();
     let allocation = &airframe.allocation;
     let matrix = &effectiveness.matrix;
-    let vertical = (0..n).all(|i| {
-        matrix[(2, i)] == 0.0
-            && matrix[(3, i)] == 1.0
-            && matrix[(0, n + i)] == 0.0
-            && matrix[(1, n + i)] == 0.0
-            && matrix[(2, n + i)].abs() == 1.0
-            && matrix[(3, n + i)] == 0.0
-    });
+    let vertical = effectiveness.is_vertical();
     let levers = [Axis::Roll, Axis::Pitch].map(|axis| allocation.controls(axis));
     let free: Vec<Vector3<f64>> = [Vector3::x(), Vector3::y()]
         .into_iter()

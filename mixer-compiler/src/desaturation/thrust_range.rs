@@ -1,10 +1,12 @@
-//! The range of bare thrust, by the mixer itself: a frame that cannot hover is refused.
+//! The range of bare thrust and level flight at its ends, by the mixer itself: a frame that cannot
+//! hover is refused.
 
 use mixer_rt::{Axis, Direction, Saturation, Wrench, tables::Airmode};
 
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Unit};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::tables::MixerTables;
+use crate::model::PairMap;
+use crate::tables::{AnyMix, LevelFlightTable, MixerTables};
 
 /// More thrust than any airframe has, N.
 const BEYOND_N: f32 = 1e5;
@@ -12,35 +14,55 @@ const BEYOND_N: f32 = 1e5;
 /// Halvings of the thrusts between one that is delivered and one that is not.
 const HALVINGS: usize = 24;
 
+/// Share by which the polygon is drawn in for level flight. With tilted axes level flight depends on
+/// the voltage: this is room to correct it.
+const ROOM: f32 = 0.03;
+
 /// Least and largest thrust without roll, pitch and yaw, N at the reference voltage, within the
-/// polygon that the general path knows of the attainable set.
+/// polygon that the general path knows of the attainable set. Then level flight at such ends, inside
+/// the polygon by [`ROOM`] where the frame has as much.
 ///
 /// # Errors
 /// A layout that cannot hover: at no thrust, or at a single one only, the served torques vanish.
-pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<[f32; 2], Vec<Diagnostic>> {
-    // In this airmode thrust is given up before the torques.
+pub(crate) fn thrust_range(
+    airframe: &Airframe,
+    tables: &MixerTables,
+) -> Result<([f32; 2], LevelFlightTable), Vec<Diagnostic>> {
+    // Thrust is given up before the torques, with as many pivots as that takes.
     let mut tables = tables.clone();
     tables.desaturation.airmode = Airmode::RollPitchYaw;
-    let bare = |thrust_n: f32| {
-        let (achieved, saturation) = mix_bare(airframe, &tables, thrust_n)?;
-        let level = airframe
-            .allocation
-            .axes
-            .iter()
-            .filter(|&&axis| axis != Axis::Thrust)
-            .all(|&axis| !saturated(saturation, axis));
-        level.then_some(achieved.thrust_n)
-    };
-    match (bare(0.0), bare(BEYOND_N)) {
-        (Some(floor), Some(ceiling)) if floor < ceiling => Ok([floor, ceiling]),
-        _ => Err(vec![airframe.diagnostic(
+    tables.desaturation.pivots = u8::MAX;
+    let level = level_flight(airframe, &tables).ok_or_else(|| {
+        vec![airframe.diagnostic(
             Code::Hover,
             "unit",
             "no thrust is attainable without roll, pitch or yaw".to_owned(),
             "",
             "check positions, spins and thrust axes: the units must balance each other, each with a torque near zero",
-        )]),
-    }
+        )]
+    })?;
+    tables.attainable = tables.attainable.drawn_in(ROOM);
+    Ok((level.thrust_n, level_flight(airframe, &tables).unwrap_or(level)))
+}
+
+/// Level flight at the least and the largest thrust; `None` where these are not two.
+fn level_flight(airframe: &Airframe, tables: &MixerTables) -> Option<LevelFlightTable> {
+    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+    let end = |thrust_n: f32| {
+        let (throttle, achieved, saturation) = mix_bare(airframe, tables, thrust_n)?;
+        let mut axes = airframe.allocation.axes.iter();
+        let is_level = axes.all(|&axis| axis == Axis::Thrust || !saturated(saturation, axis));
+        let efforts = |unit: &Unit| {
+            let throttles = [unit.upper_channel, unit.lower_channel].map(|channel| throttle[channel]);
+            pair.efforts(throttles.map(f64::from))
+        };
+        let efforts: Vec<[f64; 2]> = airframe.units.iter().map(efforts).collect();
+        is_level.then_some((achieved.thrust_n, efforts))
+    };
+    let ((least_n, at_least), (largest_n, at_largest)) = (end(0.0)?, end(BEYOND_N)?);
+    let efforts: Vec<[[f64; 2]; 2]> = at_least.into_iter().zip(at_largest).map(Into::into).collect();
+    let level = || LevelFlightTable::new([least_n, largest_n], &efforts, tables.attainable.scale);
+    (least_n < largest_n).then(level)
 }
 
 /// [`thrust_range`] of the tables that are emitted. Their closed form may cover more of the
@@ -58,7 +80,7 @@ pub(crate) fn delivered_range(
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
             match mix_bare(airframe, tables, middle) {
-                Some((achieved, saturation)) if !saturation.any_axis() => {
+                Some((_, achieved, saturation)) if !saturation.any_axis() => {
                     (inside, reached) = (middle, achieved.thrust_n);
                 }
                 _ => outside = middle,
@@ -70,15 +92,14 @@ pub(crate) fn delivered_range(
     [end(floor, floor - span), end(ceiling, ceiling + span)]
 }
 
-/// Achieved wrench and saturation of a request for thrust alone at the reference voltage.
-fn mix_bare(airframe: &Airframe, tables: &MixerTables, thrust_n: f32) -> Option<(Wrench, Saturation)> {
+/// Throttles, achieved wrench and saturation of a request for thrust alone at the reference voltage.
+fn mix_bare(airframe: &Airframe, tables: &MixerTables, thrust_n: f32) -> Option<AnyMix> {
     let voltage_v = airframe.reference_v() as f32;
     let setpoint = Wrench {
         thrust_n,
         ..Wrench::default()
     };
-    let (_, achieved, saturation) = tables.mix(&setpoint, voltage_v).ok()?;
-    Some((achieved, saturation))
+    tables.mix(&setpoint, voltage_v).ok()
 }
 
 fn saturated(saturation: Saturation, axis: Axis) -> bool {

@@ -73,6 +73,20 @@ impl Effectiveness {
             condition: largest / smallest,
         })
     }
+
+    /// True where all axes are vertical: thrusts give no yaw, torques nothing else.
+    pub fn is_vertical(&self) -> bool {
+        let n = self.matrix.ncols() / 2;
+        let matrix = &self.matrix;
+        (0..n).all(|i| {
+            matrix[(2, i)] == 0.0
+                && matrix[(3, i)] == 1.0
+                && matrix[(0, n + i)] == 0.0
+                && matrix[(1, n + i)] == 0.0
+                && matrix[(2, n + i)].abs() == 1.0
+                && matrix[(3, n + i)] == 0.0
+        })
+    }
 }
 
 /// M of the layout.

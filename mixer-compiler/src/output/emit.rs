@@ -5,8 +5,8 @@ use quote::quote;
 
 use crate::compiled::Compiled;
 use crate::tables::{
-    AttainableTable, BorderTable, ClosedFormTable, InverseTable, LawTable, MixerTables, QuantityTable,
-    SeedTable,
+    AttainableTable, BorderTable, ClosedFormTable, InverseTable, LawTable, LevelFlightTable, MixerTables,
+    QuantityTable, SeedTable,
 };
 use mixer_rt::tables::{BilinearSeed, CubicSeed, Facets, QuadraticSeed};
 
@@ -184,12 +184,14 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let (min, max) = (float(tables.throttle.min), float(tables.throttle.max));
     let voltage = voltage(tables);
     let attainable = attainable(&tables.attainable);
+    let level = level(&tables.level);
     let rows = vector(&tables.rows);
     let closed_form = closed_form(tables.closed_form.as_ref());
     let [basis, inverse_type, closed_form_type] = types(tables);
     let limits = &tables.desaturation;
     let airmode = identifier(&format!("{:?}", limits.airmode));
     let reserve = float(limits.yaw_reserve_nm);
+    let pivots = Literal::u8_unsuffixed(limits.pivots);
     let power_bias = float(tables.power_bias_nm_per_n);
     let efforts = vector(&tables.tolerance.efforts);
     let wrench = vector(&tables.tolerance.wrench);
@@ -206,6 +208,8 @@ fn tables(tables: &MixerTables) -> TokenStream {
         const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = #voltage;
         /// A polygon inside a unit's attainable set.
         const ATTAINABLE: tables::AttainableSet<'static> = #attainable;
+        /// Level flight, which the general path retreats to.
+        const LEVEL: tables::LevelFlight<'static> = #level;
         /// The closed form of desaturation, where there is one.
         const CLOSED_FORM: #closed_form_type = #closed_form;
 
@@ -219,10 +223,12 @@ fn tables(tables: &MixerTables) -> TokenStream {
             throttle: tables::ThrottleRange { min: #min, max: #max },
             voltage: VOLTAGE,
             attainable: ATTAINABLE,
+            level: LEVEL,
             rows: #rows,
             desaturation: tables::Desaturation {
                 airmode: tables::Airmode::#airmode,
                 yaw_reserve_nm: #reserve,
+                pivots: #pivots,
             },
             power_bias_nm_per_n: #power_bias,
             closed_form: CLOSED_FORM,
@@ -320,6 +326,15 @@ fn attainable(set: &AttainableTable) -> TokenStream {
         quote!(tables::Corner { at: #at, edge: #edge, back: #back, bound: #bound })
     });
     quote!(tables::AttainableSet { scale: #scale, centre: #centre, corners: &[#(#corners),*] })
+}
+
+fn level(level: &LevelFlightTable) -> TokenStream {
+    let thrust = vector(&level.thrust_n);
+    let efforts = level.efforts.iter().map(|ends| {
+        let [least, largest] = ends.map(|efforts| vector(&efforts));
+        quote!([#least, #largest])
+    });
+    quote!(tables::LevelFlight { thrust_n: #thrust, efforts: &[#(#efforts),*] })
 }
 
 /// Types of the pair's basis, of the inverse map and of the closed form.

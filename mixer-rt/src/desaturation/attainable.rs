@@ -50,3 +50,14 @@ pub struct AttainableSet<'a> {
     /// The corners, anticlockwise, three to eight.
     pub corners: &'a [Corner],
 }
+
+/// Level flight with all rotors, which the general path retreats to where its pivots do not
+/// suffice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelFlight<'a> {
+    /// Least and largest thrust, N at the reference voltage.
+    pub thrust_n: [f32; 2],
+    /// Every unit's efforts at these two, scaled, inside its polygon. Empty where there is a closed
+    /// form.
+    pub efforts: &'a [[[f32; 2]; 2]],
+}

@@ -16,12 +16,18 @@
 //! ```text
 //! 1. efforts of least norm; where they are inside all polygons they are the answer
 //! 2. the programme for the request; the curves of single rotors take the place of their chords
-//! 3. where the budget of pivots ends first: the programme for level flight at the thrust asked
-//! 4. towards the efforts of least norm as far as the polygons allow
+//! 3. towards the efforts of least norm as far as the polygons allow
+//! ```
+//!
+//! Where the budget of pivots ends before the programme of 2 is solved:
+//!
+//! ```text
+//! all rotors work   from stored level flight towards the request as far as the polygons allow
+//! rotors are out    the programme for level flight at the thrust asked
 //! ```
 //!
 //! A small bias on every unit's efforts makes the optimum unique, so that it is a Lipschitz
-//! function of the request. The step of 4 is complete where 1 would have answered, hence nothing
+//! function of the request. The step of 3 is complete where 1 would have answered, hence nothing
 //! jumps there.
 //!
 //! So that requests within the attainable set do not end at corners, the programme looks beyond
@@ -30,8 +36,9 @@
 //!
 //! # Bound
 //!
-//! [`PIVOTS`] and [`FLIPS`] bound the work of 2 and 3, [`ROUNDS`] that of the curves. No loop
-//! depends on anything else than these, the number of units and the corners of polygons.
+//! [`Desaturation::pivots`](crate::desaturation::Desaturation::pivots) and [`FLIPS`] bound the work
+//! of 2 while all rotors work. With rotors out the budgets below and [`ROUNDS`] do. No loop depends
+//! on anything else than these, the number of units and the corners of polygons.
 
 use core::hint::black_box;
 
@@ -46,27 +53,21 @@ pub use variable::Variable;
 use crate::layout::{Tables, Unit};
 use crate::pair::Quantity;
 use crate::pair::rotors::Rotors;
-use crate::rolled;
+use crate::{clamp, rolled};
 use shortage::RAY;
 use simplex::{Budget, Simplex};
 use variable::{between, inside, positive};
 
-/// Pivots of the general path at most, level flight included.
-pub const PIVOTS: u8 = BUDGET.pivots + LEVEL_BUDGET.pivots;
-
-/// Moves of units and shortages to other corners at most, level flight included.
-pub const FLIPS: u8 = BUDGET.flips + LEVEL_BUDGET.flips;
+/// Moves of units and shortages to other corners at most in the programme for the request.
+pub const FLIPS: u8 = 48;
 
 /// Rounds at most in which the curves of single rotors take the place of their chords.
 const ROUNDS: u8 = 3;
 
-/// Budget of the programme for the request.
-const BUDGET: Budget = Budget {
-    pivots: 16,
-    flips: 64,
-};
+/// Pivots of the programme for the request with rotors out.
+const PIVOTS_WITH_ROTORS_OUT: u8 = 16;
 
-/// Budget of the programme for level flight, which is solved where that of the request ends first.
+/// Budget of the programme for level flight with rotors out, where that of the request ends first.
 /// In 600,000 trials over 15 frames and healths level flight took 13 pivots and 29 moves at most.
 const LEVEL_BUDGET: Budget = Budget {
     pivots: 14,
@@ -75,6 +76,17 @@ const LEVEL_BUDGET: Budget = Budget {
 
 /// Largest distance of a single rotor's torque from its curve, as a share of the torque's scale.
 const TOUCHING: f32 = 1e-4;
+
+/// How units move by the efforts of least norm for a wrench.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// From the centre to these efforts. Their coordinates mean nothing if they do not arrive.
+    FromCentreTo,
+    /// From where they are to these efforts.
+    To,
+    /// From where they are by these efforts.
+    By,
+}
 
 /// A frame at one voltage.
 struct Frame<'a, 't, P, I, S> {
@@ -103,7 +115,7 @@ pub(crate) fn allocate<P: Quantity, I, S>(
     // With the tables known the compiler would write every loop over them out.
     let frame = Frame::new(black_box(tables), factors, is_whole);
     let units = variables.len().saturating_sub(SHORTAGES);
-    let is_least_norm = is_whole && frame.towards_least_norm(request, variables, true);
+    let is_least_norm = is_whole && frame.move_by_least_norm(request, variables, Way::FromCentreTo);
     if !is_least_norm {
         frame.serve(request, variables, units);
     }
@@ -141,21 +153,21 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         [[high[0] - low[0], high[1] - low[1]], low]
     }
 
-    /// Moves units towards the efforts of least norm for a wrench in N m and N, as far as all
-    /// polygons allow; true if they arrive. With `from_centre` they start at the centre; then their
-    /// coordinates mean nothing if they do not arrive.
+    /// Moves units by or to the efforts of least norm for a wrench in N m and N, as far as all
+    /// polygons allow; true if they arrive.
     #[inline(never)]
-    fn towards_least_norm(&self, wrench: &[f32; 4], variables: &mut [Variable], from_centre: bool) -> bool {
+    fn move_by_least_norm(&self, wrench: &[f32; 4], variables: &mut [Variable], way: Way) -> bool {
         let attainable = &self.tables.attainable;
         let per_effort = [0, 1].map(|k| 1.0 / (self.factors[k] * attainable.scale[k]));
         let mut share = 1.0;
         for (unit, table) in variables.iter_mut().zip(self.tables.units) {
             rolled();
-            if from_centre {
+            if way == Way::FromCentreTo {
                 unit.at = attainable.centre;
             }
             let efforts = table.efforts(wrench);
-            unit.rate = [0, 1].map(|k| efforts[k] * per_effort[k] - unit.at[k]);
+            let start = if way == Way::By { [0.0; 2] } else { unit.at };
+            unit.rate = [0, 1].map(|k| efforts[k] * per_effort[k] - start[k]);
             for corner in attainable.corners {
                 rolled();
                 let out = corner.outward(unit.rate);
@@ -163,7 +175,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
                     let room = positive(-corner.beyond(unit.at));
                     if share * out > room {
                         share = room / out;
-                        if from_centre {
+                        if way == Way::FromCentreTo {
                             return false;
                         }
                     }
@@ -209,10 +221,39 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         let mut wanted = [0, 1, 2, 3].map(|k| request[k] * self.rows[k]);
         let rounds = if self.is_whole { 0 } else { ROUNDS };
         let Some(share) = self.programme(&mut wanted, &centre, variables, rounds) else {
-            self.level(wanted[3], variables.get_mut(..units).unwrap_or_default());
+            if self.is_whole {
+                self.retreat(request, variables);
+            } else {
+                self.level(wanted[3], variables.get_mut(..units).unwrap_or_default());
+            }
             return;
         };
         self.draw_back(share, variables, units);
+    }
+
+    /// Takes the units from the stored level flight nearest the thrust asked towards the torques
+    /// asked, as far as the polygons allow. So no axis is reversed or exceeded, and the direction of
+    /// (roll, pitch) is kept, whatever the programme has come to.
+    #[inline(never)]
+    fn retreat(&self, &[roll, pitch, yaw, thrust]: &[f32; 4], variables: &mut [Variable]) {
+        let level = &self.tables.level;
+        let [least, largest] = level.thrust_n;
+        let share = clamp((thrust / self.factors[0] - least) / (largest - least), 0.0, 1.0);
+        let mut wrench = [0.0; 4];
+        for ((unit, table), [at_least, at_largest]) in
+            variables.iter_mut().zip(self.tables.units).zip(level.efforts)
+        {
+            rolled();
+            unit.at = between(*at_least, *at_largest, share);
+            let scale = self.tables.attainable.scale;
+            table.add_wrench([0, 1].map(|k| scale[k] * unit.at[k]), self.factors, &mut wrench);
+        }
+        // With tilted axes the stored efforts are level at the reference voltage only.
+        for torques in [wrench.map(|axis| -axis), [roll, pitch, yaw, 0.0]] {
+            rolled();
+            let [roll, pitch, yaw, _] = torques;
+            self.move_by_least_norm(&[roll, pitch, yaw, 0.0], variables, Way::By);
+        }
     }
 
     /// Draws the units back to a share of the way from their centres, and from there moves them
@@ -231,7 +272,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
                 let row = self.rows[k];
                 if row > 0.0 { -less[k] / row } else { 0.0 }
             });
-            self.towards_least_norm(&wrench, variables, false);
+            self.move_by_least_norm(&wrench, variables, Way::To);
         }
     }
 
@@ -248,6 +289,11 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     ) -> Option<f32> {
         let units = variables.len().saturating_sub(SHORTAGES);
         let desaturation = &self.tables.desaturation;
+        let pivots = if self.is_whole {
+            desaturation.pivots
+        } else {
+            PIVOTS_WITH_ROTORS_OUT
+        };
         let reserve = desaturation.yaw_reserve_nm * self.rows[2];
         shortage::write(variables, units, wanted, centre, desaturation.airmode, reserve);
         let mut simplex = Simplex::start(
@@ -256,7 +302,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             wanted,
             centre,
             desaturation.airmode,
-            BUDGET,
+            Budget { pivots, flips: FLIPS },
         );
         let mut share = None;
         while simplex.solve() {

@@ -64,13 +64,13 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     }
 }
 
-/// The general path with all rotors: least norm, the pivots and flips that are allowed for the
-/// request and for level flight, and what follows them.
+/// The general path with all rotors: least norm, the pivots and flips that are allowed, and what
+/// follows them.
 fn general(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let n = compiled.tables.units.len() as u32;
     let unit = compiled.evaluator.instructions(basis)? + forward(basis) + GENERAL_UNIT;
-    let pivots = u32::from(mixer_rt::tables::PIVOTS) * (PIVOT + n * PIVOT_UNIT);
+    let pivots = u32::from(compiled.tables.desaturation.pivots) * (PIVOT + n * PIVOT_UNIT);
     let flips = u32::from(mixer_rt::tables::FLIPS) * (FLIP + n * FLIP_UNIT);
     let voltage = if compiled.airframe.voltage.is_some() {
         PER_VOLTAGE
