@@ -73,7 +73,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual,
         certificate,
     } = selection::select(&airframe, &effectiveness, voltage)?;
-    let (in_polygon, level) = thrust_range::thrust_range(&airframe, &tables)?;
+    let (in_polygon, level) = thrust_range::thrust_range(&airframe, &effectiveness, &tables)?;
     let (closed_form, lost_between_sides) = closed_form::table(&airframe, &effectiveness).unzip();
     if closed_form.is_none() {
         tables.level = level;

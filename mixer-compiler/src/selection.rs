@@ -4,7 +4,7 @@ mod refusal;
 
 use mixer_rt::{
     Axis,
-    tables::{Desaturation, Tolerance},
+    tables::{Budget, Desaturation, Tolerance},
 };
 
 use crate::airframe::Airframe;
@@ -186,7 +186,7 @@ fn assemble(
         desaturation: Desaturation {
             airmode: airframe.allocation.airmode,
             yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,
-            pivots: pivots(airframe.units.len(), effectiveness.is_vertical()),
+            budget: budget(airframe.units.len(), effectiveness.is_vertical()),
         },
         power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n as f32,
         closed_form: None,
@@ -197,11 +197,26 @@ fn assemble(
     }
 }
 
-/// Pivots of the general path while all rotors work: so many that about 1 saturated request in
-/// 20,000 needs more (random requests on regular frames). With tilted axes programmes are longer.
-fn pivots(units: usize, is_vertical: bool) -> u8 {
-    let units = units as u8;
-    8 + if is_vertical { units / 2 } else { units }
+/// Work of the general path while all rotors work. With vertical axes a mix takes at most 20,000
+/// instructions up to four units and 30,000 up to eight; with tilted axes 30,000 up to six units and
+/// 45,000 up to eight (`docs/costs.md`). Of 100,000 saturated requests on a regular frame of eight
+/// units about 150 need more; of as many on a frame of six about 30.
+fn budget(units: usize, is_vertical: bool) -> Budget {
+    let units = u8::try_from(units).unwrap_or(u8::MAX);
+    match (is_vertical, units) {
+        (true, ..=8) => Budget {
+            pivots: if units <= 4 { 9 } else { 10 },
+            flips: 96 - 8 * units,
+        },
+        (false, ..=8) => Budget {
+            pivots: 8 + units,
+            flips: 48,
+        },
+        (_, more) => Budget {
+            pivots: more.saturating_add(8),
+            flips: more.saturating_mul(8),
+        },
+    }
 }
 
 /// Units over authority per axis at the reference voltage, roll and pitch alike; 0 on axes that are

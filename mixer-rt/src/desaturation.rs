@@ -35,9 +35,19 @@ pub struct Desaturation {
     pub airmode: Airmode,
     /// The yaw torque that is kept available before roll and pitch, N m, >= 0.
     pub yaw_reserve_nm: f32,
-    /// Pivots of the general path at most while all rotors work. Where they do not suffice, the
-    /// request is served by least norm as far as that goes.
+    /// Work of the general path at most while all rotors work. Where it does not suffice, the
+    /// request is served from stored level flight by least norm, as far as that goes.
+    pub budget: Budget,
+}
+
+/// Work of the simplex method at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Pivots.
     pub pivots: u8,
+    /// Moves of units and shortages to other corners of their sets. Where these are used up, pivots
+    /// take shorter steps.
+    pub flips: u8,
 }
 
 /// Requests are limited to this torque (N m) and thrust (N): far beyond any rotor, and small enough

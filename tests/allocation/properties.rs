@@ -92,7 +92,7 @@ proptest! {
         let frame = frame.ok_or_else(|| TestCaseError::reject("no frame, or a closed form"))?;
         for (draw, pivots) in &draws {
             let mut compiled = frame.compiled.clone();
-            compiled.tables.desaturation.pivots = *pivots;
+            compiled.tables.desaturation.budget.pivots = *pivots;
             let frame = Frame::new(compiled);
             let mut request = draw.of(&frame);
             if !frame.compiled.effectiveness.is_vertical() {

@@ -1,11 +1,13 @@
 //! The range of bare thrust and level flight at its ends, by the mixer itself: a frame that cannot
 //! hover is refused.
 
-use mixer_rt::{Axis, Direction, Saturation, Wrench, tables::Airmode};
+use mixer_rt::tables::{Airmode, Budget};
+use mixer_rt::{Axis, Direction, Saturation, Wrench};
 
 use crate::airframe::{Airframe, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
 use crate::tables::{AnyMix, LevelFlightTable, MixerTables};
 
 /// More thrust than any airframe has, N.
@@ -19,19 +21,23 @@ const HALVINGS: usize = 24;
 const ROOM: f32 = 0.03;
 
 /// Least and largest thrust without roll, pitch and yaw, N at the reference voltage, within the
-/// polygon that the general path knows of the attainable set. Then level flight at such ends, inside
-/// the polygon by [`ROOM`] where the frame has as much.
+/// polygon that the general path knows of the attainable set. Then level flight there; with tilted
+/// axes inside the polygon by [`ROOM`] where the frame has as much.
 ///
 /// # Errors
 /// A layout that cannot hover: at no thrust, or at a single one only, the served torques vanish.
 pub(crate) fn thrust_range(
     airframe: &Airframe,
+    effectiveness: &Effectiveness,
     tables: &MixerTables,
 ) -> Result<([f32; 2], LevelFlightTable), Vec<Diagnostic>> {
-    // Thrust is given up before the torques, with as many pivots as that takes.
+    // Thrust is given up before the torques, in as many steps as that takes.
     let mut tables = tables.clone();
     tables.desaturation.airmode = Airmode::RollPitchYaw;
-    tables.desaturation.pivots = u8::MAX;
+    tables.desaturation.budget = Budget {
+        pivots: u8::MAX,
+        flips: u8::MAX,
+    };
     let level = level_flight(airframe, &tables).ok_or_else(|| {
         vec![airframe.diagnostic(
             Code::Hover,
@@ -41,8 +47,12 @@ pub(crate) fn thrust_range(
             "check positions, spins and thrust axes: the units must balance each other, each with a torque near zero",
         )]
     })?;
+    let range_n = level.thrust_n;
+    if effectiveness.is_vertical() {
+        return Ok((range_n, level));
+    }
     tables.attainable = tables.attainable.drawn_in(ROOM);
-    Ok((level.thrust_n, level_flight(airframe, &tables).unwrap_or(level)))
+    Ok((range_n, level_flight(airframe, &tables).unwrap_or(level)))
 }
 
 /// Level flight at the least and the largest thrust; `None` where these are not two.

@@ -191,7 +191,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let limits = &tables.desaturation;
     let airmode = identifier(&format!("{:?}", limits.airmode));
     let reserve = float(limits.yaw_reserve_nm);
-    let pivots = Literal::u8_unsuffixed(limits.pivots);
+    let [pivots, flips] = [limits.budget.pivots, limits.budget.flips].map(Literal::u8_unsuffixed);
     let power_bias = float(tables.power_bias_nm_per_n);
     let efforts = vector(&tables.tolerance.efforts);
     let wrench = vector(&tables.tolerance.wrench);
@@ -228,7 +228,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
             desaturation: tables::Desaturation {
                 airmode: tables::Airmode::#airmode,
                 yaw_reserve_nm: #reserve,
-                pivots: #pivots,
+                budget: tables::Budget { pivots: #pivots, flips: #flips },
             },
             power_bias_nm_per_n: #power_bias,
             closed_form: CLOSED_FORM,

@@ -36,9 +36,9 @@
 //!
 //! # Bound
 //!
-//! [`Desaturation::pivots`](crate::desaturation::Desaturation::pivots) and [`FLIPS`] bound the work
-//! of 2 while all rotors work. With rotors out the budgets below and [`ROUNDS`] do. No loop depends
-//! on anything else than these, the number of units and the corners of polygons.
+//! [`Desaturation::budget`](crate::desaturation::Desaturation::budget) bounds the work of 2 while
+//! all rotors work. With rotors out the budgets below and [`ROUNDS`] do. No loop depends on anything
+//! else than these, the number of units and the corners of polygons.
 
 use core::hint::black_box;
 
@@ -50,22 +50,23 @@ mod variable;
 pub use shortage::SHORTAGES;
 pub use variable::Variable;
 
+use crate::desaturation::Budget;
 use crate::layout::{Tables, Unit};
 use crate::pair::Quantity;
 use crate::pair::rotors::Rotors;
 use crate::{clamp, rolled};
 use shortage::RAY;
-use simplex::{Budget, Simplex};
+use simplex::Simplex;
 use variable::{between, inside, positive};
-
-/// Moves of units and shortages to other corners at most in the programme for the request.
-pub const FLIPS: u8 = 48;
 
 /// Rounds at most in which the curves of single rotors take the place of their chords.
 const ROUNDS: u8 = 3;
 
-/// Pivots of the programme for the request with rotors out.
-const PIVOTS_WITH_ROTORS_OUT: u8 = 16;
+/// Budget of the programme for the request with rotors out.
+const BUDGET_WITH_ROTORS_OUT: Budget = Budget {
+    pivots: 16,
+    flips: 64,
+};
 
 /// Budget of the programme for level flight with rotors out, where that of the request ends first.
 /// In 600,000 trials over 15 frames and healths level flight took 13 pivots and 29 moves at most.
@@ -133,7 +134,8 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         let [roll, pitch, yaw, lift] = tables.rows;
         Frame {
             tables,
-            rows: [roll / thrust, pitch / thrust, yaw / torque, lift / thrust],
+            // In memory: registers that hold them across calls would have to be saved.
+            rows: black_box([roll / thrust, pitch / thrust, yaw / torque, lift / thrust]),
             factors: [thrust, torque],
             is_whole,
         }
@@ -166,15 +168,17 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
                 unit.at = attainable.centre;
             }
             let efforts = table.efforts(wrench);
-            let start = if way == Way::By { [0.0; 2] } else { unit.at };
-            unit.rate = [0, 1].map(|k| efforts[k] * per_effort[k] - start[k]);
+            let at = unit.at;
+            let start = if way == Way::By { [0.0; 2] } else { at };
+            let rate = [0, 1].map(|k| efforts[k] * per_effort[k] - start[k]);
+            unit.rate = rate;
             for corner in attainable.corners {
                 rolled();
-                let out = corner.outward(unit.rate);
+                let out = corner.outward(rate);
                 if out > 0.0 {
-                    let room = positive(-corner.beyond(unit.at));
-                    if share * out > room {
-                        share = room / out;
+                    let beyond = corner.beyond(at);
+                    if share * out + beyond > 0.0 {
+                        share = positive(-beyond) / out;
                         if way == Way::FromCentreTo {
                             return false;
                         }
@@ -231,29 +235,39 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         self.draw_back(share, variables, units);
     }
 
+    /// The wrench of all units, N m and N. Both rotors of each work.
+    #[inline(never)]
+    fn wrench(&self, variables: &[Variable]) -> [f32; 4] {
+        let scale = self.tables.attainable.scale;
+        let mut wrench = [0.0; 4];
+        for (unit, table) in black_box(variables).iter().zip(self.tables.units) {
+            rolled();
+            let efforts = [0, 1].map(|k| scale[k] * unit.at[k]);
+            table.add_wrench(efforts, self.factors, &mut wrench);
+        }
+        wrench
+    }
+
     /// Takes the units from the stored level flight nearest the thrust asked towards the torques
     /// asked, as far as the polygons allow. So no axis is reversed or exceeded, and the direction of
     /// (roll, pitch) is kept, whatever the programme has come to.
     #[inline(never)]
     fn retreat(&self, &[roll, pitch, yaw, thrust]: &[f32; 4], variables: &mut [Variable]) {
+        let variables = black_box(variables);
         let level = &self.tables.level;
         let [least, largest] = level.thrust_n;
         let share = clamp((thrust / self.factors[0] - least) / (largest - least), 0.0, 1.0);
-        let mut wrench = [0.0; 4];
-        for ((unit, table), [at_least, at_largest]) in
-            variables.iter_mut().zip(self.tables.units).zip(level.efforts)
-        {
+        for (unit, [at_least, at_largest]) in variables.iter_mut().zip(level.efforts) {
             rolled();
             unit.at = between(*at_least, *at_largest, share);
-            let scale = self.tables.attainable.scale;
-            table.add_wrench([0, 1].map(|k| scale[k] * unit.at[k]), self.factors, &mut wrench);
         }
-        // With tilted axes the stored efforts are level at the reference voltage only.
-        for torques in [wrench.map(|axis| -axis), [roll, pitch, yaw, 0.0]] {
-            rolled();
-            let [roll, pitch, yaw, _] = torques;
-            self.move_by_least_norm(&[roll, pitch, yaw, 0.0], variables, Way::By);
+        // With tilted axes the stored efforts are level at the reference voltage only. At others yaw,
+        // whose authority is the least, is off by most.
+        let [off_roll, off_pitch, off_yaw, _] = self.wrench(variables);
+        if off_yaw.abs() > self.tables.tolerance.wrench[2] {
+            self.move_by_least_norm(&[-off_roll, -off_pitch, -off_yaw, 0.0], variables, Way::By);
         }
+        self.move_by_least_norm(&[roll, pitch, yaw, 0.0], variables, Way::By);
     }
 
     /// Draws the units back to a share of the way from their centres, and from there moves them
@@ -261,18 +275,13 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     #[inline(never)]
     fn draw_back(&self, share: f32, variables: &mut [Variable], units: usize) {
         let attainable = &self.tables.attainable;
-        let mut less = [0.0; 4];
+        let (variables, units) = black_box((variables, units));
         for unit in variables.iter_mut().take(units) {
             rolled();
             unit.at = between(inside(attainable.centre, unit.rotors), unit.at, share);
-            unit.subtract(unit.at, &mut less);
         }
         if self.is_whole {
-            let wrench = [0, 1, 2, 3].map(|k| {
-                let row = self.rows[k];
-                if row > 0.0 { -less[k] / row } else { 0.0 }
-            });
-            self.move_by_least_norm(&wrench, variables, Way::To);
+            self.move_by_least_norm(&self.wrench(variables), variables, Way::To);
         }
     }
 
@@ -289,10 +298,10 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     ) -> Option<f32> {
         let units = variables.len().saturating_sub(SHORTAGES);
         let desaturation = &self.tables.desaturation;
-        let pivots = if self.is_whole {
-            desaturation.pivots
+        let budget = if self.is_whole {
+            desaturation.budget
         } else {
-            PIVOTS_WITH_ROTORS_OUT
+            BUDGET_WITH_ROTORS_OUT
         };
         let reserve = desaturation.yaw_reserve_nm * self.rows[2];
         shortage::write(variables, units, wanted, centre, desaturation.airmode, reserve);
@@ -302,7 +311,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             wanted,
             centre,
             desaturation.airmode,
-            Budget { pivots, flips: FLIPS },
+            budget,
         );
         let mut share = None;
         while simplex.solve() {

@@ -70,8 +70,9 @@ fn general(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let n = compiled.tables.units.len() as u32;
     let unit = compiled.evaluator.instructions(basis)? + forward(basis) + GENERAL_UNIT;
-    let pivots = u32::from(compiled.tables.desaturation.pivots) * (PIVOT + n * PIVOT_UNIT);
-    let flips = u32::from(mixer_rt::tables::FLIPS) * (FLIP + n * FLIP_UNIT);
+    let budget = compiled.tables.desaturation.budget;
+    let pivots = u32::from(budget.pivots) * (PIVOT + n * PIVOT_UNIT);
+    let flips = u32::from(budget.flips) * (FLIP + n * FLIP_UNIT);
     let voltage = if compiled.airframe.voltage.is_some() {
         PER_VOLTAGE
     } else {

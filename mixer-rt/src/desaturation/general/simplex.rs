@@ -29,8 +29,8 @@ use core::hint::black_box;
 use super::breakpoint::{Breakpoint, FirstTwo, ROW};
 use super::shortage::{TORQUE_PRICES, ThrustPrice};
 use super::variable::{NEVER, Position, Variable, corner, dot, next, set};
-use crate::desaturation::Airmode;
 use crate::desaturation::attainable::Corner;
+use crate::desaturation::{Airmode, Budget};
 use crate::pair::rotors::Rotors;
 use crate::rolled;
 
@@ -87,13 +87,6 @@ struct Leaving {
     second: usize,
 }
 
-/// Pivots and moves to other corners that are left.
-#[derive(Clone, Copy)]
-pub(super) struct Budget {
-    pub(super) pivots: u8,
-    pub(super) flips: u8,
-}
-
 /// The programme and its state.
 pub(super) struct Simplex<'a> {
     /// The units, then the shortages.
@@ -111,6 +104,7 @@ pub(super) struct Simplex<'a> {
     values: [f32; 4],
     /// The last dual step, which the gains do not yet have.
     step: f32,
+    /// What is left.
     budget: Budget,
 }
 
