@@ -30,7 +30,6 @@ mod thrusts;
 mod torques;
 
 pub use border::{Border, Cell, Grid, Knot, Outline};
-pub use facets::Facets;
 
 use core::hint::black_box;
 
@@ -58,6 +57,16 @@ pub struct ClosedFormUnit {
     pub ends: [f32; 2],
     /// Output indices of the upper and of the lower rotor.
     pub channels: [u8; 2],
+}
+
+/// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <=
+/// high` for a slope, without the thrust for a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets {
+    /// The normal's components along roll and pitch.
+    pub normal: [f32; 2],
+    /// The bounds.
+    pub bounds: [f32; 2],
 }
 
 /// What a frame with vertical axes and up to four units needs. All at the reference voltage.
