@@ -9,19 +9,14 @@ pub mod keys;
 mod syntax;
 mod value;
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 pub use toml::Spanned;
 
 use self::fields::Fields;
+pub use self::syntax::Places;
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic};
-
-/// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where
-/// their value is, arrays, which may run over many lines, where their key is, and tables where
-/// their header is.
-pub type Places = BTreeMap<String, Range<usize>>;
 
 /// Three numbers, each with its place.
 pub type Triple = [Spanned<f64>; 3];
