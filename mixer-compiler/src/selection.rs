@@ -43,13 +43,13 @@ pub(crate) fn select(
     effectiveness: &Effectiveness,
     voltage: Option<VoltageTable>,
 ) -> Result<Selected, Vec<Diagnostic>> {
-    choose(airframe, effectiveness, voltage.as_ref()).map_err(|best| {
-        vec![refusal::diagnostic(
-            airframe,
-            effectiveness,
-            voltage.as_ref(),
-            best,
-        )]
+    let voltage = voltage.as_ref();
+    choose(airframe, effectiveness, voltage).map_err(|best| {
+        let meets = |airframe: &Airframe| choose(airframe, effectiveness, voltage).is_ok();
+        vec![match best {
+            Some((evaluator, certificate)) => refusal::tolerance(airframe, evaluator, &certificate, meets),
+            None => refusal::name(airframe),
+        }]
     })
 }
 
