@@ -2,10 +2,7 @@
 
 mod refusal;
 
-use mixer_rt::{
-    Axis,
-    tables::{Desaturation, Tolerance},
-};
+use mixer_rt::tables::Tolerance;
 
 use crate::airframe::Airframe;
 use crate::desaturation::attainable::{AreaLoss, Polygon};
@@ -129,7 +126,14 @@ fn choose(
                 inverse,
                 ..tables.clone()
             },
-            None => assemble(airframe, effectiveness, pair, polygon, voltage.cloned(), inverse),
+            None => MixerTables::new(
+                airframe,
+                effectiveness,
+                pair,
+                polygon.table(),
+                voltage.cloned(),
+                inverse,
+            ),
         };
         // The grid of the fit is part of the set: what fails there, fails.
         let error = Residual::coarse_check(pair, &tables)
@@ -163,64 +167,6 @@ fn tolerance_at_reference(airframe: &Airframe, correction: &CorrectionBounds) ->
     std::array::from_fn(|k| stated[k] / correction.largest[k])
 }
 
-/// The tables of a fitted inverse. The closed form and the tolerance are filled in later.
-fn assemble(
-    airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    pair: &PairMap,
-    polygon: &Polygon,
-    voltage: Option<VoltageTable>,
-    inverse: InverseTable,
-) -> MixerTables {
-    MixerTables {
-        units: tables::unit_tables(airframe, effectiveness),
-        pair: tables::pair_table(airframe),
-        singles: tables::single_tables(airframe),
-        inverse,
-        throttle: tables::throttle_table(airframe),
-        voltage,
-        attainable: polygon.table(),
-        rows: rows(airframe, effectiveness, pair),
-        desaturation: Desaturation {
-            airmode: airframe.allocation.airmode,
-            yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,
-        },
-        power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n as f32,
-        closed_form: None,
-        tolerance: Tolerance {
-            efforts: [0.0; 2],
-            wrench: [0.0; 4],
-        },
-    }
-}
-
-/// Units over authority per axis at the reference voltage, roll and pitch alike; 0 on axes that are
-/// not served.
-fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [f32; 4] {
-    let scale = pair.scale();
-    let n = airframe.units.len();
-    let authority: [f64; 4] = std::array::from_fn(|axis| {
-        let row = effectiveness.matrix.row(axis);
-        let sum: f64 = (0..n)
-            .map(|i| row[i].abs() * scale[0] + row[n + i].abs() * scale[1])
-            .sum();
-        if airframe.allocation.controls(Axis::ALL[axis]) {
-            sum
-        } else {
-            0.0
-        }
-    });
-    let level = authority[0].max(authority[1]);
-    std::array::from_fn(|axis| {
-        let size = if axis < 2 { level } else { authority[axis] };
-        if authority[axis] > 0.0 {
-            (n as f64 / size) as f32
-        } else {
-            0.0
-        }
-    })
-}
-
 /// What the mixer may miss where it delivers: what is proven, not what the file allows, so that
 /// every shortage is flagged.
 fn proven(
@@ -234,10 +180,10 @@ fn proven(
     // The mixer compares what it computes, not what is: a request that is delivered must not look
     // missed.
     let rounding = proof::rounding(airframe, tables, correction);
-    Tolerance {
-        efforts: [0, 1].map(|k| ((certificate.reference[k] + rounding[k]) as f32).next_up()),
-        wrench: wrench_tolerance(airframe, effectiveness, pair, certificate.stated),
-    }
+    tables::tolerance_table(
+        [0, 1].map(|k| certificate.reference[k] + rounding[k]),
+        wrench_tolerance(airframe, effectiveness, pair, certificate.stated),
+    )
 }
 
 /// What the units' misses `stated` add up to on each axis, with the rounding of f32 sums of full
@@ -247,16 +193,15 @@ fn wrench_tolerance(
     effectiveness: &Effectiveness,
     pair: &PairMap,
     stated: [f64; 2],
-) -> [f32; 4] {
+) -> [f64; 4] {
     const ROUNDING: f64 = 4e-6;
     let (scale, factors) = (pair.scale(), voltage::largest_factors(airframe));
     let n = airframe.units.len();
     let allowed: [f64; 2] = std::array::from_fn(|k| stated[k] + ROUNDING * scale[k] * factors[k]);
     std::array::from_fn(|axis| {
         let row = effectiveness.matrix.row(axis);
-        let sum: f64 = (0..n)
+        (0..n)
             .map(|i| row[i].abs() * allowed[0] + row[n + i].abs() * allowed[1])
-            .sum();
-        sum as f32
+            .sum()
     })
 }

@@ -1,6 +1,6 @@
-//! The emitted tables, as values. M, M+, the pair, its inverse, the voltage laws and the polygon
-//! become f32 here; the closed form does in `desaturation`, priorities and tolerances do in
-//! `selection`.
+//! The emitted tables, as values. All numbers become f32 here but those of the closed form:
+//! `desaturation` rounds as it goes, since facets follow from thrusts that are rounded inwards, and
+//! the range of level thrust is found by `mixer-rt`'s look-up in the rounded table.
 //!
 //! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the
 //! generated Rust holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs
@@ -8,6 +8,7 @@
 
 mod border;
 mod inverse;
+mod rows;
 mod single;
 
 use mixer_rt::{
@@ -20,12 +21,14 @@ use mixer_rt::{
 };
 
 use crate::airframe::{Airframe, Basis};
+use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage::TabulatedLaw;
 
 pub use border::BorderTable;
 pub use inverse::{InverseTable, SeedTable};
-pub use single::single_tables;
+use rows::rows;
+use single::single_tables;
 
 /// The tables of one airframe.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,6 +191,38 @@ pub enum LawTable {
 pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
+    /// The tables of a fitted inverse. The closed form and the tolerance are filled in later.
+    pub(crate) fn new(
+        airframe: &Airframe,
+        effectiveness: &Effectiveness,
+        pair: &PairMap,
+        attainable: AttainableTable,
+        voltage: Option<VoltageTable>,
+        inverse: InverseTable,
+    ) -> Self {
+        let allocation = &airframe.allocation;
+        MixerTables {
+            units: unit_tables(airframe, effectiveness),
+            pair: pair_table(airframe),
+            singles: single_tables(airframe),
+            inverse,
+            throttle: throttle_table(airframe),
+            voltage,
+            attainable,
+            rows: rows(airframe, effectiveness, pair),
+            desaturation: Desaturation {
+                airmode: allocation.airmode,
+                yaw_reserve_nm: allocation.yaw_reserve_nm as f32,
+            },
+            power_bias_nm_per_n: allocation.power_bias_nm_per_n as f32,
+            closed_form: None,
+            tolerance: Tolerance {
+                efforts: [0.0; 2],
+                wrench: [0.0; 4],
+            },
+        }
+    }
+
     /// The tables as `mixer-rt` reads them.
     pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<ClosedForm<'_>>> {
         Tables {
@@ -365,7 +400,7 @@ impl LawTable {
 }
 
 /// Rounds the forward map.
-pub fn pair_table(airframe: &Airframe) -> Pair<QuantityTable> {
+fn pair_table(airframe: &Airframe) -> Pair<QuantityTable> {
     let pair = &airframe.pair;
     Pair {
         thrust: QuantityTable::new(pair.basis, &pair.thrust_n),
@@ -392,7 +427,7 @@ pub fn throttle_table(airframe: &Airframe) -> ThrottleRange {
 }
 
 /// Rounds M and M+, unit by unit.
-pub fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> {
+fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> {
     let n = airframe.units.len();
     let row = |index: usize| -> [f32; 4] {
         std::array::from_fn(|axis| effectiveness.pseudo_inverse[(index, axis)] as f32)
@@ -407,4 +442,12 @@ pub fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Un
             channels: [unit.upper_channel as u8, unit.lower_channel as u8],
         })
         .collect()
+}
+
+/// Rounds tolerances, those of the efforts upwards.
+pub(crate) fn tolerance_table(efforts: [f64; 2], wrench: [f64; 4]) -> Tolerance {
+    Tolerance {
+        efforts: efforts.map(|effort| (effort as f32).next_up()),
+        wrench: wrench.map(|x| x as f32),
+    }
 }
