@@ -3,7 +3,7 @@
 //! The thrusts lie in [a, b]^n, so w = C f lies in a zonotope, whose facets the compiler tabulates
 //! in pairs, `low <= d w <= high`. For a given direction of (roll, pitch) a facet is a line in the
 //! plane of (rho, thrust): the largest rho, and then the thrust nearest the request, are a linear
-//! program in two unknowns.
+//! programme in two unknowns.
 
 use core::hint::black_box;
 
