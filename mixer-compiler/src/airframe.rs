@@ -20,7 +20,7 @@ use toml::Spanned;
 
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::basis::Basis;
-pub use self::inverse::{EVALUATORS, HIGHEST_DEGREE, Inverse, Method};
+pub use self::inverse::{EVALUATORS, HIGHEST_INVERSE_DEGREE, Inverse, Method};
 pub use self::pair::{Pair, Spin};
 pub use self::power::Power;
 pub use self::rotor_alone::RotorAlone;

@@ -78,7 +78,7 @@ const TERMS: [usize; 2] = [8, 14];
 pub const MOST_UNITS: usize = 32;
 
 /// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.
-pub const HIGHEST_DEGREE: usize = 15;
+pub const HIGHEST_INVERSE_DEGREE: usize = 15;
 
 /// What `inverse.method` can be: a choice, the paper's polynomials, then the evaluators.
 const METHODS: &[&str] = &[
@@ -245,7 +245,7 @@ pub const INVERSE: Shape = shape! { "[inverse]":
         "What a unit's torque may miss at any voltage, N m; 0.0001 without it.";
     "method" => "method = \"auto\"", Kind::Word(METHODS),
         "auto: the cheapest evaluator that is proven to meet the tolerances; polynomial: the paper's, with a degree; or one by name.";
-    "degree" => "degree = 7", Kind::Count([1, HIGHEST_DEGREE]),
+    "degree" => "degree = 7", Kind::Count([1, HIGHEST_INVERSE_DEGREE]),
         "Total degree of method = \"polynomial\".";
 };
 

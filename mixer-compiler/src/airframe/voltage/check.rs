@@ -18,7 +18,7 @@ const REFERENCE_TOLERANCE: f64 = 1e-3;
 const LARGEST_EXPONENT: f64 = 4.0;
 
 /// Highest degree of a polynomial law. Bench data support 1 or 2.
-const HIGHEST_DEGREE: usize = 8;
+const HIGHEST_LAW_DEGREE: usize = 8;
 
 /// Below this, nothing turns.
 const LEAST_V: f64 = 0.1;
@@ -204,7 +204,7 @@ fn polynomial(
     faults: &mut Vec<Diagnostic>,
 ) -> Option<VoltageLaw> {
     let coefficients: Vec<f64> = field.get_ref().iter().map(|c| *c.get_ref()).collect();
-    if !(1..=HIGHEST_DEGREE + 1).contains(&coefficients.len()) {
+    if !(1..=HIGHEST_LAW_DEGREE + 1).contains(&coefficients.len()) {
         faults.push(
             Diagnostic::new(
                 Code::WrongLength,
@@ -213,7 +213,7 @@ fn polynomial(
                 format!(
                     "`{key}` has {} coefficients, not 1 to {}",
                     coefficients.len(),
-                    HIGHEST_DEGREE + 1
+                    HIGHEST_LAW_DEGREE + 1
                 ),
             )
             .label("c0, c1, .. in V/Vref")
