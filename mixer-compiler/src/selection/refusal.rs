@@ -3,7 +3,7 @@
 use crate::airframe::{Airframe, Method};
 use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
 use crate::inverse::evaluator::Evaluator;
-use crate::model::injectivity::ForwardMap;
+use crate::model::injectivity::EnclosedPairMap;
 use crate::proof::Certificate;
 
 /// Factors on the bounds that were reached: with other tolerances fits weigh thrust and torque
@@ -17,7 +17,7 @@ const IDLES: [f64; 2] = [1.03, 1.1];
 /// The least of [`IDLES`] above the file's own that meets the tolerances, upwards to 1e-4; `None`
 /// far from the fold.
 fn better_idle(airframe: &Airframe, meets: impl Fn(&Airframe) -> bool) -> Option<f64> {
-    let least = ForwardMap::new(&airframe.pair).least_idle(airframe.throttle.max)?;
+    let least = EnclosedPairMap::new(&airframe.pair).least_idle(airframe.throttle.max)?;
     IDLES
         .into_iter()
         .map(|factor| (1e4 * factor * least).ceil() / 1e4)
