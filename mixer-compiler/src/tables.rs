@@ -72,7 +72,7 @@ pub struct AttainableTable {
 
 impl AttainableTable {
     /// Rounds a convex polygon `[f, Q]` (N, N m), anticlockwise, and a point inside.
-    pub fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
+    pub(crate) fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
         let scaled = |[f, q]: [f64; 2]| [(f / scale[0]) as f32, (q / scale[1]) as f32];
         let n = vertices.len();
         let corners = (0..n).map(|k| {
@@ -87,7 +87,7 @@ impl AttainableTable {
     }
 
     /// The set as `mixer-rt` reads it.
-    pub fn view(&self) -> AttainableSet<'_> {
+    pub(crate) fn view(&self) -> AttainableSet<'_> {
         AttainableSet {
             scale: self.scale,
             centre: self.centre,
@@ -143,7 +143,7 @@ impl ClosedFormTable {
     }
 
     /// 1 / n.
-    pub fn torque_share(&self) -> f32 {
+    pub(crate) fn torque_share(&self) -> f32 {
         1.0 / self.units.len() as f32
     }
 
@@ -281,7 +281,7 @@ impl MixerTables {
     }
 
     /// Bytes of the tables in flash: four per number, one per channel.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         let floats = self.units.len() * 16
             + 2 * self.pair.thrust.terms()
             + 2 * 2 * 4 // single rotors
@@ -313,12 +313,12 @@ impl QuantityTable {
     }
 
     /// Number of terms.
-    pub fn terms(&self) -> usize {
+    pub(crate) fn terms(&self) -> usize {
         self.coefficients().len()
     }
 
     /// The coefficients in the order of the airframe file.
-    pub fn coefficients(&self) -> &[f32] {
+    pub(crate) fn coefficients(&self) -> &[f32] {
         match self {
             QuantityTable::Biquadratic(quantity) => &quantity.0,
             QuantityTable::Cubic(quantity) => &quantity.0,

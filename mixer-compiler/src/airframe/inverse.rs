@@ -4,7 +4,7 @@ use toml::Spanned;
 
 use crate::diagnostic::{Code, Diagnostic, any_of, nearest, number, quoted};
 use crate::spec;
-pub use crate::spec::keys::{EVALUATORS, HIGHEST_INVERSE_DEGREE};
+use crate::spec::keys::{EVALUATORS, HIGHEST_INVERSE_DEGREE};
 
 /// Which evaluator of the inverse to emit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Method {
         /// Total degree, 1 to 15.
         degree: usize,
     },
-    /// One of [`EVALUATORS`].
+    /// One of the evaluators, by its name.
     Named(String),
 }
 

@@ -141,7 +141,7 @@ impl EnclosedPairMap {
     }
 
     /// det J at the throttles (u, l), N N m.
-    pub fn determinant_at(&self, at: [f64; 2]) -> f64 {
+    pub(crate) fn determinant_at(&self, at: [f64; 2]) -> f64 {
         let value = self.determinant.at(at);
         0.5 * (value.low + value.high)
     }
@@ -201,7 +201,7 @@ impl EnclosedPairMap {
 ///
 /// # Errors
 /// A fold, at `throttle.min` with the least idle that would do, or a torque of the wrong sign.
-pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>> {
+pub(crate) fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>> {
     let map = EnclosedPairMap::new(&airframe.pair);
     let throttle = ThrottleBox {
         low: airframe.throttle.min,

@@ -22,7 +22,7 @@ pub(crate) const FIT_TOLERANCE: f64 = 1e-7;
 const HIGHEST_FITTED_DEGREE: usize = 12;
 
 /// Largest correction factors `[k_f, k_Q]` over the range; `[1, 1]` without a correction.
-pub fn largest_factors(airframe: &Airframe) -> [f64; 2] {
+pub(crate) fn largest_factors(airframe: &Airframe) -> [f64; 2] {
     factors_over_range(airframe)
         .into_iter()
         .fold([0.0, 0.0], |[f, q], [k_f, k_q]| [k_f.max(f), k_q.max(q)])
@@ -30,7 +30,7 @@ pub fn largest_factors(airframe: &Airframe) -> [f64; 2] {
 
 /// Correction factors `[k_f, k_Q]` at voltages over the whole range, both ends and the points of a
 /// law included.
-pub fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
+pub(crate) fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
     let Some(voltage) = &airframe.voltage else {
         return vec![[1.0, 1.0]];
     };

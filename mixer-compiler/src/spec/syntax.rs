@@ -13,7 +13,7 @@ use crate::diagnostic::{Code, Diagnostic, quoted};
 /// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where
 /// their value is, arrays, which may run over many lines, where their key is, and tables where
 /// their header is.
-pub type Places = BTreeMap<String, Range<usize>>;
+pub(crate) type Places = BTreeMap<String, Range<usize>>;
 
 /// What the parser says of a key that is there twice; the rest of the file is read all the same.
 const DUPLICATE: &str = "duplicate key";
