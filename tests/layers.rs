@@ -3,11 +3,13 @@
 #![allow(missing_docs)]
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
+use std::{fs, mem};
 
 use mixer_tests::root;
-use syn::{Attribute, Item, UseTree};
+use syn::punctuated::Punctuated;
+use syn::visit::{self, Visit};
+use syn::{Attribute, Expr, Item, ItemMod, ItemUse, Macro, Token, UseTree, Visibility};
 
 /// A module's path from the crate's root, which is empty.
 type Module = Vec<String>;
@@ -52,8 +54,8 @@ fn paths(tree: &UseTree, prefix: &Module, found: &mut Vec<Module>) {
     }
 }
 
-/// The path from the crate's root; `None` for another crate's.
-fn absolute(module: &Module, path: &[String]) -> Option<Module> {
+/// The path from the crate's root, of a module with these children; `None` for another crate's.
+fn absolute(module: &Module, children: &[String], path: &[String]) -> Option<Module> {
     let (first, rest) = path.split_first()?;
     match first.as_str() {
         "crate" => Some(rest.to_vec()),
@@ -63,29 +65,104 @@ fn absolute(module: &Module, path: &[String]) -> Option<Module> {
             let outer = &module[..module.len() - 1 - above];
             Some([outer, &rest[above..]].concat())
         }
+        _ if children.contains(first) => Some([module.as_slice(), path].concat()),
         _ => None,
     }
 }
 
-/// The files that each file imports. Re-exports of the crate's root are left out.
-fn imports(files: &BTreeMap<Module, syn::File>) -> BTreeMap<Module, BTreeSet<Module>> {
-    let of = |module: &Module, file: &syn::File| {
-        let mut named = Vec::new();
-        for item in &file.items {
-            if let Item::Use(item) = item
-                && !is_test(&item.attrs)
-            {
-                paths(&item.tree, &Vec::new(), &mut named);
-            }
-        }
-        let target = |path: Module| {
-            (1..=path.len())
-                .rev()
-                .find_map(|end| files.get_key_value(&path[..end]))
+/// The paths of a file from the crate's root, those in `use` and those written out.
+#[derive(Default)]
+struct Paths {
+    /// The module that is read, and those that it declares.
+    module: Module,
+    children: Vec<String>,
+    found: Vec<Module>,
+}
+
+impl Paths {
+    fn read(&mut self, module: Module, items: &[Item]) {
+        let declared = |item: &Item| match item {
+            Item::Mod(item) => Some(item.ident.to_string()),
+            _ => None,
         };
-        named
+        let children = items.iter().filter_map(declared).collect();
+        let outer = (
+            mem::replace(&mut self.module, module),
+            mem::replace(&mut self.children, children),
+        );
+        items.iter().for_each(|item| self.visit_item(item));
+        (self.module, self.children) = outer;
+    }
+
+    fn add(&mut self, path: &[String]) {
+        self.found.extend(absolute(&self.module, &self.children, path));
+    }
+}
+
+impl Visit<'_> for Paths {
+    fn visit_item_use(&mut self, item: &ItemUse) {
+        let mut named = Vec::new();
+        if !is_test(&item.attrs) {
+            paths(&item.tree, &Vec::new(), &mut named);
+        }
+        named.iter().for_each(|path| self.add(path));
+    }
+
+    fn visit_item_mod(&mut self, item: &ItemMod) {
+        if let Some((_, items)) = &item.content
+            && !is_test(&item.attrs)
+        {
+            self.read(
+                [self.module.as_slice(), &[item.ident.to_string()]].concat(),
+                items,
+            );
+        }
+    }
+
+    // `pub(in crate::x)` imports nothing.
+    fn visit_visibility(&mut self, _: &Visibility) {}
+
+    fn visit_macro(&mut self, item: &Macro) {
+        let parser = Punctuated::<Expr, Token![,]>::parse_terminated;
+        for argument in item.parse_body_with(parser).iter().flatten() {
+            self.visit_expr(argument);
+        }
+        visit::visit_macro(self, item);
+    }
+
+    fn visit_path(&mut self, path: &syn::Path) {
+        let parts: Vec<String> = path.segments.iter().map(|part| part.ident.to_string()).collect();
+        // A name alone is a variable's or was imported.
+        if parts.len() > 1 {
+            self.add(&parts);
+        }
+        visit::visit_path(self, path);
+    }
+}
+
+/// The files that each file imports, also by way of the root's re-exports.
+fn imports(files: &BTreeMap<Module, syn::File>) -> BTreeMap<Module, BTreeSet<Module>> {
+    let named = |module: &Module, file: &syn::File| {
+        let mut paths = Paths::default();
+        paths.read(module.clone(), &file.items);
+        paths.found
+    };
+    let reexports = files
+        .get_key_value(&Vec::new())
+        .map_or_else(Vec::new, |(root, file)| named(root, file));
+    let file_of = |path: &Module| {
+        (1..=path.len())
+            .rev()
+            .find_map(|end| files.get_key_value(&path[..end]))
+    };
+    let target = |path: &Module| {
+        let reexport = || reexports.iter().find(|reexport| reexport.last() == path.first());
+        file_of(path).or_else(|| file_of(reexport()?))
+    };
+    let of = |module: &Module, file: &syn::File| {
+        named(module, file)
             .iter()
-            .filter_map(|path| target(absolute(module, path)?))
+            .filter_map(target)
             .map(|(target, _)| target.clone())
             .filter(|target| target != module)
             .collect()
@@ -97,24 +174,31 @@ fn imports(files: &BTreeMap<Module, syn::File>) -> BTreeMap<Module, BTreeSet<Mod
         .collect()
 }
 
-/// The circles: the files that remain where those that import no remaining file are taken away,
-/// again and again.
+/// The circles: the files whose imports lead back to them, with the imports that do.
 fn circles(mut imports: BTreeMap<Module, BTreeSet<Module>>) -> BTreeMap<Module, BTreeSet<Module>> {
+    let mut reached = imports.clone();
     loop {
-        let left: BTreeSet<Module> = imports.keys().cloned().collect();
-        for targets in imports.values_mut() {
-            targets.retain(|target| left.contains(target));
+        let before = reached.clone();
+        for targets in reached.values_mut() {
+            let further = targets.iter().filter_map(|target| before.get(target));
+            let further: Vec<Module> = further.flatten().cloned().collect();
+            targets.extend(further);
         }
-        imports.retain(|_, targets| !targets.is_empty());
-        if imports.len() == left.len() {
-            return imports;
+        if reached == before {
+            break;
         }
     }
+    let reaches = |from: &Module, to: &Module| reached.get(from).is_some_and(|all| all.contains(to));
+    imports.retain(|module, targets| {
+        targets.retain(|target| reaches(target, module));
+        !targets.is_empty()
+    });
+    imports
 }
 
 #[test]
 fn files_import_one_another_without_a_circle() {
-    for (package, least) in [("mixer-rt", 25), ("mixer-compiler", 70)] {
+    for (package, least) in [("mixer-compiler", 70), ("mixer-rt", 25)] {
         let mut found = BTreeMap::new();
         files(&root().join(package).join("src"), &Vec::new(), &mut found);
         assert!(found.len() > least, "{package}: {} files", found.len());
@@ -122,7 +206,11 @@ fn files_import_one_another_without_a_circle() {
         let edges: usize = imports.values().map(BTreeSet::len).sum();
         assert!(edges > least, "{package}: {edges} imports");
         let circles = circles(imports);
-        assert!(circles.is_empty(), "{package}: {circles:#?}");
+        let arrows = circles.iter().map(|(module, targets)| {
+            let targets: Vec<String> = targets.iter().map(|target| target.join("::")).collect();
+            format!("\n  {} -> {}", module.join("::"), targets.join(", "))
+        });
+        assert!(circles.is_empty(), "{package}:{}", arrows.collect::<String>());
     }
 }
 
@@ -175,15 +263,45 @@ fn modules_of_the_compiler_use_only_those_before_them() {
 
 #[test]
 fn a_circle_is_found() {
-    let file = |text: &str| syn::parse_file(text).expect("Rust");
-    let module = |name: &str| vec![name.to_owned()];
-    let files = BTreeMap::from([
-        (module("a"), file("use crate::b::{self, C};")),
-        (module("b"), file("use super::a;")),
-        (module("d"), file("use crate::a;")),
-        (module("e"), file("use std::fmt;")),
-    ]);
-    // d is no part of the circle, but stands above it.
-    let found: Vec<Module> = circles(imports(&files)).into_keys().collect();
-    assert_eq!(found, [module("a"), module("b"), module("d")]);
+    let found = |sources: &[(&str, &str)]| -> Vec<String> {
+        let module = |name: &str| {
+            name.split("::")
+                .filter(|part| !part.is_empty())
+                .map(str::to_owned)
+                .collect()
+        };
+        let parsed = |text: &str| syn::parse_file(text).expect("Rust");
+        let files = sources.iter().map(|(name, text)| (module(name), parsed(text)));
+        let circles = circles(imports(&files.collect()));
+        circles.into_keys().map(|module| module.join("::")).collect()
+    };
+    // d stands above the circle and e below it.
+    let files = [
+        ("a", "use crate::b::{self, C}; use crate::e;"),
+        ("b", "use super::a;"),
+        ("d", "use crate::a;"),
+        ("e", "use std::fmt;"),
+    ];
+    assert_eq!(found(&files), ["a", "b"]);
+    let files = [
+        ("", "mod a; pub use a::C;"),
+        ("a", "use crate::b::D;"),
+        ("b", "use crate::C;"),
+    ];
+    assert_eq!(found(&files), ["a", "b"]);
+    let child = ("a::b", "use super::C;");
+    assert_eq!(found(&[("a", "mod b; use b::D;"), child]), ["a", "a::b"]);
+    assert_eq!(
+        found(&[("a", "mod b; fn f() { b::g::<u8>() }"), child]),
+        ["a", "a::b"]
+    );
+    assert_eq!(
+        found(&[("a", "mod b; fn f() { vec![b::g()] }"), child]),
+        ["a", "a::b"]
+    );
+    assert_eq!(found(&[("a", "mod b; fn f(b: u8) -> u8 { b }"), child]), [""; 0]);
+    assert_eq!(
+        found(&[("a", "mod b; mod c { use super::b; }"), child]),
+        ["a", "a::b"]
+    );
 }

@@ -9,7 +9,7 @@ use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::Identified;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::PairMap;
-use mixer_compiler::model::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::EnclosedPairMap;
 use mixer_compiler::{Compiled, Source};
 
 /// The idle over the least one at which the map can be inverted.
@@ -82,7 +82,7 @@ fn every_map_compiles_close_to_its_fold() {
             for max in [1.0, measured.unwrap_or(1.0)] {
                 let name = map.file_name().unwrap_or_default().to_string_lossy();
                 let what = format!("{} {basis:<11} {max:>4}", &name[4..23]);
-                let least = ForwardMap::new(&own.pair).least_idle(max);
+                let least = EnclosedPairMap::new(&own.pair).least_idle(max);
                 let min = IDLE * least.unwrap_or_else(|| panic!("{what}: folds at every idle"));
                 let started = Instant::now();
                 let compiled = match mixer_compiler::compile(&source(&identified, [min, max])) {

@@ -20,12 +20,12 @@ use toml::Spanned;
 
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::basis::Basis;
-pub use self::inverse::{EVALUATORS, HIGHEST_DEGREE, Inverse, Method};
+pub use self::inverse::{Inverse, Method};
 pub use self::pair::{Pair, Spin};
 pub use self::power::Power;
 pub use self::rotor_alone::RotorAlone;
 pub use self::throttle::Throttle;
-pub use self::unit::{MOST_UNITS, Unit};
+pub use self::unit::Unit;
 pub use self::vehicle::{GRAVITY, Vehicle};
 pub use self::voltage::{Voltage, VoltageLaw};
 use crate::diagnostic::source::Source;
@@ -66,8 +66,8 @@ impl Airframe {
     ///
     /// # Errors
     ///
-    /// All faults of the file at once: of its shape ([`Spec::read`]) and of its values. Only text
-    /// that is not TOML is refused for that alone.
+    /// All faults of the file at once: of its shape and of its values. Only text that is not TOML is
+    /// refused for that alone.
     pub fn read(source: &Source) -> Result<Airframe, Diagnostics> {
         let mut faults = Vec::new();
         let airframe = Spec::read(source, &mut faults).and_then(|spec| check(spec, &mut faults));
@@ -117,14 +117,14 @@ impl Airframe {
 
     /// The share of a pair's saving by `power_bias_nm_per_n` that is left in hover, as torques must
     /// cancel: 1 - (sum s / n)^2 with the spins s of n units.
-    pub fn power_bias_share(&self) -> f64 {
+    pub(crate) fn power_bias_share(&self) -> f64 {
         let spins = self.units.iter().map(|unit| unit.spin_sign(self.pair.upper_spin));
         let mean = spins.sum::<f64>() / self.units.len() as f64;
         1.0 - mean * mean
     }
 
     /// Whether the file itself has a key like `unit[3].channels`.
-    pub fn states(&self, key: &str) -> bool {
+    pub(crate) fn states(&self, key: &str) -> bool {
         self.places.contains_key(key)
     }
 

@@ -36,7 +36,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A fault of kind `code` in `key`, without label and help yet.
-    pub fn new(
+    pub(crate) fn new(
         code: Code,
         key: impl Into<String>,
         span: impl Into<Option<Range<usize>>>,
@@ -54,14 +54,14 @@ impl Diagnostic {
 
     /// The same fault with a few words beside the caret.
     #[must_use]
-    pub fn label(mut self, label: impl Into<String>) -> Self {
+    pub(crate) fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self
     }
 
     /// The same fault with advice.
     #[must_use]
-    pub fn help(mut self, help: impl Into<String>) -> Self {
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = help.into();
         self
     }
@@ -174,16 +174,6 @@ impl Diagnostics {
     /// The faults, sorted by place.
     pub fn faults(&self) -> &[Diagnostic] {
         &self.faults
-    }
-
-    /// Line of a fault, from 1.
-    pub fn line(&self, fault: &Diagnostic) -> Option<usize> {
-        Some(self.place(fault)?.line)
-    }
-
-    /// Column of a fault in characters, from 1.
-    pub fn column(&self, fault: &Diagnostic) -> Option<usize> {
-        Some(self.place(fault)?.column)
     }
 
     fn place(&self, fault: &Diagnostic) -> Option<Place> {

@@ -5,6 +5,7 @@
 //! (`MIXER_BENCH_DATA=.. cargo nextest run -p cargo-mixer maps_warn`), while the mistakes that it
 //! is for lie far outside: a wrong unit is a factor of four at least.
 
+mod facts;
 mod geometry;
 mod limits;
 mod pair;
@@ -12,23 +13,12 @@ mod power_bias;
 mod supply;
 mod vehicle;
 
+use facts::Facts;
+
 use crate::airframe::Airframe;
 use crate::diagnostic::Diagnostic;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
-
-/// What the rules read.
-struct Facts<'a> {
-    airframe: &'a Airframe,
-    /// `None` where the airframe is refused.
-    effectiveness: Option<&'a Effectiveness>,
-    map: PairMap,
-    /// Largest thrust (N) and largest absolute torque (N m) of one unit at the reference voltage.
-    scale: [f64; 2],
-    /// Least and largest bare thrust at the reference voltage, N; `None` where the airframe is
-    /// refused.
-    thrust_range_n: Option<[f64; 2]>,
-}
 
 /// A rule adds what it has against an airframe.
 type Rule = fn(&Facts<'_>, &mut Vec<Diagnostic>);

@@ -2,10 +2,7 @@
 
 mod refusal;
 
-use mixer_rt::{
-    Axis,
-    tables::{Budget, Desaturation, Tolerance},
-};
+use mixer_rt::tables::Tolerance;
 
 use crate::airframe::Airframe;
 use crate::desaturation::attainable::{AreaLoss, Polygon};
@@ -17,7 +14,7 @@ use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage;
 use crate::proof::residual::Residual;
 use crate::proof::{self, Certificate, CorrectionBounds};
-use crate::tables::{self, InverseTable, LevelFlightTable, MixerTables, VoltageTable};
+use crate::tables::{self, InverseTable, MixerTables, VoltageTable};
 
 /// An evaluator with its tables and what is known about them.
 #[derive(Clone, Debug)]
@@ -43,13 +40,13 @@ pub(crate) fn select(
     effectiveness: &Effectiveness,
     voltage: Option<VoltageTable>,
 ) -> Result<Selected, Vec<Diagnostic>> {
-    choose(airframe, effectiveness, voltage.as_ref()).map_err(|best| {
-        vec![refusal::diagnostic(
-            airframe,
-            effectiveness,
-            voltage.as_ref(),
-            best,
-        )]
+    let voltage = voltage.as_ref();
+    choose(airframe, effectiveness, voltage).map_err(|best| {
+        let meets = |airframe: &Airframe| choose(airframe, effectiveness, voltage).is_ok();
+        vec![match best {
+            Some((evaluator, certificate)) => refusal::tolerance(airframe, evaluator, &certificate, meets),
+            None => refusal::name(airframe),
+        }]
     })
 }
 
@@ -129,7 +126,14 @@ fn choose(
                 inverse,
                 ..tables.clone()
             },
-            None => assemble(airframe, effectiveness, pair, polygon, voltage.cloned(), inverse),
+            None => MixerTables::new(
+                airframe,
+                effectiveness,
+                pair,
+                polygon.table(),
+                voltage.cloned(),
+                inverse,
+            ),
         };
         // The grid of the fit is part of the set: what fails there, fails.
         let error = Residual::coarse_check(pair, &tables)
@@ -163,89 +167,6 @@ fn tolerance_at_reference(airframe: &Airframe, correction: &CorrectionBounds) ->
     std::array::from_fn(|k| stated[k] / correction.largest[k])
 }
 
-/// The tables of a fitted inverse. Level flight, the closed form and the tolerance are filled in
-/// later.
-fn assemble(
-    airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    pair: &PairMap,
-    polygon: &Polygon,
-    voltage: Option<VoltageTable>,
-    inverse: InverseTable,
-) -> MixerTables {
-    MixerTables {
-        units: tables::unit_tables(airframe, effectiveness),
-        pair: tables::pair_table(airframe),
-        singles: tables::single_tables(airframe),
-        inverse,
-        throttle: tables::throttle_table(airframe),
-        voltage,
-        attainable: polygon.table(),
-        level: LevelFlightTable::default(),
-        rows: rows(airframe, effectiveness, pair),
-        desaturation: Desaturation {
-            airmode: airframe.allocation.airmode,
-            yaw_reserve_nm: airframe.allocation.yaw_reserve_nm as f32,
-            budget: budget(airframe.units.len(), effectiveness.is_vertical()),
-        },
-        power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n as f32,
-        closed_form: None,
-        tolerance: Tolerance {
-            efforts: [0.0; 2],
-            wrench: [0.0; 4],
-        },
-    }
-}
-
-/// Work of the general path while all rotors work. With vertical axes a mix takes at most 20,000
-/// instructions up to four units and 30,000 up to eight; with tilted axes 30,000 up to six units and
-/// 45,000 up to eight (`docs/costs.md`). Of 100,000 saturated requests on a regular frame of eight
-/// units about 150 need more; of as many on a frame of six about 30.
-fn budget(units: usize, is_vertical: bool) -> Budget {
-    let units = u8::try_from(units).unwrap_or(u8::MAX);
-    match (is_vertical, units) {
-        (true, ..=8) => Budget {
-            pivots: if units <= 4 { 9 } else { 10 },
-            flips: 96 - 8 * units,
-        },
-        (false, ..=8) => Budget {
-            pivots: 8 + units,
-            flips: 48,
-        },
-        (_, more) => Budget {
-            pivots: more.saturating_add(8),
-            flips: more.saturating_mul(8),
-        },
-    }
-}
-
-/// Units over authority per axis at the reference voltage, roll and pitch alike; 0 on axes that are
-/// not served.
-fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [f32; 4] {
-    let scale = pair.scale();
-    let n = airframe.units.len();
-    let authority: [f64; 4] = std::array::from_fn(|axis| {
-        let row = effectiveness.matrix.row(axis);
-        let sum: f64 = (0..n)
-            .map(|i| row[i].abs() * scale[0] + row[n + i].abs() * scale[1])
-            .sum();
-        if airframe.allocation.controls(Axis::ALL[axis]) {
-            sum
-        } else {
-            0.0
-        }
-    });
-    let level = authority[0].max(authority[1]);
-    std::array::from_fn(|axis| {
-        let size = if axis < 2 { level } else { authority[axis] };
-        if authority[axis] > 0.0 {
-            (n as f64 / size) as f32
-        } else {
-            0.0
-        }
-    })
-}
-
 /// What the mixer may miss where it delivers: what is proven, not what the file allows, so that
 /// every shortage is flagged.
 fn proven(
@@ -259,10 +180,10 @@ fn proven(
     // The mixer compares what it computes, not what is: a request that is delivered must not look
     // missed.
     let rounding = proof::rounding(airframe, tables, correction);
-    Tolerance {
-        efforts: [0, 1].map(|k| ((certificate.reference[k] + rounding[k]) as f32).next_up()),
-        wrench: wrench_tolerance(airframe, effectiveness, pair, certificate.stated),
-    }
+    tables::tolerance_table(
+        [0, 1].map(|k| certificate.reference[k] + rounding[k]),
+        wrench_tolerance(airframe, effectiveness, pair, certificate.stated),
+    )
 }
 
 /// What the units' misses `stated` add up to on each axis, with the rounding of f32 sums of full
@@ -272,16 +193,15 @@ fn wrench_tolerance(
     effectiveness: &Effectiveness,
     pair: &PairMap,
     stated: [f64; 2],
-) -> [f32; 4] {
+) -> [f64; 4] {
     const ROUNDING: f64 = 4e-6;
     let (scale, factors) = (pair.scale(), voltage::largest_factors(airframe));
     let n = airframe.units.len();
     let allowed: [f64; 2] = std::array::from_fn(|k| stated[k] + ROUNDING * scale[k] * factors[k]);
     std::array::from_fn(|axis| {
         let row = effectiveness.matrix.row(axis);
-        let sum: f64 = (0..n)
+        (0..n)
             .map(|i| row[i].abs() * allowed[0] + row[n + i].abs() * allowed[1])
-            .sum();
-        sum as f32
+            .sum()
     })
 }

@@ -9,204 +9,197 @@ pub mod keys;
 mod syntax;
 mod value;
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
-pub use toml::Spanned;
+pub(crate) use toml::Spanned;
 
 use self::fields::Fields;
+pub(crate) use self::syntax::Places;
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where
-/// their value is, arrays, which may run over many lines, where their key is, and tables where
-/// their header is.
-pub type Places = BTreeMap<String, Range<usize>>;
-
 /// Three numbers, each with its place.
-pub type Triple = [Spanned<f64>; 3];
+pub(crate) type Triple = [Spanned<f64>; 3];
 
 /// A voltage and its factor.
-pub type Point = Spanned<[Spanned<f64>; 2]>;
+pub(crate) type Point = Spanned<[Spanned<f64>; 2]>;
 
 /// The output channels of the upper and of the lower rotor.
-pub type Channels = [Spanned<usize>; 2];
+pub(crate) type Channels = [Spanned<usize>; 2];
 
 /// The whole file.
 #[derive(Clone, Debug)]
-pub struct Spec {
+pub(crate) struct Spec {
     /// `name`
-    pub name: Option<Spanned<String>>,
+    pub(crate) name: Option<Spanned<String>>,
     /// `description`
-    pub description: Option<Spanned<String>>,
+    pub(crate) description: Option<Spanned<String>>,
     /// `[throttle]`
-    pub throttle: Option<Throttle>,
+    pub(crate) throttle: Option<Throttle>,
     /// `[pair]`
-    pub pair: Option<Pair>,
+    pub(crate) pair: Option<Pair>,
     /// `[voltage]`
-    pub voltage: Option<Voltage>,
+    pub(crate) voltage: Option<Voltage>,
     /// `[layout]`
-    pub layout: Option<Layout>,
+    pub(crate) layout: Option<Layout>,
     /// `[[unit]]`
-    pub units: Vec<Unit>,
+    pub(crate) units: Vec<Unit>,
     /// `[inverse]`
-    pub inverse: Option<Inverse>,
+    pub(crate) inverse: Option<Inverse>,
     /// `[allocation]`
-    pub allocation: Option<Allocation>,
+    pub(crate) allocation: Option<Allocation>,
     /// `[vehicle]`
-    pub vehicle: Option<Vehicle>,
+    pub(crate) vehicle: Option<Vehicle>,
     /// Where every key is.
-    pub places: Places,
+    pub(crate) places: Places,
 }
 
 /// `[throttle]`
 #[derive(Clone, Debug)]
-pub struct Throttle {
+pub(crate) struct Throttle {
     /// `min`
-    pub min: Option<Spanned<f64>>,
+    pub(crate) min: Option<Spanned<f64>>,
     /// `max`
-    pub max: Option<Spanned<f64>>,
+    pub(crate) max: Option<Spanned<f64>>,
 }
 
 /// `[pair]`
 #[derive(Clone, Debug)]
-pub struct Pair {
+pub(crate) struct Pair {
     /// `basis`
-    pub basis: Option<Spanned<String>>,
+    pub(crate) basis: Option<Spanned<String>>,
     /// `thrust_n`
-    pub thrust_n: Option<Spanned<Vec<Spanned<f64>>>>,
+    pub(crate) thrust_n: Option<Spanned<Vec<Spanned<f64>>>>,
     /// `torque_nm`
-    pub torque_nm: Option<Spanned<Vec<Spanned<f64>>>>,
+    pub(crate) torque_nm: Option<Spanned<Vec<Spanned<f64>>>>,
     /// `upper_spin`
-    pub upper_spin: Option<Spanned<String>>,
+    pub(crate) upper_spin: Option<Spanned<String>>,
     /// `[pair.lower_out]`
-    pub lower_out: Option<RotorAlone>,
+    pub(crate) lower_out: Option<RotorAlone>,
     /// `[pair.upper_out]`
-    pub upper_out: Option<RotorAlone>,
+    pub(crate) upper_out: Option<RotorAlone>,
     /// `[pair.power]`
-    pub power: Option<Power>,
+    pub(crate) power: Option<Power>,
 }
 
 /// `[pair.power]`
 #[derive(Clone, Debug)]
-pub struct Power {
+pub(crate) struct Power {
     /// `power_w`
-    pub power_w: Option<Spanned<Vec<Spanned<f64>>>>,
+    pub(crate) power_w: Option<Spanned<Vec<Spanned<f64>>>>,
 }
 
 /// `[pair.lower_out]` or `[pair.upper_out]`
 #[derive(Clone, Debug)]
-pub struct RotorAlone {
+pub(crate) struct RotorAlone {
     /// `thrust_n`
-    pub thrust_n: Option<Spanned<Triple>>,
+    pub(crate) thrust_n: Option<Spanned<Triple>>,
     /// `torque_nm`
-    pub torque_nm: Option<Spanned<Triple>>,
+    pub(crate) torque_nm: Option<Spanned<Triple>>,
 }
 
 /// `[voltage]`
 #[derive(Clone, Debug)]
-pub struct Voltage {
+pub(crate) struct Voltage {
     /// Place of the header.
-    pub place: Range<usize>,
+    pub(crate) place: Range<usize>,
     /// `reference_v`
-    pub reference_v: Option<Spanned<f64>>,
+    pub(crate) reference_v: Option<Spanned<f64>>,
     /// `range_v`
-    pub range_v: Option<Spanned<[Spanned<f64>; 2]>>,
+    pub(crate) range_v: Option<Spanned<[Spanned<f64>; 2]>>,
     /// `thrust_exponent`, `thrust_polynomial`, `thrust_points`
-    pub thrust: VoltageLaw,
+    pub(crate) thrust: VoltageLaw,
     /// `torque_exponent`, `torque_polynomial`, `torque_points`
-    pub torque: VoltageLaw,
+    pub(crate) torque: VoltageLaw,
 }
 
 /// The three forms of a voltage law.
 #[derive(Clone, Debug)]
-pub struct VoltageLaw {
+pub(crate) struct VoltageLaw {
     /// The forms that the file has, also those of a wrong shape.
-    pub present: Vec<(&'static str, Range<usize>)>,
+    pub(crate) present: Vec<(&'static str, Range<usize>)>,
     /// `.._exponent`
-    pub exponent: Option<Spanned<f64>>,
+    pub(crate) exponent: Option<Spanned<f64>>,
     /// `.._polynomial`
-    pub polynomial: Option<Spanned<Vec<Spanned<f64>>>>,
+    pub(crate) polynomial: Option<Spanned<Vec<Spanned<f64>>>>,
     /// `.._points`
-    pub points: Option<Spanned<Vec<Point>>>,
+    pub(crate) points: Option<Spanned<Vec<Point>>>,
 }
 
 /// `[layout]`
 #[derive(Clone, Debug)]
-pub struct Layout {
+pub(crate) struct Layout {
     /// Place of the header.
-    pub place: Range<usize>,
+    pub(crate) place: Range<usize>,
     /// `arm_m`
-    pub arm_m: Option<Spanned<f64>>,
+    pub(crate) arm_m: Option<Spanned<f64>>,
     /// `units`
-    pub units: Option<Spanned<usize>>,
+    pub(crate) units: Option<Spanned<usize>>,
     /// `first_angle_deg`
-    pub first_angle_deg: Option<Spanned<f64>>,
+    pub(crate) first_angle_deg: Option<Spanned<f64>>,
     /// `first_spin`
-    pub first_spin: Option<Spanned<String>>,
+    pub(crate) first_spin: Option<Spanned<String>>,
     /// `spins`
-    pub spins: Option<Spanned<Vec<Spanned<String>>>>,
+    pub(crate) spins: Option<Spanned<Vec<Spanned<String>>>>,
     /// `channels`
-    pub channels: Option<Spanned<Vec<Spanned<Channels>>>>,
+    pub(crate) channels: Option<Spanned<Vec<Spanned<Channels>>>>,
 }
 
 /// `[[unit]]`
 #[derive(Clone, Debug)]
-pub struct Unit {
+pub(crate) struct Unit {
     /// Path, like `unit[3]`.
-    pub path: String,
+    pub(crate) path: String,
     /// Place of the header.
-    pub place: Range<usize>,
+    pub(crate) place: Range<usize>,
     /// `position_m`
-    pub position_m: Option<Spanned<Triple>>,
+    pub(crate) position_m: Option<Spanned<Triple>>,
     /// `upper_spin`
-    pub upper_spin: Option<Spanned<String>>,
+    pub(crate) upper_spin: Option<Spanned<String>>,
     /// `channels`
-    pub channels: Option<Spanned<Channels>>,
+    pub(crate) channels: Option<Spanned<Channels>>,
     /// `axis`
-    pub axis: Option<Spanned<Triple>>,
+    pub(crate) axis: Option<Spanned<Triple>>,
 }
 
 /// `[inverse]`
 #[derive(Clone, Debug)]
-pub struct Inverse {
-    /// Place of the header.
-    pub place: Range<usize>,
+pub(crate) struct Inverse {
     /// `thrust_tolerance_n`
-    pub thrust_tolerance_n: Option<Spanned<f64>>,
+    pub(crate) thrust_tolerance_n: Option<Spanned<f64>>,
     /// `torque_tolerance_nm`
-    pub torque_tolerance_nm: Option<Spanned<f64>>,
+    pub(crate) torque_tolerance_nm: Option<Spanned<f64>>,
     /// `method`
-    pub method: Option<Spanned<String>>,
+    pub(crate) method: Option<Spanned<String>>,
     /// `degree`
-    pub degree: Option<Spanned<usize>>,
+    pub(crate) degree: Option<Spanned<usize>>,
 }
 
 /// `[allocation]`
 #[derive(Clone, Debug)]
-pub struct Allocation {
+pub(crate) struct Allocation {
     /// `airmode`
-    pub airmode: Option<Spanned<String>>,
+    pub(crate) airmode: Option<Spanned<String>>,
     /// `axes`
-    pub axes: Option<Spanned<Vec<Spanned<String>>>>,
+    pub(crate) axes: Option<Spanned<Vec<Spanned<String>>>>,
     /// `yaw_reserve_nm`
-    pub yaw_reserve_nm: Option<Spanned<f64>>,
+    pub(crate) yaw_reserve_nm: Option<Spanned<f64>>,
     /// `power_bias_nm_per_n`
-    pub power_bias_nm_per_n: Option<Spanned<f64>>,
+    pub(crate) power_bias_nm_per_n: Option<Spanned<f64>>,
 }
 
 /// `[vehicle]`
 #[derive(Clone, Debug)]
-pub struct Vehicle {
+pub(crate) struct Vehicle {
     /// `mass_kg`
-    pub mass_kg: Option<Spanned<f64>>,
+    pub(crate) mass_kg: Option<Spanned<f64>>,
 }
 
 impl Spec {
     /// Reads the file and notes all faults of its shape: syntax, unknown and missing keys, wrong
     /// types and lengths, numbers that are not finite. `None` where the text is not TOML or empty,
     /// so that nothing more can be said of it.
-    pub fn read(source: &Source, faults: &mut Vec<Diagnostic>) -> Option<Spec> {
+    pub(crate) fn read(source: &Source, faults: &mut Vec<Diagnostic>) -> Option<Spec> {
         let table = syntax::parse(source, faults)?;
         let places = syntax::places(&table);
         let top = places.get("name").cloned().unwrap_or(0..0);
@@ -355,7 +348,6 @@ impl Unit {
 impl Inverse {
     fn read(fields: &mut Fields<'_, '_>) -> Self {
         Self {
-            place: fields.place(),
             thrust_tolerance_n: fields.read("thrust_tolerance_n"),
             torque_tolerance_nm: fields.read("torque_tolerance_nm"),
             method: fields.read("method"),

@@ -1,13 +1,15 @@
-//! The emitted tables, as values. M, M+, the pair, its inverse, the voltage laws and the polygon
-//! become f32 here; the closed form does in `desaturation`, priorities and tolerances do in
-//! `selection`.
+//! The emitted tables, as values. All numbers become f32 here but those of the closed form:
+//! `desaturation` rounds as it goes, since facets follow from thrusts that are rounded inwards, and
+//! the range of level thrust is found by `mixer-rt`'s look-up in the rounded table.
 //!
 //! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the
 //! generated Rust holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs
 //! `mixer-rt` itself on them.
 
 mod border;
+mod budget;
 mod inverse;
+mod rows;
 mod single;
 
 use mixer_rt::{
@@ -20,12 +22,15 @@ use mixer_rt::{
 };
 
 use crate::airframe::{Airframe, Basis};
+use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage::TabulatedLaw;
 
 pub use border::BorderTable;
+use budget::budget;
 pub use inverse::{InverseTable, SeedTable};
-pub use single::single_tables;
+use rows::rows;
+use single::single_tables;
 
 /// The tables of one airframe.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +76,7 @@ pub struct AttainableTable {
 
 impl AttainableTable {
     /// Rounds a convex polygon `[f, Q]` (N, N m), anticlockwise, and a point inside.
-    pub fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
+    pub(crate) fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
         let scaled = |[f, q]: [f64; 2]| [(f / scale[0]) as f32, (q / scale[1]) as f32];
         let n = vertices.len();
         let corners = (0..n).map(|k| {
@@ -86,7 +91,7 @@ impl AttainableTable {
     }
 
     /// The set as `mixer-rt` reads it.
-    pub fn view(&self) -> AttainableSet<'_> {
+    pub(crate) fn view(&self) -> AttainableSet<'_> {
         AttainableSet {
             scale: self.scale,
             centre: self.centre,
@@ -184,7 +189,7 @@ impl ClosedFormTable {
     }
 
     /// 1 / n.
-    pub fn torque_share(&self) -> f32 {
+    pub(crate) fn torque_share(&self) -> f32 {
         1.0 / self.units.len() as f32
     }
 
@@ -232,6 +237,41 @@ pub enum LawTable {
 pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
+    /// The tables of a fitted inverse. Level flight, the closed form and the tolerance are filled in
+    /// later.
+    pub(crate) fn new(
+        airframe: &Airframe,
+        effectiveness: &Effectiveness,
+        pair: &PairMap,
+        attainable: AttainableTable,
+        voltage: Option<VoltageTable>,
+        inverse: InverseTable,
+    ) -> Self {
+        let allocation = &airframe.allocation;
+        MixerTables {
+            units: unit_tables(airframe, effectiveness),
+            pair: pair_table(airframe),
+            singles: single_tables(airframe),
+            inverse,
+            throttle: throttle_table(airframe),
+            voltage,
+            attainable,
+            level: LevelFlightTable::default(),
+            rows: rows(airframe, effectiveness, pair),
+            desaturation: Desaturation {
+                airmode: allocation.airmode,
+                yaw_reserve_nm: allocation.yaw_reserve_nm as f32,
+                budget: budget(airframe.units.len(), effectiveness.is_vertical()),
+            },
+            power_bias_nm_per_n: allocation.power_bias_nm_per_n as f32,
+            closed_form: None,
+            tolerance: Tolerance {
+                efforts: [0.0; 2],
+                wrench: [0.0; 4],
+            },
+        }
+    }
+
     /// The tables as `mixer-rt` reads them.
     pub fn view(&self) -> Tables<'_, QuantityTable, &InverseTable, Option<ClosedForm<'_>>> {
         Tables {
@@ -291,7 +331,7 @@ impl MixerTables {
     }
 
     /// Bytes of the tables in flash: four per number, one per channel.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         let floats = self.units.len() * 16
             + 2 * self.pair.thrust.terms()
             + 2 * 2 * 4 // single rotors
@@ -324,12 +364,12 @@ impl QuantityTable {
     }
 
     /// Number of terms.
-    pub fn terms(&self) -> usize {
+    pub(crate) fn terms(&self) -> usize {
         self.coefficients().len()
     }
 
     /// The coefficients in the order of the airframe file.
-    pub fn coefficients(&self) -> &[f32] {
+    pub(crate) fn coefficients(&self) -> &[f32] {
         match self {
             QuantityTable::Biquadratic(quantity) => &quantity.0,
             QuantityTable::Cubic(quantity) => &quantity.0,
@@ -411,7 +451,7 @@ impl LawTable {
 }
 
 /// Rounds the forward map.
-pub fn pair_table(airframe: &Airframe) -> Pair<QuantityTable> {
+fn pair_table(airframe: &Airframe) -> Pair<QuantityTable> {
     let pair = &airframe.pair;
     Pair {
         thrust: QuantityTable::new(pair.basis, &pair.thrust_n),
@@ -438,7 +478,7 @@ pub fn throttle_table(airframe: &Airframe) -> ThrottleRange {
 }
 
 /// Rounds M and M+, unit by unit.
-pub fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> {
+fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> {
     let n = airframe.units.len();
     let row = |index: usize| -> [f32; 4] {
         std::array::from_fn(|axis| effectiveness.pseudo_inverse[(index, axis)] as f32)
@@ -453,4 +493,12 @@ pub fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Un
             channels: [unit.upper_channel as u8, unit.lower_channel as u8],
         })
         .collect()
+}
+
+/// Rounds tolerances, those of the efforts upwards.
+pub(crate) fn tolerance_table(efforts: [f64; 2], wrench: [f64; 4]) -> Tolerance {
+    Tolerance {
+        efforts: efforts.map(|effort| (effort as f32).next_up()),
+        wrench: wrench.map(|x| x as f32),
+    }
 }

@@ -4,6 +4,7 @@ mod scalar;
 mod sqrt;
 
 pub use scalar::Scalar;
+pub(crate) use scalar::clamp;
 pub use sqrt::sqrt;
 
 /// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take
@@ -12,11 +13,4 @@ pub use sqrt::sqrt;
 #[inline(always)]
 pub(crate) fn rolled() {
     core::hint::black_box(());
-}
-
-/// `x` limited to `[low, high]`; `low` where `x` is NaN. (`f32::clamp` has a panic path.)
-#[inline(always)]
-pub(crate) fn clamp(x: f32, low: f32, high: f32) -> f32 {
-    let x = if x > low { x } else { low };
-    if x < high { x } else { high }
 }

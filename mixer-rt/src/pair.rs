@@ -4,10 +4,11 @@
 mod forward;
 mod inverse;
 pub(crate) mod rotors;
+mod single;
 
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
 pub use inverse::{
     BilinearSeed, CubicSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed, Seeded,
     ThrottleRange, solve,
 };
-pub use rotors::SingleRotor;
+pub use single::SingleRotor;

@@ -1,5 +1,5 @@
 //! Answers against a second allocator, an interior point method on the throttles. What it reaches
-//! is attainable, which the optima of linear programs over hulls are not where rotors are out.
+//! is attainable, which the optima of linear programmes over hulls are not where rotors are out.
 
 use mixer_rt::{Health, tables::Airmode};
 use mixer_setpoints::Random;

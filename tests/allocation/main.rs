@@ -4,7 +4,7 @@
 //! | file | holds the mixer to |
 //! |---|---|
 //! | `delivery.rs` | wrenches of random throttles: delivered |
-//! | `optimum.rs` | linear programs: few requests short by 1 % of any axis' authority |
+//! | `optimum.rs` | linear programmes: few requests short by 1 % of any axis' authority |
 //! | `regressions.rs`, `.toml` | requests that an earlier mixer answered badly, as data |
 //! | `jumps.rs` | throttles that jump from a request to its neighbour: those that must; others are counted |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |

@@ -1,4 +1,4 @@
-//! Answers against linear programs over the physical attainable sets, at any voltage and with
+//! Answers against linear programmes over the physical attainable sets, at any voltage and with
 //! rotors out.
 
 use mixer_rt::Health;

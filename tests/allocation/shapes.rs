@@ -8,7 +8,7 @@ mod maps;
 use cargo_mixer::identify::fragment;
 use mixer_compiler::airframe::{Airframe, Spin};
 use mixer_compiler::model::PairMap;
-use mixer_compiler::model::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::EnclosedPairMap;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::Health;
 use mixer_setpoints::Random;
@@ -300,7 +300,7 @@ fn real_pairs(test: &str) -> Option<Vec<(String, String)>> {
             let text = frames::toml_with_pair(&text, &places, &channels, Options::default());
             let own =
                 Airframe::read(&Source::new("own.toml", text)).unwrap_or_else(|faults| panic!("{faults}"));
-            let least = ForwardMap::new(&own.pair).least_idle(1.0).expect("an idle");
+            let least = EnclosedPairMap::new(&own.pair).least_idle(1.0).expect("an idle");
             let idle = IDLE * least;
             let [idle_n, _] = PairMap::new(&own.pair, &own.throttle).efforts([idle; 2]);
             let widest = maps::with_throttle(&identified, [idle, 1.0]);

@@ -2,8 +2,8 @@
 //!
 //! It minimises the cost of what a request falls short of, over the throttles of the rotors that
 //! work and by the airframe file's own polynomials, in f64. It knows no polygon, no inverse map and
-//! no linear program. So what it reaches is attainable, also with rotors out, where the linear
-//! programs of [`optimum`](crate::optimum) range over hulls that nobody reaches. The sets are not
+//! no linear programme. So what it reaches is attainable, also with rotors out, where the linear
+//! programmes of [`optimum`](crate::optimum) range over hulls that nobody reaches. The sets are not
 //! convex, so its optimum is a local one.
 //!
 //! Unknowns are x in (0, 1) per rotor, whose throttle is sqrt(min^2 + x (max^2 - min^2)), and per

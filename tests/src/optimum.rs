@@ -1,8 +1,9 @@
-//! An independent oracle of desaturation: the same lexicographic problem as linear programs in f64.
+//! An independent oracle of desaturation: the same lexicographic problem as linear programmes, in
+//! f64.
 //!
 //! A unit's attainable set is cut into pieces, each stood for by the convex hull of points of it:
 //!
-//! * Both rotors, three units or more: one piece, from points of the border. The programs range
+//! * Both rotors, three units or more: one piece, from points of the border. The programmes range
 //!   over the convex hull: what they attain is at least what is physically attainable. (The sum of
 //!   several sets is nearly convex, whatever each of them is.)
 //! * Both rotors, one unit or two, or any number in [`Oracle::exact`]: the images of small cells of
@@ -18,14 +19,14 @@
 
 pub mod change;
 mod polygons;
-mod program;
+mod programme;
 
 use microlp::Error;
 use mixer_compiler::model::PairMap;
 use mixer_rt::{Health, tables::Airmode};
 
 use crate::physics::Physics;
-use program::{Goal, Point, Program, Quantity, Ranges};
+use programme::{Goal, Point, Programme, Quantity, Ranges};
 
 /// Border points per edge of the throttle box.
 const SAMPLES: usize = 12;
@@ -39,7 +40,7 @@ const HALVINGS: u32 = 2;
 /// Units up to which the box is cut.
 const FEW: usize = 2;
 
-/// Room for the solver's own tolerance between one program and the next. Where edges are all but
+/// Room for the solver's own tolerance between one programme and the next. Where edges are all but
 /// dependent the next priority gains a million times as much by it.
 const SLACK: f64 = 1e-9;
 
@@ -61,7 +62,7 @@ pub struct Optimum {
 /// neighbours in order.
 type Pieces<T> = Vec<Vec<T>>;
 
-/// The lexicographic programs of one frame at one voltage, with some rotors out.
+/// The lexicographic programmes of one frame at one voltage, with some rotors out.
 pub struct Oracle {
     sets: Vec<Pieces<[f64; 4]>>,
     served: [bool; 4],
@@ -78,7 +79,7 @@ struct Node {
 }
 
 impl Oracle {
-    /// The programs of a frame with correction `[k_f, k_Q]`.
+    /// The programmes of a frame with correction `[k_f, k_Q]`.
     pub fn new(
         physics: &Physics,
         allocation: &mixer_compiler::airframe::Allocation,
@@ -138,7 +139,7 @@ impl Oracle {
     fn best(&self, goal: Goal, direction: [f64; 2], ranges: Ranges) -> Result<Option<Point>, Error> {
         let solve = |runs: Vec<[usize; 2]>| -> Result<Option<Node>, Error> {
             let sets = self.sets.iter().zip(&runs);
-            let program = Program {
+            let programme = Programme {
                 sets: sets
                     .map(|(pieces, &[from, to])| pieces[from..to].iter().flatten().copied().collect())
                     .collect(),
@@ -146,7 +147,7 @@ impl Oracle {
                 direction,
                 size: self.size,
             };
-            Ok(program.solve(goal, ranges)?.map(|point| Node { runs, point }))
+            Ok(programme.solve(goal, ranges)?.map(|point| Node { runs, point }))
         };
         let all = self.sets.iter().map(|pieces| [0, pieces.len()]).collect();
         let mut open: Vec<Node> = solve(all)?.into_iter().collect();

@@ -9,7 +9,7 @@
 //! or within a tenth of it.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::model::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 
 use super::basis::ThrottleBox;
@@ -73,7 +73,7 @@ pub fn choose(
             Ok(design) => match errors(&design, points, [thrust, torque], &folds) {
                 Some(errors) => {
                     let [f, q] = [thrust, torque].map(|y| design.coefficients(&design.coordinates(y)));
-                    least_idle = fold::least_idle(&ForwardMap::of(basis, &f, &q), throttle_box);
+                    least_idle = fold::least_idle(&EnclosedPairMap::of(basis, &f, &q), throttle_box);
                     (Some(errors), None)
                 }
                 None => (

@@ -6,7 +6,7 @@
 //! regions of the report are drawn on a grid.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::model::injectivity::{self, ForwardMap};
+use mixer_compiler::model::injectivity::{self, EnclosedPairMap};
 use serde::Serialize;
 
 use super::basis::ThrottleBox;
@@ -63,7 +63,7 @@ pub fn determinant(basis: Basis, thrust: &Polynomial, torque: &Polynomial) -> Po
 
 /// The least idle of both rotors from the box's on, rounded up to 1e-5, from which on the map is
 /// proven injective; none if there is none below 0.9 of the box.
-pub fn least_idle(map: &ForwardMap, throttle_box: ThrottleBox) -> Option<f64> {
+pub fn least_idle(map: &EnclosedPairMap, throttle_box: ThrottleBox) -> Option<f64> {
     let ThrottleBox { min, max } = throttle_box;
     if map.prove_injective(throttle_box.into()).is_ok() {
         return Some(min);
@@ -74,7 +74,7 @@ pub fn least_idle(map: &ForwardMap, throttle_box: ThrottleBox) -> Option<f64> {
 
 /// An idle to command, in steps of 0.005: the first from `least` on that is itself proven to do up
 /// to `max`.
-pub fn round_idle(map: &ForwardMap, least: f64, max: f64) -> Option<f64> {
+pub fn round_idle(map: &EnclosedPairMap, least: f64, max: f64) -> Option<f64> {
     const PER_UNIT: f64 = 200.0;
     let first = (least * PER_UNIT - 1e-9).ceil();
     (0..)
@@ -135,7 +135,7 @@ fn regions(grid: &[f64], mut values: Vec<f64>) -> Vec<Region> {
 
 /// The report for a map on a box.
 pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: ThrottleBox) -> Fold {
-    let map = ForwardMap::of(basis, thrust, torque);
+    let map = EnclosedPairMap::of(basis, thrust, torque);
     let proof = map.prove_injective(commanded.into());
     let [thrust, torque] = [thrust, torque].map(|c| Polynomial::of(basis, c));
     let det = determinant(basis, &thrust, &torque);
@@ -187,7 +187,7 @@ mod tests {
             (u[1] - 0.089).abs() < 0.006 && (l[0] - 0.79).abs() < 0.01 && l[1] == 1.0,
             "{u:?} {l:?}"
         );
-        let map = ForwardMap::of(b, &THRUST, &TORQUE);
+        let map = EnclosedPairMap::of(b, &THRUST, &TORQUE);
         let proven = |min: f64| map.prove_injective(ThrottleBox { min, max: 1.0 }.into()).is_ok();
         assert!(proven(0.0888) && !proven(0.0887));
         let idle = round_idle(&map, fold.least_idle.expect("an idle"), 1.0);

@@ -208,7 +208,7 @@ impl Problem {
 
 #[cfg(test)]
 mod tests {
-    use mixer_compiler::model::injectivity::ForwardMap;
+    use mixer_compiler::model::injectivity::EnclosedPairMap;
 
     use super::*;
     use crate::identify::fit::{fit, judge};
@@ -242,7 +242,7 @@ mod tests {
             let free = [fit(&design, &f, BOX), fit(&design, &q, BOX)];
             let z = [design.coordinates(&f), design.coordinates(&q)];
             let proven = |f: &Fit, q: &Fit| {
-                let map = ForwardMap::of(basis, &f.coefficients, &q.coefficients);
+                let map = EnclosedPairMap::of(basis, &f.coefficients, &q.coefficients);
                 map.prove_injective(BOX.into()).is_ok()
             };
             assert!(!proven(&free[0], &free[1]), "the test needs a fold to remove");

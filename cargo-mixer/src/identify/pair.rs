@@ -1,7 +1,7 @@
 //! The map of a pair from bench points: choice of the basis, fit, outliers, fold, shape constraint.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::model::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 
 use self::placed::{Placed, at_reference, channels, confirmed, places, suspects, without};
@@ -174,7 +174,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         Some(_) => &fold_of(basis, &fits, throttle_box),
         None => &first_fold,
     };
-    let map = ForwardMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
+    let map = EnclosedPairMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
     let throttle = ThrottleBox {
         min: if fold.injective {
             clear_of_fold(&map, throttle_box, &mut warnings)
@@ -319,7 +319,7 @@ const CLEAR: f64 = 1.03;
 
 /// The idle of a map that can be inverted over its box: the box's, or a little more where that is
 /// next to a fold.
-fn clear_of_fold(map: &ForwardMap, throttle: ThrottleBox, warnings: &mut Vec<String>) -> f64 {
+fn clear_of_fold(map: &EnclosedPairMap, throttle: ThrottleBox, warnings: &mut Vec<String>) -> f64 {
     let least = map.least_idle(throttle.max).unwrap_or(0.0);
     if throttle.min >= CLEAR * least {
         return throttle.min;
@@ -338,7 +338,7 @@ fn clear_of_fold(map: &ForwardMap, throttle: ThrottleBox, warnings: &mut Vec<Str
 /// rounded up to 0.005.
 fn raised(
     fold: &Fold,
-    map: &ForwardMap,
+    map: &EnclosedPairMap,
     label: &dyn Fn() -> String,
     warnings: &mut Vec<String>,
 ) -> Result<f64, Refusal> {

@@ -9,7 +9,7 @@ use cargo_mixer::identify::fit::Fit;
 use cargo_mixer::identify::power::Power;
 use cargo_mixer::identify::read;
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::model::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::EnclosedPairMap;
 
 use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::{Identified, from_benches, identify};
@@ -153,7 +153,7 @@ fn every_map_is_identified() {
                 pair.outliers
             );
         }
-        let map = ForwardMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm);
+        let map = EnclosedPairMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm);
         let proof = map.prove_injective(pair.throttle.into());
         assert!(proof.is_ok(), "{}: {proof:?}", path.display());
         assert!(
@@ -265,7 +265,7 @@ fn monotone_fits_have_no_fold_down_to_the_lowest_bench_throttle() {
             .pair
             .expect("a pair");
         assert_eq!(pair.throttle.min, 0.07, "{}", path.display());
-        let map = ForwardMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm);
+        let map = EnclosedPairMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm);
         let proof = map.prove_injective(pair.throttle.into());
         assert!(proof.is_ok(), "{}: {proof:?}", path.display());
         assert_eq!(pair.fold.injective, pair.monotone.is_none());

@@ -3,7 +3,7 @@
 use cargo_mixer::identify::basis::ThrottleBox;
 use cargo_mixer::identify::bench::Bench;
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::model::injectivity::ForwardMap;
+use mixer_compiler::model::injectivity::EnclosedPairMap;
 
 use cargo_mixer::identify::fit::{Design, fit, student_t_975};
 use cargo_mixer::identify::identified::{Settings, from_benches};
@@ -208,7 +208,7 @@ fn the_idle_is_raised_above_the_fold_or_the_map_unfolded() {
         .pair
         .expect("a pair");
     assert_eq!(monotone.throttle.min, 0.02);
-    let map = ForwardMap::of(monotone.basis, &monotone.thrust_n, &monotone.torque_nm);
+    let map = EnclosedPairMap::of(monotone.basis, &monotone.thrust_n, &monotone.torque_nm);
     assert!(map.prove_injective(monotone.throttle.into()).is_ok());
     let cost = monotone.monotone.expect("a cost");
     assert!(cost.free_thrust_rms <= monotone.thrust.residual_rms + 1e-12);

@@ -77,7 +77,7 @@ impl Basis {
     }
 
     /// The terms in words, like `u2l2, u2l, ..`.
-    pub fn terms(self) -> String {
+    pub(crate) fn terms(self) -> String {
         self.term_names().join(", ")
     }
 }

@@ -4,7 +4,7 @@ use toml::Spanned;
 
 use crate::diagnostic::{Code, Diagnostic, any_of, nearest, number, quoted};
 use crate::spec;
-pub use crate::spec::keys::{EVALUATORS, HIGHEST_DEGREE};
+use crate::spec::keys::{EVALUATORS, HIGHEST_INVERSE_DEGREE};
 
 /// Which evaluator of the inverse to emit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Method {
         /// Total degree, 1 to 15.
         degree: usize,
     },
-    /// One of [`EVALUATORS`].
+    /// One of the evaluators, by its name.
     Named(String),
 }
 
@@ -146,13 +146,15 @@ fn polynomial(
                     "`inverse.degree` is missing: the polynomial has no degree of its own",
                 )
                 .label("needs `degree`")
-                .help(format!("add `degree = 7`; 1 to {HIGHEST_DEGREE} are possible")),
+                .help(format!(
+                    "add `degree = 7`; 1 to {HIGHEST_INVERSE_DEGREE} are possible"
+                )),
             );
         }
         return None;
     };
     let degree = *field.get_ref();
-    if (1..=HIGHEST_DEGREE).contains(&degree) {
+    if (1..=HIGHEST_INVERSE_DEGREE).contains(&degree) {
         return Some(Method::Polynomial { degree });
     }
     faults.push(
@@ -160,9 +162,9 @@ fn polynomial(
             Code::OutOfRange,
             "inverse.degree",
             field.span(),
-            format!("`inverse.degree` = {degree} is not between 1 and {HIGHEST_DEGREE}"),
+            format!("`inverse.degree` = {degree} is not between 1 and {HIGHEST_INVERSE_DEGREE}"),
         )
-        .label(format!("expected 1 to {HIGHEST_DEGREE}"))
+        .label(format!("expected 1 to {HIGHEST_INVERSE_DEGREE}"))
         .help("errors shrink slowly with the degree; `method = \"auto\"` finds a cheaper evaluator"),
     );
     None

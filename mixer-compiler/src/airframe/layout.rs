@@ -14,8 +14,9 @@ use toml::Spanned;
 
 use super::check::word;
 use super::pair::Spin;
-use super::unit::{FARTHEST_M, MOST_UNITS};
+use super::unit::FARTHEST_M;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
+use crate::spec::keys::MOST_UNITS;
 use crate::spec::{Channels, Layout, Unit};
 
 /// Coordinates below this share of the arm are the rounding of sin and cos at multiples of 90

@@ -32,7 +32,7 @@ impl Spin {
     }
 
     /// The sense in words.
-    pub fn in_words(self) -> &'static str {
+    pub(crate) fn in_words(self) -> &'static str {
         match self {
             Spin::Cw => "clockwise",
             Spin::Ccw => "counter-clockwise",

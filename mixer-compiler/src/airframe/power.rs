@@ -42,7 +42,7 @@ impl Power {
     }
 
     /// Power of both rotors at `[u, l]`, W.
-    pub fn at(&self, [u, l]: [f64; 2]) -> f64 {
+    pub(crate) fn at(&self, [u, l]: [f64; 2]) -> f64 {
         value(&self.power_w, [u, l])
     }
 }

@@ -1,4 +1,4 @@
-//! The units: where they are, where they push, how they turn and which outputs drive them.
+//! The units: where they are, where they push, how they turn and which channels drive them.
 
 use toml::Spanned;
 
@@ -6,8 +6,7 @@ use super::check::word;
 use super::pair::Spin;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::spec;
-
-pub use crate::spec::keys::MOST_UNITS;
+use crate::spec::keys::MOST_UNITS;
 
 /// Units nearer than this are one and the same, m.
 const SAME_PLACE_M: f64 = 1e-3;

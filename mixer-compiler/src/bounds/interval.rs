@@ -8,7 +8,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A closed interval `[low, high]` that encloses an exact real number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
+pub(crate) struct Interval {
     /// Lower end.
     pub low: f64,
     /// Upper end, not below `low`.
@@ -17,30 +17,25 @@ pub struct Interval {
 
 impl Interval {
     /// Zero, exactly.
-    pub const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
+    pub(crate) const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
 
     /// The number `x`, exactly.
-    pub const fn exact(x: f64) -> Self {
+    pub(crate) const fn exact(x: f64) -> Self {
         Interval { low: x, high: x }
     }
 
     /// The largest absolute value.
-    pub fn magnitude(self) -> f64 {
+    pub(crate) fn magnitude(self) -> f64 {
         self.high.max(-self.low)
     }
 
-    /// True where every number of the interval is positive.
-    pub fn is_positive(self) -> bool {
-        self.low > 0.0
-    }
-
     /// True where no number of the interval is positive.
-    pub fn is_not_positive(self) -> bool {
+    pub(crate) fn is_not_positive(self) -> bool {
         self.high <= 0.0
     }
 
     /// Half of the interval (exact but for underflow).
-    pub fn half(self) -> Self {
+    pub(crate) fn half(self) -> Self {
         Interval {
             low: self.low * 0.5,
             high: self.high * 0.5,

@@ -9,7 +9,7 @@ mod convex;
 
 use crate::model::PairMap;
 use crate::tables::AttainableTable;
-use convex::convex_part;
+use convex::{convex_part, cross, distance};
 
 /// Border points per edge of the box. Where the border bends inwards, chords between its points are
 /// outside by the square of the points' distance: 1e-6 of the set's size at the paper's corners.
@@ -97,15 +97,6 @@ fn fewer_corners(polygon: &[[f64; 2]], allowed: f64) -> Vec<[f64; 2]> {
         corners.remove(least);
     }
     corners
-}
-
-fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [f, q] = [b[0] - a[0], b[1] - a[1]];
-    (f * f + q * q).sqrt()
 }
 
 /// Twice the area, and the centroid.

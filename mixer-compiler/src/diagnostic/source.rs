@@ -29,7 +29,7 @@ impl Source {
 
     /// The place of a byte offset. Offsets past the end or inside a character are moved back to the
     /// nearest character boundary.
-    pub fn place(&self, offset: usize) -> Place {
+    pub(crate) fn place(&self, offset: usize) -> Place {
         let before = &self.text[..self.boundary(offset)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         Place {

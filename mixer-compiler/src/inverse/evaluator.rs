@@ -48,7 +48,7 @@ const fn seeded(seed: SeedForm, steps: u8) -> Evaluator {
 
 impl Evaluator {
     /// The evaluators that a method allows, by what they cost: the order in which they are tried.
-    pub fn candidates(method: &Method) -> Vec<Evaluator> {
+    pub(crate) fn candidates(method: &Method) -> Vec<Evaluator> {
         match method {
             Method::Auto => CANDIDATES.to_vec(),
             Method::Polynomial { degree } => vec![Evaluator::Polynomial {
@@ -73,7 +73,7 @@ impl Evaluator {
     }
 
     /// The name with its parameters, for people.
-    pub fn description(self) -> String {
+    pub(crate) fn description(self) -> String {
         match self {
             Evaluator::Polynomial { degree } => format!("polynomial in (f, Q) of degree {degree}"),
             Evaluator::Seeded { seed, steps } => {
@@ -99,7 +99,7 @@ impl SeedForm {
     }
 
     /// Number of coefficients per throttle.
-    pub fn terms(self) -> usize {
+    pub(crate) fn terms(self) -> usize {
         match self {
             SeedForm::Bilinear => 4,
             SeedForm::Quadratic => 6,
@@ -108,7 +108,7 @@ impl SeedForm {
     }
 
     /// The terms at (x, y), in the order of `mixer-rt`'s coefficients.
-    pub fn row(self, x: f64, y: f64) -> Vec<f64> {
+    pub(crate) fn row(self, x: f64, y: f64) -> Vec<f64> {
         let (x2, y2) = (x * x, y * y);
         let all = [1.0, x, y, x * y, x2, y2, x2 * y, x * y2, x2 * x, y2 * y];
         all[..self.terms()].to_vec()
@@ -118,7 +118,7 @@ impl SeedForm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::airframe::EVALUATORS;
+    use crate::spec::keys::EVALUATORS;
 
     #[test]
     fn every_name_of_the_file_is_an_evaluator() {

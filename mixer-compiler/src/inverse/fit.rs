@@ -35,7 +35,7 @@ const WORTH_A_SEARCH: f64 = 2.0;
 
 /// A fitted inverse, in f64.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FittedInverse {
+pub(crate) enum FittedInverse {
     /// Coefficients of a polynomial in scaled (f, Q).
     Polynomial {
         /// Total degree.

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! are, for some a and b, when dg/du > 0 and dh/dl > 0; and det d(g, h) = (1 + a b) det J / (F T).
-//! An invertible linear change of the outputs changes nothing about injectivity. All signs are
+//! An invertible linear change of the efforts changes nothing about injectivity. All signs are
 //! proven by [`Bivariate`].
 
 use crate::airframe::{Airframe, Basis, Pair};
@@ -17,13 +17,14 @@ use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::polynomial::{Bivariate, Sign, ThrottleBox};
 
-/// The pair's forward map with what the proof needs of it.
+/// What the proof needs of the forward map, with coefficients that are enclosed by intervals. See
+/// [`PairMap`](super::PairMap) for its values.
 #[derive(Clone, Debug)]
-pub struct ForwardMap {
+pub struct EnclosedPairMap {
     thrust: [Bivariate; 2],
     torque: [Bivariate; 2],
     determinant: Bivariate,
-    /// F and T: the outputs' sizes.
+    /// F and T: the efforts' sizes.
     scale: [f64; 2],
 }
 
@@ -32,7 +33,7 @@ pub struct ForwardMap {
 pub struct Injectivity {
     /// Proven lower bound of det J over the box, N N m.
     pub least_determinant: f64,
-    /// The combination (a, b) of outputs whose Jacobian is a P-matrix.
+    /// The combination (a, b) of efforts whose Jacobian is a P-matrix.
     pub combination: [f64; 2],
 }
 
@@ -48,14 +49,14 @@ pub enum Fold {
     },
     /// det J < 0 at every corner: the sign of the torque is not the one of the conventions.
     Reversed,
-    /// det J > 0 was proven, but no combination of the outputs is a P-matrix.
+    /// det J > 0 was proven, but no combination of the efforts is a P-matrix.
     NotGlobal,
 }
 
 /// Factors a and b that are tried; the first works for ordinary pairs.
 const COMBINATIONS: [f64; 6] = [0.0, 0.5, 1.0, 2.0, 4.0, 0.25];
 
-impl ForwardMap {
+impl EnclosedPairMap {
     /// The map of a pair model.
     pub fn new(pair: &Pair) -> Self {
         Self::of(pair.basis, &pair.thrust_n, &pair.torque_nm)
@@ -81,7 +82,7 @@ impl ForwardMap {
                 .max(corner(c, 1.0, 0.0))
         };
         let scale = [size(thrust_n), size(torque_nm)];
-        ForwardMap {
+        EnclosedPairMap {
             thrust,
             torque,
             determinant,
@@ -140,7 +141,7 @@ impl ForwardMap {
     }
 
     /// det J at the throttles (u, l), N N m.
-    pub fn determinant_at(&self, at: [f64; 2]) -> f64 {
+    pub(crate) fn determinant_at(&self, at: [f64; 2]) -> f64 {
         let value = self.determinant.at(at);
         0.5 * (value.low + value.high)
     }
@@ -200,8 +201,8 @@ impl ForwardMap {
 ///
 /// # Errors
 /// A fold, at `throttle.min` with the least idle that would do, or a torque of the wrong sign.
-pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>> {
-    let map = ForwardMap::new(&airframe.pair);
+pub(crate) fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>> {
+    let map = EnclosedPairMap::new(&airframe.pair);
     let throttle = ThrottleBox {
         low: airframe.throttle.min,
         high: airframe.throttle.max,
@@ -253,7 +254,7 @@ pub fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagnostic>>
 /// Points per side for the worst value in a message.
 const GRID: u32 = 16;
 
-/// Resolution of [`ForwardMap::least_idle`]: steps per unit of throttle.
+/// Resolution of [`EnclosedPairMap::least_idle`]: steps per unit of throttle.
 const IDLE_STEPS: f64 = 1e5;
 
 /// `sum coefficient u^i l^j`, in f64.

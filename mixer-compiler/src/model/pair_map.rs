@@ -122,19 +122,19 @@ impl PairMap {
     }
 
     /// A throttle limited to the range.
-    pub fn clamp(&self, throttle: f64) -> f64 {
+    pub(crate) fn clamp(&self, throttle: f64) -> f64 {
         throttle.clamp(self.range[0], self.range[1])
     }
 
     /// Throttles on a `points` x `points` grid over the range that is denser towards the edges
     /// (Chebyshev's extrema), corners included.
-    pub fn grid(&self, points: usize) -> Vec<[f64; 2]> {
+    pub(crate) fn grid(&self, points: usize) -> Vec<[f64; 2]> {
         squared(&self.nodes(points))
     }
 
     /// [`PairMap::grid`] with two more lines along every edge of the box: next to a fold an inverse
     /// bends within less than the grid's first step.
-    pub fn edge_grid(&self, points: usize) -> Vec<[f64; 2]> {
+    pub(crate) fn edge_grid(&self, points: usize) -> Vec<[f64; 2]> {
         let [low, high] = self.range;
         let mut nodes = self.nodes(points);
         let step = nodes[1] - low;

@@ -25,7 +25,7 @@ pub struct ThrottleBox {
 
 /// What [`Bivariate::prove_positive`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sign {
+pub(crate) enum Sign {
     /// Positive everywhere on the box; the proven lower bound of the value.
     Positive {
         /// The least Bernstein coefficient met, > 0.
@@ -49,7 +49,7 @@ const MOST_BOXES: usize = 4096;
 impl Bivariate {
     /// From terms `(exponent of u, exponent of l)` and their coefficients, taken as exact; one that
     /// is not finite may be any number, so that nothing is proven of it.
-    pub fn from_terms(exponents: &[(u8, u8)], coefficients: &[f64]) -> Self {
+    pub(crate) fn from_terms(exponents: &[(u8, u8)], coefficients: &[f64]) -> Self {
         let most = |pick: fn(&(u8, u8)) -> u8| exponents.iter().map(pick).max().map_or(0, usize::from);
         let mut rows = vec![vec![Interval::ZERO; most(|e| e.1) + 1]; most(|e| e.0) + 1];
         for (&(i, j), &coefficient) in exponents.iter().zip(coefficients) {
@@ -75,7 +75,7 @@ impl Bivariate {
     }
 
     /// The derivative by u.
-    pub fn by_u(&self) -> Self {
+    pub(crate) fn by_u(&self) -> Self {
         let mut rows: Vec<Vec<Interval>> = Vec::new();
         for (i, row) in self.coefficients.iter().enumerate().skip(1) {
             rows.push(row.iter().map(|&c| c * Interval::exact(i as f64)).collect());
@@ -87,7 +87,7 @@ impl Bivariate {
     }
 
     /// The derivative by l.
-    pub fn by_l(&self) -> Self {
+    pub(crate) fn by_l(&self) -> Self {
         self.transposed().by_u().transposed()
     }
 
@@ -100,7 +100,7 @@ impl Bivariate {
     }
 
     /// `self + factor * other`.
-    pub fn plus(&self, factor: Interval, other: &Self) -> Self {
+    pub(crate) fn plus(&self, factor: Interval, other: &Self) -> Self {
         let rows = self.degree_u().max(other.degree_u()) + 1;
         let columns = self.degree_l().max(other.degree_l()) + 1;
         let mut sum = vec![vec![Interval::ZERO; columns]; rows];
@@ -118,7 +118,7 @@ impl Bivariate {
     }
 
     /// The product with `other`.
-    pub fn times(&self, other: &Self) -> Self {
+    pub(crate) fn times(&self, other: &Self) -> Self {
         let rows = self.degree_u() + other.degree_u() + 1;
         let columns = self.degree_l() + other.degree_l() + 1;
         let mut product = vec![vec![Interval::ZERO; columns]; rows];
@@ -137,7 +137,7 @@ impl Bivariate {
     }
 
     /// An enclosure of the value at `(u, l)`.
-    pub fn at(&self, [u, l]: [f64; 2]) -> Interval {
+    pub(crate) fn at(&self, [u, l]: [f64; 2]) -> Interval {
         let (u, l) = (Interval::exact(u), Interval::exact(l));
         self.coefficients.iter().rev().fold(Interval::ZERO, |value, row| {
             value * u + row.iter().rev().fold(Interval::ZERO, |value, &c| value * l + c)
@@ -145,7 +145,7 @@ impl Bivariate {
     }
 
     /// Proves that the polynomial is positive on the whole box, or finds where it is not.
-    pub fn prove_positive(&self, throttle: ThrottleBox) -> Sign {
+    pub(crate) fn prove_positive(&self, throttle: ThrottleBox) -> Sign {
         let whole = Patch {
             coefficients: self.bernstein(throttle),
             low: [throttle.low; 2],

@@ -19,10 +19,10 @@ pub enum TabulatedLaw {
 pub(crate) const FIT_TOLERANCE: f64 = 1e-7;
 
 /// Highest degree that is tried.
-const HIGHEST_DEGREE: usize = 12;
+const HIGHEST_FITTED_DEGREE: usize = 12;
 
 /// Largest correction factors `[k_f, k_Q]` over the range; `[1, 1]` without a correction.
-pub fn largest_factors(airframe: &Airframe) -> [f64; 2] {
+pub(crate) fn largest_factors(airframe: &Airframe) -> [f64; 2] {
     factors_over_range(airframe)
         .into_iter()
         .fold([0.0, 0.0], |[f, q], [k_f, k_q]| [k_f.max(f), k_q.max(q)])
@@ -30,7 +30,7 @@ pub fn largest_factors(airframe: &Airframe) -> [f64; 2] {
 
 /// Correction factors `[k_f, k_Q]` at voltages over the whole range, both ends and the points of a
 /// law included.
-pub fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
+pub(crate) fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
     let Some(voltage) = &airframe.voltage else {
         return vec![[1.0, 1.0]];
     };
@@ -67,7 +67,7 @@ pub fn tabulate(airframe: &Airframe) -> Result<Option<[TabulatedLaw; 2]>, Vec<Di
             vec![airframe.diagnostic(
                 Code::VoltageTable,
                 key,
-                format!("no polynomial up to degree {HIGHEST_DEGREE} follows this law within {FIT_TOLERANCE:e}; the best is {error:.1e} off"),
+                format!("no polynomial up to degree {HIGHEST_FITTED_DEGREE} follows this law within {FIT_TOLERANCE:e}; the best is {error:.1e} off"),
                 "",
                 "narrow voltage.range_v to the voltages of the pack, or give points",
             )]
@@ -94,7 +94,7 @@ fn tabulate_law(law: &VoltageLaw, voltage: &Voltage) -> Result<TabulatedLaw, f64
     let [low, high] = voltage.range_v;
     let factor = |x: f64| law.factor(0.5 * (low + high) + 0.5 * (high - low) * x, voltage.reference_v);
     let mut best = f64::INFINITY;
-    for degree in 0..=HIGHEST_DEGREE {
+    for degree in 0..=HIGHEST_FITTED_DEGREE {
         let coefficients = interpolate(&factor, degree);
         let error = (0..=64)
             .map(|k| f64::from(k) / 32.0 - 1.0)

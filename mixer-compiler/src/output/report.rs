@@ -207,6 +207,8 @@ impl fmt::Display for Report<'_> {
         writeln!(f, "condition       {:.4}", summary.condition)?;
         writeln!(f)?;
         self.domain(f, &summary)?;
+        self.flight(f, &summary)?;
+        self.voltage(f)?;
         let [thrust, torque] = compiled.residual.efforts;
         writeln!(
             f,
@@ -286,6 +288,7 @@ impl Report<'_> {
         writeln!(f)
     }
 
+    /// What throttles and efforts there are, and how requests are brought within them.
     fn domain(&self, f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
         let airframe = &self.0.airframe;
         let tables = &self.0.tables;
@@ -333,7 +336,11 @@ impl Report<'_> {
             100.0 * summary.attainable_area_lost_to_convexity
         )?;
         let [floor, ceiling] = summary.thrust_range_n;
-        writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;
+        writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")
+    }
+
+    /// Rotors out, hover and power.
+    fn flight(&self, f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
         let [lower, upper] =
             [&summary.rotor_out.lower_out, &summary.rotor_out.upper_out].map(RotorAloneSource::in_words);
         if lower == upper {
@@ -350,13 +357,17 @@ impl Report<'_> {
                 f,
                 "least power     torques start at {:?} N m per N of thrust; {:.0} % of a pair's saving is left to this frame",
                 summary.power_bias_nm_per_n,
-                100.0 * airframe.power_bias_share()
+                100.0 * self.0.airframe.power_bias_share()
             )?;
         }
         if let Some(power) = &summary.power {
             write!(f, "{power}")?;
         }
-        match &airframe.voltage {
+        Ok(())
+    }
+
+    fn voltage(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0.airframe.voltage {
             None => writeln!(f, "voltage         no correction"),
             Some(voltage) => {
                 let [low, high] = voltage.range_v;

@@ -1,6 +1,6 @@
 //! Rules on where the units are and what drives them.
 
-use super::Facts;
+use super::facts::Facts;
 use crate::airframe::Axis;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 

@@ -1,6 +1,6 @@
 //! Rules on what the mixer is asked to keep: tolerances and the reserve of yaw.
 
-use super::Facts;
+use super::facts::Facts;
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::PairMap;

@@ -1,6 +1,6 @@
 //! Rules on the pair's map and its idle.
 
-use super::Facts;
+use super::facts::Facts;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 
 /// The range of Q over the largest f of one unit, m: 0.016 to 0.034 on maps of 11 to 22 inch. It is

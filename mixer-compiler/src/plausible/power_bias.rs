@@ -1,6 +1,6 @@
 //! Rules on the torque of least power.
 
-use super::Facts;
+use super::facts::Facts;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 
 const KEY: &str = "allocation.power_bias_nm_per_n";

@@ -1,6 +1,6 @@
 //! Rules on `[voltage]`.
 
-use super::Facts;
+use super::facts::Facts;
 use crate::airframe::{Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 

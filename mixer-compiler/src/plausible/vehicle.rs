@@ -1,6 +1,6 @@
 //! The rule on the vehicle's weight.
 
-use super::Facts;
+use super::facts::Facts;
 use crate::airframe::GRAVITY;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 

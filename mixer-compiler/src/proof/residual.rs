@@ -31,14 +31,14 @@ const COARSE_GRID: usize = 15;
 
 impl Residual {
     /// Over the whole set, all edges included.
-    pub fn over_set(pair: &PairMap, tables: &MixerTables) -> Self {
+    pub(crate) fn over_set(pair: &PairMap, tables: &MixerTables) -> Self {
         let mut points = pair.grid(GRID);
         points.extend(pair.border(EDGE));
         Self::over(pair, tables, &points)
     }
 
     /// A first look that rejects most evaluators.
-    pub fn coarse_check(pair: &PairMap, tables: &MixerTables) -> Self {
+    pub(crate) fn coarse_check(pair: &PairMap, tables: &MixerTables) -> Self {
         Self::over(pair, tables, &pair.grid(COARSE_GRID))
     }
 
@@ -55,7 +55,7 @@ impl Residual {
     }
 
     /// Looks at the efforts of one more pair of throttles.
-    pub fn look(&mut self, pair: &PairMap, tables: &MixerTables, throttles: [f64; 2]) {
+    pub(crate) fn look(&mut self, pair: &PairMap, tables: &MixerTables, throttles: [f64; 2]) {
         let efforts = pair.efforts(throttles);
         let asked = efforts.map(|effort| effort as f32);
         let found = (&tables.inverse).throttles(&tables.pair, &tables.throttle, asked);
@@ -71,12 +71,12 @@ impl Residual {
     }
 
     /// True where no residual is above `tolerance` (`[N, N m]`).
-    pub fn within(&self, tolerance: [f64; 2]) -> bool {
+    pub(crate) fn within(&self, tolerance: [f64; 2]) -> bool {
         self.efforts[0] <= tolerance[0] && self.efforts[1] <= tolerance[1]
     }
 
     /// The residual in units of the tolerance.
-    pub fn ratio(&self, tolerance: [f64; 2]) -> f64 {
+    pub(crate) fn ratio(&self, tolerance: [f64; 2]) -> f64 {
         (self.efforts[0] / tolerance[0]).max(self.efforts[1] / tolerance[1])
     }
 }

@@ -1,11 +1,10 @@
-//! The refusal of a tolerance that no evaluator meets. Every mend that it offers has been tried.
+//! Refusals: of a method that does not exist, and of a tolerance that no evaluator meets. Every mend that it offers has been tried.
 
-use super::{Best, choose};
 use crate::airframe::{Airframe, Method};
 use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
-use crate::model::effectiveness::Effectiveness;
-use crate::model::injectivity::ForwardMap;
-use crate::tables::VoltageTable;
+use crate::inverse::evaluator::Evaluator;
+use crate::model::injectivity::EnclosedPairMap;
+use crate::proof::Certificate;
 
 /// Factors on the bounds that were reached: with other tolerances fits weigh thrust and torque
 /// differently, and may come out a little worse.
@@ -18,7 +17,7 @@ const IDLES: [f64; 2] = [1.03, 1.1];
 /// The least of [`IDLES`] above the file's own that meets the tolerances, upwards to 1e-4; `None`
 /// far from the fold.
 fn better_idle(airframe: &Airframe, meets: impl Fn(&Airframe) -> bool) -> Option<f64> {
-    let least = ForwardMap::new(&airframe.pair).least_idle(airframe.throttle.max)?;
+    let least = EnclosedPairMap::new(&airframe.pair).least_idle(airframe.throttle.max)?;
     IDLES
         .into_iter()
         .map(|factor| (1e4 * factor * least).ceil() / 1e4)
@@ -30,27 +29,28 @@ fn better_idle(airframe: &Airframe, meets: impl Fn(&Airframe) -> bool) -> Option
         })
 }
 
-/// The refusal; `best` came closest.
-pub(super) fn diagnostic(
+/// The refusal of an evaluator that does not exist.
+pub(super) fn name(airframe: &Airframe) -> Diagnostic {
+    airframe.diagnostic(
+        Code::Tolerance,
+        "inverse.method",
+        "no evaluator of this name",
+        "",
+        "use method = \"auto\"",
+    )
+}
+
+/// The refusal of a tolerance. `evaluator` came closest, with what is proven of it; `meets` tells
+/// whether another airframe would compile.
+pub(super) fn tolerance(
     airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    voltage: Option<&VoltageTable>,
-    best: Best,
+    evaluator: Evaluator,
+    certificate: &Certificate,
+    meets: impl Fn(&Airframe) -> bool,
 ) -> Diagnostic {
     let inverse = &airframe.inverse;
-    let Some((evaluator, certificate)) = best else {
-        let message = "no evaluator of this name";
-        return airframe.diagnostic(
-            Code::Tolerance,
-            "inverse.method",
-            message,
-            "",
-            "use method = \"auto\"",
-        );
-    };
     let reached = certificate.stated;
-    let meets = |airframe: &Airframe| choose(airframe, effectiveness, voltage).is_ok();
-    let idle = better_idle(airframe, meets);
+    let idle = better_idle(airframe, &meets);
     let idle_mend =
         idle.map(|idle| format!("the map almost folds at this idle: throttle.min = {idle:?} would do"));
     if !reached.iter().all(|bound| bound.is_finite()) {
@@ -87,23 +87,12 @@ pub(super) fn diagnostic(
         other.inverse.method = method.clone();
         meets(&other)
     };
-    // Where an idle does, the tolerance is not at fault.
-    let mut factors = FACTORS.into_iter().filter(|_| idle.is_none());
-    let offered = factors.find_map(|factor| {
-        let offered = [0, 1].map(|k| {
-            let enough = rounded_up(factor * reached[k]).parse().unwrap_or(f64::INFINITY);
-            if reached[k] > stated[k] { enough } else { stated[k] }
-        });
-        works(offered, &inverse.method).then_some(offered)
-    });
     let mut mends: Vec<String> = idle_mend.into_iter().collect();
-    if let Some(offered) = offered {
-        let keys = ["thrust_tolerance_n", "torque_tolerance_nm"];
-        let raised: Vec<String> = (0..2)
-            .filter(|&k| offered[k] != stated[k])
-            .map(|k| format!("{} = {:?}", keys[k], offered[k]))
-            .collect();
-        mends.push(format!("{} would do", raised.join(" with ")));
+    if idle.is_none() {
+        // Where an idle does, the tolerance is not at fault.
+        mends.extend(raised_tolerances(stated, reached, |offered| {
+            works(offered, &inverse.method)
+        }));
     }
     let message = match &inverse.method {
         Method::Auto => format!("no evaluator meets a tolerance of {missed}"),
@@ -128,4 +117,25 @@ pub(super) fn diagnostic(
         ),
         mends.join("; "),
     )
+}
+
+/// The least raise of the tolerances that are missed which `works`, in words.
+fn raised_tolerances(
+    stated: [f64; 2],
+    reached: [f64; 2],
+    works: impl Fn([f64; 2]) -> bool,
+) -> Option<String> {
+    let offered = FACTORS.into_iter().find_map(|factor| {
+        let offered = [0, 1].map(|k| {
+            let enough = rounded_up(factor * reached[k]).parse().unwrap_or(f64::INFINITY);
+            if reached[k] > stated[k] { enough } else { stated[k] }
+        });
+        works(offered).then_some(offered)
+    })?;
+    let keys = ["thrust_tolerance_n", "torque_tolerance_nm"];
+    let raised: Vec<String> = (0..2)
+        .filter(|&k| offered[k] != stated[k])
+        .map(|k| format!("{} = {:?}", keys[k], offered[k]))
+        .collect();
+    Some(format!("{} would do", raised.join(" with ")))
 }

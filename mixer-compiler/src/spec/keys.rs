@@ -75,10 +75,10 @@ const ANY: [usize; 2] = [1, 64];
 const TERMS: [usize; 2] = [8, 14];
 
 /// Most units of an airframe.
-pub const MOST_UNITS: usize = 32;
+pub(crate) const MOST_UNITS: usize = 32;
 
 /// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.
-pub const HIGHEST_DEGREE: usize = 15;
+pub(crate) const HIGHEST_INVERSE_DEGREE: usize = 15;
 
 /// What `inverse.method` can be: a choice, the paper's polynomials, then the evaluators.
 const METHODS: &[&str] = &[
@@ -93,7 +93,7 @@ const METHODS: &[&str] = &[
 ];
 
 /// Names of the evaluators that a file can ask for.
-pub const EVALUATORS: &[&str] = METHODS.split_at(2).1;
+pub(crate) const EVALUATORS: &[&str] = METHODS.split_at(2).1;
 
 const SPINS: &[&str] = &["cw", "ccw"];
 
@@ -139,7 +139,7 @@ pub const FILE: Shape = shape! { "":
 };
 
 /// `[throttle]`
-pub const THROTTLE: Shape = shape! { "[throttle]":
+pub(crate) const THROTTLE: Shape = shape! { "[throttle]":
     "min" required => "min = 0.10", Kind::Share,
         "Idle: no rotor is ever commanded below. Below some idle the map of every pair folds; the compiler names the least that works.";
     "max" required => "max = 1.0", Kind::Share,
@@ -147,7 +147,7 @@ pub const THROTTLE: Shape = shape! { "[throttle]":
 };
 
 /// `[pair]`
-pub const PAIR: Shape = shape! { "[pair]":
+pub(crate) const PAIR: Shape = shape! { "[pair]":
     "basis" required => "basis = \"biquadratic\"", Kind::Word(&["biquadratic", "cubic", "quartic"]),
         "Terms of the polynomials in the upper throttle u and the lower throttle l. biquadratic: u2l2, u2l, u2, ul2, ul, u, l2, l; cubic: u3, u2l, ul2, l3, u2, ul, l2, u, l; quartic: u4, u3l, u2l2, ul3, l4, then as cubic.";
     "thrust_n" required => "thrust_n = [5.2075, -2.1892, ..]", Kind::Numbers(TERMS),
@@ -165,7 +165,7 @@ pub const PAIR: Shape = shape! { "[pair]":
 };
 
 /// `[pair.lower_out]`
-pub const LOWER_OUT: Shape = shape! { "[pair.lower_out]":
+pub(crate) const LOWER_OUT: Shape = shape! { "[pair.lower_out]":
     "thrust_n" required => "thrust_n = [0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
         "Thrust of the upper rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.";
     "torque_nm" required => "torque_nm = [-0.01, -0.2, 0.02]", Kind::Numbers([3, 3]),
@@ -173,7 +173,7 @@ pub const LOWER_OUT: Shape = shape! { "[pair.lower_out]":
 };
 
 /// `[pair.upper_out]`
-pub const UPPER_OUT: Shape = shape! { "[pair.upper_out]":
+pub(crate) const UPPER_OUT: Shape = shape! { "[pair.upper_out]":
     "thrust_n" required => "thrust_n = [0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
         "Thrust of the lower rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.";
     "torque_nm" required => "torque_nm = [0.01, 0.2, -0.02]", Kind::Numbers([3, 3]),
@@ -181,16 +181,16 @@ pub const UPPER_OUT: Shape = shape! { "[pair.upper_out]":
 };
 
 /// Coefficients of a power map: the quartic's and a constant.
-pub const POWER_TERMS: usize = 15;
+pub(crate) const POWER_TERMS: usize = 15;
 
 /// `[pair.power]`
-pub const POWER: Shape = shape! { "[pair.power]":
+pub(crate) const POWER: Shape = shape! { "[pair.power]":
     "power_w" required => "power_w = [0, 0, 0, 0, 0, 620, 90, 40, 560, 160, -60, 150, 8, 6, 5]", Kind::Numbers([POWER_TERMS, POWER_TERMS]),
         "Electrical power of both rotors, W: the quartic's coefficients and a constant; `identify` writes it.";
 };
 
 /// `[voltage]`
-pub const VOLTAGE: Shape = shape! { "[voltage]":
+pub(crate) const VOLTAGE: Shape = shape! { "[voltage]":
     "reference_v" required => "reference_v = 14.8", Kind::Positive,
         "Voltage of the bench, V.";
     "range_v" required => "range_v = [12.8, 16.8]", Kind::Numbers([2, 2]),
@@ -210,7 +210,7 @@ pub const VOLTAGE: Shape = shape! { "[voltage]":
 };
 
 /// `[layout]`
-pub const LAYOUT: Shape = shape! { "[layout]":
+pub(crate) const LAYOUT: Shape = shape! { "[layout]":
     "arm_m" required => "arm_m = 0.45", Kind::Positive,
         "From the centre of gravity to each mast, m.";
     "units" required => "units = 4", Kind::Count([1, MOST_UNITS]),
@@ -226,7 +226,7 @@ pub const LAYOUT: Shape = shape! { "[layout]":
 };
 
 /// `[[unit]]`
-pub const UNIT: Shape = shape! { "[[unit]]":
+pub(crate) const UNIT: Shape = shape! { "[[unit]]":
     "position_m" required => "position_m = [0.3182, 0.3182, 0.0]", Kind::Numbers([3, 3]),
         "Forward, right and down from the centre of gravity, m.";
     "upper_spin" required => "upper_spin = \"cw\"", Kind::Word(SPINS),
@@ -238,19 +238,19 @@ pub const UNIT: Shape = shape! { "[[unit]]":
 };
 
 /// `[inverse]`
-pub const INVERSE: Shape = shape! { "[inverse]":
+pub(crate) const INVERSE: Shape = shape! { "[inverse]":
     "thrust_tolerance_n" => "thrust_tolerance_n = 0.01", Kind::Positive,
         "What a unit's thrust may miss at any voltage, N; 0.01 without it.";
     "torque_tolerance_nm" => "torque_tolerance_nm = 1e-4", Kind::Positive,
         "What a unit's torque may miss at any voltage, N m; 0.0001 without it.";
     "method" => "method = \"auto\"", Kind::Word(METHODS),
         "auto: the cheapest evaluator that is proven to meet the tolerances; polynomial: the paper's, with a degree; or one by name.";
-    "degree" => "degree = 7", Kind::Count([1, HIGHEST_DEGREE]),
+    "degree" => "degree = 7", Kind::Count([1, HIGHEST_INVERSE_DEGREE]),
         "Total degree of method = \"polynomial\".";
 };
 
 /// `[allocation]`
-pub const ALLOCATION: Shape = shape! { "[allocation]":
+pub(crate) const ALLOCATION: Shape = shape! { "[allocation]":
     "airmode" => "airmode = \"disabled\"", Kind::Word(&["disabled", "roll-pitch", "roll-pitch-yaw"]),
         "For which torques the thrust may rise, with PX4's meaning; disabled without it.";
     "axes" => "axes = [\"roll\", \"pitch\", \"yaw\", \"thrust\"]", Kind::Words(&["roll", "pitch", "yaw", "thrust"]),
@@ -262,7 +262,7 @@ pub const ALLOCATION: Shape = shape! { "[allocation]":
 };
 
 /// `[vehicle]`
-pub const VEHICLE: Shape = shape! { "[vehicle]":
+pub(crate) const VEHICLE: Shape = shape! { "[vehicle]":
     "mass_kg" required => "mass_kg = 3.2", Kind::Positive,
         "Take-off mass, kg.";
 };

@@ -1,12 +1,19 @@
 //! Faults of the TOML itself, in the words of someone who fills in an airframe file.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
+use super::value::place_of;
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, quoted};
+
+/// Where each key of a file is, in bytes, by its path like `unit[3].channels[1]`. Scalars are where
+/// their value is, arrays, which may run over many lines, where their key is, and tables where
+/// their header is.
+pub(crate) type Places = BTreeMap<String, Range<usize>>;
 
 /// What the parser says of a key that is there twice; the rest of the file is read all the same.
 const DUPLICATE: &str = "duplicate key";
@@ -169,21 +176,21 @@ fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
     Diagnostic::new(Code::Syntax, "", span, format!("not TOML: {message}")).help(help)
 }
 
-/// Where each key is, by its path: see [`super::value::place_of`].
-pub(super) fn places(table: &DeTable<'_>) -> super::Places {
-    let mut places = super::Places::new();
+/// Where each key is, by its path: see [`place_of`].
+pub(super) fn places(table: &DeTable<'_>) -> Places {
+    let mut places = Places::new();
     for (key, value) in table {
-        let place = super::value::place_of(key.span(), value);
+        let place = place_of(key.span(), value);
         note(key.get_ref().to_string(), place, value, &mut places);
     }
     places
 }
 
-fn note(path: String, place: Range<usize>, value: &Spanned<DeValue<'_>>, places: &mut super::Places) {
+fn note(path: String, place: Range<usize>, value: &Spanned<DeValue<'_>>, places: &mut Places) {
     match value.get_ref() {
         DeValue::Table(table) => {
             for (key, value) in table {
-                let place = super::value::place_of(key.span(), value);
+                let place = place_of(key.span(), value);
                 note(format!("{path}.{}", key.get_ref()), place, value, places);
             }
         }

@@ -19,7 +19,7 @@ pub struct BorderTable {
 
 impl BorderTable {
     /// The border as `mixer-rt` reads it.
-    pub fn view(&self) -> Border<'_> {
+    pub(crate) fn view(&self) -> Border<'_> {
         Border {
             corners_n: self.corners_n,
             grids: self.grids,

@@ -67,7 +67,7 @@ impl SeedTable {
     }
 
     /// Name of the type in `mixer-rt`.
-    pub fn type_name(&self) -> &'static str {
+    pub(crate) fn type_name(&self) -> &'static str {
         match self {
             SeedTable::Bilinear(_) => "BilinearSeed",
             SeedTable::Quadratic(_) => "QuadraticSeed",
@@ -97,7 +97,7 @@ impl Seed for SeedTable {
 
 impl InverseTable {
     /// Rounds a fitted inverse.
-    pub fn new(fitted: &FittedInverse) -> Self {
+    pub(crate) fn new(fitted: &FittedInverse) -> Self {
         match fitted {
             FittedInverse::Polynomial {
                 degree,
@@ -129,7 +129,7 @@ impl InverseTable {
     }
 
     /// Number of f32 in the table.
-    pub fn floats(&self) -> usize {
+    pub(crate) fn floats(&self) -> usize {
         match self {
             InverseTable::Polynomial { coefficients, .. } => 4 + 2 * coefficients[0].len(),
             InverseTable::Seeded { seed, .. } => 6 + seed.floats(),

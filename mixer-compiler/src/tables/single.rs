@@ -6,7 +6,7 @@ use crate::airframe::{Airframe, Basis, RotorAlone};
 
 /// Rounds what the upper and the lower rotor give alone: as declared, else the pair's polynomials
 /// with the other throttle at zero, so that the runtime has one form for both.
-pub fn single_tables(airframe: &Airframe) -> [SingleRotor; 2] {
+pub(super) fn single_tables(airframe: &Airframe) -> [SingleRotor; 2] {
     let pair = &airframe.pair;
     let table = |declared: &Option<RotorAlone>, exponents: fn(u8) -> (u8, u8)| {
         let [thrust, torque] = match declared {

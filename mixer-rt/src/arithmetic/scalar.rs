@@ -6,7 +6,7 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
-use crate::{clamp, sqrt};
+use super::sqrt::sqrt;
 
 /// A number that tables in `f32` are applied to. Every operation stands for one operation in `f32`,
 /// rounded to nearest.
@@ -70,4 +70,11 @@ impl Scalar for f32 {
         let bits = if bits > low { bits } else { low };
         f32::from_bits(if bits < high { bits } else { high } as u32)
     }
+}
+
+/// `x` limited to `[low, high]`; `low` where `x` is NaN. (`f32::clamp` has a panic path.)
+#[inline(always)]
+pub(crate) fn clamp(x: f32, low: f32, high: f32) -> f32 {
+    let x = if x > low { x } else { low };
+    if x < high { x } else { high }
 }

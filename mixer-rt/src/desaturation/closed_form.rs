@@ -30,7 +30,6 @@ mod thrusts;
 mod torques;
 
 pub use border::{Border, Cell, Grid, Knot, Outline};
-pub use facets::Facets;
 
 use core::hint::black_box;
 
@@ -38,7 +37,7 @@ use crate::Wrench;
 use crate::desaturation::Airmode;
 
 /// The largest number of units.
-const MOST_UNITS: usize = 4;
+const MOST_CLOSED_FORM_UNITS: usize = 4;
 
 /// One unit's share of M and M+ where the axes are vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,8 +55,18 @@ pub struct ClosedFormUnit {
     /// The ends of the range of thrust, N: first the one at the least z, then the one at the
     /// largest, so descending where `null` is negative.
     pub ends: [f32; 2],
-    /// Output indices of the upper and of the lower rotor.
+    /// Channels of the upper and of the lower rotor.
     pub channels: [u8; 2],
+}
+
+/// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <=
+/// high` for a slope, without the thrust for a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets {
+    /// The normal's components along roll and pitch.
+    pub normal: [f32; 2],
+    /// The bounds.
+    pub bounds: [f32; 2],
 }
 
 /// What a frame with vertical axes and up to four units needs. All at the reference voltage.
@@ -139,7 +148,7 @@ pub(crate) struct Effort {
 }
 
 /// The efforts of all units.
-pub(crate) type Efforts = [Effort; MOST_UNITS];
+pub(crate) type Efforts = [Effort; MOST_CLOSED_FORM_UNITS];
 
 /// Whether efforts are attainable.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -219,7 +228,7 @@ impl ClosedForm<'_> {
     #[inline(never)]
     pub(crate) fn desaturate(&self, airmode: Airmode, request: &Request, efforts: &mut Efforts) {
         // Hides the number of units, so that the compiler does not unroll the loops: see `rolled`.
-        let mut lines = [ThrustLine::default(); MOST_UNITS];
+        let mut lines = [ThrustLine::default(); MOST_CLOSED_FORM_UNITS];
         let lines = lines.get_mut(..self.units.len()).unwrap_or_default();
         let (closed_form, efforts, lines) = black_box((self, efforts.as_mut_slice(), lines));
         let limits = closed_form.thrust_limits(airmode, request.thrust);

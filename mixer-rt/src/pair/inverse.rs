@@ -11,8 +11,8 @@
 //! Outside the attainable set the radicands, the seed and every iterate are clamped, so the result
 //! is continuous and always a pair of throttles within the range.
 
+use super::forward::{Pair, Quantity};
 use crate::arithmetic::Scalar;
-use crate::pair::{Pair, Quantity};
 
 /// The allowed throttles of every rotor, `0 <= min < max <= 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! The programs over the polygons that a mixer has for the attainable sets of units with both
+//! The programmes over the polygons that a mixer has for the attainable sets of units with both
 //! rotors.
 
 use mixer_rt::Health;

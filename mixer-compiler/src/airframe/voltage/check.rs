@@ -18,7 +18,7 @@ const REFERENCE_TOLERANCE: f64 = 1e-3;
 const LARGEST_EXPONENT: f64 = 4.0;
 
 /// Highest degree of a polynomial law. Bench data support 1 or 2.
-const HIGHEST_DEGREE: usize = 8;
+const HIGHEST_LAW_DEGREE: usize = 8;
 
 /// Below this, nothing turns.
 const LEAST_V: f64 = 0.1;
@@ -204,7 +204,7 @@ fn polynomial(
     faults: &mut Vec<Diagnostic>,
 ) -> Option<VoltageLaw> {
     let coefficients: Vec<f64> = field.get_ref().iter().map(|c| *c.get_ref()).collect();
-    if !(1..=HIGHEST_DEGREE + 1).contains(&coefficients.len()) {
+    if !(1..=HIGHEST_LAW_DEGREE + 1).contains(&coefficients.len()) {
         faults.push(
             Diagnostic::new(
                 Code::WrongLength,
@@ -213,7 +213,7 @@ fn polynomial(
                 format!(
                     "`{key}` has {} coefficients, not 1 to {}",
                     coefficients.len(),
-                    HIGHEST_DEGREE + 1
+                    HIGHEST_LAW_DEGREE + 1
                 ),
             )
             .label("c0, c1, .. in V/Vref")
@@ -242,79 +242,18 @@ fn points(
     faults: &mut Vec<Diagnostic>,
 ) -> Option<VoltageLaw> {
     let before = faults.len();
-    let fault = |code, place: Range<usize>, message: String| Diagnostic::new(code, key, place, message);
     let points: Vec<[f64; 2]> = field
         .get_ref()
         .iter()
         .map(|point| point.get_ref().each_ref().map(|x| *x.get_ref()))
         .collect();
-    let [low, high] = supply.range_v;
-    for (index, (&[volts, k], written)) in points.iter().zip(field.get_ref()).enumerate() {
-        if let Some(&[previous, _]) = index.checked_sub(1).and_then(|index| points.get(index))
-            && volts - previous < LEAST_STEP * volts
-        {
-            if volts > previous {
-                faults.push(
-                    fault(
-                        Code::VoltagePoints,
-                        written.span(),
-                        format!(
-                            "{} V and {} V are {} mV apart",
-                            number(previous),
-                            number(volts),
-                            rounded((volts - previous) * 1000.0)
-                        ),
-                    )
-                    .label(format!(
-                        "expected {} mV at least",
-                        rounded(LEAST_STEP * volts * 1000.0)
-                    ))
-                    .help("keep one of the two: between them the law would be a jump"),
-                );
-                continue;
-            }
-            let (volts, previous) = (number(volts), number(previous));
-            faults.push(
-                fault(
-                    Code::VoltagePoints,
-                    written.span(),
-                    format!("{volts} V does not come after {previous} V"),
-                )
-                .label("expected ascending voltages")
-                .help("sort the points by voltage and keep one at each"),
-            );
-        }
-        if k < LEAST_FACTOR {
-            faults.push(
-                too_small(key, written.span(), k, volts)
-                    .help("a point is [volts, factor], the factor relative to the reference voltage"),
-            );
-        }
+    let mut previous = None;
+    for (&[volts, k], written) in points.iter().zip(field.get_ref()) {
+        point(key, written.span(), previous, [volts, k], faults);
+        previous = Some(volts);
     }
-    let covered = points
-        .first()
-        .zip(points.last())
-        .filter(|(first, last)| first[0] <= low && high <= last[0]);
-    if covered.is_none() && faults.len() == before {
-        let reach = match (points.first(), points.last()) {
-            (Some(first), Some(last)) => {
-                format!("reaches from {} V to {} V", number(first[0]), number(last[0]))
-            }
-            _ => "is empty".to_string(),
-        };
-        faults.push(
-            fault(
-                Code::VoltagePoints,
-                field.span(),
-                format!(
-                    "`{key}` {reach}, `range_v` from {} V to {} V",
-                    number(low),
-                    number(high)
-                ),
-            )
-            .label("does not cover `range_v`")
-            .help("add measured points at both ends, or narrow `range_v`"),
-        );
+    if faults.len() == before {
+        faults.extend(uncovered(key, field.span(), &points, supply.range_v));
     }
     if faults.len() > before {
         return None;
@@ -323,6 +262,74 @@ fn points(
     one_at_reference(key, field.span(), &law, "factor", supply, faults)?;
     not_too_large(key, field.span(), &law, supply, faults)?;
     Some(law)
+}
+
+/// Judges one point by its factor and by the voltage of the point before it.
+fn point(
+    key: &str,
+    place: Range<usize>,
+    previous: Option<f64>,
+    [volts, k]: [f64; 2],
+    faults: &mut Vec<Diagnostic>,
+) {
+    let fault = |message: String| Diagnostic::new(Code::VoltagePoints, key, place.clone(), message);
+    if let Some(previous) = previous
+        && volts - previous < LEAST_STEP * volts
+    {
+        if volts > previous {
+            faults.push(
+                fault(format!(
+                    "{} V and {} V are {} mV apart",
+                    number(previous),
+                    number(volts),
+                    rounded((volts - previous) * 1000.0)
+                ))
+                .label(format!(
+                    "expected {} mV at least",
+                    rounded(LEAST_STEP * volts * 1000.0)
+                ))
+                .help("keep one of the two: between them the law would be a jump"),
+            );
+            return;
+        }
+        let (volts, previous) = (number(volts), number(previous));
+        faults.push(
+            fault(format!("{volts} V does not come after {previous} V"))
+                .label("expected ascending voltages")
+                .help("sort the points by voltage and keep one at each"),
+        );
+    }
+    if k < LEAST_FACTOR {
+        faults.push(
+            too_small(key, place, k, volts)
+                .help("a point is [volts, factor], the factor relative to the reference voltage"),
+        );
+    }
+}
+
+/// The fault of ascending points that do not cover the range.
+fn uncovered(
+    key: &str,
+    place: Range<usize>,
+    points: &[[f64; 2]],
+    [low, high]: [f64; 2],
+) -> Option<Diagnostic> {
+    let reach = match points.first().zip(points.last()) {
+        Some((first, last)) if first[0] <= low && high <= last[0] => return None,
+        Some((first, last)) => format!("reaches from {} V to {} V", number(first[0]), number(last[0])),
+        None => "is empty".to_string(),
+    };
+    let message = format!(
+        "`{key}` {reach}, `range_v` from {} V to {} V",
+        number(low),
+        number(high)
+    );
+    let fault = Diagnostic::new(Code::VoltagePoints, key, place, message);
+    Some(
+        fault
+            .label("does not cover `range_v`")
+            .help("add measured points at both ends, or narrow `range_v`"),
+    )
 }
 
 fn too_small(key: &str, place: Range<usize>, k: f64, volts: f64) -> Diagnostic {

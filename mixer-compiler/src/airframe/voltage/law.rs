@@ -14,7 +14,7 @@ pub enum VoltageLaw {
 
 impl VoltageLaw {
     /// k at `volts`, dimensionless. Beyond the points of [`VoltageLaw::Points`], k of the nearest.
-    pub fn factor(&self, volts: f64, reference_v: f64) -> f64 {
+    pub(crate) fn factor(&self, volts: f64, reference_v: f64) -> f64 {
         match self {
             VoltageLaw::Exponent(exponent) => libm::pow(volts / reference_v, *exponent),
             VoltageLaw::Polynomial(coefficients) => horner(coefficients, volts / reference_v),

@@ -1,8 +1,6 @@
 //! The largest convex part of a set: the hull of its border, cut along a tangent wherever the
 //! border still runs through it.
 
-use super::{cross, distance};
-
 /// A border point deeper than this inside the polygon, in units of the set's size, makes a cut
 /// necessary.
 const DEPTH: f64 = 3e-6;
@@ -88,4 +86,14 @@ fn cut(polygon: &[[f64; 2]], point: [f64; 2], normal: [f64; 2]) -> Vec<[f64; 2]>
         }
     }
     kept
+}
+
+/// Twice the area of a triangle, positive where it runs anticlockwise.
+pub(super) fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let [f, q] = [b[0] - a[0], b[1] - a[1]];
+    (f * f + q * q).sqrt()
 }

@@ -48,14 +48,14 @@ struct Sides {
 }
 
 /// A thrust, Q_max and -Q_min there.
-type Knot = [f64; 3];
+type Section = [f64; 3];
 
 /// The border, and the share of the attainable set's area that is outside its cells; `None` where
 /// thrust does not grow along the diagonal, or the cells lose much.
 pub(super) fn border(pair: &PairMap) -> Option<(BorderTable, f64)> {
     let scale = pair.scale();
     let sides = Sides::new(pair)?;
-    let mut knots: Vec<Knot> = Vec::new();
+    let mut sections: Vec<Section> = Vec::new();
     let mut starts = [0; 4];
     for grid in 0..3 {
         let first = grid * POINTS;
@@ -68,14 +68,14 @@ pub(super) fn border(pair: &PairMap) -> Option<(BorderTable, f64)> {
             0
         };
         let step = POINTS / cells.max(1);
-        knots.extend((0..cells).map(|cell| sides.knot(first + cell * step)));
-        starts[grid + 1] = knots.len();
+        sections.extend((0..cells).map(|cell| sides.section(first + cell * step)));
+        starts[grid + 1] = sections.len();
     }
-    knots.push(sides.knot(3 * POINTS));
-    sides.lower(&mut knots);
-    let lost = sides.largest_gap(&knots) + MARGIN;
-    let is_empty = |[_, largest, least]: &Knot| largest + least < -MARGIN;
-    if lost > MOST_LOST || knots.iter().any(is_empty) {
+    sections.push(sides.section(3 * POINTS));
+    sides.lower(&mut sections);
+    let lost = sides.largest_gap(&sections) + MARGIN;
+    let is_empty = |[_, largest, least]: &Section| largest + least < -MARGIN;
+    if lost > MOST_LOST || sections.iter().any(is_empty) {
         return None;
     }
     let grids = std::array::from_fn(|grid| {
@@ -87,24 +87,24 @@ pub(super) fn border(pair: &PairMap) -> Option<(BorderTable, f64)> {
             per_n: per_n as f32,
         }
     });
-    let area: f64 = knots
+    let area: f64 = sections
         .windows(2)
         .map(|ends| 0.5 * (ends[1][0] - ends[0][0]) * (ends[0][1] + ends[0][2] + ends[1][1] + ends[1][2]))
         .sum();
     let table = BorderTable {
         corners_n: [1, 2].map(|k| (scale[0] * sides.corners[k]) as f32),
         grids,
-        cells: cells(&knots, scale[1]),
+        cells: cells(&sections, scale[1]),
         outlines: [0, 1].map(|k| outline(&sides.thrusts, &sides.torques[k], scale)),
         lost_nm: (lost * scale[1]) as f32,
     };
     Some((table, 1.0 - area / whole_area(pair)))
 }
 
-/// The knots as `mixer-rt` reads them. The last cell goes on as the one before it, so that half the
-/// width is negative beyond the largest thrust, as it is before the first cell.
-fn cells(knots: &[Knot], torque: f64) -> Vec<Cell> {
-    let rounded: Vec<[f32; 2]> = knots
+/// The sections as `mixer-rt` reads them. The last cell goes on as the one before it, so that half
+/// the width is negative beyond the largest thrust, as it is before the first cell.
+fn cells(sections: &[Section], torque: f64) -> Vec<Cell> {
+    let rounded: Vec<[f32; 2]> = sections
         .iter()
         .map(|[_, largest, least]| {
             let half = (0.5 * (largest + least)).max(0.0);
@@ -154,7 +154,7 @@ impl Sides {
         })
     }
 
-    fn knot(&self, point: usize) -> Knot {
+    fn section(&self, point: usize) -> Section {
         [
             self.thrusts[point],
             self.torques[0][point],
@@ -165,20 +165,22 @@ impl Sides {
     /// What chords in as many cells of the grid that starts at point `first` lose at most.
     fn lost(&self, first: usize, cells: usize) -> f64 {
         let step = POINTS / cells;
-        let mut knots: Vec<Knot> = (0..=cells).map(|cell| self.knot(first + cell * step)).collect();
-        self.lower(&mut knots);
-        self.largest_gap(&knots)
+        let mut sections: Vec<Section> = (0..=cells)
+            .map(|cell| self.section(first + cell * step))
+            .collect();
+        self.lower(&mut sections);
+        self.largest_gap(&sections)
     }
 
-    /// Lowers knots until their chords are inside. The border's first and last knot, where both
-    /// sides meet, stay.
-    fn lower(&self, knots: &mut [Knot]) {
+    /// Lowers sections until their chords are inside. The border's first and last section, where
+    /// both sides meet, stay.
+    fn lower(&self, sections: &mut [Section]) {
         let ends = [self.thrusts[0], self.thrusts[3 * POINTS]];
-        let is_end = |knot: &Knot| ends.contains(&knot[0]);
+        let is_end = |section: &Section| ends.contains(&section[0]);
         for side in 0..2 {
-            let mut by = vec![0.0f64; knots.len()];
-            for cell in 0..knots.len() - 1 {
-                let [from, to] = [knots[cell], knots[cell + 1]];
+            let mut by = vec![0.0f64; sections.len()];
+            for cell in 0..sections.len() - 1 {
+                let [from, to] = [sections[cell], sections[cell + 1]];
                 for (above, part) in self.above(from, to, side) {
                     // A chord with an end that stays turns about it.
                     let [start, end] = match (is_end(&from), is_end(&to)) {
@@ -190,15 +192,15 @@ impl Sides {
                     by[cell + 1] = by[cell + 1].max(end);
                 }
             }
-            for (knot, by) in knots.iter_mut().zip(by) {
-                knot[1 + side] -= by + if is_end(knot) { 0.0 } else { MARGIN };
+            for (section, by) in sections.iter_mut().zip(by) {
+                section[1 + side] -= by + if is_end(section) { 0.0 } else { MARGIN };
             }
         }
     }
 
-    /// How far a side is above the chord between two knots at the points in their cell, and where
-    /// in the cell these are.
-    fn above(&self, from: Knot, to: Knot, side: usize) -> impl Iterator<Item = (f64, f64)> {
+    /// How far a side is above the chord between two sections at the points in their cell, and
+    /// where in the cell these are.
+    fn above(&self, from: Section, to: Section, side: usize) -> impl Iterator<Item = (f64, f64)> {
         let first = self.thrusts.partition_point(|&f| f <= from[0]);
         let end = self.thrusts.partition_point(|&f| f < to[0]);
         let [a, b] = [from[1 + side], to[1 + side]];
@@ -209,9 +211,9 @@ impl Sides {
     }
 
     /// The most that a side is above its chords.
-    fn largest_gap(&self, knots: &[Knot]) -> f64 {
+    fn largest_gap(&self, sections: &[Section]) -> f64 {
         let mut most = 0.0f64;
-        for ends in knots.windows(2) {
+        for ends in sections.windows(2) {
             for side in 0..2 {
                 let gaps = self.above(ends[0], ends[1], side).map(|(above, _)| above);
                 most = gaps.fold(most, f64::max);

@@ -11,7 +11,7 @@ use crate::model::PairMap;
 
 /// `x = sqrt(x0 f + x1 Q + x2)`, `y = sqrt(y0 f + y1 Q + y2)`, with f in N and Q in N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coordinates {
+pub(crate) struct Coordinates {
     /// Factors of x: 1/N, 1/(N m), 1.
     pub x: [f64; 3],
     /// Factors of y.
@@ -69,7 +69,7 @@ impl Start {
 
 impl Coordinates {
     /// (x, y) at the efforts `[f, Q]`.
-    pub fn at(&self, [f, q]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn at(&self, [f, q]: [f64; 2]) -> [f64; 2] {
         let root = |[by_f, by_q, offset]: [f64; 3]| (by_f * f + by_q * q + offset).max(0.0).sqrt();
         [root(self.x), root(self.y)]
     }
@@ -92,7 +92,12 @@ impl Coordinates {
 
     /// Searches on from here for the least `error`, until it is below 1 with something to spare, or
     /// will not become so: half of the evaluations must bring it half of the way.
-    pub fn improved(&self, pair: &PairMap, evaluations: usize, error: impl Fn(&Coordinates) -> f64) -> Self {
+    pub(crate) fn improved(
+        &self,
+        pair: &PairMap,
+        evaluations: usize,
+        error: impl Fn(&Coordinates) -> f64,
+    ) -> Self {
         let plane = Plane::new(pair);
         let start = [
             -self.x[1] * plane.scale[1],

@@ -9,8 +9,6 @@
 //! The coarse one tells at which thrusts yaw reaches furthest: each side's concave hull in a few
 //! straight lines, of which only the slopes matter.
 
-use super::{ClosedForm, ThrustLine};
-
 /// Middle and half the width of the attainable torques at the thrusts of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
@@ -86,20 +84,5 @@ impl Border<'_> {
         let part = place - index as f32;
         let [middle, half] = [cell.middle, cell.half].map(|[start, more]| start + part * more);
         [middle, half]
-    }
-}
-
-impl ClosedForm<'_> {
-    /// Least and most yaw at `z` of the lines of thrusts; writes those of each unit there.
-    #[inline(never)]
-    pub(super) fn reach(&self, lines: &mut [ThrustLine], z: f32) -> [f32; 2] {
-        let mut reach = [0.0, 0.0];
-        for (unit, line) in self.units.iter().zip(lines) {
-            let [middle, half] = self.border.torques(line.thrust(z));
-            let middle = unit.spin * middle;
-            (line.least, line.most) = (middle - half, middle + half);
-            reach = [reach[0] + line.least, reach[1] + line.most];
-        }
-        reach
     }
 }

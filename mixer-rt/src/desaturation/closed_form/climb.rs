@@ -6,7 +6,7 @@
 //! slopes between them are constants, so the end does not jump; where Y is level, z stays at the
 //! nearest point that is best.
 
-use super::{Border, ClosedForm, MOST_UNITS, Outline, ThrustLine};
+use super::{Border, ClosedForm, MOST_CLOSED_FORM_UNITS, Outline, ThrustLine};
 use crate::rolled;
 
 /// The knots of one unit's side that are ahead.
@@ -67,7 +67,7 @@ impl ClosedForm<'_> {
             speed: 0.0,
             start: 0.0,
         };
-        let mut ahead = [none; MOST_UNITS];
+        let mut ahead = [none; MOST_CLOSED_FORM_UNITS];
         let mut growth = 0.0;
         for ((unit, line), ahead) in self.units.iter().zip(lines).zip(&mut ahead) {
             rolled();

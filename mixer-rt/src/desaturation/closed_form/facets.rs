@@ -3,22 +3,12 @@
 //! The thrusts lie in [a, b]^n, so w = C f lies in a zonotope, whose facets the compiler tabulates
 //! in pairs, `low <= d w <= high`. For a given direction of (roll, pitch) a facet is a line in the
 //! plane of (rho, thrust): the largest rho, and then the thrust nearest the request, are a linear
-//! program in two unknowns.
+//! programme in two unknowns.
 
 use core::hint::black_box;
 
-use super::ClosedForm;
+use super::{ClosedForm, Facets};
 use crate::rolled;
-
-/// Two facets of the attainable (roll, pitch, thrust): `low <= roll d[0] + pitch d[1] + thrust <=
-/// high` for a slope, without the thrust for a wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Facets {
-    /// The normal's components along roll and pitch.
-    pub normal: [f32; 2],
-    /// The bounds.
-    pub bounds: [f32; 2],
-}
 
 /// A gap between thrust bounds that is below this share of a unit's largest thrust is none: sums of
 /// four have errors of that size.

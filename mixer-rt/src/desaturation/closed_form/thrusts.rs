@@ -114,6 +114,19 @@ impl ClosedForm<'_> {
         (z, reach)
     }
 
+    /// Least and most yaw at `z` of the lines of thrusts; writes those of each unit there.
+    #[inline(never)]
+    pub(super) fn reach(&self, lines: &mut [ThrustLine], z: f32) -> [f32; 2] {
+        let mut reach = [0.0, 0.0];
+        for (unit, line) in self.units.iter().zip(lines) {
+            let [middle, half] = self.border.torques(line.thrust(z));
+            let middle = unit.spin * middle;
+            (line.least, line.most) = (middle - half, middle + half);
+            reach = [reach[0] + line.least, reach[1] + line.most];
+        }
+        reach
+    }
+
     /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to
     /// where the facets allow them; false where that changes them, so that z has no room. Writes
     /// the lines of thrusts.

@@ -1,4 +1,4 @@
-//! One linear program: the best share of (roll, pitch), yaw or thrust that convex sets of
+//! One linear programme: the best share of (roll, pitch), yaw or thrust that convex sets of
 //! contributions allow.
 
 use microlp::{ComparisonOp, Error, OptimizationDirection, Problem, SolveOutcome, Variable};
@@ -9,7 +9,7 @@ const PRICE: f64 = 1e3;
 /// How much of a row, as a share of its size, may have been let go: rounding.
 const LET_GO: f64 = 1e-6;
 
-/// What a program decides about.
+/// What a programme decides about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// The share of the (roll, pitch) asked.
@@ -58,7 +58,7 @@ impl Point {
 
 /// The sets that the units' contributions `[roll, pitch, yaw, thrust]` are taken from, by the
 /// points whose convex combinations they are, and the axes that are looked at.
-pub(super) struct Program {
+pub(super) struct Programme {
     pub(super) sets: Vec<Vec<[f64; 4]>>,
     pub(super) served: [bool; 4],
     /// (roll, pitch) at a share of one.
@@ -67,7 +67,7 @@ pub(super) struct Program {
     pub(super) size: [f64; 4],
 }
 
-impl Program {
+impl Programme {
     /// The optimum, `None` where nothing is feasible.
     ///
     /// Where little is feasible or nothing the solver may make out neither. Then the rows are let

@@ -1,0 +1,32 @@
+//! Factors that put the axes of the general path on one scale.
+
+use crate::airframe::{Airframe, Axis};
+use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
+
+/// Units over authority per axis at the reference voltage, roll and pitch alike, rounded; 0 on axes
+/// that are not served.
+pub(super) fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [f32; 4] {
+    let scale = pair.scale();
+    let n = airframe.units.len();
+    let authority: [f64; 4] = std::array::from_fn(|axis| {
+        let row = effectiveness.matrix.row(axis);
+        let sum: f64 = (0..n)
+            .map(|i| row[i].abs() * scale[0] + row[n + i].abs() * scale[1])
+            .sum();
+        if airframe.allocation.controls(Axis::ALL[axis]) {
+            sum
+        } else {
+            0.0
+        }
+    });
+    let level = authority[0].max(authority[1]);
+    std::array::from_fn(|axis| {
+        let size = if axis < 2 { level } else { authority[axis] };
+        if authority[axis] > 0.0 {
+            (n as f64 / size) as f32
+        } else {
+            0.0
+        }
+    })
+}
