@@ -6,6 +6,8 @@ mod bench_data;
 mod command;
 mod doubts;
 mod formats;
+#[path = "../measured/mod.rs"]
+mod measured;
 mod plan;
 mod power;
 mod refusals;
