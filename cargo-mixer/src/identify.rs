@@ -35,6 +35,8 @@ pub mod header;
 pub mod identified;
 pub mod monotone;
 pub mod pair;
+#[cfg(test)]
+mod paper;
 pub mod plateau;
 pub mod polynomial;
 pub mod power;

@@ -78,3 +78,10 @@ fn compile(places: &[Place], airmode: &'static str, yaw_reserve_nm: f64) -> Fram
     };
     Frame::new(frames::compile(places, options).unwrap_or_else(|faults| panic!("{faults}")))
 }
+
+/// A frame whose units have another pair than the paper's.
+fn compile_with_pair(pair: &str, places: &[Place], options: Options) -> Frame {
+    let channels: Vec<usize> = (0..2 * places.len()).collect();
+    let text = frames::toml_with_pair(pair, places, &channels, options);
+    Frame::new(frames::compile_text(&text).unwrap_or_else(|faults| panic!("{faults}\n{text}")))
+}

@@ -3,14 +3,12 @@
 
 use mixer_rt::Health;
 use mixer_setpoints::Random;
-use mixer_tests::frames::{self, AIRMODES, Options, Place};
+use mixer_tests::frames::{self, AIRMODES, Options};
 use mixer_tests::optimum::Oracle;
-use mixer_tests::request::{Frame, Request};
+use mixer_tests::request::Frame;
 use mixer_tests::shortfall::{ALLOWED, Shortfall};
 
-use crate::degenerate::at;
-use crate::polygons::assert_is_optimal;
-use crate::{REFERENCE_V, compile, number};
+use crate::{REFERENCE_V, number};
 
 #[derive(Default)]
 struct Judged {
@@ -150,38 +148,6 @@ fn any_frame_reaches_the_optimum() {
     );
     // Roll and pitch come first, but for the reserve of yaw.
     assert!(all.worst.torque <= 0.02, "{:?}", all.worst);
-}
-
-/// Rotors at the ends of their range and a reserve of yaw: the furthest yaw at the thrust asked is
-/// found although the limits of three units lie between z's start and its end.
-#[test]
-fn a_reserve_leaves_the_furthest_yaw_at_the_thrust_asked() {
-    let places = vertical([
-        ([0.48937, 0.17845], true),
-        ([0.47084, 0.97186], false),
-        ([-0.63780, -0.22207], true),
-        ([-0.35040, -0.83699], false),
-    ]);
-    let frame = compile(&places, "disabled", 0.0985);
-    let request = Request {
-        wrench: [-2.740_897_7, 2.675_990_6, 0.599_748_85, 42.395_542],
-        volts: 12.8,
-        health: Health::GOOD,
-    };
-    assert_reaches_the_optimum(&frame, &request);
-}
-
-/// Holds the mixer to a tenth of a percent of what is physically attainable.
-fn assert_reaches_the_optimum(frame: &Frame, request: &Request) {
-    assert_is_optimal(frame, request, |frame, volts, health| {
-        let factors = frame.physics.factors(volts);
-        Oracle::exact(&frame.physics, frame.allocation(), factors, health)
-    });
-}
-
-/// Vertical units at `[x, y]`, m.
-fn vertical<const N: usize>(units: [([f64; 2], bool); N]) -> [Place; N] {
-    units.map(|([x, y], clockwise)| at([x, y, 0.0], clockwise))
 }
 
 /// One or two rotors out, of different units or of the same.

@@ -2,7 +2,7 @@
 //! what is expected.
 
 use mixer_rt::Health;
-use mixer_tests::frames::{AIRMODES, Place};
+use mixer_tests::frames::{self, AIRMODES, BENT, Options, Place};
 use mixer_tests::golden;
 use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Frame, Request};
@@ -10,8 +10,8 @@ use mixer_tests::shortfall::Shortfall;
 use mixer_tests::soundness;
 use toml::{Table, Value};
 
-use crate::polygons::assert_is_optimal;
-use crate::{compile, out, place};
+use crate::polygons::{assert_is_optimal, little_is_missed};
+use crate::{compile, compile_with_pair, out, place};
 
 const CASES: &str = include_str!("regressions.toml");
 
@@ -47,20 +47,43 @@ fn frame(case: &Table) -> (Frame, f64) {
             0.0,
         );
     }
-    let units: Vec<Place> = tables(case, "units").map(unit).collect();
-    let airmode = AIRMODES.into_iter().find(|mode| *mode == word(case, "airmode"));
+    let units: Vec<Place> = match case.get("frame") {
+        None => tables(case, "units").map(unit).collect(),
+        Some(_) => named(frames::regular_frames(), word(case, "frame")),
+    };
+    let airmode = named(AIRMODES.map(|mode| (mode, mode)), word(case, "airmode"));
     let reserve = case["yaw_reserve_nm"].as_float().expect("a number");
-    (compile(&units, airmode.expect("an airmode"), reserve), reserve)
+    if !case.contains_key("pair") {
+        return (compile(&units, airmode, reserve), reserve);
+    }
+    let options = Options {
+        airmode,
+        yaw_reserve_nm: reserve,
+        ..Options::default()
+    };
+    let pair = named(BENT, word(case, "pair"));
+    (compile_with_pair(pair, &units, options), reserve)
 }
 
-/// The case's wrenches: a list, or a sweep in steps.
-fn wrenches(case: &Table) -> Vec<[f32; 4]> {
-    let wrenches: Vec<[f64; 4]> = match case.get("sweep") {
-        None => {
+fn named<T>(all: impl IntoIterator<Item = (&'static str, T)>, name: &str) -> T {
+    let found = all.into_iter().find(|(own, _)| *own == name);
+    found.unwrap_or_else(|| panic!("nothing is named {name}")).1
+}
+
+/// The case's wrenches: a list, a sweep in steps, or what throttles give.
+fn wrenches(case: &Table, frame: &Frame, volts: f32) -> Vec<[f32; 4]> {
+    let wrenches: Vec<[f64; 4]> = match (case.get("sweep"), case.get("throttles")) {
+        (None, None) => {
             let requests = case["requests"].as_array().expect("a list").iter();
             requests.map(numbers).collect()
         }
-        Some(sweep) => {
+        (None, Some(throttles)) => {
+            let shares = throttles.as_array().expect("a list").iter();
+            let shares = shares.map(|share| share.as_float().expect("a number"));
+            let throttles = frame.physics.throttles(shares, Health::GOOD);
+            vec![frame.physics.wrench(&throttles, volts)]
+        }
+        (Some(sweep), _) => {
             let [from, to] = ["from", "to"].map(|end| numbers::<4>(&sweep[end]));
             let steps = sweep["steps"].as_integer().expect("a number of steps");
             let along = |step: i64| step as f64 / steps as f64;
@@ -130,6 +153,17 @@ fn assert_is_served(frame: &Frame, request: &Request) {
     );
 }
 
+/// The optimum over what is physically attainable.
+fn over_sets(frame: &Frame, volts: f32, health: Health) -> Oracle {
+    let factors = frame.physics.factors(volts);
+    Oracle::exact(&frame.physics, frame.allocation(), factors, health)
+}
+
+fn assert_little_is_missed(frame: &Frame, request: &Request) {
+    let answer = request.mix(frame).expect("finite");
+    little_is_missed(frame, request, &answer).unwrap_or_else(|fault| panic!("{fault}"));
+}
+
 /// Yaw is at least the reserve, but for the tolerance.
 fn assert_reserve_is_kept(frame: &Frame, request: &Request, reserve: f64) {
     let answer = request.mix(frame).expect("finite");
@@ -151,7 +185,7 @@ fn what_was_answered_badly_once_is_answered_well() {
                 .collect()
         });
         let health: Health = out(&failed);
-        let requests: Vec<Request> = wrenches(case)
+        let requests: Vec<Request> = wrenches(case, &frame, volts)
             .into_iter()
             .map(|wrench| Request {
                 wrench,
@@ -181,9 +215,15 @@ fn what_was_answered_badly_once_is_answered_well() {
             "optimal-over-hulls" => requests
                 .iter()
                 .for_each(|request| assert_is_optimal(&frame, request, Oracle::of_polygons)),
+            "optimal-over-sets" => requests
+                .iter()
+                .for_each(|request| assert_is_optimal(&frame, request, over_sets)),
+            "little-missed" => requests
+                .iter()
+                .for_each(|request| assert_little_is_missed(&frame, request)),
             other => panic!("nothing is {other}"),
         }
         count += 1;
     }
-    assert!(count >= 26, "{count} cases");
+    assert!(count >= 32, "{count} cases");
 }

@@ -12,32 +12,12 @@ use mixer_compiler::model::injectivity::EnclosedPairMap;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::Health;
 use mixer_setpoints::Random;
-use mixer_tests::frames::{self, AIRMODES, Options};
-use mixer_tests::optimum::Oracle;
+use mixer_tests::frames::{self, AIRMODES, BENT, Options};
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
 
-use crate::all_rotors;
 use crate::jumps::Motion;
-use crate::number;
-use crate::polygons::assert_is_optimal;
-
-/// Made up: the lower rotor hardly adds thrust while the upper one is at full throttle, so that the
-/// set bends inwards there.
-const BENT: [(&str, &str); 2] = [
-    (
-        "bent, biquadratic",
-        "[throttle]\nmin = 0.25\nmax = 1.0\n[pair]\nbasis = \"biquadratic\"\n\
-         thrust_n = [0.0, 0.0, 14.0, 0.0, -4.8, 0.0, 10.0, 0.0]\n\
-         torque_nm = [0.0, 0.0, -0.15, 0.0, 0.0, 0.0, 0.14, 0.0]\nupper_spin = \"cw\"\n",
-    ),
-    (
-        "bent, cubic",
-        "[throttle]\nmin = 0.25\nmax = 1.0\n[pair]\nbasis = \"cubic\"\n\
-         thrust_n = [1.5, 0.4, -0.6, 0.8, 12.5, -4.9, 9.4, 0.3, 0.2]\n\
-         torque_nm = [-0.012, 0.004, 0.003, 0.011, -0.135, 0.002, 0.128, -0.004, 0.003]\nupper_spin = \"cw\"\n",
-    ),
-];
+use crate::{compile_with_pair, number};
 
 /// Distance of the drawn throttles to the ends of their range, as a share of it.
 const MARGIN: f64 = 0.01;
@@ -330,46 +310,25 @@ fn sets_of_real_pairs_are_used() {
     hold(&sum);
 }
 
-/// An X12, which desaturates on the general path.
-fn x12(pair: &str, airmode: &'static str) -> Result<Compiled, String> {
-    let places = frames::regular(6, 30.0);
-    let channels: Vec<usize> = (0..2 * places.len()).collect();
-    let options = Options {
-        airmode,
-        ..Options::default()
-    };
-    frames::compile_text(&frames::toml_with_pair(pair, &places, &channels, options))
-}
-
-/// `count` requests of either kind, or `MIXER_COUNT`, to an X12 of each pair.
+/// `count` requests of either kind, or `MIXER_COUNT`, to an X12 of each pair: it desaturates on the
+/// general path.
 fn on_x12<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>, count: u64) -> Tally {
     let count = number("MIXER_COUNT", count) as usize;
     let mut random = Random::new(22);
     let mut sum = Tally::default();
     for ((name, pair), airmode) in pairs.zip(AIRMODES.into_iter().cycle()) {
-        let compiled = x12(pair, airmode).unwrap_or_else(|faults| panic!("{name}: {faults}"));
-        let lost = compiled.lost_area.total;
+        let options = Options {
+            airmode,
+            ..Options::default()
+        };
+        let frame = compile_with_pair(pair, &frames::regular(6, 30.0), options);
+        let lost = frame.compiled.lost_area.total;
         assert!(lost <= LOST_TO_POLYGONS, "{name}: {lost} of the area lost");
-        let frame = Frame::new(compiled);
         deliver(&frame, &mut random, count, &mut sum);
         saturate(&frame, &mut random, count, &mut sum);
     }
     println!("on an X12: {sum:?}");
     sum
-}
-
-/// Once roll and pitch end one unit is left to give yaw. A bound of yaw was taken for the other
-/// where a multiplier that came to zero had the other's sign by rounding, and one end for the
-/// better for what it had gained out of bounds.
-#[test]
-fn yaw_that_one_unit_is_left_to_give_is_the_optimum() {
-    let frame = Frame::new(x12(BENT[0].1, "disabled").expect("compiles"));
-    for wrench in [
-        [19.787_958, 16.539_898, -0.100_003_295, 88.938_896],
-        [20.501_167, -20.479_076, 0.233_325_72, 38.065_796],
-    ] {
-        assert_is_optimal(&frame, &all_rotors(wrench, 0.0), Oracle::of_exact_polygons);
-    }
 }
 
 #[test]

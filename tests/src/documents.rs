@@ -33,6 +33,10 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/evaluation.md", "static", tables::static_comparison()?),
         of("docs/evaluation.md", "allocators", tables::allocators()?),
         of("docs/bench.md", "bases", tables::bases()?),
+        of("docs/bench-run.md", "levels", tables::levels()?),
+        of("docs/bench-run.md", "spacings", tables::spacings()?),
+        of("docs/allocation.md", "logged-saving", tables::logged_saving()?),
+        of("docs/evidence.md", "logged-hover", tables::logged_hover()?),
         of("docs/flight.md", "hover", tables::hover()?),
         of("docs/flight.md", "tracking", tables::tracking()?),
         of("docs/flight.md", "energy", tables::energy()?),
@@ -53,16 +57,24 @@ pub fn filled(page: &str, table: &Table) -> Result<String, String> {
 
 const END: &str = "<!-- end -->";
 
-/// `README.md`, the other pages of the project's folder and those of `docs/`, sorted.
+/// All pages in Markdown under the project's folder, sorted; none of build folders.
 ///
 /// # Errors
 /// If a folder cannot be read.
 pub fn pages() -> std::io::Result<Vec<PathBuf>> {
     let mut pages = Vec::new();
-    for folder in [root(), root().join("docs")] {
+    let mut folders = vec![root()];
+    while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder)? {
-            let path = entry?.path();
-            if path.extension().is_some_and(|extension| extension == "md") {
+            let entry = entry?;
+            let name = entry.file_name();
+            let path = entry.path();
+            // Links are left out: `cargo-mixer/airframes` leads back to `airframes/`.
+            if entry.file_type()?.is_dir() {
+                if name != "target" && !name.to_string_lossy().starts_with('.') {
+                    folders.push(path);
+                }
+            } else if path.extension().is_some_and(|extension| extension == "md") {
                 pages.push(path);
             }
         }

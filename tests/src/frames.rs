@@ -18,6 +18,25 @@ thrust_exponent = 1.75
 torque_exponent = 1.6
 "#;
 
+/// Made-up pairs by name, as `[throttle]` and `[pair]`: the lower rotor hardly adds thrust while the
+/// upper one is at full throttle, so that the attainable set bends inwards there.
+pub const BENT: [(&str, &str); 2] = [
+    (
+        "bent, biquadratic",
+        r#"
+[throttle]
+min = 0.25
+max = 1.0
+[pair]
+basis = "biquadratic"
+thrust_n = [0.0, 0.0, 14.0, 0.0, -4.8, 0.0, 10.0, 0.0]
+torque_nm = [0.0, 0.0, -0.15, 0.0, 0.0, 0.0, 0.14, 0.0]
+upper_spin = "cw"
+"#,
+    ),
+    ("bent, cubic", counted::BENT),
+];
+
 /// The allocation options of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {

@@ -66,6 +66,17 @@ const TASKS: &[Task] = &[
         does: "compares bases on MIXER_BENCH_DATA and writes tests/measurements/bases.csv",
     },
     Task {
+        name: "bench-data",
+        program: &[
+            "sh",
+            "-c",
+            ": \"${MIXER_BENCH_DATA:?names the folder of bench data}\" && \
+             MIXER_MEASUREMENTS=write exec cargo test --quiet --locked -p cargo-mixer --test identify --test flights -- \
+             five_levels two_spacings logged_flights in_hover",
+        ],
+        does: "measures on MIXER_BENCH_DATA and writes levels.csv, spacings.csv, logged-saving.csv and logged-hover.csv",
+    },
+    Task {
         name: "flights",
         program: &[
             "cargo",

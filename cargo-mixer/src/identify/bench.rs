@@ -101,62 +101,30 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         mut refused,
     } = log;
     let rows = samples.len() + refused.len();
-    if let (true, Some(first)) = (samples.is_empty(), refused.first()) {
-        return Err(Refusal::of(
-            format!("{name}:{}", first.line),
-            format!(
-                "none of {rows} rows can be read, and this is the first: {}",
-                first.reason
-            ),
-            "numbers in every row, throttles in [0, 1] or with their unit",
-        ));
-    }
-    no_empty_throttle(
-        &name,
-        columns.upper.as_ref().map_or("", |c| c.name.as_str()),
-        &samples,
-        0,
-    )?;
+    some_readable(&name, &columns, &samples, &refused)?;
     let mut notes = Vec::new();
-    let Turned { kind, rotor } = turned(&samples, &columns, how.stop_throttle, &mut notes);
+    let turned = turned(&samples, &columns, how.stop_throttle, &mut notes);
+    let Turned { kind, rotor } = turned;
 
-    let mut kept = samples;
-    let before = kept.len();
-    // An empty throttle is no start or stop row: it stays and is refused below, with its line.
-    kept.retain(|s| match kind {
-        Kind::Pair => !s.throttle.iter().any(|&t| t <= how.stop_throttle),
-        Kind::SingleRotor => s.throttle[rotor].is_nan() || s.throttle[rotor] > how.stop_throttle,
-    });
-    let start_stop_rows = before - kept.len();
-    let streaming = plateau::is_streaming(&kept);
-    let mut settling_rows = 0;
-    if streaming {
-        (kept, settling_rows) = plateau::means(&kept, how.settle);
-    }
-
+    let Steady {
+        samples,
+        start_stop_rows,
+        streaming,
+        settling_rows,
+    } = steady(samples, &turned, how);
     if kind == Kind::Pair {
-        notes.extend(uneven_levels(&kept));
+        notes.extend(uneven_levels(&samples));
     }
 
     let (signs, sums) = match kind {
-        Kind::Pair => sign::pair(&name, &columns, &kept, &how.signs, &mut notes)?,
-        Kind::SingleRotor => sign::single(&columns, rotor, &kept, &how.signs),
+        Kind::Pair => sign::pair(&name, &columns, &samples, &how.signs, &mut notes)?,
+        Kind::SingleRotor => sign::single(&columns, rotor, &samples, &how.signs),
     };
-    let points = points_of(&name, kind, rotor, kept.iter().zip(sums), &mut refused);
+    let points = points_of(&name, kind, rotor, samples.iter().zip(sums), &mut refused);
     refused.sort_by_key(|r| r.line);
     if points.is_empty() {
-        let first = refused.first().map_or(String::new(), |r| {
-            format!(", the first: line {}: {}", r.line, r.reason)
-        });
-        return Err(Refusal::of(
-            name,
-            format!(
-                "none of {rows} rows can be used: {start_stop_rows} start and stop rows, {settling_rows} settling, \
-                 {} refused{first}",
-                refused.len()
-            ),
-            "rows with both rotors turning (see --stop-throttle) and thrust and torque measured",
-        ));
+        let dropped = format!("{start_stop_rows} start and stop rows, {settling_rows} settling");
+        return Err(none_usable(name, rows, &dropped, &refused));
     }
     let date = how.date.clone().or_else(|| date_in(&name));
     Ok(Bench {
@@ -177,6 +145,75 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         notes,
         points,
     })
+}
+
+/// Refuses a file of which no row can be read, or whose command was not recorded.
+fn some_readable(
+    name: &str,
+    columns: &Columns,
+    samples: &[Sample],
+    refused: &[RefusedRow],
+) -> Result<(), Refusal> {
+    if let (true, Some(first)) = (samples.is_empty(), refused.first()) {
+        return Err(Refusal::of(
+            format!("{name}:{}", first.line),
+            format!(
+                "none of {} rows can be read, and this is the first: {}",
+                refused.len(),
+                first.reason
+            ),
+            "numbers in every row, throttles in [0, 1] or with their unit",
+        ));
+    }
+    let throttle = columns.upper.as_ref().map_or("", |c| c.name.as_str());
+    no_empty_throttle(name, throttle, samples, 0)
+}
+
+/// The samples of turning rotors at a command that holds.
+struct Steady {
+    samples: Vec<Sample>,
+    start_stop_rows: usize,
+    streaming: bool,
+    settling_rows: usize,
+}
+
+/// Drops start and stop rows, and reduces a streaming log to its plateaus.
+fn steady(mut samples: Vec<Sample>, turned: &Turned, how: &Preparation) -> Steady {
+    let before = samples.len();
+    // An empty throttle is no start or stop row: it stays and is refused later, with its line.
+    samples.retain(|s| match turned.kind {
+        Kind::Pair => !s.throttle.iter().any(|&t| t <= how.stop_throttle),
+        Kind::SingleRotor => {
+            let throttle = s.throttle[turned.rotor];
+            throttle.is_nan() || throttle > how.stop_throttle
+        }
+    });
+    let start_stop_rows = before - samples.len();
+    let streaming = plateau::is_streaming(&samples);
+    let mut settling_rows = 0;
+    if streaming {
+        (samples, settling_rows) = plateau::means(&samples, how.settle);
+    }
+    Steady {
+        samples,
+        start_stop_rows,
+        streaming,
+        settling_rows,
+    }
+}
+
+fn none_usable(name: String, rows: usize, dropped: &str, refused: &[RefusedRow]) -> Refusal {
+    let first = refused.first().map_or(String::new(), |r| {
+        format!(", the first: line {}: {}", r.line, r.reason)
+    });
+    Refusal::of(
+        name,
+        format!(
+            "none of {rows} rows can be used: {dropped}, {} refused{first}",
+            refused.len()
+        ),
+        "rows with both rotors turning (see --stop-throttle) and thrust and torque measured",
+    )
 }
 
 /// Which rotors of a log turned.

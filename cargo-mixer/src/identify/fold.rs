@@ -163,12 +163,7 @@ pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: Throttle
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    // Table I of the paper.
-    const THRUST: [f64; 8] = [
-        5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363,
-    ];
-    const TORQUE: [f64; 8] = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720];
+    use crate::identify::paper::{THRUST, TORQUE};
 
     #[test]
     fn the_papers_model_folds_below_an_idle_of_0_08875() {

@@ -86,41 +86,23 @@ pub fn with_runs(
         Some(exponents) => Some(declared(voltage, exponents, &benches)?),
         None => voltage,
     };
-    let mut pair = if has(Kind::Pair) {
-        Some(pair::identify(&benches, voltage.as_ref(), wishes)?)
+    let mut warnings = Vec::new();
+    let pair = if has(Kind::Pair) {
+        let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;
+        warnings.extend(pair.warnings.clone());
+        Some(with_alone(
+            pair,
+            &benches,
+            &runs,
+            voltage.as_ref(),
+            wishes,
+            &mut warnings,
+        )?)
     } else {
         only_single(&benches, voltage.as_ref())?;
+        no_runs(&runs)?;
         None
     };
-    let mut warnings: Vec<String> = pair.iter().flat_map(|p| p.warnings.clone()).collect();
-    if let Some(pair) = &mut pair {
-        let [upper, lower] = &runs;
-        let mut alone = |run: &Option<Bench>, turning, pair: &Pair| {
-            let run = run.as_ref();
-            run.map(|run| alone::identify(run, turning, pair, voltage.as_ref(), &mut warnings))
-                .transpose()
-        };
-        pair.lower_out = alone(upper, Turning::Upper, pair)?;
-        pair.upper_out = alone(lower, Turning::Lower, pair)?;
-        if wishes.rotor_out_from_map {
-            let mut from_map = |turning, pair: &Pair| {
-                alone::from_map(&benches, turning, pair, voltage.as_ref(), &mut warnings).map(Some)
-            };
-            if pair.lower_out.is_none() {
-                pair.lower_out = from_map(Turning::Upper, pair)?;
-            }
-            if pair.upper_out.is_none() {
-                pair.upper_out = from_map(Turning::Lower, pair)?;
-            }
-        }
-        warnings.extend(alone::extrapolated(pair));
-    } else if let Some(run) = runs.iter().flatten().next() {
-        return Err(Refusal::of(
-            &run.file,
-            "a run of one rotor alone belongs to a map of the pair, and there is none",
-            "the map of the pair as BENCH.csv",
-        ));
-    }
     if let Some(v) = &voltage {
         warnings.extend(voltage_warnings(v));
         warnings.extend(sag(&benches, v));
@@ -128,21 +110,7 @@ pub fn with_runs(
     if has(Kind::Pair) && has(Kind::SingleRotor) {
         warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
     }
-    let mean = match &pair {
-        Some(pair) => pair.normalised_to_v.or(pair.mean_v),
-        None => voltage.as_ref().map(|v| v.mean_v),
-    };
-    let reference_v = wishes.reference_v.or(mean.map(pair::hundredths));
-    if pair.is_some() && reference_v.is_none() && voltage.is_some() {
-        warnings.push("the map's own voltage is not known: give --reference-voltage for [voltage]".into());
-    }
-    if let (Some(reference), Some(v)) = (wishes.reference_v, &voltage)
-        && !(v.range_v[0]..=v.range_v[1]).contains(&reference)
-    {
-        let [low, high] = v.range_v;
-        let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
-        warnings.push(told);
-    }
+    let reference_v = reference(pair.as_ref(), voltage.as_ref(), wishes.reference_v, &mut warnings);
     let power = pair
         .as_ref()
         .map(|pair| power::examine(&benches, pair, voltage.as_ref()));
@@ -155,6 +123,74 @@ pub fn with_runs(
         reference_v,
         warnings,
     })
+}
+
+/// The pair with its rotors alone: from their runs, or from rows of the map where the user wishes
+/// it.
+fn with_alone(
+    mut pair: Pair,
+    benches: &[Bench],
+    [upper, lower]: &[Option<Bench>; 2],
+    voltage: Option<&Voltage>,
+    wishes: &Wishes,
+    warnings: &mut Vec<String>,
+) -> Result<Pair, Refusal> {
+    let mut alone = |run: &Option<Bench>, turning, pair: &Pair| {
+        let run = run.as_ref();
+        run.map(|run| alone::identify(run, turning, pair, voltage, warnings))
+            .transpose()
+    };
+    pair.lower_out = alone(upper, Turning::Upper, &pair)?;
+    pair.upper_out = alone(lower, Turning::Lower, &pair)?;
+    if wishes.rotor_out_from_map {
+        let mut from_map =
+            |turning, pair: &Pair| alone::from_map(benches, turning, pair, voltage, warnings).map(Some);
+        if pair.lower_out.is_none() {
+            pair.lower_out = from_map(Turning::Upper, &pair)?;
+        }
+        if pair.upper_out.is_none() {
+            pair.upper_out = from_map(Turning::Lower, &pair)?;
+        }
+    }
+    warnings.extend(alone::extrapolated(&pair));
+    Ok(pair)
+}
+
+/// Refuses runs of one rotor alone where there is no map of a pair.
+fn no_runs(runs: &[Option<Bench>; 2]) -> Result<(), Refusal> {
+    match runs.iter().flatten().next() {
+        None => Ok(()),
+        Some(run) => Err(Refusal::of(
+            &run.file,
+            "a run of one rotor alone belongs to a map of the pair, and there is none",
+            "the map of the pair as BENCH.csv",
+        )),
+    }
+}
+
+/// The reference voltage of the fragment, V: the user's, or the mean of the map's rows.
+fn reference(
+    pair: Option<&Pair>,
+    voltage: Option<&Voltage>,
+    wished: Option<f64>,
+    warnings: &mut Vec<String>,
+) -> Option<f64> {
+    let mean = match pair {
+        Some(pair) => pair.normalised_to_v.or(pair.mean_v),
+        None => voltage.map(|v| v.mean_v),
+    };
+    let reference_v = wished.or(mean.map(pair::hundredths));
+    if pair.is_some() && reference_v.is_none() && voltage.is_some() {
+        warnings.push("the map's own voltage is not known: give --reference-voltage for [voltage]".into());
+    }
+    if let (Some(reference), Some(v)) = (wished, voltage)
+        && !(v.range_v[0]..=v.range_v[1]).contains(&reference)
+    {
+        let [low, high] = v.range_v;
+        let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
+        warnings.push(told);
+    }
+    reference_v
 }
 
 fn read_all(paths: &[PathBuf], settings: &Settings) -> Result<Vec<Bench>, Vec<Refusal>> {

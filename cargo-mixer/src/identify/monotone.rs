@@ -212,6 +212,7 @@ mod tests {
 
     use super::*;
     use crate::identify::fit::{fit, judge};
+    use crate::identify::paper::{THRUST, TORQUE};
 
     fn levels() -> Vec<[f64; 2]> {
         let at = |k: usize| 0.02 + 0.98 * k as f64 / 9.0;
@@ -219,10 +220,6 @@ mod tests {
     }
 
     const BOX: ThrottleBox = ThrottleBox { min: 0.02, max: 1.0 };
-    const THRUST: [f64; 8] = [
-        5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363,
-    ];
-    const TORQUE: [f64; 8] = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720];
 
     #[test]
     fn the_papers_model_is_unfolded_at_a_small_cost() {

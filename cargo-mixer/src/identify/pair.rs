@@ -9,7 +9,7 @@ use super::alone::Alone;
 use super::basis::ThrottleBox;
 use super::bench::{Bench, Kind};
 use super::cross::{self, Candidate};
-use super::fit::{Design, Fit, fit, judge, range};
+use super::fit::{Deficient, Design, Fit, fit, judge, range};
 use super::fold::{self, Fold};
 use super::monotone;
 use super::refusal::Refusal;
@@ -94,142 +94,174 @@ pub struct MonotoneCost {
 /// Identifies the pair that the benches of [`Kind::Pair`] describe.
 pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -> Result<Pair, Refusal> {
     let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == Kind::Pair).collect();
-    let label = || {
-        benches
-            .iter()
-            .map(|b| b.file.as_str())
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
+    let files = names(&benches);
     let mut warnings = Vec::new();
     let (mut points, normalised_to_v) = at_reference(&benches, voltage, wishes)?;
     let measured = range(&places(&points));
-    let throttle_box = match wishes.throttle {
-        Some(wished) => beyond(wished, measured, &mut warnings),
-        None => inside(measured),
-    };
-    doubts::coverage(throttle_box, &mut warnings);
-    if throttle_box.min >= throttle_box.max {
-        return Err(Refusal::of(
-            label(),
-            format!("the measured throttles {measured:.3?} of both rotors share no range"),
-            "a sweep of both rotors over one range of throttle, each from idle to full",
-        ));
-    }
+    let throttle_box = to_command(wishes.throttle, measured, &files, &mut warnings)?;
 
-    let suspects = suspects(wishes.basis.unwrap_or(robust::JUDGING), &points, throttle_box);
-    let clean = without(&points, &suspects);
-    let deficient = |reason: super::fit::Deficient| {
-        Refusal::of(
-            label(),
-            reason.to_string(),
-            "a sweep of both throttles independently: a grid of 5 x 5 levels or more from idle to full (cargo mixer plan)",
-        )
-    };
-    let chosen_on = if wishes.robust { &clean } else { &points };
-    let [thrust, torque] = channels(chosen_on);
-    let bases = wishes.basis.map_or(Basis::ALL.to_vec(), |basis| vec![basis]);
-    let places_chosen_on = places(chosen_on);
-    let table =
-        cross::choose(&bases, &places_chosen_on, &thrust, &torque, throttle_box).map_err(deficient)?;
-    let basis = table
-        .iter()
-        .find(|c| c.chosen)
-        .map_or(Basis::Biquadratic, |c| c.basis);
-    let outliers = confirmed(basis, &points, &suspects, &clean, throttle_box);
+    let Choice {
+        basis,
+        cross_validation,
+        outliers,
+    } = choose(&points, throttle_box, wishes).map_err(|reason| deficient(&files, &reason))?;
     if wishes.robust {
-        let out: Vec<bool> = points
-            .iter()
-            .map(|p| outliers.iter().any(|o| o.is(p.file, p.point.line)))
-            .collect();
-        points = without(&points, &out);
+        points = without_outliers(&points, &outliers);
     } else if !outliers.is_empty() {
         warnings.push(format!(
             "{} rows stand out: --robust fits without them",
             outliers.len()
         ));
     }
-    let [thrust, torque] = channels(&points);
-    let design = Design::new(basis, &places(&points), throttle_box).map_err(deficient)?;
-    let mut fits = [
-        fit(&design, &thrust, throttle_box),
-        fit(&design, &torque, throttle_box),
-    ];
-    one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
 
-    let first_fold = fold_of(basis, &fits, throttle_box);
-    let mut cost = None;
-    if !first_fold.injective && wishes.monotone {
-        let found = constrained(&design, [&thrust, &torque], &fits, throttle_box)
-            .ok_or_else(|| no_monotone_map(label()))?;
-        let made = MonotoneCost {
-            free_thrust_rms: fits[0].residual_rms,
-            free_torque_rms: fits[1].residual_rms,
-        };
-        fits = found;
-        doubts::costly_constraint(&made, &points, &fits[1], &mut warnings);
-        cost = Some(made);
-    }
-    let fold = match cost {
-        Some(_) => &fold_of(basis, &fits, throttle_box),
-        None => &first_fold,
+    let design =
+        Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, &reason))?;
+    let free = channels(&points).map(|values| fit(&design, &values, throttle_box));
+    one_pair(basis, &points, throttle_box, &free, &mut warnings)?;
+    let free_fold = fold_of(basis, &free, throttle_box);
+    let (fits, monotone) = if !free_fold.injective && wishes.monotone {
+        let (fits, cost) =
+            constrained(&design, &points, &free, throttle_box).ok_or_else(|| no_monotone_map(&files))?;
+        doubts::costly_constraint(&cost, &points, &fits[1], &mut warnings);
+        (fits, Some(cost))
+    } else {
+        (free, None)
     };
-    let map = EnclosedPairMap::of(basis, &fits[0].coefficients, &fits[1].coefficients);
-    let throttle = ThrottleBox {
-        min: if fold.injective {
-            clear_of_fold(&map, throttle_box, &mut warnings)
-        } else {
-            raised(fold, &map, &label, &mut warnings)?
-        },
-        ..throttle_box
+    let fold = match &monotone {
+        Some(_) => fold_of(basis, &fits, throttle_box),
+        None => free_fold.clone(),
     };
-    let [thrust_fit, torque_fit] = fits;
-    judge_quality(&thrust_fit, &torque_fit, &mut warnings);
-    let volts = || points.iter().map(|p| p.point.voltage).filter(|v| v.is_finite());
-    let mean_v = (volts().count() > 0).then(|| volts().sum::<f64>() / volts().count() as f64);
+    let idle = idle(basis, &fits, &fold, &files, &mut warnings)?;
+
+    let [thrust, torque] = fits;
+    judge_quality(&thrust, &torque, &mut warnings);
     Ok(Pair {
         basis,
         terms: basis.term_names(),
-        thrust_n: thrust_fit.coefficients.clone(),
-        torque_nm: torque_fit.coefficients.clone(),
+        thrust_n: thrust.coefficients.clone(),
+        torque_nm: torque.coefficients.clone(),
         upper_spin: "cw",
         lower_out: None,
         upper_out: None,
-        thrust: thrust_fit,
-        torque: torque_fit,
-        throttle,
+        thrust,
+        torque,
+        throttle: ThrottleBox {
+            min: idle,
+            ..throttle_box
+        },
         measured,
-        cross_validation: table,
+        cross_validation,
         outliers_left_out: wishes.robust,
         outliers,
-        fold: first_fold,
-        monotone: cost,
+        fold: free_fold,
+        monotone,
         normalised_to_v,
-        mean_v,
+        mean_v: mean_voltage(&points),
         warnings,
     })
+}
+
+fn names(benches: &[&Bench]) -> String {
+    let names: Vec<&str> = benches.iter().map(|b| b.file.as_str()).collect();
+    names.join(", ")
+}
+
+/// The box to command: the user's, or the measured one.
+fn to_command(
+    wished: Option<ThrottleBox>,
+    measured: [[f64; 2]; 2],
+    files: &str,
+    warnings: &mut Vec<String>,
+) -> Result<ThrottleBox, Refusal> {
+    let throttle_box = match wished {
+        Some(wished) => beyond(wished, measured, warnings),
+        None => inside(measured),
+    };
+    doubts::coverage(throttle_box, warnings);
+    if throttle_box.min >= throttle_box.max {
+        return Err(Refusal::of(
+            files,
+            format!("the measured throttles {measured:.3?} of both rotors share no range"),
+            "a sweep of both rotors over one range of throttle, each from idle to full",
+        ));
+    }
+    Ok(throttle_box)
+}
+
+/// The basis, and the rows that stand out of its fit.
+struct Choice {
+    basis: Basis,
+    cross_validation: Vec<Candidate>,
+    outliers: Vec<Outlier>,
+}
+
+/// Chooses the basis by cross-validation, among one where the user named it.
+fn choose(points: &[Placed], throttle_box: ThrottleBox, wishes: &Wishes) -> Result<Choice, Deficient> {
+    let suspects = suspects(wishes.basis.unwrap_or(robust::JUDGING), points, throttle_box);
+    let clean = without(points, &suspects);
+    let chosen_on = if wishes.robust { &clean } else { points };
+    let [thrust, torque] = channels(chosen_on);
+    let bases = wishes.basis.map_or(Basis::ALL.to_vec(), |basis| vec![basis]);
+    let cross_validation = cross::choose(&bases, &places(chosen_on), &thrust, &torque, throttle_box)?;
+    let basis = cross_validation
+        .iter()
+        .find(|c| c.chosen)
+        .map_or(Basis::Biquadratic, |c| c.basis);
+    Ok(Choice {
+        basis,
+        outliers: confirmed(basis, points, &suspects, &clean, throttle_box),
+        cross_validation,
+    })
+}
+
+fn without_outliers<'a>(points: &[Placed<'a>], outliers: &[Outlier]) -> Vec<Placed<'a>> {
+    let out: Vec<bool> = points
+        .iter()
+        .map(|p| outliers.iter().any(|o| o.is(p.file, p.point.line)))
+        .collect();
+    without(points, &out)
+}
+
+fn deficient(files: &str, reason: &Deficient) -> Refusal {
+    Refusal::of(
+        files,
+        reason.to_string(),
+        "a sweep of both throttles independently: a grid of 5 x 5 levels or more from idle to full (cargo mixer plan)",
+    )
+}
+
+fn mean_voltage(points: &[Placed]) -> Option<f64> {
+    let volts = || points.iter().map(|p| p.point.voltage).filter(|v| v.is_finite());
+    (volts().count() > 0).then(|| volts().sum::<f64>() / volts().count() as f64)
 }
 
 fn fold_of(basis: Basis, [thrust, torque]: &[Fit; 2], throttle_box: ThrottleBox) -> Fold {
     fold::examine(basis, &thrust.coefficients, &torque.coefficients, throttle_box)
 }
 
-/// The fits nearest to these whose map does not fold; `None` where none was found.
+/// The fits nearest to the free ones whose map does not fold, and what that costs; `None` where
+/// none was found.
 fn constrained(
     design: &Design,
-    measured: [&[f64]; 2],
-    fits: &[Fit; 2],
+    points: &[Placed],
+    free: &[Fit; 2],
     throttle_box: ThrottleBox,
-) -> Option<[Fit; 2]> {
-    let coordinates = measured.map(|values| design.coordinates(values));
-    let found = monotone::constrain(design, [&fits[0], &fits[1]], coordinates, throttle_box)?;
-    Some([
-        judge(design, measured[0], &found.thrust, throttle_box),
-        judge(design, measured[1], &found.torque, throttle_box),
-    ])
+) -> Option<([Fit; 2], MonotoneCost)> {
+    let [thrust, torque] = channels(points);
+    let coordinates = [&thrust, &torque].map(|values| design.coordinates(values));
+    let found = monotone::constrain(design, [&free[0], &free[1]], coordinates, throttle_box)?;
+    let fits = [
+        judge(design, &thrust, &found.thrust, throttle_box),
+        judge(design, &torque, &found.torque, throttle_box),
+    ];
+    let cost = MonotoneCost {
+        free_thrust_rms: free[0].residual_rms,
+        free_torque_rms: free[1].residual_rms,
+    };
+    Some((fits, cost))
 }
 
-fn no_monotone_map(files: String) -> Refusal {
+fn no_monotone_map(files: &str) -> Refusal {
     Refusal::of(
         files,
         "no monotone map was found near the measured one",
@@ -313,6 +345,22 @@ fn one_pair(
     Ok(())
 }
 
+/// The idle of the identified map: the box's, or a higher one where the map folds at or next to it.
+fn idle(
+    basis: Basis,
+    [thrust, torque]: &[Fit; 2],
+    fold: &Fold,
+    files: &str,
+    warnings: &mut Vec<String>,
+) -> Result<f64, Refusal> {
+    let map = EnclosedPairMap::of(basis, &thrust.coefficients, &torque.coefficients);
+    if fold.injective {
+        Ok(clear_of_fold(&map, fold.commanded, warnings))
+    } else {
+        raised(fold, &map, files, warnings)
+    }
+}
+
 /// The idle over the least one at which the map can be inverted. Right at that the inverse bends
 /// without bound, and no tolerance is met.
 const CLEAR: f64 = 1.03;
@@ -339,7 +387,7 @@ fn clear_of_fold(map: &EnclosedPairMap, throttle: ThrottleBox, warnings: &mut Ve
 fn raised(
     fold: &Fold,
     map: &EnclosedPairMap,
-    label: &dyn Fn() -> String,
+    files: &str,
     warnings: &mut Vec<String>,
 ) -> Result<f64, Refusal> {
     let [u, l] = fold.least_det_at;
@@ -347,7 +395,7 @@ fn raised(
     let rounded = |least: f64| fold::round_idle(map, CLEAR * least, fold.commanded.max);
     let Some((least, min)) = fold.least_idle.and_then(|least| Some((least, rounded(least)?))) else {
         return Err(Refusal::of(
-            label(),
+            files,
             if fold.folds {
                 format!("the map folds whatever the idle: det J = {least_det:.3} at ({u:.2}, {l:.2})")
             } else {

@@ -191,6 +191,31 @@ pub fn examine(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Pow
 }
 
 fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Result<LeastPower, String> {
+    let points = with_power(benches, pair, voltage)?;
+    let power = power_map(&points)?;
+    let hover = Hover::new(Map::new(pair), &power)?;
+    // A digit more than a bench can tell, towards none, so that it stays attainable.
+    let bias_nm_per_n = (1e5 * hover.best_bias()).trunc() / 1e5;
+    let at = hover
+        .along(bias_nm_per_n)
+        .ok_or("no torque near none is attainable at these thrusts")?;
+    let saving_percent = 100.0 * hover.saving(bias_nm_per_n);
+    if saving_percent <= 0.0 {
+        return Err("no torque saves power against none".into());
+    }
+    Ok(LeastPower {
+        bias_nm_per_n,
+        saving_percent,
+        at,
+        residual_rms_w: power.residual_rms,
+        full_scale_w: power.full_scale,
+        points: points.len(),
+        power_w: power.of_file(pair.throttle),
+    })
+}
+
+/// The points of the pair's files that have power, brought to the voltage of the map.
+fn with_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Result<Vec<Point>, String> {
     let of_pair = || benches.iter().filter(|b| b.kind == Kind::Pair);
     // Where the map is brought to a voltage, power is as well: thrust goes with the square of
     // speed, power with its cube.
@@ -212,7 +237,12 @@ fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Res
             .find_map(|b| b.no_power.clone())
             .unwrap_or_else(|| "voltage or current is empty in every row".into()));
     }
-    plausible(&points)?;
+    Ok(points)
+}
+
+/// The power map of points that are plausible, enough and well described by it.
+fn power_map(points: &[Point]) -> Result<PowerMap, String> {
+    plausible(points)?;
     let places: Vec<[f64; 2]> = points.iter().map(|p| [p.u, p.l]).collect();
     let distinct = distinct_pairs(&places);
     if distinct < FEWEST {
@@ -220,72 +250,86 @@ fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Res
             "{distinct} distinct throttle pairs with power, at least {FEWEST} are needed (5 x 5 levels)"
         ));
     }
-    let power = PowerMap::fit(&points);
+    let power = PowerMap::fit(points);
     if power.residual_rms > POOR * power.full_scale {
         return Err(format!(
             "the power map leaves {:.1} % of the greatest power, more than there is to save",
             100.0 * power.residual_rms / power.full_scale
         ));
     }
-    let map = Map::new(pair);
-    let full = map.full_thrust();
-    // Torque over thrust with one rotor at its least and the other at full throttle bounds what is
-    // worth trying.
-    let ThrottleBox { min, max } = pair.throttle;
-    let most = map.torque[0].at(min, max).abs() / map.thrust[0].at(min, max);
-    let without = |share: &f64| {
-        let f = share * full;
-        let has_room = [-ROOM, ROOM]
-            .iter()
-            .all(|room| map.throttles(f, room * most * f).is_some());
-        has_room.then_some((f, power.at(map.throttles(f, 0.0)?)))
-    };
-    let without: Vec<(f64, f64)> = SHARES.iter().filter_map(without).collect();
-    if without.len() < MOST_OF_THEM {
-        return Err(format!(
-            "the idle leaves room for torque at {} of 9 thrusts from 0.3 to 0.7 of full thrust only",
-            without.len()
-        ));
+    Ok(power)
+}
+
+/// The thrusts at which vehicles hover, and the power that torque saves there.
+struct Hover<'a> {
+    map: Map,
+    power: &'a PowerMap,
+    /// Greatest torque over thrust that is worth trying, N m per N.
+    most: f64,
+    /// Thrust, N, and power without torque, W.
+    without: Vec<(f64, f64)>,
+}
+
+impl<'a> Hover<'a> {
+    fn new(map: Map, power: &'a PowerMap) -> Result<Self, String> {
+        let full = map.full_thrust();
+        // Torque over thrust with one rotor at its least and the other at full throttle bounds what
+        // is worth trying.
+        let ThrottleBox { min, max } = map.throttle;
+        let most = map.torque[0].at(min, max).abs() / map.thrust[0].at(min, max);
+        let without = |share: &f64| {
+            let f = share * full;
+            let has_room = [-ROOM, ROOM]
+                .iter()
+                .all(|room| map.throttles(f, room * most * f).is_some());
+            has_room.then_some((f, power.at(map.throttles(f, 0.0)?)))
+        };
+        let without: Vec<(f64, f64)> = SHARES.iter().filter_map(without).collect();
+        if without.len() < MOST_OF_THEM {
+            return Err(format!(
+                "the idle leaves room for torque at {} of 9 thrusts from 0.3 to 0.7 of full thrust only",
+                without.len()
+            ));
+        }
+        Ok(Self {
+            map,
+            power,
+            most,
+            without,
+        })
     }
-    let at = |c: f64| -> Option<Vec<AtThrust>> {
+
+    /// Power along Q = c f; `None` where one of the thrusts has no throttles there.
+    fn along(&self, c: f64) -> Option<Vec<AtThrust>> {
         let along = |&(thrust_n, power_w): &(f64, f64)| {
             Some(AtThrust {
                 thrust_n,
                 power_w,
-                least_power_w: power.at(map.throttles(thrust_n, c * thrust_n)?),
+                least_power_w: self.power.at(self.map.throttles(thrust_n, c * thrust_n)?),
             })
         };
-        without.iter().map(along).collect()
-    };
-    let saving = |c: f64| {
-        at(c).map_or(f64::NEG_INFINITY, |at| {
+        self.without.iter().map(along).collect()
+    }
+
+    /// Mean saving along Q = c f against Q = 0, as a share.
+    fn saving(&self, c: f64) -> f64 {
+        self.along(c).map_or(f64::NEG_INFINITY, |at| {
             at.iter().map(|a| 1.0 - a.least_power_w / a.power_w).sum::<f64>() / at.len() as f64
         })
-    };
-    let step = most / 50.0;
-    let best = (-50..=50)
-        .map(|k| f64::from(k) * step)
-        .max_by(|a, b| saving(*a).total_cmp(&saving(*b)))
-        .unwrap_or(0.0);
-    // Next to the end of what is attainable the hill is cut off, and the search may end beyond.
-    let finer = golden(best - step, best + step, saving);
-    let best = if saving(finer) > saving(best) { finer } else { best };
-    // A digit more than a bench can tell, towards none, so that it stays attainable.
-    let bias_nm_per_n = (1e5 * best).trunc() / 1e5;
-    let at = at(bias_nm_per_n).ok_or("no torque near none is attainable at these thrusts")?;
-    let saving_percent = 100.0 * saving(bias_nm_per_n);
-    if saving_percent <= 0.0 {
-        return Err("no torque saves power against none".into());
     }
-    Ok(LeastPower {
-        bias_nm_per_n,
-        saving_percent,
-        at,
-        residual_rms_w: power.residual_rms,
-        full_scale_w: power.full_scale,
-        points: points.len(),
-        power_w: power.of_file(pair.throttle),
-    })
+
+    /// The c of the greatest saving, N m per N.
+    fn best_bias(&self) -> f64 {
+        let saving = |c: f64| self.saving(c);
+        let step = self.most / 50.0;
+        let best = (-50..=50)
+            .map(|k| f64::from(k) * step)
+            .max_by(|a, b| saving(*a).total_cmp(&saving(*b)))
+            .unwrap_or(0.0);
+        // Next to the end of what is attainable the hill is cut off, and the search may end beyond.
+        let finer = golden(best - step, best + step, saving);
+        if saving(finer) > saving(best) { finer } else { best }
+    }
 }
 
 /// Refuses power that no propeller takes.

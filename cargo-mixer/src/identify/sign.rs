@@ -91,21 +91,28 @@ pub fn pair(
     policy: &SignPolicy,
     notes: &mut Vec<String>,
 ) -> Result<(Signs, Vec<(f64, f64)>), Refusal> {
-    let total_thrust = columns.thrust.is_some();
-    if !total_thrust && columns.rotor_thrust.iter().any(Option::is_none) {
+    both_measured(file, columns)?;
+    let torque = pair_torque(file, columns, samples, policy.torque, notes)?;
+    let thrust = pair_thrust(columns, samples, policy.thrust, notes);
+    let signs = Signs {
+        thrust: thrust.signs,
+        torque: torque.signs,
+        thrust_policy: policy_word(policy.thrust),
+        torque_policy: policy_word(policy.torque),
+    };
+    Ok((signs, thrust.sums.into_iter().zip(torque.sums).collect()))
+}
+
+/// Refuses a pair without a channel of the whole or of each rotor.
+fn both_measured(file: &str, columns: &Columns) -> Result<(), Refusal> {
+    if columns.thrust.is_none() && columns.rotor_thrust.iter().any(Option::is_none) {
         return Err(Refusal::of(
             file,
             "thrust of one rotor only, though both turn",
             "a column of total thrust, or one per rotor",
         ));
     }
-    let thrust_signs = match policy.thrust {
-        SignChoice::Given(signs) => signs,
-        SignChoice::Auto if total_thrust => [sign_of_sum(samples.iter().map(|s| s.thrust)); 2],
-        SignChoice::Auto => [0, 1].map(|r| sign_of_sum(samples.iter().map(|s| s.rotor_thrust[r]))),
-    };
-    let total_torque = columns.torque.is_some();
-    if !total_torque && columns.rotor_torque.iter().any(Option::is_none) {
+    if columns.torque.is_none() && columns.rotor_torque.iter().any(Option::is_none) {
         return Err(Refusal::of(
             format!("{file}:1"),
             match columns.rotor_torque.iter().flatten().next() {
@@ -115,22 +122,80 @@ pub fn pair(
             "the torque of the whole pair, or of each rotor (--column torque=HEADER)",
         ));
     }
-    let mut torque_signs = match policy.torque {
+    Ok(())
+}
+
+/// A channel of a pair: the factors of its columns, and the sum per sample.
+struct Channel {
+    signs: Vec<f64>,
+    sums: Vec<f64>,
+}
+
+fn pair_thrust(
+    columns: &Columns,
+    samples: &[Sample],
+    choice: SignChoice,
+    notes: &mut Vec<String>,
+) -> Channel {
+    let total = columns.thrust.is_some();
+    let signs = match choice {
         SignChoice::Given(signs) => signs,
-        SignChoice::Auto if total_torque => [1.0; 2],
+        SignChoice::Auto if total => [sign_of_sum(samples.iter().map(|s| s.thrust)); 2],
+        SignChoice::Auto => [0, 1].map(|r| sign_of_sum(samples.iter().map(|s| s.rotor_thrust[r]))),
+    };
+    if !total {
+        compare_sides(samples, signs, notes);
+    }
+    Channel {
+        sums: signed(samples, |s| (s.thrust, s.rotor_thrust), total, &signs),
+        signs: signs[..if total { 1 } else { 2 }].to_vec(),
+    }
+}
+
+/// Torque is turned to that of an upper rotor that turns clockwise.
+fn pair_torque(
+    file: &str,
+    columns: &Columns,
+    samples: &[Sample],
+    choice: SignChoice,
+    notes: &mut Vec<String>,
+) -> Result<Channel, Refusal> {
+    let total = columns.torque.is_some();
+    let mut signs = match choice {
+        SignChoice::Given(signs) => signs,
+        SignChoice::Auto if total => [1.0; 2],
         SignChoice::Auto => {
             let signs = [0, 1].map(|r| sign_of_sum(samples.iter().map(|s| s.rotor_torque[r])));
             [-signs[0], signs[1]]
         }
     };
-    let mut torque = signed(
-        samples,
-        |s| (s.torque, s.rotor_torque),
-        total_torque,
-        &torque_signs,
-    );
-    constant(file, &torque)?;
-    let [by_upper, by_lower] = slopes(samples, &torque);
+    let mut sums = signed(samples, |s| (s.torque, s.rotor_torque), total, &signs);
+    constant(file, &sums)?;
+    let [by_upper, by_lower] = slopes(samples, &sums);
+    no_magnitudes(file, by_upper, by_lower)?;
+    if by_lower < by_upper {
+        sums.iter_mut().for_each(|q| *q = -*q);
+        signs = signs.map(|s| -s);
+        if choice != SignChoice::Auto {
+            notes.push(
+                "by the signs given the upper rotor turned counter-clockwise on the bench; the map is written                  mirrored, for one that turns clockwise"
+                    .into(),
+            );
+        } else if total && columns.sides_named {
+            notes.push(
+                "torque is turned, as of an upper rotor that turned counter-clockwise or a sensor mounted that way;                  exchanged columns look the same: make sure which is the upper rotor's (--swap exchanges them)"
+                    .into(),
+            );
+        }
+    }
+    Ok(Channel {
+        sums,
+        signs: signs[..if total { 1 } else { 2 }].to_vec(),
+    })
+}
+
+/// Refuses a torque that grows with both throttles, by these slopes over their squares.
+fn no_magnitudes(file: &str, by_upper: f64, by_lower: f64) -> Result<(), Refusal> {
     if by_upper * by_lower > 0.0
         && by_upper.abs().min(by_lower.abs()) > 0.2 * by_upper.abs().max(by_lower.abs())
     {
@@ -143,39 +208,7 @@ pub fn pair(
             "the net torque, or one column per rotor with --torque-sign=-,+",
         ));
     }
-    if by_lower < by_upper {
-        torque.iter_mut().for_each(|q| *q = -*q);
-        torque_signs = torque_signs.map(|s| -s);
-        if policy.torque != SignChoice::Auto {
-            notes.push(
-                "by the signs given the upper rotor turned counter-clockwise on the bench; the map is written \
-                 mirrored, for one that turns clockwise"
-                    .into(),
-            );
-        } else if total_torque && columns.sides_named {
-            notes.push(
-                "torque is turned, as of an upper rotor that turned counter-clockwise or a sensor mounted that way; \
-                 exchanged columns look the same: make sure which is the upper rotor's (--swap exchanges them)"
-                    .into(),
-            );
-        }
-    }
-    let thrust = signed(
-        samples,
-        |s| (s.thrust, s.rotor_thrust),
-        total_thrust,
-        &thrust_signs,
-    );
-    if !total_thrust {
-        compare_sides(samples, thrust_signs, notes);
-    }
-    let signs = Signs {
-        thrust: thrust_signs[..if total_thrust { 1 } else { 2 }].to_vec(),
-        torque: torque_signs[..if total_torque { 1 } else { 2 }].to_vec(),
-        thrust_policy: policy_word(policy.thrust),
-        torque_policy: policy_word(policy.torque),
-    };
-    Ok((signs, thrust.into_iter().zip(torque).collect()))
+    Ok(())
 }
 
 /// (thrust, torque) of a single rotor, torque as a magnitude.

@@ -25,7 +25,7 @@ pub type Files = BTreeMap<String, String>;
 pub fn gallery(airframes: &[Compiled]) -> Files {
     let mut files = Files::new();
     let mut page = String::from(
-        "# Gallery\n\nThe airframes of [`airframes/`](../airframes), drawn by `cargo run -p cargo-mixer --example gallery`. \
+        "# Gallery\n\nThe airframes of [`airframes/`](../airframes), drawn by `cargo xtask gallery`. \
          `cargo mixer report` shows much more of each.\n",
     );
     for compiled in airframes {

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use super::paper::{THRUST, TORQUE};
 use super::*;
 
 fn path(name: &str) -> String {
@@ -14,16 +15,12 @@ fn path(name: &str) -> String {
 
 /// A bench file of the paper's pair: a grid of 10 x 10 throttles.
 fn bench(name: &str) -> String {
-    let thrust = [
-        5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363,
-    ];
-    let torque = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720];
     let mut text = "upper,lower,thrust_n,torque_nm\n".to_owned();
     for k in 0..100 {
         let [u, l] = [k / 10, k % 10].map(|step| 0.1 + 0.1 * f64::from(step));
         let terms = [u * u * l * l, u * u * l, u * u, u * l * l, u * l, u, l * l, l];
         let value = |of: [f64; 8]| of.iter().zip(terms).map(|(c, term)| c * term).sum::<f64>();
-        text += &format!("{u:.1},{l:.1},{:.4},{:.5}\n", value(thrust), value(torque));
+        text += &format!("{u:.1},{l:.1},{:.4},{:.5}\n", value(THRUST), value(TORQUE));
     }
     let path = path(name);
     fs::write(&path, text).unwrap();

@@ -10,7 +10,8 @@ use cargo_mixer::identify::identified::{Settings, from_benches};
 use cargo_mixer::identify::pair::Pair;
 use cargo_mixer::identify::polynomial::Polynomial;
 
-use crate::sweep::{FORMATS, Normal, THRUST, TORQUE, bench, plain, rows, settings};
+use crate::paper::{THRUST, TORQUE};
+use crate::sweep::{FORMATS, Normal, bench, plain, rows, settings};
 
 /// How many of the coefficients lie within their 95 % intervals.
 fn inside(estimate: &[f64], interval: &[f64], truth: &[f64]) -> usize {

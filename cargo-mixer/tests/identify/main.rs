@@ -6,6 +6,10 @@ mod bench_data;
 mod command;
 mod doubts;
 mod formats;
+#[path = "../measured/mod.rs"]
+mod measured;
+#[path = "../../src/identify/paper.rs"]
+mod paper;
 mod plan;
 mod power;
 mod refusals;

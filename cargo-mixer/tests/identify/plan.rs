@@ -6,7 +6,7 @@ use cargo_mixer::identify::polynomial::Polynomial;
 use mixer_compiler::airframe::Basis;
 
 use crate::command::{folder, text};
-use crate::sweep::{THRUST, TORQUE};
+use crate::paper::{THRUST, TORQUE};
 
 fn run(folder: &std::path::Path, args: &[&str]) -> std::process::Output {
     std::process::Command::new(env!("CARGO_BIN_EXE_cargo-mixer"))

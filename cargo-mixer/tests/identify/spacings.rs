@@ -9,6 +9,7 @@ use cargo_mixer::identify::{bench, read};
 use mixer_compiler::airframe::Basis;
 
 use crate::bench_data::{coaxial, data};
+use crate::measured;
 use crate::sweep::settings;
 
 /// The first is of another day than the other two, and begins at 0.40.
@@ -65,7 +66,6 @@ fn a_map_between_two_spacings_is_interpolated() {
             100.0 * (rows.iter().map(square).sum::<f64>() / rows.len() as f64).sqrt() / full[k]
         })
     };
-    let mut table = String::from("| map | thrust | torque |\n|---|---|---|\n");
     let models = [&between, &mixed, &near, &far].map(percent);
     let names = [
         "that spacing's own",
@@ -73,16 +73,11 @@ fn a_map_between_two_spacings_is_interpolated() {
         "z/D 0.2",
         "z/D 1",
     ];
+    let mut text = String::from("map,thrust_percent,torque_percent\n");
     for (name, [thrust, torque]) in names.iter().zip(models) {
-        table += &format!("| {name} | {thrust:.2} % | {torque:.2} % |\n");
+        text += &format!("{name},{thrust:.2},{torque:.2}\n");
     }
-    println!("{table}");
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/bench-run.md");
-    let page = std::fs::read_to_string(page).expect("docs/bench-run.md");
-    assert!(
-        page.contains(&table),
-        "docs/bench-run.md must hold the table\n{table}"
-    );
+    measured::hold("spacings.csv", &text);
     let [_, interpolated, near, far] = models;
     assert!(interpolated[0] < 1.2 && interpolated[1] < 3.0, "{interpolated:?}");
     for single in [near, far] {

@@ -13,11 +13,7 @@ use cargo_mixer::identify::sign::{SignChoice, SignPolicy};
 use mixer_compiler::airframe::Basis;
 use mixer_setpoints::Random;
 
-/// Table I of the paper.
-pub(crate) const THRUST: [f64; 8] = [
-    5.2075, -2.1892, 12.3604, -10.2432, 4.4427, 2.7640, 12.2092, 0.2363,
-];
-pub(crate) const TORQUE: [f64; 8] = [-0.0673, -0.0606, -0.1312, 0.0953, 0.0364, -0.0907, 0.1441, 0.0720];
+use crate::paper::{THRUST, TORQUE};
 
 /// Normal numbers from a seed, by Box and Muller.
 pub(crate) struct Normal(Random);

@@ -5,7 +5,8 @@ use cargo_mixer::identify::fragment;
 use cargo_mixer::identify::identified::from_benches;
 use mixer_compiler::airframe::Basis;
 
-use crate::sweep::{THRUST, TORQUE, bench, plain, rows, settings};
+use crate::paper::{THRUST, TORQUE};
+use crate::sweep::{bench, plain, rows, settings};
 
 /// The sweep at `volts`, sagging by `sag` V times the mean square of throttle, thrust following 1.7
 /// and torque 1.9.

@@ -17,7 +17,6 @@ fn the_documents_pictures_are_current() {
         .find(|compiled| compiled.airframe.name == "isae-x8")
         .unwrap();
     drawn.append(&mut gallery::figures(x8));
-    let again = "cargo run -p cargo-mixer --example gallery";
     let mut stale = Vec::new();
     for (name, text) in &drawn {
         if name.ends_with(".svg") {
@@ -28,7 +27,7 @@ fn the_documents_pictures_are_current() {
             stale.push(name.clone());
         }
     }
-    assert!(stale.is_empty(), "{stale:?} are not what `{again}` draws; run it");
+    assert!(stale.is_empty(), "{stale:?} are stale; run `cargo xtask gallery`");
     let names: BTreeSet<String> = fs::read_dir(root().join("docs"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())

@@ -3,6 +3,7 @@
 use cargo_mixer::isolated::IsolatedTables;
 use cargo_mixer::report::comparison::{Answer, Comparison, throttles};
 use cargo_mixer::report::study::Study;
+use mixer_compiler::airframe::Basis;
 use mixer_compiler::report::{Summary, rounded_up};
 
 use crate::counts;
@@ -247,6 +248,88 @@ pub(super) fn bases() -> Result<String, String> {
         .collect::<Result<Vec<_>, _>>()?;
     Ok(markdown(
         &["map", "biquadratic", "cubic", "quartic", "chosen"],
+        &rows,
+    ))
+}
+
+/// Rows of `tests/measurements/<name>`, of as many cells.
+fn cells<const N: usize>(name: &str) -> Result<Vec<[String; N]>, String> {
+    let path = root().join("tests/measurements").join(name);
+    let rows = measured(&path)?.into_iter();
+    rows.map(|row| {
+        row.try_into()
+            .map_err(|row| format!("{}: not a row: {row:?}", path.display()))
+    })
+    .collect()
+}
+
+/// Errors of thinned maps by levels and basis.
+pub(super) fn levels() -> Result<String, String> {
+    let rows: Vec<Vec<String>> = cells::<4>("levels.csv")?
+        .chunks(Basis::ALL.len())
+        .map(|bases| {
+            let levels = format!("{0} x {0}", bases[0][0]);
+            let errors = bases.iter().map(|[_, _, thrust, torque]| match thrust.as_str() {
+                "" => "refused".to_owned(),
+                _ => format!("{thrust} %, {torque} %"),
+            });
+            [levels].into_iter().chain(errors).collect()
+        })
+        .collect();
+    Ok(markdown(
+        &[
+            "levels",
+            "biquadratic: thrust, torque",
+            "cubic: thrust, torque",
+            "quartic: thrust, torque",
+        ],
+        &rows,
+    ))
+}
+
+/// Errors of models of other spacings and of the one interpolated between them.
+pub(super) fn spacings() -> Result<String, String> {
+    let rows: Vec<Vec<String>> = cells("spacings.csv")?
+        .into_iter()
+        .map(|[map, thrust, torque]| vec![map, format!("{thrust} %"), format!("{torque} %")])
+        .collect();
+    Ok(markdown(&["map", "thrust", "torque"], &rows))
+}
+
+/// What the power bias saves over logged flights.
+pub(super) fn logged_saving() -> Result<String, String> {
+    let rows: Vec<Vec<String>> = cells("logged-saving.csv")?
+        .into_iter()
+        .map(|[flight, tilt, speed, roll, pitch, yaw, least, most, saved]| {
+            vec![
+                flight,
+                format!("{tilt}°, {speed} m/s"),
+                format!("{roll} %, {pitch} %, {yaw} %"),
+                format!("{least} to {most}"),
+                format!("{saved} %"),
+            ]
+        })
+        .collect();
+    Ok(markdown(
+        &[
+            "flight",
+            "tilt, speed up to",
+            "roll, pitch, yaw, rms",
+            "thrust over its mean",
+            "saved",
+        ],
+        &rows,
+    ))
+}
+
+/// Thrust command over weight of an ordinary mixer in logged flights.
+pub(super) fn logged_hover() -> Result<String, String> {
+    let rows: Vec<Vec<String>> = cells("logged-hover.csv")?
+        .into_iter()
+        .map(|[flight, mean, deviation, rows]| vec![flight, format!("{mean} ± {deviation}"), rows])
+        .collect();
+    Ok(markdown(
+        &["flight", "command over weight", "rows in hover"],
         &rows,
     ))
 }

@@ -20,7 +20,7 @@ upper_spin = "cw"
 
 /// A made-up pair, whose lower rotor hardly adds thrust while the upper one is at full throttle:
 /// its attainable set bends inwards.
-const BENT: &str = r#"
+pub const BENT: &str = r#"
 [throttle]
 min = 0.25
 max = 1.0
