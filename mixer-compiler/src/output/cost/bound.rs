@@ -43,9 +43,9 @@ const KNOT_UNIT: u32 = 7;
 /// The torques, one unit.
 const TORQUES: u32 = 40;
 
-/// The general path beside its pivots, and one unit in it.
+/// The general path beside its pivots, the retreat included, and one unit in it.
 const GENERAL: u32 = 2500;
-const GENERAL_UNIT: u32 = 600;
+const GENERAL_UNIT: u32 = 700;
 
 /// A pivot of the simplex method, and one unit in it.
 const PIVOT: u32 = 1050;
