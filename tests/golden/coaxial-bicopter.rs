@@ -213,6 +213,11 @@ pub mod coaxial_bicopter {
             },
         ],
     };
+    /// Level flight, which the general path retreats to.
+    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
+        thrust_n: [0.0, 0.0],
+        efforts: &[],
+    };
     /// The closed form of desaturation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -499,10 +504,15 @@ pub mod coaxial_bicopter {
         },
         voltage: VOLTAGE,
         attainable: ATTAINABLE,
+        level: LEVEL,
         rows: [0.0896502, 0.0, 4.595398, 0.040342588],
         desaturation: tables::Desaturation {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
+            budget: tables::Budget {
+                pivots: 9,
+                flips: 80,
+            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

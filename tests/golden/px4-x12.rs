@@ -255,6 +255,18 @@ pub mod px4_x12 {
             },
         ],
     };
+    /// Level flight, which the general path retreats to.
+    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
+        thrust_n: [3.4851422, 148.39809],
+        efforts: &[
+            [[0.023433277, -0.0060608312], [0.99779373, -0.015041589]],
+            [[0.023433277, -0.0060608312], [0.99779373, -0.015041589]],
+            [[0.023433277, -0.0060608312], [0.99779373, -0.015041589]],
+            [[0.023433277, -0.0060608312], [0.99779373, -0.015041589]],
+            [[0.023433277, -0.0060608312], [0.99779373, -0.015041589]],
+            [[0.023433277, -0.0060608312], [0.99779373, -0.015041589]],
+        ],
+    };
     /// The closed form of desaturation, where there is one.
     const CLOSED_FORM: tables::NoClosedForm = tables::NoClosedForm;
     /// All tables; see `mixer_rt::tables` for their meaning and units.
@@ -275,10 +287,15 @@ pub mod px4_x12 {
         },
         voltage: VOLTAGE,
         attainable: ATTAINABLE,
+        level: LEVEL,
         rows: [0.060513884, 0.060513884, 4.595398, 0.040342588],
         desaturation: tables::Desaturation {
             airmode: tables::Airmode::RollPitchYaw,
             yaw_reserve_nm: 0.0,
+            budget: tables::Budget {
+                pivots: 10,
+                flips: 48,
+            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

@@ -228,6 +228,11 @@ pub mod px4_y6 {
             },
         ],
     };
+    /// Level flight, which the general path retreats to.
+    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
+        thrust_n: [0.0, 0.0],
+        efforts: &[],
+    };
     /// The closed form of desaturation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -527,10 +532,15 @@ pub mod px4_y6 {
         },
         voltage: VOLTAGE,
         attainable: ATTAINABLE,
+        level: LEVEL,
         rows: [0.12102777, 0.12102777, 4.595398, 0.040342588],
         desaturation: tables::Desaturation {
             airmode: tables::Airmode::RollPitch,
             yaw_reserve_nm: 0.0,
+            budget: tables::Budget {
+                pivots: 9,
+                flips: 72,
+            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

@@ -197,6 +197,11 @@ pub mod single_pair {
             },
         ],
     };
+    /// Level flight, which the general path retreats to.
+    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
+        thrust_n: [0.0, 0.0],
+        efforts: &[],
+    };
     /// The closed form of desaturation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -470,10 +475,15 @@ pub mod single_pair {
         },
         voltage: VOLTAGE,
         attainable: ATTAINABLE,
+        level: LEVEL,
         rows: [0.0, 0.0, 4.595398, 0.040342588],
         desaturation: tables::Desaturation {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
+            budget: tables::Budget {
+                pivots: 9,
+                flips: 88,
+            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

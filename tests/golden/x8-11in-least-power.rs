@@ -239,6 +239,11 @@ pub mod x8_11in_least_power {
             },
         ],
     };
+    /// Level flight, which the general path retreats to.
+    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
+        thrust_n: [0.0, 0.0],
+        efforts: &[],
+    };
     /// The closed form of desaturation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -556,10 +561,15 @@ pub mod x8_11in_least_power {
         },
         voltage: VOLTAGE,
         attainable: ATTAINABLE,
+        level: LEVEL,
         rows: [0.23520674, 0.23520674, 4.404444, 0.049894884],
         desaturation: tables::Desaturation {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
+            budget: tables::Budget {
+                pivots: 9,
+                flips: 64,
+            },
         },
         power_bias_nm_per_n: 0.00695,
         closed_form: CLOSED_FORM,

@@ -241,6 +241,11 @@ pub mod x8_16in_quartic {
             },
         ],
     };
+    /// Level flight, which the general path retreats to.
+    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
+        thrust_n: [0.0, 0.0],
+        efforts: &[],
+    };
     /// The closed form of desaturation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -618,10 +623,15 @@ pub mod x8_16in_quartic {
         },
         voltage: VOLTAGE,
         attainable: ATTAINABLE,
+        level: LEVEL,
         rows: [0.07802991, 0.07802991, 2.0053651, 0.024828965],
         desaturation: tables::Desaturation {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
+            budget: tables::Budget {
+                pivots: 9,
+                flips: 64,
+            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

@@ -233,6 +233,11 @@ pub mod x8_22in_cubic {
             },
         ],
     };
+    /// Level flight, which the general path retreats to.
+    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
+        thrust_n: [0.0, 0.0],
+        efforts: &[],
+    };
     /// The closed form of desaturation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -610,10 +615,15 @@ pub mod x8_22in_cubic {
         },
         voltage: VOLTAGE,
         attainable: ATTAINABLE,
+        level: LEVEL,
         rows: [0.040163998, 0.040163998, 0.8869217, 0.01704014],
         desaturation: tables::Desaturation {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
+            budget: tables::Budget {
+                pivots: 9,
+                flips: 64,
+            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

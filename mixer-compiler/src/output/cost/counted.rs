@@ -16,8 +16,8 @@ pub const COUNTED: Counted = Counted {
         error: 0.125,
     },
     general: Overhead {
-        per_mix: 145.0,
-        per_unit: 301.6,
-        error: 0.03,
+        per_mix: 165.4,
+        per_unit: 276.8,
+        error: 0.032,
     },
 };
