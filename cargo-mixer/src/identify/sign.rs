@@ -178,12 +178,14 @@ fn pair_torque(
         signs = signs.map(|s| -s);
         if choice != SignChoice::Auto {
             notes.push(
-                "by the signs given the upper rotor turned counter-clockwise on the bench; the map is written                  mirrored, for one that turns clockwise"
+                "by the signs given the upper rotor turned counter-clockwise on the bench; the map is written \
+                 mirrored, for one that turns clockwise"
                     .into(),
             );
         } else if total && columns.sides_named {
             notes.push(
-                "torque is turned, as of an upper rotor that turned counter-clockwise or a sensor mounted that way;                  exchanged columns look the same: make sure which is the upper rotor's (--swap exchanges them)"
+                "torque is turned, as of an upper rotor that turned counter-clockwise or a sensor mounted that way; \
+                 exchanged columns look the same: make sure which is the upper rotor's (--swap exchanges them)"
                     .into(),
             );
         }

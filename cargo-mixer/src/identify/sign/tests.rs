@@ -38,7 +38,9 @@ fn totals_are_turned_to_the_convention() {
         assert_eq!((signs.thrust, signs.torque), (vec![-1.0], vec![sign]));
         assert!(sums[0].1 > 0.0 && sums[1].1 < 0.0 && sums[0].0 > 0.0);
         // Exchanged columns turn the torque, too.
-        let exchanged = notes.iter().any(|note| note.contains("exchanged columns"));
+        let exchanged = notes
+            .iter()
+            .any(|note| note.contains("that way; exchanged columns"));
         assert_eq!(exchanged, sign < 0.0, "{notes:?}");
     }
 }
@@ -67,7 +69,7 @@ fn magnitudes_are_refused_and_given_signs_help() {
     };
     let mut notes = Vec::new();
     let (signs, sums) = pair("b.csv", &c, &samples(1.0, 0.8), &given, &mut notes).expect("signs");
-    assert!(notes[0].contains("mirrored"), "{notes:?}");
+    assert!(notes[0].contains("written mirrored, for one"), "{notes:?}");
     assert_eq!(signs.torque, [-1.0, 1.0]);
     assert!(sums[0].1 > 0.0);
 }
