@@ -6,6 +6,7 @@
 //! generated Rust holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs
 //! `mixer-rt` itself on them.
 
+mod attainable;
 mod border;
 mod budget;
 mod inverse;
@@ -15,9 +16,9 @@ mod single;
 use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
-        AttainableSet, Biquadratic, ClosedForm, ClosedFormUnit, Corner, Cubic, Desaturation, Facets,
-        LevelFlight, Pair, Quantity, Quartic, SHORTAGES, Scalar, SingleRotor, Tables, ThrottleRange,
-        Tolerance, Unit, Variable, Voltage, VoltageLaw,
+        Biquadratic, ClosedForm, ClosedFormUnit, Cubic, Desaturation, Facets, Pair, Quantity, Quartic,
+        SHORTAGES, Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Voltage,
+        VoltageLaw,
     },
 };
 
@@ -26,6 +27,7 @@ use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage::TabulatedLaw;
 
+pub use attainable::{AttainableTable, LevelFlightTable};
 pub use border::BorderTable;
 use budget::budget;
 pub use inverse::{InverseTable, SeedTable};
@@ -61,91 +63,6 @@ pub struct MixerTables {
     pub closed_form: Option<ClosedFormTable>,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
-}
-
-/// The attainable set.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AttainableTable {
-    /// Newtons and newton metres per unit of the coordinates below.
-    pub scale: [f32; 2],
-    /// A point well inside, scaled.
-    pub centre: [f32; 2],
-    /// The corners, anticlockwise, scaled.
-    pub corners: Vec<Corner>,
-}
-
-impl AttainableTable {
-    /// Rounds a convex polygon `[f, Q]` (N, N m), anticlockwise, and a point inside.
-    pub(crate) fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
-        let scaled = |[f, q]: [f64; 2]| [(f / scale[0]) as f32, (q / scale[1]) as f32];
-        let n = vertices.len();
-        let corners = (0..n).map(|k| {
-            let [before, at, next] = [n - 1, 0, 1].map(|step| scaled(vertices[(k + step) % n]));
-            Corner::between(before, at, next)
-        });
-        AttainableTable {
-            scale: scale.map(|x| x as f32),
-            centre: scaled(centre),
-            corners: corners.collect(),
-        }
-    }
-
-    /// The set as `mixer-rt` reads it.
-    pub(crate) fn view(&self) -> AttainableSet<'_> {
-        AttainableSet {
-            scale: self.scale,
-            centre: self.centre,
-            corners: &self.corners,
-        }
-    }
-
-    /// The set drawn in towards its centre by a share.
-    pub(crate) fn drawn_in(&self, share: f32) -> Self {
-        let n = self.corners.len();
-        let point = |k: usize| {
-            let at = self.corners[k % n].at;
-            [0, 1].map(|axis| at[axis] + share * (self.centre[axis] - at[axis]))
-        };
-        let corners = (0..n).map(|k| Corner::between(point(k + n - 1), point(k), point(k + 1)));
-        AttainableTable {
-            corners: corners.collect(),
-            ..*self
-        }
-    }
-
-    /// The corners `[f, Q]`, N and N m.
-    pub fn corners(&self) -> Vec<[f32; 2]> {
-        let corner = |corner: &Corner| [corner.at[0] * self.scale[0], corner.at[1] * self.scale[1]];
-        self.corners.iter().map(corner).collect()
-    }
-}
-
-/// Level flight of all units.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LevelFlightTable {
-    /// Least and largest thrust, N at the reference voltage.
-    pub thrust_n: [f32; 2],
-    /// Every unit's efforts `[f, Q]` at these two, scaled as the attainable set.
-    pub efforts: Vec<[[f32; 2]; 2]>,
-}
-
-impl LevelFlightTable {
-    /// Rounds every unit's efforts (N, N m) at two thrusts (N).
-    pub fn new(thrust_n: [f32; 2], efforts: &[[[f64; 2]; 2]], scale: [f32; 2]) -> Self {
-        let scaled = |efforts: [f64; 2]| [0, 1].map(|k| (efforts[k] / f64::from(scale[k])) as f32);
-        LevelFlightTable {
-            thrust_n,
-            efforts: efforts.iter().map(|ends| ends.map(scaled)).collect(),
-        }
-    }
-
-    /// Level flight as `mixer-rt` reads it.
-    pub fn view(&self) -> LevelFlight<'_> {
-        LevelFlight {
-            thrust_n: self.thrust_n,
-            efforts: &self.efforts,
-        }
-    }
 }
 
 /// The closed form for vertical axes.

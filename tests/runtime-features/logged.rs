@@ -1,5 +1,5 @@
-//! What firmware logs has `defmt::Format`. A frame is decoded on the desk from the image's symbols
-//! only, hence no text is compared.
+//! The types that firmware logs have `defmt::Format`. A frame can only be decoded with the image's
+//! symbols, hence no text is compared.
 #![allow(missing_docs)]
 
 use mixer_rt::{Axis, Direction, Health, Mix, Saturation, SetpointError, Wrench};

@@ -9,8 +9,7 @@ macro_rules! catalogue {
         ///
         /// Below 100: the file is not in the form of an airframe file. From 100: a value cannot be
         /// an airframe's. From 200: the airframe is sound in itself, but no mixer can be made of
-        /// it. From 300: warnings; the airframe compiles, but a value is probably a
-        /// mistake.
+        /// it. From 300: warnings; the airframe compiles, but a value is probably a mistake.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
         pub enum Code {

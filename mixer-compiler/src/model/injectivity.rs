@@ -17,8 +17,8 @@ use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::polynomial::{Bivariate, Sign, ThrottleBox};
 
-/// What the proof needs of the forward map, with coefficients that are enclosed by intervals. See
-/// [`PairMap`](super::PairMap) for its values.
+/// The forward map with coefficients that are enclosed by intervals, for proofs. For its values see
+/// [`PairMap`](super::PairMap).
 #[derive(Clone, Debug)]
 pub struct EnclosedPairMap {
     thrust: [Bivariate; 2],

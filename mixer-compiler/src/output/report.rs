@@ -288,7 +288,7 @@ impl Report<'_> {
         writeln!(f)
     }
 
-    /// What throttles and efforts there are, and how requests are brought within them.
+    /// The ranges of throttles and efforts, and how desaturation brings requests within them.
     fn domain(&self, f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
         let airframe = &self.0.airframe;
         let tables = &self.0.tables;

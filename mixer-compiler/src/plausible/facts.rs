@@ -1,4 +1,4 @@
-//! What the rules read.
+//! The facts about an airframe that the rules read.
 
 use crate::airframe::Airframe;
 use crate::model::PairMap;

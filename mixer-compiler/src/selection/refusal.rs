@@ -1,4 +1,5 @@
-//! Refusals: of a method that does not exist, and of a tolerance that no evaluator meets. Every mend that it offers has been tried.
+//! Refusals: of a method that does not exist, and of a tolerance that no evaluator meets. Every mend
+//! that they offer has been tried.
 
 use crate::airframe::{Airframe, Method};
 use crate::diagnostic::{Code, Diagnostic, number, rounded_up};

@@ -1,7 +1,7 @@
 //! The curve that a single rotor leaves its unit.
 
-/// What a rotor gives alone, the other one of its unit at rest: thrust (N) and torque (N m, signed
-/// as on the bench) as polynomials of its throttle without a constant, coefficients from the fourth
+/// A rotor alone, the other one of its unit at rest: its thrust (N) and torque (N m, signed as on
+/// the bench) as polynomials of its throttle without a constant, coefficients from the fourth
 /// power down to the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SingleRotor {

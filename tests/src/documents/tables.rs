@@ -296,7 +296,7 @@ pub(super) fn spacings() -> Result<String, String> {
     Ok(markdown(&["map", "thrust", "torque"], &rows))
 }
 
-/// What the power bias saves over logged flights.
+/// The saving of the power bias over logged flights.
 pub(super) fn logged_saving() -> Result<String, String> {
     let rows: Vec<Vec<String>> = cells("logged-saving.csv")?
         .into_iter()

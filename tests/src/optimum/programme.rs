@@ -9,7 +9,7 @@ const PRICE: f64 = 1e3;
 /// How much of a row, as a share of its size, may have been let go: rounding.
 const LET_GO: f64 = 1e-6;
 
-/// What a programme decides about.
+/// A variable of a programme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// The share of the (roll, pitch) asked.

@@ -104,7 +104,7 @@ pub(super) struct Simplex<'a> {
     values: [f32; 4],
     /// The last dual step, which the gains do not yet have.
     step: f32,
-    /// What is left.
+    /// The pivots and moves that are left.
     budget: Budget,
 }
 
