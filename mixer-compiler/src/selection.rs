@@ -196,12 +196,6 @@ fn wrench_tolerance(
 ) -> [f64; 4] {
     const ROUNDING: f64 = 4e-6;
     let (scale, factors) = (pair.scale(), voltage::largest_factors(airframe));
-    let n = airframe.units.len();
     let allowed: [f64; 2] = std::array::from_fn(|k| stated[k] + ROUNDING * scale[k] * factors[k]);
-    std::array::from_fn(|axis| {
-        let row = effectiveness.matrix.row(axis);
-        (0..n)
-            .map(|i| row[i].abs() * allowed[0] + row[n + i].abs() * allowed[1])
-            .sum()
-    })
+    std::array::from_fn(|axis| effectiveness.largest(axis, allowed))
 }

@@ -112,10 +112,8 @@ fn throttles(compiled: &Compiled, wrench: &Wrench) -> Option<Vec<f32>> {
 /// The largest thrust, or a torque in proportion to what the units' efforts make of the axis.
 fn size(compiled: &Compiled, axis: Axis) -> f64 {
     let airframe = &compiled.airframe;
-    let [f, q] = crate::model::PairMap::new(&airframe.pair, &airframe.throttle).scale();
-    let row = compiled.effectiveness.matrix.row(axis as usize);
-    let n = airframe.units.len();
-    (0..n).map(|i| row[i].abs() * f + row[n + i].abs() * q).sum()
+    let scale = crate::model::PairMap::new(&airframe.pair, &airframe.throttle).scale();
+    compiled.effectiveness.largest(axis as usize, scale)
 }
 
 /// Where a unit is among the others: `front right`.

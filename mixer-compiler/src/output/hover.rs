@@ -169,11 +169,7 @@ fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
     let airframe = &compiled.airframe;
     let [f, q] = crate::model::PairMap::new(&airframe.pair, &airframe.throttle).scale();
     let [k_f, k_q] = crate::model::voltage::largest_factors(airframe);
-    let row = compiled.effectiveness.matrix.row(axis as usize);
-    let n = airframe.units.len();
-    (0..n)
-        .map(|i| row[i].abs() * f * k_f + row[n + i].abs() * q * k_q)
-        .sum()
+    compiled.effectiveness.largest(axis as usize, [f * k_f, q * k_q])
 }
 
 impl fmt::Display for Hover {

@@ -8,14 +8,9 @@ use crate::model::effectiveness::Effectiveness;
 /// that are not served.
 pub(super) fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> [f32; 4] {
     let scale = pair.scale();
-    let n = airframe.units.len();
     let authority: [f64; 4] = std::array::from_fn(|axis| {
-        let row = effectiveness.matrix.row(axis);
-        let sum: f64 = (0..n)
-            .map(|i| row[i].abs() * scale[0] + row[n + i].abs() * scale[1])
-            .sum();
         if airframe.allocation.controls(Axis::ALL[axis]) {
-            sum
+            effectiveness.largest(axis, scale)
         } else {
             0.0
         }
@@ -24,7 +19,7 @@ pub(super) fn rows(airframe: &Airframe, effectiveness: &Effectiveness, pair: &Pa
     std::array::from_fn(|axis| {
         let size = if axis < 2 { level } else { authority[axis] };
         if authority[axis] > 0.0 {
-            (n as f64 / size) as f32
+            (airframe.units.len() as f64 / size) as f32
         } else {
             0.0
         }
