@@ -165,8 +165,11 @@ class Airframe:
                     break
                 du, dl = (missing[0] * d - missing[1] * b) / det, (missing[1] * a - missing[0] * c) / det
                 step = min(1.0, 0.3 / max(abs(du), abs(dl), 1e-300))
+                before = (u, l)
                 u = min(max(u + step * du, self.low), self.high)
                 l = min(max(l + step * dl, self.low), self.high)
+                if (u, l) == before:  # a fixed point, at the border
+                    break
         return False
 
     def bias(self, wanted, k):
@@ -178,10 +181,11 @@ class Airframe:
 
     def isolated_throttle(self, thrust):
         """d with f(d, 0) = thrust, by bisection, limited to the range."""
+        alone = [(c, i) for c, (i, j) in zip(self.coefficients[0], self.terms) if j == 0]
         low, high = self.low, self.high
         for _ in range(60):
             middle = 0.5 * (low + high)
-            low, high = (middle, high) if self.efforts(middle, 0.0)[0] < thrust else (low, middle)
+            low, high = (middle, high) if sum(c * middle**i for c, i in alone) < thrust else (low, middle)
         return low
 
     def wrench(self, efforts):
