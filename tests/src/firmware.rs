@@ -84,7 +84,8 @@ impl Toolchain {
         if Command::new("qemu-system-arm").arg("--version").output().is_err() {
             return Err("qemu-system-arm is missing: apt-get install qemu-system-arm".into());
         }
-        let target = folder.join("target");
+        // One for all packages: what they have in common is compiled once.
+        let target = root().join("tests/firmware/target");
         let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
         let target_libdir = print(Path::new(&rustc), &["target-libdir", "--target", TARGET]);
         if target_libdir.is_some_and(|libraries| libraries.is_dir()) {
