@@ -98,6 +98,9 @@ impl Digest {
     /// Where the sequences of setpoints and of rotors out start whose digests are compared.
     pub const SEED: u64 = 17;
 
+    /// Digests are compared with none to so many rotors out.
+    pub const MOST_ROTORS_OUT: u32 = 2;
+
     /// How many setpoints are compared: a hundred thousand, or a `million`; with rotors out, which
     /// takes longer, a fiftieth of that.
     pub const fn setpoints(million: bool, rotors_out: u32) -> usize {
