@@ -3,18 +3,16 @@
 //! Run with `--nocapture` (or through `tests/run`) to see the tables.
 #![allow(missing_docs)]
 
-use mixer_compiler::cost::COUNTED;
 use mixer_setpoints::Digest;
 use mixer_tests::counts::{self, Row};
 use mixer_tests::firmware::{Toolchain, Variant};
 use mixer_tests::image::Image;
-use mixer_tests::{airframes, digest, evaluators, golden, overhead};
+use mixer_tests::{airframes, cost, digest, evaluators, golden};
 
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 704;
-/// Below the caller's frame, any airframe: those that desaturate along a path of wrenches need
-/// more, the X12 2,272.
-const ANY_STACK_LIMIT_BYTES: u64 = 2304;
+/// Below the caller's frame, any airframe: the general path, with rotors out.
+const ANY_STACK_LIMIT_BYTES: u64 = 1536;
 /// Code and tables of [`REFERENCE`].
 const SIZE_LIMIT_BYTES: u64 = 9 * 1024;
 /// The airframe that the first and the last limit are for.
@@ -260,30 +258,29 @@ fn random_setpoints_have_the_same_bits_as_on_the_host() {
     for airframe in airframes().expect("airframes") {
         let million = millions.split(',').any(|name| name == airframe || name == "all");
         let compiled = golden::compile(&airframe).unwrap_or_else(|e| panic!("{e}"));
-        for rotors_out in [0, 1, 2] {
-            let mut variant = Variant::of_airframe(&airframe, rotors_out);
-            if million {
-                variant.cfgs.push("million".into());
-            }
+        let mut variant = Variant::of_airframe(&airframe, 0);
+        if million {
+            variant.cfgs.push("million".into());
+        }
+        let printed = toolchain
+            .run_uncounted("digest", &variant)
+            .unwrap_or_else(|e| panic!("{e}"));
+        let target: Vec<&str> = printed.lines().collect();
+        let mut host = Vec::new();
+        for rotors_out in 0..=Digest::MOST_ROTORS_OUT {
             let count = Digest::setpoints(million, rotors_out);
-            let printed = toolchain
-                .run_uncounted("digest", &variant)
-                .unwrap_or_else(|e| panic!("{e}"));
-            let target: Vec<&str> = printed.lines().collect();
-            let host: Vec<String> = digest::of(&compiled, count, rotors_out)
-                .iter()
-                .map(|d| format!("{d:016x}"))
-                .collect();
+            let digests = digest::of(&compiled, count, rotors_out);
+            host.extend(digests.iter().map(|d| format!("{rotors_out} {d:016x}")));
             println!(
-                "{airframe:<24} {rotors_out} out {count:>8} setpoints, digest {}",
-                host.last().expect("ten digests")
+                "{airframe:<24} {rotors_out} out {count:>8} setpoints, digest {:016x}",
+                digests.last().expect("ten digests")
             );
-            if target != host {
-                let tenth = host.iter().zip(&target).position(|(host, target)| host != target);
-                faults.push(format!(
-                    "{airframe}, {rotors_out} out: other bits from tenth {tenth:?} on: {host:?} {target:?}"
-                ));
-            }
+        }
+        if target != host {
+            let differs = host.iter().zip(&target).find(|(host, target)| host != target);
+            faults.push(format!(
+                "{airframe}: other bits, first {differs:?}: {host:?} {target:?}"
+            ));
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
@@ -348,32 +345,25 @@ fn counts_are_those_held() {
     assert!(faults.is_empty(), "{}\n{MEND}", faults.join("\n"));
 }
 
-/// The compiler's model of what a mix costs follows from the counts held, and says how good it is.
+/// The compiler's estimates of what a mix costs are as good as it says.
 #[test]
-fn the_model_of_a_mix_is_that_of_the_counts() {
-    let (compiler, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
-    let samples = overhead::samples(&held).unwrap_or_else(|e| panic!("{e}"));
-    let fitted = overhead::fit(&samples).unwrap_or_else(|e| panic!("{e}"));
-    let path = overhead::file();
-    let written = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    assert!(
-        fitted == COUNTED && written == overhead::text(&compiler, &fitted),
-        "{} does not follow from tests/counts.csv: {fitted:?}; `cargo xtask counts --fit`",
-        path.display()
-    );
-    for sample in &samples {
-        for &quantity in sample.quantities() {
-            let error = sample.error(&fitted, quantity);
-            let stated = sample.overhead(&fitted, quantity).error;
-            assert!(
-                error.abs() <= stated,
-                "{}: {error} is over {stated}",
-                sample.airframe
+fn estimates_are_near_what_was_counted() {
+    let (_, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
+    let samples = cost::samples(&held).unwrap_or_else(|e| panic!("{e}"));
+    for sample in samples
+        .iter()
+        .filter(|sample| sample.row.subject.rotors_out() == 0)
+    {
+        let name = &sample.row.subject.airframe;
+        for (quantity, counted, estimate, stated) in sample.estimates() {
+            let error = f64::from(estimate) / counted - 1.0;
+            println!(
+                "{name}, {quantity}: {counted:.0}, {estimate} estimated, {:+.1} %",
+                100.0 * error
             );
             assert!(
-                stated <= MODEL_ERROR,
-                "{}, {quantity:?}: {stated}",
-                sample.airframe
+                error.abs() <= stated && stated <= ESTIMATE_ERROR,
+                "{name}, {quantity}: {estimate} estimated, {counted} counted, off by {stated} stated"
             );
         }
     }
@@ -387,24 +377,29 @@ fn the_page_of_costs_is_that_of_the_counts() {
 }
 
 /// No request of any set takes more than the bound that the compiler states, which is not more than
-/// twice the worst.
+/// twice the worst, and with rotors out, where the worst is rarer, three times.
 #[test]
 fn bounds_hold_what_was_counted() {
     let (_, held) = counts::held().unwrap_or_else(|e| panic!("{e}"));
-    let samples = overhead::samples(&held).unwrap_or_else(|e| panic!("{e}"));
+    let samples = cost::samples(&held).unwrap_or_else(|e| panic!("{e}"));
     for sample in samples {
         let worst = sample.row.worst();
-        let Some(bound) = sample.bound else { continue };
-        println!("{}: {worst} of {bound}", sample.airframe);
+        let name = &sample.row.subject;
+        let bound = u64::from(sample.bound().unwrap_or_else(|| panic!("{name:?}: no bound")));
+        let most = if name.rotors_out() > 0 {
+            3 * worst
+        } else {
+            2 * worst
+        };
+        println!("{}, {}: {worst} of {bound}", name.mixer, name.airframe);
         assert!(
-            worst <= u64::from(bound) && u64::from(bound) <= 2 * worst,
-            "{}: {worst} counted, at most {bound} stated",
-            sample.airframe
+            worst <= bound && bound <= most,
+            "{name:?}: {worst} counted, at most {bound} stated"
         );
     }
 }
 
 /// As a share of what was counted.
-const MODEL_ERROR: f64 = 0.13;
+const ESTIMATE_ERROR: f64 = 0.14;
 
 const MEND: &str = "if the change is meant, `cargo xtask counts --bless` and look at the difference";

@@ -38,6 +38,14 @@ impl Health {
         channel < 64 && (self.failed >> channel) & 1 != 0
     }
 
+    /// True where no rotor at an output below `channels` has failed.
+    #[inline(always)]
+    pub(crate) const fn is_good_below(self, channels: usize) -> bool {
+        // Frames have at most 64 channels, and at least two.
+        let beyond = 64usize.saturating_sub(channels) as u32;
+        self.failed.wrapping_shl(beyond) == 0
+    }
+
     /// True where no rotor has failed.
     #[inline]
     pub const fn is_good(self) -> bool {

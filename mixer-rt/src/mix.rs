@@ -1,7 +1,5 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
-use core::hint::black_box;
-
 use crate::desaturation::closed_form::{Attained, ClosedForm, DesaturationMethod, Efforts, Request};
 use crate::desaturation::general::{SHORTAGES, Variable, allocate};
 use crate::desaturation::power_bias::add_power_bias;
@@ -116,12 +114,13 @@ pub fn mix_with_health<
     health: Health,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let (achieved, saturation) = match (tables.closed_form.closed_form(), health.is_good()) {
+    let is_good = health.is_good_below(CHANNELS);
+    let (achieved, saturation) = match (tables.closed_form.closed_form(), is_good) {
         (Some(closed_form), true) => {
             mix_in_closed_form(tables, closed_form, setpoint, voltage_v, &mut throttle)?
         }
         _ => {
-            let mut variables = [black_box(Variable::default()); VARIABLES];
+            let mut variables = [Variable::default(); VARIABLES];
             mix_in_general(
                 tables,
                 tables.units,
@@ -155,7 +154,8 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     variables: &mut [Variable],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    if let (Some(closed_form), true) = (tables.closed_form.closed_form(), health.is_good()) {
+    let is_good = health.is_good_below(2 * tables.units.len());
+    if let (Some(closed_form), true) = (tables.closed_form.closed_form(), is_good) {
         return mix_in_closed_form(tables, closed_form, setpoint, voltage_v, throttle);
     }
     let units = variables.len().saturating_sub(SHORTAGES);
@@ -177,7 +177,8 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
 ) -> Result<(Wrench, Saturation), SetpointError> {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
-    let mut is_whole = true;
+    // With a closed form, rotors are out. So the compiler leaves out what only whole frames need.
+    let mut is_whole = tables.closed_form.closed_form().is_none();
     for (unit, variable) in units.iter().zip(variables.iter_mut()) {
         variable.rotors = Rotors::of(unit.channels, health);
         is_whole &= variable.rotors == Rotors::Both;

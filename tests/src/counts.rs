@@ -41,12 +41,22 @@ impl Subject {
         }
     }
 
-    fn variant(&self) -> Variant {
-        let rotors_out = match self.mixer.as_str() {
+    /// How many rotors are out.
+    pub fn rotors_out(&self) -> u32 {
+        match self.mixer.as_str() {
             ONE_OUT => 1,
             TWO_OUT => 2,
             _ => 0,
-        };
+        }
+    }
+
+    /// True for this project's mixer, called from Rust.
+    pub fn is_ours(&self) -> bool {
+        self.mixer == "coaxial" || self.rotors_out() > 0
+    }
+
+    fn variant(&self) -> Variant {
+        let rotors_out = self.rotors_out();
         let mut variant = Variant::of_airframe(&self.airframe, rotors_out);
         if rotors_out == 0 && self.mixer != "coaxial" {
             variant
@@ -79,7 +89,14 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
         subjects.extend(["conventional", "sequential", "wls"].map(|mixer| Subject::new(mixer, airframe)));
     }
     subjects.push(Subject::new(TWO_OUT, "isae-x8"));
-    for airframe in ["px4-y6", "px4-x12"] {
+    for airframe in [
+        "px4-y6",
+        "px4-x12",
+        "x8-22in-cubic",
+        "regular-8",
+        "tilted-6",
+        "tilted-8",
+    ] {
         subjects.extend([ONE_OUT, TWO_OUT].map(|mixer| Subject::new(mixer, airframe)));
     }
     subjects.extend((1..=8).map(|units| Subject::new("coaxial", &format!("regular-{units}"))));
@@ -283,12 +300,12 @@ pub fn page() -> PathBuf {
 /// The text of that page.
 pub fn document(compiler: &str, rows: &[Row]) -> String {
     let mut text = format!(
-        "# Costs\n\nWritten by `cargo xtask counts --fit` from `tests/counts.csv`. Instructions per mix on a \
+        "# Costs\n\nWritten by `cargo xtask counts --page` from `tests/counts.csv`. Instructions per mix on a \
          Cortex-M4F, counted in QEMU with firmware of {compiler}; bytes of code, tables and stack of an image that holds this mixer only.\n\n\
          * attainable: 2,000 wrenches that random throttles give, at random voltages\n\
          * saturated: 2,000 requests up to four times the authority, one axis alone, on and beyond the border\n\
          * worst: the most of these, and of a search for more\n\n\
-         Mixers: `coaxial` is this one, `c-interface` is its library for C with a caller who copies the throttles, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (attainable: with all \
+         Mixers: `coaxial` is this one, `c-interface` is its library for C with a caller who copies the throttles, `one-rotor-out` and `two-rotors-out` are its `mix_with_health` with random rotors out (\"attainable\" is with all \
          rotors); `conventional` (the paper's), `sequential` (after PX4) and `wls` (the crate `wls-alloc`) take rotors as isolated. Airframes are files of `airframes/`, \
          `y6-*` with the pairs of the `x8-*`, and frames of `tests/src/frames/counted.rs`.\n\n\
          | mixer | airframe | attainable, mean | saturated, mean | worst | code | tables | stack |\n\

@@ -4,6 +4,7 @@
 
 pub mod allocators;
 pub mod bases;
+pub mod cost;
 pub mod counts;
 pub mod digest;
 pub mod documents;
@@ -14,7 +15,6 @@ pub mod golden;
 pub mod image;
 pub mod interior_point;
 pub mod optimum;
-pub mod overhead;
 pub mod physics;
 pub mod request;
 pub mod shortfall;

@@ -48,7 +48,7 @@ const TASKS: &[Task] = &[
     Task {
         name: "counts",
         program: tests!(=> "counts"),
-        does: "counts instructions in QEMU; `counts --bless` writes tests/counts.csv, `counts --fit` what follows from it",
+        does: "counts instructions in QEMU; `counts --bless` writes tests/counts.csv and docs/costs.md, `counts --page` docs/costs.md alone",
     },
     Task {
         name: "evaluators",
@@ -129,7 +129,7 @@ fn main() -> ExitCode {
     let [program, words @ ..] = task.program else {
         return ExitCode::FAILURE;
     };
-    // `cargo xtask counts -- --fit` and `cargo xtask counts --fit` are the same.
+    // `cargo xtask counts -- --page` and `cargo xtask counts --page` are the same.
     let arguments = arguments.filter(|argument| argument != "--");
     // This package lies directly in the project's folder.
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -19,12 +19,12 @@ pub fn facts(cost: &Cost) -> String {
         (Some(instructions), Some(cycles)) => format!("{instructions} instructions, {cycles} cycles"),
         _ => NOT_COUNTED.to_owned(),
     };
-    let error = fixed(100.0 * cost.delivered_error, 1);
-    let delivered = match cost.delivered_instructions {
-        Some(delivered) => format!(
-            "about {delivered} instructions; the estimate is off by {error} % at most on counted frames"
+    let delivered = match (cost.delivered_instructions, cost.delivered_error) {
+        (Some(delivered), Some(error)) => format!(
+            "about {delivered} instructions; the estimate is off by {} % at most on counted frames",
+            fixed(100.0 * error, 0)
         ),
-        None => NOT_COUNTED.to_owned(),
+        _ => NOT_COUNTED.to_owned(),
     };
     let mut facts = vec![
         (
@@ -38,7 +38,7 @@ pub fn facts(cost: &Cost) -> String {
         ("Request that least norm delivers", delivered),
     ];
     if let (Some(attainable), Some(error)) = (cost.attainable_instructions, cost.attainable_error) {
-        let error = fixed(100.0 * error, 1);
+        let error = fixed(100.0 * error, 0);
         facts.push((
             "Mean of attainable requests",
             format!("about {attainable} instructions; off by {error} % at most"),
@@ -48,6 +48,12 @@ pub fn facts(cost: &Cost) -> String {
         facts.push((
             "Any request",
             format!("at most {bound} instructions, the sum of what the code does at most"),
+        ));
+    }
+    if let Some(bound) = cost.bound_with_rotors_out_instructions {
+        facts.push((
+            "Any request with rotors out",
+            format!("at most {bound} instructions, however many are out"),
         ));
     }
     facts.push((

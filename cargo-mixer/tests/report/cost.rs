@@ -29,9 +29,15 @@ pub(crate) fn assert_cost(page: Node<'_, '_>, compiled: &Compiled) {
             "{name}: no {bound}"
         );
         assert!(cost.attainable_instructions < Some(bound), "{name}: {cost:?}");
+        let with_rotors_out = cost.bound_with_rotors_out_instructions.unwrap();
+        assert!(
+            text.contains(&format!("at most {with_rotors_out} instructions")),
+            "{name}: no {with_rotors_out}"
+        );
     }
     assert!(
-        cost.delivered_error > 0.0 && cost.delivered_error < 0.2,
+        cost.delivered_error
+            .is_none_or(|error| error > 0.0 && error < 0.2),
         "{name}: {cost:?}"
     );
     let chosen = rows

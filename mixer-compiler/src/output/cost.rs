@@ -1,21 +1,11 @@
 //! What a mix costs on a Cortex-M4F.
 //!
 //! The inverse map is counted on its own, evaluator by evaluator
-//! ([`crate::inverse::evaluator::cost`]). A mix of n units that delivers the request by least norm
-//! takes about
-//!
-//! ```text
-//! per_mix + n (per_unit + evaluator) + per_voltage where the airframe has a voltage correction
-//! ```
-//!
-//! instructions, the median over attainable requests. The overheads are fitted to whole mixers,
-//! counted request by request in QEMU, apart for each [`DesaturationKind`]. For those in closed
-//! form the mean over attainable requests is modelled likewise. Any other request costs at most
-//! what the code does at most (`cost/bound.rs`).
+//! ([`crate::inverse::evaluator::cost`]). What a mix takes that delivers its request is estimated
+//! (`cost/typical.rs`); any request takes at most what the code does at most (`cost/bound.rs`).
 
 mod bound;
-mod counted;
-mod overhead;
+mod typical;
 
 use std::fmt;
 
@@ -24,11 +14,36 @@ use serde::Serialize;
 use crate::compiled::Compiled;
 use crate::inverse::evaluator::Evaluator;
 
-pub use counted::COUNTED;
-pub use overhead::{Counted, DesaturationKind, Overhead};
-
 /// What counts are of.
 pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
+
+/// How a mixer brings a request within the attainable set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DesaturationKind {
+    /// Vertical axes and up to four units: a few cases, each solved at once.
+    ClosedForm,
+    /// Any other layout: a dual simplex method of bounded work.
+    General,
+}
+
+impl DesaturationKind {
+    /// The kind of a compiled airframe.
+    pub fn of(compiled: &Compiled) -> DesaturationKind {
+        match &compiled.tables.closed_form {
+            Some(_) => DesaturationKind::ClosedForm,
+            None => DesaturationKind::General,
+        }
+    }
+
+    /// For people, after "desaturates".
+    pub fn description(self) -> &'static str {
+        match self {
+            DesaturationKind::ClosedForm => "in closed form",
+            DesaturationKind::General => "by a bounded simplex method",
+        }
+    }
+}
 
 /// What one airframe costs: instructions, and cycles where they are known.
 #[derive(Clone, Debug, Serialize)]
@@ -46,7 +61,7 @@ pub struct Cost {
     /// The whole mix of a request that least norm delivers, estimated.
     pub delivered_instructions: Option<u32>,
     /// Largest error of this estimate over counted frames, as a share.
-    pub delivered_error: f64,
+    pub delivered_error: Option<f64>,
     /// The mean of mixes of attainable requests, estimated; `None` where it depends on the frame
     /// too much.
     pub attainable_instructions: Option<u32>,
@@ -57,6 +72,8 @@ pub struct Cost {
     /// The most that any request takes, by what the code does at most; `None` where no bound is
     /// stated.
     pub bound_instructions: Option<u32>,
+    /// The same while rotors are out, however many.
+    pub bound_with_rotors_out_instructions: Option<u32>,
     /// Bytes of the inverse map's own constants.
     pub inverse_bytes: usize,
     /// Bytes of all tables.
@@ -68,8 +85,8 @@ impl Cost {
     pub fn new(compiled: &Compiled) -> Self {
         let basis = compiled.airframe.pair.basis;
         let units = compiled.airframe.units.len();
-        let kind = DesaturationKind::of(compiled);
-        let bound_instructions = bound::bound(compiled);
+        let delivered = typical::delivered(compiled, compiled.evaluator);
+        let attainable = typical::attainable(compiled);
         let all = |one: Option<u32>| one.map(|one| one * units as u32);
         let inverse_instructions = compiled.evaluator.instructions(basis);
         let inverse_cycles = compiled.evaluator.cost(basis);
@@ -79,14 +96,13 @@ impl Cost {
             inverse_cycles,
             inverses_instructions: all(inverse_instructions),
             inverses_cycles: all(inverse_cycles),
-            delivered_instructions: delivered(compiled, compiled.evaluator),
-            delivered_error: COUNTED.delivered(kind).error,
-            attainable_instructions: COUNTED
-                .attainable(kind)
-                .and_then(|overhead| mix(compiled, compiled.evaluator, overhead)),
-            attainable_error: COUNTED.attainable(kind).map(|overhead| overhead.error),
-            desaturation: kind,
-            bound_instructions,
+            delivered_instructions: delivered.map(|estimate| estimate.instructions),
+            delivered_error: delivered.map(|estimate| estimate.error),
+            attainable_instructions: attainable.map(|estimate| estimate.instructions),
+            attainable_error: attainable.map(|estimate| estimate.error),
+            desaturation: DesaturationKind::of(compiled),
+            bound_instructions: bound::bound(compiled),
+            bound_with_rotors_out_instructions: bound::with_rotors_out(compiled),
             inverse_bytes: 4 * compiled.tables.inverse.floats(),
             table_bytes: compiled.tables.bytes(),
         }
@@ -96,18 +112,7 @@ impl Cost {
 /// Instructions of a mix that delivers the request by least norm, were the inverse map evaluated by
 /// `evaluator`.
 pub fn delivered(compiled: &Compiled, evaluator: Evaluator) -> Option<u32> {
-    mix(
-        compiled,
-        evaluator,
-        COUNTED.delivered(DesaturationKind::of(compiled)),
-    )
-}
-
-fn mix(compiled: &Compiled, evaluator: Evaluator, overhead: Overhead) -> Option<u32> {
-    let airframe = &compiled.airframe;
-    let one = evaluator.instructions(airframe.pair.basis)?;
-    let sum = COUNTED.mix(overhead, airframe.units.len(), one, airframe.voltage.is_some());
-    Some(sum.round() as u32)
+    typical::delivered(compiled, evaluator).map(|estimate| estimate.instructions)
 }
 
 /// The lines of `check`.
@@ -128,18 +133,18 @@ impl fmt::Display for Cost {
             number(self.inverses_cycles),
             self.inverse_bytes
         )?;
-        if let Some(delivered) = self.delivered_instructions {
+        if let (Some(delivered), Some(error)) = (self.delivered_instructions, self.delivered_error) {
             writeln!(
                 f,
-                "  mix           about {delivered} where least norm delivers the request; the estimate is off by {:.1} % at most \
+                "  mix           about {delivered} where least norm delivers the request; the estimate is off by {:.0} % at most \
                  on counted frames",
-                100.0 * self.delivered_error
+                100.0 * error
             )?;
         }
         if let (Some(attainable), Some(error)) = (self.attainable_instructions, self.attainable_error) {
             writeln!(
                 f,
-                "                about {attainable} in the mean of attainable requests; off by {:.1} % at most",
+                "                about {attainable} in the mean of attainable requests; off by {:.0} % at most",
                 100.0 * error
             )?;
         }
@@ -149,6 +154,9 @@ impl fmt::Display for Cost {
                 "  any request   at most {bound}, desaturation {}: the sum of what the code does at most",
                 self.desaturation.description()
             )?;
+        }
+        if let Some(bound) = self.bound_with_rotors_out_instructions {
+            writeln!(f, "  rotors out    at most {bound}, however many")?;
         }
         Ok(())
     }

@@ -23,7 +23,7 @@
 //!
 //! ```text
 //! all rotors work   from stored level flight towards the request as far as the polygons allow
-//! rotors are out    the programme for level flight at the thrust asked
+//! rotors are out    the same programme goes on to level flight at the thrust asked
 //! ```
 //!
 //! A small bias on every unit's efforts makes the optimum unique, so that it is a Lipschitz
@@ -37,8 +37,8 @@
 //! # Bound
 //!
 //! [`Desaturation::budget`](crate::desaturation::Desaturation::budget) bounds the work of 2 while
-//! all rotors work. With rotors out the budgets below and [`ROUNDS`] do. No loop depends on anything
-//! else than these, the number of units and the corners of polygons.
+//! all rotors work. With rotors out [`Budget::with_rotors_out`], [`Budget::for_level_flight`] and [`ROUNDS`] do. No loop depends on
+//! anything else than these, the number of units and the corners of polygons.
 
 use core::hint::black_box;
 
@@ -61,19 +61,6 @@ use variable::{between, inside, positive};
 
 /// Rounds at most in which the curves of single rotors take the place of their chords.
 const ROUNDS: u8 = 3;
-
-/// Budget of the programme for the request with rotors out.
-const BUDGET_WITH_ROTORS_OUT: Budget = Budget {
-    pivots: 16,
-    flips: 64,
-};
-
-/// Budget of the programme for level flight with rotors out, where that of the request ends first.
-/// In 600,000 trials over 15 frames and healths level flight took 13 pivots and 29 moves at most.
-const LEVEL_BUDGET: Budget = Budget {
-    pivots: 14,
-    flips: 32,
-};
 
 /// Largest distance of a single rotor's torque from its curve, as a share of the torque's scale.
 const TOUCHING: f32 = 1e-4;
@@ -223,16 +210,10 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     fn serve(&self, request: &[f32; 4], variables: &mut [Variable], units: usize) {
         let centre = self.prepare(variables);
         let mut wanted = [0, 1, 2, 3].map(|k| request[k] * self.rows[k]);
-        let rounds = if self.is_whole { 0 } else { ROUNDS };
-        let Some(share) = self.programme(&mut wanted, &centre, variables, rounds) else {
-            if self.is_whole {
-                self.retreat(request, variables);
-            } else {
-                self.level(wanted[3], variables.get_mut(..units).unwrap_or_default());
-            }
-            return;
-        };
-        self.draw_back(share, variables, units);
+        match self.programme(&mut wanted, &centre, variables, self.is_whole) {
+            Some(share) => self.draw_back(share, variables, units),
+            None => self.retreat(request, variables),
+        }
     }
 
     /// The wrench of all units, N m and N. Both rotors of each work.
@@ -286,22 +267,22 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     }
 
     /// The linear programme for a request in rows. Limits the request ([`shortage::write`]), writes
-    /// the variables' coordinates, and returns the share to which they have to be drawn back;
-    /// `None` where the budget ends first.
+    /// the variables' coordinates, and returns the share to which they have to be drawn back. Where
+    /// the budget ends first: `None` while all rotors work, with rotors out level flight.
     #[inline(never)]
     fn programme(
         &self,
         wanted: &mut [f32; 4],
         centre: &[f32; 4],
         variables: &mut [Variable],
-        mut rounds: u8,
+        is_whole: bool,
     ) -> Option<f32> {
         let units = variables.len().saturating_sub(SHORTAGES);
         let desaturation = &self.tables.desaturation;
-        let budget = if self.is_whole {
-            desaturation.budget
+        let (budget, mut rounds) = if is_whole {
+            (desaturation.budget, 0)
         } else {
-            BUDGET_WITH_ROTORS_OUT
+            (Budget::with_rotors_out(units), ROUNDS)
         };
         let reserve = desaturation.yaw_reserve_nm * self.rows[2];
         shortage::write(variables, units, wanted, centre, desaturation.airmode, reserve);
@@ -314,34 +295,26 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             budget,
         );
         let mut share = None;
-        while simplex.solve() {
+        let mut is_level = false;
+        loop {
+            let is_solved = simplex.solve();
+            if !is_solved && (is_whole || share.is_some()) {
+                return share;
+            }
+            if !is_solved && !is_level {
+                is_level = true;
+                simplex.level_off(wanted, Budget::for_level_flight(units));
+                continue;
+            }
             simplex.place();
             let beyond = simplex.variables.get(units + RAY).map_or(0.0, |ray| ray.at[0]);
             let drawn_back = 1.0 / (1.0 + positive(beyond) * shortage::REACH);
             share = Some(drawn_back);
             if rounds == 0 || !self.bend(&mut simplex, drawn_back) {
-                break;
+                return share;
             }
             rounds -= 1;
         }
-        share
-    }
-
-    /// Level flight at a thrust in rows: the units alone, without shortages.
-    #[inline(never)]
-    fn level(&self, thrust: f32, units: &mut [Variable]) {
-        shortage::write_biases(units);
-        let wanted = [0.0, 0.0, 0.0, thrust];
-        let mut simplex = Simplex::start(
-            units,
-            self.tables.attainable.corners,
-            &wanted,
-            &wanted,
-            self.tables.desaturation.airmode,
-            LEVEL_BUDGET,
-        );
-        simplex.solve();
-        simplex.place();
     }
 
     /// Takes single rotors from their chords to their curves at the thrusts that they have come to

@@ -4,9 +4,8 @@
 //! cargo xtask counts                      all subjects
 //! cargo xtask counts isae-x8 regular-3    only these airframes
 //! cargo xtask counts c-interface,isae-x8  only this row, named as tests/counts.csv names it
-//! cargo xtask counts --bless              all; writes tests/counts.csv and what --fit writes
-//! cargo xtask counts --fit                counts nothing; writes docs/costs.md and the compiler's
-//!                                         model of cost from tests/counts.csv
+//! cargo xtask counts --bless              all; writes tests/counts.csv and docs/costs.md
+//! cargo xtask counts --page               counts nothing; writes docs/costs.md from tests/counts.csv
 //! ```
 
 use std::process::ExitCode;
@@ -14,7 +13,6 @@ use std::process::ExitCode;
 use mixer_tests::counts::{self, Row, Subject};
 use mixer_tests::firmware::{Toolchain, Variant};
 use mixer_tests::image::Image;
-use mixer_tests::overhead;
 
 fn main() -> ExitCode {
     match print() {
@@ -28,9 +26,9 @@ fn main() -> ExitCode {
 
 fn print() -> Result<(), String> {
     let mut named: Vec<String> = std::env::args().skip(1).collect();
-    if named == ["--fit"] {
+    if named == ["--page"] {
         let (compiler, rows) = counts::held()?;
-        return fit(&compiler, &rows);
+        return write_page(&compiler, &rows);
     }
     let toolchain = Toolchain::find()?;
     let bless = named.iter().any(|name| name == "--bless");
@@ -81,31 +79,14 @@ fn print() -> Result<(), String> {
         let path = counts::file();
         std::fs::write(&path, counts::text(&toolchain.compiler, &rows))
             .map_err(|error| format!("{}: {error}", path.display()))?;
-        fit(&toolchain.compiler, &rows)?;
+        write_page(&toolchain.compiler, &rows)?;
     }
     Ok(())
 }
 
-/// Writes the page of counts, fits the compiler's model to them, writes it and says how well it
-/// does.
-fn fit(compiler: &str, rows: &[Row]) -> Result<(), String> {
+/// Writes the page of counts.
+fn write_page(compiler: &str, rows: &[Row]) -> Result<(), String> {
     let page = counts::page();
     std::fs::write(&page, counts::document(compiler, rows))
-        .map_err(|error| format!("{}: {error}", page.display()))?;
-    let samples = overhead::samples(rows)?;
-    let counted = overhead::fit(&samples)?;
-    overhead::write(compiler, &counted)?;
-    println!("{:<17} {:<10} {:>9} {:>7}", "", "", "counted", "model");
-    for sample in &samples {
-        for &quantity in sample.quantities() {
-            let value = sample.counted(quantity);
-            let error = 100.0 * sample.error(&counted, quantity);
-            println!(
-                "{:<17} {:<10} {value:>9.0} {error:>+6.1}%",
-                sample.airframe,
-                format!("{quantity:?}").to_lowercase()
-            );
-        }
-    }
-    Ok(())
+        .map_err(|error| format!("{}: {error}", page.display()))
 }

@@ -6,7 +6,7 @@
 //! they do not; after either the retreat. The instructions of each part are rounded up from counts
 //! of parts; the tests hold the sum to the counts of whole mixers.
 
-use mixer_rt::tables::Outline;
+use mixer_rt::tables::{Budget, Outline};
 
 use crate::airframe::Basis;
 use crate::compiled::Compiled;
@@ -55,30 +55,42 @@ const PIVOT_UNIT: u32 = 90;
 const FLIP: u32 = 130;
 const FLIP_UNIT: u32 = 5;
 
-/// The bound for a compiled airframe; `None` where there is none yet, or its evaluator has not been
-/// counted.
+/// A round in which the curves of single rotors take the place of their chords, and one unit in it.
+/// As many rounds as in `mixer-rt`.
+const ROUND: u32 = 500;
+const ROUND_UNIT: u32 = 500;
+const ROUNDS: u32 = 3;
+
+/// The inverse of a single rotor, more than the unit's own.
+const SINGLE: u32 = 150;
+
+/// The bound for a compiled airframe while all rotors work; `None` for an evaluator that has not
+/// been counted.
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
-        None => general(compiled),
+        None => general(compiled, &[compiled.tables.desaturation.budget]),
     }
 }
 
-/// The general path with all rotors: least norm, the pivots and flips that are allowed, and what
-/// follows them.
-fn general(compiled: &Compiled) -> Option<u32> {
+/// The bound with any number of rotors out: the general path of every frame, up to level flight.
+pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
+    let units = compiled.tables.units.len();
+    let budgets = [Budget::with_rotors_out(units), Budget::for_level_flight(units)];
+    let curves = ROUNDS * (ROUND + units as u32 * ROUND_UNIT) + units as u32 * SINGLE;
+    Some(general(compiled, &budgets)? + curves)
+}
+
+/// The general path: least norm, the pivots and moves that are allowed, and what follows them.
+fn general(compiled: &Compiled, budgets: &[Budget]) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let n = compiled.tables.units.len() as u32;
     let unit = compiled.evaluator.instructions(basis)? + forward(basis) + GENERAL_UNIT;
-    let budget = compiled.tables.desaturation.budget;
-    let pivots = u32::from(budget.pivots) * (PIVOT + n * PIVOT_UNIT);
-    let flips = u32::from(budget.flips) * (FLIP + n * FLIP_UNIT);
-    let voltage = if compiled.airframe.voltage.is_some() {
-        PER_VOLTAGE
-    } else {
-        0
-    };
-    Some(GENERAL + voltage + n * unit + pivots + flips)
+    let voltage = compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
+    let work = budgets.iter().map(|budget| {
+        u32::from(budget.pivots) * (PIVOT + n * PIVOT_UNIT) + u32::from(budget.flips) * (FLIP + n * FLIP_UNIT)
+    });
+    Some(GENERAL + voltage + n * unit + work.sum::<u32>())
 }
 
 /// The forward map of one unit.
@@ -103,11 +115,7 @@ fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     } else {
         CLIMB * reach + n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT)
     };
-    let voltage = if compiled.airframe.voltage.is_some() {
-        PER_VOLTAGE
-    } else {
-        0
-    };
+    let voltage = compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
     let ways = (STEPS * step).max(step + climb);
     let found = walls + ways + n * NULL_RANGE + (1 + RETREAT) * reach + n * TORQUES;
     Some(PER_MIX + voltage + n * PER_UNIT + 2 * inverses + found)

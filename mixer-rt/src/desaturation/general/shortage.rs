@@ -69,21 +69,8 @@ impl ThrustPrice {
     }
 }
 
-/// Writes the units' biases. They make the optimum unique.
-#[inline(never)]
-pub(super) fn write_biases(units: &mut [Variable]) {
-    let mut weyl = 0.5;
-    for unit in units {
-        rolled();
-        unit.gain = [BIAS * (weyl - 0.5), BIAS * (0.75 - weyl)];
-        // Weyl's sequence: spread over [0, 1) for any number of units.
-        weyl += 0.618_034;
-        weyl -= if weyl >= 1.0 { 1.0 } else { 0.0 };
-    }
-}
-
-/// Writes the units' biases and, behind the units, the shortages of a request in rows, which is
-/// limited to what is looked at. `centre` is what the units' centres give, `reserve` the yaw that
+/// Writes the units' biases, which make the optimum unique, and, behind the units, the shortages of
+/// a request in rows, which is limited to what is looked at. `centre` is what the units' centres give, `reserve` the yaw that
 /// is kept before roll and pitch, in rows.
 #[inline(never)]
 pub(super) fn write(
@@ -94,10 +81,17 @@ pub(super) fn write(
     airmode: Airmode,
     reserve: f32,
 ) {
-    let Some((unit, shortages)) = variables.split_at_mut_checked(units) else {
+    let Some((biased, shortages)) = variables.split_at_mut_checked(units) else {
         return;
     };
-    write_biases(unit);
+    let mut weyl = 0.5;
+    for unit in biased {
+        rolled();
+        unit.gain = [BIAS * (weyl - 0.5), BIAS * (0.75 - weyl)];
+        // Weyl's sequence: spread over [0, 1) for any number of units.
+        weyl += 0.618_034;
+        weyl -= if weyl >= 1.0 { 1.0 } else { 0.0 };
+    }
     let n = units as f32;
     let limit = LIMIT * n;
     let [roll, pitch, ..] = *wanted;

@@ -25,9 +25,10 @@
 //! bounded by the numbers of pivots and of moves to other corners that are allowed.
 
 use core::hint::black_box;
+use core::mem::take;
 
 use super::breakpoint::{Breakpoint, FirstTwo, ROW};
-use super::shortage::{TORQUE_PRICES, ThrustPrice};
+use super::shortage::{SHORTAGES, TORQUE_PRICES, ThrustPrice};
 use super::variable::{NEVER, Position, Variable, corner, dot, next, set};
 use crate::desaturation::attainable::Corner;
 use crate::desaturation::{Airmode, Budget};
@@ -109,7 +110,7 @@ pub(super) struct Simplex<'a> {
 }
 
 impl<'a> Simplex<'a> {
-    /// Starts with artificial slots, with multipliers that point from `origin` (rows) to what is
+    /// Starts with artificial slots, with multipliers that point from `centre` (rows) to what is
     /// `wanted`, and with the variables, whose gains are their biases, at the corners that these
     /// make best.
     #[inline(never)]
@@ -117,11 +118,11 @@ impl<'a> Simplex<'a> {
         variables: &'a mut [Variable],
         corners: &'a [Corner],
         wanted: &[f32; 4],
-        origin: &[f32; 4],
+        centre: &[f32; 4],
         airmode: Airmode,
         budget: Budget,
     ) -> Self {
-        let multipliers = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - origin[k]));
+        let multipliers = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - centre[k]));
         let mut residual = *wanted;
         for variable in variables.iter_mut() {
             rolled();
@@ -163,6 +164,32 @@ impl<'a> Simplex<'a> {
             self.budget.pivots -= 1;
             self.pivot(&leaving);
         }
+    }
+
+    /// Gives the torques up: from where the pivots have come to, asks for no more than the thrust that
+    /// is `wanted` (rows), without the shortages, with another `budget`.
+    #[inline(never)]
+    pub(super) fn level_off(&mut self, [roll, pitch, yaw, _]: &[f32; 4], budget: Budget) {
+        let units = self.variables.len().saturating_sub(SHORTAGES);
+        let Some((units, shortages)) = take(&mut self.variables).split_at_mut_checked(units) else {
+            return;
+        };
+        for (row, torque) in self.residual.iter_mut().zip([roll, pitch, yaw]) {
+            *row -= torque;
+        }
+        for shortage in shortages {
+            rolled();
+            let [share, _] = corner(set(self.corners, shortage.rotors), shortage.corner).at;
+            shortage.subtract([-share, 0.0], &mut self.residual);
+        }
+        // A slot that a shortage has keeps its column, and has to come to zero.
+        for slot in &mut self.slots {
+            if usize::from(slot.variable) >= units.len() && slot.holds == Holds::Edge {
+                slot.holds = Holds::Artificial;
+            }
+        }
+        self.variables = units;
+        self.budget = budget;
     }
 
     /// The variable of this index, its set, and the residual.

@@ -84,19 +84,19 @@ pub struct Variable {
 impl Default for Variable {
     #[inline(always)]
     fn default() -> Self {
-        // Known zeros would be written by a call of memset, which a bare-metal target may not have.
-        let zero = black_box(0.0);
-        Variable {
-            columns: [[zero; 4]; 2],
-            gain: [zero; 2],
-            rate: [zero; 2],
-            at: [zero; 2],
-            breakpoint: zero,
+        static START: Variable = Variable {
+            columns: [[0.0; 4]; 2],
+            gain: [0.0; 2],
+            rate: [0.0; 2],
+            at: [0.0; 2],
+            breakpoint: 0.0,
             position: Position::Corner,
             corner: 0,
             is_forward: false,
             rotors: Rotors::Upper,
-        }
+        };
+        // Known zeros would be written by a call of memset, which a bare-metal target may not have.
+        *black_box(&START)
     }
 }
 
