@@ -3,8 +3,8 @@
 use mixer_rt::tables::Budget;
 
 /// Work of the general path while all rotors work. Of the requests that were counted none takes more
-/// than 20,000 instructions with it on up to four vertical units, 30,016 on up to eight, 30,000 on up
-/// to six tilted units and 45,000 on up to eight (`docs/costs.md`). Of 100,000 saturated requests on a
+/// than 20,000 instructions with it on up to four vertical units, 30,000 on up to eight vertical and
+/// six tilted ones, and 45,000 on up to eight (`docs/costs.md`). Of 100,000 saturated requests on a
 /// regular frame of eight units about 110 need more; of as many on a frame of six about 30.
 pub(super) fn budget(units: usize, is_vertical: bool) -> Budget {
     let units = u8::try_from(units).unwrap_or(u8::MAX);
