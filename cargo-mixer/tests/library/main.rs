@@ -223,14 +223,19 @@ fn a_cortex_m0_has_the_bits() {
     assert_bits_without_floating_point("thumbv6m-none-eabi", "-mcpu=cortex-m0", "microbit", &[stack]);
 }
 
-/// A companion computer: both self-tests in QEMU's user mode, where a cross compiler and QEMU for
-/// it are there.
+/// A companion computer: both self-tests in QEMU's user mode, where a cross compiler, its C library
+/// and QEMU for it are there.
 #[test]
 fn an_aarch64_computer_has_the_bits() {
     let tools = ["aarch64-linux-gnu-gcc", "qemu-aarch64"];
     let is_there = |tool: &&str| Command::new(tool).arg("--version").output().is_ok();
     if let Some(missing) = tools.iter().find(|tool| !is_there(tool)) {
         eprintln!("NOT RUN: an_aarch64_computer_has_the_bits needs {missing}");
+        return;
+    }
+    let libc = run(Command::new(tools[0]).arg("-print-file-name=libc.a"));
+    if !String::from_utf8_lossy(&libc.stdout).contains('/') {
+        eprintln!("NOT RUN: an_aarch64_computer_has_the_bits needs libc6-dev-arm64-cross");
         return;
     }
     let folder = Folder::new("aarch64");

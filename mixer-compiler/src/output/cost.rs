@@ -5,6 +5,7 @@
 //! (`cost/typical.rs`); any request takes at most what the code does at most (`cost/bound.rs`).
 
 mod bound;
+mod kind;
 mod typical;
 
 use std::fmt;
@@ -14,36 +15,10 @@ use serde::Serialize;
 use crate::compiled::Compiled;
 use crate::inverse::evaluator::Evaluator;
 
+pub use kind::DesaturationKind;
+
 /// What counts are of.
 pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
-
-/// How a mixer brings a request within the attainable set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DesaturationKind {
-    /// Vertical axes and up to four units: a few cases, each solved at once.
-    ClosedForm,
-    /// Any other layout: a dual simplex method of bounded work.
-    General,
-}
-
-impl DesaturationKind {
-    /// The kind of a compiled airframe.
-    pub fn of(compiled: &Compiled) -> DesaturationKind {
-        match &compiled.tables.closed_form {
-            Some(_) => DesaturationKind::ClosedForm,
-            None => DesaturationKind::General,
-        }
-    }
-
-    /// For people, after "desaturates".
-    pub fn description(self) -> &'static str {
-        match self {
-            DesaturationKind::ClosedForm => "in closed form",
-            DesaturationKind::General => "by a bounded simplex method",
-        }
-    }
-}
 
 /// What one airframe costs: instructions, and cycles where they are known.
 #[derive(Clone, Debug, Serialize)]

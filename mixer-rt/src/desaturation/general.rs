@@ -37,8 +37,9 @@
 //! # Bound
 //!
 //! [`Desaturation::budget`](crate::desaturation::Desaturation::budget) bounds the work of 2 while
-//! all rotors work. With rotors out [`Budget::with_rotors_out`], [`Budget::for_level_flight`] and [`ROUNDS`] do. No loop depends on
-//! anything else than these, the number of units and the corners of polygons.
+//! all rotors work. With rotors out [`Budget::with_rotors_out`], [`Budget::for_level_flight`] and
+//! [`ROUNDS`] do. No loop depends on anything else than these, the number of units and the corners of
+//! polygons.
 
 use core::hint::black_box;
 
@@ -299,6 +300,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         loop {
             let is_solved = simplex.solve();
             if !is_solved && (is_whole || share.is_some()) {
+                // What the round before has placed stays, if there was one.
                 return share;
             }
             if !is_solved && !is_level {

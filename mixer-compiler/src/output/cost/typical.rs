@@ -8,7 +8,7 @@
 //! rounded from the counts of whole mixers in `docs/costs.md`; a test holds the sum to these counts,
 //! within the errors stated.
 
-use super::DesaturationKind;
+use super::kind::DesaturationKind;
 use crate::compiled::Compiled;
 use crate::inverse::evaluator::Evaluator;
 

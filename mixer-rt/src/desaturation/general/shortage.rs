@@ -70,8 +70,8 @@ impl ThrustPrice {
 }
 
 /// Writes the units' biases, which make the optimum unique, and, behind the units, the shortages of
-/// a request in rows, which is limited to what is looked at. `centre` is what the units' centres give, `reserve` the yaw that
-/// is kept before roll and pitch, in rows.
+/// a request in rows, which is limited to what is looked at. `centre` is what the units' centres
+/// give, `reserve` the yaw that is kept before roll and pitch, in rows.
 #[inline(never)]
 pub(super) fn write(
     variables: &mut [Variable],
