@@ -41,7 +41,7 @@ const GENERAL: Overhead = Overhead {
 const CLOSED_FORM_MEAN: Overhead = Overhead {
     per_mix: 65,
     per_unit: 150,
-    error: 0.14,
+    error: 0.13,
 };
 
 /// Instructions, and the largest error of this number as a share.
