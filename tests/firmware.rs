@@ -399,7 +399,7 @@ fn bounds_hold_what_was_counted() {
     }
 }
 
-/// As a share of what was counted.
+/// The largest error that an estimate may have, as a share of what was counted.
 const ESTIMATE_ERROR: f64 = 0.13;
 
 const MEND: &str = "if the change is meant, `cargo xtask counts --bless` and look at the difference";

@@ -1,7 +1,7 @@
 //! The compiler's statements of cost beside what was counted.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::cost::{Cost, DesaturationKind};
+use mixer_compiler::cost::Cost;
 
 use crate::counts::Row;
 use crate::frames::counted;
@@ -10,9 +10,9 @@ use crate::{frames, golden, root};
 /// A counted mixer with what the compiler says of it.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// What was counted.
+    /// The counted row.
     pub row: Row,
-    /// What the compiler says.
+    /// The compiler's statement of cost.
     pub cost: Cost,
     /// All thrust axes are vertical: then least norm delivers most wrenches that random throttles
     /// give.
@@ -28,11 +28,11 @@ impl Sample {
             delivered_error,
             attainable_instructions,
             attainable_error,
-            desaturation,
             ..
         } = self.cost;
-        let delivered = delivered_instructions.zip(delivered_error);
-        let delivered = delivered.filter(|_| self.vertical || desaturation == DesaturationKind::ClosedForm);
+        let delivered = delivered_instructions
+            .zip(delivered_error)
+            .filter(|_| self.vertical);
         let attainable = attainable_instructions.zip(attainable_error);
         let median = self.row.get("attainable_median") as f64;
         [
@@ -80,10 +80,9 @@ pub fn samples(rows: &[Row]) -> Result<Vec<Sample>, String> {
 }
 
 fn sample(compiled: &Compiled, row: &Row) -> Sample {
-    let mut units = compiled.airframe.units.iter();
     Sample {
         row: row.clone(),
         cost: Cost::new(compiled),
-        vertical: units.all(|unit| unit.axis == [0.0, 0.0, -1.0]),
+        vertical: compiled.effectiveness.is_vertical(),
     }
 }

@@ -38,7 +38,7 @@
 //!
 //! [`Desaturation::budget`](crate::desaturation::Desaturation::budget) bounds the work of 2 while
 //! all rotors work. With rotors out [`Budget::with_rotors_out`], [`Budget::for_level_flight`] and
-//! [`ROUNDS`] do. No loop depends on anything else than these, the number of units and the corners of
+//! [`Budget::ROUNDS`] do. No loop depends on anything else than these, the number of units and the corners of
 //! polygons.
 
 use core::hint::black_box;
@@ -59,9 +59,6 @@ use crate::{clamp, rolled};
 use shortage::RAY;
 use simplex::Simplex;
 use variable::{between, inside, positive};
-
-/// Rounds at most in which the curves of single rotors take the place of their chords.
-const ROUNDS: u8 = 3;
 
 /// Largest distance of a single rotor's torque from its curve, as a share of the torque's scale.
 const TOUCHING: f32 = 1e-4;
@@ -269,7 +266,9 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
 
     /// The linear programme for a request in rows. Limits the request ([`shortage::write`]), writes
     /// the variables' coordinates, and returns the share to which they have to be drawn back. Where
-    /// the budget ends first: `None` while all rotors work, with rotors out level flight.
+    /// the budget ends first: `None` while all rotors work, with rotors out level flight. `is_whole`
+    /// is the frame's: where it is known, the compiler leaves the other way out of a function that it
+    /// is handed to.
     #[inline(never)]
     fn programme(
         &self,
@@ -283,7 +282,7 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
         let (budget, mut rounds) = if is_whole {
             (desaturation.budget, 0)
         } else {
-            (Budget::with_rotors_out(units), ROUNDS)
+            (Budget::with_rotors_out(units), Budget::ROUNDS)
         };
         let reserve = desaturation.yaw_reserve_nm * self.rows[2];
         shortage::write(variables, units, wanted, centre, desaturation.airmode, reserve);
@@ -296,17 +295,14 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
             budget,
         );
         let mut share = None;
-        let mut is_level = false;
         loop {
-            let is_solved = simplex.solve();
-            if !is_solved && (is_whole || share.is_some()) {
-                // What the round before has placed stays, if there was one.
-                return share;
-            }
-            if !is_solved && !is_level {
-                is_level = true;
+            if !simplex.solve() {
+                if is_whole || share.is_some() {
+                    // What the round before has placed stays, if there was one.
+                    return share;
+                }
                 simplex.level_off(wanted, Budget::for_level_flight(units));
-                continue;
+                simplex.solve();
             }
             simplex.place();
             let beyond = simplex.variables.get(units + RAY).map_or(0.0, |ray| ray.at[0]);

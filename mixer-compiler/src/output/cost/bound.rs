@@ -8,7 +8,7 @@
 //! part over thousands of saturated requests, rounded up; the tests hold the sum to the counts of
 //! whole mixers.
 
-use mixer_rt::tables::{Budget, Outline};
+use mixer_rt::tables::{Budget, Facets, Outline};
 
 use crate::airframe::Basis;
 use crate::compiled::Compiled;
@@ -21,11 +21,9 @@ const PER_VOLTAGE: u32 = 78;
 /// One unit's least norm, its throttles written, and its share of the achieved wrench.
 const PER_UNIT: u32 = 90;
 
-/// A step of the facets' linear programme, and one pair of facets in it. As many steps as in
-/// `mixer-rt`.
+/// A step of the facets' linear programme, and one pair of facets in it.
 const STEP: u32 = 30;
 const FACETS: u32 = 18;
-const STEPS: u32 = 6;
 
 /// The range of the null space, one unit.
 const NULL_RANGE: u32 = 40;
@@ -61,10 +59,8 @@ const FLIP: u32 = 130;
 const FLIP_UNIT: u32 = 9;
 
 /// A round in which the curves of single rotors take the place of their chords, and one unit in it.
-/// As many rounds as in `mixer-rt`.
 const ROUND: u32 = 860;
 const ROUND_UNIT: u32 = 320;
-const ROUNDS: u32 = 3;
 
 /// The inverse of a single rotor, more than the unit's own.
 const SINGLE: u32 = 60;
@@ -84,8 +80,9 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 /// The bound with any number of rotors out: the general path of every frame, up to level flight.
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let units = compiled.tables.units.len();
+    let n = units as u32;
     let budgets = [Budget::with_rotors_out(units), Budget::for_level_flight(units)];
-    let curves = ROUNDS * (ROUND + units as u32 * ROUND_UNIT) + units as u32 * SINGLE;
+    let curves = u32::from(Budget::ROUNDS) * (ROUND + n * ROUND_UNIT) + n * SINGLE;
     Some(general(compiled, &budgets)? + curves)
 }
 
@@ -124,7 +121,7 @@ fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
         CLIMB * reach + n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT)
     };
     let voltage = compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
-    let ways = (STEPS * step).max(step + climb);
+    let ways = (Facets::STEPS * step).max(step + climb);
     let found = walls + ways + n * NULL_RANGE + (1 + RETREAT) * reach + n * TORQUES;
     Some(PER_MIX + voltage + n * PER_UNIT + 2 * inverses + found)
 }

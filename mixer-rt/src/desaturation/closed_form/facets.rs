@@ -14,8 +14,10 @@ use crate::rolled;
 /// four have errors of that size.
 const ROUNDING: f32 = 4e-6;
 
-/// Steps of the search for the largest rho: at most one per facet, hardly ever more than two.
-const STEPS: u32 = 6;
+impl Facets {
+    /// Steps of the search for the largest rho: at most one per facet, hardly ever more than two.
+    pub const STEPS: u32 = 6;
+}
 
 impl ClosedForm<'_> {
     /// The largest share of (roll, pitch) up to 1 that some thrust of at most `ceiling` allows, and
@@ -34,7 +36,7 @@ impl ClosedForm<'_> {
         }
         share = if share > 0.0 { share } else { 0.0 };
         let mut range = [0.0, 0.0];
-        for _ in 0..black_box(STEPS) {
+        for _ in 0..black_box(Facets::STEPS) {
             // Thrust bounds at this share, and their velocities.
             let (mut low, mut low_speed) = (-f32::MAX, 0.0);
             let (mut high, mut high_speed) = (ceiling, 0.0);

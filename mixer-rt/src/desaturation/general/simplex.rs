@@ -179,8 +179,8 @@ impl<'a> Simplex<'a> {
         }
         for shortage in shortages {
             rolled();
-            let [share, _] = corner(set(self.corners, shortage.rotors), shortage.corner).at;
-            shortage.subtract([-share, 0.0], &mut self.residual);
+            let corner = corner(set(self.corners, shortage.rotors), shortage.corner);
+            shortage.subtract(corner.at.map(|part| -part), &mut self.residual);
         }
         // A slot that a shortage has keeps its column, and has to come to zero.
         for slot in &mut self.slots {
