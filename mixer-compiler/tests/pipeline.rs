@@ -41,30 +41,6 @@ fn effectiveness_is_equation_4() {
     assert_eq!(compiled.effectiveness.rank, 4);
 }
 
-/// M M+ = 1, and M+ M is symmetric: the two of Penrose's conditions that are not implied by full
-/// rank.
-#[test]
-fn pseudo_inverse_is_the_least_norm_inverse() {
-    let tilted = "position_m = [0.3182, 0.3182, 0.0]";
-    let with_axis = format!("{tilted}\naxis = [0.0998, 0.0, -0.9950]");
-    for compiled in [isae_x8(&[]), isae_x8(&[(tilted, &with_axis)])] {
-        let Ok(compiled) = compiled else {
-            panic!("{}", compiled.unwrap_err())
-        };
-        let (m, inverse) = (
-            &compiled.effectiveness.matrix,
-            &compiled.effectiveness.pseudo_inverse,
-        );
-        let (product, projection) = (m * inverse, inverse * m);
-        for i in 0..4 {
-            for j in 0..4 {
-                assert!((product[(i, j)] - f64::from(u8::from(i == j))).abs() < 1e-12);
-            }
-        }
-        assert!((&projection - projection.transpose()).amax() < 1e-12);
-    }
-}
-
 /// The figure of the paper's model: it folds below an idle of 0.08875.
 #[test]
 fn least_idle_is_where_the_model_folds() {

@@ -10,6 +10,7 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::effectiveness::Effectiveness;
+use mixer_compiler::model::pseudo_inverse::PseudoInverse;
 use mixer_compiler::tables::{self, VoltageTable};
 use mixer_rt::tables::{Airmode, ThrottleRange};
 use mixer_rt::{SetpointError, Wrench};
@@ -19,9 +20,6 @@ use super::rotors::{IsolatedRotor, IsolatedRotors, ThrustCurve};
 
 /// Throttles at which kappa is fitted.
 const POINTS: u32 = 51;
-
-/// Singular values below this share of the largest count as zero.
-const RANK_TOLERANCE: f64 = 1e-6;
 
 /// Below this a rotor has no share in an axis, N per N m or N.
 const NO_SHARE: f64 = 1e-9;
@@ -63,7 +61,7 @@ impl IsolatedTables {
         let map = PairMap::new(&airframe.pair, &airframe.throttle);
         let kappa_m = torque_per_thrust(&map);
         let columns = rotor_columns(airframe, effectiveness, kappa_m);
-        let allocation = pseudo_inverse(&columns);
+        let allocation = pseudo_inverse(airframe, &columns);
         let scale = desaturation_scale(&allocation);
         let rotors = (0..airframe.rotors()).map(|rotor| {
             let row: [f64; 4] = std::array::from_fn(|axis| allocation[(rotor, axis)]);
@@ -152,13 +150,22 @@ fn rotor_columns(airframe: &Airframe, effectiveness: &Effectiveness, kappa_m: f6
     columns
 }
 
-/// B+, 2n x 4.
-fn pseudo_inverse(columns: &DMatrix<f64>) -> DMatrix<f64> {
-    let svd = columns.clone().svd(true, true);
-    let threshold = RANK_TOLERANCE * svd.singular_values.max();
-    // Both factors were asked for, so there is a pseudo-inverse.
-    svd.pseudo_inverse(threshold)
-        .unwrap_or_else(|_| DMatrix::zeros(columns.ncols(), columns.nrows()))
+/// B+, 2n x 4: 0 for axes that are not served.
+fn pseudo_inverse(airframe: &Airframe, columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let served: Vec<usize> = airframe
+        .allocation
+        .axes
+        .iter()
+        .map(|axis| *axis as usize)
+        .collect();
+    let mut allocation = DMatrix::zeros(columns.ncols(), columns.nrows());
+    // The rotors' columns are combinations of those of M, which has full rank.
+    if let Ok(inverse) = PseudoInverse::new(&columns.select_rows(&served), &vec![1.0; columns.ncols()]) {
+        for (column, axis) in inverse.matrix.column_iter().zip(served) {
+            allocation.set_column(axis, &column);
+        }
+    }
+    allocation
 }
 
 /// What PX4 divides the columns of B+ by (`updateControlAllocationMatrixScale`): roll and pitch by

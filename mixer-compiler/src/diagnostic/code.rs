@@ -113,6 +113,8 @@ catalogue! {
     VoltageTable = 205,
     /// A tolerance above a tenth of a unit's largest effort.
     ToleranceAbsurd = 206,
+    /// The pseudo-inverse M+ is not accurate: the layout hardly tells its axes apart.
+    PseudoInverse = 207,
 
     /// Thrust and torque in a ratio that no propeller has: one of them is in another unit.
     PairUnits = 300,

@@ -6,11 +6,17 @@
 //! is u = M eta, M being 4 x 2n (eq. (5)); for vertical axes its rows are eq. (4). The least-norm
 //! solution is eta = M+ u (eq. (7), (8)).
 //!
+//! M+ is of least norm in shares of the largest thrust and torque of a unit ([`PseudoInverse`]). Where
+//! all axes are vertical, thrusts give no yaw and torques nothing else, so this is plain M+. Where
+//! axes are tilted, plain M+ weighs a newton as a newton metre and asks for torques that no pair has.
+//!
 //! An airframe may leave axes out: their rows are dropped before inversion and their columns of M+
 //! are zero.
 
 use nalgebra::{DMatrix, Matrix4xX, MatrixXx4};
 
+use super::PairMap;
+use super::pseudo_inverse::PseudoInverse;
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -21,56 +27,52 @@ pub struct Effectiveness {
     pub matrix: Matrix4xX<f64>,
     /// M+, 2n x 4.
     pub pseudo_inverse: MatrixXx4<f64>,
-    /// Rank of M's rows that are served.
+    /// Number of rows of M that are served, all of them independent.
     pub rank: usize,
-    /// Largest over smallest singular value of those rows.
+    /// [`PseudoInverse::condition`] of these rows: 1 where no served axis disturbs another.
     pub condition: f64,
 }
 
-/// Singular values below this share of the largest count as zero: geometry is known to a millimetre
-/// in a metre.
-const RANK_TOLERANCE: f64 = 1e-6;
+/// Largest error of M M+, row-scaled: some thousand roundings of f64.
+const LARGEST_RESIDUAL: f64 = 1e-12;
+
+/// Levers below this count as none, m or 1: a micrometre, or a tilt of as little.
+const LEAST_LEVER: f64 = 1e-6;
+
+/// The order in which axes claim the layout: what comes later is what a deficient layout cannot
+/// produce.
+const CLAIMS: [Axis; 4] = [Axis::Thrust, Axis::Roll, Axis::Pitch, Axis::Yaw];
 
 impl Effectiveness {
     /// M of the layout and M+ over the axes that the airframe serves.
     ///
     /// # Errors
-    /// A served axis that the layout cannot produce independently of the others, by name.
+    /// Served axes that the layout cannot produce independently of the others, by name.
     pub fn new(airframe: &Airframe) -> Result<Self, Vec<Diagnostic>> {
         let matrix = matrix(airframe);
-        let served: Vec<usize> = Axis::ALL
-            .into_iter()
-            .filter(|&axis| airframe.allocation.controls(axis))
-            .map(|axis| axis as usize)
-            .collect();
-        let rows = matrix.select_rows(&served).transpose();
-        let rows = DMatrix::from_columns(&rows.column_iter().collect::<Vec<_>>()).transpose();
-        let svd = rows.clone().svd(true, true);
-        let (largest, smallest) = (svd.singular_values.max(), svd.singular_values.min());
-        let threshold = RANK_TOLERANCE * largest;
-        let rank = svd.rank(threshold);
-        if rank < served.len() {
-            return Err(vec![deficiency(airframe, &matrix, threshold)]);
+        let (n, served) = (airframe.units.len(), served(airframe));
+        let rows = DMatrix::from_fn(served.len(), 2 * n, |row, column| {
+            matrix[(served[row] as usize, column)]
+        });
+        let map = PairMap::new(&airframe.pair, &airframe.throttle);
+        // A map without thrust or torque is refused elsewhere.
+        let [thrust, torque] = map.scale().map(|size| if size > 0.0 { size } else { 1.0 });
+        let sizes = [vec![thrust; n], vec![torque; n]].concat();
+        let inverse =
+            PseudoInverse::new(&rows, &sizes).map_err(|lost| vec![deficiency(airframe, &served, &lost)])?;
+        let is_accurate = inverse.residual <= LARGEST_RESIDUAL;
+        if !is_accurate {
+            return Err(vec![inaccuracy(airframe, &inverse)]);
         }
-        let inverse = svd.pseudo_inverse(threshold).map_err(|reason| {
-            let message = format!("no pseudo-inverse: {reason}");
-            vec![airframe.diagnostic(
-                Code::RankDeficient,
-                "unit",
-                message,
-                "",
-                "check the positions of the units",
-            )]
-        })?;
-        let mut pseudo_inverse = MatrixXx4::zeros(matrix.ncols());
-        for (column, &axis) in served.iter().enumerate() {
-            pseudo_inverse.set_column(axis, &inverse.column(column).map(|x| clean(x, inverse.amax())));
+        let mut pseudo_inverse = MatrixXx4::zeros(2 * n);
+        for (column, axis) in inverse.matrix.column_iter().zip(&served) {
+            pseudo_inverse.set_column(*axis as usize, &column);
         }
         Ok(Effectiveness {
             matrix,
             pseudo_inverse,
-            rank,
-            condition: largest / smallest,
+            rank: served.len(),
+            condition: inverse.condition,
         })
     }
 
@@ -106,48 +108,40 @@ fn matrix(airframe: &Airframe) -> Matrix4xX<f64> {
         let by_thrust = [y * az - z * ay, z * ax - x * az, x * ay - y * ax, -az];
         let by_torque = [-sign * ax, -sign * ay, -sign * az, 0.0];
         for axis in 0..4 {
-            matrix[(axis, i)] = by_thrust[axis] + 0.0; // no negative zeros in reports and tables
-            matrix[(axis, n + i)] = by_torque[axis] + 0.0;
+            matrix[(axis, i)] = lever(by_thrust[axis]);
+            matrix[(axis, n + i)] = lever(by_torque[axis]);
         }
     }
     matrix
 }
 
-/// Rounding residues of the SVD (a few units in the last place of the largest entry) become the
-/// zeros they stand for: symmetric frames then have sparse tables.
-fn clean(x: f64, largest: f64) -> f64 {
-    if x.abs() < 1e-14 * largest { 0.0 } else { x }
+/// An entry of M; 0 where it is the rounding of none, as of cos 90 degrees.
+fn lever(entry: f64) -> f64 {
+    // Without the sum there would be negative zeros in reports and tables.
+    if entry.abs() < LEAST_LEVER {
+        0.0
+    } else {
+        entry + 0.0
+    }
 }
 
-/// The order in which axes claim the layout: what comes later is what a deficient layout cannot
-/// produce.
-const CLAIMS: [Axis; 4] = [Axis::Thrust, Axis::Roll, Axis::Pitch, Axis::Yaw];
+/// The served axes in the order of [`CLAIMS`].
+fn served(airframe: &Airframe) -> Vec<Axis> {
+    let served = |axis: &Axis| airframe.allocation.controls(*axis);
+    CLAIMS.into_iter().filter(served).collect()
+}
 
-/// Names the axes that cannot be produced: those whose row adds nothing to the rows before it.
-fn deficiency(airframe: &Airframe, matrix: &Matrix4xX<f64>, threshold: f64) -> Diagnostic {
-    let (mut kept, mut lost): (Vec<Axis>, Vec<Axis>) = (Vec::new(), Vec::new());
-    for axis in CLAIMS
-        .into_iter()
-        .filter(|&axis| airframe.allocation.controls(axis))
-    {
-        let rows: Vec<usize> = kept.iter().chain([&axis]).map(|&axis| axis as usize).collect();
-        let rank = DMatrix::from_fn(rows.len(), matrix.ncols(), |i, j| matrix[(rows[i], j)]).rank(threshold);
-        if rank == rows.len() {
-            kept.push(axis)
-        } else {
-            lost.push(axis)
-        }
-    }
-    kept.sort();
-    lost.sort();
-    let names = |axes: &[Axis]| {
-        axes.iter()
-            .map(|axis| axis.name())
-            .collect::<Vec<_>>()
-            .join(" and ")
+/// Names the axes that cannot be produced: those of `served`, by index, whose row adds nothing to
+/// the rows before it.
+fn deficiency(airframe: &Airframe, served: &[Axis], lost: &[usize]) -> Diagnostic {
+    let names = |wanted: bool| {
+        let is_lost = |axis: &Axis| lost.iter().any(|&row| served[row] == *axis);
+        let axes = Axis::ALL.into_iter().filter(|axis| served.contains(axis));
+        axes.filter(move |axis| is_lost(axis) == wanted).map(Axis::name)
     };
-    let list: Vec<String> = kept.iter().map(|axis| format!("\"{}\"", axis.name())).collect();
-    let (served, lost) = (airframe.allocation.axes.len(), names(&lost));
+    let lost = names(true).collect::<Vec<_>>().join(" and ");
+    let kept: Vec<String> = names(false).map(|name| format!("\"{name}\"")).collect();
+    let served = served.len();
     let key = if airframe.states("allocation.axes") {
         "allocation.axes"
     } else {
@@ -164,7 +158,24 @@ fn deficiency(airframe: &Airframe, matrix: &Matrix4xX<f64>, threshold: f64) -> D
         if key == "allocation.axes" { String::new() } else { label },
         format!(
             "move the units so that they have a lever arm for {lost}, or serve what is left: [allocation] axes = [{}]",
-            list.join(", ")
+            kept.join(", ")
+        ),
+    )
+}
+
+/// Refuses a pseudo-inverse that is not one, whatever the reason.
+fn inaccuracy(airframe: &Airframe, inverse: &PseudoInverse) -> Diagnostic {
+    airframe.diagnostic(
+        Code::PseudoInverse,
+        "unit",
+        format!(
+            "M M+ differs from 1 by {:.1e}, row-scaled; {LARGEST_RESIDUAL:.0e} is allowed",
+            inverse.residual
+        ),
+        "",
+        format!(
+            "the layout hardly tells its axes apart (condition {:.0}): move the units, or serve fewer axes",
+            inverse.condition
         ),
     )
 }

@@ -24,30 +24,30 @@
 use mixer_rt::Wrench;
 use nalgebra::DMatrix;
 
-use crate::airframe::Airframe;
+use crate::airframe::{Airframe, Axis};
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
+use crate::model::pseudo_inverse::PseudoInverse;
 
 /// Below this share of a column's largest entry a rotor has no part in an axis: rounding of the
 /// decomposition.
 const NO_SHARE: f64 = 1e-9;
 
-/// Singular values below this share of the largest count as zero, as for M.
-const RANK_TOLERANCE: f64 = 1e-6;
-
 /// Wrench that one unit of a normalised setpoint asks for at the reference voltage; zero on axes
 /// that are not served.
 pub(crate) fn scale(airframe: &Airframe, effectiveness: &Effectiveness) -> Wrench {
-    let columns = rotor_columns(airframe, effectiveness);
-    let svd = columns.svd(true, true);
-    let threshold = RANK_TOLERANCE * svd.singular_values.max();
-    // Both factors were asked for, so there is a pseudo-inverse.
-    let Ok(mixing) = svd.pseudo_inverse(threshold) else {
+    let axes = &airframe.allocation.axes;
+    // The rotors' columns are combinations of those of M, which has full rank.
+    let rotors = rotor_columns(airframe, effectiveness);
+    let Ok(mixing) = PseudoInverse::new(&rotors, &vec![1.0; rotors.ncols()]) else {
         return Wrench::default();
     };
     // The entries of a column that are not zero, by magnitude.
-    let shares = |axis: usize| -> Vec<f64> {
-        let column = mixing.column(axis);
+    let shares = |axis: Axis| -> Vec<f64> {
+        let Some(column) = axes.iter().position(|served| *served == axis) else {
+            return Vec::new();
+        };
+        let column = mixing.matrix.column(column);
         let least = NO_SHARE * column.amax();
         column
             .iter()
@@ -60,42 +60,37 @@ pub(crate) fn scale(airframe: &Airframe, effectiveness: &Effectiveness) -> Wrenc
         let squares: f64 = shares.iter().map(|share| share * share).sum();
         (squares / (0.5 * shares.len().max(1) as f64)).sqrt()
     };
-    let roll_pitch = torque(0).max(torque(1));
-    let yaw = shares(2).into_iter().fold(0.0, f64::max);
-    let thrust = shares(3).iter().sum::<f64>() / shares(3).len().max(1) as f64;
+    let roll_pitch = torque(Axis::Roll).max(torque(Axis::Pitch));
+    let yaw = shares(Axis::Yaw).into_iter().fold(0.0, f64::max);
+    let thrust = shares(Axis::Thrust).iter().sum::<f64>() / shares(Axis::Thrust).len().max(1) as f64;
     let per_unit = [roll_pitch, roll_pitch, yaw, thrust];
-    Wrench::from_array(std::array::from_fn(|axis| {
-        let served = airframe
-            .allocation
-            .axes
-            .iter()
-            .any(|served| *served as usize == axis);
-        if served {
-            (1.0 / per_unit[axis]) as f32
+    Wrench::from_array(Axis::ALL.map(|axis| {
+        if airframe.allocation.controls(axis) {
+            (1.0 / per_unit[axis as usize]) as f32
         } else {
             0.0
         }
     }))
 }
 
-/// B over the served axes, 4 x 2n: upper rotors, then lower ones.
+/// B, a row per served axis, 2n columns: upper rotors, then lower ones.
 fn rotor_columns(airframe: &Airframe, effectiveness: &Effectiveness) -> DMatrix<f64> {
     let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let [min, max] = pair.range();
     let most_thrust = 0.5 * pair.efforts([max, max])[0];
     let most_torque = 0.5 * (pair.efforts([min, max])[1] - pair.efforts([max, min])[1]);
     let n = airframe.units.len();
-    let mut columns = DMatrix::zeros(4, 2 * n);
-    for axis in &airframe.allocation.axes {
-        let axis = *axis as usize;
-        for i in 0..n {
-            let by_thrust = most_thrust * effectiveness.matrix[(axis, i)];
-            let by_torque = most_torque * effectiveness.matrix[(axis, n + i)];
-            columns[(axis, i)] = by_thrust - by_torque;
-            columns[(axis, n + i)] = by_thrust + by_torque;
+    let axes = &airframe.allocation.axes;
+    DMatrix::from_fn(axes.len(), 2 * n, |row, rotor| {
+        let (axis, i) = (axes[row] as usize, rotor % n);
+        let by_thrust = most_thrust * effectiveness.matrix[(axis, i)];
+        let by_torque = most_torque * effectiveness.matrix[(axis, n + i)];
+        if rotor < n {
+            by_thrust - by_torque
+        } else {
+            by_thrust + by_torque
         }
-    }
-    columns
+    })
 }
 
 #[cfg(test)]
