@@ -73,8 +73,8 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     /// Efforts of level flight inside these polygons.
     pub level: LevelFlight<'a>,
     /// Factors from roll, pitch, yaw (N m) and thrust (N) to the rows of the general path: number
-    /// of units over the vehicle's authority on the axis at the reference voltage. Roll and pitch
-    /// share the larger authority of the two; 0 on axes that the airframe does not serve.
+    /// of units over the vehicle's authority on the axis at the reference voltage; 0 on axes that the
+    /// airframe does not serve.
     pub rows: [f32; 4],
     /// Priorities where a unit cannot follow.
     pub desaturation: Desaturation,
