@@ -15,6 +15,7 @@ mod inverse;
 pub mod model;
 mod output;
 mod plausible;
+mod probe;
 mod proof;
 mod selection;
 pub mod spec;
@@ -27,6 +28,7 @@ use model::effectiveness::Effectiveness;
 use model::injectivity;
 use model::voltage;
 use output::{emit, scale};
+use probe::Probe;
 use proc_macro2::TokenStream;
 use selection::Selected;
 use tables::VoltageTable;
@@ -40,7 +42,7 @@ pub use proof::Certificate;
 pub use proof::residual::Residual;
 
 /// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> voltage ->
-/// inverse -> tables -> proof -> closed form -> warnings.
+/// inverse -> tables -> proof -> closed form -> probes -> warnings.
 ///
 /// # Errors
 /// All faults that were found, and with faults of later stages the warnings, one of which may be
@@ -57,11 +59,14 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let mut faults = Vec::new();
     let effectiveness = keep(Effectiveness::new(&airframe), &mut faults);
+    let authority = effectiveness
+        .as_ref()
+        .and_then(|effectiveness| keep(plausible::authority(&airframe, effectiveness), &mut faults));
     let invertible = keep(injectivity::prove(&airframe), &mut faults);
     let voltage = keep(voltage::tabulate(&airframe), &mut faults);
     let tolerances = keep(plausible::tolerances(&airframe), &mut faults);
-    let (Some(effectiveness), Some((injectivity, least_idle)), Some(voltage), Some(())) =
-        (effectiveness, invertible, voltage, tolerances)
+    let (Some(effectiveness), Some(()), Some((injectivity, least_idle)), Some(voltage), Some(())) =
+        (effectiveness, authority, invertible, voltage, tolerances)
     else {
         return Err(faults);
     };
@@ -80,6 +85,15 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     }
     tables.closed_form = closed_form;
     let thrust_range_n = thrust_range::delivered_range(&airframe, &tables, in_polygon);
+    let probe = Probe {
+        airframe: &airframe,
+        effectiveness: &effectiveness,
+        tables: &tables,
+        thrust_range_n: in_polygon,
+        lost_area,
+        lost_between_sides,
+    };
+    probe.run()?;
     let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);
     Ok(Compiled {
         source_name: source.name.clone(),

@@ -90,3 +90,12 @@ pub(crate) fn tolerances(airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
     let faults = limits::absurd_tolerances(airframe);
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
+
+/// Refuses rotors that give more of an axis than requests are limited to: what is beyond would be
+/// attainable and never be given.
+///
+/// # Errors
+/// The first such axis.
+pub(crate) fn authority(airframe: &Airframe, effectiveness: &Effectiveness) -> Result<(), Vec<Diagnostic>> {
+    limits::authority(airframe, effectiveness).map_or(Ok(()), |fault| Err(vec![fault]))
+}

@@ -109,8 +109,9 @@ fn faults_are_complete() {
     assert!(complaints.is_empty(), "\n{complaints}");
 }
 
-/// Every code is shown by a bad file, but for one: no airframe is known whose map is locally
-/// invertible everywhere and yet not provably injective.
+/// Every code is shown by a bad file, but for two: no airframe is known whose map is locally
+/// invertible everywhere and yet not provably injective, and faults of the compiler are planted in
+/// its unit tests.
 #[test]
 fn every_code_has_a_bad_file() {
     let shown: BTreeSet<Code> = names("toml")
@@ -121,7 +122,7 @@ fn every_code_has_a_bad_file() {
     let unseen: Vec<_> = Code::ALL
         .iter()
         .filter(|code| code.severity() == Severity::Error)
-        .filter(|code| **code != Code::NotInjective && !shown.contains(code))
+        .filter(|code| ![Code::NotInjective, Code::Probe].contains(code) && !shown.contains(code))
         .collect();
     assert!(unseen.is_empty(), "no bad file gives {unseen:?}");
 }

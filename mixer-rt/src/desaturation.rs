@@ -76,9 +76,10 @@ impl Budget {
     }
 }
 
-/// Requests are limited to this torque (N m) and thrust (N): far beyond any rotor, and small enough
-/// that no product overflows.
-const REQUEST_LIMIT: f32 = 1e5;
+/// Requests are limited to this torque (N m) and thrust (N), small enough that no product overflows.
+/// The compiler refuses airframes that give more, so a request beyond is never attainable and always
+/// flagged.
+pub const REQUEST_LIMIT: f32 = 1e5;
 
 /// True where `request` is finite and within [`REQUEST_LIMIT`].
 #[inline(always)]

@@ -8,7 +8,7 @@ pub use crate::desaturation::closed_form::{
     Border, Cell, ClosedForm, ClosedFormUnit, DesaturationMethod, Facets, Grid, Knot, NoClosedForm, Outline,
 };
 pub use crate::desaturation::general::{SHORTAGES, Variable};
-pub use crate::desaturation::{Airmode, Budget, Desaturation};
+pub use crate::desaturation::{Airmode, Budget, Desaturation, REQUEST_LIMIT};
 pub use crate::layout::{Tables, Tolerance, Unit};
 pub use crate::mix::{mix, mix_into, mix_with_health};
 pub use crate::pair::{

@@ -100,7 +100,7 @@ fn fewer_corners(polygon: &[[f64; 2]], allowed: f64) -> Vec<[f64; 2]> {
 }
 
 /// Twice the area, and the centroid.
-fn moments(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
+pub(crate) fn moments(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
     let origin = polygon[0];
     let (mut area, mut moment) = (0.0, [0.0; 2]);
     for pair in polygon[1..].windows(2) {

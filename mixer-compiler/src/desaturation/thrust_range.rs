@@ -1,7 +1,7 @@
 //! The range of bare thrust and level flight at its ends, by the mixer itself: a frame that cannot
 //! hover is refused.
 
-use mixer_rt::tables::{Airmode, Budget};
+use mixer_rt::tables::{Airmode, Budget, REQUEST_LIMIT};
 use mixer_rt::{Axis, Direction, Saturation, Wrench};
 
 use crate::airframe::{Airframe, Unit};
@@ -9,9 +9,6 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::tables::{AnyMix, LevelFlightTable, MixerTables};
-
-/// More thrust than any airframe has, N.
-const BEYOND_N: f32 = 1e5;
 
 /// Halvings of the thrusts between one that is delivered and one that is not.
 const HALVINGS: usize = 24;
@@ -69,7 +66,7 @@ fn level_flight(airframe: &Airframe, tables: &MixerTables) -> Option<LevelFlight
         let efforts: Vec<[f64; 2]> = airframe.units.iter().map(efforts).collect();
         is_level.then_some((achieved.thrust_n, efforts))
     };
-    let ((least_n, at_least), (largest_n, at_largest)) = (end(0.0)?, end(BEYOND_N)?);
+    let ((least_n, at_least), (largest_n, at_largest)) = (end(0.0)?, end(REQUEST_LIMIT)?);
     let efforts: Vec<[[f64; 2]; 2]> = at_least.into_iter().zip(at_largest).map(Into::into).collect();
     let level = || LevelFlightTable::new([least_n, largest_n], &efforts, tables.attainable.scale);
     (least_n < largest_n).then(level)

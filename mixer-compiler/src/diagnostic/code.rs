@@ -115,6 +115,10 @@ catalogue! {
     ToleranceAbsurd = 206,
     /// The pseudo-inverse M+ is not accurate: the layout hardly tells its axes apart.
     PseudoInverse = 207,
+    /// The emitted mixer does not give what the airframe's physics demand: a fault of the compiler.
+    Probe = 208,
+    /// An axis of which the rotors give more than requests are limited to.
+    Authority = 209,
 
     /// Thrust and torque in a ratio that no propeller has: one of them is in another unit.
     PairUnits = 300,

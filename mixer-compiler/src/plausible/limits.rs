@@ -1,9 +1,12 @@
 //! Rules on what the mixer is asked to keep: tolerances and the reserve of yaw.
 
+use mixer_rt::tables::REQUEST_LIMIT;
+
 use super::facts::Facts;
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
-use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
+use crate::model::{PairMap, voltage};
 
 /// Share of a unit's largest effort above which a tolerance is a mistake.
 const WIDE: f64 = 0.01;
@@ -68,6 +71,35 @@ pub(super) fn absurd_tolerances(airframe: &Airframe) -> Vec<Diagnostic> {
         .filter(|tolerance| is_absurd(airframe, *tolerance))
         .map(|tolerance| diagnostic(airframe, Code::ToleranceAbsurd, tolerance, ABSURD))
         .collect()
+}
+
+/// An axis of which the rotors give more, at the voltage where they give most, than requests are
+/// limited to.
+pub(super) fn authority(airframe: &Airframe, effectiveness: &Effectiveness) -> Option<Diagnostic> {
+    let limit = f64::from(REQUEST_LIMIT);
+    let (scale, factors) = (
+        PairMap::new(&airframe.pair, &airframe.throttle).scale(),
+        voltage::largest_factors(airframe),
+    );
+    let efforts = [0, 1].map(|k| factors[k] * scale[k]);
+    let most = |axis: Axis| effectiveness.largest(axis as usize, efforts);
+    let axis = Axis::ALL.into_iter().rev().find(|axis| most(*axis) > limit)?;
+    let unit = if axis == Axis::Thrust { "N" } else { "N m" };
+    Some(airframe.diagnostic(
+        Code::Authority,
+        if axis == Axis::Yaw {
+            "pair.torque_nm"
+        } else {
+            "pair.thrust_n"
+        },
+        format!(
+            "the rotors give {} {unit} of {axis}; requests are limited to {} {unit}",
+            rounded(most(axis)),
+            number(limit)
+        ),
+        "",
+        "expected thrusts in newtons, torques in newton metres and positions in metres",
+    ))
 }
 
 /// Tolerances above a hundredth of the largest effort that are no errors.

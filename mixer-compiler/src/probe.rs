@@ -1,0 +1,341 @@
+//! Probes of what is emitted: the tables are run through `mixer-rt` and compared with the physics of
+//! the airframe file in f64.
+//!
+//! The proof holds for the inverse map of one unit. M+, the polygon, the sides of the closed form,
+//! channels and signs come after it. A fault of the compiler in any of these gives an airframe that
+//! compiles and flies wrong, so the whole mixer is tried before the compiler says yes:
+//!
+//! ```text
+//! sets        corners of the polygon and points on the sides are attainable; no more area is lost than stated
+//! wrenches    each axis both ways and mixtures, small and large, at three thrusts and three voltages
+//! rotors out  every rotor alone, and pairs of rotors: level flight and torques from there
+//! ```
+//!
+//! A wrench is delivered, or flagged and sound: no torque reversed or exceeded, the direction of
+//! (roll, pitch) kept, and with airmode disabled no more thrust than asked. It has to be delivered
+//! where the efforts of least norm are well inside every unit's polygon. The physics ([`physics`])
+//! know nothing of M: they add forces and torques unit by unit.
+
+mod physics;
+mod sets;
+
+use mixer_rt::tables::Airmode;
+use mixer_rt::{Axis, Direction, Health, Wrench};
+
+use crate::airframe::Airframe;
+use crate::desaturation::attainable::AreaLoss;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::model::PairMap;
+use crate::model::effectiveness::Effectiveness;
+use crate::tables::MixerTables;
+use physics::Physics;
+
+/// Share of an axis' authority by which a flagged wrench may be exceeded, reversed or off its
+/// direction.
+const SOUND: f64 = 3e-3;
+
+/// Thrusts that are probed, as shares of the range of level flight.
+const THRUSTS: [f64; 3] = [0.2, 0.5, 0.8];
+
+/// Sizes of the torques, as shares of the authority: one that most frames deliver, one that none
+/// does.
+const SIZES: [f64; 2] = [0.2, 1.0];
+
+/// Signs of roll, pitch and yaw: each axis both ways, then mixtures.
+const DIRECTIONS: [[f64; 3]; 14] = [
+    [1.0, 0.0, 0.0],
+    [-1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, -1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [0.0, 0.0, -1.0],
+    [1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, -1.0, -1.0],
+    [-1.0, 1.0, 1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [-1.0, -1.0, -1.0],
+];
+
+/// Share of the way from its centre to its border within which efforts are well inside a polygon.
+const INSIDE: f64 = 0.85;
+
+/// Most pairs of rotors out that are probed, taken evenly from all.
+const MOST_PAIRS: usize = 28;
+
+/// The emitted tables with what they are judged by.
+pub(crate) struct Probe<'a> {
+    /// The airframe.
+    pub(crate) airframe: &'a Airframe,
+    /// M and M+.
+    pub(crate) effectiveness: &'a Effectiveness,
+    /// What is emitted.
+    pub(crate) tables: &'a MixerTables,
+    /// Least and largest thrust of level flight at the reference voltage, N.
+    pub(crate) thrust_range_n: [f32; 2],
+    /// Share of the attainable set's area that the polygon loses.
+    pub(crate) lost_area: AreaLoss,
+    /// Share of that area that the sides of the closed form lose.
+    pub(crate) lost_between_sides: Option<f64>,
+}
+
+impl Probe<'_> {
+    /// Runs the probes.
+    ///
+    /// # Errors
+    /// The first one that fails: a fault of the compiler.
+    pub(crate) fn run(&self) -> Result<(), Vec<Diagnostic>> {
+        let map = PairMap::new(&self.airframe.pair, &self.airframe.throttle);
+        self.sets(&map)
+            .and_then(|()| self.whole(&map))
+            .and_then(|()| self.rotors_out(&map))
+            .map_err(|message| {
+                vec![self.airframe.diagnostic(
+                    Code::Probe,
+                    "name",
+                    message,
+                    "",
+                    "this is a fault of the compiler, not of the file: please report it with the file",
+                )]
+            })
+    }
+
+    /// Wrenches with all rotors.
+    fn whole(&self, map: &PairMap) -> Result<(), String> {
+        for volts in self.voltages() {
+            let at = At::new(self, map, volts, Health::GOOD);
+            for share in THRUSTS {
+                let thrust = at.thrust(share);
+                at.probe([0.0, 0.0, 0.0, thrust])?;
+                for (size, direction) in SIZES.iter().flat_map(|size| DIRECTIONS.map(|d| (size, d))) {
+                    let [roll, pitch, yaw] =
+                        [0, 1, 2].map(|axis| size * direction[axis] * at.authority[axis]);
+                    at.probe([roll, pitch, yaw, thrust])?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Wrenches with one and with two rotors out, where the others keep the frame level.
+    fn rotors_out(&self, map: &PairMap) -> Result<(), String> {
+        let rotors = self.airframe.rotors() as u8;
+        let singles = (0..rotors).map(|rotor| Health::GOOD.with_failed(rotor));
+        let pairs: Vec<Health> = (0..rotors)
+            .flat_map(|first| (first + 1..rotors).map(move |second| (first, second)))
+            .map(|(first, second)| Health::GOOD.with_failed(first).with_failed(second))
+            .collect();
+        let step = pairs.len().div_ceil(MOST_PAIRS).max(1);
+        for health in singles.chain(pairs.into_iter().step_by(step)) {
+            let at = At::new(self, map, self.airframe.reference_v(), health);
+            let level = [0.0, 0.0, 0.0, at.thrust(0.4)];
+            if !at.probe(level)? {
+                continue;
+            }
+            for [roll, pitch, yaw] in [
+                [0.0, 0.0, 1.0],
+                [0.0, 0.0, -1.0],
+                [1.0, -1.0, 0.0],
+                [-1.0, -1.0, 1.0],
+            ] {
+                let [p, q, r, _] = at.authority;
+                at.probe([0.2 * roll * p, 0.2 * pitch * q, 0.2 * yaw * r, level[3]])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends and middle of the voltage range, V.
+    fn voltages(&self) -> Vec<f64> {
+        let range = self.airframe.voltage.as_ref().map(|voltage| voltage.range_v);
+        range.map_or(vec![0.0], |[low, high]| vec![low, 0.5 * (low + high), high])
+    }
+}
+
+/// The mixer at one voltage with some rotors out.
+struct At<'a> {
+    probe: &'a Probe<'a>,
+    physics: Physics<'a>,
+    volts: f64,
+    health: Health,
+    /// `[k_f, k_Q]`.
+    factors: [f64; 2],
+    /// The most of each axis with all rotors, N m and N.
+    authority: [f64; 4],
+}
+
+impl<'a> At<'a> {
+    fn new(probe: &'a Probe<'a>, map: &'a PairMap, volts: f64, health: Health) -> Self {
+        let voltage = probe.airframe.voltage.as_ref();
+        let factors = voltage.map_or([1.0; 2], |voltage| {
+            [voltage.thrust_factor(volts), voltage.torque_factor(volts)]
+        });
+        let scale = map.scale();
+        let efforts = [0, 1].map(|k| factors[k] * scale[k]);
+        At {
+            probe,
+            physics: Physics {
+                airframe: probe.airframe,
+                map,
+            },
+            volts,
+            health,
+            factors,
+            authority: [0, 1, 2, 3].map(|axis| probe.effectiveness.largest(axis, efforts)),
+        }
+    }
+
+    /// The thrust at a share of the range of level flight, N.
+    fn thrust(&self, share: f64) -> f64 {
+        let [least, most] = self.probe.thrust_range_n.map(f64::from);
+        self.factors[0] * (least + share * (most - least))
+    }
+
+    /// Mixes a wrench `[roll, pitch, yaw, thrust]`, N m and N. True where roll, pitch and yaw are
+    /// delivered.
+    ///
+    /// # Errors
+    /// What is wrong with the answer.
+    fn probe(&self, asked: [f64; 4]) -> Result<bool, String> {
+        let Probe { airframe, tables, .. } = self.probe;
+        let asked = asked.map(|x| x as f32);
+        let setpoint = Wrench::from_array(asked);
+        let fault = |what: String| {
+            let mut out = String::new();
+            for channel in (0..airframe.rotors()).filter(|channel| self.health.has_failed(*channel as u8)) {
+                out += &format!(", rotor {channel} out");
+            }
+            let volts = if airframe.voltage.is_some() {
+                format!(" at {:.2} V", self.volts)
+            } else {
+                String::new()
+            };
+            format!(
+                "the emitted mixer fails a probe: asked {}{volts}{out}, {what}",
+                words(&asked.map(f64::from))
+            )
+        };
+        let (throttle, achieved, saturation) = tables
+            .mix_with_health(&setpoint, self.volts as f32, self.health)
+            .map_err(|error| fault(error.to_string()))?;
+        for (channel, &throttle) in throttle.iter().enumerate() {
+            let allowed = if self.health.has_failed(channel as u8) {
+                throttle == 0.0
+            } else {
+                (tables.throttle.min..=tables.throttle.max).contains(&throttle)
+            };
+            if !allowed {
+                return Err(fault(format!("output {channel} gets {throttle}")));
+            }
+        }
+        let given = self.physics.wrench(&throttle, self.factors, self.health);
+        let (asked, achieved) = (asked.map(f64::from), achieved.to_array().map(f64::from));
+        let tolerance = tables.tolerance.wrench.map(f64::from);
+        let served = || {
+            Axis::ALL
+                .into_iter()
+                .filter(|axis| airframe.allocation.controls(*axis))
+        };
+        let is_inside = self.health.is_good() && self.is_inside(&asked);
+        let mut is_level = true;
+        for axis in served() {
+            let k = axis as usize;
+            let is_true = (given[k] - achieved[k]).abs() <= tolerance[k];
+            if !is_true {
+                return Err(fault(format!(
+                    "reported {}, given {}",
+                    words(&achieved),
+                    words(&given)
+                )));
+            }
+            let is_flagged = [Direction::Positive, Direction::Negative]
+                .into_iter()
+                .any(|direction| saturation.is_saturated(axis, direction));
+            is_level &= !is_flagged || axis == Axis::Thrust;
+            if !is_flagged && (given[k] - asked[k]).abs() > 2.0 * tolerance[k] {
+                return Err(fault(format!("given {} without a flag on {axis}", words(&given))));
+            }
+            if is_flagged && is_inside {
+                return Err(fault(format!(
+                    "given {}, although all units could",
+                    words(&given)
+                )));
+            }
+        }
+        // With rotors out there is a level to return to only where level flight is attainable; the
+        // caller goes on from there.
+        if (self.health.is_good() || is_level || asked[..3] != [0.0; 3])
+            && let Some(axis) = self.unsound(&asked, &given)
+        {
+            return Err(fault(format!(
+                "given {}: {axis} is exceeded, reversed or off its direction",
+                words(&given)
+            )));
+        }
+        Ok(is_level)
+    }
+
+    /// True where the efforts of least norm are well inside every unit's polygon: such a wrench is
+    /// delivered.
+    fn is_inside(&self, asked: &[f64; 4]) -> bool {
+        let Probe {
+            effectiveness,
+            tables,
+            ..
+        } = self.probe;
+        let (set, n) = (&tables.attainable, self.probe.airframe.units.len());
+        let scaled = |row: usize, k: usize| {
+            let least_norm = effectiveness.pseudo_inverse.row(row);
+            let effort: f64 = least_norm
+                .iter()
+                .zip(asked)
+                .map(|(share, asked)| share * asked)
+                .sum();
+            effort / (self.factors[k] * f64::from(set.scale[k]))
+        };
+        (0..n).all(|unit| {
+            let efforts = [scaled(unit, 0), scaled(n + unit, 1)];
+            let centre = set.centre.map(f64::from);
+            let [f, q] = [0, 1].map(|k| centre[k] + (efforts[k] - centre[k]) / INSIDE);
+            set.corners.iter().all(|corner| {
+                let [along_f, along_q] = corner.edge.map(f64::from);
+                along_q * f - along_f * q <= f64::from(corner.bound)
+            })
+        })
+    }
+
+    /// An axis on which a wrench is not within what was asked.
+    fn unsound(&self, asked: &[f64; 4], given: &[f64; 4]) -> Option<Axis> {
+        let allocation = &self.probe.airframe.allocation;
+        let room = |axis: Axis| {
+            let tolerance = self.probe.tables.tolerance.wrench[axis as usize];
+            f64::from(tolerance) + SOUND * self.authority[axis as usize]
+        };
+        let is_beyond = |axis: &Axis| {
+            let (asked, given) = (asked[*axis as usize], given[*axis as usize]);
+            if *axis == Axis::Thrust {
+                return allocation.airmode == Airmode::Disabled && given > asked + room(*axis);
+            }
+            given > asked.max(0.0) + room(*axis) || given < asked.min(0.0) - room(*axis)
+        };
+        let served = |axis: &Axis| allocation.controls(*axis);
+        if let Some(axis) = Axis::ALL.into_iter().filter(served).find(is_beyond) {
+            return Some(axis);
+        }
+        let [roll, pitch] = [Axis::Roll, Axis::Pitch];
+        let size = libm::hypot(asked[0], asked[1]);
+        let across = (asked[0] * given[1] - asked[1] * given[0]).abs();
+        let is_off = served(&roll) && served(&pitch) && across > size * room(roll).max(room(pitch));
+        is_off.then_some(roll)
+    }
+}
+
+/// A wrench in words.
+fn words([roll, pitch, yaw, thrust]: &[f64; 4]) -> String {
+    format!("roll {roll:.4} N m, pitch {pitch:.4} N m, yaw {yaw:.4} N m, thrust {thrust:.3} N")
+}
+
+#[cfg(test)]
+mod tests;

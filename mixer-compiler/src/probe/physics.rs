@@ -1,0 +1,59 @@
+//! What throttles give by the airframe file alone: forces and torques of each unit, added up in f64.
+
+use mixer_rt::Health;
+
+use crate::airframe::{Airframe, Unit};
+use crate::model::PairMap;
+
+/// The physics of one airframe.
+pub(super) struct Physics<'a> {
+    /// The airframe.
+    pub(super) airframe: &'a Airframe,
+    /// Its pair.
+    pub(super) map: &'a PairMap,
+}
+
+impl Physics<'_> {
+    /// `[roll, pitch, yaw, thrust]` (N m, N) of a throttle per channel at the factors `[k_f, k_Q]`.
+    pub(super) fn wrench(&self, throttle: &[f32], factors: [f64; 2], health: Health) -> [f64; 4] {
+        let efforts = |unit: &Unit| self.efforts(unit, throttle, health);
+        self.wrench_of(self.airframe.units.iter().map(efforts), factors)
+    }
+
+    /// The same of the units' efforts `[f, Q]` at the reference voltage: the force f a at r and the
+    /// reaction -s Q a of the rotors.
+    pub(super) fn wrench_of(&self, efforts: impl Iterator<Item = [f64; 2]>, factors: [f64; 2]) -> [f64; 4] {
+        let mut wrench = [0.0; 4];
+        for (unit, efforts) in self.airframe.units.iter().zip(efforts) {
+            let [f, q] = [factors[0] * efforts[0], factors[1] * efforts[1]];
+            let ([x, y, z], axis) = (unit.position_m, unit.axis);
+            let [fx, fy, fz] = axis.map(|a| f * a);
+            let reaction = -unit.spin_sign(self.airframe.pair.upper_spin) * q;
+            wrench[0] += y * fz - z * fy + reaction * axis[0];
+            wrench[1] += z * fx - x * fz + reaction * axis[1];
+            wrench[2] += x * fy - y * fx + reaction * axis[2];
+            wrench[3] -= fz;
+        }
+        wrench
+    }
+
+    /// `[f, Q]` of a unit. A rotor that is out gives nothing; its partner gives what the file says
+    /// of a rotor alone, else the pair's polynomial at throttle 0 of the other.
+    fn efforts(&self, unit: &Unit, throttle: &[f32], health: Health) -> [f64; 2] {
+        let channels = [unit.upper_channel, unit.lower_channel];
+        let [u, l] = channels.map(|channel| f64::from(throttle[channel]));
+        let pair = &self.airframe.pair;
+        match channels.map(|channel| health.has_failed(channel as u8)) {
+            [false, false] => self.map.efforts([u, l]),
+            [true, true] => [0.0; 2],
+            [false, true] => match &pair.lower_out {
+                Some(alone) => alone.efforts(u),
+                None => self.map.efforts([u, 0.0]),
+            },
+            [true, false] => match &pair.upper_out {
+                Some(alone) => alone.efforts(l),
+                None => self.map.efforts([0.0, l]),
+            },
+        }
+    }
+}
