@@ -134,7 +134,7 @@ fn circle(count: usize, arm: f64, random: &mut Random) -> Vec<Unit> {
         _ => 0.5 * spacing,
     };
     // An odd number of units has no way to alternate, and like spins are usual.
-    let alternate = count % 2 == 0 || random.below(2) == 0;
+    let alternate = count.is_multiple_of(2) || random.below(2) == 0;
     (0..count)
         .map(|k| {
             let [x, y] = polar(arm, first + k as f64 * spacing);
@@ -187,7 +187,7 @@ fn place(class: Class, random: &mut Random) -> Vec<Unit> {
                     at(
                         -row(k / 2),
                         if right { wide } else { -wide },
-                        (k + k / 2 * alike) % 2 == 0,
+                        (k + k / 2 * alike).is_multiple_of(2),
                     )
                 })
                 .collect()
