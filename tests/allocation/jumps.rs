@@ -4,8 +4,7 @@
 //! `MIXER_SEED=2 PROPTEST_CASES=400 cargo test --release -p mixer-tests --test allocation jumps --
 //! --nocapture` counts them on 400 random frames, 250 pairs of neighbours each.
 
-use microlp::Error;
-use mixer_tests::optimum::change;
+use mixer_tests::motion::{JUMP, Motion};
 use mixer_tests::request::{Frame, Request};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -14,53 +13,8 @@ use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use crate::layout::{Draw, layout, moderate_request};
 use crate::number;
 
-/// The largest change of a throttle where nothing forces more.
-const JUMP: f32 = 0.02;
-
-/// Times what the priorities force a throttle may move.
-const FORCED: f64 = 2.0;
-
 /// Pairs of neighbours per frame.
 const PAIRS: usize = 250;
-
-/// How throttles move from a request to its neighbour.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Motion {
-    /// By no more than [`JUMP`].
-    Small,
-    /// By no more than [`FORCED`] times what the priorities themselves force.
-    Forced,
-    /// From one optimum to another that is apart from it, as any choice of the best must:
-    /// [`change::parted`].
-    Parted,
-    /// In no such way; said in words.
-    Jump(String),
-}
-
-impl Motion {
-    /// From `request` to `near`.
-    ///
-    /// # Errors
-    /// The oracle's solver gave up.
-    pub(crate) fn between(frame: &Frame, request: &Request, near: &Request) -> Result<Motion, Error> {
-        let requests = [request, near];
-        let [answer, moved] = requests.map(|request| request.mix(frame).expect("finite"));
-        let change = answer.change(&moved);
-        if change <= JUMP {
-            return Ok(Motion::Small);
-        }
-        let forced = change::forced(frame, requests, &answer)?;
-        if forced.is_some_and(|forced| f64::from(change) <= FORCED * forced) {
-            return Ok(Motion::Forced);
-        }
-        if change::parted(frame, requests, [&answer, &moved])? {
-            return Ok(Motion::Parted);
-        }
-        Ok(Motion::Jump(format!(
-            "{change}, {forced:?} of it forced: {request:?} -> {answer:?}, then {near:?} -> {moved:?}"
-        )))
-    }
-}
 
 /// A request with up to `out_most` rotors out, and which axis changes to the next one, by 1e-4 of
 /// it: 4 for all.

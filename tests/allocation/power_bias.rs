@@ -3,11 +3,12 @@
 
 use mixer_rt::Health;
 use mixer_tests::frames::{self, AIRMODES, Options, Place};
+use mixer_tests::motion::Motion;
 use mixer_tests::request::{Answer, Frame, Request};
 use proptest::prelude::*;
 
 use crate::REFERENCE_V;
-use crate::jumps::{self, Motion, neighbours};
+use crate::jumps::{self, neighbours};
 use crate::layout::{any_request, attainable_request, biased_layout};
 use crate::polygons::delivered;
 use crate::properties::{config, each, many, sound};

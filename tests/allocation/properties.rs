@@ -5,12 +5,13 @@
 //! brought to, as an airframe file and a wrench.
 
 use mixer_rt::{Axis, SetpointError};
+use mixer_tests::motion::Motion;
 use mixer_tests::request::{Frame, Request};
-use mixer_tests::soundness;
+use mixer_tests::soundness::{self, Allowed};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::jumps::{self, Motion, neighbours};
+use crate::jumps::{self, neighbours};
 use crate::layout::{Draw, Layout, any_request, attainable_request, layout};
 use crate::polygons::delivered;
 use crate::{REFERENCE_V, out};
@@ -65,9 +66,14 @@ pub(crate) fn sound(frame: &Frame, draw: &Draw) -> Result<(), TestCaseError> {
 /// As [`sound`], but that the thrust may be raised to `least_n`.
 fn sound_above(frame: &Frame, request: &Request, least_n: f64) -> Result<(), TestCaseError> {
     let answer = request.mix(frame).expect("finite");
-    let fault = soundness::fault_above(frame, request, &answer, least_n);
-    let fault = fault.map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
-    prop_assert_eq!(fault, None, "{:?} -> {:?}", request, answer);
+    let allowed = Allowed {
+        least_thrust_n: least_n,
+        ..Allowed::default()
+    };
+    let faults = soundness::faults(frame, request, &answer, allowed);
+    let faults =
+        faults.map_err(|error| TestCaseError::fail(format!("the oracle on {request:?}: {error}")))?;
+    prop_assert_eq!(faults, [], "{:?} -> {:?}", request, answer);
     Ok(())
 }
 
@@ -150,7 +156,7 @@ proptest! {
             match request.mix(frame) {
                 Ok(answer) => {
                     prop_assert_eq!(refusal, None);
-                    let fault = soundness::fault_of_form(frame, &request, &answer);
+                    let fault = soundness::faults_of_form(frame, &request, &answer).next();
                     prop_assert_eq!(fault, None, "{:?} -> {:?}", request, answer);
                 }
                 Err(error) => prop_assert_eq!(Some(error), refusal),

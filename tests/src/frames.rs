@@ -1,4 +1,4 @@
-//! Frames to test on: regular ones and random ones, as airframe files with the paper's pair.
+//! Frames to test on: the zoo of what users have, and frames by hand with the paper's pair.
 
 use std::fmt::Write as _;
 
@@ -7,6 +7,11 @@ use mixer_compiler::{Compiled, Source};
 use mixer_setpoints::Random;
 
 pub mod counted;
+pub mod pairs;
+mod real;
+pub mod zoo;
+
+pub use real::{zoo, zoo_with_bench_data};
 
 /// The voltage of `airframes/isae-x8.toml` with exponents that differ, so that a test sees which
 /// factor is applied.

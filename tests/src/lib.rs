@@ -14,10 +14,12 @@ pub mod frames;
 pub mod golden;
 pub mod image;
 pub mod interior_point;
+pub mod motion;
 pub mod optimum;
 pub mod physics;
 pub mod request;
 pub mod shortfall;
+pub mod soak;
 pub mod soundness;
 
 use std::path::{Path, PathBuf};

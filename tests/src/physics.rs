@@ -2,13 +2,31 @@
 //! against.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::{RotorAlone, Voltage};
+use mixer_compiler::airframe::{Airframe, RotorAlone, Voltage};
 use mixer_compiler::model::PairMap;
 use mixer_rt::Health;
-use nalgebra::{Matrix4xX, MatrixXx4};
+use nalgebra::{Matrix4xX, MatrixXx4, Vector3};
 
 /// Newton steps that tell whether efforts are attainable.
 const STEPS: usize = 40;
+
+/// M of a layout. A unit at r with unit thrust axis a gives the force f a, which has the torque
+/// r x f a about the centre of gravity, and the reaction -s Q a of its rotors.
+fn effectiveness(airframe: &Airframe) -> Matrix4xX<f64> {
+    let n = airframe.units.len();
+    let mut matrix = Matrix4xX::zeros(2 * n);
+    for (i, unit) in airframe.units.iter().enumerate() {
+        let [position, axis] = [unit.position_m, unit.axis].map(Vector3::from);
+        let spin = if unit.upper_spin == airframe.pair.upper_spin {
+            1.0
+        } else {
+            -1.0
+        };
+        matrix.set_column(i, &position.cross(&axis).push(-axis.z));
+        matrix.set_column(n + i, &(-spin * axis).push(0.0));
+    }
+    matrix
+}
 
 /// The forward physics of one frame.
 pub struct Physics {
@@ -31,7 +49,7 @@ impl Physics {
         let airframe = &compiled.airframe;
         Physics {
             pair: PairMap::new(&airframe.pair, &airframe.throttle),
-            matrix: compiled.effectiveness.matrix.clone(),
+            matrix: effectiveness(airframe),
             pseudo_inverse: compiled.effectiveness.pseudo_inverse.clone(),
             channels: airframe
                 .units

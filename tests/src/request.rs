@@ -29,6 +29,12 @@ impl Frame {
         }
     }
 
+    /// The authority of an axis (N m, N) to divide by: 1 of one that no unit has a part in.
+    pub fn size(&self, axis: usize) -> f64 {
+        let authority = self.authority[axis];
+        if authority > 0.0 { authority } else { 1.0 }
+    }
+
     /// Its priorities.
     pub fn allocation(&self) -> &Allocation {
         &self.compiled.airframe.allocation

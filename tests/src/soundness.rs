@@ -1,5 +1,7 @@
 //! Faults of an answer that no frame and no request excuses, optimal or not.
 
+use std::fmt;
+
 use mixer_rt::{Axis, Direction, tables::Airmode};
 
 use crate::optimum::Oracle;
@@ -13,68 +15,137 @@ const ROUNDING: f64 = 5e-6;
 /// may miss.
 const SLACK: f64 = 1e-3;
 
-/// The first fault of an answer, in words; `None` where it is sound.
-///
-/// # Errors
-/// The solver of the oracle gave up.
-pub fn fault(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<String>, microlp::Error> {
-    fault_above(frame, request, answer, 0.0)
+/// What is wrong with an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A throttle outside its range, or not 0 of a rotor that is out.
+    Throttle,
+    /// The achieved wrench is not what the throttles give.
+    Truth,
+    /// A flag that is missing or without cause.
+    Flag,
+    /// An axis that is reversed or given more of than asked.
+    Overstepped,
+    /// (roll, pitch) in another direction than asked.
+    Turned,
+    /// Thrust above the request and the least, with airmode "disabled".
+    Raised,
 }
 
-/// As [`fault`], of an answer that may raise the thrust up to `least_thrust_n`.
+/// A fault of an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// What is wrong.
+    pub kind: Kind,
+    /// By how much: as a share of the axis' authority, of a throttle as it is.
+    pub size: f64,
+    /// In words.
+    pub said: String,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.said)
+    }
+}
+
+/// What an answer may overstep before it is at fault.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowed {
+    /// Share of the authority by which an axis may be reversed or exceeded, beside what the inverse
+    /// map may miss.
+    pub slack: f64,
+    /// The thrust that it may be raised to, N.
+    pub least_thrust_n: f64,
+}
+
+impl Default for Allowed {
+    fn default() -> Self {
+        Allowed {
+            slack: SLACK,
+            least_thrust_n: 0.0,
+        }
+    }
+}
+
+/// The first fault of an answer; `None` where it is sound.
 ///
 /// # Errors
 /// The solver of the oracle gave up.
-pub fn fault_above(
+pub fn fault(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<Fault>, microlp::Error> {
+    let faults = faults(frame, request, answer, Allowed::default())?;
+    Ok(faults.into_iter().next())
+}
+
+/// All faults of an answer, one of each axis and kind at most.
+///
+/// # Errors
+/// The solver of the oracle gave up.
+pub fn faults(
     frame: &Frame,
     request: &Request,
     answer: &Answer,
-    least_thrust_n: f64,
-) -> Result<Option<String>, microlp::Error> {
-    match fault_of_form(frame, request, answer) {
-        Some(fault) => Ok(Some(fault)),
-        None => overstepping(frame, request, answer, least_thrust_n),
-    }
+    allowed: Allowed,
+) -> Result<Vec<Fault>, microlp::Error> {
+    let mut faults: Vec<Fault> = faults_of_form(frame, request, answer).collect();
+    faults.extend(overstepping(frame, request, answer, allowed)?);
+    Ok(faults)
 }
 
-/// As [`fault`], of what an answer says alone: throttles in range, the truth about the wrench, the
+/// As [`faults`], of what an answer says alone: throttles in range, the truth about the wrench, the
 /// right flags.
-pub fn fault_of_form(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
-    throttles(frame, request, answer)
-        .or_else(|| truth(frame, request, answer))
-        .or_else(|| flags(frame, request, answer))
+pub fn faults_of_form(frame: &Frame, request: &Request, answer: &Answer) -> impl Iterator<Item = Fault> {
+    let throttles = throttles(frame, request, answer).into_iter();
+    throttles
+        .chain(truth(frame, request, answer))
+        .chain(flags(frame, request, answer))
 }
 
 /// Throttles within the range, stopped rotors at 0.
-fn throttles(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
+fn throttles(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
     let range = frame.compiled.airframe.throttle;
     let count = 2 * frame.physics.units();
+    let fault = |size: f64, said: String| Fault {
+        kind: Kind::Throttle,
+        size,
+        said,
+    };
     if answer.throttle.len() != count {
-        return Some(format!("{} throttles for {count} rotors", answer.throttle.len()));
+        return Some(fault(
+            f64::INFINITY,
+            format!("{} throttles for {count} rotors", answer.throttle.len()),
+        ));
     }
     (0..).zip(&answer.throttle).find_map(|(channel, &throttle)| {
+        let value = f64::from(throttle);
         let sound = if request.health.has_failed(channel) {
             throttle == 0.0
         } else {
-            (range.min..=range.max).contains(&f64::from(throttle))
+            (range.min..=range.max).contains(&value)
         };
-        (!sound).then(|| format!("throttle {throttle} at output {channel}"))
+        (!sound).then(|| fault(value, format!("throttle {throttle} at output {channel}")))
     })
 }
 
 /// The achieved wrench is what the throttles give.
-fn truth(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
+fn truth(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
     let given = frame.physics.wrench(&answer.throttle, request.volts);
     Axis::ALL.into_iter().enumerate().find_map(|(index, axis)| {
         let (said, given) = (answer.achieved[index], given[index]);
-        let true_enough = (said - given).abs() <= ROUNDING * frame.authority[index];
-        (!true_enough).then(|| format!("{}: {said} said, {given} given by the throttles", axis.name()))
+        let size = (said - given).abs() / frame.size(index);
+        // What is not a number is not true.
+        let is_true = size <= ROUNDING;
+        (!is_true).then(|| Fault {
+            kind: Kind::Truth,
+            size,
+            said: format!("{}: {said} said, {given} given by the throttles", axis.name()),
+        })
     })
 }
 
 /// Every axis is flagged on the side on which it was missed by more than the tolerance, and on no
 /// other; the voltage is flagged where it was clamped.
-fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
+fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
     let tolerance = frame.compiled.tables.tolerance.wrench.map(f64::from);
     let axes = Axis::ALL.into_iter().enumerate().find_map(|(index, axis)| {
         let missing = request.asked()[index] - answer.achieved[index];
@@ -87,7 +158,11 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
                 let excess = missing - tolerance[index];
                 let wrong = excess.abs() > rounding && flagged != (excess > 0.0);
                 let name = axis.name();
-                wrong.then(|| format!("{name} {direction:?}: {missing} missing, flag {flagged}"))
+                wrong.then(|| Fault {
+                    kind: Kind::Flag,
+                    size: missing.abs() / frame.size(index),
+                    said: format!("{name} {direction:?}: {missing} missing, flag {flagged}"),
+                })
             })
     });
     let clamped = frame
@@ -95,7 +170,13 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<String> {
         .voltage_range()
         .is_some_and(|[low, high]| !(low as f32..=high as f32).contains(&request.volts));
     let voltage = clamped != answer.saturation.voltage_clamped();
-    axes.or_else(|| voltage.then(|| format!("voltage {}: clamped {clamped}", request.volts)))
+    axes.or_else(|| {
+        voltage.then(|| Fault {
+            kind: Kind::Flag,
+            size: 0.0,
+            said: format!("voltage {}: clamped {clamped}", request.volts),
+        })
+    })
 }
 
 /// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode
@@ -105,17 +186,19 @@ fn overstepping(
     frame: &Frame,
     request: &Request,
     answer: &Answer,
-    least_thrust_n: f64,
-) -> Result<Option<String>, microlp::Error> {
+    Allowed {
+        slack,
+        least_thrust_n,
+    }: Allowed,
+) -> Result<Vec<Fault>, microlp::Error> {
     let served = frame.served();
     let mut asked = request.asked();
     for (asked, _) in asked.iter_mut().zip(served).filter(|(_, served)| !served) {
         *asked = 0.0;
     }
-    let slack: [f64; 4] = std::array::from_fn(|axis| {
-        f64::from(frame.compiled.tables.tolerance.wrench[axis]) + SLACK * frame.authority[axis]
-    });
-    let mut fault = None;
+    let tolerance = frame.compiled.tables.tolerance.wrench.map(f64::from);
+    let slack: [f64; 4] = std::array::from_fn(|axis| tolerance[axis] + slack * frame.authority[axis]);
+    let mut faults = Vec::new();
     for (index, axis) in Axis::ALL
         .into_iter()
         .enumerate()
@@ -125,21 +208,29 @@ fn overstepping(
         let (asked, got) = (asked[index], answer.achieved[index]);
         let beyond = (got * asked.signum() - asked.abs()).max(-got * asked.signum());
         if beyond > slack[index] {
-            fault = Some(format!("{}: {asked} asked, {got} given", axis.name()));
+            faults.push(Fault {
+                kind: Kind::Overstepped,
+                size: beyond / frame.size(index),
+                said: format!("{}: {asked} asked, {got} given", axis.name()),
+            });
         }
     }
     if served[0] && served[1] {
         let length = |[roll, pitch]: [f64; 2]| (roll * roll + pitch * pitch).sqrt();
         let torque = length([asked[0], asked[1]]);
-        let turned = (answer.achieved[0] * asked[1] - answer.achieved[1] * asked[0]).abs();
-        if torque > 0.0 && turned > length([slack[0], slack[1]]) * torque {
-            fault = Some(format!("(roll, pitch) turned by {} N m", turned / torque));
+        let turned = (answer.achieved[0] * asked[1] - answer.achieved[1] * asked[0]).abs() / torque;
+        if torque > 0.0 && turned > length([slack[0], slack[1]]) {
+            faults.push(Fault {
+                kind: Kind::Turned,
+                size: turned / length([frame.size(0), frame.size(1)]),
+                said: format!("(roll, pitch) turned by {turned} N m"),
+            });
         }
     }
     let disabled = frame.allocation().airmode == Airmode::Disabled;
     let raised = disabled && answer.achieved[3] > asked[3] + slack[3];
-    if fault.is_none() && !raised {
-        return Ok(None);
+    if faults.is_empty() && !raised {
+        return Ok(faults);
     }
     let oracle = Oracle::new(
         &frame.physics,
@@ -147,17 +238,31 @@ fn overstepping(
         frame.physics.factors(request.volts),
         request.health,
     );
-    let Some(floor) = oracle.thrust_floor(asked[2])? else {
-        return Ok(None);
+    let Some(mut floor) = oracle.thrust_floor(asked[2])? else {
+        return Ok(Vec::new());
     };
     // The mixer's own floor is that of what it has of the attainable set.
-    let most = floor.max(least_thrust_n) + ALLOWED * frame.authority[3];
-    if raised && answer.achieved[3] > most {
-        let given = answer.achieved[3];
-        fault = Some(format!(
-            "thrust: {} asked, {given} given, {floor} is the least",
-            asked[3]
-        ));
+    let given = answer.achieved[3];
+    let is_above = |floor: f64| given > floor.max(least_thrust_n) + ALLOWED * frame.authority[3];
+    if raised && is_above(floor) {
+        // Convex hulls reach below the least thrust. The mixer's is that of level flight without
+        // yaw, which less thrust may come with where units at idle have a torque.
+        let exact = Oracle::exact(
+            &frame.physics,
+            frame.allocation(),
+            frame.physics.factors(request.volts),
+            request.health,
+        );
+        for yaw in [asked[2], 0.0] {
+            floor = floor.max(exact.thrust_floor(yaw)?.unwrap_or(floor));
+        }
     }
-    Ok(fault)
+    if raised && is_above(floor) {
+        faults.push(Fault {
+            kind: Kind::Raised,
+            size: (given - floor.max(asked[3])) / frame.size(3),
+            said: format!("thrust: {} asked, {given} given, {floor} is the least", asked[3]),
+        });
+    }
+    Ok(faults)
 }

@@ -56,6 +56,11 @@ const TASKS: &[Task] = &[
         does: "counts the instructions of every evaluator and prints them as mixer-compiler states them",
     },
     Task {
+        name: "soak",
+        program: tests!(=> "soak"),
+        does: "draws frames and requests for `--minutes M` with `--seed S` and holds every answer to the physics; prints failures with what reproduces them",
+    },
+    Task {
         name: "allocators",
         program: tests!("--release" => "allocators"),
         does: "compares allocators and writes tests/measurements/allocators.csv",
