@@ -2,6 +2,7 @@
 //! Cortex-M4F in QEMU.
 
 mod example;
+mod exceptions;
 mod program;
 mod refusals;
 mod stacks;
