@@ -6,6 +6,7 @@ mod exceptions;
 mod program;
 mod refusals;
 mod stacks;
+mod texts;
 
 use std::fs;
 use std::path::{Path, PathBuf};

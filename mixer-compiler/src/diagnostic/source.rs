@@ -1,5 +1,7 @@
 //! The text of an airframe file and the places in it.
 
+use super::printable;
+
 /// The text of an airframe file together with the path that its user knows it by.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
@@ -19,10 +21,10 @@ pub struct Place {
 }
 
 impl Source {
-    /// A source from a path to show and a text.
+    /// A source from a path to show, of which what does not print is escaped, and a text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self {
-            name: name.into(),
+            name: printable(&name.into()),
             text: text.into(),
         }
     }
