@@ -82,7 +82,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     let thrust_range_n = thrust_range::delivered_range(&airframe, &tables, in_polygon);
     let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);
     Ok(Compiled {
-        source_name: source.name.clone(),
+        source_name: source.file_name(),
         warnings: Diagnostics::new(source.clone(), warnings),
         airframe,
         effectiveness,

@@ -1,5 +1,7 @@
 //! The text of an airframe file and the places in it.
 
+use std::path::Path;
+
 use super::printable;
 
 /// The text of an airframe file together with the path that its user knows it by.
@@ -27,6 +29,13 @@ impl Source {
             name: printable(&name.into()),
             text: text.into(),
         }
+    }
+
+    /// The name of the file without its folder.
+    pub(crate) fn file_name(&self) -> String {
+        let path = Path::new(&self.name);
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        name.to_string_lossy().into_owned()
     }
 
     /// The place of a byte offset. Offsets past the end or inside a character are moved back to the
