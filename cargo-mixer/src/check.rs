@@ -102,7 +102,7 @@ fn denied(compiled: &Compiled) -> ExitCode {
     let count = compiled.warnings.faults().len();
     crate::print_error(format_args!(
         "{}: {count} {}, and --deny-warnings is given",
-        compiled.source_name,
+        compiled.warnings.source().name,
         if count == 1 { "warning" } else { "warnings" }
     ))
 }

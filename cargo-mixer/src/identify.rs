@@ -234,10 +234,12 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
                 ExitCode::from(BAD_USAGE)
             })?,
     };
+    // Headers and cells of the bench files are in it.
+    let fragment = crate::printable_lines(&fragment);
     let report = if args.json {
         serde_json::to_string_pretty(&identified).map_err(print_error)?
     } else {
-        report::text(&identified).trim_end().to_string()
+        crate::printable_lines(report::text(&identified).trim_end())
     };
     let out = if to_stdout {
         print_note(&report);

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::{fs, io};
 
-use mixer_compiler::diagnostic::Diagnostics;
+use mixer_compiler::diagnostic::{Diagnostics, printable};
 use mixer_compiler::{Compiled, Source};
 
 pub mod check;
@@ -67,7 +67,17 @@ fn print_error(message: impl Display) -> ExitCode {
 /// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as
 /// in `2>&1 | head`.)
 fn print_note(message: impl Display) {
-    let _ = writeln!(io::stderr().lock(), "{}", printable(&message.to_string()));
+    let _ = writeln!(io::stderr().lock(), "{}", printable_lines(&message.to_string()));
+}
+
+/// [`printable`] text, of which the ends of lines and tabs stay.
+fn printable_lines(text: &str) -> String {
+    let is_kept = |c| matches!(c, '\n' | '\t');
+    let parts = text.split_inclusive(is_kept).map(|part| {
+        let plain = part.trim_end_matches(is_kept);
+        printable(plain) + &part[plain.len()..]
+    });
+    parts.collect()
 }
 
 /// Shows faults or warnings on stderr; each begins with `error[..]` or `warning[..]` itself. In
@@ -81,20 +91,6 @@ fn show(diagnostics: &Diagnostics) {
     }
 }
 
-/// Text without the control characters that a file name may bring to a terminal; lines and tabs
-/// stay.
-fn printable(text: &str) -> String {
-    let is_plain = |c: char| !c.is_control() || matches!(c, '\n' | '\t');
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            c if is_plain(c) => shown.push(c),
-            c => shown.extend(c.escape_default()),
-        }
-    }
-    shown
-}
-
 /// Reads and compiles an airframe file; its warnings go to stderr.
 fn compile(path: &Path) -> Result<Compiled, Refusal> {
     let compiled = compile_quietly(path)?;
@@ -106,7 +102,7 @@ fn compile(path: &Path) -> Result<Compiled, Refusal> {
 
 /// Reads and compiles an airframe file.
 fn compile_quietly(path: &Path) -> Result<Compiled, Refusal> {
-    let name = printable(&path.display().to_string());
+    let name = path.display().to_string();
     let bytes = fs::read(path).map_err(|error| Refusal::Unreadable(format!("{name}: {error}")))?;
     let source = Source::from_bytes(name, bytes).map_err(Refusal::Faulty)?;
     mixer_compiler::compile(&source).map_err(Refusal::Faulty)

@@ -25,6 +25,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::diagnostic::printable;
 
 use build::Build;
 use header::Header;
@@ -113,7 +114,7 @@ impl Airframe {
         let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         Ok(Airframe {
             module: compiled.airframe.module_name(),
-            file: file.into_owned(),
+            file: printable(&file),
             hash: crate::sha256::hex(&bytes),
             compiled,
         })

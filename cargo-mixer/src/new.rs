@@ -55,7 +55,7 @@ pub fn run(args: &NewArgs) -> ExitCode {
 /// Writes an airframe file that compiles; one that does not is refused with its faults, and nothing
 /// is written.
 pub(crate) fn write(path: &std::path::Path, text: &str) -> ExitCode {
-    let source = Source::new(crate::printable(&path.display().to_string()), text);
+    let source = Source::new(path.display().to_string(), text);
     match mixer_compiler::compile(&source) {
         Err(faults) => return Refusal::Faulty(faults).report(),
         Ok(compiled) if !compiled.warnings.is_empty() => crate::show(&compiled.warnings),

@@ -13,7 +13,7 @@ use crate::tables::MixerTables;
 /// A compiled airframe: what emission and reports read.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    /// The source's name, as its user knows it.
+    /// Name of the airframe file without its folder: what is emitted depends on no place.
     pub source_name: String,
     /// The checked model.
     pub airframe: Airframe,

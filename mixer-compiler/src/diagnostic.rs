@@ -14,8 +14,8 @@ use serde::Serialize;
 
 pub use self::code::{Code, Severity};
 use self::source::{BYTE_ORDER_MARK, Place, Source};
-pub use self::wording::rounded_up;
 pub(crate) use self::wording::{any_of, nearest, number, quoted, rounded};
+pub use self::wording::{is_plain, printable, rounded_up};
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -120,12 +120,13 @@ pub struct Record {
 }
 
 impl Source {
-    /// A source from a path to show and the bytes of the file.
+    /// A source from a path to show, of which what does not print is escaped, and the bytes of the
+    /// file.
     ///
     /// # Errors
     /// Bytes that are not UTF-8, with the place of the first.
     pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Result<Self, Diagnostics> {
-        let name = name.into();
+        let name = printable(&name.into());
         let bytes = match String::from_utf8(bytes) {
             Ok(text) => return Ok(Self { name, text }),
             Err(error) => error,
@@ -155,6 +156,17 @@ impl Diagnostics {
         // Stable: faults of one place stay in the order in which the stages found them.
         faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
         faults.dedup();
+        for fault in &mut faults {
+            // Words of the file may be among them.
+            for text in [
+                &mut fault.key,
+                &mut fault.message,
+                &mut fault.label,
+                &mut fault.help,
+            ] {
+                *text = printable(text);
+            }
+        }
         let offsets = faults
             .iter()
             .map(|fault| fault.span.as_ref().map(|span| span.start));
@@ -339,7 +351,7 @@ impl Diagnostics {
         }
         let caret =
             AnnotationKind::Primary.span(start.saturating_sub(line_start)..end.saturating_sub(line_start));
-        let snippet = Snippet::source(text.get(line_start..line_end)?)
+        let snippet = Snippet::source(visible_line(text.get(line_start..line_end)?))
             .line_start(place.line)
             .path(self.source.name.as_str());
         Some(snippet.annotation(if label.is_empty() {
@@ -348,6 +360,18 @@ impl Diagnostics {
             caret.label(label)
         }))
     }
+}
+
+/// A line with other characters of as many bytes in the place of those that would act on a terminal
+/// and that the renderer leaves in; others it replaces itself.
+fn visible_line(line: &str) -> String {
+    line.chars()
+        .map(|c| match c.len_utf8() {
+            2 if !is_plain(c) => '\u{b7}',
+            3 if !is_plain(c) => char::REPLACEMENT_CHARACTER,
+            _ => c,
+        })
+        .collect()
 }
 
 impl fmt::Display for Diagnostics {

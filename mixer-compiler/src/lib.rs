@@ -96,7 +96,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     probe.run()?;
     let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);
     Ok(Compiled {
-        source_name: source.name.clone(),
+        source_name: source.file_name(),
         warnings: Diagnostics::new(source.clone(), warnings),
         airframe,
         effectiveness,

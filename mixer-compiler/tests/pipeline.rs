@@ -206,3 +206,21 @@ fn the_choice_is_the_first_of_the_front_that_holds() {
         assert!(two < 0.2 * one, "{seed}: {two} {one}");
     }
 }
+
+/// By the macro, a build script or the command line: what is emitted names the file and no folder.
+#[test]
+fn what_is_emitted_does_not_depend_on_how_the_path_is_spelled() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("airframes/single-pair.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    let spellings = [
+        "single-pair.toml",
+        "./airframes/single-pair.toml",
+        &path.display().to_string(),
+    ];
+    let [first, others @ ..] = spellings.map(|name| {
+        let compiled = mixer_compiler::compile(&Source::new(name, text.as_str())).unwrap();
+        compiled.rust()
+    });
+    assert!(first.contains(" from `single-pair.toml`."), "{first}");
+    assert_eq!(others, [first.clone(), first]);
+}

@@ -15,7 +15,7 @@ pub(crate) mod closed_form;
 pub(crate) mod general;
 pub(crate) mod power_bias;
 
-use crate::clamp;
+use crate::{clamp, divisor};
 
 /// What desaturation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +98,7 @@ pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
         pitch.abs()
     };
     let share = if largest > REQUEST_LIMIT {
-        REQUEST_LIMIT / largest
+        REQUEST_LIMIT / divisor(largest)
     } else {
         1.0
     };

@@ -226,6 +226,7 @@ fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
 ) -> Result<(Wrench, Saturation), SetpointError> {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
+    // Factors are positive, which the compiler has proven for every voltage within the range.
     let per_factor = factors.map(|factor| 1.0 / factor);
     let at_reference = at_reference(bounded, per_factor);
     let airmode = tables.desaturation.airmode;

@@ -50,7 +50,8 @@ impl VoltageLaw<'_> {
             .fold(S::constant(0.0), |value, coefficient| value * x + *coefficient)
     }
 
-    /// The straight line through two points of [`VoltageLaw::Points`] at `voltage_v`.
+    /// The straight line through two points of [`VoltageLaw::Points`], which differ in volts, at
+    /// `voltage_v`.
     #[inline]
     pub fn line<S: Scalar>(left: [f32; 2], right: [f32; 2], voltage_v: S) -> S {
         let share = (voltage_v + -left[0]) / (right[0] - left[0]);

@@ -7,6 +7,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
+use mixer_compiler::diagnostic::printable;
 use serde::Serialize;
 
 use super::header::{ByHand, Column, Columns};
@@ -77,10 +78,7 @@ pub fn read_file<R: Read>(
     reading: &Reading,
     progress: impl FnOnce(File) -> R,
 ) -> Result<Log, Refusal> {
-    let name = path.file_name().map_or_else(
-        || path.display().to_string(),
-        |n| n.to_string_lossy().into_owned(),
-    );
+    let name = printable(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
     let io = |e: std::io::Error| unreadable(&path.display().to_string(), &e.to_string());
     let file = File::open(path).map_err(io)?;
     read(&name, BufReader::with_capacity(1 << 16, progress(file)), reading)

@@ -81,7 +81,8 @@ pub(super) fn airframe(
             out.push('\n');
         }
     }
-    Ok(out)
+    // Names of files and comments of the pair's file are in it.
+    Ok(crate::printable_lines(&out))
 }
 
 /// Both files' ranges: the pair's model is known in its own alone.

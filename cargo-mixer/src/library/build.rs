@@ -8,13 +8,20 @@ use std::process::{Command, Stdio};
 
 use super::toolchain::{Core, Toolchain};
 
-/// As the firmware's profile has it. The bits of a mix depend on none of these.
+/// As the firmware's profile has it, but without vectors. The bits of a mix depend on none of these.
+///
+/// Flight stacks on a host trap floating-point exceptions (ArduPilot's simulator does). A vector
+/// that holds fewer numbers than it has lanes divides 0 by 0 in the others. These two options leave
+/// out the only passes of LLVM that make vectors of scalar arithmetic; `core` and the runtime have
+/// none of their own, and instructions for scalars (`divss`, `fdiv s`) look at one lane.
 const CODE: &[&str] = &[
     "--cap-lints=allow",
     "-Copt-level=3",
     "-Cpanic=abort",
     "-Ccodegen-units=1",
     "-Cforce-unwind-tables=no",
+    "-Cno-vectorize-loops",
+    "-Cno-vectorize-slp",
 ];
 
 /// Older `no_std` crates name it; nothing of it is used.

@@ -1,5 +1,7 @@
 //! The headers and the CMake file.
 
+use mixer_compiler::diagnostic::is_plain;
+
 use super::Airframe;
 
 /// What of a library its headers say.
@@ -218,10 +220,7 @@ fn float(value: f32) -> String {
 
 /// Text that ends no comment and begins none, on one line.
 fn comment(text: &str) -> String {
-    let line: String = text
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
+    let line: String = text.chars().map(|c| if is_plain(c) { c } else { ' ' }).collect();
     line.replace('/', " / ").replace("??", "? ?").replace('\\', "")
 }
 

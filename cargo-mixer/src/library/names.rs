@@ -4,61 +4,65 @@ use std::collections::BTreeMap;
 
 use super::Airframe;
 
-/// Headers that a program includes by these names: `M.h` would be found in their stead.
-const HEADERS: &[&str] = &[
-    "assert",
-    "complex",
-    "ctype",
-    "errno",
-    "fenv",
-    "float",
-    "inttypes",
-    "iso646",
-    "limits",
-    "locale",
-    "math",
-    "setjmp",
-    "signal",
-    "stdalign",
-    "stdarg",
-    "stdatomic",
-    "stdbool",
-    "stddef",
-    "stdint",
-    "stdio",
-    "stdlib",
-    "stdnoreturn",
-    "string",
-    "strings",
-    "tgmath",
-    "threads",
-    "time",
-    "uchar",
-    "unistd",
-    "wchar",
-    "wctype",
-];
+/// Headers that a program includes by these names, where `M.h` would be found in their stead: those
+/// of C and of POSIX, then what glibc, newlib with libstdc++, and compilers have beside them. (Other
+/// headers of C++ have no `.h`, those of Linux a folder.)
+const HEADERS: &str = "
+    assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg
+    stdatomic stdbit stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time
+    uchar wchar wctype
+    aio cpio devctl dirent dlfcn endian fcntl fmtmsg fnmatch ftw glob grp iconv langinfo libgen libintl
+    monetary mqueue ndbm netdb nl_types poll pthread pwd regex sched search semaphore spawn strings stropts
+    syslog tar termios trace ucontext ulimit unistd utime utmpx varargs wait wordexp
+    aliases alloca ar argp argz byteswap elf envz err error execinfo features fstab fts gconv getopt gshadow
+    ifaddrs lastlog link malloc mcheck memory mntent nss obstack paths printf proc_service pty re_comp
+    regexp resolv sgtty shadow stab stdio_ext syscall sysexits termio thread_db ttyent utmp values
+    cxxabi envlock fastmath ieeefp newlib reent regdef unctrl
+    acc_prof adxintrin altivec ammintrin amxbf16intrin amxint8intrin amxtileintrin arm_acle arm_bf16 arm_cde
+    arm_cmse arm_fp16 arm_mve arm_mve_types arm_neon arm_sme arm_sve arm_vector_types avx2intrin
+    avx5124fmapsintrin avx5124vnniwintrin avx512bf16intrin avx512bf16vlintrin avx512bitalgintrin
+    avx512bwintrin avx512cdintrin avx512dqintrin avx512erintrin avx512fintrin avx512fp16intrin
+    avx512fp16vlintrin avx512ifmaintrin avx512ifmavlintrin avx512pfintrin avx512vbmi2intrin
+    avx512vbmi2vlintrin avx512vbmiintrin avx512vbmivlintrin avx512vlbwintrin avx512vldqintrin avx512vlintrin
+    avx512vnniintrin avx512vnnivlintrin avx512vp2intersectintrin avx512vp2intersectvlintrin
+    avx512vpopcntdqintrin avx512vpopcntdqvlintrin avxintrin avxvnniintrin backtrace bmi2intrin bmiintrin
+    bmmintrin cet cetintrin cldemoteintrin clflushoptintrin clwbintrin clzerointrin cpuid emmintrin
+    enqcmdintrin f16cintrin fma4intrin fmaintrin fxsrintrin gcov gfniintrin hresetintrin ia32intrin
+    immintrin keylockerintrin lwpintrin lzcntintrin mm3dnow mm_malloc mmintrin movdirintrin mwaitintrin
+    mwaitxintrin nmmintrin omp ompt openacc pconfigintrin pkuintrin pmmintrin popcntintrin prfchwintrin
+    quadmath quadmath_weak rdseedintrin rtmintrin serializeintrin sgxintrin shaintrin smmintrin stdfix
+    syslimits tbmintrin tmmintrin tsxldtrkintrin uintrintrin unwind vaesintrin vpclmulqdqintrin
+    waitpkgintrin wbnoinvdintrin wmmintrin x86gprintrin x86intrin xmmintrin xopintrin xsavecintrin
+    xsaveintrin xsaveoptintrin xsavesintrin xtestintrin
+";
 
-/// Libraries of every toolchain, `libM.a`.
-const LIBRARIES: &[&str] = &["c", "dl", "g", "gcc", "m", "nosys", "pthread", "rt", "util"];
+/// Libraries of toolchains, `libM.a`.
+const LIBRARIES: &str = "
+    anl asan atomic backtrace c c_nano c_nonshared crypt dl g g_nano gcc gcc_eh gcc_s gcov gloss gomp hwasan
+    itm lsan m mcheck mvec nosys nsl nss_files omp pthread pthread_nonshared quadmath rdimon rdimon_nano rdpmon
+    resolv rt semihost ssp ssp_nonshared thread_db tsan ubsan unwind util
+";
 
 /// Targets that CMake keeps for itself.
-const TARGETS: &[&str] = &["all", "clean", "edit_cache", "help", "install", "package", "test"];
+const TARGETS: &str = "
+    all clean depend edit_cache help install package package_source preinstall rebuild_cache test
+";
 
 /// What the shared header and its macros are called.
-const SHARED: &[&str] = &["coaxial_mixer", "mixer"];
+const SHARED: &str = "coaxial_mixer mixer";
 
 /// Whether every airframe can have a library, and one of its own.
 pub(super) fn check(airframes: &[Airframe]) -> Result<(), String> {
     let mut files = BTreeMap::new();
     for Airframe { module, file, .. } in airframes {
         let taken = [
-            (HEADERS, "a header of the C library"),
+            (HEADERS, "a header of the C compiler or its library"),
             (LIBRARIES, "a library of the C compiler"),
             (TARGETS, "a target of CMake"),
             (SHARED, "what all airframes share, coaxial_mixer.h"),
         ];
-        if let Some((_, what)) = taken.iter().find(|(names, _)| names.contains(&module.as_str())) {
+        let is_among = |names: &str| names.split_whitespace().any(|name| name == module);
+        if let Some((_, what)) = taken.into_iter().find(|(names, _)| is_among(names)) {
             return Err(format!(
                 "{file}: the airframe's name gives `{module}`, which is {what}; call it {module}-x8 or the like"
             ));
@@ -70,4 +74,21 @@ pub(super) fn check(airframes: &[Airframe]) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_hold_modules_once() {
+        let lists = [HEADERS, LIBRARIES, TARGETS, SHARED];
+        for list in lists {
+            let mut names: Vec<&str> = list.split_whitespace().collect();
+            let legal = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+            assert!(names.iter().all(|name| name.chars().all(legal)), "{names:?}");
+            names.sort_unstable();
+            assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
+        }
+    }
 }

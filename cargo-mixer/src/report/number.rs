@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use mixer_compiler::diagnostic::is_plain;
+
 /// `x` with `digits` significant digits, without trailing zeros of an exponent form; `-0` is `0`.
 pub fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
@@ -131,8 +133,9 @@ pub fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
+            '\n' | '\t' => out.push(letter),
             // Control characters are no XML, not even escaped.
-            c if c.is_control() && !matches!(c, '\n' | '\t') => out.push('\u{fffd}'),
+            c if !is_plain(c) => out.push('\u{fffd}'),
             '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
             c => out.push(c),
         }

@@ -121,3 +121,34 @@ fn golden_vectors_cover_what_they_should() {
         assert!(zero && rows.count() == 12, "{channel}");
     }
 }
+
+/// However the path is spelled: no folder of a machine goes under version control.
+#[test]
+fn outputs_do_not_depend_on_how_the_path_is_spelled() {
+    let absolute = root().canonicalize().unwrap().join(PAIR);
+    let spellings = [PAIR, &format!("./{PAIR}"), absolute.to_str().unwrap()];
+    let outputs = spellings.map(|airframe| {
+        let folder = folder("spelled");
+        let page = format!("{folder}.html");
+        assert_eq!(run(&["golden", airframe, "-o", &folder]).status.code(), Some(0));
+        let report = cargo_mixer(&["report", airframe, "-o", &page])
+            .env("SOURCE_DATE_EPOCH", "0")
+            .output()
+            .unwrap();
+        assert_eq!(report.status.code(), Some(0), "{}", stderr(&report));
+        let mut outputs: Vec<String> = FILES
+            .iter()
+            .map(|file| fs::read_to_string(Path::new(&folder).join(file)).unwrap())
+            .collect();
+        outputs.push(stdout(&run(&["expand", airframe])).to_owned());
+        outputs.push(fs::read_to_string(&page).unwrap());
+        for output in &outputs {
+            assert!(
+                !output.contains(&format!("/{}", "single-pair.toml")),
+                "a folder is named"
+            );
+        }
+        outputs
+    });
+    assert!(outputs[0] == outputs[1] && outputs[0] == outputs[2]);
+}

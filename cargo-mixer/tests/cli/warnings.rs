@@ -55,7 +55,7 @@ fn json_lists_warnings() {
 fn control_characters_of_names_do_not_reach_the_terminal() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("control");
     std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("a\u{1b}[2Jb.toml");
+    let path = folder.join("a\u{1b}[2Jb\u{202e}.toml");
     for text in [
         std::fs::read_to_string(root().join(HIGH_IDLE)).unwrap(),
         "name = 1".to_owned(),
@@ -64,10 +64,10 @@ fn control_characters_of_names_do_not_reach_the_terminal() {
         std::fs::write(&path, &text).unwrap();
         let output = run(&["check", path.to_str().unwrap()]);
         for shown in [stdout(&output), stderr(&output)] {
-            assert!(!shown.contains('\u{1b}'), "{shown:?}");
+            assert!(!shown.contains(['\u{1b}', '\u{202e}']), "{shown:?}");
         }
         assert!(
-            stderr(&output).contains("a\\u{1b}[2Jb.toml"),
+            stderr(&output).contains("a\\u{1b}[2Jb\\u{202e}.toml"),
             "{}",
             stderr(&output)
         );
@@ -75,5 +75,48 @@ fn control_characters_of_names_do_not_reach_the_terminal() {
     std::fs::remove_file(&path).unwrap();
     let output = run(&["check", path.to_str().unwrap()]);
     assert_status(&output, 1);
-    assert!(!stderr(&output).contains('\u{1b}'));
+    assert!(!stderr(&output).contains(['\u{1b}', '\u{202e}']));
+}
+
+/// So are the headers and cells of a file, and the words of an airframe that is refused.
+#[test]
+fn control_characters_of_files_do_not_reach_the_terminal() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("control-in-files");
+    std::fs::create_dir_all(&folder).unwrap();
+    let acting = ['\u{1b}', '\u{9b}', '\u{202e}', '\u{2067}', '\u{2028}'];
+    let words: String = acting.iter().collect();
+    let files = [
+        ("bench.csv", format!("esc {words},thrust {words} (N),\n1,2,3\n")),
+        (
+            "cells.csv",
+            format!("upper,lower,thrust_n,torque_nm\n{words},0.5,1,0.1\n"),
+        ),
+        ("frame.param", format!("FRAME_CLASS,{words}\n{words},1\n")),
+        (
+            "a.toml",
+            format!("name = \"{words}\"\n\"{words}\" = \"{words}\" # {words}\n"),
+        ),
+        ("b.toml", format!("# {words}\nname = {words}\n")),
+    ];
+    for (name, text) in files {
+        let path = folder.join(name);
+        std::fs::write(&path, text).unwrap();
+        let path = path.to_str().unwrap();
+        let (output, page) = (folder.join("out.toml"), folder.join("page.html"));
+        let commands = [
+            vec!["check", path],
+            vec!["check", path, "--json"],
+            vec!["identify", path],
+            vec!["import", path, "-o", output.to_str().unwrap()],
+            vec!["mix", X8, path],
+            vec!["report", X8, "--bench", path, "-o", page.to_str().unwrap()],
+        ];
+        for command in commands {
+            let output = run(&command);
+            assert_ne!(output.status.code(), Some(0), "{command:?}");
+            for shown in [stdout(&output), stderr(&output)] {
+                assert!(!shown.contains(acting), "{command:?}: {shown:?}");
+            }
+        }
+    }
 }

@@ -2,9 +2,11 @@
 //! Cortex-M4F in QEMU.
 
 mod example;
+mod exceptions;
 mod program;
 mod refusals;
 mod stacks;
+mod texts;
 
 use std::fs;
 use std::path::{Path, PathBuf};

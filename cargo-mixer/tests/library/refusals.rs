@@ -59,12 +59,24 @@ fn bad_input_is_refused_with_one_error() {
         let said = refused(&[&file], &[], &output);
         assert!(said.contains(fault), "{said}");
     }
-    let string = renamed(&folder, "string.toml", "string");
-    let said = refused(&[&string], &[], &output);
-    assert!(
-        said.contains("`string`, which is a header of the C library"),
-        "{said}"
-    );
+    for name in [
+        "string", "features", "sched", "malloc", "poll", "time", "signal", "arm-neon", "pthread",
+    ] {
+        let file = renamed(&folder, "header.toml", name);
+        let said = refused(&[&file], &[], &output);
+        let module = name.replace('-', "_");
+        let what = format!("`{module}`, which is a header of the C compiler or its library");
+        assert!(said.contains(&what), "{said}");
+    }
+    for (name, what) in [
+        ("nosys", "a library of the C compiler"),
+        ("rebuild-cache", "a target of CMake"),
+        ("coaxial-mixer", "what all airframes share, coaxial_mixer.h"),
+    ] {
+        let file = renamed(&folder, "taken.toml", name);
+        let said = refused(&[&file], &[], &output);
+        assert!(said.contains(what), "{said}");
+    }
     let twin = renamed(&folder, "twin.toml", "isae_x8");
     let said = refused(&[X8, &twin], &[], &output);
     assert!(

@@ -22,6 +22,19 @@ const RESERVED: &[&str] = &[
     "while", "yield",
 ];
 
+/// Constants of the generated module, which its type cannot be called.
+const CONSTANTS: &[&str] = &[
+    "ATTAINABLE",
+    "CHANNELS",
+    "INVERSE",
+    "LEVEL",
+    "PAIR",
+    "SCALE",
+    "TABLES",
+    "UNITS",
+    "VOLTAGE",
+];
+
 /// `isae-x8` as a Rust module: `isae_x8`.
 pub(super) fn module(name: &str) -> String {
     name.replace('-', "_")
@@ -61,7 +74,7 @@ pub(super) fn if_refused(source: &Source) -> [String; 2] {
 pub(super) fn check(name: &Spanned<String>, faults: &mut Vec<Diagnostic>) -> Option<String> {
     let text = name.get_ref();
     let fault = |message: String| Diagnostic::new(Code::Name, "name", name.span(), message);
-    if RESERVED.contains(&module(text).as_str()) {
+    if RESERVED.contains(&module(text).as_str()) || CONSTANTS.contains(&type_(text).as_str()) {
         faults.push(
             fault(format!("the name {} is reserved", quoted(text)))
                 .label("cannot be a module and a file")
@@ -151,7 +164,22 @@ mod tests {
         }
         let long = "x".repeat(65);
         for name in [
-            "", "8x", "-x", "x-", "a--b", "X8", "x8 pro", "é", "type", "self", "u8", "mixer-rt", "con", &long,
+            "",
+            "8x",
+            "-x",
+            "x-",
+            "a--b",
+            "X8",
+            "x8 pro",
+            "é",
+            "type",
+            "self",
+            "u8",
+            "mixer-rt",
+            "con",
+            "u-n-i-t-s",
+            "p-a-i-r",
+            &long,
         ] {
             assert!(!legal(name), "{name}");
         }

@@ -58,6 +58,8 @@ catalogue! {
     OutOfRange = 8,
     /// Keys or tables that exclude one another.
     Conflict = 9,
+    /// A string with a character that does not show as itself: a control character, or one that turns text around.
+    NotPlain = 10,
 
     /// A name that cannot become a Rust module, a Rust type and a file.
     Name = 100,

@@ -1,5 +1,9 @@
 //! The text of an airframe file and the places in it.
 
+use std::path::Path;
+
+use super::printable;
+
 /// The text of an airframe file together with the path that its user knows it by.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
@@ -19,12 +23,19 @@ pub struct Place {
 }
 
 impl Source {
-    /// A source from a path to show and a text.
+    /// A source from a path to show, of which what does not print is escaped, and a text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self {
-            name: name.into(),
+            name: printable(&name.into()),
             text: text.into(),
         }
+    }
+
+    /// The name of the file without its folder.
+    pub(crate) fn file_name(&self) -> String {
+        let path = Path::new(&self.name);
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        name.to_string_lossy().into_owned()
     }
 
     /// The place of a byte offset. Offsets past the end or inside a character are moved back to the

@@ -35,6 +35,27 @@ fn plain(word: &str) -> String {
         .collect()
 }
 
+/// True for a character that shows as itself and in its place: no control character, no mark that
+/// reorders text (CVE-2021-42574), no separator of lines or paragraphs, no byte order mark.
+pub fn is_plain(c: char) -> bool {
+    !c.is_control()
+        && !matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
+}
+
+/// Text of others, such as the name of a file, on one line of a terminal: characters that are not
+/// [plain](is_plain) are escaped.
+pub fn printable(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_plain(c) {
+            shown.push(c);
+        } else {
+            shown.extend(c.escape_default());
+        }
+    }
+    shown
+}
+
 /// Text of the user's between backticks, on one line and of bounded length.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST: usize = 48;
@@ -120,6 +141,16 @@ mod tests {
         assert_eq!(rounded(0.123_456_789), "0.1235");
         assert_eq!(rounded(-0.0), "-0");
         assert_eq!(rounded(f64::NAN), "NaN");
+    }
+
+    #[test]
+    fn what_does_not_print_is_escaped() {
+        assert_eq!(printable("é 飛 \\\t\n"), "é 飛 \\\\t\\n");
+        let all =
+            "\0\r\u{1b}\u{7f}\u{9b}\u{61c}\u{200e}\u{2028}\u{2029}\u{202a}\u{202e}\u{2066}\u{2069}\u{feff}";
+        assert!(!all.chars().any(is_plain));
+        assert!(printable(all).is_ascii() && !printable(all).contains(|c: char| c.is_control()));
+        assert_eq!(printable("a\rb\u{202e}"), "a\\rb\\u{202e}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::keys::Key;
-use crate::diagnostic::{Code, Diagnostic, MOST_FAULTS, quoted};
+use crate::diagnostic::{Code, Diagnostic, MOST_FAULTS, is_plain, quoted};
 
 /// A value while it is read.
 pub(crate) struct Item<'a> {
@@ -35,6 +35,21 @@ impl<'a> Item<'a> {
             format!("`{}` is {found}, not {wanted}", self.path),
         )
         .label(format!("expected {wanted}"))
+        .help(format!("write it like `{}`", self.key.example))
+    }
+
+    fn not_plain(&self, other: char) -> Diagnostic {
+        Diagnostic::new(
+            Code::NotPlain,
+            self.path.as_str(),
+            self.place.clone(),
+            format!(
+                "`{}` has the character U+{:04X}, which does not show as itself",
+                self.path,
+                u32::from(other)
+            ),
+        )
+        .label("expected plain text on one line")
         .help(format!("write it like `{}`", self.key.example))
     }
 }
@@ -71,11 +86,16 @@ pub(crate) trait Read: Sized {
 
 impl Read for String {
     fn read(item: &Item<'_>, faults: &mut Vec<Diagnostic>) -> Option<Self> {
-        let text = item.value.as_str().map(str::to_string);
-        if text.is_none() {
+        let Some(text) = item.value.as_str() else {
             faults.push(item.wrong_type("a string"));
+            return None;
+        };
+        // Strings reach the terminal and the comments of generated code.
+        if let Some(other) = text.chars().find(|&c| !is_plain(c)) {
+            faults.push(item.not_plain(other));
+            return None;
         }
-        text
+        Some(text.to_string())
     }
 }
 

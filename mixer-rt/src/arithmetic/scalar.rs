@@ -78,3 +78,24 @@ pub(crate) fn clamp(x: f32, low: f32, high: f32) -> f32 {
     let x = if x > low { x } else { low };
     if x < high { x } else { high }
 }
+
+/// Below every divisor but zero, and so large that no numerator of the runtime overflows by it.
+const LEAST_DIVISOR: f32 = 1e-24;
+
+/// `x > 0` as a divisor; 1e-24 where it is zero or negative, and the quotient is of no use.
+///
+/// Flight stacks trap floating-point exceptions, and a branch around a division does not keep it
+/// from raising one: to LLVM divisions have no side effects, so it divides first and selects
+/// afterwards. Of integers, as of a selection between floats LLVM divides by both.
+#[inline(always)]
+pub(crate) fn divisor(x: f32) -> f32 {
+    let (bits, least) = (x.to_bits() as i32, LEAST_DIVISOR.to_bits() as i32);
+    f32::from_bits(if bits > least { bits } else { least } as u32)
+}
+
+/// `part / whole`, where `whole` has any sign; `part / 1e-24` where it is zero.
+#[inline(always)]
+pub(crate) fn quotient(part: f32, whole: f32) -> f32 {
+    let quotient = part / divisor(whole.abs());
+    if whole < 0.0 { -quotient } else { quotient }
+}

@@ -22,7 +22,7 @@
 use super::closed_form::{ClosedForm, Efforts};
 use super::general::Variable;
 use crate::layout::Tables;
-use crate::rolled;
+use crate::{divisor, rolled};
 
 /// Torques cannot cross a polygon's edge of constant thrust. So that the bias fades before such an
 /// edge as well, thrusts count as moved by this share of the largest shift of a torque (in scaled
@@ -46,7 +46,11 @@ impl ClosedForm<'_> {
                 largest = shift;
             }
         }
-        let b = if room < largest { room / largest } else { 1.0 };
+        let b = if room < largest {
+            room / divisor(largest)
+        } else {
+            1.0
+        };
         let along = b * c;
         for (unit, effort) in self.units.iter().zip(efforts) {
             effort.torque += along * (effort.thrust - unit.spin * mean);
@@ -94,7 +98,7 @@ pub(crate) fn add_power_bias<P, I, S>(
             rolled();
             let room = -corner.beyond([unit.at[0] * per_scale[0], unit.at[1] * per_scale[1]]);
             if b * out > room {
-                b = if room > 0.0 { room / out } else { 0.0 };
+                b = if room > 0.0 { room / divisor(out) } else { 0.0 };
             }
         }
     }

@@ -1,8 +1,9 @@
 //! Which rotors of a unit work, and what its unit then gives.
 
+use crate::arithmetic::Scalar;
 use crate::layout::Tables;
 use crate::pair::{Quantity, SingleRotor, ThrottleRange};
-use crate::{Health, sqrt};
+use crate::{Health, quotient};
 
 /// Which rotors of a unit work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,13 +77,13 @@ impl Rotors {
     pub(crate) fn invert(self, singles: &[SingleRotor; 2], range: &ThrottleRange, f: f32) -> [f32; 2] {
         let [[least, _], [most, _]] = self.ends(singles, range);
         let (low, high) = (range.min * range.min, range.max * range.max);
-        let share = (f - least) / (most - least);
+        let share = quotient(f - least, most - least);
         let square = low + share * (high - low);
-        let mut throttle = range.clamp(if square > low { sqrt(square) } else { range.min });
+        let mut throttle = range.clamp(square.root());
         for _ in 0..STEPS {
             let [value, slope] = self.curve(singles).thrust_and_slope(throttle);
             // Where a thrust does not grow with its throttle the step is limited to the range.
-            throttle = range.clamp(throttle + (f - value) / slope);
+            throttle = range.clamp(throttle + quotient(f - value, slope));
         }
         self.throttles(throttle)
     }

@@ -9,6 +9,15 @@
 //! The coarse one tells at which thrusts yaw reaches furthest: each side's concave hull in a few
 //! straight lines, of which only the slopes matter.
 
+use crate::arithmetic::Scalar;
+
+/// Beyond all cells, and within all integers.
+const MOST_PLACE: f32 = 1_073_741_824.0;
+
+/// How far out of reach every torque is beyond the cells: more than is asked, and nothing overflows
+/// by it.
+const BEYOND_NM: f32 = 1e9;
+
 /// Middle and half the width of the attainable torques at the thrusts of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
@@ -77,9 +86,10 @@ impl Border<'_> {
             grid = above;
         }
         let place = grid.offset + f * grid.per_n;
-        let index = place as u32;
+        // Made an integer, what is negative or too large would be an invalid operation on a Cortex-M.
+        let index = place.within_positive(0.0, MOST_PLACE) as u32;
         let Some(cell) = self.cells.get(index as usize) else {
-            return [0.0, -f32::MAX];
+            return [0.0, -BEYOND_NM];
         };
         let part = place - index as f32;
         let [middle, half] = [cell.middle, cell.half].map(|[start, more]| start + part * more);

@@ -8,7 +8,7 @@
 use core::hint::black_box;
 
 use super::{ClosedForm, Facets};
-use crate::rolled;
+use crate::{divisor, quotient, rolled};
 
 /// A gap between thrust bounds that is below this share of a unit's largest thrust is none: sums of
 /// four have errors of that size.
@@ -30,7 +30,7 @@ impl ClosedForm<'_> {
             let speed = normal[0] * roll + normal[1] * pitch;
             let limit = if speed > 0.0 { bounds[1] } else { bounds[0] };
             if speed > bounds[1] || speed < bounds[0] {
-                let most = limit / speed;
+                let most = quotient(limit, speed);
                 share = if most < share { most } else { share };
             }
         }
@@ -54,7 +54,7 @@ impl ClosedForm<'_> {
             range = [low, high];
             // Where these two lines meet: the gap closes as the share shrinks.
             let closing = low_speed - high_speed;
-            let met = share - (low - high) / closing;
+            let met = share - (low - high) / divisor(closing);
             if low - high <= ROUNDING * self.thrust_n[1] {
                 break;
             }

@@ -6,7 +6,7 @@
 //! concave: where that part is not enough, a second step of twice the length follows.
 
 use super::{ClosedForm, ClosedFormUnit, Request, ThrustLine};
-use crate::{clamp, rolled};
+use crate::{clamp, divisor, rolled};
 use core::hint::black_box;
 
 /// Most steps towards the largest yaw. The second is twice as long as a straight line asks for.
@@ -97,7 +97,7 @@ impl ClosedForm<'_> {
             let here = furthest(reach, sign);
             let gain = most - here;
             let mut part = if gain > 0.0 {
-                ahead * (wanted - here) / gain
+                ahead * (wanted - here) / divisor(gain)
             } else {
                 0.0
             };
@@ -186,14 +186,15 @@ impl ClosedForm<'_> {
         let outside = furthest(reach, sign) - needed;
         let inside = furthest(self.reach(lines, 0.0), sign) - needed;
         let inside = if inside > 0.0 { inside } else { 0.0 };
+        // `outside` is below zero by more than `yaw_rounding_nm`.
         let mut at = inside / (inside - outside);
         for step in 0..black_box(RETREATS) {
             reach = self.reach(lines, at);
             let here = furthest(reach, sign) - needed;
             if here < 0.0 {
-                at *= clamp(1.0 + 2.0 * here / (inside - here), 0.0, 1.0);
+                at *= clamp(1.0 + 2.0 * here / divisor(inside - here), 0.0, 1.0);
             } else if step == 0 {
-                at += (1.0 - at) * here / (here - outside);
+                at += (1.0 - at) * here / divisor(here - outside);
             } else {
                 return (at, reach);
             }

@@ -4,8 +4,7 @@
 //! All as yaw, p_i = s_i Q_i: the least-norm p_i are alike, yaw / n.
 
 use super::{ClosedForm, Effort, ThrustLine};
-use crate::clamp;
-use crate::rolled;
+use crate::{clamp, quotient, rolled};
 
 impl ClosedForm<'_> {
     /// Writes the efforts: the thrusts at `z` of their lines, and the torques that come nearest
@@ -29,7 +28,7 @@ impl ClosedForm<'_> {
         let missing = yaw - given;
         let end = if missing < 0.0 { reach[0] } else { reach[1] };
         // Zero where there is no room.
-        let part = clamp(missing / (end - given), 0.0, 1.0);
+        let part = clamp(quotient(missing, end - given), 0.0, 1.0);
         for ((unit, effort), line) in self.units.iter().zip(efforts).zip(lines) {
             rolled();
             let p = effort.torque;

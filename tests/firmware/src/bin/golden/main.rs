@@ -2,8 +2,9 @@
 //! bit with what the host computed.
 //!
 //! Prints one line per airframe: vectors, mismatches, instructions per mix (mean and worst over the
-//! vectors) and stack per mix. Exit status 0 if every bit agrees and every non-finite setpoint is
-//! refused.
+//! vectors), stack per mix and the floating-point exceptions that its mixes raise, with all rotors
+//! and with one out (1 invalid operation, 2 division by zero, 4 overflow, in sum). Exit status 0 if
+//! every bit agrees and every non-finite setpoint is refused.
 //!
 //! A count runs from the call of the mixer to its return, both included. The voltage and two
 //! pointers (setpoint, result) go in registers.
@@ -38,17 +39,25 @@ macro_rules! check {
                     .write($module::mix(&*setpoint, voltage_v))
             }
         }
+        let mut different = 0;
+        let raised = probe::exceptions(|| {
+            for (failed, rows) in $vectors::ROTORS_OUT.iter() {
+                let health = Health::GOOD.with_failed(*failed);
+                different += differing(rows, |setpoint, voltage_v| {
+                    $module::mix_with_health(setpoint, voltage_v, health)
+                });
+            }
+        });
+        $check.rotors_out($name, different);
         // SAFETY: `mix` writes the result for as many channels as the vectors have.
         unsafe {
-            $check.airframe::<{ $module::CHANNELS }>($name, $vectors::VECTORS.iter().map(|row| &row[..]), mix)
+            $check.airframe::<{ $module::CHANNELS }>(
+                $name,
+                $vectors::VECTORS.iter().map(|row| &row[..]),
+                mix,
+                raised,
+            )
         };
-        let rotors_out = $vectors::ROTORS_OUT.iter().map(|(failed, rows)| {
-            let health = Health::GOOD.with_failed(*failed);
-            differing(rows, |setpoint, voltage_v| {
-                $module::mix_with_health(setpoint, voltage_v, health)
-            })
-        });
-        $check.rotors_out($name, rotors_out.sum());
     }};
 }
 
@@ -71,7 +80,8 @@ impl Check {
         }
     }
 
-    /// Mixes the vectors of one airframe and prints its line.
+    /// Mixes the vectors of one airframe and prints its line. `raised_with_rotors_out` are the
+    /// exceptions of the vectors with a rotor out.
     ///
     /// # Safety
     ///
@@ -81,37 +91,40 @@ impl Check {
         name: &str,
         vectors: impl ExactSizeIterator<Item = &'static [u32]> + Clone,
         mix: Mixer,
+        raised_with_rotors_out: u32,
     ) {
         let count = vectors.len();
         let (mut mismatches, mut sum, mut worst, mut stack) = (0, 0_u64, 0, 0);
-        for (row, vector) in vectors.clone().enumerate() {
-            let Some((setpoint, voltage_v)) = request(vector) else {
-                hprintln!("{}: row {} of the vectors is too short", name, row);
-                self.passed = false;
-                continue;
-            };
-            let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
-            let pointer = output.as_mut_ptr().cast();
-            // SAFETY: the output is of the type that `mix` writes, which it does in every call; no
-            // interrupt is enabled.
-            let (instructions, bytes, mixed) = unsafe {
-                let bytes = probe::high_water(mix, &setpoint, pointer, voltage_v);
-                (
-                    self.counter.count(mix, &setpoint, pointer, voltage_v),
-                    bytes,
-                    output.assume_init(),
-                )
-            };
-            sum += u64::from(instructions);
-            worst = worst.max(instructions);
-            stack = stack.max(bytes);
-            if !agrees(vector, &mixed) {
-                mismatches += 1;
-                if mismatches <= SHOWN {
-                    show(name, row, vector, &mixed);
+        let raised = probe::exceptions(|| {
+            for (row, vector) in vectors.clone().enumerate() {
+                let Some((setpoint, voltage_v)) = request(vector) else {
+                    hprintln!("{}: row {} of the vectors is too short", name, row);
+                    self.passed = false;
+                    continue;
+                };
+                let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
+                let pointer = output.as_mut_ptr().cast();
+                // SAFETY: the output is of the type that `mix` writes, which it does in every call; no
+                // interrupt is enabled.
+                let (instructions, bytes, mixed) = unsafe {
+                    let bytes = probe::high_water(mix, &setpoint, pointer, voltage_v);
+                    (
+                        self.counter.count(mix, &setpoint, pointer, voltage_v),
+                        bytes,
+                        output.assume_init(),
+                    )
+                };
+                sum += u64::from(instructions);
+                worst = worst.max(instructions);
+                stack = stack.max(bytes);
+                if !agrees(vector, &mixed) {
+                    mismatches += 1;
+                    if mismatches <= SHOWN {
+                        show(name, row, vector, &mixed);
+                    }
                 }
             }
-        }
+        });
         // SAFETY: as above.
         let accepted = unsafe { accepted_non_finite::<CHANNELS>(vectors, mix) };
         if accepted > 0 {
@@ -125,14 +138,16 @@ impl Check {
         // One decimal in whole numbers: float formatting would be the largest part of this image.
         let tenths = sum * 10 / count as u64;
         hprintln!(
-            "{:<24} {:>8} {:>10} {:>8}.{} {:>8} {:>8}",
+            "{:<24} {:>8} {:>10} {:>8}.{} {:>8} {:>8} {:>10} {:>10}",
             name,
             count,
             mismatches,
             tenths / 10,
             tenths % 10,
             worst,
-            stack
+            stack,
+            raised,
+            raised_with_rotors_out
         );
     }
 }
@@ -195,13 +210,15 @@ fn run(counter: Counter) -> bool {
         counter.overhead()
     );
     hprintln!(
-        "{:<24} {:>8} {:>10} {:>10} {:>8} {:>8}",
+        "{:<24} {:>8} {:>10} {:>10} {:>8} {:>8} {:>10} {:>10}",
         "airframe",
         "vectors",
         "mismatches",
         "mean",
         "worst",
-        "stack_b"
+        "stack_b",
+        "exceptions",
+        "rotors_out"
     );
     let mut check = Check {
         counter,
