@@ -25,9 +25,9 @@ pub use failure::Failure;
 use limits::{Check, LIMITS};
 
 /// Requests of every kind per frame, wrenches of throttles, and pairs of neighbours.
-const REQUESTS: usize = 400;
-const ATTAINABLE: usize = 400;
-const NEIGHBOURS: usize = 200;
+const REQUESTS: usize = 800;
+const ATTAINABLE: usize = 1000;
+const NEIGHBOURS: usize = 400;
 
 /// States of health with one rotor out and with two per frame, and requests of each kind to each.
 const HEALTHS: usize = 2;
