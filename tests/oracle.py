@@ -16,8 +16,8 @@ inverse of the pair's map and voltage law, in double precision, standard library
 What it asks of every row:
   * throttles within [min, max]; one row per setpoint
   * the achieved wrench is the one that these throttles give, within the file's tolerance of every unit
-  * a request whose least-norm efforts are attainable is delivered: every unit's thrust and torque within the
-    file's tolerance of them; with a power bias c within that of a point on the way from them to those that the torques
+  * a request whose least-norm efforts are attainable, on the general path with some room, is delivered: every unit's
+    thrust and torque within the file's tolerance of them; with a power bias c within that of a point on the way from them to those that the torques
     c f add without changing the wrench, and at its end where every unit could move by that much either way
   * otherwise no axis reverses or overshoots, (roll, pitch) keeps its direction, and airmode "disabled" does not
     raise the thrust above the request unless that is below the floor of the controlled flight
@@ -88,22 +88,32 @@ class Airframe:
             self.channels.append(unit["channels"])
         self.units = len(self.channels)
         is_vertical = all(column[2] == 0.0 for column in columns_f)
-        yaw_first = self.airmode == "roll-pitch-yaw" or allocation.get("yaw_reserve_nm", 0.0) > 0.0
+        self.has_reserve = allocation.get("yaw_reserve_nm", 0.0) > 0.0
+        yaw_first = self.airmode == "roll-pitch-yaw" or self.has_reserve
         self.is_general = self.units > 4 or not is_vertical or yaw_first
         columns = columns_f + columns_q
         self.m = [[column[row] for column in columns] for row in range(4)]
+        self.size = self.largest()
         self.m_plus = self.pseudo_inverse()
 
     def pseudo_inverse(self):
-        """M^T (M M^T)^-1 over the served rows, zero columns elsewhere (eq. (7))."""
+        """D (M D)+ = D^2 M^T (M D^2 M^T)^-1 over the served rows, zero columns elsewhere (eq. (7)): of least norm in shares
+        of a unit's largest thrust and torque, D."""
         served = [row for row in range(4) if self.axes[row]]
-        gram = [[sum(a * b for a, b in zip(self.m[i], self.m[j])) for j in served] for i in served]
+        squares = [size * size for size in self.size for _ in range(self.units)]
+        gram = [[sum(a * d * b for a, d, b in zip(self.m[i], squares, self.m[j])) for j in served] for i in served]
         inverse = invert(gram)
         result = [[0.0] * 4 for _ in range(2 * self.units)]
         for k in range(2 * self.units):
             for j, column in enumerate(served):
-                result[k][column] = sum(self.m[i][k] * inverse[a][j] for a, i in enumerate(served))
+                result[k][column] = squares[k] * sum(self.m[i][k] * inverse[a][j] for a, i in enumerate(served))
         return result
+
+    def largest(self):
+        """The largest thrust and torque of a unit, which lie on the border of the box of throttles."""
+        ends, along = (self.low, self.high), [self.low + (self.high - self.low) * k / 32 for k in range(33)]
+        border = [self.efforts(*at) for a in along for end in ends for at in ((a, end), (end, a))]
+        return [max(abs(efforts[k]) for efforts in border) for k in (0, 1)]
 
     def efforts(self, u, l):
         return [sum(c * u**i * l**j for c, (i, j) in zip(cs, self.terms)) for cs in self.coefficients]
@@ -151,7 +161,7 @@ class Airframe:
         projected on the box, from its middle and its corners."""
         middle = 0.5 * (self.low + self.high)
         starts = [(middle, middle)] + [(u, l) for u in (self.low, self.high) for l in (self.low, self.high)]
-        scale = [25.0, 0.2]
+        scale = self.size
         for u, l in starts:
             for _ in range(60):
                 given = self.efforts(u, l)
@@ -268,6 +278,9 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation, failed)
 
     wanted = [sum(m * r for m, r in zip(row, request)) for row in airframe.m_plus]
     attainable = not failed and all(airframe.attains([wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
+    if attainable and airframe.is_general:
+        # The general path knows a polygon inside the attainable set: next to the border its efforts are others.
+        attainable = has_room(airframe, wanted, [0.0] * (2 * n), k)
     budget = [
         sum(abs(row[i]) * airframe.tolerance[0] + abs(row[n + i]) * airframe.tolerance[1] for i in range(n)) + 4 * allowed
         for row, allowed in zip(airframe.m, noise)
@@ -286,36 +299,38 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation, failed)
             wanted = [w + share * part for w, part in zip(wanted, shift)]
         for i in range(n):
             off = [abs(efforts[i] - wanted[i]), abs(efforts[n + i] - wanted[n + i])]
-            # The general path knows a polygon inside the attainable set: next to the border its efforts are others.
-            share = 0.02 if airframe.is_general else 0.0
-            room = [
-                share * airframe.efforts(airframe.high, airframe.high)[0],
-                share * abs(airframe.efforts(airframe.low, airframe.high)[1]),
-            ]
-            if off[0] > airframe.tolerance[0] * 1.001 + room[0] or off[1] > airframe.tolerance[1] * 1.001 + room[1]:
+            if off[0] > airframe.tolerance[0] * 1.001 or off[1] > airframe.tolerance[1] * 1.001:
                 faults.append(f"unit {i} is {off[0]:.3g} N, {off[1]:.3g} N m off its attainable least-norm efforts")
         # A torque asked on an axis that the airframe does not serve is missed and flagged, whatever is delivered.
         served = sum(3 << 2 * axis for axis in range(4) if airframe.axes[axis])
         if saturation & served:
             faults.append(f"saturation {saturation} though the request was delivered")
     elif not failed:
+        # What the general path gives of one axis for another, as a share of what all units have.
+        share = 3e-3 if airframe.is_general else 0.0
+        most = [
+            sum(abs(row[i]) * airframe.size[0] + abs(row[n + i]) * airframe.size[1] for i in range(n)) for row in airframe.m
+        ]
+        room = [allowed + share * size for allowed, size in zip(budget, most)]
         for axis in range(3):
             if not airframe.axes[axis]:
                 continue
             asked, got = request[axis], truth[axis]
-            if got * math.copysign(1.0, asked) < -budget[axis]:
+            if got * math.copysign(1.0, asked) < -room[axis]:
                 faults.append(f"{AXES[axis]} reverses: {asked!r} asked, {got!r} given")
-            if abs(got) > abs(asked) + budget[axis]:
+            if abs(got) > abs(asked) + room[axis]:
                 faults.append(f"{AXES[axis]} overshoots: {asked!r} asked, {got!r} given")
         if airframe.axes[0] and airframe.axes[1]:
             length = math.hypot(request[0], request[1])
             if length > 0:
                 turned = abs(truth[0] * request[1] - truth[1] * request[0]) / length
-                if turned > budget[0] + budget[1]:
+                if turned > room[0] + room[1]:
                     faults.append(f"(roll, pitch) turns by {turned!r} N m: {request[:2]} asked, {truth[:2]} given")
         floor = n * k[0] * airframe.efforts(airframe.low, airframe.low)[0]
-        # Room for the torque at idle, which must be balanced before the thrust counts as least.
-        if airframe.airmode == "disabled" and truth[3] > max(request[3], 1.25 * floor) + budget[3]:
+        # Room for the torque at idle, which must be balanced before the thrust counts as least. A reserve of yaw takes
+        # more.
+        is_held = airframe.airmode == "disabled" and not airframe.has_reserve
+        if is_held and truth[3] > max(request[3], 1.25 * floor) + room[3]:
             faults.append(f"thrust is raised from {request[3]!r} to {truth[3]!r}")
     for axis in range(4):
         missing = request[axis] - truth[axis]

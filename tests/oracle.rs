@@ -9,10 +9,14 @@ use std::process::{Command, Output};
 
 use mixer_compiler::Compiled;
 use mixer_rt::Health;
-use mixer_tests::{airframes, golden, root};
+use mixer_tests::{airframes, frames, golden, root};
 
-/// Random setpoints per airframe.
+/// Random setpoints per frame.
 const SETPOINTS: usize = 1500;
+
+/// Of the frames, and how many are drawn.
+const SEED: u64 = 1;
+const FRAMES: u64 = 12;
 
 fn oracle(arguments: &[&str]) -> Output {
     Command::new("python3")
@@ -74,22 +78,18 @@ fn mix_with(path: &str, health: Health, setpoints: &str) -> String {
     String::from_utf8(mixed).expect("CSV is UTF-8")
 }
 
-/// All airframes of the project and of `tests/fixtures`, as paths from the root.
+/// Frames of the zoo, written to files: each class at least once. The golden vectors judge the
+/// airframes of the project.
 fn files() -> Vec<String> {
-    let fixtures = fs::read_dir(root().join("tests/fixtures")).expect("tests/fixtures/");
-    let fixtures = fixtures.map(|entry| entry.expect("tests/fixtures/").file_name());
-    let fixtures = fixtures
-        .map(|name| name.to_string_lossy().into_owned())
-        .filter(|name| name.ends_with(".toml"));
-    let mut files: Vec<String> = fixtures.map(|name| format!("tests/fixtures/{name}")).collect();
-    files.extend(
-        airframes()
-            .expect("airframes/")
-            .iter()
-            .map(|name| format!("airframes/{name}.toml")),
-    );
-    files.sort();
-    files
+    let zoo = frames::zoo(SEED).expect("airframes/");
+    let write = |index| {
+        let text = zoo.specimen(index).text;
+        frames::compile_text(&text).ok()?;
+        let path = scratch(&format!("zoo-{index}.toml"));
+        fs::write(&path, text).expect("scratch folder");
+        Some(path.display().to_string())
+    };
+    (0..FRAMES).filter_map(write).collect()
 }
 
 #[test]

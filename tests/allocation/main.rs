@@ -3,7 +3,7 @@
 //!
 //! | file | holds the mixer to |
 //! |---|---|
-//! | `delivery.rs` | wrenches of random throttles: delivered |
+//! | `delivery.rs` | wrenches of throttles at their limits, on frames of the zoo: delivered |
 //! | `optimum.rs` | linear programmes: few requests short by 1 % of any axis' authority |
 //! | `regressions.rs`, `.toml` | requests that an earlier mixer answered badly, as data |
 //! | `jumps.rs` | throttles that jump from a request to its neighbour: those that must; others are counted |

@@ -11,7 +11,7 @@ pub mod pairs;
 mod real;
 pub mod zoo;
 
-pub use real::{zoo, zoo_with_bench_data};
+pub use real::{frames, zoo, zoo_with_bench_data};
 
 /// The voltage of `airframes/isae-x8.toml` with exponents that differ, so that a test sees which
 /// factor is applied.

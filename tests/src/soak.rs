@@ -25,9 +25,9 @@ pub use failure::Failure;
 use limits::{Check, LIMITS};
 
 /// Requests of every kind per frame, wrenches of throttles, and pairs of neighbours.
-const REQUESTS: usize = 400;
-const ATTAINABLE: usize = 400;
-const NEIGHBOURS: usize = 200;
+const REQUESTS: usize = 800;
+const ATTAINABLE: usize = 1000;
+const NEIGHBOURS: usize = 400;
 
 /// States of health with one rotor out and with two per frame, and requests of each kind to each.
 const HEALTHS: usize = 2;
@@ -126,6 +126,8 @@ impl Soak {
         let mut random = Random::new(Random::new(self.seed).bits() ^ index);
         let mut visit = Visit::new(specimen, index, 0);
         visit.look(Check::Compiled, 0.0, &[], String::new);
+        let off = (&frame.physics.matrix - &frame.compiled.effectiveness.matrix).amax();
+        visit.look(Check::Effectiveness, off, &[], || "M is not the file's".into());
         let off = off_identity(frame);
         visit.look(Check::PseudoInverse, off, &[], || {
             "M M+ is not the identity".into()
@@ -421,7 +423,8 @@ impl<'a> Visit<'a> {
 
 /// The largest entry of M M+ - I over the served axes, with rows and columns per authority.
 fn off_identity(frame: &Frame) -> f64 {
-    let product = &frame.physics.matrix * &frame.compiled.effectiveness.pseudo_inverse;
+    let effectiveness = &frame.compiled.effectiveness;
+    let product = &effectiveness.matrix * &effectiveness.pseudo_inverse;
     let served: Vec<usize> = (0..4).filter(|&axis| frame.served()[axis]).collect();
     let entry = |i: usize, j: usize| {
         let one = if i == j { 1.0 } else { 0.0 };

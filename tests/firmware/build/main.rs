@@ -10,7 +10,13 @@
 mod frames;
 mod golden;
 mod isolated;
+#[path = "../../src/frames/pairs.rs"]
+#[allow(dead_code, unreachable_pub, reason = "as above")]
+mod pairs;
 mod requests;
+#[path = "../../src/frames/zoo.rs"]
+#[allow(dead_code, unreachable_pub, reason = "as above")]
+mod zoo;
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -74,7 +80,8 @@ fn generate() -> Result<(), String> {
         let text = fs::read_to_string(path_of(name)).ok()?;
         frames::y6(name, &text)
     };
-    for (name, text) in frames::all().into_iter().chain(airframes.iter().filter_map(y6)) {
+    let others = airframes.iter().filter_map(y6).chain(of_zoo(&airframes)?);
+    for (name, text) in frames::all().into_iter().chain(others) {
         let file = format!("{name}.toml");
         write(&file, &text)?;
         measured.push(Measured::read(&name, out.join(file))?);
@@ -100,6 +107,20 @@ fn generate() -> Result<(), String> {
     println!("cargo::rustc-check-cfg=cfg(million)");
     println!("cargo::rustc-check-cfg=cfg(panic_path)");
     Ok(())
+}
+
+/// The frames of the zoo whose bits are compared.
+fn of_zoo(airframes: &[String]) -> Result<Vec<(String, String)>, String> {
+    let (seed, indices) = zoo::ON_TARGET;
+    let pair = |name: &String| {
+        let path = path_of(name);
+        let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        pairs::Pair::of_airframe(&Source::new(name.as_str(), text))
+    };
+    let pairs: Result<Vec<_>, String> = airframes.iter().map(pair).collect();
+    let zoo = zoo::Zoo::new(seed, pairs?);
+    let named = indices.map(|index| (format!("zoo-{index}"), zoo.specimen(index).text));
+    Ok(named.into())
 }
 
 /// Names of the files `airframes/<name>.toml`, sorted.

@@ -8,8 +8,10 @@ use cargo_mixer::identify::{IdentifyArgs, fragment};
 use clap::Parser;
 use mixer_compiler::Source;
 
+use super::compile_text;
 use super::pairs::Pair;
-use super::zoo::Zoo;
+use super::zoo::{Specimen, Zoo};
+use crate::request::Frame;
 use crate::{airframes, root};
 
 /// The zoo of `seed` with the pairs of `airframes/`.
@@ -28,6 +30,15 @@ pub fn zoo_with_bench_data(seed: u64, data: &Path) -> Result<Zoo, String> {
     let mut pairs = shipped()?;
     pairs.extend(identified(data)?);
     Ok(Zoo::new(seed, pairs))
+}
+
+/// The frames of a zoo from the first on that the compiler takes.
+pub fn frames(zoo: &Zoo) -> impl Iterator<Item = (Specimen, Frame)> + '_ {
+    let specimens = (0..).map(|index| zoo.specimen(index));
+    specimens.filter_map(|specimen| {
+        let compiled = compile_text(&specimen.text).ok()?;
+        Some((specimen, Frame::new(compiled)))
+    })
 }
 
 fn shipped() -> Result<Vec<Pair>, String> {

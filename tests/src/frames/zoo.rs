@@ -16,6 +16,9 @@ use super::pairs::{Pair, log_uniform};
 /// its centre of gravity or its torques at idle forbid.
 pub const REFUSALS: [Code; 2] = [Code::Tolerance, Code::Hover];
 
+/// Whose bits are compared on the target: a seed, and the indices of frames of some size.
+pub const ON_TARGET: (u64, [u64; 5]) = (1, [1, 3, 4, 8, 9]);
+
 /// Arms, m.
 const ARMS_M: [f64; 2] = [0.05, 3.0];
 

@@ -9,6 +9,8 @@ pub enum Check {
     Compiled,
     /// What it refuses it refuses with a code of [`REFUSALS`](crate::frames::zoo::REFUSALS).
     Reason,
+    /// M is that of the file's places, axes and spins: metres, and shares of a torque.
+    Effectiveness,
     /// M M+ is the identity over the served axes, rows and columns per authority.
     PseudoInverse,
     /// A finite request is answered.
@@ -64,9 +66,10 @@ const fn limit(check: Check, name: &'static str, size: f64, rate: f64, rate_out:
 
 /// The limits, in the order of [`Check`]. Sizes and rates are those that `docs/allocation.md`
 /// promises; what has no size is a fault as such.
-pub const LIMITS: [Limit; 14] = [
+pub const LIMITS: [Limit; 15] = [
     limit(Check::Compiled, "compiled", 0.0, 0.05, NONE),
     limit(Check::Reason, "reason", 0.0, 0.0, NONE),
+    limit(Check::Effectiveness, "effectiveness", 1e-6, 0.0, NONE),
     limit(Check::PseudoInverse, "pseudo-inverse", 1e-12, 0.0, NONE),
     limit(Check::Answered, "answered", 0.0, 0.0, NONE),
     limit(Check::Throttle, "throttle", 0.0, 0.0, NONE),
