@@ -102,9 +102,9 @@ fn vary_once(random: &mut Random, mut child: Request, other: Request, third: Req
             0 => child.wrench[axis] = -child.wrench[axis],
             _ => child.wrench.swap(0, 1),
         },
-        // An axis of another request, or by a share of it.
+        // An axis of another request, or by a share of any of its axes: zero does not stay zero.
         6 => child.wrench[axis] = other.wrench[axis],
-        7 => child.wrench[axis] += size * random.between(SIGNED) * other.wrench[axis],
+        7 => child.wrench[axis] += size * random.between(SIGNED) * other.wrench[random.below(4)],
         // Along the line through two requests, or in parallel to it.
         8 => step(&mut child, random.between([-1.0, 2.0]), other, before),
         9 => step(&mut child, size * random.between(SIGNED), other, third),
