@@ -91,10 +91,17 @@ fn measure(toolchain: &Toolchain, subjects: &[Subject], search: bool) -> Result<
     let one = |subject: &Subject| -> Result<(Row, Vec<Request>), String> {
         let images = Images::build(toolchain, subject)?;
         let mut given = worst::of(&held, subject);
+        let mut most = 0;
         if search {
-            given = images.search(&given)?;
+            let found = images.search(&given)?;
+            most = found.first().map_or(0, |(cost, _)| *cost);
+            given = found.into_iter().map(|(_, request)| request).collect();
         }
-        Ok((images.measure(&empty, &given)?, given))
+        let row = images.measure(&empty, &given)?;
+        if row.get("worst_found") < most {
+            return Err(format!("{subject:?}: {most} found, less when counted again"));
+        }
+        Ok((row, given))
     };
     let started = Instant::now();
     let next = AtomicUsize::new(0);

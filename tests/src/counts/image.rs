@@ -72,12 +72,12 @@ impl<'a> Images<'a> {
     }
 
     /// Searches for the most expensive requests, from the sets and from `start`, and returns up to
-    /// [`KEPT`], the most expensive first. What an image has found before from the same start is
-    /// not searched again.
+    /// [`KEPT`] with what they cost, the most expensive first. What an image has found before from
+    /// the same start is not searched again.
     ///
     /// # Errors
     /// If the image fails, or prints something else.
-    pub fn search(&self, start: &[Request]) -> Result<Vec<Request>, String> {
+    pub fn search(&self, start: &[Request]) -> Result<Vec<(u64, Request)>, String> {
         let order = worst::order(worst::BUDGET, start);
         let fault = |error: std::io::Error| format!("{}: {error}", self.counts.display());
         let mut hasher = DefaultHasher::new();
@@ -90,7 +90,11 @@ impl<'a> Images<'a> {
             Ok(text) => text,
             Err(_) => {
                 let text = self.toolchain.order(&self.counts, &order)?;
-                fs::write(&known, &text).map_err(fault)?;
+                // In one step: a run may be stopped at any time.
+                let written = known.with_extension("new");
+                fs::write(&written, &text)
+                    .and_then(|()| fs::rename(&written, &known))
+                    .map_err(fault)?;
                 text
             }
         };
@@ -103,7 +107,8 @@ impl<'a> Images<'a> {
             .ok_or_else(|| format!("{:?}: not requests:\n{text}", self.subject))?;
         found.sort_by_key(|(cost, _)| std::cmp::Reverse(*cost));
         found.dedup_by_key(|(cost, _)| *cost);
-        Ok(found.into_iter().take(KEPT).map(|(_, request)| request).collect())
+        found.truncate(KEPT);
+        Ok(found)
     }
 }
 
