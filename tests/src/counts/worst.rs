@@ -7,7 +7,7 @@ use super::Subject;
 use crate::root;
 
 /// Instructions of mixes after which a search ends.
-pub const BUDGET: u64 = 1_000_000_000;
+pub const BUDGET: u64 = 2_000_000_000;
 
 /// First word of an order to the `counts` image, as its `order.rs` has it.
 const MARK: u32 = 0x4f52_4445;

@@ -22,7 +22,7 @@ const TOURNAMENT: usize = 8;
 /// One child in as many takes the place of any member, not of its parent.
 const MIGRATION: u32 = 16;
 /// The search ends after as many mixes, or after its budget of instructions.
-const MIXES: u64 = 400_000;
+const MIXES: u64 = 1_000_000;
 
 /// What a request costs, and the request.
 type Costly = (u32, Request);
