@@ -72,7 +72,7 @@ impl<'a> Images<'a> {
     }
 
     /// Searches for the most expensive requests, from the sets and from `start`, and returns up to
-    /// [`KEPT`] with what they cost, the most expensive first. What an image has found before from
+    /// four with what they cost, the most expensive first. What an image has found before from
     /// the same start is not searched again.
     ///
     /// # Errors
