@@ -14,6 +14,8 @@ use crate::root;
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 /// Far more than any image needs; an image that hangs must not hang the tests.
 const TIME_LIMIT: Duration = Duration::from_secs(300);
+/// Where the `counts` image looks for its order (`order.rs`).
+const ORDER: u32 = 0x2100_0000;
 /// Of images that mix up to a million times.
 const LONG_TIME_LIMIT: Duration = Duration::from_secs(3600);
 
@@ -187,7 +189,23 @@ impl Toolchain {
     /// What the compiler said, or what the image printed before it failed or was stopped for taking
     /// too long.
     pub fn run(&self, image: &str, variant: &Variant) -> Result<String, String> {
-        self.start(image, variant, &self.runner()?, TIME_LIMIT)
+        self.start(&self.build(image, variant)?, &self.runner()?, &[], TIME_LIMIT)
+    }
+
+    /// Runs an image that is built, with `order` in the memory where the `counts` image looks for
+    /// it, and returns what it printed.
+    ///
+    /// # Errors
+    ///
+    /// As [`Toolchain::run`].
+    pub fn order(&self, elf: &Path, order: &[u8]) -> Result<String, String> {
+        let mut file = elf.to_owned();
+        file.as_mut_os_string().push(".order");
+        fs::write(&file, order).map_err(|e| format!("{}: {e}", file.display()))?;
+        // QEMU reads two commas as one that belongs to the name.
+        let file = file.display().to_string().replace(',', ",,");
+        let loader = format!("loader,file={file},addr={ORDER:#x},force-raw=on");
+        self.start(elf, &self.runner()?, &["-device", &loader], LONG_TIME_LIMIT)
     }
 
     /// As [`Toolchain::run`], but QEMU does not count instructions, which makes it faster.
@@ -201,21 +219,22 @@ impl Toolchain {
             // The option and its value.
             runner.drain(at..(at + 2).min(runner.len()));
         }
-        self.start(image, variant, &runner, LONG_TIME_LIMIT)
+        self.start(&self.build(image, variant)?, &runner, &[], LONG_TIME_LIMIT)
     }
 
     fn start(
         &self,
-        image: &str,
-        variant: &Variant,
+        elf: &Path,
         runner: &[String],
+        options: &[&str],
         limit: Duration,
     ) -> Result<String, String> {
-        let elf = self.build(image, variant)?;
+        let image = elf.display();
         let (qemu, arguments) = runner.split_first().ok_or("the runner is empty")?;
         let mut child = Command::new(qemu)
             .args(arguments)
             .arg(elf)
+            .args(options)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .spawn()

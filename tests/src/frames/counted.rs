@@ -40,7 +40,8 @@ torque_exponent = 1.75
 "#;
 
 /// Regular frames of 1 to 8 units on arms of 0.45 m; the X8 with tolerances of 0.1 N to 3e-5 N,
-/// with yaw before thrust, and with a reserve of yaw; a Y6 and an X8 with a made-up pair whose
+/// with yaw before thrust, with a reserve of yaw, and with upper rotors that all turn alike; the X12
+/// with yaw before thrust, and with a reserve; a Y6 and an X8 with a made-up pair whose
 /// attainable set bends inwards; frames of 4, 6 and 8 units whose axes lean by 6 degrees along
 /// their circle, to and fro. The Y6s with the pairs of `airframes/x8-*.toml` are those of [`y6`].
 pub fn all() -> Vec<(String, String)> {
@@ -71,9 +72,20 @@ pub fn all() -> Vec<(String, String)> {
             regular(PAPER, 4, &format!("[allocation]\n{allocation}\n")),
         )
     });
+    let six = [
+        (
+            "regular-6-roll-pitch-yaw",
+            "[allocation]\nairmode = \"roll-pitch-yaw\"\n",
+        ),
+        ("regular-6-reserve-0.15", "[allocation]\nyaw_reserve_nm = 0.15\n"),
+    ];
+    let six = six.map(|(name, options)| (name.to_owned(), regular(PAPER, 6, options)));
+    let like_spins = regular(PAPER, 4, "") + "spins = [\"cw\", \"cw\", \"cw\", \"cw\"]\n";
+    let like_spins = ("regular-4-like-spins".to_owned(), like_spins);
     let bent = [3, 4].map(|units| (format!("bent-{units}"), regular(BENT, units, "")));
     let tilted = [4, 6, 8].map(|units| (format!("tilted-{units}"), tilted(units)));
-    let others = priorities.into_iter().chain(bent).chain(tilted);
+    let priorities = priorities.into_iter().chain(six).chain([like_spins]);
+    let others = priorities.chain(bent).chain(tilted);
     sizes.chain(tolerances).chain(others).collect()
 }
 

@@ -18,8 +18,14 @@ use crate::tables::ClosedFormTable;
 const PER_MIX: u32 = 120;
 const PER_VOLTAGE: u32 = 78;
 
+/// A request brought down to what products do not overflow with.
+const LIMITED: u32 = 70;
+
 /// One unit's least norm, its throttles written, and its share of the achieved wrench.
 const PER_UNIT: u32 = 90;
+
+/// One unit of an attempt next to the border: its throttles written, its efforts compared.
+const ATTEMPT_UNIT: u32 = 45;
 
 /// A step of the facets' linear programme, and one pair of facets in it.
 const STEP: u32 = 30;
@@ -123,5 +129,5 @@ fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     let voltage = compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
     let ways = (Facets::STEPS * step).max(step + climb);
     let found = walls + ways + n * NULL_RANGE + (1 + RETREAT) * reach + n * TORQUES;
-    Some(PER_MIX + voltage + n * PER_UNIT + 2 * inverses + found)
+    Some(PER_MIX + LIMITED + voltage + n * (PER_UNIT + ATTEMPT_UNIT) + 2 * inverses + found)
 }

@@ -1,16 +1,23 @@
 //! Counts the instructions of one mixer, request by request.
 //!
-//! Which one: see `src/subject`. Prints a line per set of requests: how many, the sum, the median
-//! and the worst of their instructions, the deepest stack, and the request that cost most (roll,
-//! pitch, yaw, thrust, voltage as f32 bits). The sets are `attainable` and `saturated`, drawn by
-//! the host (`mixer_setpoints::Requests`), and `searched`: what a random search for the most
-//! expensive requests tries. Only one airframe is linked, as in a user's image: what is inlined
-//! depends on who else calls it.
+//! Which one: see `src/subject`. What it does is the host's order (`order.rs`). Without one it
+//! measures three sets: `attainable` and `saturated`, drawn by the host
+//! (`mixer_setpoints::Requests`), and `given`, requests that come with the order. It prints a line
+//! per set: how many, the sum, the median and the worst of their instructions, and the deepest
+//! stack. Ordered to search, it prints the most expensive requests that it finds: their instructions,
+//! and roll, pitch, yaw, thrust, voltage as f32 bits with the rotors that are out.
+//!
+//! Both are one image, hence the mixer has the same instructions in both. Only one airframe is
+//! linked, as in a user's image: what is inlined depends on who else calls it.
 #![no_std]
 #![no_main]
 
 #[cfg(airframe)]
 mod measurement;
+#[cfg(airframe)]
+mod order;
+#[cfg(airframe)]
+mod request;
 #[cfg(airframe)]
 mod search;
 #[cfg(airframe)]

@@ -4,54 +4,17 @@ use core::mem::MaybeUninit;
 
 use cortex_m_semihosting::hprintln;
 use mixer_rt::{Health, Wrench};
-use mixer_setpoints::RotorsOut;
 use probe::Counter;
 
+use crate::order::Order;
+use crate::request::{Request, requests};
 use crate::search::Search;
 use crate::subject::{self, Mixed};
 use crate::{ATTAINABLE, SATURATED};
 
-/// Where the sequence of the rotors that are out starts.
-const SEED: u64 = 9;
-
-/// A wrench, which rotors are out, and the battery's voltage.
-#[derive(Clone, Copy)]
-pub(crate) struct Request {
-    /// Roll, pitch, yaw (N m), thrust (N).
-    pub(crate) wrench: [f32; 4],
-    pub(crate) health: Health,
-    /// V.
-    pub(crate) voltage_v: f32,
-}
-
-impl Request {
-    /// Asks for nothing.
-    pub(crate) const NOTHING: Request = Request {
-        wrench: [0.0; 4],
-        health: Health::GOOD,
-        voltage_v: 0.0,
-    };
-}
-
-/// Requests as the build script has written them, to as many rotors less as the subject is asked
-/// with.
-pub(crate) fn requests(bytes: &'static [u8]) -> impl Iterator<Item = Request> {
-    let healths = RotorsOut::new(SEED, subject::airframe::CHANNELS, subject::ROTORS_OUT);
-    bytes.chunks_exact(20).zip(healths).map(|(row, health)| {
-        let mut values = [0.0; 5];
-        for (value, bytes) in values.iter_mut().zip(row.chunks_exact(4)) {
-            let mut word = [0; 4];
-            word.copy_from_slice(bytes);
-            *value = f32::from_le_bytes(word);
-        }
-        let [roll, pitch, yaw, thrust, voltage_v] = values;
-        Request {
-            wrench: [roll, pitch, yaw, thrust],
-            health,
-            voltage_v,
-        }
-    })
-}
+/// Requests of a set at most, and of those that are given.
+pub(crate) const SET: usize = 2_000;
+pub(crate) const GIVEN: usize = 64;
 
 /// What a mixer is asked by, beside the voltage.
 struct Asked {
@@ -72,103 +35,101 @@ unsafe extern "C" fn mix(asked: *const Asked, output: *mut (), voltage_v: f32) {
     }
 }
 
-/// What the requests of one set cost.
-pub(crate) struct Tally {
-    requests: u32,
-    sum: u64,
-    worst: u32,
-    /// Zero where it is not known.
-    median: u32,
-    stack: usize,
-    dearest: Request,
+/// Measures one mixer.
+pub(crate) struct Meter {
+    counter: Counter,
     /// Requests that were refused, though all are finite.
     refused: u32,
 }
 
-impl Tally {
-    pub(crate) fn new() -> Self {
-        Tally {
-            requests: 0,
-            sum: 0,
-            worst: 0,
-            median: 0,
-            stack: 0,
-            dearest: Request::NOTHING,
-            refused: 0,
-        }
-    }
-
-    /// Mixes `request`, once for the instructions, which it returns, and once for the stack.
-    pub(crate) fn measure(&mut self, counter: &Counter, request: &Request) -> u32 {
-        let asked = Asked {
-            setpoint: Wrench::from_array(request.wrench),
-            health: request.health,
-        };
+impl Meter {
+    /// Mixes `request` and returns its instructions.
+    pub(crate) fn count(&mut self, request: &Request) -> u32 {
         let mut output = MaybeUninit::<Mixed>::uninit();
         let pointer = output.as_mut_ptr().cast();
-        // SAFETY: the output is of the type that `mix` writes, which it does in every call; no
-        // interrupt is enabled.
-        let (instructions, stack, mixed) = unsafe {
+        // SAFETY: the output is of the type that `mix` writes, which it does in every call.
+        let (instructions, mixed) = unsafe {
             (
-                counter.count(mix, &asked, pointer, request.voltage_v),
-                probe::high_water(mix, &asked, pointer, request.voltage_v),
+                self.counter
+                    .count(mix, &request.asked(), pointer, request.voltage_v),
                 output.assume_init(),
             )
         };
         self.refused += u32::from(mixed.is_err());
-        self.requests += 1;
-        self.sum += u64::from(instructions);
-        self.stack = self.stack.max(stack);
-        if instructions > self.worst {
-            self.worst = instructions;
-            self.dearest = *request;
-        }
         instructions
     }
 
-    /// How many there were.
-    pub(crate) fn requests(&self) -> usize {
-        self.requests as usize
+    /// As [`Meter::count`], whatever was mixed before.
+    pub(crate) fn count_afresh(&mut self, request: &Request) -> u32 {
+        subject::prepare();
+        self.count(request)
     }
 
-    pub(crate) fn set_median(&mut self, instructions: u32) {
-        self.median = instructions;
+    /// Mixes `request` and returns its stack, bytes.
+    fn stack(&self, request: &Request) -> usize {
+        let mut output = MaybeUninit::<Mixed>::uninit();
+        // SAFETY: the output is of the type that `mix` writes; no interrupt is enabled.
+        unsafe {
+            probe::high_water(
+                mix,
+                &request.asked(),
+                output.as_mut_ptr().cast(),
+                request.voltage_v,
+            )
+        }
     }
 
-    /// Instructions of all requests.
-    pub(crate) fn instructions(&self) -> u64 {
-        self.sum
-    }
-
-    /// Prints a line; false if a request was refused.
-    pub(crate) fn print(&self, set: &str) -> bool {
-        let [roll, pitch, yaw, thrust] = self.dearest.wrench.map(f32::to_bits);
+    /// Measures a set and prints its line.
+    fn set(
+        &mut self,
+        name: &str,
+        set: impl Iterator<Item = Request>,
+        count: fn(&mut Meter, &Request) -> u32,
+    ) {
+        let mut counts = [0; SET];
+        let (mut requests, mut stack) = (0, 0);
+        for (request, instructions) in set.zip(&mut counts) {
+            *instructions = count(self, &request);
+            stack = stack.max(self.stack(&request));
+            requests += 1;
+        }
+        let counts = &mut counts[..requests];
+        counts.sort_unstable();
         hprintln!(
-            "{} {} {} {} {} {} {:08x},{:08x},{:08x},{:08x},{:08x}",
-            set,
-            self.requests,
-            self.sum,
-            self.median,
-            self.worst,
-            self.stack,
-            roll,
-            pitch,
-            yaw,
-            thrust,
-            self.dearest.voltage_v.to_bits()
+            "{} {} {} {} {} {}",
+            name,
+            requests,
+            counts.iter().map(|count| u64::from(*count)).sum::<u64>(),
+            counts.get(requests / 2).copied().unwrap_or(0),
+            counts.last().copied().unwrap_or(0),
+            stack
         );
-        self.refused == 0
     }
 }
 
-/// Measures and prints all sets; false if something is wrong with the measurement.
+impl Request {
+    fn asked(&self) -> Asked {
+        Asked {
+            setpoint: Wrench::from_array(self.wrench),
+            health: self.health,
+        }
+    }
+}
+
+/// Does what is ordered; false if something is wrong with the measurement.
 pub(crate) fn run() -> bool {
     probe::with_counter(|counter| {
+        let mut meter = Meter { counter, refused: 0 };
+        let order = Order::read();
         subject::prepare();
-        let attainable = Search::new(&counter).set(ATTAINABLE);
-        let mut search = Search::new(&counter);
-        let saturated = search.set(SATURATED);
-        let searched = search.vary();
-        attainable.print("attainable") & saturated.print("saturated") & searched.print("searched")
+        if order.budget > 0 {
+            let sets = requests(ATTAINABLE).chain(requests(SATURATED));
+            Search::new(&mut meter).run(order.given().chain(sets), order.budget);
+        } else {
+            meter.set("attainable", requests(ATTAINABLE), Meter::count);
+            meter.set("saturated", requests(SATURATED), Meter::count);
+            meter.set("given", order.given(), Meter::count_afresh);
+        }
+        meter.refused == 0
     })
 }

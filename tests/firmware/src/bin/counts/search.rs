@@ -1,101 +1,124 @@
-//! A search for the requests that cost most.
+//! A search for the requests that cost most: mutation and selection, in populations apart.
+//!
+//! What a mix costs changes in steps, with the branches that it takes, and is level in between.
+//! Hence a child replaces its parent where it costs as much: it drifts over the level parts. A
+//! population that starts from other requests ends on another hill. So there are many, of which the
+//! better half goes on at a time, until one is left.
 
+use core::cmp::Reverse;
+
+use cortex_m_semihosting::hprintln;
 use mixer_setpoints::Random;
-use probe::Counter;
 
-use crate::measurement::{Request, Tally, requests};
+use crate::measurement::{GIVEN, Meter, SET};
+use crate::request::{Request, vary};
 
-/// Requests of a set at most.
-const SET: usize = 4_000;
-/// Most expensive requests that the search varies.
-const POOL: usize = 16;
-/// The search ends after as many variations or instructions.
-const ROUNDS: u32 = 20_000;
-const BUDGET: u64 = 80_000_000;
+/// Requests that live at a time.
+const POPULATION: usize = 16;
+/// Populations at the start, a power of two.
+const POPULATIONS: usize = 16;
+/// Of as many requests the most expensive starts a member of a population.
+const TOURNAMENT: usize = 8;
+/// One child in as many takes the place of any member, not of its parent.
+const MIGRATION: u32 = 16;
+/// The search ends after as many mixes, or after its budget of instructions.
+const MIXES: u64 = 1_000_000;
 
-/// Steps of 2^-0 to 2^-23 of a value.
-const HALVINGS: u32 = 24;
-const SIGNED: [f32; 2] = [-1.0, 1.0];
-
-/// A request and what it cost.
+/// What a request costs, and the request.
 type Costly = (u32, Request);
 
-/// Keeps the most expensive requests of what it measures.
+const NOTHING: Costly = (0, Request::NOTHING);
+
+/// The state of a search.
 pub(crate) struct Search<'a> {
-    counter: &'a Counter,
-    pool: [Costly; POOL],
+    meter: &'a mut Meter,
+    random: Random,
+    /// Instructions of mixes, and mixes.
+    spent: u64,
+    mixes: u64,
 }
 
 impl<'a> Search<'a> {
-    pub(crate) fn new(counter: &'a Counter) -> Self {
+    pub(crate) fn new(meter: &'a mut Meter) -> Self {
         Search {
-            counter,
-            pool: [(0, Request::NOTHING); POOL],
+            meter,
+            random: Random::new(1),
+            spent: 0,
+            mixes: 0,
         }
     }
 
-    /// Measures the requests of one set.
-    pub(crate) fn set(&mut self, bytes: &'static [u8]) -> Tally {
-        let mut tally = Tally::new();
-        let mut counts = [0; SET];
-        for (request, count) in requests(bytes).zip(&mut counts) {
-            *count = self.measure(&mut tally, request);
+    /// Searches from the requests of `start` for `budget` instructions of mixes, and prints the best
+    /// of every population, the best of all first: what it costs, and the request.
+    pub(crate) fn run(&mut self, start: impl Iterator<Item = Request>, budget: u64) {
+        let mut pool = [NOTHING; 2 * SET + GIVEN];
+        let mut started = 0;
+        for (slot, request) in pool.iter_mut().zip(start) {
+            *slot = (self.count(&request), request);
+            started += 1;
         }
-        let counts = &mut counts[..tally.requests()];
-        if !counts.is_empty() {
-            tally.set_median(*counts.select_nth_unstable(counts.len() / 2).1);
-        }
-        tally
-    }
-
-    /// Varies the most expensive requests so far by all magnitudes, one value or all at a time, and
-    /// keeps what costs more: it follows the branches of a mixer to where several are taken at
-    /// once.
-    pub(crate) fn vary(&mut self) -> Tally {
-        let mut tally = Tally::new();
-        for (_, request) in self.pool {
-            self.measure(&mut tally, request);
-        }
-        let mut random = Random::new(1);
-        for _ in 0..ROUNDS {
-            let (_, request) = self.pool[random.below(POOL)];
-            let (halvings, which) = (random.index(HALVINGS), random.index(8));
-            let varied = vary(&mut random, request, halvings, which);
-            if varied.wrench.iter().all(|value| value.is_finite()) {
-                self.measure(&mut tally, varied);
+        let pool = &pool[..started];
+        let mut populations = [(); POPULATIONS].map(|()| [(); POPULATION].map(|()| self.drawn(pool)));
+        // What is given is what was found before: none of it is left to chance.
+        populations[0][0] = most(pool);
+        // Every round takes as much: 16 populations, 8, 4, 2, 1.
+        let rounds = u64::from(POPULATIONS.ilog2() + 1);
+        let mut alive = POPULATIONS;
+        while alive > 0 {
+            let parts = rounds * alive as u64;
+            for members in &mut populations[..alive] {
+                (self.spent, self.mixes) = (0, 0);
+                while self.spent < budget / parts && self.mixes < MIXES / parts {
+                    self.evolve(members);
+                }
             }
-            if tally.instructions() > BUDGET {
-                break;
-            }
+            populations.sort_unstable_by_key(|members| Reverse(most(members).0));
+            alive /= 2;
         }
-        tally
+        for (cost, request) in populations.iter().map(|members| most(members)) {
+            hprintln!("{} {}", cost, request);
+        }
     }
 
-    fn measure(&mut self, tally: &mut Tally, request: Request) -> u32 {
-        let instructions = tally.measure(self.counter, &request);
-        if let Some(cheapest) = self.pool.iter_mut().min_by_key(|(cost, _)| *cost)
-            && instructions > cheapest.0
-        {
-            *cheapest = (instructions, request);
+    /// The most expensive of a few of `pool`.
+    fn drawn(&mut self, pool: &[Costly]) -> Costly {
+        most(&[(); TOURNAMENT].map(|()| pool[self.random.below(pool.len())]))
+    }
+
+    /// One child, which lives if it costs as much as the member whose place it takes.
+    fn evolve(&mut self, members: &mut [Costly; POPULATION]) {
+        let [parent, other, third, any] = [(); 4].map(|()| self.random.below(POPULATION));
+        let child = vary(
+            &mut self.random,
+            members[parent].1,
+            members[other].1,
+            members[third].1,
+        );
+        let place = if self.random.index(MIGRATION) == 0 {
+            any
+        } else {
+            parent
+        };
+        let cost = self.count(&child);
+        if cost >= members[place].0 {
+            members[place] = (cost, child);
         }
-        instructions
+    }
+
+    /// What a request costs; nothing where it is not finite.
+    fn count(&mut self, request: &Request) -> u32 {
+        self.mixes += 1;
+        if !request.is_finite() {
+            return 0;
+        }
+        let cost = self.meter.count_afresh(request);
+        self.spent += u64::from(cost);
+        cost
     }
 }
 
-/// Changes values by up to 2^-`halvings` of themselves: 0 to 3 an axis, 4 the voltage, from 5 on
-/// all of them.
-fn vary(random: &mut Random, mut request: Request, halvings: u32, which: u32) -> Request {
-    let mut size = 1.0;
-    for _ in 0..halvings {
-        size *= 0.5;
-    }
-    for (axis, value) in (0..).zip(request.wrench.iter_mut()) {
-        if which == axis || which > 4 {
-            *value += size * random.between(SIGNED) * *value;
-        }
-    }
-    if which > 3 {
-        request.voltage_v += 0.1 * size * random.between(SIGNED) * request.voltage_v;
-    }
-    request
+/// The most expensive.
+fn most(requests: &[Costly]) -> Costly {
+    let most = requests.iter().max_by_key(|(cost, _)| *cost);
+    most.copied().unwrap_or(NOTHING)
 }
