@@ -8,7 +8,7 @@ use std::time::Instant;
 use mixer_compiler::Compiled;
 use mixer_compiler::checklist::Checklist;
 use mixer_compiler::cost::Cost;
-use mixer_compiler::diagnostic::{Record, Severity};
+use mixer_compiler::diagnostic::{Record, Severity, printable};
 use mixer_compiler::report::{Report, Summary};
 use serde::Serialize;
 
@@ -111,7 +111,7 @@ fn denied(compiled: &Compiled) -> ExitCode {
 fn unreadable(airframe: &Path, message: &str) -> Record {
     Record {
         code: String::new(),
-        file: airframe.display().to_string(),
+        file: printable(&airframe.display().to_string()),
         line: None,
         column: None,
         key: String::new(),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::printable;
+use super::wording::printable;
 
 /// The text of an airframe file together with the path that its user knows it by.
 #[derive(Clone, Debug, PartialEq, Eq)]

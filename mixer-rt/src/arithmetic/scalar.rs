@@ -82,11 +82,12 @@ pub(crate) fn clamp(x: f32, low: f32, high: f32) -> f32 {
 /// Below every divisor but zero, and so large that no numerator of the runtime overflows by it.
 const LEAST_DIVISOR: f32 = 1e-24;
 
-/// `x > 0` as a divisor; 1e-24 where it is zero or negative, and the quotient is of no use.
+/// `x > 0` as a divisor; 1e-24 where it is zero or negative, and nobody takes the quotient.
 ///
 /// Flight stacks trap floating-point exceptions, and a branch around a division does not keep it
-/// from raising one: to LLVM divisions have no side effects, so it divides first and selects
-/// afterwards. Of integers, as of a selection between floats LLVM divides by both.
+/// from raising one: to LLVM divisions have no side effects, so it may divide before the branch and
+/// select afterwards. The selection here is between integers: of one between floats LLVM may divide
+/// by both, too.
 #[inline(always)]
 pub(crate) fn divisor(x: f32) -> f32 {
     let (bits, least) = (x.to_bits() as i32, LEAST_DIVISOR.to_bits() as i32);
