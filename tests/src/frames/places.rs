@@ -204,10 +204,13 @@ fn jitter(units: &mut [Unit], arm: f64, random: &mut Random) {
     }
 }
 
-/// Axes lean along the circle to and fro, inwards or outwards, or anyhow.
+/// Axes lean along the circle to and fro, outwards, or anyhow. An odd number to and fro would turn.
 fn tilt(units: &mut [Unit], random: &mut Random) {
     let lean = random.uniform(0.03, 0.25);
-    let kind = random.below(3);
+    let kind = match random.below(3) {
+        0 if units.len() % 2 == 1 => 1,
+        kind => kind,
+    };
     for (k, unit) in units.iter_mut().enumerate() {
         let [x, y, _] = unit.position;
         let per = lean / (x * x + y * y).sqrt();
