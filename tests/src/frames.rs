@@ -8,6 +8,7 @@ use mixer_setpoints::Random;
 
 pub mod counted;
 pub mod pairs;
+mod places;
 mod real;
 pub mod zoo;
 

@@ -13,6 +13,9 @@ mod isolated;
 #[path = "../../src/frames/pairs.rs"]
 #[allow(dead_code, unreachable_pub, reason = "as above")]
 mod pairs;
+#[path = "../../src/frames/places.rs"]
+#[allow(dead_code, unreachable_pub, reason = "as above")]
+mod places;
 mod requests;
 #[path = "../../src/frames/zoo.rs"]
 #[allow(dead_code, unreachable_pub, reason = "as above")]

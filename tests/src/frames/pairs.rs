@@ -204,7 +204,7 @@ impl Pair {
             return false;
         }
         let min = match random.below(4) {
-            0 => random.uniform(low, high),
+            0 => random.uniform(low, low.midpoint(high)),
             1 => low,
             _ => bench_min.clamp(low, high),
         };

@@ -67,7 +67,7 @@ const fn limit(check: Check, name: &'static str, size: f64, rate: f64, rate_out:
 /// The limits, in the order of [`Check`]. Sizes and rates are those that `docs/allocation.md`
 /// promises; what has no size is a fault as such.
 pub const LIMITS: [Limit; 15] = [
-    limit(Check::Compiled, "compiled", 0.0, 0.05, NONE),
+    limit(Check::Compiled, "compiled", 0.0, 0.1, NONE),
     limit(Check::Reason, "reason", 0.0, 0.0, NONE),
     limit(Check::Effectiveness, "effectiveness", 1e-6, 0.0, NONE),
     limit(Check::PseudoInverse, "pseudo-inverse", 1e-12, 0.0, NONE),

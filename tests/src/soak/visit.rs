@@ -1,0 +1,256 @@
+//! What is looked at on one frame.
+
+use std::collections::BTreeMap;
+
+use microlp::Error;
+use mixer_rt::Health;
+
+use super::draw::Draw;
+use super::failure::Failure;
+use super::limits::Check;
+use crate::frames::zoo::Specimen;
+use crate::motion::{JUMP, Motion};
+use crate::optimum::Oracle;
+use crate::request::{Answer, Frame, Request};
+use crate::shortfall::Shortfall;
+use crate::soundness::{self, Allowed};
+
+/// Requests per state of health that are judged by linear programmes, and of how many frames one is.
+const JUDGED: usize = 2;
+const JUDGED_FRAMES: u64 = 4;
+
+/// Units beyond which they are not: a programme takes seconds.
+const MOST_JUDGED_UNITS: usize = 8;
+
+/// Pairs of neighbours per frame and health that linear programmes judge, of those that move
+/// throttles: the frame's further ones are left out.
+const MOST_MOVED: usize = 3;
+
+/// How often something was looked at and missed.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Count {
+    pub(super) looked: usize,
+    pub(super) missed: usize,
+    pub(super) worst: f64,
+    /// Misses with what reproduces them.
+    pub(super) kept: Vec<Failure>,
+}
+
+impl Count {
+    /// Too many misses: one is none where some are allowed.
+    pub(super) fn is_beyond(&self, rate: f64) -> bool {
+        let allowed = if rate > 0.0 {
+            (rate * self.looked as f64).max(1.0)
+        } else {
+            0.0
+        };
+        self.missed as f64 > allowed
+    }
+}
+
+/// What is found of one frame with so many rotors out.
+pub(super) struct Visit<'a> {
+    pub(super) specimen: &'a Specimen,
+    index: u64,
+    pub(super) rotors_out: usize,
+    pub(super) mixes: usize,
+    pub(super) counts: BTreeMap<Check, Count>,
+}
+
+impl<'a> Visit<'a> {
+    pub(super) fn new(specimen: &'a Specimen, index: u64, rotors_out: usize) -> Self {
+        Visit {
+            specimen,
+            index,
+            rotors_out,
+            mixes: 0,
+            counts: BTreeMap::new(),
+        }
+    }
+
+    /// Counts a look at something of this size.
+    pub(super) fn look(
+        &mut self,
+        check: Check,
+        size: f64,
+        requests: &[Request],
+        said: impl FnOnce() -> String,
+    ) {
+        let count = self.counts.entry(check).or_default();
+        count.looked += 1;
+        count.worst = count.worst.max(size);
+        // What is not a number is a miss.
+        let is_within = size <= check.limit().size;
+        if !is_within {
+            count.missed += 1;
+            if count.kept.is_empty() {
+                count.kept.push(Failure {
+                    check,
+                    class: self.specimen.class,
+                    index: self.index,
+                    size,
+                    said: said(),
+                    text: self.specimen.text.clone(),
+                    requests: requests.to_vec(),
+                });
+            }
+        }
+    }
+
+    /// The answer to a finite request.
+    fn answer(&mut self, frame: &Frame, request: &Request) -> Option<Answer> {
+        self.mixes += 1;
+        let answer = request.mix(frame);
+        let size = if answer.is_ok() { 0.0 } else { f64::INFINITY };
+        self.look(Check::Answered, size, &[*request], || format!("{answer:?}"));
+        answer.ok()
+    }
+
+    /// An answer that nothing excuses if it is unsound.
+    pub(super) fn sound(&mut self, frame: &Frame, request: &Request) -> Result<Option<Answer>, Error> {
+        let Some(answer) = self.answer(frame, request) else {
+            return Ok(None);
+        };
+        let allowed = Allowed {
+            slack: Check::Overstepped.limit().size,
+            ..Allowed::default()
+        };
+        let faults = soundness::faults(frame, request, &answer, allowed)?;
+        for (kind, check) in [
+            (soundness::Kind::Throttle, Check::Throttle),
+            (soundness::Kind::Truth, Check::Truth),
+            (soundness::Kind::Flag, Check::Flag),
+            (soundness::Kind::Overstepped, Check::Overstepped),
+            (soundness::Kind::Turned, Check::Turned),
+            (soundness::Kind::Raised, Check::Raised),
+        ] {
+            let fault = faults.iter().find(|fault| fault.kind == kind);
+            // A fault is one however small it is.
+            let size = fault.map_or(0.0, |fault| fault.size.max(check.limit().size.next_up()));
+            self.look(check, size, &[*request], || {
+                fault.map_or(String::new(), ToString::to_string)
+            });
+        }
+        Ok(Some(answer))
+    }
+
+    /// Wrenches of throttles, neighbours, and what linear programmes judge.
+    pub(super) fn ask(
+        &mut self,
+        draw: &mut Draw<'_>,
+        [attainable, neighbours]: [usize; 2],
+    ) -> Result<(), Error> {
+        let frame = draw.frame;
+        for _ in 0..attainable {
+            let request = draw.attainable();
+            if let Some(answer) = self.sound(frame, &request)? {
+                let size = missed(frame, &request, &answer);
+                let achieved = answer.achieved;
+                self.look(Check::Delivered, size, &[request], || {
+                    format!("{achieved:?} is given")
+                });
+            }
+        }
+        let mut moved = 0;
+        for _ in 0..neighbours {
+            let [request, next] = draw.neighbours();
+            let answers = (self.sound(frame, &request)?, self.answer(frame, &next));
+            if let (Some(answer), Some(after)) = answers
+                && moved < MOST_MOVED
+            {
+                moved += usize::from(self.follow(frame, [&request, &next], [&answer, &after])?);
+            }
+        }
+        if self.index.is_multiple_of(JUDGED_FRAMES) && frame.physics.units() <= MOST_JUDGED_UNITS {
+            for _ in 0..JUDGED {
+                let request = draw.moderate();
+                self.judge(frame, &request)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// From a request to the next one; true where throttles move far.
+    fn follow(
+        &mut self,
+        frame: &Frame,
+        requests: [&Request; 2],
+        answers: [&Answer; 2],
+    ) -> Result<bool, Error> {
+        let pair = requests.map(|request| *request);
+        let step = (0..4)
+            .map(|axis| (answers[0].achieved[axis] - answers[1].achieved[axis]).abs() / frame.size(axis))
+            .fold(0.0, f64::max);
+        self.look(Check::Step, step, &pair, || {
+            format!("from {:?} to {:?}", answers[0].achieved, answers[1].achieved)
+        });
+        let change = answers[0].change(answers[1]);
+        let is_far = change > JUMP;
+        // No oracle says which jumps are forced with rotors out.
+        let is_free = is_far
+            && (self.rotors_out > 0
+                || matches!(Motion::between(frame, requests[0], requests[1])?, Motion::Jump(_)));
+        self.look(
+            Check::Jump,
+            if is_free { f64::from(change) } else { 0.0 },
+            &pair,
+            || format!("throttles move by {change}"),
+        );
+        Ok(is_far)
+    }
+
+    /// Holds an answer to the linear programme.
+    fn judge(&mut self, frame: &Frame, request: &Request) -> Result<(), Error> {
+        let Some(answer) = self.answer(frame, request) else {
+            return Ok(());
+        };
+        let factors = frame.physics.factors(request.volts);
+        let oracle = |build: fn(&_, &_, _, _) -> Oracle| {
+            build(&frame.physics, frame.allocation(), factors, request.health)
+        };
+        let limit = Check::Optimal.limit().size;
+        let hulls = oracle(Oracle::new);
+        let shortfall =
+            Shortfall::beyond_hulls(&answer, request, frame, limit, &hulls, || oracle(Oracle::exact))?;
+        if let Some(shortfall) = shortfall {
+            self.look(Check::Optimal, shortfall.largest(), &[*request], || {
+                format!("{shortfall:?}")
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The largest entry of M M+ - I over the served axes, with rows and columns per authority.
+pub(super) fn off_identity(frame: &Frame) -> f64 {
+    let effectiveness = &frame.compiled.effectiveness;
+    let product = &effectiveness.matrix * &effectiveness.pseudo_inverse;
+    let served: Vec<usize> = (0..4).filter(|&axis| frame.served()[axis]).collect();
+    let entry = |i: usize, j: usize| {
+        let one = if i == j { 1.0 } else { 0.0 };
+        (product[(i, j)] - one).abs() * frame.size(j) / frame.size(i)
+    };
+    let entries = served.iter().flat_map(|&i| served.iter().map(move |&j| (i, j)));
+    entries.map(|(i, j)| entry(i, j)).fold(0.0, f64::max)
+}
+
+/// What a served axis misses most, as a share of its authority, beside the tolerance.
+fn missed(frame: &Frame, request: &Request, answer: &Answer) -> f64 {
+    let tolerance = frame.compiled.tables.tolerance.wrench.map(f64::from);
+    (0..4)
+        .filter(|&axis| frame.served()[axis])
+        .map(|axis| {
+            let missed = (request.asked()[axis] - answer.achieved[axis]).abs();
+            (missed - tolerance[axis]) / frame.size(axis)
+        })
+        .fold(0.0, f64::max)
+}
+
+/// True where roll, pitch and yaw can be zero without these rotors, at the middle of the voltage
+/// range.
+pub(super) fn is_level_attainable(frame: &Frame, health: Health) -> Result<bool, Error> {
+    let [low, high] = frame.physics.voltage_range().unwrap_or_default();
+    let factors = frame.physics.factors(low.midpoint(high) as f32);
+    let oracle = Oracle::new(&frame.physics, frame.allocation(), factors, health);
+    Ok(oracle.thrust_floor(0.0)?.is_some())
+}
