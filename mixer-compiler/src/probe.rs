@@ -7,7 +7,8 @@
 //!
 //! ```text
 //! sets        corners of the polygon and points on the sides are attainable; no more area is lost than stated
-//! wrenches    each axis both ways and mixtures, small and large, at three thrusts and three voltages
+//! wrenches    each axis both ways and mixtures, small and large, at three thrusts, and at the ends of
+//!             the voltage range
 //! rotors out  every rotor alone, and pairs of rotors: level flight and torques from there
 //! ```
 //!
@@ -104,9 +105,9 @@ impl Probe<'_> {
 
     /// Wrenches with all rotors.
     fn whole(&self, map: &PairMap) -> Result<(), String> {
-        for volts in self.voltages() {
+        for (volts, thrusts) in self.points() {
             let at = At::new(self, map, volts, Health::GOOD);
-            for share in THRUSTS {
+            for &share in thrusts {
                 let thrust = at.thrust(share);
                 at.probe([0.0, 0.0, 0.0, thrust])?;
                 for (size, direction) in SIZES.iter().flat_map(|size| DIRECTIONS.map(|d| (size, d))) {
@@ -134,12 +135,7 @@ impl Probe<'_> {
             if !at.probe(level)? {
                 continue;
             }
-            for [roll, pitch, yaw] in [
-                [0.0, 0.0, 1.0],
-                [0.0, 0.0, -1.0],
-                [1.0, -1.0, 0.0],
-                [-1.0, -1.0, 1.0],
-            ] {
+            for [roll, pitch, yaw] in [[1.0, -1.0, 1.0], [0.0, 0.0, -1.0]] {
                 let [p, q, r, _] = at.authority;
                 at.probe([0.2 * roll * p, 0.2 * pitch * q, 0.2 * yaw * r, level[3]])?;
             }
@@ -147,10 +143,17 @@ impl Probe<'_> {
         Ok(())
     }
 
-    /// Ends and middle of the voltage range, V.
-    fn voltages(&self) -> Vec<f64> {
+    /// Voltages (V) with the thrusts that are probed there: all in the middle of the range, one at its
+    /// ends.
+    fn points(&self) -> Vec<(f64, &'static [f64])> {
         let range = self.airframe.voltage.as_ref().map(|voltage| voltage.range_v);
-        range.map_or(vec![0.0], |[low, high]| vec![low, 0.5 * (low + high), high])
+        range.map_or(vec![(0.0, &THRUSTS[..])], |[low, high]| {
+            vec![
+                (low, &THRUSTS[1..2]),
+                (0.5 * (low + high), &THRUSTS),
+                (high, &THRUSTS[1..2]),
+            ]
+        })
     }
 }
 
