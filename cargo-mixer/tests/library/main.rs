@@ -2,6 +2,8 @@
 //! Cortex-M4F in QEMU.
 
 mod example;
+// Traps are of this processor's C library.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod exceptions;
 mod program;
 mod refusals;
