@@ -28,6 +28,20 @@ pub enum Airmode {
     RollPitchYaw,
 }
 
+impl Airmode {
+    /// True where roll and pitch may raise the thrust.
+    #[inline]
+    pub const fn may_raise_thrust(self) -> bool {
+        !matches!(self, Airmode::Disabled)
+    }
+
+    /// True where yaw comes before thrust.
+    #[inline]
+    pub const fn is_yaw_first(self) -> bool {
+        matches!(self, Airmode::RollPitchYaw)
+    }
+}
+
 /// Priorities of desaturation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Desaturation {
@@ -59,12 +73,9 @@ impl Budget {
         Budget::of(units, 7, 7)
     }
 
-    /// Work for level flight, where [`with_rotors_out`](Self::with_rotors_out) does not suffice.
-    /// Of 50 million saturated requests with one to four rotors out of 13 frames of 1 to 8 units two
-    /// would have needed more, with three and with four out.
-    pub const fn for_level_flight(units: usize) -> Self {
-        Budget::of(units, 4, 4)
-    }
+    /// Programmes at most with rotors out: for the request with its reserve of yaw and without, and
+    /// for level flight, each a second time with the throttles of single rotors decided.
+    pub const PROGRAMMES: u8 = 6;
 
     const fn of(units: usize, pivots: u8, flips_per_unit: u8) -> Self {
         // Frames have no more units than these: 64 channels.

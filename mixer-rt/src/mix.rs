@@ -1,7 +1,7 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
 use crate::desaturation::closed_form::{Attained, ClosedForm, DesaturationMethod, Efforts, Request};
-use crate::desaturation::general::{SHORTAGES, Variable, allocate};
+use crate::desaturation::general::{Variable, allocate};
 use crate::desaturation::power_bias::add_power_bias;
 use crate::desaturation::{is_bounded, limited};
 use crate::layout::{Tables, Unit};
@@ -72,7 +72,7 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
     }
 }
 
-/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n + [`SHORTAGES`].
+/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n.
 /// `voltage_v` is the battery's present voltage, V: outside the airframe's range it is taken as the
 /// nearest within and flagged, zero as well; an airframe without `[voltage]` ignores it. Any finite
 /// setpoint is mixed.
@@ -140,8 +140,8 @@ pub fn mix_with_health<
 }
 
 /// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `variables`
-/// takes one element per unit and [`SHORTAGES`] more, `throttle` one value per channel. Units or
-/// channels beyond a buffer's end are left out.
+/// takes one element per unit, `throttle` one value per channel. Units or channels beyond a buffer's
+/// end are left out.
 ///
 /// # Errors
 /// As [`mix`]; the buffers are then as they were.
@@ -158,9 +158,8 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     if let (Some(closed_form), true) = (tables.closed_form.closed_form(), is_good) {
         return mix_in_closed_form(tables, closed_form, setpoint, voltage_v, throttle);
     }
-    let units = variables.len().saturating_sub(SHORTAGES);
-    let units = tables.units.get(..units).unwrap_or(tables.units);
-    let variables = variables.get_mut(..units.len() + SHORTAGES).unwrap_or_default();
+    let units = tables.units.get(..variables.len()).unwrap_or(tables.units);
+    let variables = variables.get_mut(..units.len()).unwrap_or_default();
     mix_in_general(tables, units, setpoint, voltage_v, health, variables, throttle)
 }
 
@@ -185,11 +184,7 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     }
     let is_least_norm = allocate(tables, &bounded, factors, variables, is_whole);
     if is_least_norm && tables.power_bias_nm_per_n != 0.0 {
-        add_power_bias(
-            tables,
-            factors,
-            variables.get_mut(..units.len()).unwrap_or_default(),
-        );
+        add_power_bias(tables, factors, variables);
     }
     let mut achieved = [0.0; 4];
     for (unit, Variable { rotors, at, .. }) in units.iter().zip(variables) {

@@ -31,6 +31,7 @@ mod polygons;
 mod power_bias;
 mod properties;
 mod regressions;
+mod rotors_out;
 mod shapes;
 
 use mixer_rt::Health;

@@ -4,7 +4,7 @@
 use mixer_compiler::Compiled;
 use mixer_rt::{
     Wrench,
-    tables::{SHORTAGES, Variable},
+    tables::{Variable},
 };
 use mixer_setpoints::{Digest, Mixture, RotorsOut};
 
@@ -19,7 +19,7 @@ pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
     for _ in 0..10 {
         for (setpoint, health) in setpoints.by_ref().take(count / 10) {
             let wrench = Wrench::from_array(setpoint.wrench);
-            let mut variables = vec![Variable::default(); tables.units.len() + SHORTAGES];
+            let mut variables = vec![Variable::default(); tables.units.len()];
             let mut throttle = vec![tables.throttle.min; 2 * tables.units.len()];
             let mixed = mixer_rt::tables::mix_into(
                 &tables,

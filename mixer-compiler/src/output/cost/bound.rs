@@ -81,7 +81,7 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let units = compiled.tables.units.len();
     let n = units as u32;
-    let budgets = [Budget::with_rotors_out(units), Budget::for_level_flight(units)];
+    let budgets = [Budget::with_rotors_out(units); Budget::PROGRAMMES as usize];
     let curves = u32::from(Budget::ROUNDS) * (ROUND + n * ROUND_UNIT) + n * SINGLE;
     Some(general(compiled, &budgets)? + curves)
 }
