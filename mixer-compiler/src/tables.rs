@@ -17,8 +17,7 @@ use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
         Biquadratic, ClosedForm, ClosedFormUnit, Cubic, Desaturation, Facets, Pair, Quantity, Quartic,
-        Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Voltage,
-        VoltageLaw,
+        Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Voltage, VoltageLaw,
     },
 };
 

@@ -101,7 +101,9 @@ fn draw(frame: &Frame, random: &mut Random, out: usize) -> Request {
         }
     }
     let rotors = 2 * frame.physics.units();
-    request.health = (0..out).fold(Health::GOOD, |health, _| health.with_failed(random.below(rotors) as u8));
+    request.health = (0..out).fold(Health::GOOD, |health, _| {
+        health.with_failed(random.below(rotors) as u8)
+    });
     request
 }
 
@@ -132,8 +134,14 @@ fn no_axis_is_reversed_or_exceeded_with_rotors_out() {
                             let request = draw(&frame, &mut random, out);
                             let answer = request.mix(&frame).expect("finite");
                             requests += 1;
-                            if given_away(&frame, &request) > GIVEN_AWAY * frame.authority[3] {
+                            if given_away(&frame, &request) > GIVEN_AWAY * frame.authority[3]
+                                && is_level_attainable(&frame, &request)
+                            {
                                 away += 1;
+                                println!(
+                                    "{path}, {units} units, {airmode}, reserve {reserve}: {request:?} -> {:?}: thrust given away",
+                                    answer.achieved
+                                );
                             }
                             let most = beyond(&frame, &request, &answer);
                             if most <= ALLOWED {
@@ -163,4 +171,6 @@ fn no_axis_is_reversed_or_exceeded_with_rotors_out() {
     );
     assert!(requests >= 100_000 * cases / 32, "{requests}");
     assert_eq!(faults, 0);
+    // With other seeds some do.
+    assert!(away * 20_000 <= requests, "{away} of {requests}");
 }

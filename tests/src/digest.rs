@@ -2,10 +2,7 @@
 //! for all of them.
 
 use mixer_compiler::Compiled;
-use mixer_rt::{
-    Wrench,
-    tables::{Variable},
-};
+use mixer_rt::{Wrench, tables::Variable};
 use mixer_setpoints::{Digest, Mixture, RotorsOut};
 
 /// Digest after each tenth of `count` setpoints with `rotors_out`, as the `digest` image prints

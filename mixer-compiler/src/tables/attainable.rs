@@ -35,7 +35,10 @@ impl AttainableTable {
     /// The same with the chords of the upper and of the lower rotor alone.
     pub(crate) fn with_singles(mut self, singles: &[SingleRotor; 2], range: &ThrottleRange) -> Self {
         let scale = self.scale;
-        for (first, single) in [AttainableSet::UPPER, AttainableSet::LOWER].into_iter().zip(singles) {
+        for (first, single) in [AttainableSet::UPPER, AttainableSet::LOWER]
+            .into_iter()
+            .zip(singles)
+        {
             let ends = [range.min, range.max].map(|throttle| {
                 let [f, q] = single.efforts(throttle);
                 [f / scale[0], q / scale[1]]

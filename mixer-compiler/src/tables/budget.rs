@@ -11,7 +11,7 @@ pub(super) fn budget(units: usize, is_vertical: bool) -> Budget {
     match (is_vertical, units) {
         (true, ..=8) => Budget {
             pivots: if units <= 4 { 9 } else { 10 },
-            flips: (96 - 8 * units).max(34),
+            flips: 48,
         },
         (false, ..=8) => Budget {
             pivots: 8 + units,

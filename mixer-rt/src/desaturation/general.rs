@@ -234,7 +234,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
             variable.reset();
         }
         let ending = self.programme(wanted, reserve, variables);
-        if ending.is_solved && (ending.served.is_none() || ending.beside <= BESIDE) {
+        if ending.is_solved && ending.beside <= BESIDE {
             return ending;
         }
         for variable in variables.iter_mut() {
@@ -255,7 +255,9 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         let tables = self.tables;
         let set = &tables.attainable;
         let [f, _] = between(variable.inside(set), variable.at, share);
-        let throttles = variable.rotors.invert(&tables.singles, &tables.throttle, set.scale[0] * f);
+        let throttles = variable
+            .rotors
+            .invert(&tables.singles, &tables.throttle, set.scale[0] * f);
         let efforts = variable.rotors.efforts(tables, throttles);
         [0, 1].map(|k| efforts[k] / set.scale[k])
     }
@@ -276,11 +278,11 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         };
         let mut simplex = start(problem, variables, wanted, reserve, airmode, budget);
         loop {
+            let mut beside = 0.0;
             let is_solved = simplex.solve();
             let served = simplex.served(RAY);
             let beyond = clamp(simplex.place(RAY), -0.5, 1.5);
             let share = 1.0 / (1.0 + beyond * REACH);
-            let mut beside = 0.0;
             if !self.is_whole {
                 beside = self.bend(&mut simplex, share);
             }
@@ -314,7 +316,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
             if beside.abs() > most {
                 most = beside.abs();
             }
-            let change = beside / share;
+            let change = variable.damped(beside / share);
             variable.curve += change;
             problem.subtract(unit, [0.0, change], &mut simplex.residual);
         }

@@ -81,7 +81,11 @@ impl Rotors {
         let [[least, _], [most, _]] = self.ends(singles, range);
         let (low, high) = (range.min * range.min, range.max * range.max);
         let span = most - least;
-        let share = if span > LEAST_RISE { (f - least) / span } else { 0.0 };
+        let share = if span > LEAST_RISE {
+            (f - least) / span
+        } else {
+            0.0
+        };
         let square = low + share * (high - low);
         let mut throttle = range.clamp(if square > low { sqrt(square) } else { range.min });
         for _ in 0..STEPS {

@@ -27,11 +27,10 @@ use crate::desaturation::{Airmode, Budget};
 use crate::layout::Unit;
 use crate::{clamp, rolled, sqrt};
 
-/// Indices of the segments.
+/// Indices of the segments; the last one is yaw within its reserve.
 const LEVEL: usize = 0;
 const YAW: usize = 1;
 pub(super) const RAY: usize = 2;
-const RESERVE: usize = 3;
 pub(super) const SEGMENTS: usize = 4;
 
 /// How far beyond the request the ray reaches, as a share of the request's distance from the
@@ -80,7 +79,11 @@ impl<'a> Problem<'a> {
     #[inline(always)]
     pub(super) fn new(units: &'a [Unit], set: &'a AttainableSet<'a>, ratio: f32, airmode: Airmode) -> Self {
         let little = if airmode.is_yaw_first() { LAST } else { MIDDLE };
-        let much = if airmode.may_raise_thrust() { little } else { FORBIDDEN };
+        let much = if airmode.may_raise_thrust() {
+            little
+        } else {
+            FORBIDDEN
+        };
         let [roll, pitch, yaw] = TORQUE_PRICES;
         Problem {
             units,
@@ -128,7 +131,11 @@ impl<'a> Problem<'a> {
     #[inline(always)]
     fn limited(&self, [roll, pitch, yaw, thrust]: [f32; 4], units: f32) -> [f32; 4] {
         let limit = LIMIT * units;
-        let largest = if roll.abs() > pitch.abs() { roll.abs() } else { pitch.abs() };
+        let largest = if roll.abs() > pitch.abs() {
+            roll.abs()
+        } else {
+            pitch.abs()
+        };
         let share = if largest > limit { limit / largest } else { 1.0 };
         let most_yaw = limit * self.ratio;
         [
@@ -157,7 +164,11 @@ pub(super) fn start<'a>(
     let [roll, pitch, yaw, _] = wanted;
     let size = sqrt(roll * roll + pitch * pitch);
     let width = size + LEAST_WIDTH;
-    let [east, north] = if size > 0.0 { [roll / size, pitch / size] } else { [1.0, 0.0] };
+    let [east, north] = if size > 0.0 {
+        [roll / size, pitch / size]
+    } else {
+        [1.0, 0.0]
+    };
     let sign = if yaw < 0.0 { -1.0 } else { 1.0 };
     let beyond = positive(yaw.abs() - reserve);
     let kept = yaw.abs() - beyond;

@@ -152,7 +152,10 @@ impl Basis {
 
     #[inline(never)]
     fn slot_of(&self, holds: Holds, of: u8) -> usize {
-        let found = self.slots.iter().position(|slot| slot.holds == holds && slot.of == of);
+        let found = self
+            .slots
+            .iter()
+            .position(|slot| slot.holds == holds && slot.of == of);
         found.unwrap_or(0) & 3
     }
 
@@ -179,7 +182,12 @@ impl Basis {
     fn exchange(&mut self, slot: usize, column: &[f32; 4]) {
         let row = self.inverse[slot & 3];
         let pivot = dot(&row, column);
-        let per_pivot = 1.0 / if pivot.abs() > LEAST_PIVOT { pivot } else { LEAST_PIVOT };
+        let per_pivot = 1.0
+            / if pivot.abs() > LEAST_PIVOT {
+                pivot
+            } else {
+                LEAST_PIVOT
+            };
         let row = row.map(|part| part * per_pivot);
         for other in &mut self.inverse {
             let share = dot(other, column);
@@ -482,7 +490,11 @@ impl Simplex<'_> {
         if entering >= ROW {
             // A multiplier is at its price: its row is missed.
             let row = entering & 3;
-            column[usize::from(row)] = if direction[usize::from(row)] > 0.0 { 1.0 } else { -1.0 };
+            column[usize::from(row)] = if direction[usize::from(row)] > 0.0 {
+                1.0
+            } else {
+                -1.0
+            };
             new = Slot::new(FAR, Holds::Row, row);
         } else if entering >= SEGMENT {
             let of = entering - SEGMENT;
@@ -551,7 +563,10 @@ impl Simplex<'_> {
                 Holds::Row if slot.of != 3 && !(-MISSED..=MISSED).contains(&value) => return None,
                 Holds::Row if value < -MISSED || value > slot.high + MISSED => return None,
                 Holds::Along => {
-                    let short = self.segments.get(usize::from(slot.of)).map_or(0.0, |s| s.share(value));
+                    let short = self
+                        .segments
+                        .get(usize::from(slot.of))
+                        .map_or(0.0, |s| s.share(value));
                     if usize::from(slot.of) == ray {
                         if !(LEAST_RAY..=MOST_RAY).contains(&short) {
                             return None;

@@ -49,6 +49,8 @@ pub struct Variable {
     pub(super) breakpoint: f32,
     /// How far the line of a single rotor is beside its chord: a scaled torque.
     pub(super) curve: f32,
+    /// By how much it has moved last.
+    moved: f32,
     pub(super) set: Set,
     pub(super) position: Position,
     /// Index of its corner.
@@ -67,6 +69,7 @@ impl Default for Variable {
             at: [0.0; 2],
             breakpoint: 0.0,
             curve: 0.0,
+            moved: 0.0,
             set: Set::Polygon,
             position: Position::Corner,
             corner: 0,
@@ -170,7 +173,16 @@ impl Variable {
             Rotors::Upper | Rotors::Lower => Set::Segment,
             Rotors::None => Set::Point,
         };
-        (self.at, self.curve) = ([0.0; 2], 0.0);
+        (self.at, self.curve, self.moved) = ([0.0; 2], 0.0, 0.0);
+    }
+
+    /// By how much the line of a single rotor moves that is `beside` its curve: half as far where it
+    /// goes to and fro.
+    #[inline(always)]
+    pub(super) fn damped(&mut self, beside: f32) -> f32 {
+        let is_back = beside * self.moved < 0.0;
+        self.moved = if is_back { 0.5 * beside } else { beside };
+        self.moved
     }
 
     /// A point inside its set, on its chord where it has one.
