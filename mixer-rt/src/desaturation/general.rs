@@ -47,7 +47,7 @@ use variable::{Set, between, positive};
 /// Largest distance of a single rotor's torque from its curve, as a share of the torque's scale: at
 /// which it counts as on the curve, and which is left where it does not settle.
 const TOUCHING: f32 = 1e-4;
-const BESIDE: f32 = 1e-3;
+const BESIDE: f32 = 5e-4;
 
 /// A frame at one voltage.
 struct Frame<'a, 't, P, I, S> {
