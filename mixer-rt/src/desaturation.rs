@@ -66,7 +66,7 @@ pub struct Budget {
 
 impl Budget {
     /// Rounds at most in which the curves of single rotors take the place of their chords.
-    pub const ROUNDS: u8 = 3;
+    pub const ROUNDS: u8 = 5;
 
     /// Work for a request with rotors out of a frame of so many units.
     pub const fn with_rotors_out(units: usize) -> Self {

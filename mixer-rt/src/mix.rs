@@ -4,7 +4,7 @@ use crate::desaturation::closed_form::{Attained, ClosedForm, DesaturationMethod,
 use crate::desaturation::general::{Variable, allocate};
 use crate::desaturation::power_bias::add_power_bias;
 use crate::desaturation::{is_bounded, limited};
-use crate::layout::{Tables, Unit};
+use crate::layout::Tables;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Inverse, Quantity};
 use crate::rolled;
@@ -114,24 +114,15 @@ pub fn mix_with_health<
     health: Health,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let is_good = health.is_good_below(CHANNELS);
-    let (achieved, saturation) = match (tables.closed_form.closed_form(), is_good) {
-        (Some(closed_form), true) => {
-            mix_in_closed_form(tables, closed_form, setpoint, voltage_v, &mut throttle)?
-        }
-        _ => {
+    let mixed = match mix_in_closed_form(tables, setpoint, voltage_v, health, &mut throttle) {
+        Some(mixed) => mixed,
+        None => {
+            // Not before: the closed form needs no workspace.
             let mut variables = [Variable::default(); VARIABLES];
-            mix_in_general(
-                tables,
-                tables.units,
-                setpoint,
-                voltage_v,
-                health,
-                &mut variables,
-                &mut throttle,
-            )?
+            mix_in_general(tables, setpoint, voltage_v, health, &mut variables, &mut throttle)
         }
     };
+    let (achieved, saturation) = mixed?;
     Ok(Mix {
         throttle,
         achieved,
@@ -154,28 +145,29 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     variables: &mut [Variable],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    let is_good = health.is_good_below(2 * tables.units.len());
-    if let (Some(closed_form), true) = (tables.closed_form.closed_form(), is_good) {
-        return mix_in_closed_form(tables, closed_form, setpoint, voltage_v, throttle);
+    match mix_in_closed_form(tables, setpoint, voltage_v, health, throttle) {
+        Some(mixed) => mixed,
+        None => mix_in_general(tables, setpoint, voltage_v, health, variables, throttle),
     }
-    let units = tables.units.get(..variables.len()).unwrap_or(tables.units);
-    let variables = variables.get_mut(..units.len()).unwrap_or_default();
-    mix_in_general(tables, units, setpoint, voltage_v, health, variables, throttle)
 }
 
-/// [`mix_into`] for `units`.
+/// An achieved wrench and what was not delivered.
+type Mixed = Result<(Wrench, Saturation), SetpointError>;
+
+/// [`mix_into`] on the general path.
 #[inline(always)]
 fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     tables: &Tables<'_, P, I, S>,
-    units: &[Unit],
     setpoint: &Wrench,
     voltage_v: f32,
     health: Health,
     variables: &mut [Variable],
     throttle: &mut [f32],
-) -> Result<(Wrench, Saturation), SetpointError> {
+) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
+    let units = tables.units.get(..variables.len()).unwrap_or(tables.units);
+    let variables = variables.get_mut(..units.len()).unwrap_or_default();
     // With a closed form, rotors are out. So the compiler leaves out what only whole frames need.
     let mut is_whole = tables.closed_form.closed_form().is_none();
     for (unit, variable) in units.iter().zip(variables.iter_mut()) {
@@ -207,18 +199,32 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     ))
 }
 
-/// [`mix_into`] in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
+/// [`mix_into`] in closed form; `None` where there is none, or a rotor is out.
+#[inline(always)]
+fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
+    tables: &Tables<'_, P, I, S>,
+    setpoint: &Wrench,
+    voltage_v: f32,
+    health: Health,
+    throttle: &mut [f32],
+) -> Option<Mixed> {
+    let is_good = health.is_good_below(2 * tables.units.len());
+    let closed_form = tables.closed_form.closed_form().filter(|_| is_good)?;
+    Some(mix_by(closed_form, tables, setpoint, voltage_v, throttle))
+}
+
+/// Mixes in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
 /// are tried: where the inverse map misses them, the request is desaturated and inverted again. All
 /// other efforts are attainable, so by the compiler's proof each unit gives them within the
 /// tolerance.
 #[inline(always)]
-fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
-    tables: &Tables<'_, P, I, S>,
+fn mix_by<P: Quantity, I: Inverse<P>, S>(
     closed_form: &ClosedForm<'_>,
+    tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
     throttle: &mut [f32],
-) -> Result<(Wrench, Saturation), SetpointError> {
+) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     let per_factor = factors.map(|factor| 1.0 / factor);

@@ -73,13 +73,18 @@ impl AttainableTable {
         let drawn_in =
             |corner: &Corner| [0, 1].map(|k| corner.at[k] + share * (self.centre[k] - corner.at[k]));
         let points: Vec<[f32; 2]> = self.polygon().iter().map(drawn_in).collect();
+        self.with_polygon(&points)
+    }
+
+    /// The set with another polygon of as many corners, scaled.
+    pub(crate) fn with_polygon(&self, points: &[[f32; 2]]) -> Self {
         let mut table = self.clone();
-        table.put(0, &points);
+        table.put(0, points);
         table
     }
 
     /// The corners of the polygon.
-    fn polygon(&self) -> &[Corner] {
+    pub fn polygon(&self) -> &[Corner] {
         &self.corners[..usize::from(self.count)]
     }
 

@@ -10,7 +10,11 @@ pub(super) fn budget(units: usize, is_vertical: bool) -> Budget {
     let units = u8::try_from(units).unwrap_or(u8::MAX);
     match (is_vertical, units) {
         (true, ..=8) => Budget {
-            pivots: if units <= 4 { 9 } else { 10 },
+            pivots: match units {
+                ..=4 => 9,
+                5 | 6 => 10,
+                _ => 12,
+            },
             flips: 48,
         },
         (false, ..=8) => Budget {

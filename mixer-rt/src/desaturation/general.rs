@@ -32,6 +32,7 @@ use core::hint::black_box;
 mod breakpoint;
 mod programme;
 mod simplex;
+mod ties;
 mod variable;
 
 pub use variable::Variable;
@@ -54,8 +55,6 @@ struct Frame<'a, 't, P, I, S> {
     tables: &'a Tables<'t, P, I, S>,
     /// `[k_f, k_Q]`.
     factors: [f32; 2],
-    /// True where all rotors work.
-    is_whole: bool,
 }
 
 /// How a programme has ended; the units are where it has left them.
@@ -81,16 +80,12 @@ pub(crate) fn allocate<P: Quantity, I, S>(
     variables: &mut [Variable],
     is_whole: bool,
 ) -> bool {
-    // With the tables known the compiler would write every loop over them out.
-    let tables = black_box(tables);
-    let frame = Frame {
-        tables,
-        factors,
-        is_whole,
-    };
+    // With the tables or the number of units known the compiler would write every loop over them out.
+    let (tables, variables) = black_box((tables, variables));
+    let frame = Frame { tables, factors };
     let is_least_norm = is_whole && frame.is_least_norm(request, variables);
     if !is_least_norm {
-        frame.serve(request, variables);
+        frame.serve(request, variables, is_whole);
     }
     let scale = tables.attainable.scale;
     for unit in variables {
@@ -127,43 +122,64 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         true
     }
 
-    /// Moves all units along their rates by one share, at most `most` and as far as the polygons
-    /// allow.
+    /// The share of its rate by which a unit may move, at most `share`: until it is at the border of
+    /// its polygon.
     #[inline(never)]
-    fn advance(&self, variables: &mut [Variable], most: f32) {
-        let corners = black_box(self.tables.attainable.polygon());
-        let mut share = most;
-        for variable in variables.iter() {
+    fn reach(&self, variable: &Variable, mut share: f32) -> f32 {
+        for corner in self.tables.attainable.polygon() {
             rolled();
-            for corner in corners {
-                rolled();
-                let out = corner.outward(variable.rate);
-                if out > 0.0 {
-                    let beyond = corner.beyond(variable.at);
-                    if share * out + beyond > 0.0 {
-                        share = positive(-beyond) / out;
-                    }
-                }
+            let out = corner.outward(variable.rate);
+            let beyond = corner.beyond(variable.at);
+            if out > 0.0 && share * out + beyond > 0.0 {
+                share = positive(-beyond) / out;
             }
         }
+        share
+    }
+
+    /// Moves all units along their rates.
+    #[inline(never)]
+    fn advance(&self, variables: &mut [Variable], share: f32) {
         for variable in variables {
             rolled();
             variable.at = [0, 1].map(|k| variable.at[k] + share * variable.rate[k]);
         }
     }
 
-    /// Moves units from where they are towards the efforts of least norm for a wrench (N m, N), or by
-    /// these efforts where `is_by`, as far as the polygons allow.
+    /// Sets the units' rates to the efforts of least norm for a wrench, N m and N.
     #[inline(never)]
-    fn move_by_least_norm(&self, wrench: &[f32; 4], variables: &mut [Variable], is_by: bool) {
+    fn aim_at_least_norm(&self, wrench: &[f32; 4], variables: &mut [Variable]) {
         let per_effort = self.per_effort();
         for (variable, unit) in variables.iter_mut().zip(self.tables.units) {
             rolled();
             let efforts = unit.efforts(wrench);
-            let from = if is_by { [0.0; 2] } else { variable.at };
-            variable.rate = [0, 1].map(|k| efforts[k] * per_effort[k] - from[k]);
+            variable.rate = [0, 1].map(|k| efforts[k] * per_effort[k]);
         }
-        self.advance(variables, 1.0);
+    }
+
+    /// Moves the units towards the efforts of least norm for the same wrench, as far as the polygons
+    /// allow.
+    #[inline(never)]
+    fn move_to_least_norm(&self, variables: &mut [Variable]) {
+        self.aim_at_least_norm(&self.wrench(variables), variables);
+        let mut share = 1.0;
+        for variable in variables.iter_mut() {
+            rolled();
+            variable.rate = [0, 1].map(|k| variable.rate[k] - variable.at[k]);
+            share = self.reach(variable, share);
+        }
+        self.advance(variables, share);
+    }
+
+    /// Moves the units of a programme that is solved to the optimum nearest the efforts of least norm
+    /// for the same wrench, where optima tie.
+    #[inline(never)]
+    fn break_ties(&self, simplex: &mut Simplex<'_>) {
+        if !simplex.is_tied() {
+            return;
+        }
+        self.aim_at_least_norm(&self.wrench(simplex.variables), simplex.variables);
+        simplex.move_to_nearest();
     }
 
     /// The wrench of all units, N m and N. Both rotors of each work.
@@ -179,32 +195,35 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         wrench
     }
 
-    /// Writes the units' scaled efforts that serve `request`.
+    /// Writes the units' scaled efforts that serve `request`. `is_whole` tells that all rotors work:
+    /// where it is known, the compiler leaves the other way out of what it is handed to.
     #[inline(always)]
-    fn serve(&self, request: &[f32; 4], variables: &mut [Variable]) {
+    fn serve(&self, request: &[f32; 4], variables: &mut [Variable], is_whole: bool) {
         let per_row = 1.0 / self.factors[0];
         let wanted = [0, 1, 2, 3].map(|k| request[k] * (self.tables.rows[k] * per_row));
         let reserve = self.tables.desaturation.yaw_reserve_nm * (self.tables.rows[2] * per_row);
-        let ending = if self.is_whole {
+        let ending = if is_whole {
             for variable in variables.iter_mut() {
                 rolled();
                 variable.reset();
             }
-            self.programme(wanted, reserve, variables)
+            self.programme(wanted, reserve, variables, is_whole)
         } else {
             self.serve_with_rotors_out(wanted, reserve, variables)
         };
+        if ending.is_solved && ending.share >= 1.0 {
+            return;
+        }
         let set = &self.tables.attainable;
         for variable in variables.iter_mut() {
             rolled();
             variable.at = between(variable.inside(set), variable.at, ending.share);
         }
-        if !self.is_whole {
+        if !is_whole {
             return;
         }
         if ending.is_solved {
-            let wrench = self.wrench(variables);
-            self.move_by_least_norm(&wrench, variables, false);
+            self.move_to_least_norm(variables);
         } else {
             self.set_out_from_level_flight(request, ending.served, variables);
         }
@@ -233,7 +252,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
             rolled();
             variable.reset();
         }
-        let ending = self.programme(wanted, reserve, variables);
+        let ending = self.programme(wanted, reserve, variables, false);
         if ending.is_solved && ending.beside <= BESIDE {
             return ending;
         }
@@ -244,7 +263,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
                 variable.set = Set::Point;
             }
         }
-        let mut ending = self.programme(wanted, reserve, variables);
+        let mut ending = self.programme(wanted, reserve, variables, false);
         ending.is_solved &= ending.served.is_some();
         ending
     }
@@ -265,28 +284,42 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     /// The linear programme for a request in rows. While some single rotor is beside its curve, its
     /// line moves there, and the programme goes on.
     #[inline(never)]
-    fn programme(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable]) -> Ending {
-        let Frame { tables, factors, .. } = *self;
+    fn programme(
+        &self,
+        wanted: [f32; 4],
+        reserve: f32,
+        variables: &mut [Variable],
+        is_whole: bool,
+    ) -> Ending {
+        let Frame { tables, factors } = *self;
         let desaturation = &tables.desaturation;
         let airmode = desaturation.airmode;
         let ratio = factors[1] / factors[0];
         let problem = Problem::new(tables.units, &tables.attainable, ratio, airmode);
-        let (budget, mut rounds) = if self.is_whole {
+        let (budget, mut rounds) = if is_whole {
             (desaturation.budget, 0)
         } else {
             (Budget::with_rotors_out(variables.len()), Budget::ROUNDS)
         };
-        let mut simplex = start(problem, variables, wanted, reserve, airmode, budget);
+        let mut simplex = start(&problem, variables, wanted, reserve, airmode, budget);
         loop {
             let mut beside = 0.0;
             let is_solved = simplex.solve();
-            let served = simplex.served(RAY);
             let beyond = clamp(simplex.place(RAY), -0.5, 1.5);
             let share = 1.0 / (1.0 + beyond * REACH);
-            if !self.is_whole {
+            if !is_whole {
                 beside = self.bend(&mut simplex, share);
             }
             if !is_solved || rounds == 0 || beside <= TOUCHING {
+                if is_whole && is_solved && share >= 1.0 {
+                    self.break_ties(&mut simplex);
+                }
+                // A programme that is solved with all rotors misses no torque.
+                let served = if is_whole && is_solved {
+                    Some(1.0)
+                } else {
+                    simplex.served(RAY)
+                };
                 return Ending {
                     share,
                     is_solved,
@@ -316,7 +349,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
             if beside.abs() > most {
                 most = beside.abs();
             }
-            let change = variable.damped(beside / share);
+            let change = variable.next_move(beside / share);
             variable.curve += change;
             problem.subtract(unit, [0.0, change], &mut simplex.residual);
         }
@@ -336,23 +369,30 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         let level = &self.tables.level;
         let [least, largest] = level.thrust_n;
         let along = clamp((thrust / self.factors[0] - least) / (largest - least), 0.0, 1.0);
+        // With tilted axes the stored efforts are level at the reference voltage only. At others yaw,
+        // whose authority is the least, is off by most.
         // The programme's efforts wait in `gain`.
         for (variable, [at_least, at_largest]) in variables.iter_mut().zip(level.efforts) {
             rolled();
             variable.gain = variable.at;
             variable.at = between(*at_least, *at_largest, along);
         }
-        // With tilted axes the stored efforts are level at the reference voltage only. At others yaw,
-        // whose authority is the least, is off by most.
         let [roll, pitch, yaw, _] = self.wrench(variables);
         if yaw.abs() > self.tables.tolerance.wrench[2] {
-            self.move_by_least_norm(&[-roll, -pitch, -yaw, 0.0], variables, true);
+            self.aim_at_least_norm(&[-roll, -pitch, -yaw, 0.0], variables);
+            let mut share = 1.0;
+            for variable in variables.iter() {
+                rolled();
+                share = self.reach(variable, share);
+            }
+            self.advance(variables, share);
         }
-        let Some(served) = served else { return };
+        let Some(mut share) = served else { return };
         for variable in variables.iter_mut() {
             rolled();
             variable.rate = [0, 1].map(|k| variable.gain[k] - variable.at[k]);
+            share = self.reach(variable, share);
         }
-        self.advance(variables, served);
+        self.advance(variables, share);
     }
 }

@@ -65,7 +65,6 @@ const BIAS: f32 = 4e-3;
 const FAR: f32 = 0.25;
 
 /// What of a frame, its health and the voltage the programme reads.
-#[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
     pub(super) units: &'a [Unit],
     pub(super) set: &'a AttainableSet<'a>,
@@ -152,7 +151,7 @@ impl<'a> Problem<'a> {
 /// what will be short, near it is on the ray.
 #[inline(never)]
 pub(super) fn start<'a>(
-    problem: Problem<'a>,
+    problem: &'a Problem<'a>,
     variables: &'a mut [Variable],
     request: [f32; 4],
     reserve: f32,

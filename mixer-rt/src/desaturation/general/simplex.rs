@@ -46,7 +46,7 @@ const LEAST_PIVOT: f32 = 1e-7;
 const FAR: f32 = 1e30;
 
 /// A row counts as missed from here on.
-const MISSED: f32 = 2e-3;
+const MISSED: f32 = 5e-4;
 
 /// Where the pivots end the ray may be as far outside [0, 1] as this, for its basis to be of use.
 const LEAST_RAY: f32 = -0.3;
@@ -211,7 +211,7 @@ struct Leaving {
 
 /// A programme and how far it is solved.
 pub(super) struct Simplex<'a> {
-    pub(super) problem: Problem<'a>,
+    pub(super) problem: &'a Problem<'a>,
     pub(super) basis: Basis,
     pub(super) variables: &'a mut [Variable],
     pub(super) segments: [Segment; SEGMENTS],

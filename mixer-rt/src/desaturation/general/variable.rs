@@ -179,7 +179,7 @@ impl Variable {
     /// By how much the line of a single rotor moves that is `beside` its curve: half as far where it
     /// goes to and fro.
     #[inline(always)]
-    pub(super) fn damped(&mut self, beside: f32) -> f32 {
+    pub(super) fn next_move(&mut self, beside: f32) -> f32 {
         let is_back = beside * self.moved < 0.0;
         self.moved = if is_back { 0.5 * beside } else { beside };
         self.moved
