@@ -68,14 +68,20 @@ impl Budget {
     /// Rounds at most in which the curves of single rotors take the place of their chords.
     pub const ROUNDS: u8 = 5;
 
-    /// Work for a request with rotors out of a frame of so many units.
+    /// Work for the first programme of a request with rotors out of a frame of so many units.
     pub const fn with_rotors_out(units: usize) -> Self {
         Budget::of(units, 7, 7)
     }
 
-    /// Programmes at most with rotors out: for the request with its reserve of yaw and without, and
-    /// for level flight, each a second time with the throttles of single rotors decided.
-    pub const PROGRAMMES: u8 = 6;
+    /// Programmes at most with rotors out and no reserve of yaw: for the request and for level flight,
+    /// each a second time with the throttles of single rotors decided. A reserve adds two: the request
+    /// without it.
+    pub const PROGRAMMES: u8 = 4;
+
+    /// Work for every one of these but the first.
+    pub const fn for_another(units: usize) -> Self {
+        Budget::of(units, 4, 4)
+    }
 
     const fn of(units: usize, pivots: u8, flips_per_unit: u8) -> Self {
         // Frames have no more units than these: 64 channels.

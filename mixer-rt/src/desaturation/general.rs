@@ -45,9 +45,11 @@ use programme::{Problem, RAY, REACH, start};
 use simplex::Simplex;
 use variable::{Set, between, positive};
 
-/// Largest distance of a single rotor's torque from its curve, as a share of the torque's scale: at
-/// which it counts as on the curve, and which is left where it does not settle.
-const TOUCHING: f32 = 1e-4;
+/// A single rotor is on its curve where its torque is off by no more than this share of what yaw may
+/// be missed by.
+const TOUCHING: f32 = 0.25;
+
+/// How far a torque may be from its curve where it does not settle, as a share of the torque's scale.
 const BESIDE: f32 = 5e-4;
 
 /// A frame at one voltage.
@@ -207,7 +209,13 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
                 rolled();
                 variable.reset();
             }
-            self.programme(wanted, reserve, variables, is_whole)
+            self.programme(
+                wanted,
+                reserve,
+                variables,
+                self.tables.desaturation.budget,
+                is_whole,
+            )
         } else {
             self.serve_with_rotors_out(wanted, reserve, variables)
         };
@@ -233,13 +241,15 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     /// rotors and misses no torque, or none does.
     #[inline(never)]
     fn serve_with_rotors_out(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable]) -> Ending {
-        let mut ending = self.settle(wanted, reserve, variables);
+        let units = variables.len();
+        let mut ending = self.settle(wanted, reserve, variables, Budget::with_rotors_out(units));
         if reserve > 0.0 && ending.served.is_none() {
-            ending = self.settle(wanted, 0.0, variables);
+            ending = self.settle(wanted, 0.0, variables, Budget::for_another(units));
         }
         if !ending.is_solved {
             let [.., thrust] = wanted;
-            ending = self.settle([0.0, 0.0, 0.0, thrust], 0.0, variables);
+            let level = [0.0, 0.0, 0.0, thrust];
+            ending = self.settle(level, 0.0, variables, Budget::for_another(units));
         }
         ending
     }
@@ -247,12 +257,12 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     /// A programme, and if its single rotors do not settle on their curves or its pivots end, another
     /// one in which their throttles are decided. One that misses a torque then is not solved.
     #[inline(never)]
-    fn settle(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable]) -> Ending {
+    fn settle(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable], budget: Budget) -> Ending {
         for variable in variables.iter_mut() {
             rolled();
             variable.reset();
         }
-        let ending = self.programme(wanted, reserve, variables, false);
+        let ending = self.programme(wanted, reserve, variables, budget, false);
         if ending.is_solved && ending.beside <= BESIDE {
             return ending;
         }
@@ -263,7 +273,8 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
                 variable.set = Set::Point;
             }
         }
-        let mut ending = self.programme(wanted, reserve, variables, false);
+        let budget = Budget::for_another(variables.len());
+        let mut ending = self.programme(wanted, reserve, variables, budget, false);
         ending.is_solved &= ending.served.is_some();
         ending
     }
@@ -289,18 +300,15 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         wanted: [f32; 4],
         reserve: f32,
         variables: &mut [Variable],
+        budget: Budget,
         is_whole: bool,
     ) -> Ending {
         let Frame { tables, factors } = *self;
-        let desaturation = &tables.desaturation;
-        let airmode = desaturation.airmode;
+        let airmode = tables.desaturation.airmode;
         let ratio = factors[1] / factors[0];
         let problem = Problem::new(tables.units, &tables.attainable, ratio, airmode);
-        let (budget, mut rounds) = if is_whole {
-            (desaturation.budget, 0)
-        } else {
-            (Budget::with_rotors_out(variables.len()), Budget::ROUNDS)
-        };
+        let touching = TOUCHING * tables.tolerance.wrench[2] / tables.attainable.scale[1];
+        let mut rounds = if is_whole { 0 } else { Budget::ROUNDS };
         let mut simplex = start(&problem, variables, wanted, reserve, airmode, budget);
         loop {
             let mut beside = 0.0;
@@ -310,7 +318,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
             if !is_whole {
                 beside = self.bend(&mut simplex, share);
             }
-            if !is_solved || rounds == 0 || beside <= TOUCHING {
+            if !is_solved || rounds == 0 || beside <= touching {
                 if is_whole && is_solved && share >= 1.0 {
                     self.break_ties(&mut simplex);
                 }
