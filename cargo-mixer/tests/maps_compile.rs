@@ -103,7 +103,7 @@ fn every_map_compiles_close_to_its_fold() {
                     started.elapsed().as_millis(),
                     compiled.evaluator.name(),
                     100.0 * compiled.lost_area.total,
-                    compiled.tables.attainable.corners.len()
+                    compiled.tables.attainable.polygon().len()
                 );
                 assert!(
                     compiled.certificate.holds() && compiled.certificate.agrees(&compiled.residual),

@@ -302,8 +302,8 @@ impl<'a> At<'a> {
             let efforts = [scaled(unit, 0), scaled(n + unit, 1)];
             let centre = set.centre.map(f64::from);
             let [f, q] = [0, 1].map(|k| centre[k] + (efforts[k] - centre[k]) / INSIDE);
-            set.corners.iter().all(|corner| {
-                let [along_f, along_q] = corner.edge.map(f64::from);
+            set.polygon().iter().all(|corner| {
+                let [along_f, along_q] = corner.ways[0].map(f64::from);
                 along_q * f - along_f * q <= f64::from(corner.bound)
             })
         })

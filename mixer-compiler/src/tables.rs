@@ -17,8 +17,7 @@ use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
         Biquadratic, ClosedForm, ClosedFormUnit, Cubic, Desaturation, Facets, Pair, Quantity, Quartic,
-        SHORTAGES, Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Voltage,
-        VoltageLaw,
+        Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Voltage, VoltageLaw,
     },
 };
 
@@ -165,16 +164,18 @@ impl MixerTables {
         inverse: InverseTable,
     ) -> Self {
         let allocation = &airframe.allocation;
+        let (singles, throttle) = (single_tables(airframe), throttle_table(airframe));
+        let rows = rows(airframe, effectiveness, pair);
         MixerTables {
-            units: unit_tables(airframe, effectiveness),
+            units: unit_tables(airframe, effectiveness, rows, attainable.scale),
             pair: pair_table(airframe),
-            singles: single_tables(airframe),
+            attainable: attainable.with_singles(&singles, &throttle),
+            singles,
             inverse,
-            throttle: throttle_table(airframe),
+            throttle,
             voltage,
-            attainable,
             level: LevelFlightTable::default(),
-            rows: rows(airframe, effectiveness, pair),
+            rows,
             desaturation: Desaturation {
                 airmode: allocation.airmode,
                 yaw_reserve_nm: allocation.yaw_reserve_nm as f32,
@@ -234,7 +235,7 @@ impl MixerTables {
         voltage_v: f32,
         health: Health,
     ) -> Result<AnyMix, SetpointError> {
-        let mut variables = vec![Variable::default(); self.units.len() + SHORTAGES];
+        let mut variables = vec![Variable::default(); self.units.len()];
         let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
         let (achieved, saturation) = mixer_rt::tables::mix_into(
             &self.view(),
@@ -249,13 +250,13 @@ impl MixerTables {
 
     /// Bytes of the tables in flash: four per number, one per channel.
     pub(crate) fn bytes(&self) -> usize {
-        let floats = self.units.len() * 16
+        let floats = self.units.len() * 24
             + 2 * self.pair.thrust.terms()
             + 2 * 2 * 4 // single rotors
             + self.inverse.floats()
             + 2 // throttle range
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
-            + 4 + 7 * self.attainable.corners.len()
+            + 5 + 8 * self.attainable.corners.len()
             + 2 + 4 * self.level.efforts.len()
             + 4 // rows
             + self.closed_form.as_ref().map_or(0, ClosedFormTable::floats)
@@ -394,8 +395,13 @@ pub fn throttle_table(airframe: &Airframe) -> ThrottleRange {
     }
 }
 
-/// Rounds M and M+, unit by unit.
-fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> {
+/// Rounds M and M+, unit by unit, and M from scaled efforts to rows.
+fn unit_tables(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    rows: [f32; 4],
+    scale: [f32; 2],
+) -> Vec<Unit> {
     let n = airframe.units.len();
     let row = |index: usize| -> [f32; 4] {
         std::array::from_fn(|axis| effectiveness.pseudo_inverse[(index, axis)] as f32)
@@ -407,6 +413,10 @@ fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> 
         .map(|(i, unit)| Unit {
             allocation: [row(i), row(n + i)],
             effectiveness: [column(i), column(n + i)],
+            columns: std::array::from_fn(|k| {
+                let column = column(i + k * n);
+                std::array::from_fn(|axis| column[axis] * scale[k] * rows[axis])
+            }),
             channels: [unit.upper_channel as u8, unit.lower_channel as u8],
         })
         .collect()

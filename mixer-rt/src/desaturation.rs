@@ -28,6 +28,20 @@ pub enum Airmode {
     RollPitchYaw,
 }
 
+impl Airmode {
+    /// True where roll and pitch may raise the thrust.
+    #[inline]
+    pub const fn may_raise_thrust(self) -> bool {
+        !matches!(self, Airmode::Disabled)
+    }
+
+    /// True where yaw comes before thrust.
+    #[inline]
+    pub const fn is_yaw_first(self) -> bool {
+        matches!(self, Airmode::RollPitchYaw)
+    }
+}
+
 /// Priorities of desaturation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Desaturation {
@@ -52,17 +66,20 @@ pub struct Budget {
 
 impl Budget {
     /// Rounds at most in which the curves of single rotors take the place of their chords.
-    pub const ROUNDS: u8 = 3;
+    pub const ROUNDS: u8 = 5;
 
-    /// Work for a request with rotors out of a frame of so many units.
+    /// Work for the first programme of a request with rotors out of a frame of so many units.
     pub const fn with_rotors_out(units: usize) -> Self {
         Budget::of(units, 7, 7)
     }
 
-    /// Work for level flight, where [`with_rotors_out`](Self::with_rotors_out) does not suffice.
-    /// Of 50 million saturated requests with one to four rotors out of 13 frames of 1 to 8 units two
-    /// would have needed more, with three and with four out.
-    pub const fn for_level_flight(units: usize) -> Self {
+    /// Programmes at most with rotors out and no reserve of yaw: for the request and for level flight,
+    /// each a second time with the throttles of single rotors decided. A reserve adds two: the request
+    /// without it.
+    pub const PROGRAMMES: u8 = 4;
+
+    /// Work for every one of these but the first.
+    pub const fn for_another(units: usize) -> Self {
         Budget::of(units, 4, 4)
     }
 

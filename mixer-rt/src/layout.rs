@@ -15,6 +15,9 @@ pub struct Unit {
     /// Columns of the effectiveness M (4 x 2n, eq. (5)): `[roll, pitch, yaw, thrust]` per N of this
     /// unit's thrust and per N m of its torque.
     pub effectiveness: [[f32; 4]; 2],
+    /// Rows of the general path ([`Tables::rows`]) per scaled thrust and torque of this unit at the
+    /// reference voltage.
+    pub columns: [[f32; 4]; 2],
     /// Channels of the upper and of the lower rotor.
     pub channels: [u8; 2],
 }

@@ -1,10 +1,10 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
 use crate::desaturation::closed_form::{Attained, ClosedForm, DesaturationMethod, Efforts, Request};
-use crate::desaturation::general::{SHORTAGES, Variable, allocate};
+use crate::desaturation::general::{Variable, allocate};
 use crate::desaturation::power_bias::add_power_bias;
 use crate::desaturation::{is_bounded, limited};
-use crate::layout::{Tables, Unit};
+use crate::layout::Tables;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Inverse, Quantity};
 use crate::rolled;
@@ -72,7 +72,7 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
     }
 }
 
-/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n + [`SHORTAGES`].
+/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n.
 /// `voltage_v` is the battery's present voltage, V: outside the airframe's range it is taken as the
 /// nearest within and flagged, zero as well; an airframe without `[voltage]` ignores it. Any finite
 /// setpoint is mixed.
@@ -114,24 +114,15 @@ pub fn mix_with_health<
     health: Health,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let is_good = health.is_good_below(CHANNELS);
-    let (achieved, saturation) = match (tables.closed_form.closed_form(), is_good) {
-        (Some(closed_form), true) => {
-            mix_in_closed_form(tables, closed_form, setpoint, voltage_v, &mut throttle)?
-        }
-        _ => {
+    let mixed = match mix_in_closed_form(tables, setpoint, voltage_v, health, &mut throttle) {
+        Some(mixed) => mixed,
+        None => {
+            // Not before: the closed form needs no workspace.
             let mut variables = [Variable::default(); VARIABLES];
-            mix_in_general(
-                tables,
-                tables.units,
-                setpoint,
-                voltage_v,
-                health,
-                &mut variables,
-                &mut throttle,
-            )?
+            mix_in_general(tables, setpoint, voltage_v, health, &mut variables, &mut throttle)
         }
     };
+    let (achieved, saturation) = mixed?;
     Ok(Mix {
         throttle,
         achieved,
@@ -140,8 +131,8 @@ pub fn mix_with_health<
 }
 
 /// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `variables`
-/// takes one element per unit and [`SHORTAGES`] more, `throttle` one value per channel. Units or
-/// channels beyond a buffer's end are left out.
+/// takes one element per unit, `throttle` one value per channel. Units or channels beyond a buffer's
+/// end are left out.
 ///
 /// # Errors
 /// As [`mix`]; the buffers are then as they were.
@@ -154,29 +145,29 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     variables: &mut [Variable],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    let is_good = health.is_good_below(2 * tables.units.len());
-    if let (Some(closed_form), true) = (tables.closed_form.closed_form(), is_good) {
-        return mix_in_closed_form(tables, closed_form, setpoint, voltage_v, throttle);
+    match mix_in_closed_form(tables, setpoint, voltage_v, health, throttle) {
+        Some(mixed) => mixed,
+        None => mix_in_general(tables, setpoint, voltage_v, health, variables, throttle),
     }
-    let units = variables.len().saturating_sub(SHORTAGES);
-    let units = tables.units.get(..units).unwrap_or(tables.units);
-    let variables = variables.get_mut(..units.len() + SHORTAGES).unwrap_or_default();
-    mix_in_general(tables, units, setpoint, voltage_v, health, variables, throttle)
 }
 
-/// [`mix_into`] for `units`.
+/// An achieved wrench and what was not delivered.
+type Mixed = Result<(Wrench, Saturation), SetpointError>;
+
+/// [`mix_into`] on the general path.
 #[inline(always)]
 fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     tables: &Tables<'_, P, I, S>,
-    units: &[Unit],
     setpoint: &Wrench,
     voltage_v: f32,
     health: Health,
     variables: &mut [Variable],
     throttle: &mut [f32],
-) -> Result<(Wrench, Saturation), SetpointError> {
+) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
+    let units = tables.units.get(..variables.len()).unwrap_or(tables.units);
+    let variables = variables.get_mut(..units.len()).unwrap_or_default();
     // With a closed form, rotors are out. So the compiler leaves out what only whole frames need.
     let mut is_whole = tables.closed_form.closed_form().is_none();
     for (unit, variable) in units.iter().zip(variables.iter_mut()) {
@@ -185,11 +176,7 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     }
     let is_least_norm = allocate(tables, &bounded, factors, variables, is_whole);
     if is_least_norm && tables.power_bias_nm_per_n != 0.0 {
-        add_power_bias(
-            tables,
-            factors,
-            variables.get_mut(..units.len()).unwrap_or_default(),
-        );
+        add_power_bias(tables, factors, variables);
     }
     let mut achieved = [0.0; 4];
     for (unit, Variable { rotors, at, .. }) in units.iter().zip(variables) {
@@ -212,18 +199,32 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
     ))
 }
 
-/// [`mix_into`] in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
+/// [`mix_into`] in closed form; `None` where there is none, or a rotor is out.
+#[inline(always)]
+fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
+    tables: &Tables<'_, P, I, S>,
+    setpoint: &Wrench,
+    voltage_v: f32,
+    health: Health,
+    throttle: &mut [f32],
+) -> Option<Mixed> {
+    let is_good = health.is_good_below(2 * tables.units.len());
+    let closed_form = tables.closed_form.closed_form().filter(|_| is_good)?;
+    Some(mix_by(closed_form, tables, setpoint, voltage_v, throttle))
+}
+
+/// Mixes in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
 /// are tried: where the inverse map misses them, the request is desaturated and inverted again. All
 /// other efforts are attainable, so by the compiler's proof each unit gives them within the
 /// tolerance.
 #[inline(always)]
-fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
-    tables: &Tables<'_, P, I, S>,
+fn mix_by<P: Quantity, I: Inverse<P>, S>(
     closed_form: &ClosedForm<'_>,
+    tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
     throttle: &mut [f32],
-) -> Result<(Wrench, Saturation), SetpointError> {
+) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     // Factors are positive, which the compiler has proven for every voltage within the range.

@@ -3,11 +3,11 @@
 //! this.
 
 pub use crate::arithmetic::{Scalar, sqrt};
-pub use crate::desaturation::attainable::{AttainableSet, Corner, LevelFlight};
+pub use crate::desaturation::attainable::{AttainableSet, CORNERS, Corner, LevelFlight};
 pub use crate::desaturation::closed_form::{
     Border, Cell, ClosedForm, ClosedFormUnit, DesaturationMethod, Facets, Grid, Knot, NoClosedForm, Outline,
 };
-pub use crate::desaturation::general::{SHORTAGES, Variable};
+pub use crate::desaturation::general::Variable;
 pub use crate::desaturation::{Airmode, Budget, Desaturation, REQUEST_LIMIT};
 pub use crate::layout::{Tables, Tolerance, Unit};
 pub use crate::mix::{mix, mix_into, mix_with_health};

@@ -11,7 +11,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use mixer_compiler::tables::{InverseTable, MixerTables};
 use mixer_rt::{
     Health, Wrench,
-    tables::{Inverse, Pair, Quantity, SHORTAGES, Scalar, Tables, ThrottleRange, Variable},
+    tables::{Inverse, Pair, Quantity, Scalar, Tables, ThrottleRange, Variable},
 };
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
@@ -120,7 +120,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         tolerance: view.tolerance,
     };
     let units = tables.units.len();
-    let (mut variables, mut throttle) = (vec![Variable::default(); units + SHORTAGES], vec![0.0; 2 * units]);
+    let (mut variables, mut throttle) = (vec![Variable::default(); units], vec![0.0; 2 * units]);
     let [roll_nm, pitch_nm, yaw_nm, thrust_n] = setpoint;
     let wrench = Wrench {
         roll_nm,

@@ -9,6 +9,8 @@
 //! | `jumps.rs` | throttles that jump from a request to its neighbour: those that must; others are counted |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound, truthful, continuous (proptest; `PROPTEST_CASES=1000` runs more) |
+//! | `rotors_out.rs` | one and two rotors out, real pairs: nothing is reversed or exceeded |
+//! | `ties.rs` | frames whose optima tie: throttles do not jump |
 //! | `polygons.rs` | the optimum over the mixer's own polygons, where what these leave out decides |
 //! | `degenerate.rs` | numbers that no controller sends |
 //! | `power_bias.rs` | least power: the wrench stays, torques follow thrusts, fading before anything saturates |
@@ -31,7 +33,9 @@ mod polygons;
 mod power_bias;
 mod properties;
 mod regressions;
+mod rotors_out;
 mod shapes;
+mod ties;
 
 use mixer_rt::Health;
 use mixer_tests::frames::{self, Options, Place};

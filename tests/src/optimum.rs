@@ -117,7 +117,7 @@ impl Oracle {
                 [true, false] => arcs(pair, |lower| [0.0, lower]),
                 [true, true] => vec![vec![[0.0; 2]]],
             };
-            let contribution = |throttles| physics.contribution(i, pair.efforts(throttles), factors);
+            let contribution = |throttles| physics.contribution(i, physics.given(throttles), factors);
             let pieces = efforts.into_iter();
             pieces
                 .map(|piece| piece.into_iter().map(contribution).collect())

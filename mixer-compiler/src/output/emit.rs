@@ -99,7 +99,7 @@ fn functions() -> TokenStream {
             setpoint: &rt::Wrench,
             voltage_v: f32,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix::<{ UNITS + tables::SHORTAGES }, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
         }
 
         /// [`mix`] with the rotors out that `health` names by channel.
@@ -112,7 +112,7 @@ fn functions() -> TokenStream {
             voltage_v: f32,
             health: rt::Health,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix_with_health::<{ UNITS + tables::SHORTAGES }, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
+            tables::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
         }
     }
 }
@@ -165,13 +165,13 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
 fn tables(tables: &MixerTables) -> TokenStream {
     let units = tables.units.iter().map(|unit| {
         let allocation = matrix(&unit.allocation);
-        let effectiveness = matrix(&unit.effectiveness);
+        let [effectiveness, columns] = [unit.effectiveness, unit.columns].map(|part| matrix(&part));
         let channels = unit
             .channels
             .iter()
             .map(|&channel| Literal::u8_unsuffixed(channel));
         quote! {
-            tables::Unit { allocation: #allocation, effectiveness: #effectiveness, channels: [#(#channels),*] }
+            tables::Unit { allocation: #allocation, effectiveness: #effectiveness, columns: #columns, channels: [#(#channels),*] }
         }
     });
     let thrust = quantity(&tables.pair.thrust);
@@ -322,10 +322,12 @@ fn attainable(set: &AttainableTable) -> TokenStream {
     let (scale, centre) = (vector(&set.scale), vector(&set.centre));
     let corners = set.corners.iter().map(|corner| {
         let (at, bound) = (vector(&corner.at), float(corner.bound));
-        let (edge, back) = (vector(&corner.edge), vector(&corner.back));
-        quote!(tables::Corner { at: #at, edge: #edge, back: #back, bound: #bound })
+        let ways = corner.ways.map(|way| vector(&way));
+        let links = corner.links.map(Literal::u8_unsuffixed);
+        quote!(tables::Corner { at: #at, ways: [#(#ways),*], bound: #bound, links: [#(#links),*] })
     });
-    quote!(tables::AttainableSet { scale: #scale, centre: #centre, corners: &[#(#corners),*] })
+    let count = Literal::u8_unsuffixed(set.count);
+    quote!(tables::AttainableSet { scale: #scale, centre: #centre, corners: &[#(#corners),*], count: #count })
 }
 
 fn level(level: &LevelFlightTable) -> TokenStream {

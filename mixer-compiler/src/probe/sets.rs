@@ -49,10 +49,12 @@ impl Probe<'_> {
 
     fn polygon(&self, map: &PairMap, area: f64) -> Result<(), String> {
         let table = &self.tables.attainable;
-        let n = table.corners.len();
-        for (k, corner) in table.corners.iter().enumerate() {
-            let at = |k: usize| table.corners[k % n].at;
-            if *corner != Corner::between(at(k + n - 1), at(k), at(k + 1)) {
+        let polygon = table.polygon();
+        let n = polygon.len();
+        for (k, corner) in polygon.iter().enumerate() {
+            let (before, next) = ((k + n - 1) % n, (k + 1) % n);
+            let [from, to] = [before, next].map(|k| polygon[k].at);
+            if *corner != Corner::between(from, corner.at, to, [next as u8, before as u8]) {
                 return Err(format!(
                     "edges of corner {k} of the emitted polygon do not meet its neighbours"
                 ));

@@ -74,24 +74,18 @@ fn planted_faults_are_refused() {
 fn planted_corners_are_refused() {
     for name in ["isae-x8", "px4-x12"] {
         let compiled = compiled(name);
-        let corners = compiled.tables.attainable.corners.len();
         let moved = |by: f32| {
             move |tables: &mut MixerTables| {
                 let table = &mut tables.attainable;
-                let mut points: Vec<[f32; 2]> = table.corners.iter().map(|corner| corner.at).collect();
+                let mut points: Vec<[f32; 2]> = table.polygon().iter().map(|corner| corner.at).collect();
                 points[1] = [0, 1].map(|k| points[1][k] + by * (table.centre[k] - points[1][k]));
-                let point = |k: usize| points[k % corners];
-                table.corners = (0..corners)
-                    .map(|k| {
-                        mixer_rt::tables::Corner::between(point(k + corners - 1), point(k), point(k + 1))
-                    })
-                    .collect();
+                *table = table.with_polygon(&points);
             }
         };
         refused(&compiled, "is not attainable", moved(-0.02));
         refused(&compiled, "loses", moved(0.2));
         refused(&compiled, "do not meet", |tables| {
-            tables.attainable.corners[2].edge[0] *= 1.1
+            tables.attainable.corners[2].ways[0][0] *= 1.1
         });
     }
 }

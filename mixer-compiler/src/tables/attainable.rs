@@ -1,6 +1,6 @@
 //! The attainable set of a unit as a polygon, and level flight inside it.
 
-use mixer_rt::tables::{AttainableSet, Corner, LevelFlight};
+use mixer_rt::tables::{AttainableSet, CORNERS, Corner, LevelFlight, SingleRotor, ThrottleRange};
 
 /// The attainable set.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,18 +9,52 @@ pub struct AttainableTable {
     pub scale: [f32; 2],
     /// A point well inside, scaled.
     pub centre: [f32; 2],
-    /// The corners, anticlockwise, scaled.
-    pub corners: Vec<Corner>,
+    /// The corners of the polygon, anticlockwise, and the ends of single rotors' chords, scaled:
+    /// [`AttainableSet::corners`].
+    pub corners: [Corner; CORNERS],
+    /// How many corners the polygon has.
+    pub count: u8,
 }
 
 impl AttainableTable {
-    /// Rounds a convex polygon `[f, Q]` (N, N m), anticlockwise, and a point inside.
+    /// Rounds a convex polygon `[f, Q]` (N, N m) of at most eight corners, anticlockwise, and a point
+    /// inside.
     pub(crate) fn new(vertices: &[[f64; 2]], scale: [f64; 2], centre: [f64; 2]) -> Self {
         let scaled = |[f, q]: [f64; 2]| [(f / scale[0]) as f32, (q / scale[1]) as f32];
-        AttainableTable {
+        let points: Vec<[f32; 2]> = vertices.iter().copied().map(scaled).collect();
+        let mut table = AttainableTable {
             scale: scale.map(|x| x as f32),
             centre: scaled(centre),
-            corners: corners(vertices.iter().copied().map(scaled)),
+            corners: [Corner::default(); CORNERS],
+            count: points.len() as u8,
+        };
+        table.put(0, &points);
+        table
+    }
+
+    /// The same with the chords of the upper and of the lower rotor alone.
+    pub(crate) fn with_singles(mut self, singles: &[SingleRotor; 2], range: &ThrottleRange) -> Self {
+        let scale = self.scale;
+        for (first, single) in [AttainableSet::UPPER, AttainableSet::LOWER]
+            .into_iter()
+            .zip(singles)
+        {
+            let ends = [range.min, range.max].map(|throttle| {
+                let [f, q] = single.efforts(throttle);
+                [f / scale[0], q / scale[1]]
+            });
+            self.put(first, &ends);
+        }
+        self
+    }
+
+    /// Puts the corners of a set into the table from an index on.
+    fn put(&mut self, first: u8, points: &[[f32; 2]]) {
+        let n = points.len();
+        for (k, slot) in self.corners[usize::from(first)..][..n].iter_mut().enumerate() {
+            let (before, next) = ((k + n - 1) % n, (k + 1) % n);
+            let links = [next, before].map(|k| first + k as u8);
+            *slot = Corner::between(points[before], points[k], points[next], links);
         }
     }
 
@@ -30,6 +64,7 @@ impl AttainableTable {
             scale: self.scale,
             centre: self.centre,
             corners: &self.corners,
+            count: self.count,
         }
     }
 
@@ -37,25 +72,27 @@ impl AttainableTable {
     pub(crate) fn drawn_in(&self, share: f32) -> Self {
         let drawn_in =
             |corner: &Corner| [0, 1].map(|k| corner.at[k] + share * (self.centre[k] - corner.at[k]));
-        AttainableTable {
-            corners: corners(self.corners.iter().map(drawn_in)),
-            ..*self
-        }
+        let points: Vec<[f32; 2]> = self.polygon().iter().map(drawn_in).collect();
+        self.with_polygon(&points)
+    }
+
+    /// The set with another polygon of as many corners, scaled.
+    pub(crate) fn with_polygon(&self, points: &[[f32; 2]]) -> Self {
+        let mut table = self.clone();
+        table.put(0, points);
+        table
+    }
+
+    /// The corners of the polygon.
+    pub fn polygon(&self) -> &[Corner] {
+        &self.corners[..usize::from(self.count)]
     }
 
     /// The corners `[f, Q]`, N and N m.
     pub fn corners(&self) -> Vec<[f32; 2]> {
         let corner = |corner: &Corner| [corner.at[0] * self.scale[0], corner.at[1] * self.scale[1]];
-        self.corners.iter().map(corner).collect()
+        self.polygon().iter().map(corner).collect()
     }
-}
-
-/// The corners of a polygon with their edges.
-fn corners(points: impl Iterator<Item = [f32; 2]>) -> Vec<Corner> {
-    let points: Vec<[f32; 2]> = points.collect();
-    let n = points.len();
-    let corner = |k: usize| Corner::between(points[(k + n - 1) % n], points[k], points[(k + 1) % n]);
-    (0..n).map(corner).collect()
 }
 
 /// Level flight of all units.

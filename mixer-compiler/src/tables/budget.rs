@@ -10,8 +10,12 @@ pub(super) fn budget(units: usize, is_vertical: bool) -> Budget {
     let units = u8::try_from(units).unwrap_or(u8::MAX);
     match (is_vertical, units) {
         (true, ..=8) => Budget {
-            pivots: if units <= 4 { 9 } else { 10 },
-            flips: (96 - 8 * units).max(34),
+            pivots: match units {
+                ..=4 => 9,
+                5 | 6 => 10,
+                _ => 12,
+            },
+            flips: 48,
         },
         (false, ..=8) => Budget {
             pivots: 8 + units,

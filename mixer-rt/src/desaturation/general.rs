@@ -1,95 +1,79 @@
 //! Allocation and desaturation of any frame: tilted axes, any number of units, rotors out, every
-//! airmode, a reserve of yaw.
-//!
-//! # Problem
+//! airmode, a reserve of yaw. `docs/allocation.md` explains it.
 //!
 //! Every unit's attainable set is a small convex polygon inside the real one; a unit with a single
 //! rotor has a curve. A request is served as far as these allow by one linear programme
-//! ([`simplex`]), whose shortages have costs that are so far apart that they act as priorities
-//! ([`shortage`]): roll and pitch, which are short together so that their direction stays, before
-//! thrust before yaw, or yaw before thrust. A shortage lies between nothing and all that was
-//! asked for, so no axis is reversed or exceeded. Thrust is the exception: roll and pitch may raise
-//! it.
-//!
-//! # Iteration
+//! ([`programme`]), which the simplex method solves ([`simplex`]):
 //!
 //! ```text
 //! 1. efforts of least norm; where they are inside all polygons they are the answer
-//! 2. the programme for the request; the curves of single rotors take the place of their chords
+//! 2. the programme for the request
 //! 3. towards the efforts of least norm as far as the polygons allow
 //! ```
 //!
-//! Where the budget of pivots ends before the programme of 2 is solved:
+//! Where the pivots end before the programme of 2 is solved, its basis serves the rows, but units may
+//! be outside their polygons: the answer is on the way from stored level flight to there, as far as
+//! the polygons allow.
 //!
-//! ```text
-//! all rotors work   from stored level flight towards the request as far as the polygons allow
-//! rotors are out    the same programme goes on to level flight at the thrust asked
-//! ```
-//!
-//! A small bias on every unit's efforts makes the optimum unique, so that it is a Lipschitz
-//! function of the request. The step of 3 is complete where 1 would have answered, hence nothing
-//! jumps there.
-//!
-//! So that requests within the attainable set do not end at corners, the programme looks beyond
-//! them: along the ray from the units' centres through the request, at a small reward. Its answer
-//! is drawn back by as much.
+//! With rotors out the curves of single rotors take the place of their chords until the efforts are
+//! on them. If they do not settle, or the pivots end, the throttles of single rotors are decided, and
+//! the programme for the others, which is convex, is solved. If that serves no torque, the torques are
+//! given up.
 //!
 //! # Bound
 //!
 //! [`Desaturation::budget`](crate::desaturation::Desaturation::budget) bounds the work of 2 while
-//! all rotors work. With rotors out [`Budget::with_rotors_out`], [`Budget::for_level_flight`] and
-//! [`Budget::ROUNDS`] do. No loop depends on anything else than these, the number of units and the corners of
-//! polygons.
+//! all rotors work. With rotors out [`Budget::with_rotors_out`], [`Budget::ROUNDS`] and
+//! [`Budget::PROGRAMMES`] do. No loop depends on anything else than these, the number of units and
+//! the corners of polygons.
 
 use core::hint::black_box;
 
 mod breakpoint;
-mod shortage;
+mod programme;
 mod simplex;
+mod ties;
 mod variable;
 
-pub use shortage::SHORTAGES;
 pub use variable::Variable;
 
 use crate::desaturation::Budget;
-use crate::layout::{Tables, Unit};
+use crate::layout::Tables;
 use crate::pair::Quantity;
-use crate::pair::rotors::Rotors;
 use crate::{clamp, rolled};
-use shortage::RAY;
+use programme::{Problem, RAY, REACH, start};
 use simplex::Simplex;
-use variable::{between, inside, positive};
+use variable::{Set, between, positive};
 
-/// Largest distance of a single rotor's torque from its curve, as a share of the torque's scale.
-const TOUCHING: f32 = 1e-4;
+/// A single rotor is on its curve where its torque is off by no more than this share of what yaw may
+/// be missed by.
+const TOUCHING: f32 = 0.25;
 
-/// How units move by the efforts of least norm for a wrench.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
-    /// From the centre to these efforts. Their coordinates mean nothing if they do not arrive.
-    FromCentreTo,
-    /// From where they are to these efforts.
-    To,
-    /// From where they are by these efforts.
-    By,
-}
+/// How far a torque may be from its curve where it does not settle, as a share of the torque's scale.
+const BESIDE: f32 = 5e-4;
 
 /// A frame at one voltage.
 struct Frame<'a, 't, P, I, S> {
     tables: &'a Tables<'t, P, I, S>,
-    /// Rows per N m of roll, pitch and yaw and per N of thrust.
-    rows: [f32; 4],
     /// `[k_f, k_Q]`.
     factors: [f32; 2],
-    /// True where all rotors work.
-    is_whole: bool,
+}
+
+/// How a programme has ended; the units are where it has left them.
+struct Ending {
+    /// To which share of the way from their centres they have to be drawn back.
+    share: f32,
+    is_solved: bool,
+    /// The share of the wrench that exceeds no axis; `None` where a torque is missed.
+    served: Option<f32>,
+    /// How far the torque of a single rotor is from its curve, scaled.
+    beside: f32,
 }
 
 /// Writes attainable efforts (`[f, Q]` at the reference voltage, N and N m, in the variables) that
 /// serve `request` (`[roll, pitch, yaw, thrust]`, bounded) in the order of priority. `factors` is
-/// `[k_f, k_Q]`. There is a variable per unit, which has the unit's rotors, and [`SHORTAGES`] more.
-/// `is_whole` tells that all rotors work. True where these are the efforts of least norm, with all
-/// rotors.
+/// `[k_f, k_Q]`. There is a variable per unit, which has the unit's rotors. `is_whole` tells that
+/// all rotors work. True where these are the efforts of least norm, with all rotors.
 #[inline(never)]
 pub(crate) fn allocate<P: Quantity, I, S>(
     tables: &Tables<'_, P, I, S>,
@@ -98,120 +82,106 @@ pub(crate) fn allocate<P: Quantity, I, S>(
     variables: &mut [Variable],
     is_whole: bool,
 ) -> bool {
-    // With the tables known the compiler would write every loop over them out.
-    let frame = Frame::new(black_box(tables), factors, is_whole);
-    let units = variables.len().saturating_sub(SHORTAGES);
-    let is_least_norm = is_whole && frame.move_by_least_norm(request, variables, Way::FromCentreTo);
+    // With the tables or the number of units known the compiler would write every loop over them out.
+    let (tables, variables) = black_box((tables, variables));
+    let frame = Frame { tables, factors };
+    let is_least_norm = is_whole && frame.is_least_norm(request, variables);
     if !is_least_norm {
-        frame.serve(request, variables, units);
+        frame.serve(request, variables, is_whole);
     }
-    for unit in variables.iter_mut().take(units) {
+    let scale = tables.attainable.scale;
+    for unit in variables {
         rolled();
-        let [first, second] = frame.efforts(unit.rotors);
-        unit.at = [0, 1].map(|k| first[k] * unit.at[0] + second[k] * unit.at[1]);
+        unit.at = [0, 1].map(|k| scale[k] * unit.at[k]);
     }
     is_least_norm
 }
 
-impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
+impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
+    /// Scaled efforts per N and N m at this voltage.
     #[inline(always)]
-    fn new(tables: &'a Tables<'t, P, I, S>, [thrust, torque]: [f32; 2], is_whole: bool) -> Self {
-        let [roll, pitch, yaw, lift] = tables.rows;
-        Frame {
-            tables,
-            // In memory: registers that hold them across calls would have to be saved.
-            rows: black_box([roll / thrust, pitch / thrust, yaw / torque, lift / thrust]),
-            factors: [thrust, torque],
-            is_whole,
-        }
+    fn per_effort(&self) -> [f32; 2] {
+        let scale = self.tables.attainable.scale;
+        [0, 1].map(|k| 1.0 / (self.factors[k] * scale[k]))
     }
 
-    /// `[f, Q]` (N, N m at the reference voltage) per coordinate of a unit with these rotors.
-    #[inline(always)]
-    fn efforts(&self, rotors: Rotors) -> [[f32; 2]; 2] {
-        if self.is_whole || rotors == Rotors::Both {
-            let [thrust, torque] = self.tables.attainable.scale;
-            return [[thrust, 0.0], [0.0, torque]];
-        }
-        if rotors == Rotors::None {
-            return [[0.0; 2]; 2];
-        }
-        let [low, high] = rotors.ends(&self.tables.singles, &self.tables.throttle);
-        [[high[0] - low[0], high[1] - low[1]], low]
-    }
-
-    /// Moves units by or to the efforts of least norm for a wrench in N m and N, as far as all
-    /// polygons allow; true if they arrive.
+    /// Puts the units at the efforts of least norm, M+ u; true where all are inside their polygons.
     #[inline(never)]
-    fn move_by_least_norm(&self, wrench: &[f32; 4], variables: &mut [Variable], way: Way) -> bool {
-        let attainable = &self.tables.attainable;
-        let per_effort = [0, 1].map(|k| 1.0 / (self.factors[k] * attainable.scale[k]));
-        let mut share = 1.0;
-        for (unit, table) in variables.iter_mut().zip(self.tables.units) {
+    fn is_least_norm(&self, request: &[f32; 4], variables: &mut [Variable]) -> bool {
+        let per_effort = self.per_effort();
+        let corners = black_box(self.tables.attainable.polygon());
+        for (variable, unit) in variables.iter_mut().zip(self.tables.units) {
             rolled();
-            if way == Way::FromCentreTo {
-                unit.at = attainable.centre;
-            }
-            let efforts = table.efforts(wrench);
-            let at = unit.at;
-            let start = if way == Way::By { [0.0; 2] } else { at };
-            let rate = [0, 1].map(|k| efforts[k] * per_effort[k] - start[k]);
-            unit.rate = rate;
-            for corner in attainable.corners {
+            let [f, q] = unit.efforts(request);
+            variable.at = [f * per_effort[0], q * per_effort[1]];
+            for corner in corners {
                 rolled();
-                let out = corner.outward(rate);
-                if out > 0.0 {
-                    let beyond = corner.beyond(at);
-                    if share * out + beyond > 0.0 {
-                        share = positive(-beyond) / out;
-                        if way == Way::FromCentreTo {
-                            return false;
-                        }
-                    }
+                if corner.outward(variable.at) > corner.bound {
+                    return false;
                 }
             }
         }
-        for (unit, _) in variables.iter_mut().zip(self.tables.units) {
-            rolled();
-            unit.at = [0, 1].map(|k| unit.at[k] + share * unit.rate[k]);
-        }
-        share >= 1.0
+        true
     }
 
-    /// The wrench of a unit's efforts, in rows.
+    /// The share of its rate by which a unit may move, at most `share`: until it is at the border of
+    /// its polygon.
     #[inline(never)]
-    fn given(&self, unit: &Unit, efforts: [f32; 2]) -> [f32; 4] {
-        let mut wrench = [0.0; 4];
-        unit.add_wrench(efforts, self.factors, &mut wrench);
-        [0, 1, 2, 3].map(|k| wrench[k] * self.rows[k])
-    }
-
-    /// Gives units their columns; returns what they give at their centres, in rows.
-    #[inline(never)]
-    fn prepare(&self, variables: &mut [Variable]) -> [f32; 4] {
-        let attainable = &self.tables.attainable;
-        let mut centre = [0.0; 4];
-        for (unit, table) in variables.iter_mut().zip(self.tables.units) {
+    fn reach(&self, variable: &Variable, mut share: f32) -> f32 {
+        for corner in self.tables.attainable.polygon() {
             rolled();
-            let efforts = self.efforts(unit.rotors);
-            for (column, efforts) in unit.columns.iter_mut().zip(efforts) {
-                rolled();
-                *column = self.given(table, efforts);
+            let out = corner.outward(variable.rate);
+            let beyond = corner.beyond(variable.at);
+            if out > 0.0 && share * out + beyond > 0.0 {
+                share = positive(-beyond) / out;
             }
-            unit.subtract(inside(attainable.centre, unit.rotors), &mut centre);
         }
-        centre.map(|row| -row)
+        share
     }
 
-    /// Writes the units' coordinates that serve `request`.
-    #[inline(always)]
-    fn serve(&self, request: &[f32; 4], variables: &mut [Variable], units: usize) {
-        let centre = self.prepare(variables);
-        let mut wanted = [0, 1, 2, 3].map(|k| request[k] * self.rows[k]);
-        match self.programme(&mut wanted, &centre, variables, self.is_whole) {
-            Some(share) => self.draw_back(share, variables, units),
-            None => self.retreat(request, variables),
+    /// Moves all units along their rates.
+    #[inline(never)]
+    fn advance(&self, variables: &mut [Variable], share: f32) {
+        for variable in variables {
+            rolled();
+            variable.at = [0, 1].map(|k| variable.at[k] + share * variable.rate[k]);
         }
+    }
+
+    /// Sets the units' rates to the efforts of least norm for a wrench, N m and N.
+    #[inline(never)]
+    fn aim_at_least_norm(&self, wrench: &[f32; 4], variables: &mut [Variable]) {
+        let per_effort = self.per_effort();
+        for (variable, unit) in variables.iter_mut().zip(self.tables.units) {
+            rolled();
+            let efforts = unit.efforts(wrench);
+            variable.rate = [0, 1].map(|k| efforts[k] * per_effort[k]);
+        }
+    }
+
+    /// Moves the units towards the efforts of least norm for the same wrench, as far as the polygons
+    /// allow.
+    #[inline(never)]
+    fn move_to_least_norm(&self, variables: &mut [Variable]) {
+        self.aim_at_least_norm(&self.wrench(variables), variables);
+        let mut share = 1.0;
+        for variable in variables.iter_mut() {
+            rolled();
+            variable.rate = [0, 1].map(|k| variable.rate[k] - variable.at[k]);
+            share = self.reach(variable, share);
+        }
+        self.advance(variables, share);
+    }
+
+    /// Moves the units of a programme that is solved to the optimum nearest the efforts of least norm
+    /// for the same wrench, where optima tie.
+    #[inline(never)]
+    fn break_ties(&self, simplex: &mut Simplex<'_>) {
+        if !simplex.is_tied() {
+            return;
+        }
+        self.aim_at_least_norm(&self.wrench(simplex.variables), simplex.variables);
+        simplex.move_to_nearest();
     }
 
     /// The wrench of all units, N m and N. Both rotors of each work.
@@ -219,129 +189,218 @@ impl<'a, 't, P: Quantity, I, S> Frame<'a, 't, P, I, S> {
     fn wrench(&self, variables: &[Variable]) -> [f32; 4] {
         let scale = self.tables.attainable.scale;
         let mut wrench = [0.0; 4];
-        for (unit, table) in black_box(variables).iter().zip(self.tables.units) {
+        for (variable, unit) in variables.iter().zip(self.tables.units) {
             rolled();
-            let efforts = [0, 1].map(|k| scale[k] * unit.at[k]);
-            table.add_wrench(efforts, self.factors, &mut wrench);
+            let efforts = [0, 1].map(|k| scale[k] * variable.at[k]);
+            unit.add_wrench(efforts, self.factors, &mut wrench);
         }
         wrench
     }
 
-    /// Takes the units from the stored level flight nearest the thrust asked towards the torques
-    /// asked, as far as the polygons allow. So no axis is reversed or exceeded, and the direction of
-    /// (roll, pitch) is kept, whatever the programme has come to.
-    #[inline(never)]
-    fn retreat(&self, &[roll, pitch, yaw, thrust]: &[f32; 4], variables: &mut [Variable]) {
-        let variables = black_box(variables);
-        let level = &self.tables.level;
-        let [least, largest] = level.thrust_n;
-        let share = clamp((thrust / self.factors[0] - least) / (largest - least), 0.0, 1.0);
-        for (unit, [at_least, at_largest]) in variables.iter_mut().zip(level.efforts) {
+    /// Writes the units' scaled efforts that serve `request`. `is_whole` tells that all rotors work:
+    /// where it is known, the compiler leaves the other way out of what it is handed to.
+    #[inline(always)]
+    fn serve(&self, request: &[f32; 4], variables: &mut [Variable], is_whole: bool) {
+        let per_row = 1.0 / self.factors[0];
+        let wanted = [0, 1, 2, 3].map(|k| request[k] * (self.tables.rows[k] * per_row));
+        let reserve = self.tables.desaturation.yaw_reserve_nm * (self.tables.rows[2] * per_row);
+        let ending = if is_whole {
+            for variable in variables.iter_mut() {
+                rolled();
+                variable.reset();
+            }
+            self.programme(
+                wanted,
+                reserve,
+                variables,
+                self.tables.desaturation.budget,
+                is_whole,
+            )
+        } else {
+            self.serve_with_rotors_out(wanted, reserve, variables)
+        };
+        if ending.is_solved && ending.share >= 1.0 {
+            return;
+        }
+        let set = &self.tables.attainable;
+        for variable in variables.iter_mut() {
             rolled();
-            unit.at = between(*at_least, *at_largest, share);
+            variable.at = between(variable.inside(set), variable.at, ending.share);
         }
-        // With tilted axes the stored efforts are level at the reference voltage only. At others yaw,
-        // whose authority is the least, is off by most.
-        let [off_roll, off_pitch, off_yaw, _] = self.wrench(variables);
-        if off_yaw.abs() > self.tables.tolerance.wrench[2] {
-            self.move_by_least_norm(&[-off_roll, -off_pitch, -off_yaw, 0.0], variables, Way::By);
+        if !is_whole {
+            return;
         }
-        self.move_by_least_norm(&[roll, pitch, yaw, 0.0], variables, Way::By);
+        if ending.is_solved {
+            self.move_to_least_norm(variables);
+        } else {
+            self.set_out_from_level_flight(request, ending.served, variables);
+        }
     }
 
-    /// Draws the units back to a share of the way from their centres, and from there moves them
-    /// towards the efforts of least norm for the same wrench.
+    /// [`programme`](Self::programme) with rotors out, until its answer is on the curves of single
+    /// rotors and misses no torque, or none does.
     #[inline(never)]
-    fn draw_back(&self, share: f32, variables: &mut [Variable], units: usize) {
-        let attainable = &self.tables.attainable;
-        let (variables, units) = black_box((variables, units));
-        for unit in variables.iter_mut().take(units) {
-            rolled();
-            unit.at = between(inside(attainable.centre, unit.rotors), unit.at, share);
+    fn serve_with_rotors_out(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable]) -> Ending {
+        let units = variables.len();
+        let mut ending = self.settle(wanted, reserve, variables, Budget::with_rotors_out(units));
+        if reserve > 0.0 && ending.served.is_none() {
+            ending = self.settle(wanted, 0.0, variables, Budget::for_another(units));
         }
-        if self.is_whole {
-            self.move_by_least_norm(&self.wrench(variables), variables, Way::To);
+        if !ending.is_solved {
+            let [.., thrust] = wanted;
+            let level = [0.0, 0.0, 0.0, thrust];
+            ending = self.settle(level, 0.0, variables, Budget::for_another(units));
         }
+        ending
     }
 
-    /// The linear programme for a request in rows. Limits the request ([`shortage::write`]), writes
-    /// the variables' coordinates, and returns the share to which they have to be drawn back. Where
-    /// the budget ends first: `None` while all rotors work, with rotors out level flight. `is_whole`
-    /// is the frame's: where it is known, the compiler leaves the other way out of a function that it
-    /// is handed to.
+    /// A programme, and if its single rotors do not settle on their curves or its pivots end, another
+    /// one in which their throttles are decided. One that misses a torque then is not solved.
+    #[inline(never)]
+    fn settle(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable], budget: Budget) -> Ending {
+        for variable in variables.iter_mut() {
+            rolled();
+            variable.reset();
+        }
+        let ending = self.programme(wanted, reserve, variables, budget, false);
+        if ending.is_solved && ending.beside <= BESIDE {
+            return ending;
+        }
+        for variable in variables.iter_mut() {
+            rolled();
+            if variable.set == Set::Segment {
+                variable.at = self.on_curve(variable, ending.share);
+                variable.set = Set::Point;
+            }
+        }
+        let budget = Budget::for_another(variables.len());
+        let mut ending = self.programme(wanted, reserve, variables, budget, false);
+        ending.is_solved &= ending.served.is_some();
+        ending
+    }
+
+    /// What the single rotor of a unit gives, scaled, at the thrust to which it is drawn back.
+    #[inline(never)]
+    fn on_curve(&self, variable: &Variable, share: f32) -> [f32; 2] {
+        let tables = self.tables;
+        let set = &tables.attainable;
+        let [f, _] = between(variable.inside(set), variable.at, share);
+        let throttles = variable
+            .rotors
+            .invert(&tables.singles, &tables.throttle, set.scale[0] * f);
+        let efforts = variable.rotors.efforts(tables, throttles);
+        [0, 1].map(|k| efforts[k] / set.scale[k])
+    }
+
+    /// The linear programme for a request in rows. While some single rotor is beside its curve, its
+    /// line moves there, and the programme goes on.
     #[inline(never)]
     fn programme(
         &self,
-        wanted: &mut [f32; 4],
-        centre: &[f32; 4],
+        wanted: [f32; 4],
+        reserve: f32,
         variables: &mut [Variable],
+        budget: Budget,
         is_whole: bool,
-    ) -> Option<f32> {
-        let units = variables.len().saturating_sub(SHORTAGES);
-        let desaturation = &self.tables.desaturation;
-        let (budget, mut rounds) = if is_whole {
-            (desaturation.budget, 0)
-        } else {
-            (Budget::with_rotors_out(units), Budget::ROUNDS)
-        };
-        let reserve = desaturation.yaw_reserve_nm * self.rows[2];
-        shortage::write(variables, units, wanted, centre, desaturation.airmode, reserve);
-        let mut simplex = Simplex::start(
-            variables,
-            self.tables.attainable.corners,
-            wanted,
-            centre,
-            desaturation.airmode,
-            budget,
-        );
-        let mut share = None;
+    ) -> Ending {
+        let Frame { tables, factors } = *self;
+        let airmode = tables.desaturation.airmode;
+        let ratio = factors[1] / factors[0];
+        let problem = Problem::new(tables.units, &tables.attainable, ratio, airmode);
+        let touching = TOUCHING * tables.tolerance.wrench[2] / tables.attainable.scale[1];
+        let mut rounds = if is_whole { 0 } else { Budget::ROUNDS };
+        let mut simplex = start(&problem, variables, wanted, reserve, airmode, budget);
         loop {
-            if !simplex.solve() {
-                if is_whole || share.is_some() {
-                    // What the round before has placed stays, if there was one.
-                    return share;
-                }
-                simplex.level_off(wanted, Budget::for_level_flight(units));
-                simplex.solve();
+            let mut beside = 0.0;
+            let is_solved = simplex.solve();
+            let beyond = clamp(simplex.place(RAY), -0.5, 1.5);
+            let share = 1.0 / (1.0 + beyond * REACH);
+            if !is_whole {
+                beside = self.bend(&mut simplex, share);
             }
-            simplex.place();
-            let beyond = simplex.variables.get(units + RAY).map_or(0.0, |ray| ray.at[0]);
-            let drawn_back = 1.0 / (1.0 + positive(beyond) * shortage::REACH);
-            share = Some(drawn_back);
-            if rounds == 0 || !self.bend(&mut simplex, drawn_back) {
-                return share;
+            if !is_solved || rounds == 0 || beside <= touching {
+                if is_whole && is_solved && share >= 1.0 {
+                    self.break_ties(&mut simplex);
+                }
+                // A programme that is solved with all rotors misses no torque.
+                let served = if is_whole && is_solved {
+                    Some(1.0)
+                } else {
+                    simplex.served(RAY)
+                };
+                return Ending {
+                    share,
+                    is_solved,
+                    served,
+                    beside,
+                };
             }
             rounds -= 1;
         }
     }
 
-    /// Takes single rotors from their chords to their curves at the thrusts that they have come to
-    /// when drawn back by `share`; false where they were there.
+    /// Moves the lines of single rotors to their curves at the thrusts that they have come to when
+    /// drawn back by `share`; returns how far the torques were beside, at most.
     #[inline(never)]
-    fn bend(&self, simplex: &mut Simplex<'_>, share: f32) -> bool {
-        let tables = self.tables;
-        let mut has_moved = false;
-        for (unit, table) in simplex.variables.iter_mut().zip(tables.units) {
+    fn bend(&self, simplex: &mut Simplex<'_>, share: f32) -> f32 {
+        let set = &self.tables.attainable;
+        let problem = simplex.problem;
+        let mut most = 0.0;
+        for (variable, unit) in simplex.variables.iter_mut().zip(self.tables.units) {
             rolled();
-            if !unit.rotors.is_single() {
+            if variable.set != Set::Segment {
                 continue;
             }
-            let [along, low] = self.efforts(unit.rotors);
-            let x = 0.5 + share * (unit.at[0] - 0.5);
-            let [f, chord] = [0, 1].map(|k| low[k] + x * along[k]);
-            let throttles = unit.rotors.invert(&tables.singles, &tables.throttle, f);
-            let [_, torque] = unit.rotors.efforts(tables, throttles);
-            let extra = (torque - chord) / share;
-            let change = extra - unit.rate[1];
-            if change.abs() > TOUCHING * tables.attainable.scale[1] {
-                has_moved = true;
-                unit.rate[1] = extra;
-                let given = self.given(table, [0.0, change]);
-                for (residual, row) in simplex.residual.iter_mut().zip(given) {
-                    *residual -= row;
-                }
+            let [_, on_line] = between(variable.inside(set), variable.at, share);
+            let [_, on_curve] = self.on_curve(variable, share);
+            let beside = on_curve - on_line;
+            if beside.abs() > most {
+                most = beside.abs();
             }
+            let change = variable.next_move(beside / share);
+            variable.curve += change;
+            problem.subtract(unit, [0.0, change], &mut simplex.residual);
         }
-        has_moved
+        most
+    }
+
+    /// Takes the units from the stored level flight nearest the thrust asked to where they are, as far
+    /// as the polygons allow and by `served` at most. So no axis is reversed or exceeded, and the
+    /// direction of (roll, pitch) is kept.
+    #[inline(never)]
+    fn set_out_from_level_flight(
+        &self,
+        &[.., thrust]: &[f32; 4],
+        served: Option<f32>,
+        variables: &mut [Variable],
+    ) {
+        let level = &self.tables.level;
+        let [least, largest] = level.thrust_n;
+        let along = clamp((thrust / self.factors[0] - least) / (largest - least), 0.0, 1.0);
+        // With tilted axes the stored efforts are level at the reference voltage only. At others yaw,
+        // whose authority is the least, is off by most.
+        // The programme's efforts wait in `gain`.
+        for (variable, [at_least, at_largest]) in variables.iter_mut().zip(level.efforts) {
+            rolled();
+            variable.gain = variable.at;
+            variable.at = between(*at_least, *at_largest, along);
+        }
+        let [roll, pitch, yaw, _] = self.wrench(variables);
+        if yaw.abs() > self.tables.tolerance.wrench[2] {
+            self.aim_at_least_norm(&[-roll, -pitch, -yaw, 0.0], variables);
+            let mut share = 1.0;
+            for variable in variables.iter() {
+                rolled();
+                share = self.reach(variable, share);
+            }
+            self.advance(variables, share);
+        }
+        let Some(mut share) = served else { return };
+        for variable in variables.iter_mut() {
+            rolled();
+            variable.rate = [0, 1].map(|k| variable.gain[k] - variable.at[k]);
+            share = self.reach(variable, share);
+        }
+        self.advance(variables, share);
     }
 }

@@ -91,9 +91,10 @@ pub(crate) fn add_power_bias<P, I, S>(
     }
     let [by_thrust, by_torque] = [largest[0] + FADE * largest[1], largest[1]];
     let mut b = 1.0;
-    for corner in set.corners {
+    for corner in set.polygon() {
         rolled();
-        let out = corner.edge[1].abs() * by_thrust + corner.edge[0].abs() * by_torque;
+        let [edge, _] = corner.ways;
+        let out = edge[1].abs() * by_thrust + edge[0].abs() * by_torque;
         for unit in units.iter() {
             rolled();
             let room = -corner.beyond([unit.at[0] * per_scale[0], unit.at[1] * per_scale[1]]);

@@ -3,7 +3,7 @@
 use crate::arithmetic::Scalar;
 use crate::layout::Tables;
 use crate::pair::{Quantity, SingleRotor, ThrottleRange};
-use crate::{Health, quotient};
+use crate::{Health, divisor};
 
 /// Which rotors of a unit work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,10 @@ pub(crate) enum Rotors {
 /// Newton steps that invert a single rotor's thrust. The start is exact for a thrust that grows
 /// with the square of the throttle, which bench maps follow to a few percent.
 const STEPS: usize = 3;
+
+/// The least rise of a thrust that is divided by, N: a thrust that does not grow with its throttle
+/// takes the step to the end of the range.
+const LEAST_RISE: f32 = 1e-6;
 
 impl Rotors {
     /// The rotors of a unit with these channels.
@@ -77,13 +81,18 @@ impl Rotors {
     pub(crate) fn invert(self, singles: &[SingleRotor; 2], range: &ThrottleRange, f: f32) -> [f32; 2] {
         let [[least, _], [most, _]] = self.ends(singles, range);
         let (low, high) = (range.min * range.min, range.max * range.max);
-        let share = quotient(f - least, most - least);
+        let span = most - least;
+        let share = if span > LEAST_RISE {
+            (f - least) / divisor(span)
+        } else {
+            0.0
+        };
         let square = low + share * (high - low);
         let mut throttle = range.clamp(square.root());
         for _ in 0..STEPS {
             let [value, slope] = self.curve(singles).thrust_and_slope(throttle);
-            // Where a thrust does not grow with its throttle the step is limited to the range.
-            throttle = range.clamp(throttle + quotient(f - value, slope));
+            let slope = if slope > LEAST_RISE { slope } else { LEAST_RISE };
+            throttle = range.clamp(throttle + (f - value) / slope);
         }
         self.throttles(throttle)
     }

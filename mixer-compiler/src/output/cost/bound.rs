@@ -53,16 +53,22 @@ const TORQUES: u32 = 40;
 const GENERAL: u32 = 2400;
 const GENERAL_UNIT: u32 = 530;
 
-/// The moves by least norm while all rotors work, at most three: one unit in them.
-const LEAST_NORM_UNIT: u32 = 600;
+/// The moves by least norm while all rotors work, or the choice among optima that tie, which takes
+/// more: three Newton steps, and one unit in them.
+const TIES: u32 = 1500;
+const TIES_UNIT: u32 = 900;
+
+/// Another programme with rotors out, and one unit in it.
+const PROGRAMME: u32 = 1500;
+const PROGRAMME_UNIT: u32 = 300;
 
 /// A pivot of the simplex method, and one unit in it.
-const PIVOT: u32 = 1200;
+const PIVOT: u32 = 900;
 const PIVOT_UNIT: u32 = 100;
 
 /// A move to another corner, and one unit in the search for the next.
-const FLIP: u32 = 130;
-const FLIP_UNIT: u32 = 9;
+const FLIP: u32 = 120;
+const FLIP_UNIT: u32 = 8;
 
 /// A round in which the curves of single rotors take the place of their chords, and one unit in it.
 const ROUND: u32 = 860;
@@ -77,8 +83,8 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
         None => {
-            let least_norm = compiled.tables.units.len() as u32 * LEAST_NORM_UNIT;
-            Some(general(compiled, &[compiled.tables.desaturation.budget])? + least_norm)
+            let ties = TIES + compiled.tables.units.len() as u32 * TIES_UNIT;
+            Some(general(compiled, &[compiled.tables.desaturation.budget])? + ties)
         }
     }
 }
@@ -87,9 +93,15 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let units = compiled.tables.units.len();
     let n = units as u32;
-    let budgets = [Budget::with_rotors_out(units), Budget::for_level_flight(units)];
-    let curves = u32::from(Budget::ROUNDS) * (ROUND + n * ROUND_UNIT) + n * SINGLE;
-    Some(general(compiled, &budgets)? + curves)
+    let has_reserve = compiled.tables.desaturation.yaw_reserve_nm > 0.0;
+    let programmes = usize::from(Budget::PROGRAMMES) + if has_reserve { 2 } else { 0 };
+    let mut budgets = vec![Budget::for_another(units); programmes];
+    budgets[0] = Budget::with_rotors_out(units);
+    // Every other programme has its throttles decided.
+    let rounds = u32::from(Budget::ROUNDS) * programmes as u32 / 2;
+    let curves = rounds * (ROUND + n * ROUND_UNIT) + n * SINGLE;
+    let starts = (programmes as u32 - 1) * (PROGRAMME + n * PROGRAMME_UNIT);
+    Some(general(compiled, &budgets)? + curves + starts)
 }
 
 /// The general path: the pivots and moves that are allowed, and what is before and after them.

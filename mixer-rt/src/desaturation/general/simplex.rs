@@ -1,51 +1,60 @@
 //! A bounded dual simplex method in four rows over small convex sets.
 //!
-//! The linear programme is
+//! The programme is
 //!
 //! ```text
-//! most   sum_i bias_i . y_i
-//!  over  y_i in the set of variable i
-//!  with  sum_i B_i y_i = w               rows roll, pitch, yaw, thrust
+//! most   sum_i bias_i . y_i - sum_j cost_j s_j
+//!  over  y_i in the set of unit i,  s_j in [0, 1]
+//!  with  sum_i B_i y_i + sum_j a_j s_j = w         rows roll, pitch, yaw, thrust
 //! ```
 //!
-//! Units and shortages are variables alike ([`variable`](super::variable)); the bias of a shortage
-//! is its cost, negative.
+//! Multipliers lambda of the rows put every unit at the corner with the largest gain (B_i^T lambda +
+//! bias_i) . y_i, and every segment at an end. Such a choice is optimal but misses the rows. Four
+//! slots of the basis make up for that. A pivot has five steps:
 //!
-//! Multipliers lambda of the rows put every variable at the corner with the largest gain (B_i^T
-//! lambda + bias_i) . y_i. Such a choice is optimal but misses the rows. Four slots of the basis
-//! make up for that: each is the place along a variable's edge, or one of two slots of a unit that
-//! is free in its polygon. A pivot takes the slot that is furthest outside its bounds, moves lambda
-//! in the direction that brings it back, and lets the variable whose gain turns first take the
-//! slot. A variable at a corner moves to its next corner instead, as long as the slot stays outside
-//! (long steps, Maros 2003). A slot that has no variable yet is artificial: its bounds are both
-//! zero. Lambda stays within a price per row. Where it comes to that first, the row is missed: what
-//! it is missed by takes the slot, without a limit.
+//! ```text
+//! price       the slot that is furthest outside its bounds
+//! release     it goes to its bound; lambda moves in the direction that brings it back
+//! ratio test  what turns first takes the slot; units and segments pass on to their next corner or
+//!             end while the slot stays outside (long steps, Maros 2003)
+//! enter       the column of what takes the slot
+//! update      lambda, and the inverse of the basis
+//! ```
 //!
-//! Any lambda may be the start: nothing has to be known about the frame or its health. Work is
-//! bounded by the numbers of pivots and of moves to other corners that are allowed.
+//! Lambda stays within a price per row. Where it comes to that first, the row is missed: what it is
+//! missed by takes the slot.
 
-use core::hint::black_box;
-use core::mem::take;
-
-use super::breakpoint::{Breakpoint, FirstTwo, ROW};
-use super::shortage::{SHORTAGES, TORQUE_PRICES, ThrustPrice};
-use super::variable::{NEVER, Position, Variable, corner, dot, next, set};
+use super::breakpoint::{Breakpoint, FirstTwo};
+use super::programme::{Problem, SEGMENTS};
+use super::variable::{NEVER, Position, Segment, Set, Variable, corner, dot};
+use crate::desaturation::Budget;
 use crate::desaturation::attainable::Corner;
-use crate::desaturation::{Airmode, Budget};
-use crate::pair::rotors::Rotors;
+use crate::layout::Unit;
 use crate::rolled;
 
 /// Slots within this distance of their bounds are left alone: of an edge's length, or of a row.
 const TOLERANCE: f32 = 3e-5;
 const TOLERANCE_OF_POLYGON: f32 = 1e-5;
 
-/// The multipliers at the start, per row of the request's distance from the units' centres: so
-/// units start at corners on the request's side. Chosen for the fewest pivots (0.005 to 1 differ by
-/// less than a tenth).
-const AHEAD: f32 = 2e-2;
-
 /// Rates of multipliers below this are rounding.
 const LEAST_RATE: f32 = 1e-4;
+
+/// The least pivot that is divided by.
+const LEAST_PIVOT: f32 = 1e-7;
+
+/// No bound.
+const FAR: f32 = 1e30;
+
+/// A row counts as missed from here on.
+const MISSED: f32 = 5e-4;
+
+/// Where the pivots end the ray may be as far outside [0, 1] as this, for its basis to be of use.
+const LEAST_RAY: f32 = -0.3;
+const MOST_RAY: f32 = 1.3;
+
+/// Indices of what may enter: a unit, a segment or a row.
+const SEGMENT: u8 = 64;
+const ROW: u8 = 128;
 
 const IDENTITY: [[f32; 4]; 4] = [
     [1.0, 0.0, 0.0, 0.0],
@@ -55,382 +64,106 @@ const IDENTITY: [[f32; 4]; 4] = [
 ];
 
 /// What a slot of the basis holds.
-#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Holds {
-    /// The part of its row that is missed.
-    #[default]
-    Artificial,
-    /// The part of its row that is missed, at its price.
-    Elastic,
-    /// The share of the edge on which the variable is.
+    /// What a row is missed by.
+    Row,
+    /// The share of the edge on which a unit is.
     Edge,
-    /// The first and the second coordinate of a free variable.
-    First,
-    Second,
+    /// The share of a segment.
+    Along,
+    /// The two efforts of a unit that is free in its polygon.
+    Thrust,
+    Torque,
 }
 
-/// A slot of the basis.
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
+/// A slot of the basis: its value is between 0 and `high`.
+#[derive(Clone, Copy)]
 struct Slot {
+    high: f32,
+    /// The bits of the largest value that is left alone. Those of negative values are larger.
+    limit: u32,
     holds: Holds,
-    variable: u8,
+    /// Index of the row, the unit or the segment.
+    of: u8,
 }
 
-/// A slot outside its bounds.
-#[derive(Default)]
-struct Leaving {
-    slot: usize,
-    /// 1 where it is too large, -1 where it is too small.
-    sign: f32,
-    violation: f32,
-    /// For a free variable: the edge that it is beyond, and the slot of the second coordinate.
-    edge: u8,
-    second: usize,
-}
-
-/// The programme and its state.
-pub(super) struct Simplex<'a> {
-    /// The units, then the shortages.
-    pub(super) variables: &'a mut [Variable],
-    /// Of the polygon of units with both rotors.
-    corners: &'a [Corner],
-    slots: [Slot; 4],
-    /// Rows of the inverse of the basis.
-    inverse: [[f32; 4]; 4],
-    /// w less all that does not depend on the basis.
-    pub(super) residual: [f32; 4],
-    multipliers: [f32; 4],
-    thrust_price: ThrustPrice,
-    /// The values of the slots.
-    values: [f32; 4],
-    /// The last dual step, which the gains do not yet have.
-    step: f32,
-    /// The pivots and moves that are left.
-    budget: Budget,
-}
-
-impl<'a> Simplex<'a> {
-    /// Starts with artificial slots, with multipliers that point from `centre` (rows) to what is
-    /// `wanted`, and with the variables, whose gains are their biases, at the corners that these
-    /// make best.
-    #[inline(never)]
-    pub(super) fn start(
-        variables: &'a mut [Variable],
-        corners: &'a [Corner],
-        wanted: &[f32; 4],
-        centre: &[f32; 4],
-        airmode: Airmode,
-        budget: Budget,
-    ) -> Self {
-        let multipliers = [0, 1, 2, 3].map(|k| AHEAD * (wanted[k] - centre[k]));
-        let mut residual = *wanted;
-        for variable in variables.iter_mut() {
-            rolled();
-            let worth = variable.transposed(&multipliers);
-            variable.gain = [0, 1].map(|k| variable.gain[k] + worth[k]);
-            (variable.rate, variable.position, variable.is_forward) = ([0.0; 2], Position::Corner, true);
-            let set = set(corners, variable.rotors);
-            variable.choose_corner(set);
-            variable.subtract(corner(set, variable.corner).at, &mut residual);
-        }
-        Simplex {
-            variables,
-            corners,
-            slots: [Slot::default(); 4],
-            inverse: IDENTITY,
-            residual,
-            multipliers,
-            thrust_price: ThrustPrice::of(airmode),
-            values: [0.0; 4],
-            step: 0.0,
-            budget,
-        }
-    }
-
-    /// Pivots until all slots are within their bounds; false where the budget ends first.
-    #[inline(never)]
-    pub(super) fn solve(&mut self) -> bool {
-        loop {
-            for (value, row) in self.values.iter_mut().zip(&self.inverse) {
-                *value = dot(row, &self.residual);
-            }
-            let leaving = self.furthest_outside();
-            if leaving.violation <= 0.0 {
-                return true;
-            }
-            if self.budget.pivots == 0 {
-                return false;
-            }
-            self.budget.pivots -= 1;
-            self.pivot(&leaving);
-        }
-    }
-
-    /// Gives the torques up: from where the pivots have come to, asks for no more than the thrust that
-    /// is `wanted` (rows), without the shortages, with another `budget`.
-    #[inline(never)]
-    pub(super) fn level_off(&mut self, [roll, pitch, yaw, _]: &[f32; 4], budget: Budget) {
-        let units = self.variables.len().saturating_sub(SHORTAGES);
-        let Some((units, shortages)) = take(&mut self.variables).split_at_mut_checked(units) else {
-            return;
-        };
-        for (row, torque) in self.residual.iter_mut().zip([roll, pitch, yaw]) {
-            *row -= torque;
-        }
-        for shortage in shortages {
-            rolled();
-            let corner = corner(set(self.corners, shortage.rotors), shortage.corner);
-            shortage.subtract(corner.at.map(|part| -part), &mut self.residual);
-        }
-        // A slot that a shortage has keeps its column, and has to come to zero.
-        for slot in &mut self.slots {
-            if usize::from(slot.variable) >= units.len() && slot.holds == Holds::Edge {
-                slot.holds = Holds::Artificial;
-            }
-        }
-        self.variables = units;
-        self.budget = budget;
-    }
-
-    /// The variable of this index, its set, and the residual.
+impl Slot {
     #[inline(always)]
-    fn parts(&mut self, index: u8) -> Option<(&mut Variable, &'a [Corner], &mut [f32; 4])> {
-        let variable = self.variables.get_mut(usize::from(index))?;
-        let set = set(self.corners, variable.rotors);
-        Some((variable, set, &mut self.residual))
-    }
-
-    #[inline(never)]
-    fn slot_of(&self, holds: Holds, variable: u8) -> usize {
-        let wanted = Slot { holds, variable };
-        self.slots.iter().position(|slot| *slot == wanted).unwrap_or(0) & 3
-    }
-
-    /// The slot furthest outside its bounds, each measured by how far lambda moves to bring it back
-    /// (steepest edge). Without a violation where all are within.
-    #[inline(never)]
-    fn furthest_outside(&self) -> Leaving {
-        let mut found = Leaving::default();
-        let mut best = 0.0;
-        for (index, (slot, &value)) in self.slots.iter().zip(&self.values).enumerate() {
-            rolled();
-            let mut consider = |violation: f32, sign: f32, size: &[f32; 4], edge: u8, second: usize| {
-                let score = violation * violation;
-                let size = dot(size, size);
-                if score > best * size {
-                    best = score / size;
-                    found = Leaving {
-                        slot: index,
-                        sign,
-                        violation,
-                        edge,
-                        second,
-                    };
-                }
-            };
-            let (violation, sign) = match slot.holds {
-                _ if value < 0.0 && slot.holds < Holds::First => (-value, -1.0),
-                Holds::Edge => (value - 1.0, 1.0),
-                Holds::Artificial => (value, 1.0),
-                Holds::Elastic | Holds::Second => continue,
-                Holds::First => {
-                    let second = self.slot_of(Holds::Second, slot.variable);
-                    let point = [value, self.values[second]];
-                    for (edge, corner) in (0u8..).zip(self.corners) {
-                        rolled();
-                        let beyond = corner.beyond(point);
-                        if beyond > TOLERANCE_OF_POLYGON {
-                            consider(beyond, 1.0, &self.across(corner, index, second), edge, second);
-                        }
-                    }
-                    continue;
-                }
-            };
-            if violation > TOLERANCE {
-                consider(violation, sign, &self.inverse[index & 3], 0, 0);
-            }
+    const fn new(high: f32, holds: Holds, of: u8) -> Self {
+        Slot {
+            high,
+            limit: (high + TOLERANCE).to_bits(),
+            holds,
+            of,
         }
-        found
+    }
+
+    /// An effort of a free unit: all its bounds are those of the polygon.
+    #[inline(always)]
+    const fn effort(holds: Holds, of: u8) -> Self {
+        Slot {
+            high: FAR,
+            limit: u32::MAX,
+            holds,
+            of,
+        }
+    }
+}
+
+/// The four slots, and the rows of the inverse of their columns.
+pub(super) struct Basis {
+    slots: [Slot; 4],
+    inverse: [[f32; 4]; 4],
+    /// Some unit has two slots.
+    has_free: bool,
+}
+
+impl Basis {
+    /// All rows have to be served.
+    #[inline(always)]
+    pub(super) fn artificial() -> Self {
+        Basis {
+            slots: [0, 1, 2, 3].map(|row| Slot::new(0.0, Holds::Row, row)),
+            inverse: IDENTITY,
+            has_free: false,
+        }
+    }
+
+    /// Puts a segment into a slot whose row of the inverse is `row`.
+    #[inline(always)]
+    pub(super) fn hold(&mut self, slot: usize, segment: usize, row: [f32; 4]) {
+        self.slots[slot & 3] = Slot::new(1.0, Holds::Along, segment as u8);
+        self.inverse[slot & 3] = row;
+    }
+
+    /// Lets a row be missed upwards or downwards.
+    #[inline(always)]
+    pub(super) fn miss(&mut self, row: usize, sign: f32) {
+        self.slots[row & 3] = Slot::new(FAR, Holds::Row, row as u8);
+        self.inverse[row & 3][row & 3] = sign;
+    }
+
+    /// Sets a row of the inverse.
+    #[inline(always)]
+    pub(super) fn row(&mut self, slot: usize) -> &mut [f32; 4] {
+        &mut self.inverse[slot & 3]
+    }
+
+    #[inline(never)]
+    fn slot_of(&self, holds: Holds, of: u8) -> usize {
+        let found = self
+            .slots
+            .iter()
+            .position(|slot| slot.holds == holds && slot.of == of);
+        found.unwrap_or(0) & 3
     }
 
     /// The row of the inverse for how far a free unit is beyond an edge.
     #[inline(always)]
-    fn across(&self, corner: &Corner, first: usize, second: usize) -> [f32; 4] {
-        let (first, second) = (&self.inverse[first & 3], &self.inverse[second & 3]);
-        [0, 1, 2, 3].map(|k| corner.outward([first[k], second[k]]))
-    }
-
-    /// Moves the leaving variable to its bound; returns the slot that becomes free and the
-    /// direction of lambda.
-    #[inline(never)]
-    fn release(&mut self, leaving: &Leaving) -> (usize, [f32; 4]) {
-        let slot = leaving.slot & 3;
-        let Slot { holds, variable } = self.slots[slot];
-        if holds == Holds::First {
-            let second = leaving.second & 3;
-            let corner = corner(self.corners, leaving.edge);
-            let direction = self.across(corner, slot, second);
-            let [e0, e1] = corner.edge;
-            let per_square = 1.0 / (e0 * e0 + e1 * e1);
-            self.turn(slot, second, [e0 * per_square, e1 * per_square]);
-            self.slots[slot].holds = Holds::Edge;
-            if let Some((unit, _, residual)) = self.parts(variable) {
-                (unit.position, unit.corner) = (Position::Edge, leaving.edge);
-                (unit.gain, unit.rate) = ([0.0; 2], [0.0; 2]);
-                unit.subtract(corner.at, residual);
-            }
-            return (second, direction);
-        }
-        if holds == Holds::Edge
-            && let Some((variable, set, residual)) = self.parts(variable)
-        {
-            variable.position = Position::Corner;
-            if variable.rotors != Rotors::Both {
-                (variable.gain[0], variable.rate[0]) = (0.0, 0.0);
-            }
-            if leaving.sign > 0.0 {
-                variable.subtract(corner(set, variable.corner).edge, residual);
-                variable.corner = next(set, variable.corner);
-            }
-        }
-        (slot, self.inverse[slot].map(|part| leaving.sign * part))
-    }
-
-    /// Takes the last dual step, and finds the breakpoints of all variables in a direction of
-    /// lambda.
-    #[inline(never)]
-    fn look_ahead(&mut self, direction: &[f32; 4]) {
-        for variable in self.variables.iter_mut() {
-            rolled();
-            variable.look_ahead(self.corners, self.step, direction);
-        }
-    }
-
-    /// The breakpoints that come first.
-    #[inline(always)]
-    fn first_two(&self, limit: Breakpoint) -> FirstTwo {
-        let mut found = FirstTwo::new(limit);
-        for (index, variable) in (0u8..).zip(self.variables.iter()) {
-            rolled();
-            found.consider(index, variable.breakpoint);
-        }
-        found
-    }
-
-    /// Passes breakpoints in a direction of lambda while the leaving variable stays outside its
-    /// bounds; returns the dual step and what enters: a variable, or the shortage of a row.
-    #[inline(never)]
-    fn long_step(&mut self, limit: Breakpoint, mut violation: f32) -> (f32, u8) {
-        let (mut first, mut second) = (Breakpoint::UNKNOWN, Breakpoint::UNKNOWN);
-        loop {
-            if first.bits == Breakpoint::UNKNOWN.bits {
-                FirstTwo([first, second]) = self.first_two(limit);
-            }
-            let entering = (first.step(), first.variable);
-            if self.budget.flips == 0 {
-                return entering;
-            }
-            let Some((variable, set, residual)) = self.parts(first.variable) else {
-                return entering;
-            };
-            let (_, way) = variable.way(set);
-            violation -= (way[0] * variable.rate[0] + way[1] * variable.rate[1]).abs();
-            if variable.position == Position::Edge || violation <= 0.0 {
-                return entering;
-            }
-            variable.subtract_inline(way, residual);
-            first.bits = variable.flip(set, entering.0).to_bits() as i32;
-            self.budget.flips -= 1;
-            if second.bits == Breakpoint::UNKNOWN.bits || first.bits > second.bits {
-                (first, second) = (second, Breakpoint::UNKNOWN);
-            }
-        }
-    }
-
-    /// One pivot.
-    #[inline(always)]
-    fn pivot(&mut self, leaving: &Leaving) {
-        let (slot, direction) = self.release(leaving);
-        let limit = self.first_price(&direction);
-        self.look_ahead(&direction);
-        let (step, entering) = self.long_step(limit, leaving.violation);
-        let mut column = [0.0; 4];
-        let mut is_freed = false;
-        self.step = step;
-        if let Some((variable, set, residual)) = self.parts(entering) {
-            let mut way;
-            is_freed = variable.position == Position::Edge;
-            if is_freed {
-                let [e0, e1] = corner(set, variable.corner).edge;
-                way = [-e1, e0];
-            } else {
-                (variable.corner, way) = variable.way(set);
-                variable.position = match variable.rotors {
-                    Rotors::Both => Position::Edge,
-                    _ => Position::Free,
-                };
-                if variable.is_forward {
-                    way = way.map(|part| -part);
-                } else {
-                    // The place along an edge counts from its start.
-                    variable.subtract(way, residual);
-                }
-            }
-            variable.subtract(way, &mut column);
-            if !is_freed {
-                self.slots[slot & 3] = Slot {
-                    holds: Holds::Edge,
-                    variable: entering,
-                };
-            }
-        } else {
-            // A multiplier is at its price first: its row is missed.
-            let row = usize::from(entering & 3);
-            column[row] = if direction[row] > 0.0 { 1.0 } else { -1.0 };
-            self.slots[slot & 3].holds = Holds::Elastic;
-        }
-        for (multiplier, part) in self.multipliers.iter_mut().zip(direction) {
-            *multiplier += self.step * part;
-        }
-        self.exchange(slot, &column);
-        if is_freed {
-            self.free(entering, slot);
-        }
-    }
-
-    /// The dual step at which the first multiplier is at its row's price.
-    #[inline(never)]
-    fn first_price(&self, direction: &[f32; 4]) -> Breakpoint {
-        let [.., thrust] = *direction;
-        let ThrustPrice { too_little, too_much } = self.thrust_price;
-        let [roll, pitch, yaw] = TORQUE_PRICES;
-        let prices = [roll, pitch, yaw, if thrust > 0.0 { too_little } else { too_much }];
-        let (mut least, mut variable) = (NEVER, ROW);
-        for k in 0..4 {
-            let rate = direction[k];
-            let multiplier = self.multipliers[k];
-            let room = prices[k] - if rate > 0.0 { multiplier } else { -multiplier };
-            if room < least * (rate.abs() - LEAST_RATE) {
-                (least, variable) = (room / rate.abs(), ROW | k as u8);
-            }
-        }
-        let bits = least.to_bits() as i32;
-        Breakpoint { bits, variable }
-    }
-
-    /// Puts a column into a slot: a rank-1 update of the inverse.
-    #[inline(never)]
-    fn exchange(&mut self, slot: usize, column: &[f32; 4]) {
-        let row = self.inverse[slot & 3];
-        let per_pivot = 1.0 / dot(&row, column);
-        let row = row.map(|part| part * per_pivot);
-        for other in &mut self.inverse {
-            let share = dot(other, column);
-            for (other, part) in other.iter_mut().zip(row) {
-                *other -= share * part;
-            }
-        }
-        self.inverse[slot & 3] = row;
+    fn across(&self, corner: &Corner, thrust: usize, torque: usize) -> [f32; 4] {
+        let (thrust, torque) = (&self.inverse[thrust & 3], &self.inverse[torque & 3]);
+        [0, 1, 2, 3].map(|k| corner.outward([thrust[k], torque[k]]))
     }
 
     /// Changes the coordinates of two slots: place along an edge and distance from it, thrust and
@@ -444,49 +177,448 @@ impl<'a> Simplex<'a> {
         }
     }
 
+    /// Puts a column into a slot: a rank-1 update of the inverse.
+    #[inline(always)]
+    fn exchange(&mut self, slot: usize, column: &[f32; 4]) {
+        let row = self.inverse[slot & 3];
+        let pivot = dot(&row, column);
+        let per_pivot = 1.0
+            / if pivot.abs() > LEAST_PIVOT {
+                pivot
+            } else {
+                LEAST_PIVOT
+            };
+        let row = row.map(|part| part * per_pivot);
+        for other in &mut self.inverse {
+            let share = dot(other, column);
+            for (other, part) in other.iter_mut().zip(row) {
+                *other -= share * part;
+            }
+        }
+        self.inverse[slot & 3] = row;
+    }
+}
+
+/// A slot outside its bounds.
+struct Leaving {
+    slot: usize,
+    is_above: bool,
+    violation: f32,
+    /// Of a free unit: the edge that it is beyond, and the slot of its torque.
+    edge: u8,
+    torque: usize,
+}
+
+/// A programme and how far it is solved.
+pub(super) struct Simplex<'a> {
+    pub(super) problem: &'a Problem<'a>,
+    pub(super) basis: Basis,
+    pub(super) variables: &'a mut [Variable],
+    pub(super) segments: [Segment; SEGMENTS],
+    /// w less all that does not depend on the basis.
+    pub(super) residual: [f32; 4],
+    pub(super) multipliers: [f32; 4],
+    /// The values of the slots.
+    pub(super) values: [f32; 4],
+    /// The last dual step, which the gains do not yet have.
+    pub(super) step: f32,
+    /// The pivots and moves that are left.
+    pub(super) budget: Budget,
+}
+
+impl Simplex<'_> {
+    /// Pivots until all slots are within their bounds; false where the budget ends first.
+    #[inline(never)]
+    pub(super) fn solve(&mut self) -> bool {
+        loop {
+            let leaving = self.price();
+            if leaving.violation <= 0.0 {
+                return true;
+            }
+            if self.budget.pivots == 0 {
+                return false;
+            }
+            self.budget.pivots -= 1;
+            let (slot, direction) = self.release(&leaving);
+            let (step, entering) = self.ratio_test(&direction, leaving.violation);
+            self.step = step;
+            for (multiplier, part) in self.multipliers.iter_mut().zip(direction) {
+                *multiplier += step * part;
+            }
+            self.enter(entering, slot, &direction);
+        }
+    }
+
+    /// The slot furthest outside its bounds, each measured by how far lambda moves to bring it back
+    /// (steepest edge). Without a violation where all are within.
+    #[inline(always)]
+    fn price(&mut self) -> Leaving {
+        let mut found = Leaving {
+            slot: 0,
+            is_above: false,
+            violation: 0.0,
+            edge: 0,
+            torque: 0,
+        };
+        let mut best = 0.0;
+        let rows = self.basis.inverse.iter().zip(&self.basis.slots);
+        for (index, ((row, slot), value)) in rows.zip(&mut self.values).enumerate() {
+            let x = dot(row, &self.residual);
+            *value = x;
+            if x.to_bits() > slot.limit {
+                let is_above = x > 0.0;
+                let violation = if is_above { x - slot.high } else { -x };
+                let (score, size) = (violation * violation, dot(row, row));
+                if violation > TOLERANCE && score > best * size && size > 0.0 {
+                    best = score / size;
+                    (found.slot, found.is_above, found.violation) = (index, is_above, violation);
+                }
+            }
+        }
+        if self.basis.has_free {
+            self.price_free(&mut found, best);
+        }
+        found
+    }
+
+    /// As [`price`](Self::price), of units that are free in their polygons.
+    #[inline(never)]
+    fn price_free(&self, found: &mut Leaving, mut best: f32) {
+        for (index, slot) in self.basis.slots.iter().enumerate() {
+            rolled();
+            if slot.holds != Holds::Thrust {
+                continue;
+            }
+            let torque = self.basis.slot_of(Holds::Torque, slot.of);
+            let point = [self.values[index & 3], self.values[torque & 3]];
+            for (edge, corner) in (0u8..).zip(self.problem.set.polygon()) {
+                rolled();
+                let beyond = corner.beyond(point);
+                if beyond > TOLERANCE_OF_POLYGON {
+                    let across = self.basis.across(corner, index, torque);
+                    let (score, size) = (beyond * beyond, dot(&across, &across));
+                    if score > best * size && size > 0.0 {
+                        best = score / size;
+                        *found = Leaving {
+                            slot: index,
+                            is_above: true,
+                            violation: beyond,
+                            edge,
+                            torque,
+                        };
+                    }
+                }
+            }
+        }
+    }
+
+    /// A unit of this index with its table, and the residual.
+    #[inline(always)]
+    fn parts(&mut self, index: u8) -> Option<(&mut Variable, &Unit, &mut [f32; 4])> {
+        let variable = self.variables.get_mut(usize::from(index))?;
+        let unit = self.problem.units.get(usize::from(index))?;
+        Some((variable, unit, &mut self.residual))
+    }
+
+    /// Moves what leaves to its bound; returns the slot that becomes free and the direction of
+    /// lambda.
+    #[inline(always)]
+    fn release(&mut self, leaving: &Leaving) -> (usize, [f32; 4]) {
+        let slot = leaving.slot & 3;
+        let Slot { holds, of, .. } = self.basis.slots[slot];
+        match holds {
+            Holds::Thrust | Holds::Torque => return self.release_free(leaving),
+            Holds::Edge => {
+                let problem = self.problem;
+                if let Some((variable, unit, residual)) = self.parts(of) {
+                    variable.position = Position::Corner;
+                    if variable.set == Set::Segment {
+                        (variable.gain, variable.rate) = ([0.0; 2], [0.0; 2]);
+                    }
+                    if leaving.is_above {
+                        let corner = corner(problem.set.corners, variable.corner);
+                        problem.subtract(unit, corner.ways[0], residual);
+                        variable.corner = corner.links[0];
+                    }
+                }
+            }
+            Holds::Along => {
+                if let Some(segment) = self.segments.get_mut(usize::from(of)) {
+                    (segment.is_basic, segment.gain, segment.rate) = (false, 0.0, 0.0);
+                    if leaving.is_above {
+                        segment.turn(&mut self.residual);
+                    }
+                }
+            }
+            Holds::Row => {}
+        }
+        let sign = if leaving.is_above { 1.0 } else { -1.0 };
+        (slot, self.basis.inverse[slot].map(|part| sign * part))
+    }
+
+    /// As [`release`](Self::release), of a unit that is free in its polygon: it goes to the edge that
+    /// it is beyond.
+    #[inline(never)]
+    fn release_free(&mut self, leaving: &Leaving) -> (usize, [f32; 4]) {
+        let (slot, torque) = (leaving.slot & 3, leaving.torque & 3);
+        let of = self.basis.slots[slot].of;
+        let problem = self.problem;
+        let corner = corner(problem.set.corners, leaving.edge);
+        let direction = self.basis.across(corner, slot, torque);
+        let [e0, e1] = corner.ways[0];
+        let per_square = 1.0 / (e0 * e0 + e1 * e1);
+        self.basis.turn(slot, torque, [e0 * per_square, e1 * per_square]);
+        self.basis.slots[slot] = Slot::new(1.0, Holds::Edge, of);
+        self.basis.has_free = self.basis.slots.iter().any(|slot| slot.holds == Holds::Thrust);
+        if let Some((variable, unit, residual)) = self.parts(of) {
+            (variable.position, variable.corner) = (Position::Edge, leaving.edge);
+            (variable.gain, variable.rate) = ([0.0; 2], [0.0; 2]);
+            problem.subtract(unit, corner.at, residual);
+        }
+        (torque, direction)
+    }
+
+    /// Passes breakpoints in a direction of lambda while what leaves stays outside its bounds;
+    /// returns the dual step and what enters.
+    #[inline(always)]
+    fn ratio_test(&mut self, direction: &[f32; 4], mut violation: f32) -> (f32, u8) {
+        let limit = self.first_price(direction);
+        let FirstTwo([mut first, mut second]) = self.look_ahead(direction, limit);
+        loop {
+            let entering = (first.step(), first.of);
+            if self.budget.flips == 0 || first.of >= ROW {
+                return entering;
+            }
+            let corners = self.problem.set.corners;
+            let problem = self.problem;
+            if first.of >= SEGMENT {
+                let Some(segment) = self.segments.get_mut(usize::from(first.of - SEGMENT)) else {
+                    return entering;
+                };
+                violation -= segment.rate;
+                if violation <= 0.0 {
+                    return entering;
+                }
+                segment.turn(&mut self.residual);
+                segment.breakpoint = NEVER;
+                first.bits = i32::MAX;
+            } else {
+                let Some((variable, unit, residual)) = self.parts(first.of) else {
+                    return entering;
+                };
+                let (way, _) = variable.way(corners);
+                violation -= way[0] * variable.rate[0] + way[1] * variable.rate[1];
+                if variable.position == Position::Edge || violation <= 0.0 {
+                    return entering;
+                }
+                problem.subtract_inline(unit, way, residual);
+                first.bits = variable.flip(corners, entering.0).to_bits() as i32;
+            }
+            self.budget.flips -= 1;
+            if second.bits == Breakpoint::UNKNOWN {
+                first = self.first(limit);
+            } else if first.bits > second.bits {
+                first = second;
+                second.bits = Breakpoint::UNKNOWN;
+            }
+        }
+    }
+
+    /// The dual step at which the first multiplier is at its row's price.
+    #[inline(never)]
+    fn first_price(&self, direction: &[f32; 4]) -> Breakpoint {
+        let [roll, pitch, yaw, too_little, too_much] = self.problem.prices;
+        let [.., thrust] = *direction;
+        let prices = [roll, pitch, yaw, if thrust > 0.0 { too_little } else { too_much }];
+        let (mut least, mut of) = (NEVER, ROW);
+        let rows = direction.iter().zip(&self.multipliers).zip(prices);
+        for (row, ((&rate, &multiplier), price)) in (ROW..).zip(rows) {
+            let room = price - if rate > 0.0 { multiplier } else { -multiplier };
+            let size = rate.abs();
+            if room < least * (size - LEAST_RATE) {
+                // Without a branch the compiler divides by all rates, also by zero.
+                let size = if size > LEAST_RATE { size } else { LEAST_RATE };
+                (least, of) = (room / size, row);
+            }
+        }
+        Breakpoint::new(least, of)
+    }
+
+    /// Takes the last dual step, and finds the breakpoints in a direction of lambda: the two that
+    /// come first.
+    #[inline(always)]
+    fn look_ahead(&mut self, direction: &[f32; 4], limit: Breakpoint) -> FirstTwo {
+        let mut found = FirstTwo::new(limit);
+        let (problem, step) = (self.problem, self.step);
+        for (index, (variable, unit)) in (0u8..).zip(self.variables.iter_mut().zip(problem.units)) {
+            rolled();
+            let mut breakpoint = NEVER;
+            if variable.position != Position::Free {
+                let rate = problem.gains(unit, direction);
+                breakpoint = variable.look_ahead(problem.set.corners, step, rate);
+            }
+            variable.breakpoint = breakpoint;
+            found.consider(index, breakpoint);
+        }
+        for (index, segment) in (SEGMENT..).zip(&mut self.segments) {
+            found.consider(index, segment.look_ahead(step, direction));
+        }
+        found
+    }
+
+    /// The breakpoint that comes first, as they are now.
+    #[inline(never)]
+    fn first(&self, limit: Breakpoint) -> Breakpoint {
+        let mut found = limit;
+        for (index, variable) in (0u8..).zip(self.variables.iter()) {
+            rolled();
+            found.consider(index, variable.breakpoint);
+        }
+        for (index, segment) in (SEGMENT..).zip(&self.segments) {
+            found.consider(index, segment.breakpoint);
+        }
+        found
+    }
+
+    /// Puts what enters into the slot, and its column into the inverse.
+    #[inline(always)]
+    fn enter(&mut self, entering: u8, slot: usize, direction: &[f32; 4]) {
+        let problem = self.problem;
+        let mut column = [0.0; 4];
+        let mut new = Slot::new(1.0, Holds::Edge, entering);
+        let mut is_freed = false;
+        if entering >= ROW {
+            // A multiplier is at its price: its row is missed.
+            let row = entering & 3;
+            column[usize::from(row)] = if direction[usize::from(row)] > 0.0 {
+                1.0
+            } else {
+                -1.0
+            };
+            new = Slot::new(FAR, Holds::Row, row);
+        } else if entering >= SEGMENT {
+            let of = entering - SEGMENT;
+            if let Some(segment) = self.segments.get_mut(usize::from(of)) {
+                segment.is_basic = true;
+                column = segment.column;
+            }
+            (new.holds, new.of) = (Holds::Along, of);
+        } else if let Some((variable, unit, residual)) = self.parts(entering) {
+            let from = corner(problem.set.corners, variable.corner);
+            is_freed = variable.position == Position::Edge;
+            let mut way;
+            if is_freed {
+                let [e0, e1] = from.ways[0];
+                way = [-e1, e0];
+            } else {
+                variable.position = match variable.set {
+                    Set::Polygon => Position::Edge,
+                    _ => Position::Free,
+                };
+                // The place along an edge counts from its start.
+                way = from.ways[usize::from(variable.way & 1)];
+                if variable.way == 0 {
+                    way = way.map(|part| -part);
+                } else {
+                    variable.corner = from.links[1];
+                    problem.subtract(unit, way, residual);
+                }
+            }
+            problem.subtract(unit, way, &mut column);
+        }
+        if !is_freed {
+            self.basis.slots[slot & 3] = new;
+        }
+        self.basis.exchange(slot, &column);
+        if is_freed {
+            self.free(entering, slot);
+        }
+    }
+
     /// A unit leaves its edge: place along the edge and distance from it become thrust and torque.
     #[inline(never)]
     fn free(&mut self, index: u8, slot: usize) {
-        let along = self.slot_of(Holds::Edge, index);
-        let slot = slot & 3;
-        let Some((unit, set, residual)) = self.parts(index) else {
+        let along = self.basis.slot_of(Holds::Edge, index);
+        let problem = self.problem;
+        let Some((variable, unit, residual)) = self.parts(index) else {
             return;
         };
-        let corner = corner(set, unit.corner);
-        unit.position = Position::Free;
-        unit.subtract(corner.at.map(|part| -part), residual);
-        self.turn(along, slot, corner.edge);
-        self.slots[along].holds = Holds::First;
-        self.slots[slot] = Slot {
-            holds: Holds::Second,
-            variable: index,
-        };
+        let corner = corner(problem.set.corners, variable.corner);
+        variable.position = Position::Free;
+        problem.subtract(unit, corner.at.map(|part| -part), residual);
+        self.basis.turn(along, slot, corner.ways[0]);
+        self.basis.slots[along & 3] = Slot::effort(Holds::Thrust, index);
+        self.basis.slots[slot & 3] = Slot::effort(Holds::Torque, index);
+        self.basis.has_free = true;
     }
 
-    /// Writes the coordinates of all variables.
+    /// The share of the wrench that no shortage exceeds, where the basis serves the rows but that
+    /// units may be outside their sets; `None` where a torque is missed, or reversed.
     #[inline(never)]
-    pub(super) fn place(&mut self) {
+    pub(super) fn served(&self, ray: usize) -> Option<f32> {
+        let mut share = 1.0;
+        for (slot, &value) in self.basis.slots.iter().zip(&self.values) {
+            rolled();
+            match slot.holds {
+                Holds::Row if slot.of != 3 && !(-MISSED..=MISSED).contains(&value) => return None,
+                Holds::Row if value < -MISSED || value > slot.high + MISSED => return None,
+                Holds::Along => {
+                    let short = self
+                        .segments
+                        .get(usize::from(slot.of))
+                        .map_or(0.0, |s| s.share(value));
+                    if usize::from(slot.of) == ray {
+                        if !(LEAST_RAY..=MOST_RAY).contains(&short) {
+                            return None;
+                        }
+                        continue;
+                    }
+                    if short > 1.0 + TOLERANCE {
+                        return None;
+                    }
+                    if short < 0.0 && share * (1.0 - short) > 1.0 {
+                        share = 1.0 / (1.0 - short);
+                    }
+                }
+                _ => {}
+            }
+        }
+        Some(share)
+    }
+
+    /// Writes the efforts of all units; returns the share of the ray.
+    #[inline(never)]
+    pub(super) fn place(&mut self, ray: usize) -> f32 {
+        let corners = self.problem.set.corners;
         for variable in self.variables.iter_mut() {
             rolled();
-            variable.at = corner(set(self.corners, variable.rotors), variable.corner).at;
+            if variable.set != Set::Point {
+                let [f, q] = corner(corners, variable.corner).at;
+                variable.at = [f, q + variable.curve];
+            }
         }
-        for (slot, &value) in black_box(self.slots.as_slice())
-            .iter()
-            .zip(black_box(self.values.as_slice()))
-        {
+        let mut beyond = 0.0;
+        if let Some(segment) = self.segments.get(ray) {
+            beyond = segment.share(0.0);
+        }
+        for (slot, &value) in self.basis.slots.iter().zip(&self.values) {
             rolled();
-            let Some(variable) = self.variables.get_mut(usize::from(slot.variable)) else {
+            if slot.holds == Holds::Along && usize::from(slot.of) == ray {
+                beyond = self.segments.get(ray).map_or(0.0, |segment| segment.share(value));
+            }
+            let Some(variable) = self.variables.get_mut(usize::from(slot.of)) else {
                 continue;
             };
             match slot.holds {
                 Holds::Edge => {
-                    let edge = corner(set(self.corners, variable.rotors), variable.corner).edge;
+                    let edge = corner(corners, variable.corner).ways[0];
                     variable.at = [0, 1].map(|k| variable.at[k] + value * edge[k]);
                 }
-                Holds::First => variable.at[0] = value,
-                Holds::Second => variable.at[1] = value,
-                _ => {}
+                Holds::Thrust => variable.at[0] = value,
+                Holds::Torque => variable.at[1] = value,
+                Holds::Row | Holds::Along => {}
             }
         }
+        beyond
     }
 }

@@ -1,0 +1,263 @@
+//! The programme of a request: what it may fall short of, at which cost, and where the simplex method
+//! starts.
+//!
+//! Costs per row have fixed ratios, which act as priorities and bound how steep the answer is in
+//! the request:
+//!
+//! ```text
+//! yaw beyond the reserve   1          (yaw before thrust: 20)
+//! too little thrust       20          (yaw before thrust: 1)
+//! roll and pitch         400
+//! too much thrust       2000, where thrust may rise as too little
+//! yaw within the reserve 8000
+//! ```
+//!
+//! A higher priority is given up where that gains more of the next one than these ratios. Roll and
+//! pitch are one shortage, along their request, so that their direction stays. A shortage runs from
+//! nothing to all that was asked for, so that nothing is reversed. Thrust needs no such limit: its
+//! row is missed at a price.
+//!
+//! So that requests within the attainable set do not end at corners, a segment leads beyond the
+//! request, along the ray from the units' centres, at a small reward.
+
+use super::simplex::{Basis, Simplex};
+use super::variable::{Segment, Variable, dot, positive};
+use crate::desaturation::attainable::AttainableSet;
+use crate::desaturation::{Airmode, Budget};
+use crate::layout::Unit;
+use crate::{clamp, rolled, sqrt};
+
+/// Indices of the segments; the last one is yaw within its reserve.
+const LEVEL: usize = 0;
+const YAW: usize = 1;
+pub(super) const RAY: usize = 2;
+pub(super) const SEGMENTS: usize = 4;
+
+/// How far beyond the request the ray reaches, as a share of the request's distance from the
+/// centre, and the reward per row.
+pub(super) const REACH: f32 = 1.0;
+const REWARD: f32 = 0.02;
+
+/// Costs per row.
+const LAST: f32 = 1.0;
+const MIDDLE: f32 = 20.0 * LAST;
+const LEVEL_TORQUE: f32 = 20.0 * MIDDLE;
+const FORBIDDEN: f32 = 5.0 * LEVEL_TORQUE;
+const RESERVED: f32 = 4.0 * FORBIDDEN;
+
+/// Prices per row of roll, pitch and yaw that no shortage covers: an axis that is reversed or
+/// exceeded. They are above all costs, so that these are given up last. They differ, so that the
+/// answer is unique where not even level flight is attainable.
+const TORQUE_PRICES: [f32; 3] = [1e5, 9e4, 8e4];
+
+/// Requests are limited to this share of the authority, thrust to a range from just below zero.
+const LIMIT: f32 = 1.1;
+const LEAST_THRUST: f32 = -0.05;
+const MOST_THRUST: f32 = 1.05;
+
+/// Least width of a shortage, rows: so that none has a column of zeros.
+const LEAST_WIDTH: f32 = 1e-3;
+
+/// A unit's bias: small beside the least cost, large beside rounding.
+const BIAS: f32 = 4e-3;
+
+/// Requests further than this from the centre, squared, as a share of the units, start at the prices.
+const FAR: f32 = 0.25;
+
+/// What of a frame, its health and the voltage the programme reads.
+pub(super) struct Problem<'a> {
+    pub(super) units: &'a [Unit],
+    pub(super) set: &'a AttainableSet<'a>,
+    /// k_Q over k_f: rows are those of k_f, torques count so much more.
+    pub(super) ratio: f32,
+    /// Prices per row of roll, pitch and yaw, of too little and of too much thrust.
+    pub(super) prices: [f32; 5],
+}
+
+impl<'a> Problem<'a> {
+    #[inline(always)]
+    pub(super) fn new(units: &'a [Unit], set: &'a AttainableSet<'a>, ratio: f32, airmode: Airmode) -> Self {
+        let little = if airmode.is_yaw_first() { LAST } else { MIDDLE };
+        let much = if airmode.may_raise_thrust() {
+            little
+        } else {
+            FORBIDDEN
+        };
+        let [roll, pitch, yaw] = TORQUE_PRICES;
+        Problem {
+            units,
+            set,
+            ratio,
+            prices: [roll, pitch, yaw, little, much],
+        }
+    }
+
+    /// B^T times rows.
+    #[inline(always)]
+    pub(super) fn gains(&self, unit: &Unit, rows: &[f32; 4]) -> [f32; 2] {
+        let [thrust, torque] = &unit.columns;
+        [dot(thrust, rows), self.ratio * dot(torque, rows)]
+    }
+
+    /// Takes what efforts give from `rows`.
+    #[inline(never)]
+    pub(super) fn subtract(&self, unit: &Unit, efforts: [f32; 2], rows: &mut [f32; 4]) {
+        self.subtract_inline(unit, efforts, rows);
+    }
+
+    /// As [`subtract`](Self::subtract), for the loops that run most often.
+    #[inline(always)]
+    pub(super) fn subtract_inline(&self, unit: &Unit, [f, q]: [f32; 2], rows: &mut [f32; 4]) {
+        let q = self.ratio * q;
+        let [thrust, torque] = &unit.columns;
+        for ((row, thrust), torque) in rows.iter_mut().zip(thrust).zip(torque) {
+            *row -= thrust * f + torque * q;
+        }
+    }
+
+    /// What the units give at points inside their sets.
+    #[inline(never)]
+    fn centre(&self, variables: &[Variable]) -> [f32; 4] {
+        let mut centre = [0.0; 4];
+        for (variable, unit) in variables.iter().zip(self.units) {
+            rolled();
+            self.subtract_inline(unit, variable.inside(self.set), &mut centre);
+        }
+        centre.map(|row| -row)
+    }
+
+    /// A request in rows, limited to what is looked at.
+    #[inline(always)]
+    fn limited(&self, [roll, pitch, yaw, thrust]: [f32; 4], units: f32) -> [f32; 4] {
+        let limit = LIMIT * units;
+        let largest = if roll.abs() > pitch.abs() {
+            roll.abs()
+        } else {
+            pitch.abs()
+        };
+        let share = if largest > limit { limit / largest } else { 1.0 };
+        let most_yaw = limit * self.ratio;
+        [
+            share * roll,
+            share * pitch,
+            clamp(yaw, -most_yaw, most_yaw),
+            clamp(thrust, LEAST_THRUST * units, MOST_THRUST * units),
+        ]
+    }
+}
+
+/// Sets the programme of a request in rows up, `reserve` the yaw that is kept before roll and pitch,
+/// in rows. The start changes no answer, since the optimum is unique: far out it is at the prices of
+/// what will be short, near it is on the ray.
+#[inline(never)]
+pub(super) fn start<'a>(
+    problem: &'a Problem<'a>,
+    variables: &'a mut [Variable],
+    request: [f32; 4],
+    reserve: f32,
+    airmode: Airmode,
+    budget: Budget,
+) -> Simplex<'a> {
+    let units = variables.len() as f32;
+    let wanted = problem.limited(request, units);
+    let [roll, pitch, yaw, _] = wanted;
+    let size = sqrt(roll * roll + pitch * pitch);
+    let width = size + LEAST_WIDTH;
+    let [east, north] = if size > 0.0 {
+        [roll / size, pitch / size]
+    } else {
+        [1.0, 0.0]
+    };
+    let sign = if yaw < 0.0 { -1.0 } else { 1.0 };
+    let beyond = positive(yaw.abs() - reserve);
+    let kept = yaw.abs() - beyond;
+    let beyond = beyond + LEAST_WIDTH;
+    let yaw_cost = if airmode.is_yaw_first() { MIDDLE } else { LAST };
+    let centre = problem.centre(variables);
+    let away = [0, 1, 2, 3].map(|k| wanted[k] - centre[k]);
+    let [a0, a1, a2, a3] = away;
+    let length = (a0.abs() + a1.abs()) + (a2.abs() + a3.abs());
+    let mut segments = [
+        Segment::new([width * east, width * north, 0.0, 0.0], -LEVEL_TORQUE * width),
+        Segment::new([0.0, 0.0, sign * beyond, 0.0], -yaw_cost * beyond),
+        Segment::new(away.map(|row| -REACH * row), REWARD * length),
+        Segment::new([0.0, 0.0, sign * kept, 0.0], -RESERVED * kept),
+    ];
+    let mut basis = Basis::artificial();
+    let square = dot(&away, &away);
+    let multipliers;
+    if square > FAR * units * units {
+        let [.., little, much] = problem.prices;
+        let mut price = 0.0;
+        if a3 > 0.0 {
+            price = little;
+            basis.miss(3, 1.0);
+        } else if airmode.may_raise_thrust() {
+            price = -much;
+            basis.miss(3, -1.0);
+        }
+        let mut level = 0.0;
+        if size > 0.0 {
+            level = LEVEL_TORQUE;
+            basis.hold(0, LEVEL, [east / width, north / width, 0.0, 0.0]);
+            *basis.row(1) = [-north, east, 0.0, 0.0];
+            segments[LEVEL].is_basic = true;
+        }
+        basis.hold(2, YAW, [0.0, 0.0, sign / beyond, 0.0]);
+        segments[YAW].is_basic = true;
+        multipliers = [level * east, level * north, sign * yaw_cost, price];
+    } else {
+        // The ray serves the row in which it is longest, and gives its share to the others.
+        let mut longest = 0;
+        for row in 1..4 {
+            if away[row].abs() > away[longest & 3].abs() {
+                longest = row;
+            }
+        }
+        let longest = longest & 3;
+        let along = away[longest];
+        let per_row = -1.0 / (REACH * along + if along < 0.0 { -1e-6 } else { 1e-6 });
+        for (row, part) in away.iter().enumerate() {
+            basis.row(row)[longest] = per_row * REACH * part;
+        }
+        let mut row = [0.0; 4];
+        row[longest] = per_row;
+        basis.hold(longest, RAY, row);
+        segments[RAY].is_basic = true;
+        let reward = REWARD * length / (REACH * square + 1e-9);
+        multipliers = away.map(|row| reward * row);
+    }
+    let mut residual = wanted;
+    for segment in &mut segments {
+        rolled();
+        segment.gain += dot(&segment.column, &multipliers);
+        if segment.is_basic {
+            segment.gain = 0.0;
+        } else if segment.gain > 0.0 {
+            segment.turn(&mut residual);
+        }
+    }
+    let mut weyl = 0.5;
+    for (variable, unit) in variables.iter_mut().zip(problem.units) {
+        rolled();
+        let [f, q] = problem.gains(unit, &multipliers);
+        variable.gain = [f + BIAS * (weyl - 0.5), q + BIAS * (0.75 - weyl)];
+        // Weyl's sequence: spread over [0, 1) for any number of units.
+        weyl += 0.618_034;
+        weyl -= if weyl >= 1.0 { 1.0 } else { 0.0 };
+        variable.rate = [0.0; 2];
+        let at = variable.choose_corner(problem.set);
+        problem.subtract_inline(unit, at, &mut residual);
+    }
+    Simplex {
+        problem,
+        basis,
+        variables,
+        segments,
+        residual,
+        multipliers,
+        values: [0.0; 4],
+        step: 0.0,
+        budget,
+    }
+}
