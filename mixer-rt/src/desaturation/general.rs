@@ -40,7 +40,7 @@ pub use variable::Variable;
 use crate::desaturation::Budget;
 use crate::layout::Tables;
 use crate::pair::Quantity;
-use crate::{clamp, rolled};
+use crate::{clamp, divisor, rolled};
 use programme::{Problem, RAY, REACH, start};
 use simplex::Simplex;
 use variable::{Set, between, positive};
@@ -133,7 +133,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
             let out = corner.outward(variable.rate);
             let beyond = corner.beyond(variable.at);
             if out > 0.0 && share * out + beyond > 0.0 {
-                share = positive(-beyond) / out;
+                share = positive(-beyond) / divisor(out);
             }
         }
         share
@@ -376,7 +376,11 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     ) {
         let level = &self.tables.level;
         let [least, largest] = level.thrust_n;
-        let along = clamp((thrust / self.factors[0] - least) / (largest - least), 0.0, 1.0);
+        let along = clamp(
+            (thrust / self.factors[0] - least) / divisor(largest - least),
+            0.0,
+            1.0,
+        );
         // With tilted axes the stored efforts are level at the reference voltage only. At others yaw,
         // whose authority is the least, is off by most.
         // The programme's efforts wait in `gain`.

@@ -25,7 +25,7 @@ use super::variable::{Segment, Variable, dot, positive};
 use crate::desaturation::attainable::AttainableSet;
 use crate::desaturation::{Airmode, Budget};
 use crate::layout::Unit;
-use crate::{clamp, rolled, sqrt};
+use crate::{clamp, divisor, rolled, sqrt};
 
 /// Indices of the segments; the last one is yaw within its reserve.
 const LEVEL: usize = 0;
@@ -135,7 +135,11 @@ impl<'a> Problem<'a> {
         } else {
             pitch.abs()
         };
-        let share = if largest > limit { limit / largest } else { 1.0 };
+        let share = if largest > limit {
+            limit / divisor(largest)
+        } else {
+            1.0
+        };
         let most_yaw = limit * self.ratio;
         [
             share * roll,
@@ -164,7 +168,7 @@ pub(super) fn start<'a>(
     let size = sqrt(roll * roll + pitch * pitch);
     let width = size + LEAST_WIDTH;
     let [east, north] = if size > 0.0 {
-        [roll / size, pitch / size]
+        [roll / divisor(size), pitch / divisor(size)]
     } else {
         [1.0, 0.0]
     };

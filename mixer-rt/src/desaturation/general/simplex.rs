@@ -30,7 +30,7 @@ use super::variable::{NEVER, Position, Segment, Set, Variable, corner, dot};
 use crate::desaturation::Budget;
 use crate::desaturation::attainable::Corner;
 use crate::layout::Unit;
-use crate::rolled;
+use crate::{divisor, quotient, rolled};
 
 /// Slots within this distance of their bounds are left alone: of an edge's length, or of a row.
 const TOLERANCE: f32 = 3e-5;
@@ -41,6 +41,10 @@ const LEAST_RATE: f32 = 1e-4;
 
 /// The least pivot that is divided by.
 const LEAST_PIVOT: f32 = 1e-7;
+
+/// A slot further outside its bounds has come from a pivot that is rounding. The programme ends there:
+/// the squares of what further pivots would make of it overflow.
+const SENSELESS: f32 = 1e6;
 
 /// No bound.
 const FAR: f32 = 1e30;
@@ -182,12 +186,12 @@ impl Basis {
     fn exchange(&mut self, slot: usize, column: &[f32; 4]) {
         let row = self.inverse[slot & 3];
         let pivot = dot(&row, column);
-        let per_pivot = 1.0
-            / if pivot.abs() > LEAST_PIVOT {
-                pivot
-            } else {
-                LEAST_PIVOT
-            };
+        let pivot = if pivot.abs() > LEAST_PIVOT {
+            pivot
+        } else {
+            LEAST_PIVOT
+        };
+        let per_pivot = quotient(1.0, pivot);
         let row = row.map(|part| part * per_pivot);
         for other in &mut self.inverse {
             let share = dot(other, column);
@@ -235,7 +239,7 @@ impl Simplex<'_> {
             if leaving.violation <= 0.0 {
                 return true;
             }
-            if self.budget.pivots == 0 {
+            if self.budget.pivots == 0 || leaving.violation > SENSELESS {
                 return false;
             }
             self.budget.pivots -= 1;
@@ -270,7 +274,7 @@ impl Simplex<'_> {
                 let violation = if is_above { x - slot.high } else { -x };
                 let (score, size) = (violation * violation, dot(row, row));
                 if violation > TOLERANCE && score > best * size && size > 0.0 {
-                    best = score / size;
+                    best = score / divisor(size);
                     (found.slot, found.is_above, found.violation) = (index, is_above, violation);
                 }
             }
@@ -298,7 +302,7 @@ impl Simplex<'_> {
                     let across = self.basis.across(corner, index, torque);
                     let (score, size) = (beyond * beyond, dot(&across, &across));
                     if score > best * size && size > 0.0 {
-                        best = score / size;
+                        best = score / divisor(size);
                         *found = Leaving {
                             slot: index,
                             is_above: true,
@@ -438,7 +442,7 @@ impl Simplex<'_> {
             if room < least * (size - LEAST_RATE) {
                 // Without a branch the compiler divides by all rates, also by zero.
                 let size = if size > LEAST_RATE { size } else { LEAST_RATE };
-                (least, of) = (room / size, row);
+                (least, of) = (room / divisor(size), row);
             }
         }
         Breakpoint::new(least, of)
@@ -577,7 +581,7 @@ impl Simplex<'_> {
                         return None;
                     }
                     if short < 0.0 && share * (1.0 - short) > 1.0 {
-                        share = 1.0 / (1.0 - short);
+                        share = 1.0 / divisor(1.0 - short);
                     }
                 }
                 _ => {}

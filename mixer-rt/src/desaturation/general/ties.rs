@@ -15,7 +15,7 @@ use core::hint::black_box;
 use super::simplex::Simplex;
 use super::variable::{Position, Variable, corner, dot2};
 use crate::desaturation::attainable::{CORNERS, Corner};
-use crate::{clamp, rolled, sqrt};
+use crate::{clamp, divisor, rolled, sqrt};
 
 /// Gains that differ by less than this, per length of the way, tie: twice what biases differ by.
 const TIED: f32 = 1e-2;
@@ -80,7 +80,7 @@ fn edge_before(corners: &[Corner], efforts: [f32; 2]) -> Option<([f32; 2], [f32;
         let beyond = corner.beyond(efforts);
         let square = dot2(corner.ways[0], corner.ways[0]);
         if beyond > 0.0 && beyond * beyond > furthest * square {
-            furthest = beyond * beyond / square;
+            furthest = beyond * beyond / divisor(square);
             found = Some((corner.at, corner.ways[0]));
         }
     }
@@ -180,7 +180,11 @@ fn solve(mut matrix: [[f32; 4]; 4], mut rows: [f32; 4]) -> [f32; 4] {
         rolled();
         let pivot_row = matrix[k & 3];
         let pivot = pivot_row[k & 3];
-        let per_pivot = if pivot > LEAST_PIVOT { 1.0 / pivot } else { 0.0 };
+        let per_pivot = if pivot > LEAST_PIVOT {
+            1.0 / divisor(pivot)
+        } else {
+            0.0
+        };
         let share = rows[k & 3] * per_pivot;
         for i in 0..4 {
             rolled();

@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use crate::desaturation::attainable::{AttainableSet, CORNERS, Corner};
 use crate::pair::rotors::Rotors;
-use crate::rolled;
+use crate::{divisor, rolled};
 
 /// No breakpoint: further than any dual step.
 pub(super) const NEVER: f32 = 1e9;
@@ -130,7 +130,7 @@ impl Segment {
             self.gain += last_step * self.rate;
             self.rate = dot(&self.column, direction);
             if self.rate > LEAST_SLOPE {
-                self.breakpoint = -self.gain / self.rate;
+                self.breakpoint = -self.gain / divisor(self.rate);
             }
         }
         self.breakpoint
@@ -253,7 +253,7 @@ impl Variable {
         } else {
             let slope = -corner.outward(rate);
             if slope > LEAST_SLOPE_OF_EDGE {
-                breakpoint = corner.outward(gain) / slope;
+                breakpoint = corner.outward(gain) / divisor(slope);
             }
         }
         breakpoint
@@ -284,7 +284,7 @@ impl Variable {
 fn turning(way: [f32; 2], gain: [f32; 2], rate: [f32; 2]) -> f32 {
     let slope = dot2(way, rate);
     if slope > LEAST_SLOPE {
-        -dot2(way, gain) / slope
+        -dot2(way, gain) / divisor(slope)
     } else {
         NEVER
     }
