@@ -13,7 +13,7 @@
 //! ```
 //!
 //! A wrench is delivered, or flagged and sound: no torque reversed or exceeded, the direction of
-//! (roll, pitch) kept, and with airmode disabled no more thrust than asked. It has to be delivered
+//! (roll, pitch) kept, and with airmode disabled and all rotors no more thrust than asked. It has to be delivered
 //! where the efforts of least norm are well inside every unit's polygon. The physics ([`physics`])
 //! know nothing of M: they add forces and torques unit by unit.
 
@@ -34,6 +34,9 @@ use physics::Physics;
 /// Share of an axis' authority by which a flagged wrench may be exceeded, reversed or off its
 /// direction.
 const SOUND: f64 = 3e-3;
+
+/// The same with rotors out, where the curves of single rotors are met to a small distance only.
+const SOUND_WITH_ROTORS_OUT: f64 = 1e-2;
 
 /// Thrusts that are probed, as shares of the range of level flight.
 const THRUSTS: [f64; 3] = [0.2, 0.5, 0.8];
@@ -312,14 +315,19 @@ impl<'a> At<'a> {
     /// An axis on which a wrench is not within what was asked.
     fn unsound(&self, asked: &[f64; 4], given: &[f64; 4]) -> Option<Axis> {
         let allocation = &self.probe.airframe.allocation;
+        let is_whole = self.health.is_good();
         let room = |axis: Axis| {
             let tolerance = self.probe.tables.tolerance.wrench[axis as usize];
-            f64::from(tolerance) + SOUND * self.authority[axis as usize]
+            let sound = if is_whole { SOUND } else { SOUND_WITH_ROTORS_OUT };
+            f64::from(tolerance) + sound * self.authority[axis as usize]
         };
         let is_beyond = |axis: &Axis| {
             let (asked, given) = (asked[*axis as usize], given[*axis as usize]);
             if *axis == Axis::Thrust {
-                return allocation.airmode == Airmode::Disabled && given > asked + room(*axis);
+                // Level flight with rotors out, or a reserve of yaw, may need more thrust than is asked.
+                let may_rise =
+                    allocation.airmode != Airmode::Disabled || !is_whole || allocation.yaw_reserve_nm > 0.0;
+                return !may_rise && given > asked + room(*axis);
             }
             given > asked.max(0.0) + room(*axis) || given < asked.min(0.0) - room(*axis)
         };
