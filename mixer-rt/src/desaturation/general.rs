@@ -285,10 +285,11 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         let tables = self.tables;
         let set = &tables.attainable;
         let [f, _] = between(variable.inside(set), variable.at, share);
+        let Tables { pair, singles, .. } = tables;
         let throttles = variable
             .rotors
-            .invert(&tables.singles, &tables.throttle, set.scale[0] * f);
-        let efforts = variable.rotors.efforts(tables, throttles);
+            .invert(singles, &tables.throttle, set.scale[0] * f);
+        let efforts = variable.rotors.efforts(pair, singles, throttles);
         [0, 1].map(|k| efforts[k] / set.scale[k])
     }
 
@@ -306,10 +307,16 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         let Frame { tables, factors } = *self;
         let airmode = tables.desaturation.airmode;
         let ratio = factors[1] / factors[0];
-        let problem = Problem::new(tables.units, &tables.attainable, ratio, airmode);
+        let problem = Problem::new(tables, ratio);
+        let centre = if is_whole {
+            let [by_thrust, by_torque] = &tables.centre;
+            [0, 1, 2, 3].map(|k| by_thrust[k] + ratio * by_torque[k])
+        } else {
+            problem.centre(variables)
+        };
         let touching = TOUCHING * tables.tolerance.wrench[2] / tables.attainable.scale[1];
         let mut rounds = if is_whole { 0 } else { Budget::ROUNDS };
-        let mut simplex = start(&problem, variables, wanted, reserve, airmode, budget);
+        let mut simplex = start(&problem, variables, [wanted, centre], reserve, airmode, budget);
         loop {
             let mut beside = 0.0;
             let is_solved = simplex.solve();
