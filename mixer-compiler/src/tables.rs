@@ -54,6 +54,10 @@ pub struct MixerTables {
     pub level: LevelFlightTable,
     /// Rows of the general path per N m and N: [`mixer_rt::tables::Tables::rows`].
     pub rows: [f32; 4],
+    /// [`mixer_rt::tables::Tables::centre`].
+    pub centre: [[f32; 4]; 2],
+    /// [`mixer_rt::tables::Tables::is_vertical`].
+    pub is_vertical: bool,
     /// Priorities of desaturation.
     pub desaturation: Desaturation,
     /// Least power: [`mixer_rt::tables::Tables::power_bias_nm_per_n`].
@@ -166,8 +170,14 @@ impl MixerTables {
         let allocation = &airframe.allocation;
         let (singles, throttle) = (single_tables(airframe), throttle_table(airframe));
         let rows = rows(airframe, effectiveness, pair);
+        let units = unit_tables(airframe, effectiveness, rows, attainable.scale);
         MixerTables {
-            units: unit_tables(airframe, effectiveness, rows, attainable.scale),
+            centre: std::array::from_fn(|k| {
+                let sum = |axis: usize| units.iter().map(|unit| unit.columns[k][axis]).sum::<f32>();
+                std::array::from_fn(|axis| sum(axis) * attainable.centre[k])
+            }),
+            is_vertical: effectiveness.is_vertical(),
+            units,
             pair: pair_table(airframe),
             attainable: attainable.with_singles(&singles, &throttle),
             singles,
@@ -202,6 +212,8 @@ impl MixerTables {
             attainable: self.attainable.view(),
             level: self.level.view(),
             rows: self.rows,
+            centre: self.centre,
+            is_vertical: self.is_vertical,
             desaturation: self.desaturation,
             power_bias_nm_per_n: self.power_bias_nm_per_n,
             closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
@@ -258,7 +270,7 @@ impl MixerTables {
             + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
             + 5 + 8 * self.attainable.corners.len()
             + 2 + 4 * self.level.efforts.len()
-            + 4 // rows
+            + 4 + 8 // rows, of them those of the centres
             + self.closed_form.as_ref().map_or(0, ClosedFormTable::floats)
             + 2 // desaturation
             + 1 // power bias

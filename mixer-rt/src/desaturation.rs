@@ -68,18 +68,17 @@ impl Budget {
     /// Rounds at most in which the curves of single rotors take the place of their chords.
     pub const ROUNDS: u8 = 5;
 
-    /// Work for the first programme of a request with rotors out of a frame of so many units.
+    /// Work for a programme with rotors out of a frame of so many units.
     pub const fn with_rotors_out(units: usize) -> Self {
         Budget::of(units, 7, 7)
     }
 
-    /// Programmes at most with rotors out and no reserve of yaw: for the request and for level flight,
-    /// each a second time with the throttles of single rotors decided. A reserve adds two: the request
-    /// without it.
-    pub const PROGRAMMES: u8 = 4;
+    /// Programmes at most with rotors out and no reserve of yaw: for the request and for level flight.
+    /// A reserve adds one: the request without it.
+    pub const PROGRAMMES: u8 = 2;
 
-    /// Work for every one of these but the first.
-    pub const fn for_another(units: usize) -> Self {
+    /// Work for each of these a second time, with the throttles of single rotors decided.
+    pub const fn with_throttles_decided(units: usize) -> Self {
         Budget::of(units, 4, 4)
     }
 

@@ -79,6 +79,11 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     /// of units over the vehicle's authority on the axis at the reference voltage; 0 on axes that the
     /// airframe does not serve.
     pub rows: [f32; 4],
+    /// Rows that all units' thrusts and all units' torques give at the centres of their polygons, at
+    /// the reference voltage.
+    pub centre: [[f32; 4]; 2],
+    /// True where thrusts give no yaw, and torques nothing else.
+    pub is_vertical: bool,
     /// Priorities where a unit cannot follow.
     pub desaturation: Desaturation,
     /// Least power: every unit's torque per thrust (N m per N at the reference voltage) while no

@@ -189,7 +189,7 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
             single => single.invert(&tables.singles, &tables.throttle, at[0]),
         };
         write(unit.channels, throttles, throttle);
-        let efforts = rotors.efforts(tables, throttles);
+        let efforts = rotors.efforts(&tables.pair, &tables.singles, throttles);
         unit.add_wrench(efforts, factors, &mut achieved);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);

@@ -114,6 +114,8 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         attainable: view.attainable,
         level: view.level,
         rows: view.rows,
+        centre: view.centre,
+        is_vertical: view.is_vertical,
         desaturation: view.desaturation,
         power_bias_nm_per_n: view.power_bias_nm_per_n,
         closed_form: view.closed_form,

@@ -14,7 +14,7 @@ use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::root;
 
-use crate::{compile_with_pair, number};
+use crate::{REFERENCE_V, compile_with_pair, number, out};
 
 /// Files whose pairs were identified from benches.
 const PAIRS: [&str; 4] = [
@@ -91,7 +91,7 @@ fn is_level_attainable(frame: &Frame, request: &Request) -> bool {
 
 /// A request as large as a fraction of the authority, one axis alone now and then, with one or two
 /// rotors out.
-fn draw(frame: &Frame, random: &mut Random, out: usize) -> Request {
+fn draw(frame: &Frame, random: &mut Random, count: usize) -> Request {
     let volts = frame.draw_volts(random);
     let mut request = frame.draw(random, 0.5, volts);
     let alone = random.below(6);
@@ -101,7 +101,7 @@ fn draw(frame: &Frame, random: &mut Random, out: usize) -> Request {
         }
     }
     let rotors = 2 * frame.physics.units();
-    request.health = (0..out).fold(Health::GOOD, |health, _| {
+    request.health = (0..count).fold(Health::GOOD, |health, _| {
         health.with_failed(random.below(rotors) as u8)
     });
     request
@@ -129,9 +129,9 @@ fn no_axis_is_reversed_or_exceeded_with_rotors_out() {
             for airmode in AIRMODES {
                 for reserve in [0.0, RESERVE] {
                     let frame = frame(path, units, airmode, reserve);
-                    for out in [1, 2] {
+                    for count in [1, 2] {
                         for _ in 0..17 * cases {
-                            let request = draw(&frame, &mut random, out);
+                            let request = draw(&frame, &mut random, count);
                             let answer = request.mix(&frame).expect("finite");
                             requests += 1;
                             if given_away(&frame, &request) > GIVEN_AWAY * frame.authority[3]
@@ -173,4 +173,54 @@ fn no_axis_is_reversed_or_exceeded_with_rotors_out() {
     assert_eq!(faults, 0);
     // With other seeds some do.
     assert!(away * 20_000 <= requests, "{away} of {requests}");
+}
+
+/// A request for yaw alone has no roll in its answer, though the reserve is not attainable.
+#[test]
+fn a_reserve_yields_to_direction() {
+    let frame = frame("airframes/isae-x8.toml", 4, "roll-pitch", RESERVE);
+    for (yaw, thrust) in [(-0.2, 24.0), (0.2, 24.0), (-0.2, 40.0), (0.05, 30.0)] {
+        for failed in [[0, 5], [1, 4], [2, 7], [0, 3]] {
+            let request = Request {
+                wrench: [0.0, 0.0, yaw, thrust],
+                volts: REFERENCE_V,
+                health: out(&failed),
+            };
+            let answer = request.mix(&frame).expect("finite");
+            let most = beyond(&frame, &request, &answer);
+            assert!(
+                most <= ALLOWED || !is_level_attainable(&frame, &request),
+                "{request:?} -> {answer:?}: {most}"
+            );
+        }
+    }
+}
+
+/// Yaw keeps its sign with both rotors of a Y6's last unit out and with one of each of two.
+#[test]
+fn yaw_keeps_its_sign_on_a_y6() {
+    for path in PAIRS {
+        for airmode in AIRMODES {
+            let frame = frame(path, 3, airmode, 0.0);
+            let [.., authority_nm, thrust_n] = frame.authority;
+            for failed in [[4, 5], [0, 3], [1, 2], [0, 5]] {
+                for share in [-0.24f64, -0.1, 0.1, 0.24] {
+                    for thrust in [0.2, 0.4, 0.6] {
+                        let yaw = (share * authority_nm) as f32;
+                        let request = Request {
+                            wrench: [0.0, 0.0, yaw, (thrust * thrust_n) as f32],
+                            volts: REFERENCE_V,
+                            health: out(&failed),
+                        };
+                        let answer = request.mix(&frame).expect("finite");
+                        let most = beyond(&frame, &request, &answer);
+                        assert!(
+                            most <= ALLOWED || !is_level_attainable(&frame, &request),
+                            "{path}, {airmode}: {request:?} -> {answer:?}: {most}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }

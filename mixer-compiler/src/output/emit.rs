@@ -186,6 +186,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let attainable = attainable(&tables.attainable);
     let level = level(&tables.level);
     let rows = vector(&tables.rows);
+    let (centre, is_vertical) = (matrix(&tables.centre), tables.is_vertical);
     let closed_form = closed_form(tables.closed_form.as_ref());
     let [basis, inverse_type, closed_form_type] = types(tables);
     let limits = &tables.desaturation;
@@ -225,6 +226,8 @@ fn tables(tables: &MixerTables) -> TokenStream {
             attainable: ATTAINABLE,
             level: LEVEL,
             rows: #rows,
+            centre: #centre,
+            is_vertical: #is_vertical,
             desaturation: tables::Desaturation {
                 airmode: tables::Airmode::#airmode,
                 yaw_reserve_nm: #reserve,

@@ -241,15 +241,13 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     /// rotors and misses no torque, or none does.
     #[inline(never)]
     fn serve_with_rotors_out(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable]) -> Ending {
-        let units = variables.len();
-        let mut ending = self.settle(wanted, reserve, variables, Budget::with_rotors_out(units));
+        let mut ending = self.settle(wanted, reserve, variables);
         if reserve > 0.0 && ending.served.is_none() {
-            ending = self.settle(wanted, 0.0, variables, Budget::for_another(units));
+            ending = self.settle(wanted, 0.0, variables);
         }
         if !ending.is_solved {
             let [.., thrust] = wanted;
-            let level = [0.0, 0.0, 0.0, thrust];
-            ending = self.settle(level, 0.0, variables, Budget::for_another(units));
+            ending = self.settle([0.0, 0.0, 0.0, thrust], 0.0, variables);
         }
         ending
     }
@@ -257,7 +255,8 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     /// A programme, and if its single rotors do not settle on their curves or its pivots end, another
     /// one in which their throttles are decided. One that misses a torque then is not solved.
     #[inline(never)]
-    fn settle(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable], budget: Budget) -> Ending {
+    fn settle(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable]) -> Ending {
+        let budget = Budget::with_rotors_out(variables.len());
         for variable in variables.iter_mut() {
             rolled();
             variable.reset();
@@ -273,7 +272,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
                 variable.set = Set::Point;
             }
         }
-        let budget = Budget::for_another(variables.len());
+        let budget = Budget::with_throttles_decided(variables.len());
         let mut ending = self.programme(wanted, reserve, variables, budget, false);
         ending.is_solved &= ending.served.is_some();
         ending
@@ -285,10 +284,11 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         let tables = self.tables;
         let set = &tables.attainable;
         let [f, _] = between(variable.inside(set), variable.at, share);
+        let Tables { pair, singles, .. } = tables;
         let throttles = variable
             .rotors
-            .invert(&tables.singles, &tables.throttle, set.scale[0] * f);
-        let efforts = variable.rotors.efforts(tables, throttles);
+            .invert(singles, &tables.throttle, set.scale[0] * f);
+        let efforts = variable.rotors.efforts(pair, singles, throttles);
         [0, 1].map(|k| efforts[k] / set.scale[k])
     }
 
@@ -306,10 +306,16 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         let Frame { tables, factors } = *self;
         let airmode = tables.desaturation.airmode;
         let ratio = factors[1] / factors[0];
-        let problem = Problem::new(tables.units, &tables.attainable, ratio, airmode);
+        let problem = Problem::new(tables, ratio);
+        let centre = if is_whole {
+            let [by_thrust, by_torque] = &tables.centre;
+            [0, 1, 2, 3].map(|k| by_thrust[k] + ratio * by_torque[k])
+        } else {
+            problem.centre(variables)
+        };
         let touching = TOUCHING * tables.tolerance.wrench[2] / tables.attainable.scale[1];
         let mut rounds = if is_whole { 0 } else { Budget::ROUNDS };
-        let mut simplex = start(&problem, variables, wanted, reserve, airmode, budget);
+        let mut simplex = start(&problem, variables, [wanted, centre], reserve, airmode, budget);
         loop {
             let mut beside = 0.0;
             let is_solved = simplex.solve();

@@ -1,8 +1,7 @@
 //! Which rotors of a unit work, and what its unit then gives.
 
 use crate::arithmetic::Scalar;
-use crate::layout::Tables;
-use crate::pair::{Quantity, SingleRotor, ThrottleRange};
+use crate::pair::{Pair, Quantity, SingleRotor, ThrottleRange};
 use crate::{Health, divisor};
 
 /// Which rotors of a unit work.
@@ -57,15 +56,16 @@ impl Rotors {
 
     /// The efforts `[f, Q]` (N, N m) of a unit with these rotors at `[u, l]`.
     #[inline(always)]
-    pub(crate) fn efforts<P: Quantity, I, S>(
+    pub(crate) fn efforts<P: Quantity>(
         self,
-        tables: &Tables<'_, P, I, S>,
+        pair: &Pair<P>,
+        singles: &[SingleRotor; 2],
         [u, l]: [f32; 2],
     ) -> [f32; 2] {
         if self.is_single() {
-            self.curve(&tables.singles).efforts(u + l)
+            self.curve(singles).efforts(u + l)
         } else {
-            tables.pair.efforts([u, l])
+            pair.efforts([u, l])
         }
     }
 

@@ -94,13 +94,15 @@ pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let units = compiled.tables.units.len();
     let n = units as u32;
     let has_reserve = compiled.tables.desaturation.yaw_reserve_nm > 0.0;
-    let programmes = usize::from(Budget::PROGRAMMES) + if has_reserve { 2 } else { 0 };
-    let mut budgets = vec![Budget::for_another(units); programmes];
-    budgets[0] = Budget::with_rotors_out(units);
-    // Every other programme has its throttles decided.
-    let rounds = u32::from(Budget::ROUNDS) * programmes as u32 / 2;
+    let programmes = usize::from(Budget::PROGRAMMES) + usize::from(has_reserve);
+    let budgets = [
+        Budget::with_rotors_out(units),
+        Budget::with_throttles_decided(units),
+    ]
+    .repeat(programmes);
+    let rounds = u32::from(Budget::ROUNDS) * programmes as u32;
     let curves = rounds * (ROUND + n * ROUND_UNIT) + n * SINGLE;
-    let starts = (programmes as u32 - 1) * (PROGRAMME + n * PROGRAMME_UNIT);
+    let starts = (budgets.len() as u32 - 1) * (PROGRAMME + n * PROGRAMME_UNIT);
     Some(general(compiled, &budgets)? + curves + starts)
 }
 

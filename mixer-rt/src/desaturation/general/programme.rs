@@ -24,7 +24,7 @@ use super::simplex::{Basis, Simplex};
 use super::variable::{Segment, Variable, dot, positive};
 use crate::desaturation::attainable::AttainableSet;
 use crate::desaturation::{Airmode, Budget};
-use crate::layout::Unit;
+use crate::layout::{Tables, Unit};
 use crate::{clamp, divisor, rolled, sqrt};
 
 /// Indices of the segments; the last one is yaw within its reserve.
@@ -70,13 +70,16 @@ pub(super) struct Problem<'a> {
     pub(super) set: &'a AttainableSet<'a>,
     /// k_Q over k_f: rows are those of k_f, torques count so much more.
     pub(super) ratio: f32,
+    /// True where thrusts give no yaw, and torques nothing else.
+    pub(super) is_vertical: bool,
     /// Prices per row of roll, pitch and yaw, of too little and of too much thrust.
     pub(super) prices: [f32; 5],
 }
 
 impl<'a> Problem<'a> {
     #[inline(always)]
-    pub(super) fn new(units: &'a [Unit], set: &'a AttainableSet<'a>, ratio: f32, airmode: Airmode) -> Self {
+    pub(super) fn new<P, I, S>(tables: &'a Tables<'_, P, I, S>, ratio: f32) -> Self {
+        let airmode = tables.desaturation.airmode;
         let little = if airmode.is_yaw_first() { LAST } else { MIDDLE };
         let much = if airmode.may_raise_thrust() {
             little
@@ -85,9 +88,10 @@ impl<'a> Problem<'a> {
         };
         let [roll, pitch, yaw] = TORQUE_PRICES;
         Problem {
-            units,
-            set,
+            units: tables.units,
+            set: &tables.attainable,
             ratio,
+            is_vertical: tables.is_vertical,
             prices: [roll, pitch, yaw, little, much],
         }
     }
@@ -96,6 +100,11 @@ impl<'a> Problem<'a> {
     #[inline(always)]
     pub(super) fn gains(&self, unit: &Unit, rows: &[f32; 4]) -> [f32; 2] {
         let [thrust, torque] = &unit.columns;
+        if self.is_vertical {
+            let [roll, pitch, _, lift] = *thrust;
+            let f = (roll * rows[0] + pitch * rows[1]) + lift * rows[3];
+            return [f, self.ratio * (torque[2] * rows[2])];
+        }
         [dot(thrust, rows), self.ratio * dot(torque, rows)]
     }
 
@@ -110,6 +119,14 @@ impl<'a> Problem<'a> {
     pub(super) fn subtract_inline(&self, unit: &Unit, [f, q]: [f32; 2], rows: &mut [f32; 4]) {
         let q = self.ratio * q;
         let [thrust, torque] = &unit.columns;
+        if self.is_vertical {
+            let [roll, pitch, _, lift] = *thrust;
+            rows[0] -= roll * f;
+            rows[1] -= pitch * f;
+            rows[2] -= torque[2] * q;
+            rows[3] -= lift * f;
+            return;
+        }
         for ((row, thrust), torque) in rows.iter_mut().zip(thrust).zip(torque) {
             *row -= thrust * f + torque * q;
         }
@@ -117,7 +134,7 @@ impl<'a> Problem<'a> {
 
     /// What the units give at points inside their sets.
     #[inline(never)]
-    fn centre(&self, variables: &[Variable]) -> [f32; 4] {
+    pub(super) fn centre(&self, variables: &[Variable]) -> [f32; 4] {
         let mut centre = [0.0; 4];
         for (variable, unit) in variables.iter().zip(self.units) {
             rolled();
@@ -150,14 +167,14 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Sets the programme of a request in rows up, `reserve` the yaw that is kept before roll and pitch,
+/// Sets the programme of a request in rows up, given what the units give at their centres, `reserve` the yaw that is kept before roll and pitch,
 /// in rows. The start changes no answer, since the optimum is unique: far out it is at the prices of
 /// what will be short, near it is on the ray.
 #[inline(never)]
 pub(super) fn start<'a>(
     problem: &'a Problem<'a>,
     variables: &'a mut [Variable],
-    request: [f32; 4],
+    [request, centre]: [[f32; 4]; 2],
     reserve: f32,
     airmode: Airmode,
     budget: Budget,
@@ -177,7 +194,6 @@ pub(super) fn start<'a>(
     let kept = yaw.abs() - beyond;
     let beyond = beyond + LEAST_WIDTH;
     let yaw_cost = if airmode.is_yaw_first() { MIDDLE } else { LAST };
-    let centre = problem.centre(variables);
     let away = [0, 1, 2, 3].map(|k| wanted[k] - centre[k]);
     let [a0, a1, a2, a3] = away;
     let length = (a0.abs() + a1.abs()) + (a2.abs() + a3.abs());

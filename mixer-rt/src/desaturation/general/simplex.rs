@@ -429,7 +429,7 @@ impl Simplex<'_> {
     }
 
     /// The dual step at which the first multiplier is at its row's price.
-    #[inline(never)]
+    #[inline(always)]
     fn first_price(&self, direction: &[f32; 4]) -> Breakpoint {
         let [roll, pitch, yaw, too_little, too_much] = self.problem.prices;
         let [.., thrust] = *direction;
