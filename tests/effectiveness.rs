@@ -28,6 +28,10 @@ fn paper() -> Airframe {
 }
 
 /// The paper's airframe with the units of a drawn frame.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "places are drawn; no bit of theirs is emitted"
+)]
 fn frame(paper: &Airframe, units: usize, arm_m: f64, shape: Shape, random: &mut Random) -> Airframe {
     let unit = |k: usize, random: &mut Random| -> Unit {
         let angle = |first_deg: f64| (first_deg + 360.0 * k as f64 / units as f64).to_radians();
@@ -71,7 +75,7 @@ fn error(airframe: &Airframe, effectiveness: &Effectiveness, sizes: &[f64]) -> f
             let row = effectiveness.matrix.row(axis);
             row.iter()
                 .zip(sizes)
-                .map(|(entry, size)| (entry * size).powi(2))
+                .map(|(entry, size)| (entry * size) * (entry * size))
                 .sum::<f64>()
                 .sqrt()
         })
