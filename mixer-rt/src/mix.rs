@@ -229,11 +229,12 @@ fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
     let per_factor = factors.map(|factor| 1.0 / factor);
     let at_reference = at_reference(bounded, per_factor);
     let airmode = tables.desaturation.airmode;
+    let reserve = tables.desaturation.yaw_reserve_nm * per_factor[1];
     let mut efforts = Efforts::default();
     let power_bias = tables.power_bias_nm_per_n;
     let (mut attained, room) = closed_form.least_norm(&at_reference, &mut efforts);
     if attained == Attained::No {
-        closed_form.desaturate(airmode, &at_reference, &mut efforts);
+        closed_form.desaturate(airmode, &at_reference, reserve, &mut efforts);
     } else if attained == Attained::Yes && power_bias != 0.0 {
         closed_form.add_power_bias(power_bias, room, &mut efforts);
     }
@@ -252,7 +253,7 @@ fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S>(
             break;
         }
         attained = Attained::No;
-        closed_form.desaturate(airmode, &at_reference, &mut efforts);
+        closed_form.desaturate(airmode, &at_reference, reserve, &mut efforts);
     }
     let achieved = closed_form.wrench(&efforts, factors);
     let mut saturation = Saturation::NONE;

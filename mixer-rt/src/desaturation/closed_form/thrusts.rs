@@ -4,6 +4,9 @@
 //! the largest yaw, by the part `(yaw - Y(start)) / (Y(top) - Y(start))` of the way. This makes the
 //! thrusts a Lipschitz function of the request; moving z just far enough would not. Y is nearly
 //! concave: where that part is not enough, a second step of twice the length follows.
+//!
+//! Where yaw does not reach what is needed of it, [`ClosedForm::retreat`] gives up thrust, then roll
+//! and pitch.
 
 use super::{ClosedForm, ClosedFormUnit, Request, ThrustLine};
 use crate::{clamp, rolled};
@@ -12,13 +15,34 @@ use core::hint::black_box;
 /// Most steps towards the largest yaw. The second is twice as long as a straight line asks for.
 const CLIMBS: u32 = 2;
 
-/// Most steps of the retreat. Steps inwards are twice as long as a straight line asks for.
-const RETREATS: u32 = 3;
+/// Most steps to where yaw reaches what is needed. Steps inwards are twice as long as a straight
+/// line asks for.
+const CROSSINGS: u32 = 3;
+
+/// Share of the yaw of level flight that a reserve takes at most. The sides being concave, at least
+/// the other half of roll and pitch is left.
+const RESERVABLE: f32 = 0.5;
+
+/// Room beyond the yaw needed that thrusts have which others are drawn to, as a share of the room
+/// of level flight. It bounds how far thrusts move with the request. Where roll and pitch leave
+/// less room they are cut, by about this share at most.
+const MARGIN: f32 = 1.0 / 64.0;
 
 /// Gain of yaw, in units of `yaw_rounding_nm`, from which z moves to the top in full. For a smaller
 /// gain it moves a part of the way, so that z does not jump where the gain vanishes. That costs at
 /// most a quarter of this gain, 0.025 % of the authority in yaw.
 const GAIN: f32 = 100.0;
+
+/// Yaw to keep, and what may be given up for it.
+struct Kept {
+    /// How far yaw has to reach, N m. The half of what level flight reaches, if that is less.
+    needed: f32,
+    /// Thrust is given up before roll and pitch, else all together.
+    thrust_first: bool,
+    /// `[roll, pitch, thrust]` with the roll and pitch of the request and a thrust that leaves yaw
+    /// more room; none where already these have to be cut.
+    roomy: Option<[f32; 3]>,
+}
 
 impl ClosedFormUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
@@ -37,17 +61,23 @@ fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
 
 impl ClosedForm<'_> {
     /// Finds attainable thrusts, at most `ceiling` in sum, that bring the requested yaw into range
-    /// if any do. Where yaw would be reversed or exceeded they are drawn towards those of the total
-    /// thrust `middle`. Returns their z on the lines of thrusts and the least and most yaw there;
-    /// writes the lines with each unit's yaw.
+    /// if any do. Where yaw would be reversed or exceeded, or be short of `reserve`, they are drawn
+    /// towards those of the total thrust `middle`. Returns their z on the lines of thrusts and the
+    /// least and most yaw there; writes the lines with each unit's yaw.
     #[inline(always)]
     pub(super) fn attainable_thrusts(
         &self,
         request: &Request,
+        reserve: f32,
         [ceiling, middle]: [f32; 2],
         lines: &mut [ThrustLine],
     ) -> (f32, [f32; 2]) {
-        let ([low, high], has_room) = self.within_facets(request, ceiling, lines);
+        let (share, range) = self.share(request.roll, request.pitch, ceiling);
+        let thrust = clamp(request.thrust, range[0], range[1]);
+        let mut wrench = [share * request.roll, share * request.pitch, thrust];
+        let [low, high] = self.null_range(lines, |unit, _| unit.thrust(&wrench));
+        // Where the facets change roll, pitch or thrust, z has no room.
+        let has_room = share == 1.0 && thrust == request.thrust;
         let mut z = clamp(0.0, low, if high > low { high } else { low });
         let mut reach = self.reach(lines, z);
         // The limit of yaw that the request violates, if any.
@@ -62,10 +92,17 @@ impl ClosedForm<'_> {
         if has_room && high > low {
             (z, reach) = self.climb(lines, sign, (z, reach), [low, high], wanted);
         }
-        // Beyond zero yaw is reversed, beyond the request it is exceeded.
-        let needed = if wanted < 0.0 { wanted } else { 0.0 };
+        // Beyond zero yaw is reversed, beyond the request it is exceeded, up to the reserve it is
+        // kept.
+        let needed = if wanted < reserve { wanted } else { reserve };
         if needed - furthest(reach, sign) > self.yaw_rounding_nm {
-            (z, reach) = self.retreat(lines, sign, (z, reach), needed, middle);
+            wrench[2] = clamp(middle, range[0], range[1]);
+            let kept = Kept {
+                needed,
+                thrust_first: reserve > 0.0,
+                roomy: if share == 1.0 { Some(wrench) } else { None },
+            };
+            (z, reach) = self.retreat(lines, sign, (z, reach), kept, middle);
         }
         (z, reach)
     }
@@ -127,26 +164,18 @@ impl ClosedForm<'_> {
         reach
     }
 
-    /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to
-    /// where the facets allow them; false where that changes them, so that z has no room. Writes
-    /// the lines of thrusts.
+    /// Lines from the thrusts `from` through the null space. Returns the range of z; its first end
+    /// is the larger one where rounding leaves no range.
     #[inline(always)]
-    fn within_facets(&self, request: &Request, ceiling: f32, lines: &mut [ThrustLine]) -> ([f32; 2], bool) {
-        let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
-        let thrust = clamp(request.thrust, low, high);
-        let wrench = [share * request.roll, share * request.pitch, thrust];
-        let has_room = share == 1.0 && thrust == request.thrust;
-        (self.null_range(lines, &wrench), has_room)
-    }
-
-    /// Lines from the least-norm thrusts of `[roll, pitch, thrust]` through the null space. Returns
-    /// the range of z; its first end is the larger one where rounding leaves no range.
-    #[inline(always)]
-    fn null_range(&self, lines: &mut [ThrustLine], wrench: &[f32; 3]) -> [f32; 2] {
+    fn null_range(
+        &self,
+        lines: &mut [ThrustLine],
+        from: impl Fn(&ClosedFormUnit, &ThrustLine) -> f32,
+    ) -> [f32; 2] {
         let (mut low, mut high) = (-f32::MAX, f32::MAX);
         for (unit, line) in self.units.iter().zip(lines) {
             rolled();
-            let f = unit.thrust(wrench);
+            let f = from(unit, line);
             (line.from, line.along) = (f, unit.null);
             if unit.per_null != 0.0 {
                 let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
@@ -161,34 +190,128 @@ impl ClosedForm<'_> {
         [low, high]
     }
 
-    /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, towards those of
-    /// `middle_n` until it reaches it. Returns their z on the new lines and the least and most yaw
-    /// there; writes the lines with each unit's yaw.
+    /// Draws the thrusts, now at `z` where yaw reaches less than is needed, towards others until it
+    /// reaches it: those of level flight with the thrust `middle_n`, or first those of `roomy`.
+    /// Returns their z on the new lines and the least and most yaw there; writes the lines with
+    /// each unit's yaw.
     ///
-    /// A straight line from the middle crosses `needed` inside where the sides are concave: then a
-    /// second one from there is nearer. Where they are not it may cross outside, by little: then
-    /// the steps go inwards.
+    /// ```text
+    /// given ---- answer ---- roomy ---- level      yaw reaches `needed` at the answer,
+    ///                                              and more than that at roomy and level
+    /// ```
+    ///
+    /// `roomy` has the roll and pitch of the request and another thrust. Where it has too little
+    /// room it is drawn towards level flight itself. So the steps are bounded: yaw grows by
+    /// [`MARGIN`] at least on the way from the answer to `roomy`, the sides being concave.
     #[inline(never)]
     fn retreat(
         &self,
         lines: &mut [ThrustLine],
         sign: f32,
-        (z, mut reach): (f32, [f32; 2]),
-        needed: f32,
+        (z, reach): (f32, [f32; 2]),
+        kept: Kept,
         middle_n: f32,
     ) -> (f32, [f32; 2]) {
         for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
             rolled();
-            let thrust = line.thrust(z);
-            line.from = unit.allocation[2] * middle_n;
-            line.along = thrust - line.from;
+            line.given = line.thrust(z);
+            line.level = unit.allocation[2] * middle_n;
+            line.from = line.level;
+            line.along = line.given - line.from;
         }
-        let outside = furthest(reach, sign) - needed;
-        let inside = furthest(self.reach(lines, 0.0), sign) - needed;
+        let given = furthest(reach, sign);
+        let level = furthest(self.reach(lines, 0.0), sign);
+        let most = RESERVABLE * if level > 0.0 { level } else { 0.0 };
+        let needed = if kept.needed < most { kept.needed } else { most };
+        if given >= needed {
+            for line in lines.iter_mut() {
+                rolled();
+                (line.from, line.along) = (line.given, 0.0);
+            }
+            return (0.0, self.reach(lines, 0.0));
+        }
+        let ends = [level - needed, given - needed];
+        if !kept.thrust_first {
+            return self.crossing(lines, sign, needed, ends);
+        }
+        let (mut at, mut reach) = match kept.roomy {
+            Some(wrench) => {
+                let target = needed + MARGIN * (level - needed);
+                let inside = self.roomy(lines, sign, &wrench, (z, target), level);
+                self.crossing(lines, sign, needed, [inside - needed, ends[1]])
+            }
+            None => self.crossing(lines, sign, needed, ends),
+        };
+        // Where z has room again yaw may reach further, and the thrusts can be drawn out again.
+        let [low, high] = self.null_range(lines, |_, line| line.thrust(at));
+        if high > low {
+            (at, reach) = (0.0, self.reach(lines, 0.0));
+            (at, reach) = self.climb(lines, sign, (at, reach), [low, high], f32::MAX);
+            for line in lines.iter_mut() {
+                rolled();
+                line.from = line.thrust(at);
+                line.along = line.given - line.from;
+            }
+            let inside = furthest(reach, sign) - needed;
+            (at, reach) = self.crossing(lines, sign, needed, [inside, ends[1]]);
+        }
+        (at, reach)
+    }
+
+    /// Writes lines from the thrusts of `wrench`, z as near the present one as can be, to those
+    /// `given`. Where yaw does not reach `target` there they begin nearer to level flight, at which
+    /// it reaches `level`. Returns how far yaw reaches at their beginning.
+    #[inline(always)]
+    fn roomy(
+        &self,
+        lines: &mut [ThrustLine],
+        sign: f32,
+        wrench: &[f32; 3],
+        (z, target): (f32, f32),
+        level: f32,
+    ) -> f32 {
+        let [low, high] = self.null_range(lines, |unit, _| unit.thrust(wrench));
+        let mut at = clamp(z, low, if high > low { high } else { low });
+        let mut reach = self.reach(lines, at);
+        let short = target - furthest(reach, sign);
+        if short > 0.0 {
+            for line in lines.iter_mut() {
+                rolled();
+                line.along = line.thrust(at) - line.level;
+                line.from = line.level;
+            }
+            (at, reach) = self.crossing(lines, sign, target, [level - target, -short]);
+        }
+        for line in lines.iter_mut() {
+            rolled();
+            line.from = line.thrust(at);
+            line.along = line.given - line.from;
+        }
+        furthest(reach, sign)
+    }
+
+    /// Goes along the lines from 0 towards 1, as far as yaw reaches `needed`, which it exceeds by
+    /// `inside` at 0 and by `outside` at 1. Returns the place and the least and most yaw there;
+    /// writes each unit's yaw.
+    ///
+    /// A straight line crosses `needed` inside where the sides are concave: then a second one from
+    /// there is nearer. Where they are not it may cross outside, by little: then the steps go
+    /// inwards.
+    #[inline(never)]
+    fn crossing(
+        &self,
+        lines: &mut [ThrustLine],
+        sign: f32,
+        needed: f32,
+        [inside, outside]: [f32; 2],
+    ) -> (f32, [f32; 2]) {
         let inside = if inside > 0.0 { inside } else { 0.0 };
+        // Outside by a little at least, so that no division is by zero.
+        let least = -self.yaw_rounding_nm;
+        let outside = if outside < least { outside } else { least };
         let mut at = inside / (inside - outside);
-        for step in 0..black_box(RETREATS) {
-            reach = self.reach(lines, at);
+        for step in 0..black_box(CROSSINGS) {
+            let reach = self.reach(lines, at);
             let here = furthest(reach, sign) - needed;
             if here < 0.0 {
                 at *= clamp(1.0 + 2.0 * here / (inside - here), 0.0, 1.0);
