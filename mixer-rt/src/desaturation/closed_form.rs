@@ -9,7 +9,7 @@
 //! 1. w within the zonotope of the thrusts in [a, b]^n                       closed_form/facets.rs
 //! 2. f = C+ w + z N, N the null space of C, with z as near zero as can be   closed_form/thrusts.rs
 //! 3. z towards where yaw reaches furthest, if it does not reach the request closed_form/climb.rs
-//!    thrust, then roll and pitch, given up for zero yaw or the reserve      closed_form/thrusts.rs
+//!    thrust, then roll and pitch, given up for zero yaw or the reserve      closed_form/retreat.rs
 //! 4. the torques within [Q_min(f), Q_max(f)]                                closed_form/torques.rs
 //! ```
 //!
@@ -27,6 +27,7 @@
 mod border;
 mod climb;
 mod facets;
+mod retreat;
 mod thrusts;
 mod torques;
 
@@ -168,6 +169,8 @@ struct ThrustLine {
     from: f32,
     /// N per unit of z.
     along: f32,
+    /// Its inverse; 0 where it is.
+    per_along: f32,
     /// Least and most yaw that the unit gives at the z looked at, N m.
     least: f32,
     most: f32,

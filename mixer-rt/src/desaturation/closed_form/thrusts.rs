@@ -5,9 +5,9 @@
 //! thrusts a Lipschitz function of the request; moving z just far enough would not. Y is nearly
 //! concave: where that part is not enough, a second step of twice the length follows.
 //!
-//! Where yaw does not reach what is needed of it, [`ClosedForm::retreat`] gives up thrust, then roll
-//! and pitch.
+//! Where yaw does not reach what is needed of it, thrust, roll and pitch are given up: retreat.rs.
 
+use super::retreat::Kept;
 use super::{ClosedForm, ClosedFormUnit, Request, ThrustLine};
 use crate::{clamp, rolled};
 use core::hint::black_box;
@@ -15,34 +15,10 @@ use core::hint::black_box;
 /// Most steps towards the largest yaw. The second is twice as long as a straight line asks for.
 const CLIMBS: u32 = 2;
 
-/// Most steps to where yaw reaches what is needed. Steps inwards are twice as long as a straight
-/// line asks for.
-const CROSSINGS: u32 = 3;
-
-/// Share of the yaw of level flight that a reserve takes at most. The sides being concave, at least
-/// the other half of roll and pitch is left.
-const RESERVABLE: f32 = 0.5;
-
-/// Room beyond the yaw needed that thrusts have which others are drawn to, as a share of the room
-/// of level flight. It bounds how far thrusts move with the request. Where roll and pitch leave
-/// less room they are cut, by about this share at most.
-const MARGIN: f32 = 1.0 / 64.0;
-
 /// Gain of yaw, in units of `yaw_rounding_nm`, from which z moves to the top in full. For a smaller
 /// gain it moves a part of the way, so that z does not jump where the gain vanishes. That costs at
 /// most a quarter of this gain, 0.025 % of the authority in yaw.
 const GAIN: f32 = 100.0;
-
-/// Yaw to keep, and what may be given up for it.
-struct Kept {
-    /// How far yaw has to reach, N m. The half of what level flight reaches, if that is less.
-    needed: f32,
-    /// Thrust is given up before roll and pitch, else all together.
-    thrust_first: bool,
-    /// `[roll, pitch, thrust]` with the roll and pitch of the request and a thrust that leaves yaw
-    /// more room; none where already these have to be cut.
-    roomy: Option<[f32; 3]>,
-}
 
 impl ClosedFormUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
@@ -55,7 +31,7 @@ impl ClosedFormUnit {
 
 /// How far yaw of the sign `sign` reaches.
 #[inline(always)]
-fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
+pub(super) fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
     if sign < 0.0 { -least } else { most }
 }
 
@@ -99,10 +75,12 @@ impl ClosedForm<'_> {
             wrench[2] = clamp(middle, range[0], range[1]);
             let kept = Kept {
                 needed,
-                thrust_first: reserve > 0.0,
+                is_reserve: reserve > 0.0,
+                ceiling,
+                middle,
                 roomy: if share == 1.0 { Some(wrench) } else { None },
             };
-            (z, reach) = self.retreat(lines, sign, (z, reach), kept, middle);
+            (z, reach) = self.retreat(lines, sign, (z, reach), kept);
         }
         (z, reach)
     }
@@ -111,7 +89,7 @@ impl ClosedForm<'_> {
     /// within `range`. Returns z and the least and most yaw there, and leaves what each unit gives
     /// of it.
     #[inline(always)]
-    fn climb(
+    pub(super) fn climb(
         &self,
         lines: &mut [ThrustLine],
         sign: f32,
@@ -167,7 +145,7 @@ impl ClosedForm<'_> {
     /// Lines from the thrusts `from` through the null space. Returns the range of z; its first end
     /// is the larger one where rounding leaves no range.
     #[inline(always)]
-    fn null_range(
+    pub(super) fn null_range(
         &self,
         lines: &mut [ThrustLine],
         from: impl Fn(&ClosedFormUnit, &ThrustLine) -> f32,
@@ -176,7 +154,7 @@ impl ClosedForm<'_> {
         for (unit, line) in self.units.iter().zip(lines) {
             rolled();
             let f = from(unit, line);
-            (line.from, line.along) = (f, unit.null);
+            (line.from, line.along, line.per_along) = (f, unit.null, unit.per_null);
             if unit.per_null != 0.0 {
                 let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
                 low = if from > low { from } else { low };
@@ -188,139 +166,5 @@ impl ClosedForm<'_> {
             return [0.0, 0.0];
         }
         [low, high]
-    }
-
-    /// Draws the thrusts, now at `z` where yaw reaches less than is needed, towards others until it
-    /// reaches it: those of level flight with the thrust `middle_n`, or first those of `roomy`.
-    /// Returns their z on the new lines and the least and most yaw there; writes the lines with
-    /// each unit's yaw.
-    ///
-    /// ```text
-    /// given ---- answer ---- roomy ---- level      yaw reaches `needed` at the answer,
-    ///                                              and more than that at roomy and level
-    /// ```
-    ///
-    /// `roomy` has the roll and pitch of the request and another thrust. Where it has too little
-    /// room it is drawn towards level flight itself. So the steps are bounded: yaw grows by
-    /// [`MARGIN`] at least on the way from the answer to `roomy`, the sides being concave.
-    #[inline(never)]
-    fn retreat(
-        &self,
-        lines: &mut [ThrustLine],
-        sign: f32,
-        (z, reach): (f32, [f32; 2]),
-        kept: Kept,
-        middle_n: f32,
-    ) -> (f32, [f32; 2]) {
-        for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
-            rolled();
-            line.given = line.thrust(z);
-            line.level = unit.allocation[2] * middle_n;
-            line.from = line.level;
-            line.along = line.given - line.from;
-        }
-        let given = furthest(reach, sign);
-        let level = furthest(self.reach(lines, 0.0), sign);
-        let most = RESERVABLE * if level > 0.0 { level } else { 0.0 };
-        let needed = if kept.needed < most { kept.needed } else { most };
-        if given >= needed {
-            for line in lines.iter_mut() {
-                rolled();
-                (line.from, line.along) = (line.given, 0.0);
-            }
-            return (0.0, self.reach(lines, 0.0));
-        }
-        let ends = [level - needed, given - needed];
-        if !kept.thrust_first {
-            return self.crossing(lines, sign, needed, ends);
-        }
-        let (mut at, mut reach) = match kept.roomy {
-            Some(wrench) => {
-                let target = needed + MARGIN * (level - needed);
-                let inside = self.roomy(lines, sign, &wrench, (z, target), level);
-                self.crossing(lines, sign, needed, [inside - needed, ends[1]])
-            }
-            None => self.crossing(lines, sign, needed, ends),
-        };
-        // Where z has room again yaw may reach further, and the thrusts can be drawn out again.
-        let [low, high] = self.null_range(lines, |_, line| line.thrust(at));
-        if high > low {
-            (at, reach) = (0.0, self.reach(lines, 0.0));
-            (at, reach) = self.climb(lines, sign, (at, reach), [low, high], f32::MAX);
-            for line in lines.iter_mut() {
-                rolled();
-                line.from = line.thrust(at);
-                line.along = line.given - line.from;
-            }
-            let inside = furthest(reach, sign) - needed;
-            (at, reach) = self.crossing(lines, sign, needed, [inside, ends[1]]);
-        }
-        (at, reach)
-    }
-
-    /// Writes lines from the thrusts of `wrench`, z as near the present one as can be, to those
-    /// `given`. Where yaw does not reach `target` there they begin nearer to level flight, at which
-    /// it reaches `level`. Returns how far yaw reaches at their beginning.
-    #[inline(always)]
-    fn roomy(
-        &self,
-        lines: &mut [ThrustLine],
-        sign: f32,
-        wrench: &[f32; 3],
-        (z, target): (f32, f32),
-        level: f32,
-    ) -> f32 {
-        let [low, high] = self.null_range(lines, |unit, _| unit.thrust(wrench));
-        let mut at = clamp(z, low, if high > low { high } else { low });
-        let mut reach = self.reach(lines, at);
-        let short = target - furthest(reach, sign);
-        if short > 0.0 {
-            for line in lines.iter_mut() {
-                rolled();
-                line.along = line.thrust(at) - line.level;
-                line.from = line.level;
-            }
-            (at, reach) = self.crossing(lines, sign, target, [level - target, -short]);
-        }
-        for line in lines.iter_mut() {
-            rolled();
-            line.from = line.thrust(at);
-            line.along = line.given - line.from;
-        }
-        furthest(reach, sign)
-    }
-
-    /// Goes along the lines from 0 towards 1, as far as yaw reaches `needed`, which it exceeds by
-    /// `inside` at 0 and by `outside` at 1. Returns the place and the least and most yaw there;
-    /// writes each unit's yaw.
-    ///
-    /// A straight line crosses `needed` inside where the sides are concave: then a second one from
-    /// there is nearer. Where they are not it may cross outside, by little: then the steps go
-    /// inwards.
-    #[inline(never)]
-    fn crossing(
-        &self,
-        lines: &mut [ThrustLine],
-        sign: f32,
-        needed: f32,
-        [inside, outside]: [f32; 2],
-    ) -> (f32, [f32; 2]) {
-        let inside = if inside > 0.0 { inside } else { 0.0 };
-        // Outside by a little at least, so that no division is by zero.
-        let least = -self.yaw_rounding_nm;
-        let outside = if outside < least { outside } else { least };
-        let mut at = inside / (inside - outside);
-        for step in 0..black_box(CROSSINGS) {
-            let reach = self.reach(lines, at);
-            let here = furthest(reach, sign) - needed;
-            if here < 0.0 {
-                at *= clamp(1.0 + 2.0 * here / (inside - here), 0.0, 1.0);
-            } else if step == 0 {
-                at += (1.0 - at) * here / (here - outside);
-            } else {
-                return (at, reach);
-            }
-        }
-        (at, self.reach(lines, at))
     }
 }

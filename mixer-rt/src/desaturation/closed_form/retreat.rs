@@ -1,0 +1,229 @@
+//! Thrust, roll and pitch given up for yaw: for zero yaw, or for the reserve.
+//!
+//! The thrusts found so far are drawn along straight lines towards others where yaw reaches further,
+//! as far as that is needed:
+//!
+//! ```text
+//! given ---- answer ---- roomy ---- level      yaw reaches what is needed at the answer,
+//!                                              and more at roomy and level
+//! ```
+//!
+//! Level flight has the middle of its thrusts. The roomy thrusts have the roll and pitch of the
+//! request and the thrust nearest that middle; where yaw hardly reaches there they are drawn towards
+//! level flight themselves, so that the line to them has a least slope. That gives up thrust before
+//! roll and pitch. All steps are continuous in the request, and all lines lie inside the attainable
+//! set.
+//!
+//! At the answer there may be directions that keep roll and pitch and take yaw further. Going there,
+//! and out again towards the given thrusts, gives less up: that is done twice.
+//!
+//! Without a reserve zero yaw is out of range next to a few corners of the set only, and the thrusts
+//! are drawn straight to level flight.
+
+use core::hint::black_box;
+
+use super::thrusts::furthest;
+use super::{ClosedForm, ThrustLine};
+use crate::{clamp, rolled};
+
+/// Most steps to where yaw reaches what is needed. Steps inwards are twice as long as a straight
+/// line asks for.
+const CROSSINGS: u32 = 3;
+
+/// Share of the yaw of level flight that a reserve takes at most. The sides being concave, at least
+/// the other half of roll and pitch is left.
+const RESERVABLE: f32 = 0.5;
+
+/// Room beyond the yaw needed that thrusts have which others are drawn to, as a share of the room
+/// of level flight. It bounds how far thrusts move with the request. Where roll and pitch leave
+/// less room they are cut, by about this share at most.
+const MARGIN: f32 = 1.0 / 64.0;
+
+/// Times that the thrusts are drawn out again.
+const ROUNDS: u32 = 2;
+
+/// Directions that keep roll and pitch, as shares of the least-norm thrust and of the null space:
+/// the null space itself, then on a regular X8 the two units whose upper rotors turn one way, and
+/// the other two. Yaw is the sum of what these give, so that one after the other is enough there.
+const DIRECTIONS: [[f32; 2]; 3] = [[0.0, 1.0], [1.0, 0.25], [1.0, -0.25]];
+
+/// A unit's part in a direction below which it stays: rounding of the table.
+const STILL: f32 = 1e-3;
+
+/// Yaw to keep, and what may be given up for it.
+pub(super) struct Kept {
+    /// How far yaw has to reach, N m. The half of what level flight reaches, if that is less.
+    pub(super) needed: f32,
+    /// There is a reserve: thrust is given up before roll and pitch, else all together.
+    pub(super) is_reserve: bool,
+    /// The most thrust that may be given, and a thrust well inside below it, N.
+    pub(super) ceiling: f32,
+    pub(super) middle: f32,
+    /// `[roll, pitch, thrust]` with the roll and pitch of the request and a thrust that leaves yaw
+    /// more room; none where already these have to be cut.
+    pub(super) roomy: Option<[f32; 3]>,
+}
+
+impl ClosedForm<'_> {
+    /// Draws the thrusts, now at `z` where yaw reaches less than is needed, inwards until it reaches
+    /// it. Returns their z on the new lines and the least and most yaw there; writes the lines with
+    /// each unit's yaw.
+    #[inline(never)]
+    pub(super) fn retreat(
+        &self,
+        lines: &mut [ThrustLine],
+        sign: f32,
+        (z, reach): (f32, [f32; 2]),
+        kept: Kept,
+    ) -> (f32, [f32; 2]) {
+        for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
+            rolled();
+            line.given = line.thrust(z);
+            line.level = unit.allocation[2] * kept.middle;
+            line.from = line.level;
+            line.along = line.given - line.from;
+        }
+        let given = furthest(reach, sign);
+        let level = furthest(self.reach(lines, 0.0), sign);
+        let most = RESERVABLE * if level > 0.0 { level } else { 0.0 };
+        let needed = if kept.needed < most { kept.needed } else { most };
+        if given >= needed {
+            for line in lines.iter_mut() {
+                rolled();
+                (line.from, line.along) = (line.given, 0.0);
+            }
+            return (0.0, self.reach(lines, 0.0));
+        }
+        let outside = given - needed;
+        let mut inside = level;
+        if let (true, Some(wrench)) = (kept.is_reserve, kept.roomy) {
+            let target = needed + MARGIN * (level - needed);
+            inside = self.roomy(lines, sign, &wrench, (z, target), level);
+        }
+        let mut found = self.crossing(lines, sign, needed, [inside - needed, outside]);
+        if kept.is_reserve {
+            for _ in 0..black_box(ROUNDS) {
+                for direction in DIRECTIONS {
+                    found = self.ascend(lines, sign, found, direction, kept.ceiling);
+                }
+                inside = furthest(found.1, sign);
+                self.aim(lines, found.0);
+                found = self.crossing(lines, sign, needed, [inside - needed, outside]);
+            }
+        }
+        found
+    }
+
+    /// Writes lines from the thrusts at `at` of the present ones to those given.
+    #[inline(always)]
+    fn aim(&self, lines: &mut [ThrustLine], at: f32) {
+        for line in lines {
+            rolled();
+            line.from = line.thrust(at);
+            line.along = line.given - line.from;
+        }
+    }
+
+    /// Moves the thrusts along `direction` to where yaw reaches furthest, within `ceiling` in sum.
+    /// Takes and returns the place on the lines and the least and most yaw there; writes the lines
+    /// with each unit's yaw.
+    #[inline(never)]
+    fn ascend(
+        &self,
+        lines: &mut [ThrustLine],
+        sign: f32,
+        (at, reach): (f32, [f32; 2]),
+        [by_thrust, by_null]: [f32; 2],
+        ceiling: f32,
+    ) -> (f32, [f32; 2]) {
+        let (mut low, mut high) = (-f32::MAX, ceiling);
+        for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
+            rolled();
+            let f = line.thrust(at);
+            let along = by_thrust * unit.allocation[2] + by_null * unit.null;
+            (line.from, line.along, line.per_along) = (f, 0.0, 0.0);
+            // The shares of the least-norm thrust add up to 1.
+            high -= by_thrust * f;
+            if along.abs() > STILL {
+                (line.along, line.per_along) = (along, 1.0 / along);
+            }
+        }
+        for line in lines.iter() {
+            rolled();
+            if line.per_along != 0.0 {
+                let [a, b] = self.thrust_n.map(|end| (end - line.from) * line.per_along);
+                let [a, b] = if a < b { [a, b] } else { [b, a] };
+                low = if a > low { a } else { low };
+                high = if b < high { b } else { high };
+            }
+        }
+        // A unit may be beyond its end by rounding.
+        let range = [
+            if low < 0.0 { low } else { 0.0 },
+            if high > 0.0 { high } else { 0.0 },
+        ];
+        self.climb(lines, sign, (0.0, reach), range, f32::MAX)
+    }
+
+    /// Writes lines from the thrusts of `wrench`, z as near the present one as can be, to those
+    /// `given`. Where yaw does not reach `target` there they begin nearer to level flight, at which
+    /// it reaches `level`. Returns how far yaw reaches at their beginning.
+    #[inline(always)]
+    fn roomy(
+        &self,
+        lines: &mut [ThrustLine],
+        sign: f32,
+        wrench: &[f32; 3],
+        (z, target): (f32, f32),
+        level: f32,
+    ) -> f32 {
+        let [low, high] = self.null_range(lines, |unit, _| unit.thrust(wrench));
+        let mut at = clamp(z, low, if high > low { high } else { low });
+        let mut reach = self.reach(lines, at);
+        let short = target - furthest(reach, sign);
+        if short > 0.0 {
+            for line in lines.iter_mut() {
+                rolled();
+                line.along = line.thrust(at) - line.level;
+                line.from = line.level;
+            }
+            (at, reach) = self.crossing(lines, sign, target, [level - target, -short]);
+        }
+        self.aim(lines, at);
+        furthest(reach, sign)
+    }
+
+    /// Goes along the lines from 0 towards 1, as far as yaw reaches `needed`, which it exceeds by
+    /// `inside` at 0 and by `outside` at 1. Returns the place and the least and most yaw there;
+    /// writes each unit's yaw.
+    ///
+    /// A straight line crosses `needed` inside where the sides are concave: then a second one from
+    /// there is nearer. Where they are not it may cross outside, by little: then the steps go
+    /// inwards.
+    #[inline(never)]
+    fn crossing(
+        &self,
+        lines: &mut [ThrustLine],
+        sign: f32,
+        needed: f32,
+        [inside, outside]: [f32; 2],
+    ) -> (f32, [f32; 2]) {
+        let inside = if inside > 0.0 { inside } else { 0.0 };
+        // Outside by a little at least, so that no division is by zero.
+        let least = -self.yaw_rounding_nm;
+        let outside = if outside < least { outside } else { least };
+        let mut at = inside / (inside - outside);
+        for step in 0..black_box(CROSSINGS) {
+            let reach = self.reach(lines, at);
+            let here = furthest(reach, sign) - needed;
+            if here < 0.0 {
+                at *= clamp(1.0 + 2.0 * here / (inside - here), 0.0, 1.0);
+            } else if step == 0 {
+                at += (1.0 - at) * here / (here - outside);
+            } else {
+                return (at, reach);
+            }
+        }
+        (at, self.reach(lines, at))
+    }
+}
