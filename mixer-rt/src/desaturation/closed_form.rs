@@ -169,15 +169,9 @@ struct ThrustLine {
     from: f32,
     /// N per unit of z.
     along: f32,
-    /// Its inverse; 0 where it is.
-    per_along: f32,
     /// Least and most yaw that the unit gives at the z looked at, N m.
     least: f32,
     most: f32,
-    /// Thrusts between which a retreat draws lines, N: where yaw reaches too little, and level
-    /// flight.
-    given: f32,
-    level: f32,
 }
 
 impl ThrustLine {
@@ -232,10 +226,11 @@ impl ClosedForm<'_> {
         }
     }
 
-    /// Writes attainable efforts that serve `request` in the order of priority, with `reserve` of
-    /// yaw, N m, kept before the others.
+    /// Writes attainable efforts that serve `request` in the order of priority. With `KEEPS_YAW`
+    /// the `reserve` of yaw, N m, is kept before the others: what that takes is left out of images
+    /// without it.
     #[inline(never)]
-    pub(crate) fn desaturate(
+    pub(crate) fn desaturate<const KEEPS_YAW: bool>(
         &self,
         airmode: Airmode,
         request: &Request,
@@ -247,7 +242,7 @@ impl ClosedForm<'_> {
         let lines = lines.get_mut(..self.units.len()).unwrap_or_default();
         let (closed_form, efforts, lines) = black_box((self, efforts.as_mut_slice(), lines));
         let limits = closed_form.thrust_limits(airmode, request.thrust);
-        let found = closed_form.attainable_thrusts(request, reserve, limits, lines);
+        let found = closed_form.attainable_thrusts::<KEEPS_YAW>(request, reserve, limits, lines);
         closed_form.torques(lines, efforts, request.yaw, found);
     }
 

@@ -97,8 +97,10 @@ impl ClosedForm<'_> {
         for (line, ahead) in lines.iter().zip(&mut ahead) {
             rolled();
             let speed = direction * line.along;
-            ahead.per_n = direction * line.per_along;
             ahead.speed = speed.abs();
+            if speed != 0.0 {
+                ahead.per_n = 1.0 / speed;
+            }
             if speed < 0.0 {
                 ahead.index = ahead.index.wrapping_sub(1);
                 ahead.step = usize::MAX;

@@ -23,7 +23,7 @@
 use core::hint::black_box;
 
 use super::thrusts::furthest;
-use super::{ClosedForm, ThrustLine};
+use super::{ClosedForm, MOST_CLOSED_FORM_UNITS, ThrustLine};
 use crate::{clamp, rolled};
 
 /// Most steps to where yaw reaches what is needed. Steps inwards are twice as long as a straight
@@ -50,78 +50,82 @@ const DIRECTIONS: [[f32; 2]; 3] = [[0.0, 1.0], [1.0, 0.25], [1.0, -0.25]];
 /// A unit's part in a direction below which it stays: rounding of the table.
 const STILL: f32 = 1e-3;
 
-/// Yaw to keep, and what may be given up for it.
-pub(super) struct Kept {
-    /// How far yaw has to reach, N m. The half of what level flight reaches, if that is less.
-    pub(super) needed: f32,
-    /// There is a reserve: thrust is given up before roll and pitch, else all together.
-    pub(super) is_reserve: bool,
-    /// The most thrust that may be given, and a thrust well inside below it, N.
-    pub(super) ceiling: f32,
-    pub(super) middle: f32,
-    /// `[roll, pitch, thrust]` with the roll and pitch of the request and a thrust that leaves yaw
-    /// more room; none where already these have to be cut.
-    pub(super) roomy: Option<[f32; 3]>,
-}
-
 impl ClosedForm<'_> {
-    /// Draws the thrusts, now at `z` where yaw reaches less than is needed, inwards until it reaches
-    /// it. Returns their z on the new lines and the least and most yaw there; writes the lines with
-    /// each unit's yaw.
+    /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, straight towards level
+    /// flight of the thrust `middle`, N, until it reaches it. Returns their z on the new lines and
+    /// the least and most yaw there; writes the lines with each unit's yaw.
     #[inline(never)]
     pub(super) fn retreat(
         &self,
         lines: &mut [ThrustLine],
         sign: f32,
         (z, reach): (f32, [f32; 2]),
-        kept: Kept,
+        needed: f32,
+        middle: f32,
     ) -> (f32, [f32; 2]) {
         for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
             rolled();
-            line.given = line.thrust(z);
-            line.level = unit.allocation[2] * kept.middle;
-            line.from = line.level;
-            line.along = line.given - line.from;
+            let thrust = line.thrust(z);
+            line.from = unit.allocation[2] * middle;
+            line.along = thrust - line.from;
         }
-        let given = furthest(reach, sign);
+        let level = furthest(self.reach(lines, 0.0), sign);
+        self.crossing(
+            lines,
+            sign,
+            needed,
+            [level - needed, furthest(reach, sign) - needed],
+        )
+    }
+
+    /// As [`retreat`](Self::retreat) for a reserve: thrust, at most `ceiling`, is given up before
+    /// roll and pitch. `roomy` is `[roll, pitch, thrust]` with the roll and pitch of the request and
+    /// a thrust that leaves yaw more room; none where already these have to be cut.
+    #[inline(never)]
+    pub(super) fn keep(
+        &self,
+        lines: &mut [ThrustLine],
+        sign: f32,
+        (z, reach): (f32, [f32; 2]),
+        needed: f32,
+        roomy: Option<[f32; 3]>,
+        [ceiling, middle]: [f32; 2],
+    ) -> (f32, [f32; 2]) {
+        let mut given = [0.0; MOST_CLOSED_FORM_UNITS];
+        for ((unit, line), given) in self.units.iter().zip(lines.iter_mut()).zip(&mut given) {
+            rolled();
+            *given = line.thrust(z);
+            line.from = unit.allocation[2] * middle;
+            line.along = *given - line.from;
+        }
         let level = furthest(self.reach(lines, 0.0), sign);
         let most = RESERVABLE * if level > 0.0 { level } else { 0.0 };
-        let needed = if kept.needed < most { kept.needed } else { most };
-        if given >= needed {
-            for line in lines.iter_mut() {
+        let needed = if needed < most { needed } else { most };
+        let outside = furthest(reach, sign) - needed;
+        if outside >= 0.0 {
+            for (line, given) in lines.iter_mut().zip(given) {
                 rolled();
-                (line.from, line.along) = (line.given, 0.0);
+                (line.from, line.along) = (given, 0.0);
             }
             return (0.0, self.reach(lines, 0.0));
         }
-        let outside = given - needed;
         let mut inside = level;
-        if let (true, Some(wrench)) = (kept.is_reserve, kept.roomy) {
+        if let Some(wrench) = roomy {
             let target = needed + MARGIN * (level - needed);
-            inside = self.roomy(lines, sign, &wrench, (z, target), level);
+            let at = self.roomy(lines, sign, &wrench, (z, target), (middle, level));
+            inside = furthest(at.1, sign);
+            aim(lines, at.0, &given);
         }
         let mut found = self.crossing(lines, sign, needed, [inside - needed, outside]);
-        if kept.is_reserve {
-            for _ in 0..black_box(ROUNDS) {
-                for direction in DIRECTIONS {
-                    found = self.ascend(lines, sign, found, direction, kept.ceiling);
-                }
-                inside = furthest(found.1, sign);
-                self.aim(lines, found.0);
-                found = self.crossing(lines, sign, needed, [inside - needed, outside]);
+        for _ in 0..black_box(ROUNDS) {
+            for direction in DIRECTIONS {
+                found = self.ascend(lines, sign, found, direction, ceiling);
             }
+            inside = furthest(found.1, sign);
+            aim(lines, found.0, &given);
+            found = self.crossing(lines, sign, needed, [inside - needed, outside]);
         }
         found
-    }
-
-    /// Writes lines from the thrusts at `at` of the present ones to those given.
-    #[inline(always)]
-    fn aim(&self, lines: &mut [ThrustLine], at: f32) {
-        for line in lines {
-            rolled();
-            line.from = line.thrust(at);
-            line.along = line.given - line.from;
-        }
     }
 
     /// Moves the thrusts along `direction` to where yaw reaches furthest, within `ceiling` in sum.
@@ -141,17 +145,14 @@ impl ClosedForm<'_> {
             rolled();
             let f = line.thrust(at);
             let along = by_thrust * unit.allocation[2] + by_null * unit.null;
-            (line.from, line.along, line.per_along) = (f, 0.0, 0.0);
+            (line.from, line.along) = (f, if along.abs() > STILL { along } else { 0.0 });
             // The shares of the least-norm thrust add up to 1.
             high -= by_thrust * f;
-            if along.abs() > STILL {
-                (line.along, line.per_along) = (along, 1.0 / along);
-            }
         }
         for line in lines.iter() {
             rolled();
-            if line.per_along != 0.0 {
-                let [a, b] = self.thrust_n.map(|end| (end - line.from) * line.per_along);
+            if line.along != 0.0 {
+                let [a, b] = self.thrust_n.map(|end| (end - line.from) / line.along);
                 let [a, b] = if a < b { [a, b] } else { [b, a] };
                 low = if a > low { a } else { low };
                 high = if b < high { b } else { high };
@@ -165,9 +166,9 @@ impl ClosedForm<'_> {
         self.climb(lines, sign, (0.0, reach), range, f32::MAX)
     }
 
-    /// Writes lines from the thrusts of `wrench`, z as near the present one as can be, to those
-    /// `given`. Where yaw does not reach `target` there they begin nearer to level flight, at which
-    /// it reaches `level`. Returns how far yaw reaches at their beginning.
+    /// Finds the thrusts of `wrench`, z as near the present one as can be. Where yaw does not reach
+    /// `target` there they are nearer to level flight of the thrust `middle`, where it reaches
+    /// `level`. Writes lines, and returns the place on them and the least and most yaw there.
     #[inline(always)]
     fn roomy(
         &self,
@@ -175,22 +176,22 @@ impl ClosedForm<'_> {
         sign: f32,
         wrench: &[f32; 3],
         (z, target): (f32, f32),
-        level: f32,
-    ) -> f32 {
-        let [low, high] = self.null_range(lines, |unit, _| unit.thrust(wrench));
-        let mut at = clamp(z, low, if high > low { high } else { low });
-        let mut reach = self.reach(lines, at);
+        (middle, level): (f32, f32),
+    ) -> (f32, [f32; 2]) {
+        let [low, high] = self.null_range(lines, wrench);
+        let at = clamp(z, low, if high > low { high } else { low });
+        let reach = self.reach(lines, at);
         let short = target - furthest(reach, sign);
-        if short > 0.0 {
-            for line in lines.iter_mut() {
-                rolled();
-                line.along = line.thrust(at) - line.level;
-                line.from = line.level;
-            }
-            (at, reach) = self.crossing(lines, sign, target, [level - target, -short]);
+        if short <= 0.0 {
+            return (at, reach);
         }
-        self.aim(lines, at);
-        furthest(reach, sign)
+        for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
+            rolled();
+            let thrust = line.thrust(at);
+            line.from = unit.allocation[2] * middle;
+            line.along = thrust - line.from;
+        }
+        self.crossing(lines, sign, target, [level - target, -short])
     }
 
     /// Goes along the lines from 0 towards 1, as far as yaw reaches `needed`, which it exceeds by
@@ -225,5 +226,15 @@ impl ClosedForm<'_> {
             }
         }
         (at, self.reach(lines, at))
+    }
+}
+
+/// Writes lines from the thrusts at `at` of the present ones to others.
+#[inline(always)]
+fn aim(lines: &mut [ThrustLine], at: f32, to: &[f32]) {
+    for (line, to) in lines.iter_mut().zip(to) {
+        rolled();
+        line.from = line.thrust(at);
+        line.along = to - line.from;
     }
 }

@@ -7,7 +7,6 @@
 //!
 //! Where yaw does not reach what is needed of it, thrust, roll and pitch are given up: retreat.rs.
 
-use super::retreat::Kept;
 use super::{ClosedForm, ClosedFormUnit, Request, ThrustLine};
 use crate::{clamp, rolled};
 use core::hint::black_box;
@@ -41,7 +40,7 @@ impl ClosedForm<'_> {
     /// towards those of the total thrust `middle`. Returns their z on the lines of thrusts and the
     /// least and most yaw there; writes the lines with each unit's yaw.
     #[inline(always)]
-    pub(super) fn attainable_thrusts(
+    pub(super) fn attainable_thrusts<const KEEPS_YAW: bool>(
         &self,
         request: &Request,
         reserve: f32,
@@ -51,7 +50,7 @@ impl ClosedForm<'_> {
         let (share, range) = self.share(request.roll, request.pitch, ceiling);
         let thrust = clamp(request.thrust, range[0], range[1]);
         let mut wrench = [share * request.roll, share * request.pitch, thrust];
-        let [low, high] = self.null_range(lines, |unit, _| unit.thrust(&wrench));
+        let [low, high] = self.null_range(lines, &wrench);
         // Where the facets change roll, pitch or thrust, z has no room.
         let has_room = share == 1.0 && thrust == request.thrust;
         let mut z = clamp(0.0, low, if high > low { high } else { low });
@@ -72,15 +71,14 @@ impl ClosedForm<'_> {
         // kept.
         let needed = if wanted < reserve { wanted } else { reserve };
         if needed - furthest(reach, sign) > self.yaw_rounding_nm {
-            wrench[2] = clamp(middle, range[0], range[1]);
-            let kept = Kept {
-                needed,
-                is_reserve: reserve > 0.0,
-                ceiling,
-                middle,
-                roomy: if share == 1.0 { Some(wrench) } else { None },
+            let found = (z, reach);
+            (z, reach) = if KEEPS_YAW {
+                wrench[2] = clamp(middle, range[0], range[1]);
+                let roomy = if share == 1.0 { Some(wrench) } else { None };
+                self.keep(lines, sign, found, needed, roomy, [ceiling, middle])
+            } else {
+                self.retreat(lines, sign, found, needed, middle)
             };
-            (z, reach) = self.retreat(lines, sign, (z, reach), kept);
         }
         (z, reach)
     }
@@ -142,19 +140,15 @@ impl ClosedForm<'_> {
         reach
     }
 
-    /// Lines from the thrusts `from` through the null space. Returns the range of z; its first end
-    /// is the larger one where rounding leaves no range.
+    /// Lines from the least-norm thrusts of `[roll, pitch, thrust]` through the null space. Returns
+    /// the range of z; its first end is the larger one where rounding leaves no range.
     #[inline(always)]
-    pub(super) fn null_range(
-        &self,
-        lines: &mut [ThrustLine],
-        from: impl Fn(&ClosedFormUnit, &ThrustLine) -> f32,
-    ) -> [f32; 2] {
+    pub(super) fn null_range(&self, lines: &mut [ThrustLine], wrench: &[f32; 3]) -> [f32; 2] {
         let (mut low, mut high) = (-f32::MAX, f32::MAX);
         for (unit, line) in self.units.iter().zip(lines) {
             rolled();
-            let f = from(unit, line);
-            (line.from, line.along, line.per_along) = (f, unit.null, unit.per_null);
+            let f = unit.thrust(wrench);
+            (line.from, line.along) = (f, unit.null);
             if unit.per_null != 0.0 {
                 let [from, to] = unit.ends.map(|end| (end - f) * unit.per_null);
                 low = if from > low { from } else { low };
