@@ -6,7 +6,7 @@ use mixer_tests::frames::{self, AIRMODES, Options};
 use mixer_tests::request::{Frame, Request};
 
 /// Pairs of the airframes: the paper's, and those identified from bench maps.
-const PAIRS: [&str; 5] = [
+pub(crate) const PAIRS: [&str; 5] = [
     "isae-x8",
     "x8-11in-cubic",
     "x8-16in-biquadratic",
@@ -53,9 +53,7 @@ fn wrenches_of_throttles_at_their_limits_are_delivered_to_a_percent() {
     let (mut asked, mut missed) = (0, 0);
     let mut worst: f64 = 0.0;
     for pair in PAIRS {
-        let file = mixer_tests::root().join(format!("airframes/{pair}.toml"));
-        let text = std::fs::read_to_string(file).expect("an airframe");
-        let pair_text = section(&text, "throttle") + &section(&text, "pair");
+        let pair_text = pair_of(pair);
         for (units, tilt) in (3..=8).flat_map(|units| [(units, 0.0), (units, 0.1)]) {
             let places = frames::irregular(&mut random, units, tilt);
             let options = Options {
@@ -98,6 +96,13 @@ fn wrenches_of_throttles_at_their_limits_are_delivered_to_a_percent() {
     );
     assert!(asked >= 3000);
     assert!(missed * 40 <= asked, "{missed} of {asked}");
+}
+
+/// `[throttle]` and `[pair]` of an airframe.
+pub(crate) fn pair_of(airframe: &str) -> String {
+    let file = mixer_tests::root().join(format!("airframes/{airframe}.toml"));
+    let text = std::fs::read_to_string(file).expect("an airframe");
+    section(&text, "throttle") + &section(&text, "pair")
 }
 
 /// A table of an airframe file with its header.
