@@ -22,7 +22,7 @@
 
 use core::hint::black_box;
 
-use super::thrusts::furthest;
+use super::thrusts::{GAIN, furthest};
 use super::{ClosedForm, MOST_CLOSED_FORM_UNITS, ThrustLine};
 use crate::{clamp, rolled};
 
@@ -117,11 +117,20 @@ impl ClosedForm<'_> {
             aim(lines, at.0, &given);
         }
         let mut found = self.crossing(lines, sign, needed, [inside - needed, outside]);
+        let directions = if self.units.iter().any(|unit| unit.null != 0.0) {
+            DIRECTIONS.as_slice()
+        } else {
+            // All directions are this one.
+            &[[1.0, 0.0]]
+        };
         for _ in 0..black_box(ROUNDS) {
-            for direction in DIRECTIONS {
+            for &direction in directions {
                 found = self.ascend(lines, sign, found, direction, ceiling);
             }
             inside = furthest(found.1, sign);
+            if inside - needed <= self.yaw_rounding_nm {
+                return (found.0, self.reach(lines, found.0));
+            }
             aim(lines, found.0, &given);
             found = self.crossing(lines, sign, needed, [inside - needed, outside]);
         }
@@ -129,8 +138,8 @@ impl ClosedForm<'_> {
     }
 
     /// Moves the thrusts along `direction` to where yaw reaches furthest, within `ceiling` in sum.
-    /// Takes and returns the place on the lines and the least and most yaw there; writes the lines
-    /// with each unit's yaw.
+    /// Takes and returns the place on the lines and the least and most yaw there; writes the lines,
+    /// but not what each unit gives of it.
     #[inline(never)]
     fn ascend(
         &self,
@@ -163,7 +172,22 @@ impl ClosedForm<'_> {
             if low < 0.0 { low } else { 0.0 },
             if high > 0.0 { high } else { 0.0 },
         ];
-        self.climb(lines, sign, (0.0, reach), range, f32::MAX)
+        let top = self.top(lines, sign, 0.0, range);
+        if top == 0.0 {
+            return (0.0, reach);
+        }
+        let at_top = self.reach(lines, top);
+        let gain = furthest(at_top, sign) - furthest(reach, sign);
+        let whole = GAIN * self.yaw_rounding_nm;
+        if gain >= whole {
+            (top, at_top)
+        } else if gain > 0.0 {
+            // A part of the way, so that nothing jumps where the gain vanishes.
+            let part = gain / whole * top;
+            (part, self.reach(lines, part))
+        } else {
+            (0.0, reach)
+        }
     }
 
     /// Finds the thrusts of `wrench`, z as near the present one as can be. Where yaw does not reach

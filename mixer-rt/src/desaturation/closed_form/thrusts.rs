@@ -17,7 +17,7 @@ const CLIMBS: u32 = 2;
 /// Gain of yaw, in units of `yaw_rounding_nm`, from which z moves to the top in full. For a smaller
 /// gain it moves a part of the way, so that z does not jump where the gain vanishes. That costs at
 /// most a quarter of this gain, 0.025 % of the authority in yaw.
-const GAIN: f32 = 100.0;
+pub(super) const GAIN: f32 = 100.0;
 
 impl ClosedFormUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
@@ -87,7 +87,7 @@ impl ClosedForm<'_> {
     /// within `range`. Returns z and the least and most yaw there, and leaves what each unit gives
     /// of it.
     #[inline(always)]
-    pub(super) fn climb(
+    fn climb(
         &self,
         lines: &mut [ThrustLine],
         sign: f32,
