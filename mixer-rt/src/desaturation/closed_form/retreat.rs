@@ -43,9 +43,9 @@ const MARGIN: f32 = 1.0 / 64.0;
 const ROUNDS: u32 = 2;
 
 /// Directions that keep roll and pitch, as shares of the least-norm thrust and of the null space:
-/// the null space itself, then on a regular X8 the two units whose upper rotors turn one way, and
-/// the other two. Yaw is the sum of what these give, so that one after the other is enough there.
-const DIRECTIONS: [[f32; 2]; 3] = [[0.0, 1.0], [1.0, 0.25], [1.0, -0.25]];
+/// on a regular X8 the two units whose upper rotors turn one way, and the other two. Yaw is the sum
+/// of what these give, so that one after the other is enough there.
+const DIRECTIONS: [[f32; 2]; 2] = [[1.0, 0.25], [1.0, -0.25]];
 
 /// A unit's part in a direction below which it stays: rounding of the table.
 const STILL: f32 = 1e-3;
