@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use clap::ValueEnum;
+use mixer_compiler::{Source, hover};
 
 use crate::schema::DIRECTIVE;
 
@@ -99,6 +100,36 @@ impl Frame {
     }
 }
 
+/// The lines of the yaw reserve at the end of `[allocation]`, where the airframe so far compiles
+/// and has yaw to keep; commented out where it would cost more than the closed form.
+fn yaw_reserve(text: &str) -> String {
+    let Ok(compiled) = mixer_compiler::compile(&Source::new("new.toml", text)) else {
+        return String::new();
+    };
+    let Some(reserve) = hover::yaw_reserve(&compiled) else {
+        return String::new();
+    };
+    let line = format!("yaw_reserve_nm = {}", rounded(reserve));
+    let indent = " ".repeat(38);
+    if compiled.tables.closed_form.is_some() {
+        format!(
+            "{line:<38} # a fifth of the yaw at half of full thrust, kept up to full thrust:\n\
+             {indent} # when yaw is asked there, thrust yields first, then roll and pitch\n"
+        )
+    } else {
+        format!(
+            "# {line:<36} # keeps a fifth of the yaw at half of full thrust up to full thrust;\n\
+             {indent} # `check` says what that costs on more than four units\n"
+        )
+    }
+}
+
+/// With two digits.
+fn rounded(value: f64) -> String {
+    let digits = (1.0 - value.log10().floor()).max(0.0) as usize;
+    format!("{value:.digits$}")
+}
+
 impl FrameArgs {
     /// A whole airframe file around `tables`, which are `[throttle]`, `[pair]` and, if there is
     /// one, `[voltage]`. `power_bias` is the torque of least power, N m per N, if it is known; it
@@ -149,6 +180,7 @@ impl FrameArgs {
                 )
             };
         }
+        text.push_str(&yaw_reserve(&text));
         Ok(text)
     }
 

@@ -231,11 +231,19 @@ fn mix_by<P: Quantity, I: Inverse<P>, S>(
     let per_factor = factors.map(|factor| 1.0 / factor);
     let at_reference = at_reference(bounded, per_factor);
     let airmode = tables.desaturation.airmode;
+    let reserve = tables.desaturation.yaw_reserve_nm;
+    let desaturate = |efforts: &mut Efforts| {
+        if reserve > 0.0 {
+            closed_form.desaturate::<true>(airmode, &at_reference, reserve * per_factor[1], efforts);
+        } else {
+            closed_form.desaturate::<false>(airmode, &at_reference, 0.0, efforts);
+        }
+    };
     let mut efforts = Efforts::default();
     let power_bias = tables.power_bias_nm_per_n;
     let (mut attained, room) = closed_form.least_norm(&at_reference, &mut efforts);
     if attained == Attained::No {
-        closed_form.desaturate(airmode, &at_reference, &mut efforts);
+        desaturate(&mut efforts);
     } else if attained == Attained::Yes && power_bias != 0.0 {
         closed_form.add_power_bias(power_bias, room, &mut efforts);
     }
@@ -254,7 +262,7 @@ fn mix_by<P: Quantity, I: Inverse<P>, S>(
             break;
         }
         attained = Attained::No;
-        closed_form.desaturate(airmode, &at_reference, &mut efforts);
+        desaturate(&mut efforts);
     }
     let achieved = closed_form.wrench(&efforts, factors);
     let mut saturation = Saturation::NONE;

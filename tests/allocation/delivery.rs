@@ -5,6 +5,15 @@ use mixer_setpoints::Random;
 use mixer_tests::frames;
 use mixer_tests::request::Request;
 
+/// Pairs of the airframes: the paper's, and those identified from bench maps.
+pub(crate) const PAIRS: [&str; 5] = [
+    "isae-x8",
+    "x8-11in-cubic",
+    "x8-16in-biquadratic",
+    "x8-16in-quartic",
+    "x8-22in-cubic",
+];
+
 /// Wrenches of throttles every second of which is at an end of its range: the border of what is
 /// attainable, on frames of the zoo of three to eight units. Misses are what the convex polygons
 /// lose of sets that bend inwards, nearly all on frames of three units, which have no other efforts
@@ -51,4 +60,21 @@ fn wrenches_of_throttles_at_their_limits_are_delivered_to_a_percent() {
     );
     assert!(asked >= 3000);
     assert!(missed * 40 <= asked, "{missed} of {asked}");
+}
+
+/// `[throttle]` and `[pair]` of an airframe.
+pub(crate) fn pair_of(airframe: &str) -> String {
+    let file = mixer_tests::root().join(format!("airframes/{airframe}.toml"));
+    let text = std::fs::read_to_string(file).expect("an airframe");
+    section(&text, "throttle") + &section(&text, "pair")
+}
+
+/// A table of an airframe file with its header.
+fn section(text: &str, name: &str) -> String {
+    let header = format!("[{name}]");
+    let from = text.find(&header).unwrap_or_else(|| panic!("{header}"));
+    let length = text[from + 1..]
+        .find("\n[")
+        .map_or(text.len() - from, |end| end + 2);
+    text[from..from + length].to_owned()
 }

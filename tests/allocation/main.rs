@@ -14,6 +14,7 @@
 //! | `polygons.rs` | the optimum over the mixer's own polygons, where what these leave out decides |
 //! | `degenerate.rs` | numbers that no controller sends |
 //! | `power_bias.rs` | least power: the wrench stays, torques follow thrusts, fading before anything saturates |
+//! | `yaw_reserve.rs` | a reserve of yaw in closed form: kept, no more than it takes, sound, without a jump |
 //! | `shapes.rs` | the same on attainable sets that are not convex, real ones with `MIXER_BENCH_DATA` |
 //! | `flags.rs` | attainable yaw is delivered without a flag, and shortages are flagged |
 //! | `interior_point.rs` | a second allocator, an interior point method on the throttles: seldom better |
@@ -36,6 +37,7 @@ mod regressions;
 mod rotors_out;
 mod shapes;
 mod ties;
+mod yaw_reserve;
 
 use mixer_rt::Health;
 use mixer_tests::frames::{self, Options, Place};

@@ -11,18 +11,24 @@ use mixer_tests::shortfall::{ALLOWED, Shortfall};
 use crate::{REFERENCE_V, number};
 
 #[derive(Default)]
-struct Judged {
-    requests: usize,
+pub(crate) struct Judged {
+    pub(crate) requests: usize,
     /// Requests without an optimum: not even roll = pitch = 0 is attainable.
     void: usize,
     /// Requests on which the optimum is missed.
-    missed: usize,
+    pub(crate) missed: usize,
     worst: Shortfall,
 }
 
 impl Judged {
     /// Judges `count` requests at one voltage and one state of health.
-    fn judge(&mut self, frame: &Frame, random: &mut Random, (volts, health): (f32, Health), count: usize) {
+    pub(crate) fn judge(
+        &mut self,
+        frame: &Frame,
+        random: &mut Random,
+        (volts, health): (f32, Health),
+        count: usize,
+    ) {
         let factors = frame.physics.factors(volts);
         let oracle = Oracle::new(&frame.physics, frame.allocation(), factors, health);
         for _ in 0..count {
@@ -54,14 +60,14 @@ impl Judged {
         }
     }
 
-    fn add(&mut self, other: &Judged) {
+    pub(crate) fn add(&mut self, other: &Judged) {
         self.requests += other.requests;
         self.void += other.void;
         self.missed += other.missed;
         self.worst = self.worst.max(other.worst);
     }
 
-    fn print(&self, name: &str) {
+    pub(crate) fn print(&self, name: &str) {
         let Shortfall { torque, yaw, thrust } = self.worst;
         println!(
             "{name}: {} of {} miss the optimum; worst roll-pitch {:.2} %, thrust {:.2} %, yaw {:.2} %; {} void",

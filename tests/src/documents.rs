@@ -36,6 +36,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/bench-run.md", "levels", tables::levels()?),
         of("docs/bench-run.md", "spacings", tables::spacings()?),
         of("docs/allocation.md", "logged-saving", tables::logged_saving()?),
+        of("docs/allocation.md", "yaw-reserve", tables::yaw_reserve()?),
         of("docs/evidence.md", "logged-hover", tables::logged_hover()?),
         of("docs/flight.md", "hover", tables::hover()?),
         of("docs/flight.md", "tracking", tables::tracking()?),

@@ -44,6 +44,12 @@ const FEW: usize = 2;
 /// dependent the next priority gains a million times as much by it.
 const SLACK: f64 = 1e-9;
 
+/// Share of the yaw of level flight, at a thrust that is allowed, that a reserve takes at most.
+const RESERVABLE: f64 = 0.5;
+
+/// Units up to which vertical frames have a closed form.
+const CLOSED_FORM_UNITS: usize = 4;
+
 /// More torque (N m) or thrust (N) than any frame has.
 const FREE: (f64, f64) = (-1e4, 1e4);
 
@@ -70,6 +76,9 @@ pub struct Oracle {
     size: [f64; 4],
     airmode: Airmode,
     reserve: f64,
+    /// The reserve is limited to [`RESERVABLE`] of level flight, as in the mixer's closed form; on
+    /// its general path all of it comes first, whatever that takes.
+    is_limited: bool,
 }
 
 /// A run of pieces `[from, to)` per unit, with its relaxed optimum.
@@ -132,6 +141,10 @@ impl Oracle {
                 .map(|authority| if authority > 0.0 { authority } else { 1.0 }),
             airmode: allocation.airmode,
             reserve: allocation.yaw_reserve_nm,
+            is_limited: physics.is_vertical()
+                && physics.units() <= CLOSED_FORM_UNITS
+                && allocation.airmode != Airmode::RollPitchYaw
+                && physics.channels.iter().flatten().all(|&channel| !failed(channel)),
         }
     }
 
@@ -174,9 +187,11 @@ impl Oracle {
         }
     }
 
-    /// Yaw from its reserve to the request, roll = pitch = 0, any thrust.
+    /// Yaw from its reserve to the request, roll = pitch = 0, any thrust. A limited reserve is none
+    /// here.
     fn level(&self, yaw: f64) -> Ranges {
-        let reserved = yaw.clamp(-self.reserve, self.reserve);
+        let reserve = if self.is_limited { 0.0 } else { self.reserve };
+        let reserved = yaw.clamp(-reserve, reserve);
         Ranges {
             share: (0.0, 0.0),
             yaw: (yaw.min(reserved), yaw.max(reserved)),
@@ -185,7 +200,8 @@ impl Oracle {
     }
 
     /// The least thrust (N) at which roll = pitch = 0 is attainable with a yaw between its reserve
-    /// and the one asked; `None` where there is none. Airmode "disabled" never gives more than this
+    /// and the one asked, or between zero and that one where the reserve is limited; `None` where
+    /// there is none. Airmode "disabled" never gives more than this
     /// or the thrust asked.
     ///
     /// # Errors
@@ -204,6 +220,15 @@ impl Oracle {
         };
         if self.airmode == Airmode::Disabled {
             ranges.thrust.1 = thrust.max(floor + SLACK);
+        }
+        if self.is_limited && self.reserve > 0.0 && yaw != 0.0 {
+            let any = Ranges { yaw: FREE, ..ranges };
+            let far = yaw.signum() * FREE.1;
+            let furthest = self.best(Goal::Nearest(Quantity::Yaw, far), [0.0; 2], any)?;
+            let reach = furthest.map_or(0.0, |point| (yaw.signum() * point.yaw).max(0.0));
+            let kept = self.reserve.min(RESERVABLE * reach);
+            let reserved = yaw.clamp(-kept, kept);
+            ranges.yaw = (yaw.min(reserved), yaw.max(reserved));
         }
         Ok(Some(ranges))
     }

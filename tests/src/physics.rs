@@ -66,6 +66,15 @@ impl Physics {
         self.channels.len()
     }
 
+    /// Whether torques give yaw alone, and thrusts none: all axes are vertical.
+    pub fn is_vertical(&self) -> bool {
+        let n = self.units();
+        (0..n).all(|i| {
+            let torque = [0, 1, 3].map(|axis| self.matrix[(axis, n + i)]);
+            torque == [0.0; 3] && self.matrix[(2, i)] == 0.0
+        })
+    }
+
     /// The declared range of voltage, V; `None` where voltage is ignored.
     pub fn voltage_range(&self) -> Option<[f64; 2]> {
         self.voltage.as_ref().map(|voltage| voltage.range_v)

@@ -39,8 +39,8 @@ pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Optio
         .collect();
     // The null space of the thrusts has one dimension or none.
     let spanned = (3..=4).contains(&(n + free.len()));
-    // A reserve of yaw, or yaw before thrust, couples thrust and yaw.
-    let coupled = allocation.yaw_reserve_nm > 0.0 || allocation.airmode == Airmode::RollPitchYaw;
+    // Yaw before thrust couples the two.
+    let coupled = allocation.airmode == Airmode::RollPitchYaw;
     if !vertical || !spanned || coupled || !allocation.controls(Axis::Yaw) {
         return None;
     }

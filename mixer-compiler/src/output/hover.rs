@@ -164,6 +164,29 @@ impl HoverAt {
     }
 }
 
+/// Share of the yaw in hover that [`yaw_reserve`] keeps.
+const KEPT_YAW: f64 = 0.2;
+
+/// A yaw reserve to begin with, N m: a fifth of the yaw that is left in hover either way, at the
+/// reference voltage. Hover is the weight, without a mass half of the largest bare thrust. `None`
+/// where nothing is left or yaw is not served.
+pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
+    let airframe = &compiled.airframe;
+    let weight_n = match &airframe.vehicle {
+        Some(vehicle) => GRAVITY * vehicle.mass_kg,
+        None => 0.5 * f64::from(compiled.thrust_range_n[1]),
+    };
+    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
+    let hover = HoverAt::new(compiled, weight_n, reference_v);
+    let yaw = hover
+        .margins
+        .iter()
+        .find(|margin| margin.axis == Axis::Yaw.name())?;
+    let [least, most] = yaw.torque_nm;
+    let reserve = KEPT_YAW * most.min(-least);
+    (reserve > 0.0).then_some(reserve)
+}
+
 /// A torque that no throttles exceed: all units at their largest thrust and torque.
 fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
     let airframe = &compiled.airframe;

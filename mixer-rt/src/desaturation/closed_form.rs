@@ -9,6 +9,7 @@
 //! 1. w within the zonotope of the thrusts in [a, b]^n                       closed_form/facets.rs
 //! 2. f = C+ w + z N, N the null space of C, with z as near zero as can be   closed_form/thrusts.rs
 //! 3. z towards where yaw reaches furthest, if it does not reach the request closed_form/climb.rs
+//!    thrust, then roll and pitch, given up for zero yaw or the reserve      closed_form/retreat.rs
 //! 4. the torques within [Q_min(f), Q_max(f)]                                closed_form/torques.rs
 //! ```
 //!
@@ -17,15 +18,16 @@
 //!
 //! Near a corner of the zonotope even zero yaw may be out of range: with all rotors at full
 //! throttle every unit has the torque Q(1, 1). There the thrusts are drawn towards the middle of
-//! the set until zero yaw is in range, which cuts thrust, roll and pitch together.
+//! the set until zero yaw is in range, which cuts thrust, roll and pitch together. A reserve of yaw
+//! asks for more than zero in the same way, and thrust is then given up before roll and pitch.
 //!
-//! Every loop is over units, facets, or knots, or has a fixed number of steps. Where yaw comes
-//! before thrust, or a reserve of it before roll and pitch, the problems cannot be separated, and
-//! the general path serves the airframe.
+//! Every loop is over units, facets, or knots, or has a fixed number of steps. Where all of yaw
+//! comes before thrust the problems cannot be separated, and the general path serves the airframe.
 
 mod border;
 mod climb;
 mod facets;
+mod retreat;
 mod thrusts;
 mod torques;
 
@@ -224,15 +226,23 @@ impl ClosedForm<'_> {
         }
     }
 
-    /// Writes attainable efforts that serve `request` in the order of priority.
+    /// Writes attainable efforts that serve `request` in the order of priority. With `KEEPS_YAW`
+    /// the `reserve` of yaw, N m, is kept before the others: what that takes is left out of images
+    /// without it.
     #[inline(never)]
-    pub(crate) fn desaturate(&self, airmode: Airmode, request: &Request, efforts: &mut Efforts) {
+    pub(crate) fn desaturate<const KEEPS_YAW: bool>(
+        &self,
+        airmode: Airmode,
+        request: &Request,
+        reserve: f32,
+        efforts: &mut Efforts,
+    ) {
         // Hides the number of units, so that the compiler does not unroll the loops: see `rolled`.
         let mut lines = [ThrustLine::default(); MOST_CLOSED_FORM_UNITS];
         let lines = lines.get_mut(..self.units.len()).unwrap_or_default();
         let (closed_form, efforts, lines) = black_box((self, efforts.as_mut_slice(), lines));
         let limits = closed_form.thrust_limits(airmode, request.thrust);
-        let found = closed_form.attainable_thrusts(request, limits, lines);
+        let found = closed_form.attainable_thrusts::<KEEPS_YAW>(request, reserve, limits, lines);
         closed_form.torques(lines, efforts, request.yaw, found);
     }
 

@@ -5,6 +5,8 @@ use cargo_mixer::report::comparison::{Answer, Comparison, throttles};
 use cargo_mixer::report::study::Study;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::report::{Summary, rounded_up};
+use mixer_compiler::{Compiled, Source, hover};
+use mixer_rt::Wrench;
 
 use crate::counts;
 use crate::{airframes, allocators, bases, golden, root};
@@ -323,6 +325,75 @@ pub(super) fn logged_saving() -> Result<String, String> {
             "roll, pitch, yaw, rms",
             "thrust over its mean",
             "saved",
+        ],
+        &rows,
+    ))
+}
+
+/// Yaw and thrust of X8s and a Y6 that are asked for all yaw near full thrust, with a yaw reserve
+/// and without.
+pub(super) fn yaw_reserve() -> Result<String, String> {
+    let mut rows = Vec::new();
+    for (title, name) in [
+        ("X8, the paper's pair", PAPER),
+        ("X8, 22 inch", "x8-22in-cubic"),
+        ("Y6", "px4-y6"),
+    ] {
+        let plain = golden::compile(name)?;
+        let reserve = hover::yaw_reserve(&plain).ok_or_else(|| format!("{name} has no yaw in hover"))?;
+        let path = root().join(format!("airframes/{name}.toml"));
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let key = "[allocation]\n";
+        let line = format!("{key}yaw_reserve_nm = {reserve:?}\n");
+        let text = if text.contains(key) {
+            text.replace(key, &line)
+        } else {
+            format!("{text}\n{line}")
+        };
+        let kept = mixer_compiler::compile(&Source::new(name, text)).map_err(|faults| faults.to_string())?;
+        let volts = plain
+            .airframe
+            .voltage
+            .as_ref()
+            .map_or(0.0, |voltage| voltage.reference_v) as f32;
+        let full = plain.thrust_range_n[1];
+        // More yaw than any of them has.
+        let yaw_nm = 10.0;
+        for percent in [60.0, 80.0, 100.0] {
+            let setpoint = Wrench {
+                yaw_nm,
+                thrust_n: 0.01 * percent * full,
+                ..Wrench::default()
+            };
+            let given = |compiled: &Compiled| {
+                let mixed = compiled.tables.mix(&setpoint, volts);
+                mixed
+                    .map(|(_, achieved, _)| achieved)
+                    .map_err(|error| error.to_string())
+            };
+            let [without, with] = [given(&plain)?, given(&kept)?];
+            let yaw = |achieved: Wrench| format!("{:.3}", achieved.yaw_nm).replace("-0.000", "0.000");
+            let thrust = |achieved: Wrench| format!("{:.1} %", 100.0 * achieved.thrust_n / full);
+            rows.push(vec![
+                title.to_owned(),
+                format!("{reserve:.3}"),
+                format!("{percent:.0} %"),
+                yaw(without),
+                thrust(without),
+                yaw(with),
+                thrust(with),
+            ]);
+        }
+    }
+    Ok(markdown(
+        &[
+            "frame",
+            "reserve (N m)",
+            "thrust asked",
+            "without it: yaw (N m)",
+            "thrust",
+            "with it: yaw (N m)",
+            "thrust",
         ],
         &rows,
     ))

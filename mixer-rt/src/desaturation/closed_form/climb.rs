@@ -1,5 +1,6 @@
 //! z where yaw reaches furthest.
 //!
+//! The lines run through the null space, or in a retreat in any direction that keeps roll and pitch.
 //! By the coarse sides Y(z), the furthest yaw, is a sum of concave functions of straight lines.
 //! From the start z goes in the direction in which Y grows, from knot to knot, until it does not:
 //! at most all units' knots, each met once. The knots move with the request continuously and the
@@ -82,7 +83,7 @@ impl ClosedForm<'_> {
                 slope -= knot.drop;
                 ahead.index += 1;
             }
-            growth += slope * unit.null;
+            growth += slope * line.along;
         }
         // Towards more thrust a unit passes the knots above it, towards less those below it, one
         // just met included.
@@ -93,11 +94,13 @@ impl ClosedForm<'_> {
         } else {
             high - start
         };
-        for (unit, ahead) in self.units.iter().zip(&mut ahead) {
+        for (line, ahead) in lines.iter().zip(&mut ahead) {
             rolled();
-            let speed = direction * unit.null;
-            ahead.per_n = direction * unit.per_null;
+            let speed = direction * line.along;
             ahead.speed = speed.abs();
+            if speed != 0.0 {
+                ahead.per_n = 1.0 / speed;
+            }
             if speed < 0.0 {
                 ahead.index = ahead.index.wrapping_sub(1);
                 ahead.step = usize::MAX;

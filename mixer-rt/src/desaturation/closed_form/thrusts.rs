@@ -4,6 +4,8 @@
 //! the largest yaw, by the part `(yaw - Y(start)) / (Y(top) - Y(start))` of the way. This makes the
 //! thrusts a Lipschitz function of the request; moving z just far enough would not. Y is nearly
 //! concave: where that part is not enough, a second step of twice the length follows.
+//!
+//! Where yaw does not reach what is needed of it, thrust, roll and pitch are given up: retreat.rs.
 
 use super::{ClosedForm, ClosedFormUnit, Request, ThrustLine};
 use crate::{clamp, divisor, rolled};
@@ -12,13 +14,10 @@ use core::hint::black_box;
 /// Most steps towards the largest yaw. The second is twice as long as a straight line asks for.
 const CLIMBS: u32 = 2;
 
-/// Most steps of the retreat. Steps inwards are twice as long as a straight line asks for.
-const RETREATS: u32 = 3;
-
 /// Gain of yaw, in units of `yaw_rounding_nm`, from which z moves to the top in full. For a smaller
 /// gain it moves a part of the way, so that z does not jump where the gain vanishes. That costs at
 /// most a quarter of this gain, 0.025 % of the authority in yaw.
-const GAIN: f32 = 100.0;
+pub(super) const GAIN: f32 = 100.0;
 
 impl ClosedFormUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
@@ -31,23 +30,29 @@ impl ClosedFormUnit {
 
 /// How far yaw of the sign `sign` reaches.
 #[inline(always)]
-fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
+pub(super) fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
     if sign < 0.0 { -least } else { most }
 }
 
 impl ClosedForm<'_> {
     /// Finds attainable thrusts, at most `ceiling` in sum, that bring the requested yaw into range
-    /// if any do. Where yaw would be reversed or exceeded they are drawn towards those of the total
-    /// thrust `middle`. Returns their z on the lines of thrusts and the least and most yaw there;
-    /// writes the lines with each unit's yaw.
+    /// if any do. Where yaw would be reversed or exceeded, or be short of `reserve`, they are drawn
+    /// towards those of the total thrust `middle`. Returns their z on the lines of thrusts and the
+    /// least and most yaw there; writes the lines with each unit's yaw.
     #[inline(always)]
-    pub(super) fn attainable_thrusts(
+    pub(super) fn attainable_thrusts<const KEEPS_YAW: bool>(
         &self,
         request: &Request,
+        reserve: f32,
         [ceiling, middle]: [f32; 2],
         lines: &mut [ThrustLine],
     ) -> (f32, [f32; 2]) {
-        let ([low, high], has_room) = self.within_facets(request, ceiling, lines);
+        let (share, range) = self.share(request.roll, request.pitch, ceiling);
+        let thrust = clamp(request.thrust, range[0], range[1]);
+        let mut wrench = [share * request.roll, share * request.pitch, thrust];
+        let [low, high] = self.null_range(lines, &wrench);
+        // Where the facets change roll, pitch or thrust, z has no room.
+        let has_room = share == 1.0 && thrust == request.thrust;
         let mut z = clamp(0.0, low, if high > low { high } else { low });
         let mut reach = self.reach(lines, z);
         // The limit of yaw that the request violates, if any.
@@ -62,10 +67,18 @@ impl ClosedForm<'_> {
         if has_room && high > low {
             (z, reach) = self.climb(lines, sign, (z, reach), [low, high], wanted);
         }
-        // Beyond zero yaw is reversed, beyond the request it is exceeded.
-        let needed = if wanted < 0.0 { wanted } else { 0.0 };
+        // Beyond zero yaw is reversed, beyond the request it is exceeded, up to the reserve it is
+        // kept.
+        let needed = if wanted < reserve { wanted } else { reserve };
         if needed - furthest(reach, sign) > self.yaw_rounding_nm {
-            (z, reach) = self.retreat(lines, sign, (z, reach), needed, middle);
+            let found = (z, reach);
+            (z, reach) = if KEEPS_YAW {
+                wrench[2] = clamp(middle, range[0], range[1]);
+                let roomy = if share == 1.0 { Some(wrench) } else { None };
+                self.keep(lines, sign, found, needed, roomy, [ceiling, middle])
+            } else {
+                self.retreat(lines, sign, found, needed, middle)
+            };
         }
         (z, reach)
     }
@@ -127,22 +140,10 @@ impl ClosedForm<'_> {
         reach
     }
 
-    /// z's range at the least-norm thrusts of the request, with (roll, pitch) and thrust brought to
-    /// where the facets allow them; false where that changes them, so that z has no room. Writes
-    /// the lines of thrusts.
-    #[inline(always)]
-    fn within_facets(&self, request: &Request, ceiling: f32, lines: &mut [ThrustLine]) -> ([f32; 2], bool) {
-        let (share, [low, high]) = self.share(request.roll, request.pitch, ceiling);
-        let thrust = clamp(request.thrust, low, high);
-        let wrench = [share * request.roll, share * request.pitch, thrust];
-        let has_room = share == 1.0 && thrust == request.thrust;
-        (self.null_range(lines, &wrench), has_room)
-    }
-
     /// Lines from the least-norm thrusts of `[roll, pitch, thrust]` through the null space. Returns
     /// the range of z; its first end is the larger one where rounding leaves no range.
     #[inline(always)]
-    fn null_range(&self, lines: &mut [ThrustLine], wrench: &[f32; 3]) -> [f32; 2] {
+    pub(super) fn null_range(&self, lines: &mut [ThrustLine], wrench: &[f32; 3]) -> [f32; 2] {
         let (mut low, mut high) = (-f32::MAX, f32::MAX);
         for (unit, line) in self.units.iter().zip(lines) {
             rolled();
@@ -159,46 +160,5 @@ impl ClosedForm<'_> {
             return [0.0, 0.0];
         }
         [low, high]
-    }
-
-    /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, towards those of
-    /// `middle_n` until it reaches it. Returns their z on the new lines and the least and most yaw
-    /// there; writes the lines with each unit's yaw.
-    ///
-    /// A straight line from the middle crosses `needed` inside where the sides are concave: then a
-    /// second one from there is nearer. Where they are not it may cross outside, by little: then
-    /// the steps go inwards.
-    #[inline(never)]
-    fn retreat(
-        &self,
-        lines: &mut [ThrustLine],
-        sign: f32,
-        (z, mut reach): (f32, [f32; 2]),
-        needed: f32,
-        middle_n: f32,
-    ) -> (f32, [f32; 2]) {
-        for (unit, line) in self.units.iter().zip(lines.iter_mut()) {
-            rolled();
-            let thrust = line.thrust(z);
-            line.from = unit.allocation[2] * middle_n;
-            line.along = thrust - line.from;
-        }
-        let outside = furthest(reach, sign) - needed;
-        let inside = furthest(self.reach(lines, 0.0), sign) - needed;
-        let inside = if inside > 0.0 { inside } else { 0.0 };
-        // `outside` is below zero by more than `yaw_rounding_nm`.
-        let mut at = inside / (inside - outside);
-        for step in 0..black_box(RETREATS) {
-            reach = self.reach(lines, at);
-            let here = furthest(reach, sign) - needed;
-            if here < 0.0 {
-                at *= clamp(1.0 + 2.0 * here / divisor(inside - here), 0.0, 1.0);
-            } else if step == 0 {
-                at += (1.0 - at) * here / divisor(here - outside);
-            } else {
-                return (at, reach);
-            }
-        }
-        (at, self.reach(lines, at))
     }
 }
