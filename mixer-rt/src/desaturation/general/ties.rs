@@ -185,19 +185,17 @@ fn solve(mut matrix: [[f32; 4]; 4], mut rows: [f32; 4]) -> [f32; 4] {
         } else {
             0.0
         };
+        let pivot_row = pivot_row.map(|entry| entry * per_pivot);
         let share = rows[k & 3] * per_pivot;
         for i in 0..4 {
             rolled();
             let part = matrix[i & 3][k & 3];
-            if i == k {
-                continue;
-            }
             rows[i & 3] -= part * share;
             for (entry, other) in matrix[i & 3].iter_mut().zip(pivot_row) {
-                *entry -= part * per_pivot * other;
+                *entry -= part * other;
             }
         }
-        rows[k & 3] = share;
+        (matrix[k & 3], rows[k & 3]) = (pivot_row, share);
     }
     rows
 }
