@@ -74,7 +74,7 @@ fn beyond(frame: &Frame, request: &Request, answer: &Answer) -> f64 {
         let along = given[axis] * asked[axis].signum();
         most = most.max(share(axis, (along - asked[axis].abs()).max(-along)));
     }
-    let length = asked[0].hypot(asked[1]);
+    let length = (asked[0] * asked[0] + asked[1] * asked[1]).sqrt();
     if length > 0.0 {
         let turned = (given[0] * asked[1] - given[1] * asked[0]).abs() / length;
         most = most.max(share(0, turned).min(share(1, turned)));
