@@ -14,7 +14,7 @@ use mixer_tests::{airframes, cost, digest, evaluators, golden};
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 704;
 /// Below the caller's frame, any airframe: the general path, with rotors out.
-const ANY_STACK_LIMIT_BYTES: u64 = 1536;
+const ANY_STACK_LIMIT_BYTES: u64 = 1792;
 /// Code and tables of [`REFERENCE`].
 const SIZE_LIMIT_BYTES: u64 = 9 * 1024;
 /// The airframe that the first and the last limit are for.
@@ -427,7 +427,8 @@ fn bounds_hold_what_was_counted() {
             "{}, {}: {worst} found, {bound} stated, {ratio:.2} times",
             name.mixer, name.airframe
         );
-        if !(1.0..=BOUND_OVER_WORST).contains(&ratio) {
+        let most = BOUND_OVER_WORST[usize::from(name.rotors_out() > 0)];
+        if !(1.0..=most).contains(&ratio) {
             faults.push(format!(
                 "{name:?}: {worst} found, at most {bound} stated, {ratio:.2} times"
             ));
@@ -436,8 +437,9 @@ fn bounds_hold_what_was_counted() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// A bound that is further above the most that a search finds says little.
-const BOUND_OVER_WORST: f64 = 1.75;
+/// A bound that is further above the most that a search finds says little. All rotors; rotors out, where
+/// the bound takes every programme to its last pivot and no request that was found does.
+const BOUND_OVER_WORST: [f64; 2] = [1.75, 3.5];
 
 /// The largest error that an estimate may have, as a share of what was counted.
 const ESTIMATE_ERROR: f64 = 0.13;

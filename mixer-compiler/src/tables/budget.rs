@@ -2,10 +2,10 @@
 
 use mixer_rt::tables::Budget;
 
-/// Work of the general path while all rotors work. Of the requests that were counted none takes more
-/// than 20,000 instructions with it on up to four vertical units, 30,000 on up to eight vertical and
-/// six tilted ones, and 45,000 on up to eight (`docs/costs.md`). Of 100,000 saturated requests on a
-/// regular frame of eight units about 110 need more; of as many on a frame of six about 30.
+/// Work of the general path while all rotors work: so that few saturated requests need more, which
+/// then are answered on the way from level flight, and the dearest one costs no more than is stated in
+/// `docs/costs.md`. More pivots for eight units still spare jumps where optima tie (test
+/// `throttles_do_not_jump_where_optima_tie`).
 pub(super) fn budget(units: usize, is_vertical: bool) -> Budget {
     let units = u8::try_from(units).unwrap_or(u8::MAX);
     match (is_vertical, units) {

@@ -30,6 +30,7 @@
 use core::hint::black_box;
 
 mod breakpoint;
+mod problem;
 mod programme;
 mod simplex;
 mod ties;
@@ -41,7 +42,8 @@ use crate::desaturation::Budget;
 use crate::layout::Tables;
 use crate::pair::Quantity;
 use crate::{clamp, divisor, rolled};
-use programme::{Problem, RAY, REACH, start};
+use problem::Problem;
+use programme::{RAY, REACH, start};
 use simplex::Simplex;
 use variable::{Set, between, positive};
 

@@ -3,7 +3,7 @@
 //!
 //! In closed form that is least norm, an attempt at it next to the border, and one of two ways: the
 //! facets in several steps where they change the request, or the climb along the null space where
-//! they do not; after either the retreat. The general path is its pivots, its moves to other corners,
+//! they do not; after either the retreat, or what a reserve of yaw asks for. The general path is its pivots, its moves to other corners,
 //! and what stands around them. The instructions of each part are the most that were counted of that
 //! part over thousands of saturated requests, rounded up; the tests hold the sum to the counts of
 //! whole mixers.
@@ -15,7 +15,7 @@ use crate::compiled::Compiled;
 use crate::tables::ClosedFormTable;
 
 /// Checks, and voltage where there is a correction.
-const PER_MIX: u32 = 120;
+const PER_MIX: u32 = 240;
 const PER_VOLTAGE: u32 = 78;
 
 /// A request brought down to what products do not overflow with.
@@ -45,6 +45,12 @@ const RETREAT: u32 = 5;
 const KNOTS: u32 = 75;
 const KNOT: u32 = 30;
 const KNOT_UNIT: u32 = 7;
+
+/// What a reserve of yaw calls more often: how far yaw reaches at level flight, at the roomy thrusts and
+/// on the lines to and from them; the outlines' top, and the range of a direction in one unit.
+const RESERVE_REACHES: u32 = 27;
+const RESERVE_TOPS: u32 = 4;
+const DIRECTION_UNIT: u32 = 110;
 
 /// The torques, one unit.
 const TORQUES: u32 = 40;
@@ -135,13 +141,15 @@ fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     let step = STEP + FACETS * table.slopes.len() as u32;
     let walls = STEP + FACETS * table.walls.len() as u32;
     let moved = table.units.iter().filter(|unit| unit.null != 0.0).count() as u32;
-    let climb = if moved == 0 {
-        0
+    let top = |moved: u32| n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT);
+    let climb = if moved == 0 { 0 } else { CLIMB * reach + top(moved) };
+    let reserve = if compiled.tables.desaturation.yaw_reserve_nm > 0.0 {
+        RESERVE_REACHES * reach + RESERVE_TOPS * (top(n) + n * DIRECTION_UNIT)
     } else {
-        CLIMB * reach + n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT)
+        0
     };
     let voltage = compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
     let ways = (Facets::STEPS * step).max(step + climb);
-    let found = walls + ways + n * NULL_RANGE + (1 + RETREAT) * reach + n * TORQUES;
+    let found = walls + ways + n * NULL_RANGE + (1 + RETREAT) * reach + reserve + n * TORQUES;
     Some(PER_MIX + LIMITED + voltage + n * (PER_UNIT + ATTEMPT_UNIT) + 2 * inverses + found)
 }

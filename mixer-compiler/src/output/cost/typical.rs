@@ -31,15 +31,15 @@ const CLOSED_FORM: Overhead = Overhead {
     error: 0.12,
 };
 const GENERAL: Overhead = Overhead {
-    per_mix: 150,
-    per_unit: 280,
+    per_mix: 200,
+    per_unit: 190,
     error: 0.05,
 };
 
 /// The mean over attainable requests, some of which least norm does not deliver. In closed form only:
 /// beyond it the share of these depends on the frame.
 const CLOSED_FORM_MEAN: Overhead = Overhead {
-    per_mix: 65,
+    per_mix: 105,
     per_unit: 150,
     error: 0.13,
 };

@@ -25,7 +25,7 @@
 //! missed by takes the slot.
 
 use super::breakpoint::{Breakpoint, FirstTwo};
-use super::programme::{Problem, SEGMENTS};
+use super::problem::{Problem, SEGMENTS};
 use super::variable::{NEVER, Position, Segment, Set, Variable, corner, dot};
 use crate::desaturation::Budget;
 use crate::desaturation::attainable::Corner;
