@@ -39,8 +39,8 @@ const GENERAL: Overhead = Overhead {
 /// The mean over attainable requests, some of which least norm does not deliver. In closed form only:
 /// beyond it the share of these depends on the frame.
 const CLOSED_FORM_MEAN: Overhead = Overhead {
-    per_mix: 105,
-    per_unit: 150,
+    per_mix: 65,
+    per_unit: 160,
     error: 0.13,
 };
 
