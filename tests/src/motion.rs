@@ -16,7 +16,7 @@ const FORCED: f64 = 2.0;
 pub enum Motion {
     /// By no more than [`JUMP`].
     Small,
-    /// By no more than [`FORCED`] times what the priorities themselves force.
+    /// By no more than `FORCED` times what the priorities themselves force.
     Forced,
     /// From one optimum to another that is apart from it, as any choice of the best must:
     /// [`change::parted`].
