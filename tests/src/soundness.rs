@@ -8,8 +8,8 @@ use crate::optimum::Oracle;
 use crate::request::{Answer, Frame, Request};
 use crate::shortfall::ALLOWED;
 
-/// Rounding of sums in f32, as a share of the authority.
-const ROUNDING: f64 = 5e-6;
+/// Rounding in f32 of sums over the units and of the factors of the voltage, as a share of the authority.
+const ROUNDING: f64 = 1e-5;
 
 /// Share of the authority by which an axis may be reversed or exceeded, beside what the inverse map
 /// may miss.
