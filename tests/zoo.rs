@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use mixer_compiler::Source;
 use mixer_compiler::diagnostic::Severity;
 use mixer_tests::frames;
-use mixer_tests::frames::zoo::{KNOWN, REFUSALS};
+use mixer_tests::frames::zoo::REFUSALS;
 
 /// Frames that are drawn: each class a dozen times at least.
 const COUNT: u64 = 144;
@@ -35,7 +35,7 @@ fn nearly_all_frames_compile_and_the_others_are_refused_for_a_reason() {
             if std::env::var_os("MIXER_MISSES").is_some() {
                 println!("{index}, {}: {} {}", specimen.class, fault.code, fault.message);
             }
-            let is_expected = REFUSALS.contains(&fault.code) || KNOWN.contains(&fault.code);
+            let is_expected = REFUSALS.contains(&fault.code);
             assert!(is_expected, "{faults}\n{}", specimen.text);
             *refused.entry(fault.code).or_insert(0) += 1;
         }

@@ -18,10 +18,6 @@ pub use super::places::Class;
 /// its centre of gravity or its torques at idle forbid.
 pub const REFUSALS: [Code; 2] = [Code::Tolerance, Code::Hover];
 
-/// Faults of the compiler that are known: probes with rotors out fail on the general path of some
-/// frames.
-pub const KNOWN: [Code; 1] = [Code::Probe];
-
 /// Whose bits are compared on the target: a seed, and the indices of frames of some size.
 pub const ON_TARGET: (u64, [u64; 5]) = (1, [1, 3, 4, 8, 9]);
 
