@@ -6,7 +6,9 @@ use mixer_compiler::airframe::{Airframe, Axis, Spin, Unit};
 use mixer_compiler::diagnostic::Code;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::effectiveness::Effectiveness;
+use mixer_rt::Wrench;
 use mixer_setpoints::Random;
+use mixer_tests::physics::Physics;
 
 /// How the places of a frame are drawn.
 #[derive(Clone, Copy, Debug)]
@@ -159,4 +161,29 @@ fn every_frame_has_an_accurate_pseudo_inverse() {
         accurate > 29_500 && deficient > 10,
         "{accurate} accurate, {deficient} without the rank"
     );
+}
+
+/// An X12 and a Y6 whose M+ was wrong: the X12 gave -0.893 N m of yaw, the Y6 37.36 N.
+#[test]
+fn frames_with_short_arms_give_the_wrench_asked_for() {
+    let file = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../airframes/isae-x8.toml"));
+    let file = file.unwrap();
+    let (head, _) = file.split_once("[[unit]]").unwrap();
+    for (units, first_angle_deg, arm_m, asked) in [
+        (6, 30.0, 0.138, [0.0, 0.838, 0.0, 74.2]),
+        (3, 60.0, 0.22, [0.0, 0.0, 0.0, 37.01]),
+    ] {
+        let layout = format!("arm_m = {arm_m:?}\nunits = {units}\nfirst_angle_deg = {first_angle_deg:?}\n");
+        let source = Source::new("short.toml", format!("{head}[layout]\n{layout}"));
+        let compiled = mixer_compiler::compile(&source).unwrap();
+        let volts = compiled.airframe.reference_v() as f32;
+        let setpoint = Wrench::from_array(asked);
+        let (throttle, _, saturation) = compiled.tables.mix(&setpoint, volts).unwrap();
+        assert!(!saturation.any_axis(), "{units} units: {saturation}");
+        let given = Physics::new(&compiled).wrench(&throttle, volts);
+        for (axis, tolerance) in compiled.tables.tolerance.wrench.into_iter().enumerate() {
+            let missed = (given[axis] - f64::from(asked[axis])).abs();
+            assert!(missed <= 2.0 * f64::from(tolerance), "{units} units: {given:?}");
+        }
+    }
 }
