@@ -184,6 +184,7 @@ impl<'a> Visit<'a> {
     ) -> Result<bool, Error> {
         let pair = requests.map(|request| *request);
         let step = (0..4)
+            .filter(|&axis| frame.served()[axis])
             .map(|axis| (answers[0].achieved[axis] - answers[1].achieved[axis]).abs() / frame.size(axis))
             .fold(0.0, f64::max);
         self.look(Check::Step, step, &pair, || {
