@@ -83,6 +83,13 @@ pub(crate) struct Probe<'a> {
     pub(crate) lost_between_sides: Option<f64>,
 }
 
+/// The map of every unit in f64.
+struct UnitModel {
+    map: PairMap,
+    /// Its largest thrust, N, and torque, N m: [`PairMap::scale`], which looks along the whole border.
+    scale: [f64; 2],
+}
+
 impl Probe<'_> {
     /// Runs the probes.
     ///
@@ -90,9 +97,11 @@ impl Probe<'_> {
     /// The first one that fails: a fault of the compiler.
     pub(crate) fn run(&self) -> Result<(), Vec<Diagnostic>> {
         let map = PairMap::new(&self.airframe.pair, &self.airframe.throttle);
-        self.sets(&map)
-            .and_then(|()| self.whole(&map))
-            .and_then(|()| self.rotors_out(&map))
+        let scale = map.scale();
+        let unit = &UnitModel { map, scale };
+        self.sets(unit)
+            .and_then(|()| self.whole(unit))
+            .and_then(|()| self.rotors_out(unit))
             .map_err(|message| {
                 vec![self.airframe.diagnostic(
                     Code::Probe,
@@ -105,9 +114,9 @@ impl Probe<'_> {
     }
 
     /// Wrenches with all rotors.
-    fn whole(&self, map: &PairMap) -> Result<(), String> {
+    fn whole(&self, unit: &UnitModel) -> Result<(), String> {
         for (volts, thrusts) in self.points() {
-            let at = At::new(self, map, volts, Health::GOOD);
+            let at = At::new(self, unit, volts, Health::GOOD);
             for &share in thrusts {
                 let thrust = at.thrust(share);
                 at.probe([0.0, 0.0, 0.0, thrust])?;
@@ -122,7 +131,7 @@ impl Probe<'_> {
     }
 
     /// Wrenches with one and with two rotors out, where the others keep the frame level.
-    fn rotors_out(&self, map: &PairMap) -> Result<(), String> {
+    fn rotors_out(&self, unit: &UnitModel) -> Result<(), String> {
         let rotors = self.airframe.rotors() as u8;
         let singles = (0..rotors).map(|rotor| Health::GOOD.with_failed(rotor));
         let pairs: Vec<Health> = (0..rotors)
@@ -131,7 +140,7 @@ impl Probe<'_> {
             .collect();
         let step = pairs.len().div_ceil(MOST_PAIRS).max(1);
         for health in singles.chain(pairs.into_iter().step_by(step)) {
-            let at = At::new(self, map, self.airframe.reference_v(), health);
+            let at = At::new(self, unit, self.airframe.reference_v(), health);
             let level = [0.0, 0.0, 0.0, at.thrust(0.4)];
             if !at.probe(level)? {
                 continue;
@@ -171,18 +180,17 @@ struct At<'a> {
 }
 
 impl<'a> At<'a> {
-    fn new(probe: &'a Probe<'a>, map: &'a PairMap, volts: f64, health: Health) -> Self {
+    fn new(probe: &'a Probe<'a>, unit: &'a UnitModel, volts: f64, health: Health) -> Self {
         let voltage = probe.airframe.voltage.as_ref();
         let factors = voltage.map_or([1.0; 2], |voltage| {
             [voltage.thrust_factor(volts), voltage.torque_factor(volts)]
         });
-        let scale = map.scale();
-        let efforts = [0, 1].map(|k| factors[k] * scale[k]);
+        let efforts = [0, 1].map(|k| factors[k] * unit.scale[k]);
         At {
             probe,
             physics: Physics {
                 airframe: probe.airframe,
-                map,
+                map: &unit.map,
             },
             volts,
             health,

@@ -4,9 +4,8 @@
 use mixer_rt::tables::{Border, Corner, Inverse};
 
 use super::physics::Physics;
-use super::{Probe, words};
+use super::{Probe, UnitModel, words};
 use crate::desaturation::attainable::{border_area, moments};
-use crate::model::PairMap;
 
 /// Border points per edge of the throttle box.
 const SAMPLES: usize = 256;
@@ -15,7 +14,7 @@ const SAMPLES: usize = 256;
 const SECTIONS: usize = 192;
 
 /// Share of a unit's largest effort by which efforts on the border may be missed, beside the tolerance.
-/// Where the set bends inwards chords are outside by a little, on real maps next to their fold by 4e-4.
+/// Where the set bends inwards chords are outside by a little, most on maps next to their fold.
 const BORDER: f64 = 2e-3;
 
 /// Share of the attainable set's area by which a description may be smaller than stated.
@@ -26,18 +25,18 @@ const LEVEL: f64 = 3e-3;
 
 impl Probe<'_> {
     /// The polygon, the sides and stored level flight.
-    pub(super) fn sets(&self, map: &PairMap) -> Result<(), String> {
-        let area = border_area(&map.scaled_border(SAMPLES));
-        self.polygon(map, area)?;
-        self.sides(map, area)?;
-        self.level(map)
+    pub(super) fn sets(&self, unit: &UnitModel) -> Result<(), String> {
+        let area = border_area(&unit.map.scaled_border(SAMPLES));
+        self.polygon(unit, area)?;
+        self.sides(unit, area)?;
+        self.level(unit)
     }
 
     /// The efforts are attained by the emitted inverse; else the words for what they are of.
-    fn attained(&self, map: &PairMap, efforts: [f32; 2], of: &str) -> Result<(), String> {
+    fn attained(&self, unit: &UnitModel, efforts: [f32; 2], of: &str) -> Result<(), String> {
         let tables = self.tables;
         let throttles = (&tables.inverse).throttles(&tables.view().pair, &tables.throttle, efforts);
-        let (given, scale) = (map.efforts(throttles.map(f64::from)), map.scale());
+        let (given, scale) = (unit.map.efforts(throttles.map(f64::from)), unit.scale);
         for k in 0..2 {
             let missed = (given[k] - f64::from(efforts[k])).abs();
             let is_near = missed <= 2.0 * f64::from(tables.tolerance.efforts[k]) + BORDER * scale[k];
@@ -51,7 +50,7 @@ impl Probe<'_> {
         Ok(())
     }
 
-    fn polygon(&self, map: &PairMap, area: f64) -> Result<(), String> {
+    fn polygon(&self, unit: &UnitModel, area: f64) -> Result<(), String> {
         let table = &self.tables.attainable;
         let polygon = table.polygon();
         let n = polygon.len();
@@ -65,9 +64,9 @@ impl Probe<'_> {
             }
         }
         for corner in table.corners() {
-            self.attained(map, corner, "polygon's corner")?;
+            self.attained(unit, corner, "polygon's corner")?;
         }
-        let scale = map.scale();
+        let scale = unit.scale;
         let corners: Vec<[f64; 2]> = table
             .corners()
             .iter()
@@ -76,7 +75,7 @@ impl Probe<'_> {
         smaller("polygon", moments(&corners).0 / area, self.lost_area.total)
     }
 
-    fn sides(&self, map: &PairMap, area: f64) -> Result<(), String> {
+    fn sides(&self, unit: &UnitModel, area: f64) -> Result<(), String> {
         let (Some(table), Some(lost)) = (&self.tables.closed_form, self.lost_between_sides) else {
             return Ok(());
         };
@@ -89,24 +88,24 @@ impl Probe<'_> {
             let [middle, half] = border.torques(f);
             // Where the set is a point but for rounding, there is nothing to give.
             if half > 0.0 {
-                self.attained(map, [f, middle + half], "upper side")?;
-                self.attained(map, [f, middle - half], "lower side")?;
+                self.attained(unit, [f, middle + half], "upper side")?;
+                self.attained(unit, [f, middle - half], "lower side")?;
                 between += 2.0 * f64::from(half) * f64::from(step);
             }
         }
         // `area` is twice that of the set, in shares of the scales.
-        let [thrust, torque] = map.scale();
+        let [thrust, torque] = unit.scale;
         smaller("sides", 2.0 * between / (thrust * torque * area), lost)
     }
 
-    fn level(&self, map: &PairMap) -> Result<(), String> {
+    fn level(&self, unit: &UnitModel) -> Result<(), String> {
         let table = &self.tables.level;
         let physics = Physics {
             airframe: self.airframe,
-            map,
+            map: &unit.map,
         };
         let scale = self.tables.attainable.scale;
-        let authority = map.scale();
+        let authority = unit.scale;
         for end in 0..2 {
             let efforts = table
                 .efforts
