@@ -1,4 +1,4 @@
-//! The mixers for comparison, `cargo_mixer::isolated`, against the oracle's of the same rules in
+//! The mixers for comparison, `isolated_rotors`, against the oracle's of the same rules in
 //! double precision.
 #![allow(missing_docs)]
 
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use cargo_mixer::isolated::IsolatedTables;
+use isolated_rotors::IsolatedTables;
 use mixer_rt::{Wrench, tables::Airmode};
 use mixer_tests::{airframes, golden, root};
 

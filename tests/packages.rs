@@ -2,13 +2,24 @@
 //! outside.
 #![allow(missing_docs)]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
 use mixer_tests::root;
 
 /// In the order of publication: each uses only those before it.
-const PUBLISHED: [&str; 4] = ["mixer-rt", "mixer-compiler", "mixer-macros", "cargo-mixer"];
+const PUBLISHED: [&str; 6] = [
+    "mixer-rt",
+    "mixer-compiler",
+    "mixer-macros",
+    "isolated-rotors",
+    "mixer-report",
+    "cargo-mixer",
+];
+
+/// Most crates that a firmware user's build compiles for the host, those of this project included.
+const MOST_CRATES: usize = 30;
 
 fn manifest(package: &str) -> toml::Table {
     let path = root().join(package).join("Cargo.toml");
@@ -91,4 +102,30 @@ fn sources_stay_in_their_package() {
             }
         }
     }
+}
+
+/// A firmware user's build has the macro, the compiler and the runtime of this project, and few
+/// crates besides.
+#[test]
+fn firmware_builds_nothing_of_the_command_line() {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let arguments = "tree --locked --offline -p mixer-macros -e no-dev --prefix none --format {p}";
+    let output = Command::new(&cargo)
+        .current_dir(root())
+        .args(arguments.split(' '))
+        .output()
+        .unwrap_or_else(|error| panic!("cargo tree: {error}"));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    let tree = String::from_utf8_lossy(&output.stdout);
+    let names: BTreeSet<&str> = tree
+        .lines()
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    let own: Vec<&str> = PUBLISHED
+        .into_iter()
+        .filter(|name| names.contains(name))
+        .collect();
+    assert_eq!(own, ["mixer-rt", "mixer-compiler", "mixer-macros"]);
+    assert!(names.len() <= MOST_CRATES, "{}: {names:?}", names.len());
 }

@@ -5,6 +5,8 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use sha2::{Digest as _, Sha256};
+
 /// Most links that are followed to a file, as by the kernel.
 const MOST_LINKS: usize = 40;
 
@@ -37,13 +39,13 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
     if !folder.as_os_str().is_empty() && !folder.is_dir() {
         return Err(fault(&format_args!("there is no folder {}", folder.display())));
     }
-    // A name of its own: with the file's in it, it could be longer than names may be.
-    let temporary = folder.join(format!(".cargo-mixer.{}", std::process::id()));
-    let done = place(&temporary, &replaced, text, found.as_ref());
-    if done.is_err() {
-        let _ = fs::remove_file(&temporary);
-    }
-    done.map_err(|error| fault(&error))
+    place(folder, &replaced, text, found.as_ref()).map_err(|error| fault(&error))
+}
+
+/// The digest of a file's bytes in hexadecimal, as `sha256sum` prints it.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to
@@ -61,21 +63,39 @@ pub fn not_there(path: &Path, force: bool) -> Result<(), String> {
     }
 }
 
-fn place(temporary: &Path, replaced: &Path, text: &str, found: Option<&Metadata>) -> io::Result<()> {
-    let mut file = File::create(temporary)?;
-    if let Some(found) = found {
-        // Before the text is in it: what was for few eyes stays so.
-        file.set_permissions(found.permissions())?;
+fn place(folder: &Path, replaced: &Path, text: &str, found: Option<&Metadata>) -> io::Result<()> {
+    let here = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    let mut temporary = tempfile::Builder::new();
+    // A new file's permissions are those that the user's mask leaves, as without this detour.
+    let permissions = found.map_or_else(new_file, |found| Some(found.permissions()));
+    if let Some(permissions) = permissions {
+        temporary.permissions(permissions);
     }
-    file.write_all(text.as_bytes())?;
-    file.sync_all()?;
+    // A name of its own: with the file's in it, it could be longer than names may be.
+    let mut temporary = temporary.prefix(".cargo-mixer.").tempfile_in(here)?;
+    temporary.write_all(text.as_bytes())?;
+    temporary.as_file().sync_all()?;
     if !found.is_some_and(has_other_names) {
-        return fs::rename(temporary, replaced);
+        temporary.persist(replaced)?;
+        return Ok(());
     }
     let mut file = File::options().write(true).truncate(true).open(replaced)?;
     file.write_all(text.as_bytes())?;
-    file.sync_all()?;
-    fs::remove_file(temporary)
+    file.sync_all()
+}
+
+#[cfg(unix)]
+fn new_file() -> Option<fs::Permissions> {
+    Some(std::os::unix::fs::PermissionsExt::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn new_file() -> Option<fs::Permissions> {
+    None
 }
 
 #[cfg(unix)]

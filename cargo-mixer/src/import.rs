@@ -12,15 +12,15 @@ mod geometry;
 mod pairs;
 mod parameters;
 mod px4;
+mod rotors;
 mod text;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use mixer_compiler::airframe::Spin;
-
 use parameters::Parameters;
+use rotors::Imported;
 
 /// Makes an airframe file of a flight stack's parameters
 ///
@@ -28,11 +28,10 @@ use parameters::Parameters;
 /// ArduPilot (FRAME_CLASS, FRAME_TYPE, MOT_*), or PX4's geometry files (tables `rotors`; those of
 /// two layers together, the upper one first).
 ///
-/// PX4:       two rotors in one place are a unit, the one with the smaller z is the upper; KM > 0
-/// turns counter-clockwise;
-///            tilted axes are kept.
-/// ArduPilot: the table of the frame gives angles, spins and layers; --arm gives their distance,
-/// which the file lacks.
+/// PX4:       two rotors in one place are a unit, the one with the smaller z is the upper;
+///            KM > 0 turns counter-clockwise; tilted axes are kept.
+/// ArduPilot: the table of the frame gives angles, spins and layers; --arm gives their
+///            distance, which the file lacks.
 ///
 /// What the parameters do not say is named on stderr and in the file.
 #[derive(clap::Args, Debug)]
@@ -62,43 +61,6 @@ pub struct ImportArgs {
     force: bool,
 }
 
-/// A rotor of a flight stack.
-#[derive(Clone, Debug, PartialEq)]
-struct Rotor {
-    /// Output, from 0.
-    channel: usize,
-    /// Forward, right, down, m.
-    position_m: [f64; 3],
-    /// Direction of the thrust, a unit vector.
-    axis: [f64; 3],
-    /// Seen from above.
-    spin: Spin,
-}
-
-/// Two rotors in one place.
-#[derive(Clone, Debug, PartialEq)]
-struct Unit {
-    position_m: [f64; 3],
-    axis: [f64; 3],
-    upper_spin: Spin,
-    /// Of the upper and of the lower rotor.
-    channels: [usize; 2],
-}
-
-/// What a flight stack's files say.
-#[derive(Debug, Default)]
-struct Imported {
-    /// The stack and the frame, for people.
-    origin: String,
-    rotors: Vec<Rotor>,
-    /// Least and largest throttle.
-    throttle: Option<[f64; 2]>,
-    /// The battery's range, V.
-    range_v: Option<[f64; 2]>,
-    /// What is assumed, or not said.
-    notes: Vec<String>,
-}
-
 /// Runs the command.
 pub fn run(args: &ImportArgs) -> ExitCode {
     match import(args) {
@@ -118,10 +80,11 @@ fn import(args: &ImportArgs) -> Result<Vec<String>, String> {
     let mut imported = read(args)?;
     let units = pairs::pair(&imported.rotors, &args.upper)?;
     let pair = match &args.pair {
-        Some(path) => Some(read_text(path)?),
+        Some(path) => Some((path.as_path(), read_text(path)?)),
         None => None,
     };
-    let text = text::airframe(args, &mut imported, &units, pair.as_deref())?;
+    let pair = pair.as_ref().map(|(path, text)| (*path, text.as_str()));
+    let text = text::airframe(args.name.as_deref(), &args.files, &mut imported, &units, pair)?;
     crate::file::write(&args.output, &text)?;
     Ok(imported.notes)
 }

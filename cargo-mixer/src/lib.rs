@@ -19,7 +19,6 @@ pub mod frame;
 pub mod golden;
 pub mod identify;
 pub mod import;
-pub mod isolated;
 pub mod library;
 pub mod mix;
 pub mod new;
@@ -27,10 +26,8 @@ pub mod plan;
 pub mod report;
 pub mod schema;
 pub mod setpoints;
-mod sha256;
 pub mod shell;
 pub mod stack;
-mod stdout;
 pub mod sweep;
 
 /// The exit status for a bad input.
@@ -121,9 +118,6 @@ pub fn finish(written: io::Result<()>) -> ExitCode {
 /// Result of an output; the exit status where it failed. A reader that has seen enough (`|
 /// head`) is no fault.
 fn output(written: io::Result<()>) -> Result<(), ExitCode> {
-    if stdout::was_closed() {
-        return Err(print_error("stdout is closed"));
-    }
     match written.and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(print_error(format_args!("stdout: {error}")))

@@ -11,6 +11,7 @@
 //!   -> all files written, or none                                    output.rs
 //! ```
 
+mod airframe;
 mod build;
 mod header;
 mod interface;
@@ -21,12 +22,10 @@ mod selftest;
 mod support;
 mod toolchain;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mixer_compiler::Compiled;
-use mixer_compiler::diagnostic::printable;
-
+use airframe::Airframe;
 use build::Build;
 use header::Header;
 use object::Symbols;
@@ -36,18 +35,18 @@ use toolchain::Toolchain;
 /// Writes a C library of one or more airframes: an archive, headers, CMake and a self-test
 ///
 /// Per airframe with module name M (`isae-x8` gives isae_x8):
-///   libM.a            one object with one global function, M_mix, and no undefined symbol
-///   M.h               its interface, C99 and C++17, with coaxial_mixer.h, which all airframes share
-///   M.cmake           the imported target M
-///   M_selftest.c      golden bits: M_selftest() counts the rows that differ, 0 where all is well
+///   libM.a        one object with one global function, M_mix, and no undefined symbol
+///   M.h           its interface, C99 and C++17, with coaxial_mixer.h, which all share
+///   M.cmake       the imported target M
+///   M_selftest.c  golden bits: M_selftest() counts the rows that differ
 ///
 /// The mixer is compiled by this machine's rustc (RUSTC or PATH) for the target: `rustup target add
 /// TRIPLE`, or the sources of `core` (`rustup component add rust-src`). Nothing is downloaded. For
-/// a target without a floating-point unit the object has arithmetic of its own, with the same bits.
+/// a target without a floating-point unit the object calls the arithmetic of the C compiler's
+/// run-time library (__aeabi_fadd and the like), with the same bits.
 ///
 /// The float ABI is the target's: thumbv7em-none-eabihf goes with -mfloat-abi=hard,
-/// thumbv7em-none-eabi with
-/// -mfloat-abi=soft or softfp.
+/// thumbv7em-none-eabi with -mfloat-abi=soft or softfp.
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
 pub struct LibraryArgs {
@@ -77,19 +76,6 @@ impl LibraryArgs {
     }
 }
 
-/// An airframe of which a library is made.
-#[derive(Debug)]
-struct Airframe {
-    /// The compiled file.
-    compiled: Compiled,
-    /// Prefix of every name: the Rust module.
-    module: String,
-    /// Name of the file without its folder.
-    file: String,
-    /// SHA-256 of the file.
-    hash: String,
-}
-
 /// Runs the command.
 pub fn run(args: &LibraryArgs) -> ExitCode {
     let mut airframes = Vec::new();
@@ -105,24 +91,6 @@ pub fn run(args: &LibraryArgs) -> ExitCode {
     match library(args, &airframes) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => crate::print_error(message),
-    }
-}
-
-impl Airframe {
-    fn new(path: &Path, compiled: Compiled) -> Result<Self, String> {
-        let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        Ok(Airframe {
-            module: compiled.airframe.module_name(),
-            file: printable(&file),
-            hash: crate::sha256::hex(&bytes),
-            compiled,
-        })
-    }
-
-    /// Prefix of its macros.
-    fn prefix(&self) -> String {
-        self.module.to_uppercase()
     }
 }
 
@@ -177,8 +145,9 @@ fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<Vec<u8
         let found: Vec<String> = symbols.undefined.iter().filter(new).cloned().collect();
         calls.extend(found);
         if calls.len() == known {
+            let is_linked = |name: &str| support::is_linked(build.target(), name);
             symbols
-                .check(&interface::function(&airframe.module, health))
+                .check(&interface::function(&airframe.module, health), is_linked)
                 .map_err(fault)?;
             return Ok(bytes);
         }

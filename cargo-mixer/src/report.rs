@@ -1,29 +1,15 @@
 //! `cargo mixer report`: an airframe in pictures, one self-contained page.
 
+mod bench;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::{SystemTime, UNIX_EPOCH};
+use std::{env, fs};
 
-pub mod authority;
-pub mod bench;
-pub mod colour;
-pub mod comparison;
-pub mod cost;
-pub mod field;
-pub mod figure;
-pub mod gallery;
-pub mod layout;
-pub mod maps;
-pub mod number;
-pub mod origin;
-pub mod page;
-pub mod plots;
-pub mod study;
-pub mod surface;
-pub mod table;
-
-use self::bench::BenchPoints;
-use self::origin::Origin;
-use self::study::Study;
+use mixer_report::origin::Origin;
+use mixer_report::page;
+use mixer_report::study::Study;
 
 /// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and
 /// tables
@@ -56,7 +42,7 @@ pub fn run(args: &ReportArgs) -> ExitCode {
     };
     let bench = match args.bench.as_slice() {
         [] => None,
-        files => match BenchPoints::read(&compiled, files) {
+        files => match bench::read(&compiled, files) {
             Ok(bench) => Some(bench),
             Err(refusal) => return crate::print_error(refusal),
         },
@@ -65,7 +51,7 @@ pub fn run(args: &ReportArgs) -> ExitCode {
         crate::print_note(format_args!("warning: {doubt}"));
     }
     let study = Study::new(&compiled, args.thrust);
-    let page = page::page(&study, bench.as_ref(), &Origin::now(&args.airframe));
+    let page = page::page(&study, bench.as_ref(), &origin(&args.airframe));
     match crate::file::write(&args.output, &page) {
         Ok(()) => {
             crate::print_note(format_args!("wrote {}", args.output.display()));
@@ -73,6 +59,37 @@ pub fn run(args: &ReportArgs) -> ExitCode {
         }
         Err(message) => crate::print_error(message),
     }
+}
+
+/// The origin of a page that is made now of this file. `SOURCE_DATE_EPOCH`, seconds since 1970,
+/// stands for now (reproducible-builds.org).
+fn origin(airframe: &Path) -> Origin {
+    let stated = env::var("SOURCE_DATE_EPOCH")
+        .ok()
+        .and_then(|text| text.parse().ok());
+    let seconds = stated.or_else(|| {
+        let passed = SystemTime::now().duration_since(UNIX_EPOCH);
+        passed.ok().map(|passed| passed.as_secs())
+    });
+    Origin {
+        sha256: fs::read(airframe).ok().map(|bytes| crate::file::sha256(&bytes)),
+        date: seconds.map(date),
+    }
+}
+
+/// The date (UTC) of seconds since 1970. Days are counted from 1 March of year 0, so that leap days
+/// end their years; 400 years have 146,097 days.
+fn date(seconds: u64) -> String {
+    let days = seconds / 86_400 + 719_468;
+    let (cycle, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    // Months from March on have 153 days in five.
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    let year = 400 * cycle + year + u64::from(month <= 2);
+    format!("{year:04}-{month:02}-{day:02}")
 }
 
 /// Complains where the output is one of the inputs; the exit status for bad usage.
@@ -98,5 +115,27 @@ pub(crate) fn thrust(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(thrust) if thrust > 0.0 && thrust.is_finite() => Ok(thrust),
         _ => Err(format!("{text:?} is not a positive number of newtons")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::date;
+
+    /// By GNU date.
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        let days = [
+            (0, "1970-01-01"),
+            (951_782_399, "2000-02-28"),
+            (951_782_400, "2000-02-29"),
+            (951_868_800, "2000-03-01"),
+            (1_735_689_599, "2024-12-31"),
+            (1_795_392_000, "2026-11-23"),
+            (4_107_542_400, "2100-03-01"),
+        ];
+        for (seconds, day) in days {
+            assert_eq!(date(seconds), day);
+        }
     }
 }

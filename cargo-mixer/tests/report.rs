@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::{env, fs};
 
-use cargo_mixer::report::origin::Origin;
-use cargo_mixer::report::page::{SECTIONS, page};
-use cargo_mixer::report::study::Study;
-use cargo_mixer::sweep::{Data, sweep};
 use mixer_compiler::{Compiled, Source, compile};
+use mixer_report::data::{Data, sweep};
+use mixer_report::origin::Origin;
+use mixer_report::page::{SECTIONS, page};
+use mixer_report::study::Study;
 use roxmltree::{Document, Node, ParsingOptions};
 
 #[path = "report/browser.rs"]

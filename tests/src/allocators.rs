@@ -6,7 +6,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use cargo_mixer::isolated::IsolatedTables;
+use isolated_rotors::IsolatedTables;
 use mixer_compiler::Compiled;
 use mixer_compiler::model::PairMap;
 use mixer_rt::{Wrench, tables::Airmode};

@@ -112,7 +112,7 @@ const TASKS: &[Task] = &[
             "--quiet",
             "--locked",
             "-p",
-            "cargo-mixer",
+            "mixer-report",
             "--example",
             "gallery",
             "--",

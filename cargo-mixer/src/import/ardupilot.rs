@@ -4,7 +4,7 @@
 use mixer_compiler::airframe::Spin;
 
 use super::parameters::Parameters;
-use super::{Imported, Rotor};
+use super::rotors::{Imported, Rotor};
 
 use Layer::{Lower, Upper};
 use Spin::{Ccw, Cw};

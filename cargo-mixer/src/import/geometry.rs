@@ -3,7 +3,7 @@
 use mixer_compiler::airframe::Spin;
 use toml::{Table, Value};
 
-use super::{Imported, Rotor};
+use super::rotors::{Imported, Rotor};
 
 /// Whether a text is such a file.
 pub(super) fn is_geometry(text: &str) -> bool {

@@ -1,6 +1,6 @@
 //! Rotors to units: two on one axis, which contra-rotate.
 
-use super::{Rotor, Unit};
+use super::rotors::{Rotor, Unit};
 
 /// Rotors whose axes are nearer than this are a pair, m.
 const SAME_AXIS_M: f64 = 5e-3;

@@ -4,7 +4,7 @@
 use mixer_compiler::airframe::Spin;
 
 use super::parameters::Parameters;
-use super::{Imported, Rotor};
+use super::rotors::{Imported, Rotor};
 
 /// What PX4 takes where a file has no `CA_ROTORi_KM` and no `CA_ROTORi_AZ`.
 const MOMENT_RATIO: f64 = 0.05;

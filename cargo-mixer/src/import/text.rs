@@ -1,10 +1,11 @@
 //! The airframe file.
 
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use super::{ImportArgs, Imported, Unit};
+use super::rotors::{Imported, Unit};
 
 /// Idle where nothing says one.
 const IDLE: f64 = 0.1;
@@ -17,23 +18,24 @@ const TAKEN: &[&str] = &["pair", "voltage", "inverse", "allocation", "vehicle"];
 
 /// The text, and the notes on it in `imported`.
 pub(super) fn airframe(
-    args: &ImportArgs,
+    name: Option<&str>,
+    files: &[PathBuf],
     imported: &mut Imported,
     units: &[Unit],
-    pair: Option<&str>,
+    pair: Option<(&Path, &str)>,
 ) -> Result<String, String> {
-    let pair_file = args
-        .pair
-        .as_ref()
-        .map(|path| path.display().to_string())
-        .unwrap_or_default();
     let table: Table = match pair {
-        Some(text) => text.parse().map_err(|error| format!("{pair_file}: {error}"))?,
+        Some((path, text)) => {
+            let table: Table = text
+                .parse()
+                .map_err(|error| format!("{}: {error}", path.display()))?;
+            if !table.contains_key("pair") {
+                return Err(format!("{}: no [pair] in it", path.display()));
+            }
+            table
+        }
         None => Table::new(),
     };
-    if pair.is_some() && !table.contains_key("pair") {
-        return Err(format!("{pair_file}: no [pair] in it"));
-    }
     let [min, max] = throttle(imported, &table);
     let voltage = voltage(imported, &table);
     if pair.is_none() {
@@ -43,9 +45,8 @@ pub(super) fn airframe(
     }
 
     let mut out = String::new();
-    let name = args.name.clone().unwrap_or_else(|| default_name(units.len()));
-    let files: Vec<String> = args
-        .files
+    let name = name.map_or_else(|| default_name(units.len()), str::to_owned);
+    let files: Vec<String> = files
         .iter()
         .filter_map(|file| Some(file.file_name()?.to_string_lossy().into_owned()))
         .collect();
@@ -63,7 +64,7 @@ pub(super) fn airframe(
     }
     let _ = writeln!(out, "\n[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}");
     match pair {
-        Some(text) => out += &sections(text),
+        Some((_, text)) => out += &sections(text),
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
     }
     for (index, unit) in units.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use mixer_compiler::diagnostic::is_plain;
 
-use super::Airframe;
+use super::airframe::Airframe;
 
 /// What of a library its headers say.
 pub(super) struct Header<'a> {

@@ -1,6 +1,6 @@
 //! The Rust of the C interface: one function around the generated module.
 
-use super::Airframe;
+use super::airframe::Airframe;
 
 /// Name of the C function.
 pub(super) fn function(module: &str, health: bool) -> String {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Airframe;
+use super::airframe::Airframe;
 
 /// Headers that a program includes by these names, where `M.h` would be found in their stead: those
 /// of C and of POSIX, then what glibc, newlib with libstdc++, and compilers have beside them. (Other

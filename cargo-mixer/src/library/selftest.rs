@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use mixer_compiler::Compiled;
 use mixer_rt::{Health, SetpointError, Wrench};
 
-use super::Airframe;
+use super::airframe::Airframe;
 
 /// Rows of random setpoints.
 const RANDOM: usize = 96;

@@ -1,214 +1,64 @@
-//! Bench points beside the model: read as `identify` reads them, compared at the voltage at which
-//! they were measured.
+//! Bench files for the report page, read as `identify` reads them.
 
 use std::path::{Path, PathBuf};
 
 use mixer_compiler::Compiled;
-use mixer_compiler::model::PairMap;
+use mixer_report::bench::BenchPoints;
 
-use super::maps::Effort;
-use super::number::significant;
 use crate::identify::bench::{Kind, Preparation, prepare};
 use crate::identify::header::ByHand;
 use crate::identify::read::{Reading, read_file};
 use crate::identify::refusal::Refusal;
 use crate::identify::sign::{SignChoice, SignPolicy};
 
-/// One bench point with what the model says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BenchPoint {
-    /// Line of the file.
-    pub line: u64,
-    /// Throttles `[u, l]`.
-    pub throttles: [f64; 2],
-    /// Thrust (N) and torque (N m) brought to the reference voltage.
-    pub measured: [f64; 2],
-    /// The model's.
-    pub model: [f64; 2],
+/// Reads bench files of the airframe's pair.
+///
+/// # Errors
+/// A file that cannot be read, or that holds a single rotor.
+pub(super) fn read(compiled: &Compiled, files: &[PathBuf]) -> Result<BenchPoints, Refusal> {
+    let mut bench = BenchPoints::default();
+    for file in files {
+        add(&mut bench, compiled, file)?;
+    }
+    Ok(bench)
 }
 
-impl BenchPoint {
-    /// The point in words with its numbers.
-    pub fn text(&self, effort: Effort) -> String {
-        let (measured, model) = (self.measured[effort as usize], self.model[effort as usize]);
-        let [u, l] = self.throttles;
-        let unit = effort.unit();
-        format!(
-            "line {}: u {}, l {}: measured {} {unit}, model {} {unit}, model less measured {} {unit}",
-            self.line,
-            significant(u, 3),
-            significant(l, 3),
-            significant(measured, 4),
-            significant(model, 4),
-            significant(model - measured, 2)
-        )
+fn add(points: &mut BenchPoints, compiled: &Compiled, file: &Path) -> Result<(), Refusal> {
+    let reading = Reading {
+        by_hand: ByHand::default(),
+        pwm_range: None,
+    };
+    let how = Preparation {
+        stop_throttle: 0.005,
+        settle: 0.33,
+        signs: SignPolicy {
+            thrust: SignChoice::Auto,
+            torque: SignChoice::Auto,
+        },
+        date: None,
+    };
+    let bench = prepare(read_file(file, &reading, |file| file)?, &how)?;
+    if bench.kind != Kind::Pair {
+        return Err(Refusal::of(
+            bench.file,
+            "one rotor alone says nothing about the pair",
+            "a sweep of both throttles",
+        ));
     }
-}
-
-/// Bench points of one pair.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BenchPoints {
-    /// Names of the files.
-    pub files: Vec<String>,
-    /// The points within the airframe's throttle range.
-    pub points: Vec<BenchPoint>,
-    /// Points outside of it, where the model is not used: its polynomials all the same.
-    pub outside: Vec<BenchPoint>,
-    /// Rows that were refused, as `file:line: reason`.
-    pub refused: Vec<String>,
-    /// Whether the points were brought to the reference voltage.
-    pub corrected: bool,
-    /// Points that were measured at voltages outside the airframe's range.
-    pub outside_voltage: usize,
-}
-
-/// Largest misfit of a bench of the airframe's own pair, rms over the model's largest effort, of
-/// thrust and of torque. Maps of the pair itself have up to 0.03 and 0.08, those of other pairs 0.1
-/// and more of one of them.
-const LARGEST_MISFIT: [f64; 2] = [0.06, 0.12];
-
-/// What remains between model and points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Misfit {
-    /// Root of the mean square of model less measured.
-    pub rms: f64,
-    /// Largest absolute difference.
-    pub largest: f64,
-    /// Share of the variance that the model explains.
-    pub r_squared: f64,
-}
-
-impl BenchPoints {
-    /// Reads bench files of the airframe's pair.
-    ///
-    /// # Errors
-    /// A file that cannot be read, or that holds a single rotor.
-    pub fn read(compiled: &Compiled, files: &[PathBuf]) -> Result<Self, Refusal> {
-        let airframe = &compiled.airframe;
-        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-        let mut bench = BenchPoints::default();
-        for file in files {
-            bench.add(compiled, &pair, file)?;
-        }
-        Ok(bench)
+    for point in &bench.points {
+        let voltage_v = Some(point.voltage).filter(|volts| volts.is_finite());
+        points.add(
+            compiled,
+            point.line,
+            [point.u, point.l],
+            [point.thrust, point.torque],
+            voltage_v,
+        );
     }
-
-    fn add(&mut self, compiled: &Compiled, pair: &PairMap, file: &Path) -> Result<(), Refusal> {
-        let reading = Reading {
-            by_hand: ByHand::default(),
-            pwm_range: None,
-        };
-        let how = Preparation {
-            stop_throttle: 0.005,
-            settle: 0.33,
-            signs: SignPolicy {
-                thrust: SignChoice::Auto,
-                torque: SignChoice::Auto,
-            },
-            date: None,
-        };
-        let bench = prepare(read_file(file, &reading, |file| file)?, &how)?;
-        if bench.kind != Kind::Pair {
-            return Err(Refusal::of(
-                bench.file,
-                "one rotor alone says nothing about the pair",
-                "a sweep of both throttles",
-            ));
-        }
-        let voltage = compiled.airframe.voltage.as_ref();
-        let [low, high] = pair.range();
-        for point in &bench.points {
-            let throttles = [point.u, point.l];
-            let within = throttles.iter().all(|t| (low - 1e-9..=high + 1e-9).contains(t));
-            let k = match voltage {
-                Some(voltage) if point.voltage.is_finite() => {
-                    self.corrected = true;
-                    let [lowest, highest] = voltage.range_v;
-                    if within && !(lowest..=highest).contains(&point.voltage) {
-                        self.outside_voltage += 1;
-                    }
-                    [
-                        voltage.thrust_factor(point.voltage),
-                        voltage.torque_factor(point.voltage),
-                    ]
-                }
-                _ => [1.0, 1.0],
-            };
-            let list = if within {
-                &mut self.points
-            } else {
-                &mut self.outside
-            };
-            list.push(BenchPoint {
-                line: point.line,
-                throttles,
-                measured: [point.thrust / k[0], point.torque / k[1]],
-                model: pair.efforts(throttles),
-            });
-        }
-        let refused = bench.refused_rows.iter();
-        self.refused
-            .extend(refused.map(|row| format!("{}:{}: {}", row.file, row.line, row.reason)));
-        self.files.push(bench.file);
-        Ok(())
-    }
-
-    /// Why these files may not be of the airframe's pair; empty where nothing speaks against them.
-    pub fn doubts(&self, compiled: &Compiled) -> Vec<String> {
-        let airframe = &compiled.airframe;
-        let scale = PairMap::new(&airframe.pair, &airframe.throttle).scale();
-        let mut doubts = Vec::new();
-        for (effort, largest) in Effort::BOTH.into_iter().zip(LARGEST_MISFIT) {
-            let Some(misfit) = self.misfit(effort) else {
-                continue;
-            };
-            let share = misfit.rms / scale[effort as usize];
-            if share > largest {
-                doubts.push(format!(
-                    "the model misses the bench\u{2019}s {} by {} {} rms, {:.0} % of its largest: the bench is of another \
-                     pair, or upper and lower are exchanged",
-                    ["thrust", "torque"][effort as usize],
-                    significant(misfit.rms, 3),
-                    effort.unit(),
-                    100.0 * share
-                ));
-            }
-        }
-        if let (true, Some(voltage)) = (self.outside_voltage > 0, &airframe.voltage) {
-            let [low, high] = voltage.range_v;
-            doubts.push(format!(
-                "{} of {} bench points were measured outside the airframe\u{2019}s {low} to {high} V",
-                self.outside_voltage,
-                self.points.len()
-            ));
-        }
-        doubts
-    }
-
-    /// What remains in thrust or in torque; `None` without points.
-    pub fn misfit(&self, effort: Effort) -> Option<Misfit> {
-        let count = self.points.len() as f64;
-        if self.points.is_empty() {
-            return None;
-        }
-        let mean = self
-            .points
-            .iter()
-            .map(|point| point.measured[effort as usize])
-            .sum::<f64>()
-            / count;
-        let (mut squares, mut largest, mut variance) = (0.0, 0.0f64, 0.0);
-        for point in &self.points {
-            let miss = point.model[effort as usize] - point.measured[effort as usize];
-            let spread = point.measured[effort as usize] - mean;
-            squares += miss * miss;
-            largest = largest.max(miss.abs());
-            variance += spread * spread;
-        }
-        Some(Misfit {
-            rms: (squares / count).sqrt(),
-            largest,
-            r_squared: 1.0 - squares / variance,
-        })
-    }
+    let refused = bench.refused_rows.iter();
+    points
+        .refused
+        .extend(refused.map(|row| format!("{}:{}: {}", row.file, row.line, row.reason)));
+    points.files.push(bench.file);
+    Ok(())
 }

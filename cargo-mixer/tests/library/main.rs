@@ -197,7 +197,14 @@ fn assert_bits_without_floating_point(target: &str, processor: &str, machine: &s
         &folder.0,
     ));
     let archive = folder.join("libisae_x8.a");
-    assert_eq!(symbols(&archive), ["T isae_x8_mix", "T isae_x8_mix_with_health"]);
+    let (linked, own): (Vec<String>, Vec<String>) = symbols(&archive)
+        .into_iter()
+        .partition(|symbol| symbol.starts_with("U __"));
+    assert_eq!(own, ["T isae_x8_mix", "T isae_x8_mix_with_health"]);
+    assert!(
+        linked.iter().any(|symbol| symbol == "U __aeabi_fadd"),
+        "{linked:?}"
+    );
     let image = folder.join("selftest.elf");
     let mut compiler = Command::new("arm-none-eabi-gcc");
     compiler.args(["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-pedantic"]);
@@ -208,6 +215,33 @@ fn assert_bits_without_floating_point(target: &str, processor: &str, machine: &s
     compiler.arg(folder.join("isae_x8_selftest.c")).arg(archive);
     run(compiler.arg("-o").arg(&image));
     assert_eq!(program::qemu_on(machine, &image), "all rows equal\n");
+
+    // The arithmetic of the compiler's run-time library against this machine's.
+    let here = folder.join("arithmetic");
+    let source = program::source("arithmetic.c");
+    run(Command::new("cc")
+        .args(["-std=c99", "-O2"])
+        .arg(&source)
+        .arg("-o")
+        .arg(&here));
+    let output = Command::new(&here).output().unwrap();
+    let image = folder.join("arithmetic.elf");
+    let mut compiler = Command::new("arm-none-eabi-gcc");
+    compiler.args([
+        "-std=c99",
+        "-O2",
+        "-DBOARD",
+        "-mthumb",
+        "-mfloat-abi=soft",
+        "-nostartfiles",
+        processor,
+    ]);
+    compiler.args(options).arg(&source).arg("-o").arg(&image);
+    compiler.arg(format!("-T{}", program::source("board.ld").display()));
+    run(&mut compiler);
+    let digest = String::from_utf8(output.stdout).unwrap();
+    assert!(digest.starts_with("1000000 pairs: "), "{digest}");
+    assert_eq!(program::qemu_on(machine, &image), digest);
 }
 
 #[test]

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use cargo_mixer::report::origin::Origin;
-use cargo_mixer::report::page::page;
-use cargo_mixer::report::study::Study;
+use mixer_report::origin::Origin;
+use mixer_report::page::page;
+use mixer_report::study::Study;
 
 use super::{airframes, scratch};
 

@@ -138,7 +138,7 @@ fn captions_stand_below_and_evaluators_are_folded() {
 /// Every bench point has its residual, small where it lies below the idle, within the frame.
 #[test]
 fn residuals_are_mapped() {
-    use cargo_mixer::report::bench::{BenchPoint, BenchPoints};
+    use mixer_report::bench::{BenchPoint, BenchPoints};
 
     let compiled = x8();
     let study = Study::new(&compiled, None);

@@ -3,10 +3,10 @@
 use std::fs;
 use std::process::Command;
 
-use cargo_mixer::isolated::IsolatedTables;
-use cargo_mixer::report::comparison::{self, Comparison};
-use cargo_mixer::report::number::range;
-use cargo_mixer::report::study::Study;
+use isolated_rotors::IsolatedTables;
+use mixer_report::comparison::{self, Comparison};
+use mixer_report::number::range;
+use mixer_report::study::Study;
 
 use super::{compiled, root, scratch, x8};
 

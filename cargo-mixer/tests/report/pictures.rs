@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use cargo_mixer::report::gallery;
+use mixer_report::gallery;
 use roxmltree::Document;
 
 use super::{airframes, root};

@@ -11,8 +11,8 @@ mod wls;
 use std::hint::black_box;
 use std::time::SystemTime;
 
-use cargo_mixer::isolated::{IsolatedRotors, IsolatedTables};
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
+use isolated_rotors::{IsolatedRotors, IsolatedTables};
 use mixer_rt::{Wrench, tables::Airmode};
 use mixer_setpoints::{Kind, Requests};
 use mixer_tests::golden;

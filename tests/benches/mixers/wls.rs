@@ -1,7 +1,7 @@
 //! Isolated rotors with the allocator of the crate `wls-alloc`, set up as for the firmware's
 //! counts.
 
-use cargo_mixer::isolated::{IsolatedRotors, IsolatedTables, ThrustCurve};
+use isolated_rotors::{IsolatedRotors, IsolatedTables, ThrustCurve};
 use mixer_rt::{
     Wrench,
     tables::{Voltage, sqrt},

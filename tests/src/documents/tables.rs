@@ -1,11 +1,11 @@
 //! The tables, in Markdown.
 
-use cargo_mixer::isolated::IsolatedTables;
-use cargo_mixer::report::comparison::{Answer, Comparison, throttles};
-use cargo_mixer::report::study::Study;
+use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::report::{Summary, rounded_up};
 use mixer_compiler::{Compiled, Source, hover};
+use mixer_report::comparison::{Answer, Comparison, throttles};
+use mixer_report::study::Study;
 use mixer_rt::Wrench;
 
 use crate::counts;

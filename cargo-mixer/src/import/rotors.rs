@@ -1,0 +1,40 @@
+//! Rotors and units as a flight stack's files say them.
+
+use mixer_compiler::airframe::Spin;
+
+/// A rotor of a flight stack.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Rotor {
+    /// Output, from 0.
+    pub(super) channel: usize,
+    /// Forward, right, down, m.
+    pub(super) position_m: [f64; 3],
+    /// Direction of the thrust, a unit vector.
+    pub(super) axis: [f64; 3],
+    /// Seen from above.
+    pub(super) spin: Spin,
+}
+
+/// Two rotors in one place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Unit {
+    pub(super) position_m: [f64; 3],
+    pub(super) axis: [f64; 3],
+    pub(super) upper_spin: Spin,
+    /// Of the upper and of the lower rotor.
+    pub(super) channels: [usize; 2],
+}
+
+/// What a flight stack's files say.
+#[derive(Debug, Default)]
+pub(super) struct Imported {
+    /// The stack and the frame, for people.
+    pub(super) origin: String,
+    pub(super) rotors: Vec<Rotor>,
+    /// Least and largest throttle.
+    pub(super) throttle: Option<[f64; 2]>,
+    /// The battery's range, V.
+    pub(super) range_v: Option<[f64; 2]>,
+    /// What is assumed, or not said.
+    pub(super) notes: Vec<String>,
+}

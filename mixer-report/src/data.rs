@@ -1,0 +1,220 @@
+//! The data of the figures as CSV, with units in the header.
+
+use mixer_compiler::airframe::Axis;
+
+use crate::authority;
+use crate::comparison::Comparison;
+use crate::maps::ERROR_SIDE;
+use crate::number::range;
+use crate::page::{THRUSTS, YAW_COMMANDS};
+use crate::study::Study;
+use crate::table::comparison_text;
+
+/// A figure whose data can be had.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Data {
+    /// Yaw sweep at constant thrust.
+    Yaw,
+    /// Attainable set against voltage.
+    Attainable,
+    /// Authority against thrust.
+    Authority,
+    /// Forward maps.
+    Forward,
+    /// Inverse maps.
+    Inverse,
+    /// Error of the inverse.
+    Error,
+}
+
+impl Data {
+    /// Every figure with its word and with what its columns hold.
+    pub const ALL: [(Data, &str, &str); 6] = [
+        (
+            Data::Yaw,
+            "yaw",
+            "What every unit gives over the yaw range at constant thrust, by the coaxial and by the conventional mixer",
+        ),
+        (
+            Data::Attainable,
+            "attainable",
+            "Border of one unit's attainable set at the lowest, the reference and the highest voltage",
+        ),
+        (
+            Data::Authority,
+            "authority",
+            "Largest delivered torque about each served axis against thrust",
+        ),
+        (
+            Data::Forward,
+            "forward",
+            "Thrust and torque of one unit over both throttles, with det J",
+        ),
+        (
+            Data::Inverse,
+            "inverse",
+            "Throttles over the attainable set, by the emitted tables",
+        ),
+        (
+            Data::Error,
+            "error",
+            "What the emitted inverse misses over the attainable set",
+        ),
+    ];
+}
+
+/// Points per side of the maps.
+const SIDE: usize = 41;
+
+/// The data of one figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// CSV with a header.
+    pub csv: String,
+    /// The static comparison of the yaw sweep as text; empty for other figures.
+    pub table: String,
+}
+
+/// The data of `figure`.
+///
+/// # Errors
+/// A yaw sweep of an airframe that does not serve yaw, or at a thrust that leaves no room for it.
+pub fn sweep(study: &Study<'_>, figure: Data) -> Result<Sweep, String> {
+    let mut table = String::new();
+    let lines = match figure {
+        Data::Yaw => {
+            let comparison = Comparison::sweep(study, YAW_COMMANDS).ok_or_else(|| no_yaw(study))?;
+            table = comparison_text(&comparison);
+            yaw(&comparison)
+        }
+        Data::Attainable => attainable(study),
+        Data::Authority => authority_lines(study),
+        Data::Forward => forward(study),
+        Data::Inverse => inverse(study),
+        Data::Error => error(study),
+    };
+    let mut csv = lines.join("\n");
+    csv.push('\n');
+    Ok(Sweep { csv, table })
+}
+
+fn no_yaw(study: &Study<'_>) -> String {
+    let name = &study.compiled.airframe.name;
+    if study.serves(Axis::Yaw) {
+        let [floor, ceiling] = study.compiled.thrust_range_n;
+        format!(
+            "at {:?} N {name} has no yaw to sweep; its bare thrust is {:.1} to {:.1} N",
+            study.thrust_n, floor, ceiling
+        )
+    } else {
+        format!("{name} does not serve yaw (allocation.axes)")
+    }
+}
+
+/// A number with nine significant digits at most, as short as it can be read back.
+fn cell(x: f64) -> String {
+    // Rounding residues of sums are zeros.
+    let x = if x.abs() < 1e-12 { 0.0 } else { x };
+    let rounded: f64 = format!("{x:.8e}").parse().unwrap_or(x);
+    format!("{}", rounded + 0.0)
+}
+
+fn line(values: impl IntoIterator<Item = f64>) -> String {
+    let cells: Vec<String> = values.into_iter().map(cell).collect();
+    cells.join(",")
+}
+
+fn yaw(comparison: &Comparison) -> Vec<String> {
+    let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
+    let mut header =
+        "mixer,yaw_asked_nm,throttle_limited,roll_given_nm,pitch_given_nm,yaw_given_nm,thrust_given_n"
+            .to_owned();
+    for unit in 0..units {
+        for quantity in ["upper_throttle", "lower_throttle", "thrust_n", "torque_nm"] {
+            header.push_str(&format!(",unit_{unit}_{quantity}"));
+        }
+    }
+    let mut lines = vec![header];
+    for row in &comparison.rows {
+        for (mixer, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
+            let units = answer.throttles.iter().zip(&answer.efforts);
+            let values = answer
+                .wrench
+                .into_iter()
+                .chain(units.flat_map(|(&[u, l], &[f, q])| [u, l, f, q]));
+            let limited = u8::from(!answer.within);
+            lines.push(format!("{mixer},{},{limited},{}", cell(row.yaw_nm), line(values)));
+        }
+    }
+    lines
+}
+
+fn attainable(study: &Study<'_>) -> Vec<String> {
+    let mut lines = vec!["voltage_v,upper_throttle,lower_throttle,thrust_n,torque_nm".to_owned()];
+    for (volts, k) in study.voltages() {
+        let volts = volts.map_or(String::new(), cell);
+        for [u, l] in study.border() {
+            let [f, q] = study.pair.efforts([u, l]);
+            lines.push(format!("{volts},{}", line([u, l, f * k[0], q * k[1]])));
+        }
+    }
+    lines
+}
+
+fn authority_lines(study: &Study<'_>) -> Vec<String> {
+    let axes: Vec<Axis> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
+        .into_iter()
+        .filter(|&axis| study.serves(axis))
+        .collect();
+    let columns = axes
+        .iter()
+        .map(|axis| format!(",{0}_least_nm,{0}_largest_nm", axis.name()));
+    let mut lines = vec!["thrust_n".to_owned() + &columns.collect::<String>()];
+    for at in authority::against_thrust(study, &study.reference(), THRUSTS) {
+        let torques = axes.iter().flat_map(|&axis| at.torque_nm[axis as usize]);
+        lines.push(line([at.thrust_n].into_iter().chain(torques)));
+    }
+    lines
+}
+
+/// Points `[s, t]` of the unit square, the first coordinate slowest.
+fn square(side: usize) -> impl Iterator<Item = [f64; 2]> {
+    let share = move |k: usize| k as f64 / (side - 1) as f64;
+    (0..side * side).map(move |k| [share(k / side), share(k % side)])
+}
+
+fn forward(study: &Study<'_>) -> Vec<String> {
+    let mut lines = vec!["upper_throttle,lower_throttle,thrust_n,torque_nm,det_j_n_nm".to_owned()];
+    lines.extend(square(SIDE).map(|point| {
+        let [u, l] = study.throttles(point);
+        let [f, q] = study.pair.efforts([u, l]);
+        let [[f_u, f_l], [q_u, q_l]] = study.pair.jacobian([u, l]);
+        line([u, l, f, q, f_u * q_l - f_l * q_u])
+    }));
+    lines
+}
+
+fn inverse(study: &Study<'_>) -> Vec<String> {
+    let mut lines = vec!["thrust_n,torque_nm,upper_throttle,lower_throttle".to_owned()];
+    let border: Vec<[f64; 2]> = study.border().iter().map(|&t| study.pair.efforts(t)).collect();
+    let extent = |k: usize| range(border.iter().map(|efforts| efforts[k]));
+    let ranges = [extent(0), extent(1)];
+    lines.extend(square(SIDE).filter_map(|point| {
+        let efforts = [0, 1].map(|k| ranges[k][0] + (ranges[k][1] - ranges[k][0]) * point[k]);
+        let [u, l] = study.inverse(efforts)?;
+        Some(line([efforts[0], efforts[1], u, l]))
+    }));
+    lines
+}
+
+fn error(study: &Study<'_>) -> Vec<String> {
+    let header = "thrust_n,torque_nm,upper_throttle,lower_throttle,thrust_error_n,torque_error_nm";
+    let mut lines = vec![header.to_owned()];
+    lines.extend(square(ERROR_SIDE).map(|point| {
+        let [u, l] = study.throttles(point);
+        let [f, q] = study.pair.efforts([u, l]);
+        let [error_f, error_q] = study.error([u, l]);
+        line([f, q, u, l, error_f, error_q])
+    }));
+    lines
+}

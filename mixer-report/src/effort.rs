@@ -1,0 +1,28 @@
+//! The two efforts of a unit, with their words and units.
+
+/// Label of an axis for thrust.
+pub(crate) const THRUST: &str = "thrust f (N)";
+/// Label of an axis for torque.
+pub(crate) const TORQUE: &str = "torque Q (N m)";
+
+/// Thrust and torque of one unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// f, N.
+    Thrust,
+    /// Q, N m.
+    Torque,
+}
+
+impl Effort {
+    /// Both.
+    pub const BOTH: [Effort; 2] = [Effort::Thrust, Effort::Torque];
+
+    pub(crate) fn label(self) -> &'static str {
+        [THRUST, TORQUE][self as usize]
+    }
+
+    pub(crate) fn unit(self) -> &'static str {
+        ["N", "N m"][self as usize]
+    }
+}

@@ -1,0 +1,244 @@
+//! Colour maps: forward (Fig. 3 and 4 of the paper), inverse over the attainable set (Fig. 5),
+//! error of the inverse.
+
+use mixer_compiler::report::{Summary, rounded_up};
+
+use crate::bench::{BenchPoint, BenchPoints};
+use crate::colour::Scale;
+use crate::effort::{Effort, THRUST, TORQUE};
+use crate::field::{Field, Painting, paint};
+use crate::figure::Figure;
+use crate::number::{Ticks, range, shortest, widened};
+use crate::study::Study;
+
+/// Points per side of the grid from which smooth maps are traced.
+const SIDE: usize = 41;
+
+/// Points per side of the grid of the error, which oscillates.
+pub const ERROR_SIDE: usize = 97;
+
+const UPPER: &str = "upper throttle u";
+const LOWER: &str = "lower throttle l";
+
+/// Thrust or torque over both throttles, with the bench points on it.
+pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -> Figure {
+    let field = Field::new(SIDE, |square| study.efforts(square)[effort as usize]);
+    let values = range(field.values().iter().copied());
+    let points = bench.map_or(&[][..], |bench| &bench.points);
+    let throttles = |k: usize| {
+        let measured = points.iter().map(|point| point.throttles[k]);
+        let all = range(measured.chain(study.pair.range()));
+        // Markers stay within the frame.
+        if points.is_empty() {
+            all
+        } else {
+            widened(all, 0.025)
+        }
+    };
+    let title = [
+        "Thrust of one unit over both throttles",
+        "Torque of one unit over both throttles",
+    ];
+    let mut figure = Figure::new(
+        title[effort as usize],
+        (UPPER, throttles(0)),
+        (LOWER, throttles(1)),
+    )
+    .sized(300.0, 300.0)
+    .hovering("forward");
+    let painting = Painting {
+        scale: match effort {
+            Effort::Thrust => Scale::sequential(values),
+            Effort::Torque => Scale::signed(values),
+        },
+        range: values,
+        levels: 8,
+        bands: 4,
+        iso_curves: true,
+        ticks: None,
+        label: effort.label(),
+    };
+    figure.keep_clear(points.iter().map(|point| point.throttles));
+    paint(&mut figure, &field, &painting, |square| study.throttles(square));
+    for point in points {
+        figure.dot("bench-dot", 3.0, point.throttles, &point.text(effort));
+    }
+    figure
+}
+
+/// Model less measured at every bench point over both throttles; small where it lies outside the
+/// throttle range. `None` without points.
+pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Option<Figure> {
+    let residual = |point: &BenchPoint| point.model[effort as usize] - point.measured[effort as usize];
+    let largest = bench
+        .points
+        .iter()
+        .fold(0.0f64, |largest, point| largest.max(residual(point).abs()));
+    if largest <= 0.0 {
+        return None;
+    }
+    let all = || bench.points.iter().chain(&bench.outside);
+    let throttles = |k: usize| {
+        let measured = all().map(|point| point.throttles[k]);
+        widened(range(measured.chain(study.pair.range())), 0.05)
+    };
+    let title = [
+        "Thrust by the model less thrust measured",
+        "Torque by the model less torque measured",
+    ];
+    let mut figure = Figure::new(
+        title[effort as usize],
+        (UPPER, throttles(0)),
+        (LOWER, throttles(1)),
+    )
+    .sized(300.0, 300.0);
+    let [low, high] = study.pair.range();
+    figure.outline(
+        "border",
+        "throttle range",
+        &[[low, low], [high, low], [high, high], [low, high]],
+    );
+    let scale = Scale::signed([-largest, largest]);
+    for point in all() {
+        let within = point
+            .throttles
+            .iter()
+            .all(|t| (low - 1e-9..=high + 1e-9).contains(t));
+        let colour = scale.hex(residual(point).clamp(-largest, largest));
+        let radius = if within { 6.0 } else { 3.5 };
+        figure.coloured_dot(&colour, radius, point.throttles, &point.text(effort));
+    }
+    let (factor, prefix) = prefixed(largest);
+    let bands = (0..RESIDUAL_BANDS).map(|k| {
+        let edge = |k: usize| largest * (2.0 * k as f64 / RESIDUAL_BANDS as f64 - 1.0);
+        (edge(k), edge(k + 1), scale.hex(0.5 * (edge(k) + edge(k + 1))))
+    });
+    let ticks = Ticks::within([-largest * factor, largest * factor], 6);
+    figure.colour_bar(
+        &format!("model \u{2212} measured ({prefix}{})", effort.unit()),
+        bands.collect(),
+        ticks
+            .values
+            .iter()
+            .map(|&value| (value / factor, ticks.text(value)))
+            .collect(),
+    );
+    Some(figure)
+}
+
+/// Bands of colour of the residuals' bar.
+const RESIDUAL_BANDS: usize = 20;
+
+/// A plot over thrust and torque that has the whole attainable set in view.
+pub(super) fn over_efforts(study: &Study<'_>, title: &str, k: [f64; 2]) -> Figure {
+    let border = study.border();
+    let extent = |index: usize| {
+        let values = border
+            .iter()
+            .map(|&throttles| study.pair.efforts(throttles)[index] * k[index]);
+        widened(range(values), 0.04)
+    };
+    Figure::new(title, (THRUST, extent(0)), (TORQUE, extent(1)))
+}
+
+/// The throttle of one rotor (0 upper, 1 lower) over the attainable set.
+pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
+    let field = Field::new(SIDE, |square| study.throttles(square)[rotor]);
+    let title = [
+        "Upper throttle over the attainable set",
+        "Lower throttle over the attainable set",
+    ];
+    let mut figure = over_efforts(study, title[rotor], [1.0, 1.0])
+        .sized(300.0, 260.0)
+        .hovering("inverse");
+    let painting = Painting {
+        scale: Scale::sequential(study.pair.range()),
+        range: study.pair.range(),
+        levels: 9,
+        bands: 4,
+        iso_curves: true,
+        ticks: None,
+        label: [UPPER, LOWER][rotor],
+    };
+    paint(&mut figure, &field, &painting, |square| study.efforts(square));
+    outline(study, &mut figure);
+    figure
+}
+
+/// The error of the emitted inverse in thrust or in torque over the throttle box, absolute.
+pub fn error_field(study: &Study<'_>, effort: Effort) -> Field {
+    Field::new(ERROR_SIDE, |square| {
+        study.error(study.throttles(square))[effort as usize].abs()
+    })
+}
+
+/// The error of the emitted inverse over the attainable set, up to its bound.
+pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
+    let title = ["Thrust that the inverse misses", "Torque that the inverse misses"];
+    let mut figure = over_efforts(study, title[effort as usize], [1.0, 1.0])
+        .sized(300.0, 260.0)
+        .hovering(["error-thrust", "error-torque"][effort as usize]);
+    let bound = error_bound(study, effort);
+    let (factor, prefix) = prefixed(bound);
+    let decades = |x: f64| libm::log10(x / bound).max(-DECADES);
+    let mut values = field.values().iter();
+    let logarithms = Field::new(field.side(), |_| values.next().map_or(-DECADES, |&x| decades(x)));
+    let range = [-DECADES, 0.0];
+    let painting = Painting {
+        scale: Scale::sequential(range),
+        range,
+        levels: 4,
+        bands: 3,
+        iso_curves: false,
+        ticks: Some(log_ticks(bound * factor)),
+        label: &format!(
+            "|error of {}| ({prefix}{})",
+            ["thrust", "torque"][effort as usize],
+            effort.unit()
+        ),
+    };
+    paint(&mut figure, &logarithms, &painting, |square| {
+        study.efforts(square)
+    });
+    outline(study, &mut figure);
+    figure
+}
+
+/// Decades of the error that are told apart below its bound.
+const DECADES: f64 = 2.0;
+
+/// Ticks at 1, 2 and 5 times powers of ten and at the bound itself, placed by their logarithm in
+/// units of `bound`.
+fn log_ticks(bound: f64) -> Vec<(f64, String)> {
+    let lowest = libm::floor(libm::log10(bound) - DECADES) as i32;
+    let round = (lowest..lowest + 4).flat_map(|exponent| {
+        let power = libm::pow(10.0, f64::from(exponent));
+        [1.0, 2.0, 5.0].map(|digit| digit * power)
+    });
+    let mut ticks: Vec<(f64, String)> = round
+        .map(|value| (libm::log10(value / bound), shortest(value)))
+        // Not on top of the bound's own tick.
+        .filter(|(place, _)| (-DECADES - 1e-9..-0.08).contains(place))
+        .collect();
+    ticks.push((0.0, rounded_up(bound)));
+    ticks
+}
+
+/// The border of the attainable set around a map over it.
+fn outline(study: &Study<'_>, figure: &mut Figure) {
+    let border: Vec<[f64; 2]> = study.border().iter().map(|&t| study.pair.efforts(t)).collect();
+    figure.outline("border", "", &border);
+}
+
+/// The proven bound of the error at the reference voltage, N or N m.
+pub fn error_bound(study: &Study<'_>, effort: Effort) -> f64 {
+    Summary::new(study.compiled).certificate.bound_at_reference[effort as usize]
+}
+
+/// The factor and the prefix with which `x` is a number of one to three digits.
+fn prefixed(x: f64) -> (f64, &'static str) {
+    [(1.0, ""), (1e3, "m"), (1e6, "\u{b5}")]
+        .into_iter()
+        .find(|(scale, _)| x * scale >= 1.0)
+        .unwrap_or((1e9, "n"))
+}

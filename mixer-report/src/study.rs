@@ -1,0 +1,158 @@
+//! An airframe under study: what all figures are drawn from.
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Axis;
+use mixer_compiler::model::PairMap;
+use mixer_rt::{Health, Wrench, tables::Inverse};
+
+use crate::number::round_half_digit;
+
+/// A compiled airframe with what its figures share.
+#[derive(Debug)]
+pub struct Study<'a> {
+    /// The airframe.
+    pub compiled: &'a Compiled,
+    /// Its forward map in f64.
+    pub pair: PairMap,
+    /// Total thrust of the comparisons at constant thrust, N.
+    pub thrust_n: f64,
+}
+
+/// What a mixer meets in flight.
+#[derive(Clone, Copy, Debug)]
+pub struct Condition {
+    /// Of the battery, V; any where the airframe ignores it.
+    pub voltage_v: f32,
+    /// Which rotors are out.
+    pub health: Health,
+}
+
+/// Share of the largest bare thrust that stands for the weight of a vehicle.
+const HOVER_SHARE: f64 = 0.4;
+
+impl<'a> Study<'a> {
+    /// A study at `thrust_n` N in all; without it at about 40 % of the ceiling, a round number.
+    pub fn new(compiled: &'a Compiled, thrust_n: Option<f64>) -> Self {
+        let airframe = &compiled.airframe;
+        Study {
+            compiled,
+            pair: PairMap::new(&airframe.pair, &airframe.throttle),
+            thrust_n: thrust_n
+                .unwrap_or_else(|| round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1]))),
+        }
+    }
+
+    /// Throttles `[u, l]` from `[s, t]` in the unit square.
+    pub fn throttles(&self, [s, t]: [f64; 2]) -> [f64; 2] {
+        let [low, high] = self.pair.range();
+        [s, t].map(|share| low + (high - low) * share)
+    }
+
+    /// Efforts `[f (N), Q (N m)]` from `[s, t]` in the unit square.
+    pub fn efforts(&self, square: [f64; 2]) -> [f64; 2] {
+        self.pair.efforts(self.throttles(square))
+    }
+
+    /// Throttles `[u, l]` that the emitted inverse gives for attainable `[f (N), Q (N m)]`; `None`
+    /// where they are not.
+    pub fn inverse(&self, efforts: [f64; 2]) -> Option<[f64; 2]> {
+        let tables = &self.compiled.tables;
+        let asked = efforts.map(|effort| effort as f32);
+        let found = (&tables.inverse)
+            .throttles(&tables.pair, &tables.throttle, asked)
+            .map(f64::from);
+        // Newton's method from there converges in the set; elsewhere it is stopped by the edge of
+        // the box.
+        let exact = (0..8).fold(found, |throttles, _| self.pair.newton(throttles, efforts));
+        let (given, scale) = (self.pair.efforts(exact), self.pair.scale());
+        let close = (0..2).all(|k| (given[k] - efforts[k]).abs() < 1e-9 * scale[k]);
+        close.then_some(found)
+    }
+
+    /// What the emitted inverse, run in f32 by `mixer-rt`, misses of the efforts at `throttles`,
+    /// signed, N and N m.
+    pub fn error(&self, throttles: [f64; 2]) -> [f64; 2] {
+        let tables = &self.compiled.tables;
+        let efforts = self.pair.efforts(throttles);
+        let asked = efforts.map(|effort| effort as f32);
+        let found = (&tables.inverse).throttles(&tables.pair, &tables.throttle, asked);
+        let given = self.pair.efforts(found.map(f64::from));
+        [given[0] - efforts[0], given[1] - efforts[1]]
+    }
+
+    /// The border of the attainable set at the reference voltage: throttles, closed.
+    pub fn border(&self) -> Vec<[f64; 2]> {
+        let mut border = self.pair.border(48);
+        border.extend(border.first().copied());
+        border
+    }
+
+    /// The voltages to show with k_f and k_Q: lowest, reference, highest; `None` where voltage has
+    /// no effect.
+    pub fn voltages(&self) -> Vec<(Option<f64>, [f64; 2])> {
+        let Some(voltage) = &self.compiled.airframe.voltage else {
+            return vec![(None, [1.0, 1.0])];
+        };
+        let mut volts = vec![voltage.range_v[0], voltage.reference_v, voltage.range_v[1]];
+        volts.dedup();
+        volts
+            .into_iter()
+            .map(|v| (Some(v), [voltage.thrust_factor(v), voltage.torque_factor(v)]))
+            .collect()
+    }
+
+    /// All rotors at the reference voltage.
+    pub fn reference(&self) -> Condition {
+        Condition {
+            voltage_v: self.compiled.airframe.reference_v() as f32,
+            health: Health::GOOD,
+        }
+    }
+
+    /// All rotors at the lowest voltage; `None` where voltage has no effect.
+    pub fn lowest(&self) -> Option<Condition> {
+        let voltage = self.compiled.airframe.voltage.as_ref()?;
+        Some(Condition {
+            voltage_v: voltage.range_v[0] as f32,
+            health: Health::GOOD,
+        })
+    }
+
+    /// Whether the airframe serves an axis.
+    pub fn serves(&self, axis: Axis) -> bool {
+        self.compiled.airframe.allocation.controls(axis)
+    }
+
+    /// The compiled mixer's throttles `[u, l]` of every unit for `[roll, pitch, yaw (N m), thrust
+    /// (N)]`, and whether all of it is delivered.
+    pub fn mix(&self, wrench: [f64; 4], condition: &Condition) -> (Vec<[f64; 2]>, bool) {
+        let tables = &self.compiled.tables;
+        let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
+        match tables.mix_with_health(&setpoint, condition.voltage_v, condition.health) {
+            Ok((throttle, _, saturation)) => {
+                let of = |channel: u8| {
+                    throttle
+                        .get(usize::from(channel))
+                        .map_or(f64::NAN, |&x| f64::from(x))
+                };
+                let throttles = tables.units.iter().map(|unit| unit.channels.map(of)).collect();
+                (throttles, !saturation.any_axis())
+            }
+            // No figure asks for what is not finite.
+            Err(_) => (vec![[f64::NAN; 2]; tables.units.len()], false),
+        }
+    }
+
+    /// The wrench `[roll, pitch, yaw (N m), thrust (N)]` of all units' efforts.
+    pub fn wrench(&self, efforts: &[[f64; 2]]) -> [f64; 4] {
+        let m = &self.compiled.effectiveness.matrix;
+        let n = efforts.len();
+        std::array::from_fn(|axis| {
+            efforts
+                .iter()
+                .enumerate()
+                .map(|(i, [f, q])| m[(axis, i)] * f + m[(axis, n + i)] * q)
+                .sum()
+        })
+    }
+}

@@ -1,0 +1,457 @@
+//! Tables of the page: summary, units, M and M+, the static comparison, the bench.
+
+use std::fmt::Write as _;
+
+use mixer_compiler::alternatives::Alternative;
+use mixer_compiler::hover::Hover;
+use mixer_compiler::power::LevelPower;
+use mixer_compiler::report::{Summary, rounded_up};
+
+use crate::bench::BenchPoints;
+use crate::comparison::{Answer, Comparison};
+use crate::effort::Effort;
+use crate::number::{escaped, fixed, shortest, significant};
+use crate::origin::Origin;
+use crate::study::Study;
+
+/// Rows of the comparison that the page and the command show of the whole sweep.
+const SHOWN_ROWS: usize = 9;
+
+/// A table: the caption, one header row, rows whose first cell is their name. Cells are markup
+/// already.
+pub fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> String {
+    let mut html = String::from("<div class=\"wide\"><table>");
+    let _ = write!(html, "<caption>{caption}</caption><thead><tr>");
+    for cell in header {
+        let _ = write!(html, "<th scope=\"col\">{cell}</th>");
+    }
+    html.push_str("</tr></thead>\n<tbody>\n");
+    for row in rows {
+        html.push_str("<tr>");
+        for (index, cell) in row.iter().enumerate() {
+            let _ = match index {
+                0 => write!(html, "<th scope=\"row\">{cell}</th>"),
+                _ => write!(html, "<td>{cell}</td>"),
+            };
+        }
+        html.push_str("</tr>\n");
+    }
+    html.push_str("</tbody></table></div>\n");
+    html
+}
+
+/// Names with values, which are markup already.
+pub fn facts_table<'a>(facts: impl IntoIterator<Item = &'a (&'a str, String)>) -> String {
+    let mut html = String::from("<table class=\"facts\"><tbody>\n");
+    for (name, value) in facts {
+        let _ = writeln!(html, "<tr><th scope=\"row\">{name}</th><td>{value}</td></tr>");
+    }
+    html.push_str("</tbody></table>\n");
+    html
+}
+
+/// Names with values: what `check` prints.
+pub fn summary(study: &Study<'_>, origin: &Origin) -> String {
+    let compiled = study.compiled;
+    let airframe = &compiled.airframe;
+    let summary = Summary::new(compiled);
+    let inverse = &airframe.inverse;
+    let facts = [
+        (
+            "Rotors",
+            format!("{} in {} coaxial units", summary.rotors, summary.units),
+        ),
+        (
+            "Served axes",
+            format!(
+                "{} (rank {}, condition of M {})",
+                summary.axes.join(", "),
+                summary.rank,
+                fixed(summary.condition, 2)
+            ),
+        ),
+        (
+            "Throttle",
+            format!(
+                "{:?} to {:?}; the map is proven invertible from an idle of {}",
+                airframe.throttle.min, airframe.throttle.max, summary.min_idle
+            ),
+        ),
+        (
+            "Inverse map",
+            format!(
+                "{}, {} bytes of tables",
+                escaped(&summary.evaluator_description),
+                summary.table_bytes
+            ),
+        ),
+        (
+            "Largest error of one unit",
+            format!(
+                "{} N, {} N m at every voltage, proven; allowed are {:?} N, {:?} N m",
+                rounded_up(summary.proven_thrust_n),
+                rounded_up(summary.proven_torque_nm),
+                inverse.thrust_tolerance_n,
+                inverse.torque_tolerance_nm
+            ),
+        ),
+        (
+            "Bare thrust",
+            format!(
+                "{} to {} N in all without torque, at the reference voltage",
+                fixed(f64::from(summary.thrust_range_n[0]), 1),
+                fixed(f64::from(summary.thrust_range_n[1]), 1)
+            ),
+        ),
+        (
+            "Voltage",
+            airframe
+                .voltage
+                .as_ref()
+                .map_or("no correction".to_owned(), |voltage| {
+                    format!(
+                        "{} to {} V, reference {} V",
+                        voltage.range_v[0], voltage.range_v[1], voltage.reference_v
+                    )
+                }),
+        ),
+    ];
+    let hover = summary.hover.iter().flat_map(hover);
+    let power = summary.power.iter().map(power);
+    let mut facts: Vec<_> = facts.into_iter().chain(hover).chain(power).collect();
+    let mut file = format!("<code>{}</code>", escaped(&compiled.source_name));
+    if let Some(hash) = &origin.sha256 {
+        let _ = write!(file, ", SHA-256 <code>{hash}</code>");
+    }
+    facts.push(("Airframe file", file));
+    facts.extend(origin.date.iter().map(|date| ("Date", date.clone())));
+    facts_table(&facts)
+}
+
+/// The vehicle in hover.
+fn hover(hover: &Hover) -> Vec<(&'static str, String)> {
+    let carried = (
+        "Vehicle",
+        format!(
+            "{} kg, {} N; the largest bare thrust is {} times that",
+            shortest(hover.mass_kg),
+            fixed(hover.weight_n, 1),
+            fixed(hover.thrust_over_weight, 2)
+        ),
+    );
+    let at = hover.at.iter().map(|at| {
+        let volts = at
+            .voltage_v
+            .map_or_else(String::new, |volts| format!("At {} V: ", shortest(volts)));
+        let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
+            return ("Hover", format!("{volts}the weight is not carried"));
+        };
+        let margins: Vec<String> = at
+            .margins
+            .iter()
+            .map(|margin| {
+                let [least, largest] = margin.torque_nm.map(|torque| fixed(torque, 2));
+                format!("{} {least} to {largest} N m", margin.axis)
+            })
+            .collect();
+        let throttles = format!("throttle {} upper, {} lower", fixed(upper, 3), fixed(lower, 3));
+        (
+            "Hover",
+            format!("{volts}{throttles}; left are {}", margins.join(", ")),
+        )
+    });
+    [carried].into_iter().chain(at).collect()
+}
+
+/// Electrical power in level flight.
+fn power(power: &LevelPower) -> (&'static str, String) {
+    let mut text = format!(
+        "{} W at {} N at the reference voltage",
+        fixed(power.power_w, 1),
+        fixed(power.thrust_n, 1)
+    );
+    if power.power_w != power.without_bias_w {
+        let _ = write!(
+            text,
+            "; without the power bias {} W. It saves {} %, which is {} % of flight time",
+            fixed(power.without_bias_w, 1),
+            fixed(power.saving_percent, 2),
+            fixed(power.flight_time_percent, 2)
+        );
+    }
+    ("Power", text)
+}
+
+/// Places, spins and outputs of the units.
+pub fn units(study: &Study<'_>) -> String {
+    let header = ["unit", "x (m)", "y (m)", "z (m)", "upper rotor", "lower rotor"];
+    let units = study.compiled.airframe.units.iter().enumerate();
+    let rows: Vec<Vec<String>> = units
+        .map(|(index, unit)| {
+            let [x, y, z] = unit.position_m.map(|x| fixed(x, 4));
+            let upper = format!("{}, output {}", unit.upper_spin.name(), unit.upper_channel);
+            let lower = format!(
+                "{}, output {}",
+                unit.upper_spin.reversed().name(),
+                unit.lower_channel
+            );
+            vec![index.to_string(), x, y, z, upper, lower]
+        })
+        .collect();
+    table(
+        "From the centre of gravity: x forward, y right, z down",
+        &header.map(str::to_owned),
+        &rows,
+    )
+}
+
+/// M and M+.
+pub fn matrices(study: &Study<'_>) -> String {
+    let effectiveness = &study.compiled.effectiveness;
+    let n = study.compiled.airframe.units.len();
+    let efforts: Vec<String> = ["f", "Q"]
+        .into_iter()
+        .flat_map(|letter| (0..n).map(move |i| format!("{letter}<sub>{i}</sub>")))
+        .collect();
+    let axes = ["roll", "pitch", "yaw", "thrust"].map(str::to_owned);
+    let header = |columns: &[String]| {
+        let mut header = vec![String::new()];
+        header.extend_from_slice(columns);
+        header
+    };
+    let rows = |names: &[String], value: &dyn Fn(usize, usize) -> f64, columns: usize| -> Vec<Vec<String>> {
+        let row = |(index, name): (usize, &String)| {
+            let values = (0..columns).map(|column| fixed(value(index, column), 4));
+            [name.clone()].into_iter().chain(values).collect()
+        };
+        names.iter().enumerate().map(row).collect()
+    };
+    let m = rows(&axes, &|row, column| effectiveness.matrix[(row, column)], 2 * n);
+    let m_plus = rows(
+        &efforts,
+        &|row, column| effectiveness.pseudo_inverse[(row, column)],
+        4,
+    );
+    let caption = "M: wrench (N m, N m, N m, N) = M &#183; efforts (f in N, Q in N m)";
+    table(caption, &header(&efforts), &m)
+        + &table(
+            "M<sup>+</sup>: least-norm efforts = M<sup>+</sup> &#183; wrench",
+            &header(&axes),
+            &m_plus,
+        )
+}
+
+/// One line of the comparison: columns of both mixers.
+struct Line {
+    cells: Vec<String>,
+    limited: bool,
+}
+
+/// Units by what both mixers make of them: those that always give the same as one another share
+/// their columns.
+fn alike(comparison: &Comparison) -> Vec<Vec<usize>> {
+    let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
+    let same = |a: usize, b: usize| {
+        comparison.rows.iter().all(|row| {
+            [&row.coaxial, &row.conventional].into_iter().all(|answer| {
+                let [a, b] = [answer.efforts[a], answer.efforts[b]].map(rounded);
+                a == b
+            })
+        })
+    };
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for unit in 0..units {
+        match groups.iter_mut().find(|group| same(group[0], unit)) {
+            Some(group) => group.push(unit),
+            None => groups.push(vec![unit]),
+        }
+    }
+    groups
+}
+
+/// A unit's efforts to the digits of the table.
+fn rounded([f, q]: [f64; 2]) -> [String; 2] {
+    [fixed(f, 2), fixed(q, 3)]
+}
+
+/// Columns of the comparison beside yaw and mixer.
+fn columns(comparison: &Comparison) -> Vec<String> {
+    let mut columns = vec!["yaw asked (N m)".to_owned(), "mixer".to_owned()];
+    for group in alike(comparison) {
+        let numbers: Vec<String> = group.iter().map(usize::to_string).collect();
+        let numbers = numbers.join(", ");
+        columns.extend([format!("f {numbers} (N)"), format!("Q {numbers} (N m)")]);
+    }
+    columns.extend(["yaw given (N m)", "thrust given (N)"].map(str::to_owned));
+    columns
+}
+
+fn lines(comparison: &Comparison) -> Vec<Line> {
+    let groups = alike(comparison);
+    let count = comparison.rows.len();
+    let mut lines = Vec::new();
+    let shown = SHOWN_ROWS.min(count).max(2);
+    for k in 0..shown {
+        let Some(row) = comparison.rows.get(k * count.saturating_sub(1) / (shown - 1)) else {
+            continue;
+        };
+        for (name, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
+            let Answer { efforts, wrench, .. } = answer;
+            let mut cells = vec![fixed(row.yaw_nm, 3), name.to_owned()];
+            cells.extend(groups.iter().flat_map(|group| rounded(efforts[group[0]])));
+            cells.extend([fixed(wrench[2], 3), fixed(wrench[3], 2)]);
+            lines.push(Line {
+                cells,
+                limited: !answer.within,
+            });
+        }
+    }
+    lines
+}
+
+/// The static comparison as HTML.
+pub fn comparison(comparison: &Comparison) -> String {
+    let caption = format!(
+        "{} N asked in all; conventional: \u{3ba} = {} m. An asterisk: a throttle is at its limit",
+        shortest(comparison.thrust_n),
+        significant(comparison.kappa_m, 4)
+    );
+    let rows: Vec<Vec<String>> = lines(comparison)
+        .into_iter()
+        .map(|mut line| {
+            if line.limited {
+                line.cells[1].push('*');
+            }
+            line.cells
+        })
+        .collect();
+    table(&caption, &columns(comparison), &rows)
+}
+
+/// The static comparison as text in columns.
+pub fn comparison_text(comparison: &Comparison) -> String {
+    let mut rows = vec![columns(comparison)];
+    rows.extend(lines(comparison).into_iter().map(|mut line| {
+        if line.limited {
+            line.cells[1].push('*');
+        }
+        line.cells
+    }));
+    let widths: Vec<usize> = (0..rows[0].len())
+        .map(|column| {
+            rows.iter()
+                .map(|row| row[column].chars().count())
+                .max()
+                .unwrap_or(0)
+        })
+        .collect();
+    let mut text = format!(
+        "{} N asked in all, reference voltage; conventional: kappa = {} m; *: a throttle is at its limit\n",
+        shortest(comparison.thrust_n),
+        significant(comparison.kappa_m, 4)
+    );
+    for row in rows {
+        let cells: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, width)| format!("{cell:>width$}"))
+            .collect();
+        let _ = writeln!(text, "{}", cells.join("  "));
+    }
+    // A terminal and its tools know the hyphen.
+    text.replace('\u{2212}', "-")
+}
+
+/// The evaluators to choose from.
+pub fn front(alternatives: &[Alternative]) -> String {
+    let header = [
+        "evaluator",
+        "",
+        "cycles",
+        "f proven (N)",
+        "observed",
+        "Q proven (N m)",
+        "observed",
+    ];
+    let rows: Vec<Vec<String>> = alternatives
+        .iter()
+        .map(|alternative| {
+            let proven = alternative.proven.map(|bound| {
+                if bound.is_finite() {
+                    rounded_up(bound)
+                } else {
+                    "none".to_owned()
+                }
+            });
+            let observed = alternative.observed.map(rounded_up);
+            let [[proven_f, proven_q], [observed_f, observed_q]] = [proven, observed];
+            vec![
+                escaped(&alternative.description),
+                alternative.verdict().to_owned(),
+                alternative.cost.map_or_else(String::new, |cost| cost.to_string()),
+                proven_f,
+                observed_f,
+                proven_q,
+                observed_q,
+            ]
+        })
+        .collect();
+    let caption = "Evaluators by about the cycles of one unit on a Cortex-M4F, with what one unit misses over the attainable set: proven at \
+                   every voltage, observed at the reference voltage";
+    table(caption, &header.map(str::to_owned), &rows)
+}
+
+/// Model against bench.
+pub fn bench(bench: &BenchPoints) -> String {
+    let header = ["", "rms", "largest", "R\u{b2}"].map(str::to_owned);
+    let rows: Vec<Vec<String>> = Effort::BOTH
+        .into_iter()
+        .filter_map(|effort| {
+            let misfit = bench.misfit(effort)?;
+            Some(vec![
+                effort.label().to_owned(),
+                significant(misfit.rms, 3),
+                significant(misfit.largest, 3),
+                fixed(misfit.r_squared, 5),
+            ])
+        })
+        .collect();
+    table("Model less measurement", &header, &rows)
+}
+
+/// The pair's coefficients, as the file has them.
+pub fn coefficients(study: &Study<'_>) -> String {
+    let pair = &study.compiled.airframe.pair;
+    let terms = pair.basis.exponents().iter();
+    let rows: Vec<Vec<String>> = terms
+        .zip(pair.thrust_n.iter().zip(&pair.torque_nm))
+        .map(|(&(i, j), (f, q))| {
+            let power = |letter: &str, exponent: u8| match exponent {
+                0 => String::new(),
+                1 => letter.to_owned(),
+                _ => format!("{letter}<sup>{exponent}</sup>"),
+            };
+            vec![power("u", i) + &power("l", j), exact(*f), exact(*q)]
+        })
+        .collect();
+    let caption = format!(
+        "The pair\u{2019}s coefficients, {}; its upper rotor turned {} on the bench",
+        pair.basis.name(),
+        pair.upper_spin.name()
+    );
+    table(
+        &caption,
+        &["term", "thrust f (N)", "torque Q (N m)"].map(str::to_owned),
+        &rows,
+    )
+}
+
+/// All digits, with a typographic minus.
+fn exact(x: f64) -> String {
+    format!("{x:?}").replace('-', "\u{2212}")
+}
+
+/// A table behind a line that opens it.
+pub fn folded(line: &str, table: &str) -> String {
+    format!("<details><summary>{line}</summary>\n{table}</details>\n")
+}
