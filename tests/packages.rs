@@ -8,7 +8,13 @@ use std::process::Command;
 use mixer_tests::root;
 
 /// In the order of publication: each uses only those before it.
-const PUBLISHED: [&str; 4] = ["mixer-rt", "mixer-compiler", "mixer-macros", "cargo-mixer"];
+const PUBLISHED: [&str; 5] = [
+    "mixer-rt",
+    "mixer-compiler",
+    "mixer-macros",
+    "mixer-identify",
+    "cargo-mixer",
+];
 
 fn manifest(package: &str) -> toml::Table {
     let path = root().join(package).join("Cargo.toml");
@@ -67,6 +73,35 @@ fn packages_use_those_published_before() {
         }
         for key in ["description", "documentation", "readme"] {
             assert!(manifest["package"].get(key).is_some(), "{package} has no {key}");
+        }
+    }
+}
+
+/// Firmware is built of the runtime and of the compiler, by the macro or by a build script: the
+/// solvers and tools of the command line are no part of that.
+#[test]
+fn firmware_builds_nothing_of_the_command_line() {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    for package in ["quickstart", "build-script"] {
+        let output = Command::new(&cargo)
+            .current_dir(root())
+            .args(["tree", "--locked", "--offline", "--edges", "normal,build"])
+            .args(["--prefix", "none", "--package", package])
+            .output()
+            .unwrap_or_else(|error| panic!("cargo tree: {error}"));
+        assert!(
+            output.status.success(),
+            "{package}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let tree = String::from_utf8_lossy(&output.stdout).into_owned();
+        let names: Vec<&str> = tree.lines().filter_map(|line| line.split(' ').next()).collect();
+        assert!(
+            names.contains(&"mixer-rt") && names.contains(&"mixer-compiler"),
+            "{tree}"
+        );
+        for absent in ["mixer-identify", "cargo-mixer", "faer", "clarabel", "csv", "clap"] {
+            assert!(!names.contains(&absent), "{package} builds {absent}:\n{tree}");
         }
     }
 }
