@@ -9,17 +9,18 @@ use std::process::Command;
 use mixer_tests::root;
 
 /// In the order of publication: each uses only those before it.
-const PUBLISHED: [&str; 6] = [
+const PUBLISHED: [&str; 7] = [
     "mixer-rt",
     "mixer-compiler",
     "mixer-macros",
     "isolated-rotors",
+    "mixer-identify",
     "mixer-report",
     "cargo-mixer",
 ];
 
-/// Most crates that a firmware user's build compiles for the host, those of this project included.
-const MOST_CRATES: usize = 30;
+/// Most crates of a firmware user's build, its own and this project's included.
+const MOST_CRATES: usize = 31;
 
 fn manifest(package: &str) -> toml::Table {
     let path = root().join(package).join("Cargo.toml");
@@ -82,6 +83,48 @@ fn packages_use_those_published_before() {
     }
 }
 
+/// Firmware is built of the runtime and of the compiler, by the macro or by a build script: the
+/// solvers and tools of the command line are no part of that.
+#[test]
+fn firmware_builds_nothing_of_the_command_line() {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    for package in ["quickstart", "build-script"] {
+        let output = Command::new(&cargo)
+            .current_dir(root())
+            .args(["tree", "--locked", "--offline", "--edges", "normal,build"])
+            .args(["--prefix", "none", "--package", package])
+            .output()
+            .unwrap_or_else(|error| panic!("cargo tree: {error}"));
+        assert!(
+            output.status.success(),
+            "{package}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let tree = String::from_utf8_lossy(&output.stdout).into_owned();
+        let names: BTreeSet<&str> = tree.lines().filter_map(|line| line.split(' ').next()).collect();
+        assert!(
+            names.contains(&"mixer-rt") && names.contains(&"mixer-compiler"),
+            "{tree}"
+        );
+        for absent in [
+            "mixer-identify",
+            "mixer-report",
+            "cargo-mixer",
+            "faer",
+            "clarabel",
+            "csv",
+            "clap",
+        ] {
+            assert!(!names.contains(&absent), "{package} builds {absent}:\n{tree}");
+        }
+        assert!(
+            names.len() <= MOST_CRATES,
+            "{package}: {}: {names:?}",
+            names.len()
+        );
+    }
+}
+
 /// Source files name no file above their package: it is not there once the package is unpacked.
 #[test]
 fn sources_stay_in_their_package() {
@@ -102,30 +145,4 @@ fn sources_stay_in_their_package() {
             }
         }
     }
-}
-
-/// A firmware user's build has the macro, the compiler and the runtime of this project, and few
-/// crates besides.
-#[test]
-fn firmware_builds_nothing_of_the_command_line() {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let arguments = "tree --locked --offline -p mixer-macros -e no-dev --prefix none --format {p}";
-    let output = Command::new(&cargo)
-        .current_dir(root())
-        .args(arguments.split(' '))
-        .output()
-        .unwrap_or_else(|error| panic!("cargo tree: {error}"));
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
-    let tree = String::from_utf8_lossy(&output.stdout);
-    let names: BTreeSet<&str> = tree
-        .lines()
-        .filter_map(|line| line.split_whitespace().next())
-        .collect();
-    let own: Vec<&str> = PUBLISHED
-        .into_iter()
-        .filter(|name| names.contains(name))
-        .collect();
-    assert_eq!(own, ["mixer-rt", "mixer-compiler", "mixer-macros"]);
-    assert!(names.len() <= MOST_CRATES, "{}: {names:?}", names.len());
 }

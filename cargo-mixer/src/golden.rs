@@ -18,11 +18,16 @@ pub mod vectors;
 
 /// Writes golden outputs of airframes, or compares them with those that were written
 ///
-/// Per airframe: NAME.rs (the generated Rust), NAME.report.txt, NAME.vectors.csv (setpoints with
-/// the bits of throttles, achieved wrench and saturation), NAME.rotors-out.csv (the same with
-/// rotors out) and NAME.vectors.rs (both as constants, for a test on the target). Keep the folder
-/// under version control and run the command with --check in your tests.
+/// Per airframe:
+///   NAME.rs              the generated Rust
+///   NAME.report.txt      its summary
+///   NAME.vectors.csv     setpoints with the bits of throttles, achieved wrench and saturation
+///   NAME.rotors-out.csv  the same with rotors out
+///   NAME.vectors.rs      both as constants, for a test on the target
+///
+/// Keep the folder under version control and run the command with --check in your tests.
 #[derive(clap::Args, Debug)]
+#[command(verbatim_doc_comment)]
 pub struct GoldenArgs {
     /// The airframe files
     #[arg(required = true, value_name = "AIRFRAME.toml")]

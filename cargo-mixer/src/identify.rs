@@ -1,53 +1,24 @@
 //! `cargo mixer identify`: from bench sweeps to the `[throttle]`, `[pair]` and `[voltage]` tables
 //! of an airframe file.
-//!
-//! files -> [`read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) -> [`voltage`]
-//! exponents -> [`pair`]: outliers ([`robust`]), choice of the basis ([`cross`]), least squares
-//! ([`fit`]), [`fold`], [`monotone`] -> [`fragment`], [`report`].
 
 use std::io::{Write as _, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::frame::FrameArgs;
 use clap::{Args, ValueEnum};
 use mixer_compiler::airframe::Basis;
+use mixer_identify::basis::ThrottleBox;
+use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
+use mixer_identify::header::{ByHand, ROLES, unknown_role};
+use mixer_identify::identified::Settings;
+use mixer_identify::read::Reading;
+use mixer_identify::sign::{SignChoice, SignPolicy};
+use mixer_identify::wishes::Wishes;
+use mixer_identify::{date, fragment, report};
 
-use self::basis::ThrottleBox;
-use self::bench::Preparation;
-use self::header::{ByHand, ROLES};
-use self::identified::{Settings, identify};
-use self::pair::Wishes;
-use self::read::Reading;
-use self::sign::{SignChoice, SignPolicy};
+use crate::bench_files::identify_with_runs;
+use crate::frame::FrameArgs;
 use crate::{output, print_error, print_note};
-
-pub mod alone;
-pub mod basis;
-pub mod bench;
-pub mod bernstein;
-pub mod cross;
-pub mod date;
-pub mod fit;
-pub mod fold;
-pub mod fragment;
-pub mod header;
-pub mod identified;
-pub mod monotone;
-pub mod pair;
-#[cfg(test)]
-mod paper;
-pub mod plateau;
-pub mod polynomial;
-pub mod power;
-pub mod read;
-pub mod refusal;
-pub mod report;
-pub mod robust;
-pub mod sign;
-pub mod text;
-pub mod units;
-pub mod voltage;
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
 ///
@@ -90,10 +61,10 @@ pub struct IdentifyArgs {
     pub pwm_range: Option<PulseRange>,
     /// A rotor at or below this throttle stands still: a start or stop row; a negative value keeps
     /// all rows.
-    #[arg(long, value_name = "THROTTLE", default_value_t = 0.005, value_parser = finite, allow_negative_numbers = true)]
+    #[arg(long, value_name = "THROTTLE", default_value_t = STOP_THROTTLE, value_parser = finite, allow_negative_numbers = true)]
     pub stop_throttle: f64,
     /// Part of each plateau of a streaming log that is dropped at its beginning, in [0, 1).
-    #[arg(long, value_name = "PART", default_value_t = 0.33, value_parser = part)]
+    #[arg(long, value_name = "PART", default_value_t = SETTLE, value_parser = part)]
     pub settle: f64,
     /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust,
     /// torque, upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage,
@@ -166,7 +137,6 @@ impl IdentifyArgs {
             swap: self.swap,
         };
         Settings {
-            alone: [self.lower_out.clone(), self.upper_out.clone()],
             reading: Reading {
                 by_hand,
                 pwm_range: self.pwm_range.map(|r| r.0),
@@ -216,7 +186,8 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     if let Some(path) = file {
         crate::file::not_there(path, args.force).map_err(print_error)?;
     }
-    let identified = identify(&args.files, &args.settings()).map_err(|refusals| {
+    let runs = [args.lower_out.as_deref(), args.upper_out.as_deref()];
+    let identified = identify_with_runs(&args.files, runs, &args.settings()).map_err(|refusals| {
         for refusal in refusals {
             print_error(refusal);
         }
@@ -250,7 +221,7 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     output(writeln!(stdout().lock(), "{out}"))?;
     match file {
         Some(path) if args.frame.is_some() => {
-            let status = crate::new::write(path, &fragment);
+            let status = crate::airframe_file::write(path, &fragment);
             if status != ExitCode::SUCCESS {
                 return Err(status);
             }
@@ -350,7 +321,7 @@ fn role(text: &str) -> Result<(String, String), String> {
         .ok_or_else(|| format!("{text:?} is not ROLE=VALUE"))?;
     match ROLES.iter().any(|(known, _)| *known == role) {
         true => Ok((role.to_string(), value.trim().to_string())),
-        false => Err(header::unknown_role(role).to_string()),
+        false => Err(unknown_role(role).to_string()),
     }
 }
 

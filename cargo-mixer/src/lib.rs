@@ -11,6 +11,9 @@ use std::{fs, io};
 use mixer_compiler::diagnostic::{Diagnostics, printable};
 use mixer_compiler::{Compiled, Source};
 
+mod airframe_file;
+pub mod arguments;
+pub mod bench_files;
 pub mod check;
 pub mod compare;
 pub mod expand;

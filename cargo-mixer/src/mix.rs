@@ -13,14 +13,13 @@ use crate::setpoints::{BadLine, HEADER, HeaderError, Setpoints};
 
 /// Mixes setpoints: CSV to CSV, from stdin to stdout row by row
 ///
-/// In:  a header and rows of roll_nm,pitch_nm,yaw_nm,thrust_n and, if there is one, voltage_v, in
-/// any order. Without
-///      voltage_v the reference voltage is taken.
+/// In:  a header and rows of roll_nm,pitch_nm,yaw_nm,thrust_n and, if there is one, voltage_v,
+///      in any order. Without voltage_v the reference voltage is taken.
 /// Out: throttle_0.., achieved_roll_nm, achieved_pitch_nm, achieved_yaw_nm, achieved_thrust_n,
-/// saturation.
-///      Numbers read back to the same bits (f32).
-///      saturation is a sum: 1 roll, 4 pitch, 16 yaw, 64 thrust is achieved below the setpoint; 2, 8, 32, 128 above
-///      it; 256 the voltage was outside the airframe's range and clamped into it.
+///      saturation. Numbers read back to the same bits (f32).
+///      saturation is a sum: 1 roll, 4 pitch, 16 yaw, 64 thrust is achieved below the setpoint;
+///      2, 8, 32, 128 above it; 256 the voltage was outside the airframe's range and clamped
+///      into it.
 ///      The throttle of a rotor that is out is 0.
 ///
 /// A bad row is reported with its line on stderr and left out; the exit status is then 1.

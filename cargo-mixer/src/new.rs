@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mixer_compiler::Source;
+use mixer_identify::fragment;
 
-use crate::Refusal;
+use crate::airframe_file;
 use crate::frame::FrameArgs;
-use crate::identify::fragment;
 
 /// Writes a complete, commented airframe file of a regular frame
 ///
@@ -44,35 +43,10 @@ pub fn run(args: &NewArgs) -> ExitCode {
         },
     };
     match args.frame.airframe(Some(&args.output), &tables, None) {
-        Ok(text) => write(&args.output, &text),
+        Ok(text) => airframe_file::write(&args.output, &text),
         Err(message) => {
             crate::print_error(message);
             ExitCode::from(2)
         }
-    }
-}
-
-/// Writes an airframe file that compiles; one that does not is refused with its faults, and nothing
-/// is written.
-pub(crate) fn write(path: &std::path::Path, text: &str) -> ExitCode {
-    let source = Source::new(path.display().to_string(), text);
-    match mixer_compiler::compile(&source) {
-        Err(faults) => return Refusal::Faulty(faults).report(),
-        Ok(compiled) if !compiled.warnings.is_empty() => crate::show(&compiled.warnings),
-        Ok(_) => {}
-    }
-    match crate::file::write(path, text) {
-        Ok(()) => {
-            crate::print_note(format_args!("wrote {}", path.display()));
-            let schema = path.with_file_name("airframe.schema.json");
-            if !schema.exists() {
-                crate::print_note(format_args!(
-                    "your editor completes and checks it with its schema beside it: cargo mixer schema -o {}",
-                    schema.display()
-                ));
-            }
-            ExitCode::SUCCESS
-        }
-        Err(message) => crate::print_error(message),
     }
 }

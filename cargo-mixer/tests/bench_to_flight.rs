@@ -10,9 +10,9 @@ mod maps;
 
 use std::path::Path;
 
-use cargo_mixer::identify::fragment;
-use cargo_mixer::identify::identified::Identified;
 use mixer_compiler::{Compiled, Source};
+use mixer_identify::fragment;
+use mixer_identify::identified::Identified;
 use mixer_rt::Wrench;
 
 /// The fragment completed to a single pair on a stand, as its comments say.

@@ -5,12 +5,12 @@ mod maps;
 
 use std::time::Instant;
 
-use cargo_mixer::identify::fragment;
-use cargo_mixer::identify::identified::Identified;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use mixer_compiler::{Compiled, Source};
+use mixer_identify::fragment;
+use mixer_identify::identified::Identified;
 
 /// The idle over the least one at which the map can be inverted.
 const IDLE: f64 = 1.03;

@@ -2,9 +2,9 @@
 
 mod maps;
 
-use cargo_mixer::identify::fragment;
-use cargo_mixer::identify::identified::Identified;
 use mixer_compiler::Source;
+use mixer_identify::fragment;
+use mixer_identify::identified::Identified;
 
 /// An X8 of the identified pair, arms by its thrust as frames have them.
 fn source(identified: &Identified) -> Source {

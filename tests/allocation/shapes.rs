@@ -5,11 +5,11 @@
 #[path = "../../cargo-mixer/tests/maps/mod.rs"]
 mod maps;
 
-use cargo_mixer::identify::fragment;
 use mixer_compiler::airframe::{Airframe, Spin};
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use mixer_compiler::{Compiled, Source};
+use mixer_identify::fragment;
 use mixer_rt::Health;
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, BENT, Options};

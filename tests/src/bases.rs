@@ -7,8 +7,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use cargo_mixer::bench_files::identify;
 use cargo_mixer::identify::IdentifyArgs;
-use cargo_mixer::identify::identified::identify;
 use clap::Parser;
 
 use crate::root;
@@ -103,7 +103,7 @@ fn compare(map: &str, file: &Path) -> Result<Vec<Row>, String> {
     let found = identify(&arguments.files, &arguments.settings())
         .map_err(|refusals| fault(refusals.iter().map(|refusal| refusal.to_string()).collect()))?;
     let pair = found.pair.ok_or_else(|| fault("no map of a pair".into()))?;
-    let row = |candidate: &cargo_mixer::identify::cross::Candidate| {
+    let row = |candidate: &mixer_identify::cross::Candidate| {
         let errors = candidate.errors?;
         Some(Row {
             map: map.to_owned(),

@@ -90,7 +90,7 @@ const TASKS: &[Task] = &[
             "--locked",
             "--release",
             "-p",
-            "flight",
+            "simulation",
             "--",
             "--errors",
             "tests/measurements/flight.csv",

@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use mixer_compiler::Compiled;
+use mixer_identify::bench::Kind;
+use mixer_identify::identified::Settings;
+use mixer_identify::refusal::Refusal;
 use mixer_report::bench::BenchPoints;
 
-use crate::identify::bench::{Kind, Preparation, prepare};
-use crate::identify::header::ByHand;
-use crate::identify::read::{Reading, read_file};
-use crate::identify::refusal::Refusal;
-use crate::identify::sign::{SignChoice, SignPolicy};
+use crate::bench_files::read_one;
 
 /// Reads bench files of the airframe's pair.
 ///
@@ -24,20 +23,7 @@ pub(super) fn read(compiled: &Compiled, files: &[PathBuf]) -> Result<BenchPoints
 }
 
 fn add(points: &mut BenchPoints, compiled: &Compiled, file: &Path) -> Result<(), Refusal> {
-    let reading = Reading {
-        by_hand: ByHand::default(),
-        pwm_range: None,
-    };
-    let how = Preparation {
-        stop_throttle: 0.005,
-        settle: 0.33,
-        signs: SignPolicy {
-            thrust: SignChoice::Auto,
-            torque: SignChoice::Auto,
-        },
-        date: None,
-    };
-    let bench = prepare(read_file(file, &reading, |file| file)?, &how)?;
+    let bench = read_one(file, &Settings::default())?;
     if bench.kind != Kind::Pair {
         return Err(Refusal::of(
             bench.file,

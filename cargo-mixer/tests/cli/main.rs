@@ -4,8 +4,6 @@ mod compare;
 mod golden;
 mod mix;
 mod new;
-#[path = "../../src/identify/paper.rs"]
-mod paper;
 mod shell;
 mod warnings;
 

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use super::paper::{THRUST, TORQUE};
 use super::*;
+use mixer_identify::paper::{THRUST, TORQUE};
 
 fn path(name: &str) -> String {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("new");

@@ -1,4 +1,4 @@
-//! Completions and manual pages.
+//! Completions, and output that is lost.
 
 use super::*;
 
@@ -14,21 +14,6 @@ fn shells_complete_every_command() {
     assert_status(&run(&["completions", "tcsh"]), 2);
 }
 
-#[test]
-fn manual_pages_are_there() {
-    let all = run(&["man"]);
-    assert_status(&all, 0);
-    assert!(
-        stdout(&all).contains(".TH cargo-mixer 1") && stdout(&all).contains("golden"),
-        "{}",
-        stdout(&all)
-    );
-    let check = run(&["man", "check"]);
-    assert_status(&check, 0);
-    assert!(stdout(&check).contains("deny\\-warnings"), "{}", stdout(&check));
-    assert_status(&run(&["man", "none"]), 2);
-}
-
 /// What cannot be written is no success; a reader that has seen enough is no fault.
 #[cfg(target_os = "linux")]
 #[test]
@@ -37,7 +22,7 @@ fn lost_output_is_an_error() {
     std::fs::write(&setpoints, "roll_nm,pitch_nm,yaw_nm,thrust_n\n0,0,0,30\n").unwrap();
     let mix = format!("mix {X8} {}", setpoints.display());
     let expand = format!("expand {X8}");
-    for command in [&mix, &expand, "man", "--help"] {
+    for command in [&mix, &expand, "schema", "--help"] {
         let command = format!("{} {command}", env!("CARGO_BIN_EXE_cargo-mixer"));
         let told = |script: String| {
             let output = Command::new("sh")

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use cargo_mixer::identify::bench::Bench;
-use cargo_mixer::identify::fragment;
-use cargo_mixer::identify::identified::with_runs;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Basis;
+use mixer_identify::bench::Bench;
+use mixer_identify::fragment;
+use mixer_identify::identified::with_runs;
 
 use crate::sweep::{Normal, bench, plain, rows, settings};
 

@@ -3,18 +3,18 @@
 
 use std::path::{Path, PathBuf};
 
-use cargo_mixer::identify::basis::ThrottleBox;
-use cargo_mixer::identify::bench::{self, Point};
-use cargo_mixer::identify::fit::Fit;
-use cargo_mixer::identify::power::Power;
-use cargo_mixer::identify::read;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
+use mixer_identify::basis::ThrottleBox;
+use mixer_identify::bench::{self, Point};
+use mixer_identify::fit::Fit;
+use mixer_identify::power::Power;
 
-use cargo_mixer::identify::fragment;
-use cargo_mixer::identify::identified::{Identified, from_benches, identify};
-use cargo_mixer::identify::pair::Pair;
-use cargo_mixer::identify::polynomial::Polynomial;
+use cargo_mixer::bench_files::{identify, identify_with_runs, read_file};
+use mixer_identify::fragment;
+use mixer_identify::identified::{Identified, from_benches};
+use mixer_identify::pair::Pair;
+use mixer_identify::polynomial::Polynomial;
 
 use crate::measured;
 use crate::sweep::settings;
@@ -385,7 +385,7 @@ fn thinned(count: usize) -> Vec<usize> {
 /// `identify` refuses so few.
 fn left_out(path: &Path, basis: Basis, count: usize) -> Option<[f64; 2]> {
     let settings = settings(Some(basis));
-    let log = read::read_file(path, &settings.reading, |file| file).expect("a log");
+    let log = read_file(path, &settings.reading).expect("a log");
     let whole = bench::prepare(log, &settings.preparation).expect("a bench");
     let level = |throttle: f64| (9.0 * (throttle - 0.07) / 0.88).round() as usize;
     let kept = thinned(count);
@@ -514,9 +514,10 @@ fn single_rotors_are_described_by_three_terms() {
     let mut from_forty = Vec::new();
     for ((upper, lower), (full, forty)) in pairs.into_iter().zip(maps) {
         for (map, of_the_pair) in [(full, &mut from_idle), (forty, &mut from_forty)] {
-            let mut settings = settings(Some(Basis::Cubic));
-            settings.alone = [Some(coaxial(upper)), Some(coaxial(lower))];
-            let found = identify(&[coaxial(map)], &settings).unwrap_or_else(|e| panic!("{map}: {}", e[0]));
+            let settings = settings(Some(Basis::Cubic));
+            let [upper, lower] = [upper, lower].map(coaxial);
+            let found = identify_with_runs(&[coaxial(map)], [Some(&upper), Some(&lower)], &settings)
+                .unwrap_or_else(|e| panic!("{map}: {}", e[0]));
             assert!(
                 !found
                     .warnings
@@ -550,9 +551,10 @@ fn single_rotors_are_described_by_three_terms() {
         let mut settings = settings(Some(Basis::Cubic));
         settings.wishes.voltage_exponent = Some([1.75; 2]);
         let mut of = |runs: [Option<PathBuf>; 2], from_map: bool| {
-            settings.alone = runs;
             settings.wishes.rotor_out_from_map = from_map;
-            let found = identify(&[coaxial(map)], &settings).unwrap_or_else(|e| panic!("{map}: {}", e[0]));
+            let runs = runs.each_ref().map(Option::as_deref);
+            let found = identify_with_runs(&[coaxial(map)], runs, &settings)
+                .unwrap_or_else(|e| panic!("{map}: {}", e[0]));
             let told = found.warnings.iter().any(|w| w.contains("--rotor-out-from-map"));
             assert_eq!(told, from_map, "{:?}", found.warnings);
             let pair = found.pair.expect("a pair");

@@ -1,6 +1,6 @@
 //! What a fit may hide: files of different pairs, throttles that were not measured.
 
-use cargo_mixer::identify::identified::{Identified, from_benches};
+use mixer_identify::identified::{Identified, from_benches};
 
 use crate::sweep::{Row, bench, plain, rows, settings};
 

@@ -1,17 +1,17 @@
 //! Known truth comes back, in every format.
 
-use cargo_mixer::identify::basis::ThrottleBox;
-use cargo_mixer::identify::bench::Bench;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
+use mixer_identify::basis::ThrottleBox;
+use mixer_identify::bench::Bench;
 
-use cargo_mixer::identify::fit::{Design, fit, student_t_975};
-use cargo_mixer::identify::identified::{Settings, from_benches};
-use cargo_mixer::identify::pair::Pair;
-use cargo_mixer::identify::polynomial::Polynomial;
+use mixer_identify::fit::{Design, fit, student_t_975};
+use mixer_identify::identified::{Settings, from_benches};
+use mixer_identify::pair::Pair;
+use mixer_identify::polynomial::Polynomial;
 
-use crate::paper::{THRUST, TORQUE};
 use crate::sweep::{FORMATS, Normal, bench, plain, rows, settings};
+use mixer_identify::paper::{THRUST, TORQUE};
 
 /// How many of the coefficients lie within their 95 % intervals.
 fn inside(estimate: &[f64], interval: &[f64], truth: &[f64]) -> usize {

@@ -8,8 +8,6 @@ mod doubts;
 mod formats;
 #[path = "../measured/mod.rs"]
 mod measured;
-#[path = "../../src/identify/paper.rs"]
-mod paper;
 mod plan;
 mod power;
 mod refusals;

@@ -2,11 +2,11 @@
 
 use std::fs;
 
-use cargo_mixer::identify::polynomial::Polynomial;
 use mixer_compiler::airframe::Basis;
+use mixer_identify::polynomial::Polynomial;
 
 use crate::command::{folder, text};
-use crate::paper::{THRUST, TORQUE};
+use mixer_identify::paper::{THRUST, TORQUE};
 
 fn run(folder: &std::path::Path, args: &[&str]) -> std::process::Output {
     std::process::Command::new(env!("CARGO_BIN_EXE_cargo-mixer"))

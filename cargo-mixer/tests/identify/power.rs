@@ -6,10 +6,10 @@
 use std::fmt::Write as _;
 
 use cargo_mixer::frame::{Frame, FrameArgs};
-use cargo_mixer::identify::fragment;
-use cargo_mixer::identify::identified::{Identified, from_benches};
-use cargo_mixer::identify::power::Power;
 use mixer_compiler::airframe::Basis;
+use mixer_identify::fragment;
+use mixer_identify::identified::{Identified, from_benches};
+use mixer_identify::power::Power;
 
 use crate::sweep::{Normal, bench, settings};
 

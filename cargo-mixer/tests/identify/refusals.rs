@@ -1,7 +1,7 @@
 //! What cannot serve is refused with its reason and with what would be needed.
 
-use cargo_mixer::identify::bench::Kind;
-use cargo_mixer::identify::identified::from_benches;
+use mixer_identify::bench::Kind;
+use mixer_identify::identified::from_benches;
 
 use crate::sweep::{Row, bench, plain, rows, settings};
 

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use cargo_mixer::frame::{Frame, FrameArgs};
-use cargo_mixer::identify::fragment;
 use mixer_compiler::tables::MixerTables;
 use mixer_compiler::{Compiled, Source};
+use mixer_identify::fragment;
 use mixer_rt::Wrench;
 
 use crate::bench_data::{data, fitted, full_range_maps};

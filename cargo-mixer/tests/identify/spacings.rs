@@ -3,10 +3,11 @@
 
 use std::path::Path;
 
-use cargo_mixer::identify::identified::identify;
-use cargo_mixer::identify::polynomial::Polynomial;
-use cargo_mixer::identify::{bench, read};
+use cargo_mixer::bench_files::identify;
+use cargo_mixer::bench_files::read_file;
 use mixer_compiler::airframe::Basis;
+use mixer_identify::bench;
+use mixer_identify::polynomial::Polynomial;
 
 use crate::bench_data::{coaxial, data};
 use crate::measured;
@@ -44,7 +45,7 @@ fn a_map_between_two_spacings_is_interpolated() {
             .collect()
     });
     let reading = settings(None);
-    let log = read::read_file(&coaxial(&data, BETWEEN.0), &reading.reading, |file| file).expect("a log");
+    let log = read_file(&coaxial(&data, BETWEEN.0), &reading.reading).expect("a log");
     let rows = bench::prepare(log, &reading.preparation).expect("a bench").points;
     let full = rows.iter().fold([0.0f64; 2], |full, row| {
         [full[0].max(row.thrust.abs()), full[1].max(row.torque.abs())]

@@ -2,18 +2,18 @@
 
 use std::fmt::Write as _;
 
-use cargo_mixer::identify::bench::{self, Bench, Preparation};
-use cargo_mixer::identify::header::ByHand;
-use cargo_mixer::identify::identified::Settings;
-use cargo_mixer::identify::pair::Wishes;
-use cargo_mixer::identify::polynomial::Polynomial;
-use cargo_mixer::identify::read::{self, Reading};
-use cargo_mixer::identify::refusal::Refusal;
-use cargo_mixer::identify::sign::{SignChoice, SignPolicy};
 use mixer_compiler::airframe::Basis;
+use mixer_identify::bench::{self, Bench, Preparation};
+use mixer_identify::header::ByHand;
+use mixer_identify::identified::Settings;
+use mixer_identify::polynomial::Polynomial;
+use mixer_identify::read::{self, Reading};
+use mixer_identify::refusal::Refusal;
+use mixer_identify::sign::{SignChoice, SignPolicy};
+use mixer_identify::wishes::Wishes;
 use mixer_setpoints::Random;
 
-use crate::paper::{THRUST, TORQUE};
+use mixer_identify::paper::{THRUST, TORQUE};
 
 /// Normal numbers from a seed, by Box and Muller.
 pub(crate) struct Normal(Random);
@@ -263,7 +263,6 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
             voltage_exponent: None,
             rotor_out_from_map: false,
         },
-        alone: [None, None],
     }
 }
 

@@ -1,12 +1,12 @@
 //! Maps at several voltages: exponents and the map at the reference voltage.
 
-use cargo_mixer::identify::bench::Bench;
-use cargo_mixer::identify::fragment;
-use cargo_mixer::identify::identified::from_benches;
 use mixer_compiler::airframe::Basis;
+use mixer_identify::bench::Bench;
+use mixer_identify::fragment;
+use mixer_identify::identified::from_benches;
 
-use crate::paper::{THRUST, TORQUE};
 use crate::sweep::{bench, plain, rows, settings};
+use mixer_identify::paper::{THRUST, TORQUE};
 
 /// The sweep at `volts`, sagging by `sag` V times the mean square of throttle, thrust following 1.7
 /// and torque 1.9.

@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use cargo_mixer::identify::identified::{Identified, identify};
-use cargo_mixer::identify::{IdentifyArgs, fragment};
+use cargo_mixer::bench_files::identify;
+use cargo_mixer::identify::IdentifyArgs;
 use clap::Parser;
+use mixer_identify::fragment;
+use mixer_identify::identified::Identified;
 
 /// The command's arguments, so that its defaults are tested.
 #[derive(Parser)]

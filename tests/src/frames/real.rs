@@ -3,10 +3,11 @@
 
 use std::path::Path;
 
-use cargo_mixer::identify::identified::identify;
-use cargo_mixer::identify::{IdentifyArgs, fragment};
+use cargo_mixer::bench_files::identify;
+use cargo_mixer::identify::IdentifyArgs;
 use clap::Parser;
 use mixer_compiler::Source;
+use mixer_identify::fragment;
 
 use super::compile_text;
 use super::pairs::Pair;

@@ -1,0 +1,270 @@
+//! Thrust and torque of one rotor alone, `[pair.lower_out]` and `[pair.upper_out]`, from runs in
+//! which the other one stands still.
+//!
+//! Model: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor that turns, for thrust and torque, by
+//! least squares (QR). Left out, a point would miss by e_i / (1 - h_i). The polynomials of the pair
+//! say the same at a throttle of zero, but are extrapolated there from the lowest throttle that was
+//! measured.
+
+use faer::Mat;
+
+use super::basis::ThrottleBox;
+use super::bench::{Bench, Kind, Point};
+use super::fit::{distinct_pairs, ten_digits};
+use super::pair::Pair;
+use super::polynomial::Polynomial;
+use super::refusal::Refusal;
+use super::rotor::{Alone, AloneFit, Turning};
+use super::voltage::Voltage;
+
+/// Distinct throttles that three terms take, to judge themselves as well.
+const FEWEST: usize = 6;
+/// Voltages of a run and of the map, as a ratio less 1, above which they belong together only by
+/// exponents.
+const OTHER_VOLTAGE: f64 = 0.03;
+/// Throttle by which a run may end inside the range that is commanded.
+const SHORT: f64 = 0.05;
+/// Throttles within this are one level of a map.
+const SAME_LEVEL: f64 = 0.005;
+/// Lowest measured throttle above which a rotor that stands still is far from what was measured.
+const LOW: f64 = 0.15;
+
+/// Identifies a rotor alone from its run.
+pub fn identify(
+    run: &Bench,
+    turning: Turning,
+    pair: &Pair,
+    voltage: Option<&Voltage>,
+    warnings: &mut Vec<String>,
+) -> Result<Alone, Refusal> {
+    let [flag, rotor, other] = turning.words();
+    let needed =
+        || format!("a run of the {rotor} rotor over all throttles with the {other} one standing still");
+    if run.kind == Kind::Pair {
+        return Err(Refusal::of(
+            &run.file,
+            format!("{flag}: both rotors turn in it"),
+            needed(),
+        ));
+    }
+    if run.turning.is_some_and(|found| found != turning) {
+        return Err(Refusal::of(
+            &run.file,
+            format!("{flag}: the {other} rotor turns in it, the {rotor} one stands still"),
+            needed(),
+        ));
+    }
+    let points = at_reference(run, turning, pair, voltage, warnings);
+    let x: Vec<f64> = points.iter().map(|p| p.u).collect();
+    let places: Vec<[f64; 2]> = x.iter().map(|&x| turning.throttles(x)).collect();
+    let distinct = distinct_pairs(&places);
+    if distinct < FEWEST || points.iter().any(|p| !p.torque.is_finite()) {
+        let reason = if distinct < FEWEST {
+            format!("{flag}: {distinct} distinct throttles, at least {FEWEST} are needed")
+        } else {
+            format!("{flag}: rows without torque")
+        };
+        return Err(Refusal::of(&run.file, reason, needed()));
+    }
+    let channel = |of: fn(&Point) -> f64, model: &[f64]| {
+        let y: Vec<f64> = points.iter().map(of).collect();
+        let model = Polynomial::of(pair.basis, model);
+        fit(&x, &y, |x| {
+            let [u, l] = turning.throttles(x);
+            model.at(u, l)
+        })
+    };
+    let (thrust_n, thrust) = channel(|p| p.thrust, &pair.thrust_n);
+    let (torque_nm, torque) = channel(|p| p.torque, &pair.torque_nm);
+    let measured = [
+        x.iter().copied().fold(f64::MAX, f64::min),
+        x.iter().copied().fold(f64::MIN, f64::max),
+    ];
+    let ThrottleBox { min, max } = pair.throttle;
+    if let Some(at) = falls(thrust_n, pair.throttle) {
+        return Err(Refusal::of(
+            &run.file,
+            format!("{flag}: the fitted thrust does not grow with the throttle at {at:.2}"),
+            needed(),
+        ));
+    }
+    if measured[0] > min + SHORT || measured[1] < max - SHORT {
+        warnings.push(format!(
+            "{flag} was measured from {:.2} to {:.2}, the pair is commanded from {min} to {max}: what is beyond is \
+             extrapolated",
+            measured[0], measured[1]
+        ));
+    }
+    Ok(Alone {
+        file: run.file.clone(),
+        thrust_n,
+        torque_nm,
+        thrust,
+        torque,
+        measured,
+        points: points.len(),
+        other_at: None,
+    })
+}
+
+/// Identifies a rotor alone from the rows of a map in which the other one turns at its lowest
+/// level. What that one gives there is taken off by the pair's polynomials, whose own difference
+/// from its lowest level to zero is small, while their values at zero are extrapolated.
+pub fn from_map(
+    benches: &[Bench],
+    turning: Turning,
+    pair: &Pair,
+    voltage: Option<&Voltage>,
+    warnings: &mut Vec<String>,
+) -> Result<Alone, Refusal> {
+    const FLAG: &str = "--rotor-out-from-map";
+    let [run_flag, rotor, other] = turning.words();
+    let own = |p: &Point| turning.in_order([p.u, p.l]);
+    let maps = || benches.iter().filter(|b| b.kind == Kind::Pair);
+    let level = maps()
+        .flat_map(|b| &b.points)
+        .map(|p| own(p)[1])
+        .fold(f64::MAX, f64::min);
+    let map = maps().find(|b| b.points.iter().any(|p| own(p)[1] == level));
+    let needed = || {
+        format!(
+            "a map in which the {other} rotor goes down to {LOW} or lower while the {rotor} one takes {FEWEST} throttles; or a \
+             run of the {rotor} rotor alone ({run_flag})"
+        )
+    };
+    let Some(map) = map.filter(|_| level <= LOW) else {
+        return Err(Refusal::of(
+            maps().map(|b| b.file.as_str()).collect::<Vec<_>>().join(", "),
+            format!("{FLAG}: the lowest throttle of the {other} rotor is {level:.2}"),
+            needed(),
+        ));
+    };
+    let models = [&pair.thrust_n, &pair.torque_nm].map(|of| Polynomial::of(pair.basis, of));
+    let of_other = |x: f64| {
+        let ([u, l], [u0, l0]) = (turning.in_order([x, level]), turning.throttles(x));
+        models.each_ref().map(|model| model.at(u, l) - model.at(u0, l0))
+    };
+    let points = map.points.iter().filter(|p| own(p)[1] <= level + SAME_LEVEL);
+    let points = points.map(|p| {
+        let [x, _] = own(p);
+        let [f, q] = of_other(x);
+        Point {
+            u: x,
+            l: 0.0,
+            thrust: p.thrust - f,
+            // As of a run, whose torque has no sign yet.
+            torque: turning.sign() * (p.torque - q),
+            ..*p
+        }
+    });
+    let run = Bench {
+        kind: Kind::SingleRotor,
+        turning: None,
+        points: points.collect(),
+        ..map.clone()
+    };
+    let alone = identify(&run, turning, pair, voltage, warnings)?;
+    let [f, _] = of_other(alone.measured[1]);
+    warnings.push(format!(
+        "{FLAG}: the {rotor} rotor alone is from rows of {} in which the {other} one turned at {level:.2}; what that gives, up to \
+         {:.1} % of thrust, is taken off by the pair's polynomials. On three real pairs this misses runs of the rotor alone by 1 to \
+         5 % of thrust and 1 to 6 % of torque: a run ({run_flag}) is truer",
+        map.file,
+        100.0 * f.abs() / alone.thrust.full_scale
+    ));
+    Ok(Alone {
+        other_at: Some(level),
+        ..alone
+    })
+}
+
+/// The run's points at the reference voltage, torque with the sign of the airframe file.
+fn at_reference(
+    run: &Bench,
+    turning: Turning,
+    pair: &Pair,
+    voltage: Option<&Voltage>,
+    warnings: &mut Vec<String>,
+) -> Vec<Point> {
+    let [flag, ..] = turning.words();
+    let volts: Vec<f64> = run
+        .points
+        .iter()
+        .map(|p| p.voltage)
+        .filter(|v| v.is_finite())
+        .collect();
+    let mean = volts.iter().sum::<f64>() / volts.len().max(1) as f64;
+    let complete = volts.len() == run.points.len() && !volts.is_empty();
+    let exponents = voltage.and_then(|v| Some([v.thrust.value()?, v.torque.value()?]));
+    let brought = match (pair.normalised_to_v, exponents) {
+        (Some(reference), Some(exponents)) if complete => Some((reference, exponents)),
+        _ => None,
+    };
+    if let (None, Some(of_pair), true) = (brought, pair.mean_v, complete)
+        && (mean / of_pair - 1.0).abs() > OTHER_VOLTAGE
+    {
+        warnings.push(format!(
+            "{flag} was run at {mean:.2} V, the map at {of_pair:.2} V: without exponents (--voltage-exponent) they are \
+             taken as one"
+        ));
+    }
+    let place = |p: &Point| {
+        let [by_f, by_q] = brought.map_or([1.0, 1.0], |(reference, exponents)| {
+            exponents.map(|e| libm::pow(p.voltage / reference, e))
+        });
+        Point {
+            thrust: p.thrust / by_f,
+            torque: turning.sign() * p.torque / by_q,
+            ..*p
+        }
+    };
+    run.points.iter().map(place).collect()
+}
+
+fn fit(x: &[f64], y: &[f64], of_the_pair: impl Fn(f64) -> f64) -> ([f64; 3], AloneFit) {
+    let qr = Mat::from_fn(x.len(), 3, |i, j| [x[i], x[i] * x[i], x[i] * x[i] * x[i]][j]).qr();
+    let (q, r) = (qr.compute_thin_Q(), qr.thin_R());
+    let z: Vec<f64> = (0..3)
+        .map(|k| y.iter().enumerate().map(|(i, y)| q[(i, k)] * y).sum())
+        .collect();
+    let a3 = z[2] / r[(2, 2)];
+    let a2 = (z[1] - r[(1, 2)] * a3) / r[(1, 1)];
+    let a1 = (z[0] - r[(0, 1)] * a2 - r[(0, 2)] * a3) / r[(0, 0)];
+    let coefficients = [a1, a2, a3].map(ten_digits);
+    let rms = |errors: &dyn Fn(usize) -> f64| {
+        ((0..y.len()).map(|i| errors(i) * errors(i)).sum::<f64>() / y.len() as f64).sqrt()
+    };
+    let missed = |i: usize| y[i] - ((a3 * x[i] + a2) * x[i] + a1) * x[i];
+    let leverage = |i: usize| (0..3).map(|k| q[(i, k)] * q[(i, k)]).sum::<f64>();
+    let statistics = AloneFit {
+        residual_rms: rms(&missed),
+        leave_one_out_rms: rms(&|i| missed(i) / (1.0 - leverage(i)).max(1e-12)),
+        of_the_pair_rms: rms(&|i| y[i] - of_the_pair(x[i])),
+        full_scale: y.iter().fold(0.0, |m, y| m.max(y.abs())),
+    };
+    (coefficients, statistics)
+}
+
+/// A throttle of the range at which a1 x + a2 x2 + a3 x3 does not grow.
+fn falls([a1, a2, a3]: [f64; 3], throttle: ThrottleBox) -> Option<f64> {
+    throttle
+        .grid(200)
+        .find(|x| (3.0 * a3 * x + 2.0 * a2) * x + a1 <= 0.0)
+}
+
+/// A warning that the map is extrapolated where a rotor is out; none where both rotors were run
+/// alone or it begins low.
+pub fn extrapolated(pair: &Pair) -> Option<String> {
+    let lowest = pair.measured[0][0].max(pair.measured[1][0]);
+    let missing: Vec<&str> = [(&pair.lower_out, "--lower-out"), (&pair.upper_out, "--upper-out")]
+        .into_iter()
+        .filter_map(|(alone, flag)| alone.is_none().then_some(flag))
+        .collect();
+    (lowest > LOW && !missing.is_empty()).then(|| {
+        format!(
+            "nothing was measured below a throttle of {lowest:.2}: with a rotor out the map is extrapolated to 0, on real \
+             maps by 5 to 15 % of thrust and 30 % of torque; runs of one rotor alone mend it ({})",
+            missing.join(", ")
+        )
+    })
+}

@@ -1,0 +1,224 @@
+//! Where the fitted map folds, and the least idle that avoids it.
+//!
+//! The mixer inverts (u, l) -> (f, Q). Where det J = f_u Q_l - f_l Q_u <= 0 two commands give one
+//! effort: the map folds. Whether it does over a box, and from which idle on it does not, is the
+//! compiler's proof of [`injectivity`], so that `check` accepts what is identified here. The
+//! regions of the report are drawn on a grid.
+
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::model::injectivity::{self, EnclosedPairMap};
+use serde::Serialize;
+
+use super::basis::ThrottleBox;
+use super::polynomial::Polynomial;
+
+/// The report on a map's fold.
+#[derive(Debug, Clone, Serialize)]
+pub struct Fold {
+    /// The box that was examined.
+    pub commanded: ThrottleBox,
+    /// Whether the map folds inside it: det J is not proven positive there.
+    pub folds: bool,
+    /// Whether the map is proven injective on it, which takes more than det J > 0: `check` refuses
+    /// a map that is not.
+    pub injective: bool,
+    /// Least det J on a grid of the box, N * N m per throttle squared.
+    pub least_det: f64,
+    /// Where, (u, l).
+    pub least_det_at: [f64; 2],
+    /// The connected parts of the box where det J <= 0, worst first; none narrower than half a
+    /// percent of the box.
+    pub regions: Vec<Region>,
+    /// The least idle of both rotors, at or above the box's, from which on the map is proven
+    /// injective; none if there is none below 0.9 of the box.
+    pub least_idle: Option<f64>,
+}
+
+/// A part of the box where the map folds.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Region {
+    /// Least and greatest u in it.
+    pub u: [f64; 2],
+    /// Least and greatest l in it.
+    pub l: [f64; 2],
+    /// Least det J in it.
+    pub least_det: f64,
+    /// Where, (u, l).
+    pub least_det_at: [f64; 2],
+}
+
+/// det J as a polynomial, of a thrust and a torque in this basis, with as many rows and columns as
+/// it can fill.
+pub fn determinant(basis: Basis, thrust: &Polynomial, torque: &Polynomial) -> Polynomial {
+    let det = thrust
+        .du()
+        .times(&torque.dl())
+        .plus(-1.0, &thrust.dl().times(&torque.du()));
+    det.resized(match basis {
+        Basis::Biquadratic => 3, // (1, 2) and (2, 1) multiplied
+        Basis::Cubic => 4,       // twice the total degree of a derivative
+        Basis::Quartic => 6,
+    })
+}
+
+/// The least idle of both rotors from the box's on, rounded up to 1e-5, from which on the map is
+/// proven injective; none if there is none below 0.9 of the box.
+pub fn least_idle(map: &EnclosedPairMap, throttle_box: ThrottleBox) -> Option<f64> {
+    let ThrottleBox { min, max } = throttle_box;
+    if map.prove_injective(throttle_box.into()).is_ok() {
+        return Some(min);
+    }
+    let idle = map.least_idle(max)?.max(min);
+    (idle <= min + 0.9 * (max - min)).then_some(idle)
+}
+
+/// An idle to command, in steps of 0.005: the first from `least` on that is itself proven to do up
+/// to `max`.
+pub fn round_idle(map: &EnclosedPairMap, least: f64, max: f64) -> Option<f64> {
+    const PER_UNIT: f64 = 200.0;
+    let first = (least * PER_UNIT - 1e-9).ceil();
+    (0..)
+        .map(|k| (first + f64::from(k)) / PER_UNIT)
+        .take_while(|min| *min < max)
+        .find(|&min| map.prove_injective(ThrottleBox { min, max }.into()).is_ok())
+}
+
+/// Steps of the grid on which regions are sought.
+const STEPS: usize = 200;
+
+/// Connected regions of values <= 0 on a square grid (u by rows), by flood fill.
+fn regions(grid: &[f64], mut values: Vec<f64>) -> Vec<Region> {
+    let n = grid.len();
+    let mut found = Vec::new();
+    for seed in 0..values.len() {
+        if values[seed] > 0.0 {
+            continue;
+        }
+        let [u, l] = [grid[seed / n], grid[seed % n]];
+        let mut region = Region {
+            u: [u, u],
+            l: [l, l],
+            least_det: values[seed],
+            least_det_at: [u, l],
+        };
+        let mut open = vec![seed];
+        while let Some(k) = open.pop() {
+            let value = std::mem::replace(&mut values[k], f64::INFINITY);
+            if value > 0.0 {
+                continue;
+            }
+            let (i, j) = (k / n, k % n);
+            let [u, l] = [grid[i], grid[j]];
+            region.u = [region.u[0].min(u), region.u[1].max(u)];
+            region.l = [region.l[0].min(l), region.l[1].max(l)];
+            if value < region.least_det {
+                (region.least_det, region.least_det_at) = (value, [u, l]);
+            }
+            let beside = [
+                (i > 0, k.wrapping_sub(n)),
+                (i + 1 < n, k + n),
+                (j > 0, k.wrapping_sub(1)),
+                (j + 1 < n, k + 1),
+            ];
+            open.extend(
+                beside
+                    .into_iter()
+                    .filter(|(inside, _)| *inside)
+                    .map(|(_, next)| next),
+            );
+        }
+        found.push(region);
+    }
+    found.sort_by(|a, b| a.least_det.total_cmp(&b.least_det));
+    found
+}
+
+/// The report for a map on a box.
+pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: ThrottleBox) -> Fold {
+    let map = EnclosedPairMap::of(basis, thrust, torque);
+    let proof = map.prove_injective(commanded.into());
+    let [thrust, torque] = [thrust, torque].map(|c| Polynomial::of(basis, c));
+    let det = determinant(basis, &thrust, &torque);
+    let grid: Vec<f64> = commanded.grid(STEPS).collect();
+    let values: Vec<f64> = grid
+        .iter()
+        .flat_map(|&u| grid.iter().map(move |&l| (u, l)))
+        .map(|(u, l)| det.at(u, l))
+        .collect();
+    let least = (0..values.len())
+        .min_by(|&a, &b| values[a].total_cmp(&values[b]))
+        .unwrap_or(0);
+    let place = |k: usize| [grid[k / grid.len()], grid[k % grid.len()]];
+    Fold {
+        commanded,
+        folds: !matches!(proof, Ok(_) | Err(injectivity::Fold::NotGlobal)),
+        injective: proof.is_ok(),
+        least_det: values[least],
+        least_det_at: place(least),
+        regions: regions(&grid, values),
+        least_idle: least_idle(&map, commanded),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paper::{THRUST, TORQUE};
+
+    #[test]
+    fn the_papers_model_folds_below_an_idle_of_0_08875() {
+        let b = Basis::Biquadratic;
+        let whole = ThrottleBox { min: 0.0, max: 1.0 };
+        let fold = examine(b, &THRUST, &TORQUE, whole);
+        assert!(fold.folds && fold.least_det < 0.0);
+        assert!(
+            (fold.least_idle.expect("an idle") - 0.08875).abs() < 1e-5,
+            "{:?}",
+            fold.least_idle
+        );
+        assert_eq!(fold.regions.len(), 1);
+        let Region { u, l, .. } = fold.regions[0];
+        assert!(
+            (u[1] - 0.089).abs() < 0.006 && (l[0] - 0.79).abs() < 0.01 && l[1] == 1.0,
+            "{u:?} {l:?}"
+        );
+        let map = EnclosedPairMap::of(b, &THRUST, &TORQUE);
+        let proven = |min: f64| map.prove_injective(ThrottleBox { min, max: 1.0 }.into()).is_ok();
+        assert!(proven(0.0888) && !proven(0.0887));
+        let idle = round_idle(&map, fold.least_idle.expect("an idle"), 1.0);
+        assert_eq!(idle, Some(0.09));
+        assert_eq!(
+            round_idle(&map, 0.05, 1.0),
+            Some(0.09),
+            "the idle itself is proven"
+        );
+    }
+
+    #[test]
+    fn a_positive_determinant_is_not_enough() {
+        // f = -u, Q = -l: det J = 1, but a thrust that falls with the throttle is no map that the
+        // compiler takes.
+        let minus = |term: &str| {
+            let names = Basis::Biquadratic.term_names();
+            names
+                .iter()
+                .map(|n| -f64::from(u8::from(n == term)))
+                .collect::<Vec<_>>()
+        };
+        let whole = ThrottleBox { min: 0.0, max: 1.0 };
+        let fold = examine(Basis::Biquadratic, &minus("u"), &minus("l"), whole);
+        assert!(!fold.folds && !fold.injective && fold.regions.is_empty());
+        assert_eq!((fold.least_det, fold.least_idle), (1.0, None));
+    }
+
+    #[test]
+    fn a_constant_map_and_nan_are_no_proof() {
+        let b = Basis::Biquadratic;
+        let whole = ThrottleBox { min: 0.1, max: 1.0 };
+        for (thrust, torque) in [([0.0; 8], [0.0; 8]), ([f64::NAN; 8], TORQUE), (THRUST, THRUST)] {
+            let fold = examine(b, &thrust, &torque, whole);
+            assert!(fold.folds && !fold.injective, "{thrust:?}");
+            assert_eq!(fold.least_idle, None);
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! The tables of an airframe file as TOML, with where they come from in comments.
+
+use std::fmt::Write as _;
+
+use super::fit::Fit;
+use super::identified::Identified;
+use super::pair::Pair;
+use super::power::Power;
+use super::voltage::{Exponent, Voltage};
+use super::wording::{alone_lines, exponent_line, least_power_lines, provenance, runs, wrapped};
+
+/// The fragment: `[throttle]` and `[pair]` where a pair was identified, `[voltage]` where its
+/// exponents are sound.
+pub fn text(identified: &Identified) -> String {
+    let mut out = format!("# Identified by {}.{INSTRUCTIONS}", identified.generator);
+    // Writing to a String cannot fail; the result is dropped.
+    let _ = write_tables(&mut out, identified);
+    out
+}
+
+/// The same for a file that has the rest of an airframe.
+pub fn tables(identified: &Identified) -> String {
+    let mut out = format!("# Identified by {}.", identified.generator);
+    let _ = write_tables(&mut out, identified);
+    out
+}
+
+/// What a user does with the tables alone.
+const INSTRUCTIONS: &str = " To make an airframe of it, add at the top
+#   name = \"my-airframe\"
+# and, for each pair of rotors, at the end
+#   [[unit]]
+#   position_m = [x, y, 0.0]    # forward, right, down
+#   upper_spin = \"cw\"           # seen from above
+#   channels = [upper, lower]   # outputs";
+
+/// Tables that [`text`] wrote, for a file that has the rest of an airframe.
+pub fn without_instructions(text: &str) -> String {
+    text.replacen(INSTRUCTIONS, "", 1)
+}
+
+fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
+    writeln!(out, "\n#\n# Data:")?;
+    for file in &id.files {
+        writeln!(out, "#   {}", file.file)?;
+        writeln!(out, "#     {}", provenance(file))?;
+    }
+    for warning in &id.warnings {
+        for (k, line) in wrapped(warning, 104).iter().enumerate() {
+            writeln!(out, "# {} {line}", if k == 0 { "!" } else { " " })?;
+        }
+    }
+    if let Some(pair) = &id.pair {
+        write_pair(out, pair)?;
+    }
+    for (turning, alone) in id.pair.iter().flat_map(runs) {
+        writeln!(out)?;
+        for line in alone_lines(alone).iter().flat_map(|line| wrapped(line, 104)) {
+            writeln!(out, "# {line}")?;
+        }
+        writeln!(
+            out,
+            "[pair.{}]\nthrust_n = {:?}\ntorque_nm = {:?}",
+            turning.key(),
+            alone.thrust_n,
+            alone.torque_nm
+        )?;
+    }
+    if let Some(Power::Identified(found)) = &id.power {
+        writeln!(out, "\n# Least power:")?;
+        for line in least_power_lines(found) {
+            for line in wrapped(&line, 104) {
+                writeln!(out, "#   {line}")?;
+            }
+        }
+        match &found.power_w {
+            Some(power_w) => writeln!(out, "[pair.power]\npower_w = {power_w:?}")?,
+            None => writeln!(
+                out,
+                "#   No [pair.power]: the fit is not positive, or does not grow, over the throttles to command."
+            )?,
+        }
+    }
+    if let Some(voltage) = &id.voltage {
+        write_voltage(out, voltage, id.reference_v, id.pair.is_some())?;
+    } else {
+        writeln!(
+            out,
+            "\n# No [voltage]: no file has a voltage column. The mixer takes k = 1 at any voltage."
+        )?;
+    }
+    Ok(())
+}
+
+fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
+    writeln!(out, "\n[throttle]")?;
+    let fold = &pair.fold;
+    let what = if fold.folds {
+        "folds"
+    } else {
+        "is not proven injective"
+    };
+    match (fold.injective, &pair.monotone, fold.least_idle) {
+        (false, None, Some(idle)) => writeln!(out, "# The map {what} below an idle of {idle:.4}.")?,
+        (false, Some(_), _) => writeln!(out, "# Fitted under det J > 0: the free fit {what} in this box.")?,
+        _ => {}
+    }
+    writeln!(out, "min = {:?}", pair.throttle.min)?;
+    writeln!(out, "max = {:?}", pair.throttle.max)?;
+
+    writeln!(out)?;
+    if pair.outliers_left_out {
+        for o in &pair.outliers {
+            writeln!(out, "# left out, as it stands out: {}:{}", o.file, o.line)?;
+        }
+    }
+    for (name, unit, fit) in [("thrust", "N", &pair.thrust), ("torque", "N m", &pair.torque)] {
+        let percent = |x: f64| 100.0 * x / fit.full_scale;
+        writeln!(
+            out,
+            "# {name}: R2 {:.2} %, residual {:.3e} {unit} rms, {:.3e} at most\n\
+             #   leave-one-out {:.3e} {unit} rms, {:.2} % of the greatest value",
+            100.0 * fit.r2,
+            fit.residual_rms,
+            fit.residual_max,
+            fit.leave_one_out_rms,
+            percent(fit.leave_one_out_rms)
+        )?;
+    }
+    writeln!(
+        out,
+        "# {} points, condition number {:.0}; behind each coefficient its 95 % interval",
+        pair.thrust.points, pair.thrust.condition_number
+    )?;
+    if let Some(cost) = &pair.monotone {
+        writeln!(
+            out,
+            "# without the constraint det J > 0: {:.3e} N rms and {:.3e} N m rms",
+            cost.free_thrust_rms, cost.free_torque_rms
+        )?;
+    }
+    writeln!(
+        out,
+        "# Torque is positive where the lower rotor outweighs the upper, which is clockwise on the"
+    )?;
+    writeln!(
+        out,
+        "# airframe for an upper rotor that turns clockwise, and the mirror image for the other."
+    )?;
+    writeln!(out, "[pair]\nbasis = \"{}\"", pair.basis.name())?;
+    coefficients(out, "thrust_n", &pair.terms, &pair.thrust)?;
+    coefficients(out, "torque_nm", &pair.terms, &pair.torque)?;
+    writeln!(out, "upper_spin = \"{}\"", pair.upper_spin)
+}
+
+fn coefficients(out: &mut String, key: &str, terms: &[String], fit: &Fit) -> std::fmt::Result {
+    writeln!(out, "{key} = [")?;
+    for ((c, ci), term) in fit.coefficients.iter().zip(&fit.ci95).zip(terms) {
+        writeln!(out, "    {:<18}  # {term:<4} +- {ci:.3e}", format!("{c:?},"))?;
+    }
+    writeln!(out, "]")
+}
+
+/// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one
+/// exponent only, or without the voltage of the map, it is written as a comment, for the user to
+/// complete.
+fn write_voltage(
+    out: &mut String,
+    voltage: &Voltage,
+    reference: Option<f64>,
+    beside_pair: bool,
+) -> std::fmt::Result {
+    // Outwards to hundredths, and around the reference.
+    let [low, high] = voltage.range_v;
+    let low = (100.0 * reference.map_or(low, |v| v.min(low))).floor() / 100.0;
+    let high = (100.0 * reference.map_or(high, |v| v.max(high))).ceil() / 100.0;
+    let at = reference.map_or("?".to_string(), |v| format!("{v:?}"));
+    writeln!(out)?;
+    let (thrust, torque) = (voltage.thrust.value(), voltage.torque.value());
+    if thrust.is_none() && torque.is_none() {
+        writeln!(
+            out,
+            "# No [voltage]: these files give no exponents, so that the mixer takes k = 1 at any voltage."
+        )?;
+        writeln!(
+            out,
+            "# The map holds at about {at} V (rows from {low:.2} to {high:.2} V)."
+        )?;
+    }
+    for (name, exponent) in voltage.channels() {
+        let told = match exponent {
+            Exponent::Identified(e) => exponent_line(e),
+            Exponent::Refused { reason, .. } => format!("no exponent: {reason}"),
+            Exponent::Declared { exponent, .. } => {
+                format!("exponent {exponent}, declared by --voltage-exponent")
+            }
+            Exponent::NotMeasured => {
+                "not measured, no file has its column. Thrust and torque both follow the square of rotor speed, so \
+                 that the other's exponent is the usual stand-in; it is for you to decide."
+                    .to_string()
+            }
+        };
+        for (k, line) in wrapped(&format!("{name}: {told}"), 104).iter().enumerate() {
+            writeln!(out, "# {}{line}", if k == 0 { "" } else { "  " })?;
+        }
+    }
+    if thrust.is_none() && torque.is_none() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "# The voltage of the flight must be measured where the bench's was: at the same point of the wiring, under\n\
+         # load. Behind other leads, or at no load, k is wrong by what the voltage drops in between."
+    )?;
+    let complete = thrust.is_some() && torque.is_some() && reference.is_some();
+    let mark = if beside_pair && !complete { "# " } else { "" };
+    writeln!(
+        out,
+        "{mark}[voltage]\n{mark}reference_v = {at}\n{mark}range_v = [{low:?}, {high:?}]"
+    )?;
+    for (name, exponent) in [("thrust", thrust), ("torque", torque)] {
+        match exponent {
+            Some(e) => writeln!(out, "{mark}{name}_exponent = {:?}", thousandths(e))?,
+            None => writeln!(out, "# {name}_exponent = ?")?,
+        }
+    }
+    Ok(())
+}
+
+fn thousandths(x: f64) -> f64 {
+    (1000.0 * x).round() / 1000.0
+}

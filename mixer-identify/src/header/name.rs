@@ -1,0 +1,153 @@
+//! Header names taken apart: prefix, text, unit; what they measure and on which rotor.
+
+use crate::units::{self, Quantity};
+
+/// A header name taken apart.
+pub(super) struct Name {
+    pub(super) raw: String,
+    /// Text before " - ", spelled.
+    prefix: Option<String>,
+    /// The rest without its unit, spelled.
+    pub(super) text: String,
+    pub(super) unit: Option<String>,
+}
+
+/// Words that make a column something other than what its `thrust` or `torque` suggests.
+const OTHERS: [&str; 11] = [
+    "efficiency",
+    "power ",
+    "speed",
+    "rpm",
+    "servo",
+    "centre",
+    "center",
+    "temp",
+    "vibration",
+    "offset",
+    "std",
+];
+
+impl Name {
+    pub(super) fn new(raw: &str) -> Self {
+        let raw = raw.trim().to_string();
+        let spelled = units::spelled(&raw);
+        let (prefix, rest) = match spelled.rsplit_once(" - ") {
+            Some((prefix, rest)) => (Some(prefix.to_string()), rest.to_string()),
+            None => (None, spelled),
+        };
+        let (text, unit) = split_unit(&rest);
+        Self {
+            raw,
+            prefix,
+            text,
+            unit,
+        }
+    }
+
+    pub(super) fn words(&self) -> impl Iterator<Item = &str> {
+        self.text.split([' ', '(', ')']).filter(|w| !w.is_empty())
+    }
+
+    pub(super) fn quantity(&self) -> Option<Quantity> {
+        let padded = format!("{} ", self.text);
+        if OTHERS.iter().any(|other| padded.contains(other)) {
+            return None;
+        }
+        let word = |w: &str| self.words().any(|x| x == w);
+        if word("esc") || word("pwm") || word("throttle") || matches!(self.text.as_str(), "upper" | "lower") {
+            Some(Quantity::Throttle)
+        } else if word("thrust") {
+            Some(Quantity::Thrust)
+        } else if word("torque") {
+            Some(Quantity::Torque)
+        } else if word("voltage") {
+            Some(Quantity::Voltage)
+        } else if word("time") {
+            Some(Quantity::Time)
+        } else if word("current") {
+            Some(Quantity::Current)
+        } else {
+            None
+        }
+    }
+
+    pub(super) fn says_upper_or_lower(&self) -> bool {
+        let both = self.prefix.iter().flat_map(|p| p.split(' ')).chain(self.words());
+        both.into_iter()
+            .any(|w| matches!(w, "upper" | "lower" | "top" | "bottom"))
+    }
+
+    /// 0 or 1 for a column of one rotor, nothing for the whole.
+    pub(super) fn side(&self, prefixes: &[&str]) -> Option<usize> {
+        let of_word = |w: &str| match w {
+            "upper" | "top" | "left" | "a" => Some(0),
+            "lower" | "bottom" | "right" | "b" => Some(1),
+            _ => None,
+        };
+        if let Some(side) = self
+            .words()
+            .chain(self.prefix.iter().flat_map(|p| p.split(' ')))
+            .find_map(of_word)
+        {
+            return Some(side);
+        }
+        let numbered = self.words().find_map(|w| match w {
+            "1" => Some(0),
+            "2" => Some(1),
+            _ => None,
+        });
+        let prefixed = || match prefixes {
+            [_] => None,
+            _ => prefixes.iter().position(|p| Some(*p) == self.prefix.as_deref()),
+        };
+        numbered.or_else(prefixed)
+    }
+}
+
+/// Prefixes of the columns that matter, in order of appearance.
+pub(super) fn distinct_prefixes(names: &[Name]) -> Vec<&str> {
+    let mut prefixes: Vec<&str> = Vec::new();
+    for name in names
+        .iter()
+        .filter(|n| !matches!(n.quantity(), None | Some(Quantity::Time | Quantity::Current)))
+    {
+        if let Some(prefix) = name.prefix.as_deref().filter(|p| !prefixes.contains(p)) {
+            prefixes.push(prefix);
+        }
+    }
+    prefixes
+}
+
+/// Splits `force fz (thrust) (n)` into its text and the unit in its last brackets, `thrust n` (from
+/// `thrust_n`) into text and suffix.
+fn split_unit(text: &str) -> (String, Option<String>) {
+    for (open, close) in [('(', ')'), ('[', ']')] {
+        if let (Some(inner), Some(start)) = (text.strip_suffix(close), text.rfind(open)) {
+            return (
+                text[..start].trim().to_string(),
+                Some(inner[start + 1..].trim().to_string()),
+            );
+        }
+    }
+    if let Some((rest, last)) = text.rsplit_once(' ') {
+        let known = [
+            Quantity::Thrust,
+            Quantity::Torque,
+            Quantity::Voltage,
+            Quantity::Time,
+            Quantity::Throttle,
+        ];
+        // The A of amperes is also a side: it is a unit behind a current alone.
+        if rest.contains("current") && suffix_of(Quantity::Current, last) {
+            return (rest.to_string(), Some(last.to_string()));
+        }
+        if rest.contains(|c: char| c.is_alphabetic()) && known.iter().any(|&q| suffix_of(q, last)) {
+            return (rest.to_string(), Some(last.to_string()));
+        }
+    }
+    (text.to_string(), None)
+}
+
+fn suffix_of(quantity: Quantity, suffix: &str) -> bool {
+    !suffix.chars().any(|c| c.is_ascii_digit()) && suffix != "pwm" && units::scale(quantity, suffix).is_some()
+}

@@ -1,0 +1,341 @@
+//! From bench files to what was identified.
+
+use serde::Serialize;
+
+use super::alone;
+use super::bench::{Bench, Kind, Preparation};
+use super::fit::hundredths;
+use super::pair::{self, Pair};
+use super::power::{self, Power};
+use super::read::Reading;
+use super::refusal::Refusal;
+use super::rotor::Turning;
+use super::voltage::{self, Exponent, PLAUSIBLE, Voltage};
+use super::wishes::Wishes;
+
+/// Everything that decides an identification, besides the files.
+#[derive(Debug, Clone, Default)]
+pub struct Settings {
+    /// How files are read.
+    pub reading: Reading,
+    /// How rows become points.
+    pub preparation: Preparation,
+    /// How points are fitted.
+    pub wishes: Wishes,
+}
+
+/// All that `--json` prints.
+#[derive(Debug, Clone, Serialize)]
+pub struct Identified {
+    /// Program and version.
+    pub generator: String,
+    /// The map; none where all files are of single rotors.
+    pub pair: Option<Pair>,
+    /// The dependence on voltage; none where no file has a voltage.
+    pub voltage: Option<Voltage>,
+    /// The torque of least power; none where all files are of single rotors.
+    pub power: Option<Power>,
+    /// What was read.
+    pub files: Vec<Bench>,
+    /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was
+    /// given.
+    pub reference_v: Option<f64>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+impl Identified {
+    /// The torque of least power, N m per N, where power is saved by one.
+    pub fn power_bias(&self) -> Option<f64> {
+        match &self.power {
+            Some(Power::Identified(found)) => Some(found.bias_nm_per_n),
+            _ => None,
+        }
+    }
+}
+
+/// Identifies what benches hold that have been read.
+pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, Refusal> {
+    with_runs(benches, [None, None], wishes)
+}
+
+/// [`from_benches`] with runs of the upper and of the lower rotor alone.
+pub fn with_runs(
+    benches: Vec<Bench>,
+    runs: [Option<Bench>; 2],
+    wishes: &Wishes,
+) -> Result<Identified, Refusal> {
+    distinct_names(&benches)?;
+    let has = |kind| benches.iter().any(|b| b.kind == kind);
+    let voltage = dependence(&benches);
+    let voltage = match wishes.voltage_exponent {
+        Some(exponents) => Some(declared(voltage, exponents, &benches)?),
+        None => voltage,
+    };
+    let mut warnings = Vec::new();
+    let pair = if has(Kind::Pair) {
+        let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;
+        warnings.extend(pair.warnings.clone());
+        Some(with_alone(
+            pair,
+            &benches,
+            &runs,
+            voltage.as_ref(),
+            wishes,
+            &mut warnings,
+        )?)
+    } else {
+        only_single(&benches, voltage.as_ref())?;
+        no_runs(&runs)?;
+        None
+    };
+    if let Some(v) = &voltage {
+        warnings.extend(voltage_warnings(v));
+        warnings.extend(sag(&benches, v));
+    }
+    if has(Kind::Pair) && has(Kind::SingleRotor) {
+        warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
+    }
+    let reference_v = reference(pair.as_ref(), voltage.as_ref(), wishes.reference_v, &mut warnings);
+    let power = pair
+        .as_ref()
+        .map(|pair| power::examine(&benches, pair, voltage.as_ref()));
+    Ok(Identified {
+        generator: format!("cargo mixer identify {}", env!("CARGO_PKG_VERSION")),
+        pair,
+        voltage,
+        power,
+        files: benches,
+        reference_v,
+        warnings,
+    })
+}
+
+/// The pair with its rotors alone: from their runs, or from rows of the map where the user wishes
+/// it.
+fn with_alone(
+    mut pair: Pair,
+    benches: &[Bench],
+    [upper, lower]: &[Option<Bench>; 2],
+    voltage: Option<&Voltage>,
+    wishes: &Wishes,
+    warnings: &mut Vec<String>,
+) -> Result<Pair, Refusal> {
+    let mut alone = |run: &Option<Bench>, turning, pair: &Pair| {
+        let run = run.as_ref();
+        run.map(|run| alone::identify(run, turning, pair, voltage, warnings))
+            .transpose()
+    };
+    pair.lower_out = alone(upper, Turning::Upper, &pair)?;
+    pair.upper_out = alone(lower, Turning::Lower, &pair)?;
+    if wishes.rotor_out_from_map {
+        let mut from_map =
+            |turning, pair: &Pair| alone::from_map(benches, turning, pair, voltage, warnings).map(Some);
+        if pair.lower_out.is_none() {
+            pair.lower_out = from_map(Turning::Upper, &pair)?;
+        }
+        if pair.upper_out.is_none() {
+            pair.upper_out = from_map(Turning::Lower, &pair)?;
+        }
+    }
+    warnings.extend(alone::extrapolated(&pair));
+    Ok(pair)
+}
+
+/// Refuses runs of one rotor alone where there is no map of a pair.
+fn no_runs(runs: &[Option<Bench>; 2]) -> Result<(), Refusal> {
+    match runs.iter().flatten().next() {
+        None => Ok(()),
+        Some(run) => Err(Refusal::of(
+            &run.file,
+            "a run of one rotor alone belongs to a map of the pair, and there is none",
+            "the map of the pair as BENCH.csv",
+        )),
+    }
+}
+
+/// The reference voltage of the fragment, V: the user's, or the mean of the map's rows.
+fn reference(
+    pair: Option<&Pair>,
+    voltage: Option<&Voltage>,
+    wished: Option<f64>,
+    warnings: &mut Vec<String>,
+) -> Option<f64> {
+    let mean = match pair {
+        Some(pair) => pair.normalised_to_v.or(pair.mean_v),
+        None => voltage.map(|v| v.mean_v),
+    };
+    let reference_v = wished.or(mean.map(hundredths));
+    if pair.is_some() && reference_v.is_none() && voltage.is_some() {
+        warnings.push("the map's own voltage is not known: give --reference-voltage for [voltage]".into());
+    }
+    if let (Some(reference), Some(v)) = (wished, voltage)
+        && !(v.range_v[0]..=v.range_v[1]).contains(&reference)
+    {
+        let [low, high] = v.range_v;
+        let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
+        warnings.push(told);
+    }
+    reference_v
+}
+
+/// Rows are named by file name and line, so names must differ.
+fn distinct_names(benches: &[Bench]) -> Result<(), Refusal> {
+    let twice = benches
+        .iter()
+        .enumerate()
+        .find(|(i, b)| benches[..*i].iter().any(|a| a.file == b.file));
+    match twice {
+        None => Ok(()),
+        Some((_, b)) => Err(Refusal::of(
+            &b.file,
+            "the name is given twice",
+            "each file once, under its own name",
+        )),
+    }
+}
+
+/// The exponents from the pair's own maps if these tell any, else from single rotors.
+fn dependence(benches: &[Bench]) -> Option<Voltage> {
+    let pair = voltage::examine(benches, Kind::Pair);
+    let single = voltage::examine(benches, Kind::SingleRotor);
+    match (pair, single) {
+        (Some(p), Some(s)) if p.thrust.estimate().is_none() && s.thrust.estimate().is_some() => Some(s),
+        (p, s) => p.or(s),
+    }
+}
+
+/// The dependence with the user's own exponents, which need a voltage of every row to work on.
+fn declared(
+    measured: Option<Voltage>,
+    [thrust, torque]: [f64; 2],
+    benches: &[Bench],
+) -> Result<Voltage, Refusal> {
+    let files = || {
+        benches
+            .iter()
+            .map(|b| b.file.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let Some(voltage) = measured else {
+        return Err(Refusal::of(
+            files(),
+            "--voltage-exponent has nothing to work on: no file has a voltage column",
+            "the supply voltage of every row, in a column of its own (--column voltage=HEADER)",
+        ));
+    };
+    if !benches.iter().any(|b| b.kind == Kind::Pair) {
+        return Err(Refusal::of(
+            files(),
+            "--voltage-exponent has nothing to work on: one throttle only, so there is no map of a pair",
+            "a sweep of both throttles independently; or no --voltage-exponent, to identify it from these files",
+        ));
+    }
+    Ok(Voltage {
+        thrust: voltage.thrust.declared(thrust),
+        torque: voltage.torque.declared(torque),
+        ..voltage
+    })
+}
+
+/// Without a pair the files must at least give an exponent.
+fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refusal> {
+    let files = benches
+        .iter()
+        .map(|b| b.file.as_str())
+        .collect::<Vec<_>>()
+        .join(", ");
+    let for_pair = "for [pair]: a sweep of both throttles independently, with thrust and torque of the pair";
+    match voltage.map(|v| &v.thrust) {
+        Some(Exponent::Identified(_)) => Ok(()),
+        Some(Exponent::Refused { reason, needed }) => Err(Refusal::of(
+            files,
+            format!("one throttle only, so there is no map of a pair; and no voltage exponent: {reason}"),
+            format!("{for_pair}; for [voltage]: {needed}"),
+        )),
+        Some(Exponent::Declared { .. } | Exponent::NotMeasured) | None => Err(Refusal::of(
+            files,
+            "one throttle only, so there is no map of a pair; and no voltage was measured",
+            format!(
+                "{for_pair}; for [voltage]: the same sweep at two supply voltages, with a voltage column"
+            ),
+        )),
+    }
+}
+
+/// Sag of the supply within one map, as a share of its highest voltage, above which it matters how
+/// the voltage of the flight is measured: thrust then misses by 5 % and more.
+const SAG: f64 = 0.03;
+
+/// A warning about a supply that sagged with the load, for the use of `[voltage]`.
+fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
+    let of = |bench: &&Bench| {
+        let volts = bench.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());
+        let (low, high) = volts.fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+        if high > 0.0 { 1.0 - low / high } else { 0.0 }
+    };
+    let maps = benches.iter().filter(|b| b.kind == Kind::Pair);
+    let sag = maps.map(|b| of(&b)).fold(0.0, f64::max);
+    if sag <= SAG {
+        return None;
+    }
+    let percent = 100.0 * sag;
+    let exponents = voltage.thrust.value().zip(voltage.torque.value());
+    Some(match exponents {
+        Some((thrust, torque)) => format!(
+            "the supply sagged by {percent:.1} % within a map, and its rows are brought to one voltage: measure the voltage \
+             of the flight under load where the bench did; at no load thrust errs by up to {:.0} %, torque by {:.0} %",
+            100.0 * (1.0 - libm::pow(1.0 - sag, thrust)),
+            100.0 * (1.0 - libm::pow(1.0 - sag, torque))
+        ),
+        None => format!(
+            "the supply sagged by {percent:.1} % within a map, which the map includes: a [voltage] written beside it by \
+             hand counts that sag twice; --voltage-exponent 1.75 brings the rows to one voltage and writes [voltage]"
+        ),
+    })
+}
+
+fn voltage_warnings(voltage: &Voltage) -> Vec<String> {
+    let [low, high] = voltage.range_v;
+    let contradicted = voltage.channels().into_iter().filter_map(|(name, exponent)| match exponent {
+        Exponent::Declared { exponent, measured: Some(e) } if (exponent - e.exponent).abs() > e.ci95 => Some(format!(
+            "--voltage-exponent declares {exponent} for {name}, the files themselves give {:.3} +- {:.3}",
+            e.exponent, e.ci95
+        )),
+        Exponent::Declared { exponent, .. } if !(PLAUSIBLE[0]..=PLAUSIBLE[1]).contains(exponent) => Some(format!(
+            "--voltage-exponent declares {exponent} for {name}, outside {}..{}, which no propeller has",
+            PLAUSIBLE[0], PLAUSIBLE[1]
+        )),
+        _ => None,
+    });
+    let contradicted: Vec<String> = contradicted.collect();
+    if matches!(voltage.thrust, Exponent::Declared { .. }) {
+        let range = format!(
+            "range_v is {low:.2}..{high:.2} V, what the bench had: write what the battery gives in flight, since a voltage \
+             outside is clamped"
+        );
+        return [contradicted, vec![range]].concat();
+    }
+    if !voltage.varies() {
+        let sag = 100.0 * (1.0 - low / high);
+        let told =
+            format!("the supply varied by {sag:.1} % ({high:.2} to {low:.2} V), which the map includes");
+        return if sag > 2.0 && sag <= 100.0 * SAG {
+            vec![told]
+        } else {
+            Vec::new()
+        };
+    }
+    let told = voltage
+        .channels()
+        .into_iter()
+        .filter_map(|(name, exponent)| match exponent {
+            Exponent::Refused { reason, needed } => Some(format!(
+                "no {name} exponent of voltage: {reason}; needed: {needed}"
+            )),
+            Exponent::NotMeasured => Some(format!("no {name} exponent of voltage: no file has its column")),
+            Exponent::Identified(_) | Exponent::Declared { .. } => None,
+        });
+    told.collect()
+}

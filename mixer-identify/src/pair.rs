@@ -1,0 +1,410 @@
+//! The map of a pair from bench points: choice of the basis, fit, outliers, fold, shape constraint.
+
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::model::injectivity::EnclosedPairMap;
+use serde::Serialize;
+
+use self::placed::{Placed, at_reference, channels, confirmed, places, suspects, without};
+use super::basis::ThrottleBox;
+use super::bench::{Bench, Kind};
+use super::cross::{self, Candidate};
+use super::fit::{Deficient, Design, Fit, fit, judge, range};
+use super::fold::{self, Fold};
+use super::monotone::{self, MonotoneCost};
+use super::refusal::Refusal;
+use super::robust::{self, Outlier};
+use super::rotor::Alone;
+use super::voltage::Voltage;
+use super::wishes::Wishes;
+
+mod doubts;
+mod placed;
+
+/// The identified map, as in `[throttle]` and `[pair]`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Pair {
+    /// Basis of both channels.
+    pub basis: Basis,
+    /// Terms in the order of the coefficients.
+    pub terms: Vec<String>,
+    /// Coefficients of thrust, N.
+    pub thrust_n: Vec<f64>,
+    /// Coefficients of torque, N m, positive where the lower rotor outweighs the upper.
+    pub torque_nm: Vec<f64>,
+    /// `cw`: the spin of the upper rotor for which that sign of torque is clockwise on the
+    /// airframe.
+    pub upper_spin: &'static str,
+    /// The upper rotor alone, from `--lower-out`.
+    pub lower_out: Option<Alone>,
+    /// The lower rotor alone, from `--upper-out`.
+    pub upper_out: Option<Alone>,
+    /// Statistics of thrust.
+    pub thrust: Fit,
+    /// Statistics of torque.
+    pub torque: Fit,
+    /// The box that the file commands.
+    pub throttle: ThrottleBox,
+    /// Measured range of throttle, of the upper and of the lower rotor.
+    pub measured: [[f64; 2]; 2],
+    /// Cross-validation, one entry per basis; one basis only if it was given.
+    pub cross_validation: Vec<Candidate>,
+    /// Rows that stand out.
+    pub outliers: Vec<Outlier>,
+    /// Whether they were left out.
+    pub outliers_left_out: bool,
+    /// The fold of the map before `throttle.min` was raised or the shape constrained.
+    pub fold: Fold,
+    /// The cost of the shape constraint, where it was applied.
+    pub monotone: Option<MonotoneCost>,
+    /// Reference voltage, V, to which the points were brought by the exponents.
+    pub normalised_to_v: Option<f64>,
+    /// Mean voltage of the rows, V.
+    pub mean_v: Option<f64>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Identifies the pair that the benches of [`Kind::Pair`] describe.
+pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -> Result<Pair, Refusal> {
+    let benches: Vec<&Bench> = benches.iter().filter(|b| b.kind == Kind::Pair).collect();
+    let files = names(&benches);
+    let mut warnings = Vec::new();
+    let (mut points, normalised_to_v) = at_reference(&benches, voltage, wishes)?;
+    let measured = range(&places(&points));
+    let throttle_box = to_command(wishes.throttle, measured, &files, &mut warnings)?;
+
+    let Choice {
+        basis,
+        cross_validation,
+        outliers,
+    } = choose(&points, throttle_box, wishes).map_err(|reason| deficient(&files, &reason))?;
+    if wishes.robust {
+        points = without_outliers(&points, &outliers);
+    } else if !outliers.is_empty() {
+        warnings.push(format!(
+            "{} rows stand out: --robust fits without them",
+            outliers.len()
+        ));
+    }
+
+    let design =
+        Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, &reason))?;
+    let free = channels(&points).map(|values| fit(&design, &values, throttle_box));
+    one_pair(basis, &points, throttle_box, &free, &mut warnings)?;
+    let free_fold = fold_of(basis, &free, throttle_box);
+    let (fits, monotone) = if !free_fold.injective && wishes.monotone {
+        let (fits, cost) =
+            constrained(&design, &points, &free, throttle_box).ok_or_else(|| no_monotone_map(&files))?;
+        doubts::costly_constraint(&cost, &points, &fits[1], &mut warnings);
+        (fits, Some(cost))
+    } else {
+        (free, None)
+    };
+    let fold = match &monotone {
+        Some(_) => fold_of(basis, &fits, throttle_box),
+        None => free_fold.clone(),
+    };
+    let idle = idle(basis, &fits, &fold, &files, &mut warnings)?;
+
+    let [thrust, torque] = fits;
+    judge_quality(&thrust, &torque, &mut warnings);
+    Ok(Pair {
+        basis,
+        terms: basis.term_names(),
+        thrust_n: thrust.coefficients.clone(),
+        torque_nm: torque.coefficients.clone(),
+        upper_spin: "cw",
+        lower_out: None,
+        upper_out: None,
+        thrust,
+        torque,
+        throttle: ThrottleBox {
+            min: idle,
+            ..throttle_box
+        },
+        measured,
+        cross_validation,
+        outliers_left_out: wishes.robust,
+        outliers,
+        fold: free_fold,
+        monotone,
+        normalised_to_v,
+        mean_v: mean_voltage(&points),
+        warnings,
+    })
+}
+
+fn names(benches: &[&Bench]) -> String {
+    let names: Vec<&str> = benches.iter().map(|b| b.file.as_str()).collect();
+    names.join(", ")
+}
+
+/// The box to command: the user's, or the measured one.
+fn to_command(
+    wished: Option<ThrottleBox>,
+    measured: [[f64; 2]; 2],
+    files: &str,
+    warnings: &mut Vec<String>,
+) -> Result<ThrottleBox, Refusal> {
+    let throttle_box = match wished {
+        Some(wished) => beyond(wished, measured, warnings),
+        None => inside(measured),
+    };
+    doubts::coverage(throttle_box, warnings);
+    if throttle_box.min >= throttle_box.max {
+        return Err(Refusal::of(
+            files,
+            format!("the measured throttles {measured:.3?} of both rotors share no range"),
+            "a sweep of both rotors over one range of throttle, each from idle to full",
+        ));
+    }
+    Ok(throttle_box)
+}
+
+/// The basis, and the rows that stand out of its fit.
+struct Choice {
+    basis: Basis,
+    cross_validation: Vec<Candidate>,
+    outliers: Vec<Outlier>,
+}
+
+/// Chooses the basis by cross-validation, among one where the user named it.
+fn choose(points: &[Placed], throttle_box: ThrottleBox, wishes: &Wishes) -> Result<Choice, Deficient> {
+    let suspects = suspects(wishes.basis.unwrap_or(robust::JUDGING), points, throttle_box);
+    let clean = without(points, &suspects);
+    let chosen_on = if wishes.robust { &clean } else { points };
+    let [thrust, torque] = channels(chosen_on);
+    let bases = wishes.basis.map_or(Basis::ALL.to_vec(), |basis| vec![basis]);
+    let cross_validation = cross::choose(&bases, &places(chosen_on), &thrust, &torque, throttle_box)?;
+    let basis = cross_validation
+        .iter()
+        .find(|c| c.chosen)
+        .map_or(Basis::Biquadratic, |c| c.basis);
+    Ok(Choice {
+        basis,
+        outliers: confirmed(basis, points, &suspects, &clean, throttle_box),
+        cross_validation,
+    })
+}
+
+fn without_outliers<'a>(points: &[Placed<'a>], outliers: &[Outlier]) -> Vec<Placed<'a>> {
+    let out: Vec<bool> = points
+        .iter()
+        .map(|p| outliers.iter().any(|o| o.is(p.file, p.point.line)))
+        .collect();
+    without(points, &out)
+}
+
+fn deficient(files: &str, reason: &Deficient) -> Refusal {
+    Refusal::of(
+        files,
+        reason.to_string(),
+        "a sweep of both throttles independently: a grid of 5 x 5 levels or more from idle to full (cargo mixer plan)",
+    )
+}
+
+fn mean_voltage(points: &[Placed]) -> Option<f64> {
+    let volts = || points.iter().map(|p| p.point.voltage).filter(|v| v.is_finite());
+    (volts().count() > 0).then(|| volts().sum::<f64>() / volts().count() as f64)
+}
+
+fn fold_of(basis: Basis, [thrust, torque]: &[Fit; 2], throttle_box: ThrottleBox) -> Fold {
+    fold::examine(basis, &thrust.coefficients, &torque.coefficients, throttle_box)
+}
+
+/// The fits nearest to the free ones whose map does not fold, and what that costs; `None` where
+/// none was found.
+fn constrained(
+    design: &Design,
+    points: &[Placed],
+    free: &[Fit; 2],
+    throttle_box: ThrottleBox,
+) -> Option<([Fit; 2], MonotoneCost)> {
+    let [thrust, torque] = channels(points);
+    let coordinates = [&thrust, &torque].map(|values| design.coordinates(values));
+    let found = monotone::constrain(design, [&free[0], &free[1]], coordinates, throttle_box)?;
+    let fits = [
+        judge(design, &thrust, &found.thrust, throttle_box),
+        judge(design, &torque, &found.torque, throttle_box),
+    ];
+    let cost = MonotoneCost {
+        free_thrust_rms: free[0].residual_rms,
+        free_torque_rms: free[1].residual_rms,
+    };
+    Some((fits, cost))
+}
+
+fn no_monotone_map(files: &str) -> Refusal {
+    Refusal::of(
+        files,
+        "no monotone map was found near the measured one",
+        "a higher idle (--throttle MIN,MAX), another basis, or data without outliers (--robust)",
+    )
+}
+
+/// The square that both rotors were measured over, rounded inwards to a ten-thousandth.
+fn inside([upper, lower]: [[f64; 2]; 2]) -> ThrottleBox {
+    let min = upper[0].max(lower[0]).max(0.0);
+    let max = upper[1].min(lower[1]).min(1.0);
+    ThrottleBox {
+        min: (1e4 * min - 1e-6).ceil() / 1e4,
+        max: (1e4 * max + 1e-6).floor() / 1e4,
+    }
+}
+
+/// Takes the user's box, and warns where it leaves the measured one.
+fn beyond(wished: ThrottleBox, measured: [[f64; 2]; 2], warnings: &mut Vec<String>) -> ThrottleBox {
+    let known = inside(measured);
+    if wished.min < known.min - 1e-9 || wished.max > known.max + 1e-9 {
+        warnings.push(format!(
+            "throttle {}..{} goes beyond the measured {}..{}: the map is extrapolated there",
+            wished.min, wished.max, known.min, known.max
+        ));
+    }
+    wished
+}
+
+/// Refuses files that each fit well but not together, and warns of those that do not fit as well.
+fn one_pair(
+    basis: Basis,
+    points: &[Placed],
+    throttle_box: ThrottleBox,
+    fits: &[Fit; 2],
+    warnings: &mut Vec<String>,
+) -> Result<(), Refusal> {
+    let mut files: Vec<&str> = points.iter().map(|p| p.file).collect();
+    files.dedup();
+    if files.len() < 2 {
+        return Ok(());
+    }
+    let (mut sse, mut n) = (0.0, 0);
+    for file in &files {
+        let own: Vec<usize> = (0..points.len()).filter(|&i| points[i].file == *file).collect();
+        let at: Vec<[f64; 2]> = own
+            .iter()
+            .map(|&i| [points[i].point.u, points[i].point.l])
+            .collect();
+        let Ok(design) = Design::new(basis, &at, inside(range(&at))) else {
+            continue;
+        };
+        let alone = fit(
+            &design,
+            &own.iter().map(|&i| points[i].thrust).collect::<Vec<_>>(),
+            throttle_box,
+        );
+        sse += alone.residuals.iter().map(|e| e * e).sum::<f64>();
+        n += own.len();
+    }
+    let apart = (sse / n.max(1) as f64).sqrt();
+    let together = fits[0].residual_rms;
+    if n == points.len() && together > 2.0 * apart && together > 0.02 * fits[0].full_scale {
+        return Err(Refusal::general(
+            format!(
+                "the files do not describe one pair: together their thrust leaves a residual of {together:.3} N \
+                 rms, each by itself {apart:.3} N ({})",
+                files.join(", ")
+            ),
+            "files of one pair at one spacing; run each pair by itself",
+        ));
+    }
+    if n == points.len() {
+        doubts::joined_files(&files, [together, apart], fits[0].full_scale, warnings);
+    }
+    Ok(())
+}
+
+/// The idle of the identified map: the box's, or a higher one where the map folds at or next to it.
+fn idle(
+    basis: Basis,
+    [thrust, torque]: &[Fit; 2],
+    fold: &Fold,
+    files: &str,
+    warnings: &mut Vec<String>,
+) -> Result<f64, Refusal> {
+    let map = EnclosedPairMap::of(basis, &thrust.coefficients, &torque.coefficients);
+    if fold.injective {
+        Ok(clear_of_fold(&map, fold.commanded, warnings))
+    } else {
+        raised(fold, &map, files, warnings)
+    }
+}
+
+/// The idle over the least one at which the map can be inverted. Right at that the inverse bends
+/// without bound, and no tolerance is met.
+const CLEAR: f64 = 1.03;
+
+/// The idle of a map that can be inverted over its box: the box's, or a little more where that is
+/// next to a fold.
+fn clear_of_fold(map: &EnclosedPairMap, throttle: ThrottleBox, warnings: &mut Vec<String>) -> f64 {
+    let least = map.least_idle(throttle.max).unwrap_or(0.0);
+    if throttle.min >= CLEAR * least {
+        return throttle.min;
+    }
+    let Some(min) = fold::round_idle(map, CLEAR * least, throttle.max) else {
+        return throttle.min;
+    };
+    warnings.push(format!(
+        "throttle.min is raised from {} to {min}: the map folds right below, at {least:.4}",
+        throttle.min
+    ));
+    min
+}
+
+/// The idle of a map that is not proven injective over its box: a little over the least one,
+/// rounded up to 0.005.
+fn raised(
+    fold: &Fold,
+    map: &EnclosedPairMap,
+    files: &str,
+    warnings: &mut Vec<String>,
+) -> Result<f64, Refusal> {
+    let [u, l] = fold.least_det_at;
+    let least_det = fold.least_det;
+    let rounded = |least: f64| fold::round_idle(map, CLEAR * least, fold.commanded.max);
+    let Some((least, min)) = fold.least_idle.and_then(|least| Some((least, rounded(least)?))) else {
+        return Err(Refusal::of(
+            files,
+            if fold.folds {
+                format!("the map folds whatever the idle: det J = {least_det:.3} at ({u:.2}, {l:.2})")
+            } else {
+                "the map could not be proven injective, whatever the idle".into()
+            },
+            "--monotone, another basis, or data without outliers (--robust)",
+        ));
+    };
+    let (why, without) = if fold.folds {
+        (
+            format!("det J falls to {least_det:.3} at (u, l) = ({u:.3}, {l:.3})"),
+            "fold",
+        )
+    } else {
+        ("the map could not be proven injective below".into(), "this doubt")
+    };
+    warnings.push(format!(
+        "throttle.min is raised from {} to {min}: {why}, the least idle without {without} is {least:.4}; --monotone \
+         would keep the idle",
+        fold.commanded.min
+    ));
+    Ok(min)
+}
+
+fn judge_quality(thrust: &Fit, torque: &Fit, warnings: &mut Vec<String>) {
+    for (name, fit) in [("thrust", thrust), ("torque", torque)] {
+        if fit.r2 < 0.98 {
+            warnings.push(format!("{name} is poorly described: R2 = {:.4}", fit.r2));
+        }
+        let weak = fit
+            .coefficients
+            .iter()
+            .zip(&fit.ci95)
+            .filter(|(c, ci)| c.abs() < **ci)
+            .count();
+        if weak > 0 {
+            warnings.push(format!(
+                "{weak} of {} {name} coefficients are smaller than their interval: trust the map inside the \
+                 measured range, not its single terms",
+                fit.coefficients.len()
+            ));
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The points of all files together: brought to one voltage, with those that stand out.
+
+use mixer_compiler::airframe::Basis;
+
+use crate::basis::ThrottleBox;
+use crate::bench::{Bench, Point};
+use crate::fit::{Design, hundredths};
+use crate::refusal::Refusal;
+use crate::robust::{self, Outlier};
+use crate::voltage::Voltage;
+use crate::wishes::Wishes;
+
+/// A point and the file it comes from.
+#[derive(Clone, Copy)]
+pub(super) struct Placed<'a> {
+    pub(super) point: &'a Point,
+    pub(super) file: &'a str,
+    pub(super) thrust: f64,
+    pub(super) torque: f64,
+}
+
+pub(super) fn places(points: &[Placed]) -> Vec<[f64; 2]> {
+    points.iter().map(|p| [p.point.u, p.point.l]).collect()
+}
+
+pub(super) fn channels(points: &[Placed]) -> [Vec<f64>; 2] {
+    [
+        points.iter().map(|p| p.thrust).collect(),
+        points.iter().map(|p| p.torque).collect(),
+    ]
+}
+
+/// The points of all benches, brought to the reference voltage where sound exponents allow it.
+pub(super) fn at_reference<'a>(
+    benches: &[&'a Bench],
+    voltage: Option<&Voltage>,
+    wishes: &Wishes,
+) -> Result<(Vec<Placed<'a>>, Option<f64>), Refusal> {
+    let sound = voltage.and_then(|v| Some((v.thrust.value()?, v.torque.value()?)));
+    let volts = |b: &Bench| {
+        let measured = b.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());
+        let (sum, n) = measured.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
+        (n == b.points.len() && n > 0).then(|| sum / n as f64)
+    };
+    let means: Vec<f64> = benches.iter().filter_map(|b| volts(b)).collect();
+    let all = means.len() == benches.len();
+    let (low, high) = means
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
+    if sound.is_none() && high > 1.03 * low {
+        return Err(Refusal::general(
+            format!(
+                "the files were measured at different voltages ({low:.2} and {high:.2} V), but the exponents that \
+                 would bring them together cannot be identified"
+            ),
+            "files at one voltage, or the same throttles at voltages at least 8 % apart",
+        ));
+    }
+    let reference = wishes
+        .reference_v
+        .unwrap_or_else(|| hundredths(means.iter().sum::<f64>() / means.len() as f64));
+    let exponents = sound.filter(|_| all);
+    if let (Some(_), false) = (wishes.voltage_exponent, all) {
+        let without = benches.iter().find(|b| volts(b).is_none());
+        return Err(Refusal::of(
+            without.map_or("", |b| b.file.as_str()),
+            "rows without a voltage cannot be brought to the reference by --voltage-exponent",
+            "the supply voltage of every row, in a column of its own (--column voltage=HEADER)",
+        ));
+    }
+    let bring = |y: f64, v: f64, exponent: f64| y / libm::pow(v / reference, exponent);
+    let mut points = Vec::new();
+    for bench in benches {
+        for point in &bench.points {
+            let (thrust, torque) = match exponents {
+                Some((f, q)) => (
+                    bring(point.thrust, point.voltage, f),
+                    bring(point.torque, point.voltage, q),
+                ),
+                None => (point.thrust, point.torque),
+            };
+            points.push(Placed {
+                point,
+                file: &bench.file,
+                thrust,
+                torque,
+            });
+        }
+    }
+    Ok((points, exponents.map(|_| reference)))
+}
+
+/// The points that are not marked.
+pub(super) fn without<'a>(points: &[Placed<'a>], out: &[bool]) -> Vec<Placed<'a>> {
+    points
+        .iter()
+        .zip(out)
+        .filter(|(_, out)| !**out)
+        .map(|(p, _)| *p)
+        .collect()
+}
+
+/// Which rows stand out of a robust fit of either channel. None if the points do not determine the
+/// basis: the reason follows when one is chosen.
+pub(super) fn suspects(basis: Basis, points: &[Placed], throttle_box: ThrottleBox) -> Vec<bool> {
+    let Ok(design) = Design::new(basis, &places(points), throttle_box) else {
+        return vec![false; points.len()];
+    };
+    let judged = channels(points).map(|y| robust::judge(&design, &y));
+    (0..points.len())
+        .map(|i| judged.iter().any(|j| j.stands_out(i)))
+        .collect()
+}
+
+/// The suspects that also stand out of the fit of `basis` to the other rows, `clean`.
+pub(super) fn confirmed(
+    basis: Basis,
+    points: &[Placed],
+    suspects: &[bool],
+    clean: &[Placed],
+    throttle_box: ThrottleBox,
+) -> Vec<Outlier> {
+    let accused: Vec<&Placed> = points
+        .iter()
+        .zip(suspects)
+        .filter(|(_, s)| **s)
+        .map(|(p, _)| p)
+        .collect();
+    let Ok(design) = Design::new(basis, &places(clean), throttle_box) else {
+        return Vec::new();
+    };
+    let [thrust, torque] = channels(clean);
+    let against = |y: &[f64], of: fn(&Placed) -> f64| {
+        let rows: Vec<_> = accused.iter().map(|p| ([p.point.u, p.point.l], of(p))).collect();
+        robust::against_the_others(&design, y, &rows)
+    };
+    let (of_thrust, of_torque) = (against(&thrust, |p| p.thrust), against(&torque, |p| p.torque));
+    let outliers = accused
+        .iter()
+        .zip(of_thrust.into_iter().zip(of_torque))
+        .map(|(p, (f, q))| Outlier {
+            file: p.file.to_string(),
+            line: p.point.line,
+            u: p.point.u,
+            l: p.point.l,
+            thrust_residual: f.0,
+            thrust_deviations: f.1,
+            torque_residual: q.0,
+            torque_deviations: q.1,
+        });
+    let scales = [&thrust, &torque].map(|y| robust::full_scale(y));
+    let stands_out = |o: &Outlier| {
+        robust::stands_out(o.thrust_residual, o.thrust_deviations, scales[0])
+            || robust::stands_out(o.torque_residual, o.torque_deviations, scales[1])
+    };
+    outliers.filter(stands_out).collect()
+}

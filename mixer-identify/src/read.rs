@@ -1,0 +1,366 @@
+//! One bench file to samples in SI units, streaming.
+//!
+//! A cell that is not a number, or a throttle outside the range, refuses its row, named by file and
+//! line. An empty cell is a missing value: streaming tools leave torque blank in most rows.
+
+use std::io::{BufRead, BufReader, Read};
+
+use serde::Serialize;
+
+use super::header::{ByHand, Column, Columns};
+use super::refusal::Refusal;
+use super::text::{self, Normalised};
+use super::units::Scale;
+
+/// A row that was left out, and why.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct RefusedRow {
+    /// File name.
+    pub file: String,
+    /// Line in the file, from 1.
+    pub line: u64,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
+/// One row. Missing values are NaN.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Line in the file, from 1.
+    pub line: u64,
+    /// Throttles of the upper and of the lower rotor.
+    pub throttle: [f64; 2],
+    /// Thrust of the whole, N.
+    pub thrust: f64,
+    /// Torque of the whole, N m.
+    pub torque: f64,
+    /// Thrust of the upper and of the lower rotor, N.
+    pub rotor_thrust: [f64; 2],
+    /// Torque of the upper and of the lower rotor, N m.
+    pub rotor_torque: [f64; 2],
+    /// Supply voltage, V.
+    pub voltage: f64,
+    /// Electrical power of the whole, W.
+    pub power_w: f64,
+}
+
+/// All samples of one file.
+#[derive(Debug, Clone)]
+pub struct Log {
+    /// File name without folders.
+    pub name: String,
+    /// What the header says.
+    pub columns: Columns,
+    /// Rows in the file's order.
+    pub samples: Vec<Sample>,
+    /// Rows that could not be read.
+    pub refused: Vec<RefusedRow>,
+}
+
+/// How to read a file.
+#[derive(Debug, Clone, Default)]
+pub struct Reading {
+    /// Columns and units by hand.
+    pub by_hand: ByHand,
+    /// Pulse widths of throttle 0 and 1, microseconds.
+    pub pwm_range: Option<[f64; 2]>,
+}
+
+/// The usual range of pulse widths, microseconds.
+const PWM_RANGE: [f64; 2] = [1000.0, 2000.0];
+
+/// The refusal of a file that cannot be read.
+pub fn unreadable(name: &str, reason: &str) -> Refusal {
+    Refusal::of(
+        name,
+        format!("cannot be read: {reason}"),
+        "a readable CSV file in UTF-8 or Latin-1",
+    )
+}
+
+/// Reads a bench log named `name`.
+pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, Refusal> {
+    let io = |e: std::io::Error| unreadable(name, &e.to_string());
+    let mut source = BufReader::with_capacity(1 << 16, Normalised::new(source));
+    let (header, header_line) = first_line(&mut source).map_err(io)?;
+    if header.contains(&0) {
+        return Err(unreadable(name, "it holds zero bytes and is no text"));
+    }
+    let separator = text::separator(&header);
+    let csv_of = |input| {
+        let mut builder = csv::ReaderBuilder::new();
+        builder.delimiter(separator).flexible(true).has_headers(false);
+        builder.from_reader::<Box<dyn Read + '_>>(input)
+    };
+    let headers: Vec<String> = match csv_of(Box::new(header.as_slice())).byte_records().next() {
+        Some(Ok(record)) => record
+            .iter()
+            .map(|cell| text::decode(cell).trim().to_string())
+            .collect(),
+        _ => {
+            return Err(Refusal::of(
+                name,
+                "the file is empty",
+                "a header line and rows of measurements",
+            ));
+        }
+    };
+    let columns = Columns::find(name, &headers, &reading.by_hand)?;
+    require(name, &columns, &headers)?;
+
+    let mut log = Log {
+        name: name.to_string(),
+        columns,
+        samples: Vec::new(),
+        refused: Vec::new(),
+    };
+    let mut rows = csv_of(Box::new(source));
+    let mut record = csv::ByteRecord::new();
+    let mut cells = Cells {
+        pwm_range: reading.pwm_range.unwrap_or(PWM_RANGE),
+        pwm_given: reading.pwm_range.is_some(),
+        decimal_comma: separator == b';',
+    };
+    loop {
+        let more = rows
+            .read_byte_record(&mut record)
+            .map_err(|e| unreadable(name, &e.to_string()))?;
+        if !more {
+            return Ok(log);
+        }
+        // The reader stands behind the row's line end (where the row begins it does not know: it
+        // skips blank lines silently). A quoted cell may span lines.
+        let inner = record.iter().flatten().filter(|b| **b == b'\n').count() as u64;
+        let line = header_line + rows.position().line() - 1 - inner;
+        if record.iter().all(|cell| cell.trim_ascii().is_empty()) {
+            continue;
+        }
+        match cells.sample(line, &log.columns, &record) {
+            Ok(sample) => log.samples.push(sample),
+            Err(reason) => log.refused.push(RefusedRow {
+                file: name.to_string(),
+                line,
+                reason,
+            }),
+        }
+    }
+}
+
+/// The first line that is not blank, and its number from 1.
+fn first_line(source: &mut impl BufRead) -> std::io::Result<(Vec<u8>, u64)> {
+    let mut number = 0;
+    loop {
+        let mut line = Vec::new();
+        number += 1;
+        if source.read_until(b'\n', &mut line)? == 0 || !line.trim_ascii().is_empty() {
+            return Ok((line, number));
+        }
+    }
+}
+
+/// Refuses a header without the columns that every use needs.
+fn require(name: &str, columns: &Columns, headers: &[String]) -> Result<(), Refusal> {
+    let has_thrust = columns.thrust.is_some() || columns.rotor_thrust.iter().any(Option::is_some);
+    let (what, roles) = match (&columns.upper, &columns.lower) {
+        (None, None) => (
+            "throttle",
+            "upper=HEADER and --column lower=HEADER (rotor speeds are no throttles)",
+        ),
+        (None, Some(_)) => ("throttle of the upper rotor", "upper=HEADER"),
+        _ if !has_thrust => ("thrust", "thrust=HEADER"),
+        _ => return Ok(()),
+    };
+    Err(Refusal::of(
+        format!("{name}:1"),
+        format!("no {what} column among: {}", headers.join(", ")),
+        format!("the column by hand: --column {roles}"),
+    ))
+}
+
+struct Cells {
+    pwm_range: [f64; 2],
+    pwm_given: bool,
+    decimal_comma: bool,
+}
+
+impl Cells {
+    fn sample(&mut self, line: u64, columns: &Columns, record: &csv::ByteRecord) -> Result<Sample, String> {
+        let throttle = [
+            self.throttle(&columns.upper, record)?,
+            self.throttle(&columns.lower, record)?,
+        ];
+        let [upper_thrust, lower_thrust] = &columns.rotor_thrust;
+        let [upper_torque, lower_torque] = &columns.rotor_torque;
+        let voltage = self.value(&columns.voltage, record)?;
+        Ok(Sample {
+            line,
+            throttle,
+            thrust: self.value(&columns.thrust, record)?,
+            torque: self.value(&columns.torque, record)?,
+            rotor_thrust: [
+                self.value(upper_thrust, record)?,
+                self.value(lower_thrust, record)?,
+            ],
+            rotor_torque: [
+                self.value(upper_torque, record)?,
+                self.value(lower_torque, record)?,
+            ],
+            voltage,
+            power_w: self.power(columns, voltage, record)?,
+        })
+    }
+
+    /// Power of the whole, or of both rotors together; NaN where a part of it is not measured.
+    fn power(&self, columns: &Columns, voltage: f64, record: &csv::ByteRecord) -> Result<f64, String> {
+        if columns.current.is_some() {
+            return Ok(voltage * self.value(&columns.current, record)?);
+        }
+        let [upper, lower] = &columns.rotor_current;
+        let lower_voltage = match columns.lower_voltage {
+            Some(_) => self.value(&columns.lower_voltage, record)?,
+            None => voltage,
+        };
+        Ok(voltage * self.value(upper, record)? + lower_voltage * self.value(lower, record)?)
+    }
+
+    fn value(&self, column: &Option<Column>, record: &csv::ByteRecord) -> Result<f64, String> {
+        let Some(column) = column else { return Ok(f64::NAN) };
+        let (Scale::Factor(factor) | Scale::Pulse(factor)) = column.scale;
+        Ok(self.number(column, record)? * factor)
+    }
+
+    fn throttle(&self, column: &Option<Column>, record: &csv::ByteRecord) -> Result<f64, String> {
+        let Some(column) = column else { return Ok(f64::NAN) };
+        let raw = self.number(column, record)?;
+        let [low, high] = self.pwm_range;
+        let pulse = |us: f64| (us - low) / (high - low);
+        let throttle = match column.scale {
+            Scale::Pulse(to_us) => pulse(raw * to_us),
+            // A column without a unit becomes a pulse width when the range is given and the value
+            // cannot be a throttle.
+            Scale::Factor(1.0) if self.pwm_given && raw > 1.5 => pulse(raw),
+            Scale::Factor(factor) => raw * factor,
+        };
+        if throttle > 1.02 {
+            let why = match column.scale {
+                Scale::Factor(1.0) if !self.pwm_given => {
+                    "is above 1: give --pwm-range 1000,2000 if it is a pulse width, --unit upper=% --unit lower=% if \
+                     it is in per cent"
+                        .to_string()
+                }
+                _ => format!("is throttle {throttle:.3}, above the range {low}..{high} us (--pwm-range)"),
+            };
+            return Err(format!("{:?} = {raw} {why}", column.name));
+        }
+        Ok(throttle)
+    }
+
+    /// A cell as a number; NaN where it is empty or the row is too short for it.
+    fn number(&self, column: &Column, record: &csv::ByteRecord) -> Result<f64, String> {
+        let cell = record.get(column.index).unwrap_or_default().trim_ascii();
+        if cell.is_empty() {
+            return Ok(f64::NAN);
+        }
+        let ascii = std::str::from_utf8(cell).ok();
+        let parsed = ascii.and_then(|t| match self.decimal_comma && t.contains(',') {
+            true => t.replace(',', ".").parse::<f64>().ok(),
+            false => t.parse::<f64>().ok(),
+        });
+        match parsed {
+            Some(value) if value.is_finite() => Ok(value),
+            _ => Err(format!(
+                "{:?} = {:?} is not a finite number",
+                column.name,
+                text::decode(cell)
+            )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn log(bytes: &[u8]) -> Result<Log, Refusal> {
+        read(
+            "bench.csv",
+            bytes,
+            &Reading {
+                by_hand: ByHand::default(),
+                pwm_range: None,
+            },
+        )
+    }
+
+    #[test]
+    fn a_bad_cell_names_its_line_and_stops_nothing() {
+        let log = log(b"upper,lower,thrust_n,torque_nm\n.1,.2,3,4\n.1,x,3,4\n\n.5,.6,inf,4\n.7,.8,9,\n")
+            .expect("a log");
+        assert_eq!(log.samples.len(), 2);
+        let refused: Vec<(u64, &str)> = log.refused.iter().map(|r| (r.line, r.reason.as_str())).collect();
+        assert_eq!(refused.len(), 2, "{refused:?}");
+        assert_eq!(refused[0], (3, "\"lower\" = \"x\" is not a finite number"));
+        assert_eq!(refused[1].0, 5);
+        assert_eq!(log.samples[1].line, 6);
+        assert!(log.samples[1].torque.is_nan());
+    }
+
+    #[test]
+    fn lines_are_counted_with_every_line_end() {
+        for end in ["\n", "\r\n", "\r"] {
+            let text = [
+                "upper,lower,thrust_n,torque_nm",
+                ".1,.2,3,4",
+                "bad,.2,3,4",
+                ".3,.2,3,4",
+                "",
+            ]
+            .join(end);
+            let log = log(text.as_bytes()).expect("a log");
+            assert_eq!(log.refused[0].line, 3, "{end:?}");
+            assert_eq!(log.samples[1].line, 4, "{end:?}");
+        }
+    }
+
+    #[test]
+    fn semicolons_allow_decimal_commas() {
+        let log = log(b"upper;lower;Thrust (kgf);Torque (N\xb7m)\n0,5;0,25;1,5;-0,02\n").expect("a log");
+        let s = log.samples[0];
+        assert_eq!((s.throttle, s.torque), ([0.5, 0.25], -0.02));
+        assert!((s.thrust - 1.5 * 9.80665).abs() < 1e-12);
+    }
+
+    #[test]
+    fn pulse_widths_need_their_range() {
+        let error = log(b"upper,lower,thrust_n,torque_nm\n1500,1600,3,4\n")
+            .expect("a log")
+            .refused;
+        assert!(error[0].reason.contains("--pwm-range"), "{error:?}");
+        let by_hand = ByHand::default();
+        let reading = Reading {
+            by_hand,
+            pwm_range: Some([1100.0, 1900.0]),
+        };
+        let text = &b"upper,lower,thrust_n,torque_nm\n1500,1700,3,4\n"[..];
+        let log = read("bench.csv", text, &reading).expect("a log");
+        assert_eq!(log.samples[0].throttle, [0.5, 0.75]);
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let error = log(b"RPM,T_A(N),Q_A(Nm)\n1,2,3\n").unwrap_err().to_string();
+        assert!(
+            error.contains("no throttle column") && error.contains("RPM"),
+            "{error}"
+        );
+        let error = log(b"upper,lower,torque_nm\n1,2,3\n").unwrap_err().to_string();
+        assert!(error.contains("no thrust column"), "{error}");
+        assert!(log(b"").unwrap_err().to_string().contains("empty"));
+        assert!(
+            log(b"\x00\x01\x02\n")
+                .unwrap_err()
+                .to_string()
+                .contains("no text")
+        );
+    }
+}

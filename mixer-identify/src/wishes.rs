@@ -1,0 +1,24 @@
+//! What the user decides about a fit.
+
+use mixer_compiler::airframe::Basis;
+
+use super::basis::ThrottleBox;
+
+/// What the user decides about the fit.
+#[derive(Debug, Clone, Default)]
+pub struct Wishes {
+    /// The basis, or nothing to choose by cross-validation.
+    pub basis: Option<Basis>,
+    /// Leave out the rows that stand out.
+    pub robust: bool,
+    /// Keep det J positive over the box.
+    pub monotone: bool,
+    /// The box to command, or nothing for the measured one.
+    pub throttle: Option<ThrottleBox>,
+    /// Reference voltage, V, or nothing for the mean of the rows.
+    pub reference_v: Option<f64>,
+    /// Declared exponents of thrust and of torque, or nothing to identify them.
+    pub voltage_exponent: Option<[f64; 2]>,
+    /// Whether rows of the map stand for runs of one rotor alone that are missing.
+    pub rotor_out_from_map: bool,
+}

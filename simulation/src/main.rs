@@ -1,0 +1,130 @@
+//! Flies the paper's manoeuvre with both mixers, prints Table II and writes its figures.
+
+use std::error::Error;
+use std::fs::{self, File};
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use simulation::energy::{self, Rotors, Saving};
+use simulation::figures;
+use simulation::flight::Scenario;
+use simulation::log;
+use simulation::mixer::Method;
+use simulation::table::{Comparison, NOTES};
+use simulation::vehicle;
+
+/// Flies the ISAE X8 through the paper's manoeuvre with the coaxial and with the conventional
+/// mixer.
+#[derive(Parser)]
+struct Arguments {
+    /// Number of seeds: rotor mismatch and air differ from seed to seed
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    seeds: u64,
+    /// Write Fig. 8, 9 and 10 of the first seed as SVG into this folder
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
+    /// Write the flights of the first seed and the errors of all flights as CSV into this folder
+    #[arg(long, value_name = "DIR")]
+    csv: Option<PathBuf>,
+    /// Write the errors of all flights as CSV to this file
+    #[arg(long, value_name = "FILE")]
+    errors: Option<PathBuf>,
+    /// Write the energy of all flights with and without a power bias as CSV to this file
+    #[arg(long, value_name = "FILE")]
+    energy: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let airframe = vehicle::airframe()?;
+    for folder in arguments.plots.iter().chain(&arguments.csv) {
+        fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    let mut out = std::io::stdout().lock();
+    let mut comparisons = Vec::new();
+    for scenario in Scenario::ALL {
+        if std::io::stderr().is_terminal() {
+            eprintln!("flying {} seeds in {scenario} ..", arguments.seeds);
+        }
+        let flights = (1..=arguments.seeds)
+            .map(|seed| scenario.fly(&airframe, seed))
+            .collect::<Result<_, _>>()?;
+        let comparison = Comparison { scenario, flights };
+        writeln!(out, "{comparison}")?;
+        comparisons.push(comparison);
+    }
+    write!(out, "{NOTES}")?;
+    let savings = savings(arguments.seeds)?;
+    writeln!(
+        out,
+        "\nEnergy of the manoeuvre with the rotors of airframes/x8-11in-least-power.toml"
+    )?;
+    for saving in &savings {
+        writeln!(out, "{saving}")?;
+    }
+    if let Some(path) = &arguments.energy {
+        let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        energy::write(&savings, file)?;
+    }
+    if let Some(folder) = &arguments.plots {
+        write_figures(&comparisons, folder)?;
+    }
+    if let Some(folder) = &arguments.csv {
+        write_logs(&comparisons, folder)?;
+    }
+    if let Some(path) = &arguments.errors {
+        let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        log::write_tracking(&comparisons, file)?;
+    }
+    Ok(())
+}
+
+/// The energy of every scenario with and without a power bias.
+fn savings(seeds: u64) -> Result<Vec<Saving>, Box<dyn Error>> {
+    let rotors = Rotors::new()?;
+    let fly = |scenario: &Scenario| -> Result<Saving, Box<dyn Error>> {
+        let flights = (1..=seeds).map(|seed| rotors.fly(scenario, seed));
+        Ok(Saving {
+            scenario: *scenario,
+            flights: flights.collect::<Result<_, _>>()?,
+        })
+    };
+    Scenario::ALL.iter().map(fly).collect()
+}
+
+/// The figures of the first seed of every scenario.
+fn write_figures(comparisons: &[Comparison], folder: &Path) -> Result<(), Box<dyn Error>> {
+    for Comparison { scenario, flights } in comparisons {
+        if let Some(pair) = flights.first() {
+            for (name, svg) in figures::draw(scenario, pair)? {
+                fs::write(folder.join(name), svg)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The flights of the first seed of every scenario, and the figures of Table II of all.
+fn write_logs(comparisons: &[Comparison], folder: &Path) -> Result<(), Box<dyn Error>> {
+    for Comparison { scenario, flights } in comparisons {
+        if let Some(pair) = flights.first() {
+            for method in [Method::Coaxial, Method::Conventional] {
+                let path = folder.join(format!("{}-{method}.csv", scenario.slug()));
+                log::write_flight(pair.with(method), File::create(path)?)?;
+            }
+        }
+    }
+    log::write_tracking(comparisons, File::create(folder.join("tracking.csv"))?)?;
+    Ok(())
+}
