@@ -130,6 +130,19 @@ fn links_lead_somewhere() {
     assert!(dead.is_empty(), "{dead:#?}");
 }
 
+#[test]
+fn the_index_has_every_page() {
+    let docs = root().join("docs");
+    let index = read(&docs.join("SUMMARY.md"));
+    let listed: BTreeSet<String> = links(&index).into_iter().collect();
+    let pages = documents::pages().expect("documents");
+    let names = pages
+        .iter()
+        .filter(|path| path.parent() == Some(&docs) && !path.ends_with("SUMMARY.md"))
+        .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
+    assert_eq!(listed, names.collect());
+}
+
 /// Fenced blocks of a page: language and text.
 fn blocks(page: &str) -> Vec<(String, String)> {
     let mut blocks: Vec<(String, String)> = Vec::new();
