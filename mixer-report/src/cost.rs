@@ -1,9 +1,10 @@
 //! Tables of what the airframe costs on the target.
 
+use maud::Markup;
 use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::cost::Cost;
 
-use crate::number::{escaped, fixed};
+use crate::number::fixed;
 use crate::table::{facts_table, table};
 
 /// Where an evaluator has not been counted.
@@ -14,7 +15,7 @@ fn number(value: Option<u32>) -> String {
 }
 
 /// The chosen evaluator and the whole mix.
-pub fn facts(cost: &Cost) -> String {
+pub fn facts(cost: &Cost) -> Markup {
     let inverse = |instructions: Option<u32>, cycles: Option<u32>| match (instructions, cycles) {
         (Some(instructions), Some(cycles)) => format!("{instructions} instructions, {cycles} cycles"),
         _ => NOT_COUNTED.to_owned(),
@@ -67,7 +68,7 @@ pub fn facts(cost: &Cost) -> String {
 }
 
 /// All evaluators, in the order of their cost.
-pub fn evaluators(units: usize, front: &[Alternative]) -> String {
+pub fn evaluators(units: usize, front: &[Alternative]) -> Markup {
     let all = match units {
         1 => "all units (instructions)".to_owned(),
         units => format!("{units} units (instructions)"),
@@ -87,7 +88,7 @@ pub fn evaluators(units: usize, front: &[Alternative]) -> String {
         .iter()
         .map(|alternative| {
             vec![
-                escaped(&alternative.description),
+                alternative.description.clone(),
                 alternative.verdict().to_owned(),
                 number(alternative.instructions),
                 number(alternative.cost),
@@ -100,5 +101,5 @@ pub fn evaluators(units: usize, front: &[Alternative]) -> String {
         .collect();
     let caption = "Evaluators of the inverse map: instructions and cycles of one unit and of all, about the instructions of a \
                    mix that least norm delivers, bytes of constants";
-    table(caption, &header.map(str::to_owned), &rows)
+    table(caption, &header, &rows)
 }

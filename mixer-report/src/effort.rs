@@ -18,6 +18,11 @@ impl Effort {
     /// Both.
     pub const BOTH: [Effort; 2] = [Effort::Thrust, Effort::Torque];
 
+    /// The word.
+    pub(crate) fn name(self) -> &'static str {
+        ["Thrust", "Torque"][self as usize]
+    }
+
     pub(crate) fn label(self) -> &'static str {
         [THRUST, TORQUE][self as usize]
     }

@@ -3,11 +3,11 @@
 //! It is written as XML that is also HTML (every element closed, every attribute quoted), so that
 //! it can be checked by machine.
 
-use std::fmt::Write as _;
-
+use maud::{Markup, PreEscaped, html};
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::cost::Cost;
+use mixer_compiler::diagnostic::printable;
 use mixer_compiler::report::{Summary, rounded_up};
 
 use crate::authority;
@@ -18,7 +18,7 @@ use crate::effort::Effort;
 use crate::figure::Figure;
 use crate::layout;
 use crate::maps;
-use crate::number::{escaped, shortest};
+use crate::number::shortest;
 use crate::origin::Origin;
 use crate::plots;
 use crate::study::Study;
@@ -61,135 +61,129 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
     let airframe = &compiled.airframe;
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
     let front = compiled.front();
-    let mut html = String::new();
-    let name = escaped(&airframe.name);
-    let _ = writeln!(
-        html,
+    let section = |anchor| match anchor {
+        "layout" => layout_section(study),
+        "comparison" => comparison_section(study),
+        "authority" => authority_section(study),
+        "attainable" => attainable_section(study),
+        "forward" => forward_section(study, bench),
+        "inverse" => inverse_section(study),
+        "error" => error_section(study, &errors, &front),
+        "cost" => cost_section(study, &front),
+        _ => table::matrices(study),
+    };
+    let name = printable(&airframe.name);
+    let title = html! { title { (name) ": coaxial mixer" } };
+    let body = html! {
+        h1 { (name) }
+        p.lead { (printable(&airframe.description)) }
+        nav { @for (anchor, title) in SECTIONS { a href={ "#" (anchor) } { (title) } " " } }
+        (warnings(study, bench))
+        (table::summary(study, origin))
+        @for (anchor, title) in SECTIONS {
+            section id=(anchor) { h2 { (title) } (section(anchor)) }
+        }
+        footer {
+            "Made by " code { "cargo mixer report" } " " (env!("CARGO_PKG_VERSION")) " from "
+            code { (printable(&compiled.source_name)) }
+            ". Body frame FRD, SI units; clockwise yaw seen from above is positive, thrust is positive upwards; the torque \
+             of a unit is positive where its lower rotor outweighs the upper one."
+        }
+        script type="application/json" id="model" { (PreEscaped(model(study, &errors).to_string())) }
+        script { (PreEscaped(format!("//<![CDATA[\n{SCRIPT}//]]>"))) }
+    };
+    // The head's elements without content are closed, as XML demands.
+    format!(
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <title>{name}: coaxial mixer</title>\n<style>\n{FIGURE_STYLE}{PAGE_STYLE}</style>\n</head>\n<body>\n\
-         <h1>{name}</h1>\n<p class=\"lead\">{}</p>",
-        escaped(&airframe.description)
-    );
-    html.push_str("<nav>");
-    for (anchor, title) in SECTIONS {
-        let _ = write!(html, "<a href=\"#{anchor}\">{title}</a> ");
-    }
-    html.push_str("</nav>\n");
-    html.push_str(&warnings(study, bench));
-    html.push_str(&table::summary(study, origin));
-
-    for (anchor, title) in SECTIONS {
-        let _ = writeln!(html, "<section id=\"{anchor}\">\n<h2>{title}</h2>");
-        html.push_str(&match anchor {
-            "layout" => layout_section(study),
-            "comparison" => comparison_section(study),
-            "authority" => authority_section(study),
-            "attainable" => attainable_section(study),
-            "forward" => forward_section(study, bench),
-            "inverse" => inverse_section(study),
-            "error" => error_section(study, &errors, &front),
-            "cost" => cost_section(study, &front),
-            _ => table::matrices(study),
-        });
-        html.push_str("</section>\n");
-    }
-    let _ = writeln!(
-        html,
-        "<footer>Made by <code>cargo mixer report</code> {} from <code>{}</code>. Body frame FRD, SI units; clockwise \
-         yaw seen from above is positive, thrust is positive upwards; the torque of a unit is positive where its lower \
-         rotor outweighs the upper one.</footer>",
-        env!("CARGO_PKG_VERSION"),
-        escaped(&compiled.source_name)
-    );
-    let _ = writeln!(
-        html,
-        "<script type=\"application/json\" id=\"model\">{}</script>\n<script>//<![CDATA[\n{SCRIPT}//]]></script>\n</body>\n</html>",
-        model(study, &errors)
-    );
-    html
-}
-
-/// What is plausibly a mistake; nothing where there is none.
-fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
-    let records = study.compiled.warnings.records();
-    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(study.compiled));
-    if records.is_empty() && doubts.is_empty() {
-        return String::new();
-    }
-    let mut html = String::from("<ul class=\"warnings\">\n");
-    for record in records {
-        let line = record
-            .line
-            .map_or_else(String::new, |line| format!(", line {line}"));
-        let _ = writeln!(
-            html,
-            "<li><b>Warning {}{line}:</b> {}. {}.</li>",
-            record.code,
-            escaped(&record.message),
-            escaped(&record.help)
-        );
-    }
-    for doubt in doubts {
-        let _ = writeln!(html, "<li><b>Warning:</b> {}.</li>", escaped(&doubt));
-    }
-    html.push_str("</ul>\n");
-    html
-}
-
-/// A figure with its caption (markup) and a place for the values under the pointer.
-fn shown(figure: &Figure, caption: &str) -> String {
-    format!(
-        "<figure>\n{}<div class=\"readout\" aria-live=\"polite\"></div>\n<figcaption>{caption}</figcaption>\n</figure>\n",
-        figure.svg()
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n{}\n\
+         <style>\n{FIGURE_STYLE}{PAGE_STYLE}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n",
+        title.into_string(),
+        body.into_string()
     )
 }
 
+/// What is plausibly a mistake; nothing where there is none.
+fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
+    let records = study.compiled.warnings.records();
+    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(study.compiled));
+    html! {
+        @if !records.is_empty() || !doubts.is_empty() {
+            ul.warnings {
+                @for record in &records {
+                    li {
+                        b {
+                            "Warning " (record.code)
+                            @if let Some(line) = record.line { ", line " (line) }
+                            ":"
+                        }
+                        " " (record.message) ". " (record.help) "."
+                    }
+                }
+                @for doubt in &doubts { li { b { "Warning:" } " " (printable(doubt)) "." } }
+            }
+        }
+    }
+}
+
+/// A figure with its caption and a place for the values under the pointer.
+fn shown(figure: &Figure, caption: &str) -> Markup {
+    html! {
+        figure {
+            (PreEscaped(figure.svg()))
+            div.readout aria-live="polite" {}
+            figcaption { (caption) }
+        }
+    }
+}
+
 /// A picture without values under the pointer.
-fn still(svg: &str, caption: &str) -> String {
-    format!("<figure>\n{svg}<figcaption>{caption}</figcaption>\n</figure>\n")
+fn still(svg: String, caption: &str) -> Markup {
+    html! { figure { (PreEscaped(svg)) figcaption { (caption) } } }
 }
 
-fn figures(figures: &[String]) -> String {
-    format!("<div class=\"figures\">\n{}</div>\n", figures.concat())
+fn figures(figures: &[Markup]) -> Markup {
+    html! { div.figures { @for figure in figures { (figure) } } }
 }
 
-fn layout_section(study: &Study<'_>) -> String {
+fn layout_section(study: &Study<'_>) -> Markup {
     let figure = layout::layout(&study.compiled.airframe);
     let caption = "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.";
-    figures(&[still(&figure.svg(), caption), table::units(study)])
+    figures(&[still(figure.svg(), caption), table::units(study)])
 }
 
-fn comparison_section(study: &Study<'_>) -> String {
+fn comparison_section(study: &Study<'_>) -> Markup {
     let Some(comparison) = Comparison::sweep(study, YAW_COMMANDS) else {
-        return if study.serves(Axis::Yaw) {
-            format!("<p>At {} N no yaw is available.</p>\n", shortest(study.thrust_n))
-        } else {
-            "<p>Yaw is not a served axis of this airframe.</p>\n".to_owned()
+        return html! {
+            @if study.serves(Axis::Yaw) {
+                p { "At " (shortest(study.thrust_n)) " N no yaw is available." }
+            } @else {
+                p { "Yaw is not a served axis of this airframe." }
+            }
         };
     };
-    let text = format!(
-        "<p>A total thrust of {} N and yaw over the whole range that the coaxial mixer delivers there. The conventional \
-         mixer takes every rotor for isolated, with a torque proportional to its thrust. Both mixers\u{2019} throttles \
-         are put through the pair\u{2019}s map, at the reference voltage: what is shown is what the rotors give by that \
-         map, not what the mixers believe. An isolated rotor is the map\u{2019}s upper one with the lower at rest, f(d, 0): \
-         an extrapolation where the bench kept both turning.</p>\n",
-        shortest(comparison.thrust_n)
-    );
-    let figures = figures(&[
-        shown(
-            &plots::yaw_plane(study, &comparison),
-            "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
-        ),
-        shown(&plots::yaw_thrust(&comparison), "Thrust of every unit."),
-        shown(&plots::yaw_total(&comparison), "Total thrust given."),
-        shown(&plots::yaw_error(&comparison), "Yaw given less yaw asked."),
-    ]);
-    text + &figures + &table::comparison(&comparison)
+    html! {
+        p {
+            "A total thrust of " (shortest(comparison.thrust_n)) " N and yaw over the whole range that the coaxial mixer \
+             delivers there. The conventional mixer takes every rotor for isolated, with a torque proportional to its \
+             thrust. Both mixers\u{2019} throttles are put through the pair\u{2019}s map, at the reference voltage: what \
+             is shown is what the rotors give by that map, not what the mixers believe. An isolated rotor is the \
+             map\u{2019}s upper one with the lower at rest, f(d, 0): an extrapolation where the bench kept both turning."
+        }
+        (figures(&[
+            shown(
+                &plots::yaw_plane(study, &comparison),
+                "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
+            ),
+            shown(&plots::yaw_thrust(&comparison), "Thrust of every unit."),
+            shown(&plots::yaw_total(&comparison), "Total thrust given."),
+            shown(&plots::yaw_error(&comparison), "Yaw given less yaw asked."),
+        ]))
+        (table::comparison(&comparison))
+    }
 }
 
-fn authority_section(study: &Study<'_>) -> String {
+fn authority_section(study: &Study<'_>) -> Markup {
     let all = authority::against_thrust(study, &study.reference(), THRUSTS);
     let lowest = study.lowest().map(|lowest| {
         (
@@ -211,7 +205,7 @@ fn authority_section(study: &Study<'_>) -> String {
     if is_held {
         cases.push(("any one rotor out", "series-2", &rotor_out));
     }
-    let plots: Vec<String> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
+    let plots: Vec<Markup> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
         .into_iter()
         .filter_map(|axis| plots::authority(study, &all, &cases, axis).map(|figure| (axis, figure)))
         .map(|(axis, figure)| {
@@ -224,15 +218,17 @@ fn authority_section(study: &Study<'_>) -> String {
     } else {
         "With one rotor out, whichever it is, no thrust is held without a torque."
     };
-    let text = format!(
-        "<p>The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
-         holds the thrust and no \
-         other torque is asked, found by asking the mixer itself. {rotor_out}</p>\n"
-    );
-    text + &figures(&plots).replacen("figures", "figures three", 1)
+    html! {
+        p {
+            "The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
+             holds the thrust and no other torque is asked, found by asking the mixer itself. "
+            (rotor_out)
+        }
+        div.figures.three { @for plot in &plots { (plot) } }
+    }
 }
 
-fn attainable_section(study: &Study<'_>) -> String {
+fn attainable_section(study: &Study<'_>) -> Markup {
     let caption = if study.compiled.airframe.voltage.is_some() {
         "What one unit can give at the lowest, the reference and the highest voltage."
     } else {
@@ -241,88 +237,75 @@ fn attainable_section(study: &Study<'_>) -> String {
     figures(&[shown(&plots::attainable(study), caption)])
 }
 
-fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> String {
-    let mut text = String::new();
-    if let Some(bench) = bench {
-        let files: Vec<String> = bench
-            .files
-            .iter()
-            .map(|file| format!("<code>{}</code>", escaped(file)))
-            .collect();
-        let voltage = if bench.corrected {
-            "brought to the reference voltage"
-        } else {
-            "as measured"
-        };
-        let _ = writeln!(
-            text,
-            "<p>{} bench points of {}, {voltage}.",
-            bench.points.len(),
-            files.join(", ")
-        );
-        if !bench.outside.is_empty() {
-            let [low, _] = study.pair.range();
-            let below = |point: &&BenchPoint| point.throttles.iter().any(|t| *t < low);
-            let (all, low) = (bench.outside.len(), shortest(low));
-            let outside = match bench.outside.iter().filter(below).count() {
-                0 => format!("{all} more lie outside the throttle range"),
-                below if below == all => format!("{all} more lie below the idle of {low}"),
-                below => format!(
-                    "{all} more lie outside the throttle range, {below} of them below the idle of {low}"
-                ),
-            };
-            let _ = writeln!(
-                text,
-                " {outside}: small in the maps of what the model misses, and in no number."
-            );
-        }
-        text.push_str("</p>\n");
-        for row in &bench.refused {
-            let _ = writeln!(text, "<p>Refused: {}</p>", escaped(row));
-        }
-        text.push_str(&table::bench(bench));
-    }
+fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     let points = if bench.is_some() {
         " Bench points with their distance from it."
     } else {
         ""
     };
     let maps = Effort::BOTH.map(|effort| {
-        let quantity = ["Thrust", "Torque"][effort as usize];
-        still(
-            &surface::surface(study, effort, bench),
+        let quantity = effort.name();
+        let surface = still(
+            surface::surface(study, effort, bench),
             &format!("{quantity} of one unit by the model.{points} (Fig. 3 of the paper)"),
-        ) + &shown(
+        );
+        let map = shown(
             &maps::forward(study, effort, bench),
             &format!("{quantity} with iso-curves. (Fig. 4)"),
-        )
+        );
+        html! { (surface) (map) }
     });
-    let residuals: Vec<String> = bench.map_or_else(Vec::new, |bench| {
-        let figures = Effort::BOTH
-            .into_iter()
-            .filter_map(|effort| maps::residuals(study, effort, bench).map(|figure| (effort, figure)));
-        figures
-            .map(|(effort, figure)| {
-                let quantity = ["Thrust", "Torque"][effort as usize];
-                shown(
-                    &figure,
-                    &format!(
-                        "{quantity} by the model less {} measured.",
-                        quantity.to_lowercase()
-                    ),
-                )
-            })
-            .collect()
-    });
-    let residuals = if residuals.is_empty() {
-        String::new()
-    } else {
-        figures(&residuals)
+    let residual = |effort: Effort| {
+        let figure = maps::residuals(study, effort, bench?)?;
+        let quantity = effort.name();
+        let measured = quantity.to_lowercase();
+        Some(shown(
+            &figure,
+            &format!("{quantity} by the model less {measured} measured."),
+        ))
     };
-    text + &figures(&maps) + &residuals + &table::coefficients(study)
+    let residuals: Vec<Markup> = Effort::BOTH.into_iter().filter_map(residual).collect();
+    html! {
+        @if let Some(bench) = bench { (bench_points(study, bench)) }
+        (figures(&maps))
+        @if !residuals.is_empty() { (figures(&residuals)) }
+        (table::coefficients(study))
+    }
 }
 
-fn inverse_section(study: &Study<'_>) -> String {
+/// What bench points there are, and how well the model meets them.
+fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
+    let voltage = if bench.corrected {
+        "brought to the reference voltage"
+    } else {
+        "as measured"
+    };
+    let [low, _] = study.pair.range();
+    let is_below = |point: &&BenchPoint| point.throttles.iter().any(|t| *t < low);
+    let (all, low) = (bench.outside.len(), shortest(low));
+    let outside = match bench.outside.iter().filter(is_below).count() {
+        0 => format!("{all} more lie outside the throttle range"),
+        below if below == all => format!("{all} more lie below the idle of {low}"),
+        below => {
+            format!("{all} more lie outside the throttle range, {below} of them below the idle of {low}")
+        }
+    };
+    html! {
+        p {
+            (bench.points.len()) " bench points of "
+            @for (index, file) in bench.files.iter().enumerate() {
+                @if index > 0 { ", " }
+                code { (printable(file)) }
+            }
+            ", " (voltage) "."
+            @if all > 0 { " " (outside) ": small in the maps of what the model misses, and in no number." }
+        }
+        @for row in &bench.refused { p { "Refused: " (printable(row)) } }
+        (table::bench(bench))
+    }
+}
+
+fn inverse_section(study: &Study<'_>) -> Markup {
     figures(&[0, 1].map(|rotor| {
         let caption = [
             "The upper rotor\u{2019}s throttle. (Fig. 5 of the paper)",
@@ -332,8 +315,8 @@ fn inverse_section(study: &Study<'_>) -> String {
     }))
 }
 
-fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[Alternative]) -> String {
-    let plots: Vec<String> = Effort::BOTH
+fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[Alternative]) -> Markup {
+    let plots: Vec<Markup> = Effort::BOTH
         .into_iter()
         .zip(fields)
         .map(|(effort, field)| {
@@ -349,32 +332,32 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[
             shown(&maps::error(study, effort, field), &caption)
         })
         .collect();
-    let text = "<p>What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
-         precision as on the target, the map in double precision. \
-         Colours are logarithmic over two decades up to the proven bound.</p>\n";
-    text.to_owned()
-        + &figures(&plots)
-        + &table::folded(
-            "All evaluators: what each is proven to miss",
-            &table::front(front),
-        )
+    html! {
+        p {
+            "What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
+             precision as on the target, the map in double precision. Colours are logarithmic over two decades up to the \
+             proven bound."
+        }
+        (figures(&plots))
+        (table::folded("All evaluators: what each is proven to miss", &table::front(front)))
+    }
 }
 
-fn cost_section(study: &Study<'_>, front: &[Alternative]) -> String {
+fn cost_section(study: &Study<'_>, front: &[Alternative]) -> Markup {
     let costs = Cost::new(study.compiled);
-    let text = format!(
-        "<p>{}. The inverse map is counted on its own, evaluator by evaluator; its cycles are its instructions and 13 more for every \
-         division and square root. The whole mix is estimated: the inverse map of all units, and for checks, voltage and \
-         allocation what counted mixers that desaturate {} take per unit and per mix beside it. Memory that makes the \
-         core wait is not in it.</p>\n",
-        costs.target,
-        costs.desaturation.description()
-    );
-    text + &cost::facts(&costs)
-        + &table::folded(
-            "All evaluators: what each costs",
-            &cost::evaluators(study.compiled.airframe.units.len(), front),
-        )
+    let units = study.compiled.airframe.units.len();
+    html! {
+        p {
+            (costs.target)
+            ". The inverse map is counted on its own, evaluator by evaluator; its cycles are its instructions and 13 more \
+             for every division and square root. The whole mix is estimated: the inverse map of all units, and for checks, \
+             voltage and allocation what counted mixers that desaturate "
+            (costs.desaturation.description())
+            " take per unit and per mix beside it. Memory that makes the core wait is not in it."
+        }
+        (cost::facts(&costs))
+        (table::folded("All evaluators: what each costs", &cost::evaluators(units, front)))
+    }
 }
 
 /// What the script needs: the forward map and the error on its grid.

@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
+use maud::{Markup, Render, html};
 use mixer_compiler::alternatives::Alternative;
+use mixer_compiler::diagnostic::printable;
 use mixer_compiler::hover::Hover;
 use mixer_compiler::power::LevelPower;
 use mixer_compiler::report::{Summary, rounded_up};
@@ -10,48 +12,45 @@ use mixer_compiler::report::{Summary, rounded_up};
 use crate::bench::BenchPoints;
 use crate::comparison::{Answer, Comparison};
 use crate::effort::Effort;
-use crate::number::{escaped, fixed, shortest, significant};
+use crate::number::{fixed, shortest, significant};
 use crate::origin::Origin;
 use crate::study::Study;
 
 /// Rows of the comparison that the page and the command show of the whole sweep.
 const SHOWN_ROWS: usize = 9;
 
-/// A table: the caption, one header row, rows whose first cell is their name. Cells are markup
-/// already.
-pub fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> String {
-    let mut html = String::from("<div class=\"wide\"><table>");
-    let _ = write!(html, "<caption>{caption}</caption><thead><tr>");
-    for cell in header {
-        let _ = write!(html, "<th scope=\"col\">{cell}</th>");
-    }
-    html.push_str("</tr></thead>\n<tbody>\n");
-    for row in rows {
-        html.push_str("<tr>");
-        for (index, cell) in row.iter().enumerate() {
-            let _ = match index {
-                0 => write!(html, "<th scope=\"row\">{cell}</th>"),
-                _ => write!(html, "<td>{cell}</td>"),
-            };
+/// A table: the caption, one header row, rows whose first cell is their name.
+pub fn table(caption: impl Render, header: &[impl Render], rows: &[Vec<impl Render>]) -> Markup {
+    html! {
+        div.wide {
+            table {
+                caption { (caption) }
+                thead { tr { @for cell in header { th scope="col" { (cell) } } } }
+                tbody {
+                    @for row in rows {
+                        tr {
+                            @for (index, cell) in row.iter().enumerate() {
+                                @if index == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                            }
+                        }
+                    }
+                }
+            }
         }
-        html.push_str("</tr>\n");
     }
-    html.push_str("</tbody></table></div>\n");
-    html
 }
 
-/// Names with values, which are markup already.
-pub fn facts_table<'a>(facts: impl IntoIterator<Item = &'a (&'a str, String)>) -> String {
-    let mut html = String::from("<table class=\"facts\"><tbody>\n");
-    for (name, value) in facts {
-        let _ = writeln!(html, "<tr><th scope=\"row\">{name}</th><td>{value}</td></tr>");
+/// Names with values.
+pub fn facts_table(facts: &[(&str, impl Render)]) -> Markup {
+    html! {
+        table.facts {
+            tbody { @for (name, value) in facts { tr { th scope="row" { (name) } td { (value) } } } }
+        }
     }
-    html.push_str("</tbody></table>\n");
-    html
 }
 
 /// Names with values: what `check` prints.
-pub fn summary(study: &Study<'_>, origin: &Origin) -> String {
+pub fn summary(study: &Study<'_>, origin: &Origin) -> Markup {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let summary = Summary::new(compiled);
@@ -81,8 +80,7 @@ pub fn summary(study: &Study<'_>, origin: &Origin) -> String {
             "Inverse map",
             format!(
                 "{}, {} bytes of tables",
-                escaped(&summary.evaluator_description),
-                summary.table_bytes
+                summary.evaluator_description, summary.table_bytes
             ),
         ),
         (
@@ -118,13 +116,14 @@ pub fn summary(study: &Study<'_>, origin: &Origin) -> String {
     ];
     let hover = summary.hover.iter().flat_map(hover);
     let power = summary.power.iter().map(power);
-    let mut facts: Vec<_> = facts.into_iter().chain(hover).chain(power).collect();
-    let mut file = format!("<code>{}</code>", escaped(&compiled.source_name));
-    if let Some(hash) = &origin.sha256 {
-        let _ = write!(file, ", SHA-256 <code>{hash}</code>");
-    }
+    let facts = facts.into_iter().chain(hover).chain(power);
+    let mut facts: Vec<(&str, Markup)> = facts.map(|(name, value)| (name, html! { (value) })).collect();
+    let file = html! {
+        code { (printable(&compiled.source_name)) }
+        @if let Some(hash) = &origin.sha256 { ", SHA-256 " code { (hash) } }
+    };
     facts.push(("Airframe file", file));
-    facts.extend(origin.date.iter().map(|date| ("Date", date.clone())));
+    facts.extend(origin.date.iter().map(|date| ("Date", html! { (date) })));
     facts_table(&facts)
 }
 
@@ -183,7 +182,7 @@ fn power(power: &LevelPower) -> (&'static str, String) {
 }
 
 /// Places, spins and outputs of the units.
-pub fn units(study: &Study<'_>) -> String {
+pub fn units(study: &Study<'_>) -> Markup {
     let header = ["unit", "x (m)", "y (m)", "z (m)", "upper rotor", "lower rotor"];
     let units = study.compiled.airframe.units.iter().enumerate();
     let rows: Vec<Vec<String>> = units
@@ -200,28 +199,24 @@ pub fn units(study: &Study<'_>) -> String {
         .collect();
     table(
         "From the centre of gravity: x forward, y right, z down",
-        &header.map(str::to_owned),
+        &header,
         &rows,
     )
 }
 
 /// M and M+.
-pub fn matrices(study: &Study<'_>) -> String {
+pub fn matrices(study: &Study<'_>) -> Markup {
     let effectiveness = &study.compiled.effectiveness;
     let n = study.compiled.airframe.units.len();
-    let efforts: Vec<String> = ["f", "Q"]
+    let efforts: Vec<Markup> = ["f", "Q"]
         .into_iter()
-        .flat_map(|letter| (0..n).map(move |i| format!("{letter}<sub>{i}</sub>")))
+        .flat_map(|letter| (0..n).map(move |i| html! { (letter) sub { (i) } }))
         .collect();
-    let axes = ["roll", "pitch", "yaw", "thrust"].map(str::to_owned);
-    let header = |columns: &[String]| {
-        let mut header = vec![String::new()];
-        header.extend_from_slice(columns);
-        header
-    };
-    let rows = |names: &[String], value: &dyn Fn(usize, usize) -> f64, columns: usize| -> Vec<Vec<String>> {
-        let row = |(index, name): (usize, &String)| {
-            let values = (0..columns).map(|column| fixed(value(index, column), 4));
+    let axes = ["roll", "pitch", "yaw", "thrust"].map(|axis| html! { (axis) });
+    let header = |columns: &[Markup]| [&[html! {}], columns].concat();
+    let rows = |names: &[Markup], value: &dyn Fn(usize, usize) -> f64, columns: usize| -> Vec<Vec<Markup>> {
+        let row = |(index, name): (usize, &Markup)| {
+            let values = (0..columns).map(|column| html! { (fixed(value(index, column), 4)) });
             [name.clone()].into_iter().chain(values).collect()
         };
         names.iter().enumerate().map(row).collect()
@@ -232,13 +227,12 @@ pub fn matrices(study: &Study<'_>) -> String {
         &|row, column| effectiveness.pseudo_inverse[(row, column)],
         4,
     );
-    let caption = "M: wrench (N m, N m, N m, N) = M &#183; efforts (f in N, Q in N m)";
-    table(caption, &header(&efforts), &m)
-        + &table(
-            "M<sup>+</sup>: least-norm efforts = M<sup>+</sup> &#183; wrench",
-            &header(&axes),
-            &m_plus,
-        )
+    let caption = "M: wrench (N m, N m, N m, N) = M \u{b7} efforts (f in N, Q in N m)";
+    let inverse_caption = html! { "M" sup { "+" } ": least-norm efforts = M" sup { "+" } " \u{b7} wrench" };
+    html! {
+        (table(caption, &header(&efforts), &m))
+        (table(inverse_caption, &header(&axes), &m_plus))
+    }
 }
 
 /// One line of the comparison: columns of both mixers.
@@ -310,7 +304,7 @@ fn lines(comparison: &Comparison) -> Vec<Line> {
 }
 
 /// The static comparison as HTML.
-pub fn comparison(comparison: &Comparison) -> String {
+pub fn comparison(comparison: &Comparison) -> Markup {
     let caption = format!(
         "{} N asked in all; conventional: \u{3ba} = {} m. An asterisk: a throttle is at its limit",
         shortest(comparison.thrust_n),
@@ -363,7 +357,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
 }
 
 /// The evaluators to choose from.
-pub fn front(alternatives: &[Alternative]) -> String {
+pub fn front(alternatives: &[Alternative]) -> Markup {
     let header = [
         "evaluator",
         "",
@@ -386,7 +380,7 @@ pub fn front(alternatives: &[Alternative]) -> String {
             let observed = alternative.observed.map(rounded_up);
             let [[proven_f, proven_q], [observed_f, observed_q]] = [proven, observed];
             vec![
-                escaped(&alternative.description),
+                alternative.description.clone(),
                 alternative.verdict().to_owned(),
                 alternative.cost.map_or_else(String::new, |cost| cost.to_string()),
                 proven_f,
@@ -398,11 +392,11 @@ pub fn front(alternatives: &[Alternative]) -> String {
         .collect();
     let caption = "Evaluators by about the cycles of one unit on a Cortex-M4F, with what one unit misses over the attainable set: proven at \
                    every voltage, observed at the reference voltage";
-    table(caption, &header.map(str::to_owned), &rows)
+    table(caption, &header, &rows)
 }
 
 /// Model against bench.
-pub fn bench(bench: &BenchPoints) -> String {
+pub fn bench(bench: &BenchPoints) -> Markup {
     let header = ["", "rms", "largest", "R\u{b2}"].map(str::to_owned);
     let rows: Vec<Vec<String>> = Effort::BOTH
         .into_iter()
@@ -420,18 +414,20 @@ pub fn bench(bench: &BenchPoints) -> String {
 }
 
 /// The pair's coefficients, as the file has them.
-pub fn coefficients(study: &Study<'_>) -> String {
+pub fn coefficients(study: &Study<'_>) -> Markup {
     let pair = &study.compiled.airframe.pair;
     let terms = pair.basis.exponents().iter();
-    let rows: Vec<Vec<String>> = terms
+    let power = |letter: &str, exponent: u8| {
+        html! {
+            @if exponent > 0 { (letter) }
+            @if exponent > 1 { sup { (exponent) } }
+        }
+    };
+    let rows: Vec<Vec<Markup>> = terms
         .zip(pair.thrust_n.iter().zip(&pair.torque_nm))
         .map(|(&(i, j), (f, q))| {
-            let power = |letter: &str, exponent: u8| match exponent {
-                0 => String::new(),
-                1 => letter.to_owned(),
-                _ => format!("{letter}<sup>{exponent}</sup>"),
-            };
-            vec![power("u", i) + &power("l", j), exact(*f), exact(*q)]
+            let term = html! { (power("u", i)) (power("l", j)) };
+            vec![term, html! { (exact(*f)) }, html! { (exact(*q)) }]
         })
         .collect();
     let caption = format!(
@@ -439,11 +435,7 @@ pub fn coefficients(study: &Study<'_>) -> String {
         pair.basis.name(),
         pair.upper_spin.name()
     );
-    table(
-        &caption,
-        &["term", "thrust f (N)", "torque Q (N m)"].map(str::to_owned),
-        &rows,
-    )
+    table(&caption, &["term", "thrust f (N)", "torque Q (N m)"], &rows)
 }
 
 /// All digits, with a typographic minus.
@@ -452,6 +444,6 @@ fn exact(x: f64) -> String {
 }
 
 /// A table behind a line that opens it.
-pub fn folded(line: &str, table: &str) -> String {
-    format!("<details><summary>{line}</summary>\n{table}</details>\n")
+pub fn folded(line: &str, table: &Markup) -> Markup {
+    html! { details { summary { (line) } (table) } }
 }
