@@ -90,6 +90,7 @@ fn property(key: &Key) -> Value {
         Kind::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
         Kind::NotNegative => json!({ "type": "number", "minimum": 0 }),
         Kind::Share => json!({ "type": "number", "minimum": 0, "maximum": 1 }),
+        Kind::Percent => json!({ "type": "number", "exclusiveMinimum": 0, "maximum": 100 }),
         Kind::Count([least, most]) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         Kind::Numbers(count) => array(number(), count),
         Kind::Points => json!({ "type": "array", "items": array(number(), [2, 2]) }),

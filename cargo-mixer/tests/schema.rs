@@ -130,10 +130,11 @@ fn the_parser_agrees_key_by_key() {
     let other = "torque_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\nthrust_polynomial = [0.0, 1.0]\n";
     let points = "thrust_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\ntorque_polynomial = [0.0, 1.0]\n";
     let layout = "[layout]\narm_m = 0.45\nunits = 4\nfirst_angle_deg = 45.0\nspins = [\"cw\", \"ccw\", \"cw\", \"ccw\"]\n\
-                  channels = [[0, 4], [1, 5], [2, 6], [3, 7]]\n[vehicle]\nmass_kg = 3.0\n[inverse]\nmethod = \"auto\"\n";
+                  channels = [[0, 4], [1, 5], [2, 6], [3, 7]]\n[vehicle]\nmass_kg = 3.0\ninertia_kg_m2 = [0.1, 0.1, 0.2]\n[inverse]\nmethod = \"auto\"\n";
     let alone = "[pair.lower_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [-0.01, -0.2, 0.0]\n\
                  [pair.upper_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
-                 [pair.power]\npower_w = [0, 0, 0, 0, 0, 260, 30, 20, 240, 20, -10, 40, 2, 3, 4]\n";
+                 [pair.power]\npower_w = [0, 0, 0, 0, 0, 260, 30, 20, 240, 20, -10, 40, 2, 3, 4]\n\
+                 [pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 100\n";
     let forms = [
         format!(
             "name = \"one\"\ndescription = \"x\"\n{pair}{UNIT}[inverse]\nthrust_tolerance_n = 0.1\ntorque_tolerance_nm = 0.01\n\

@@ -80,6 +80,17 @@ pub(crate) struct Pair {
     pub(crate) upper_out: Option<RotorAlone>,
     /// `[pair.power]`
     pub(crate) power: Option<Power>,
+    /// `[pair.uncertainty]`
+    pub(crate) uncertainty: Option<Uncertainty>,
+}
+
+/// `[pair.uncertainty]`
+#[derive(Clone, Debug)]
+pub(crate) struct Uncertainty {
+    /// `thrust_percent`
+    pub(crate) thrust_percent: Option<Spanned<f64>>,
+    /// `torque_percent`
+    pub(crate) torque_percent: Option<Spanned<f64>>,
 }
 
 /// `[pair.power]`
@@ -193,6 +204,8 @@ pub(crate) struct Allocation {
 pub(crate) struct Vehicle {
     /// `mass_kg`
     pub(crate) mass_kg: Option<Spanned<f64>>,
+    /// `inertia_kg_m2`
+    pub(crate) inertia_kg_m2: Option<Spanned<Triple>>,
 }
 
 impl Spec {
@@ -240,6 +253,7 @@ impl Vehicle {
         fields.require();
         Self {
             mass_kg: fields.read("mass_kg"),
+            inertia_kg_m2: fields.read("inertia_kg_m2"),
         }
     }
 }
@@ -265,6 +279,17 @@ impl Pair {
             lower_out: fields.table("lower_out", keys::LOWER_OUT, RotorAlone::read),
             upper_out: fields.table("upper_out", keys::UPPER_OUT, RotorAlone::read),
             power: fields.table("power", keys::POWER, Power::read),
+            uncertainty: fields.table("uncertainty", keys::UNCERTAINTY, Uncertainty::read),
+        }
+    }
+}
+
+impl Uncertainty {
+    fn read(fields: &mut Fields<'_, '_>) -> Self {
+        fields.require();
+        Self {
+            thrust_percent: fields.read("thrust_percent"),
+            torque_percent: fields.read("torque_percent"),
         }
     }
 }

@@ -242,3 +242,21 @@ fn later_stages_point_at_the_layout_for_its_units() {
         Some("[layout]")
     );
 }
+
+#[test]
+fn the_optional_keys_of_the_pair_and_of_the_vehicle_are_kept() {
+    let units = "[layout]\narm_m = 0.3\nunits = 3\nfirst_angle_deg = 0\n";
+    let bare = read(&format!("{PAIR}{units}[vehicle]\nmass_kg = 3.2\n"));
+    assert_eq!(bare.vehicle.unwrap().inertia_kg_m2, None);
+    assert_eq!(bare.pair.uncertainty, None);
+    let full = read(&format!(
+        "{PAIR}[pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 100\n{units}\
+         [vehicle]\nmass_kg = 3.2\ninertia_kg_m2 = [0.080, 0.087, 0.160]\n"
+    ));
+    assert_eq!(full.vehicle.unwrap().inertia_kg_m2, Some([0.080, 0.087, 0.160]));
+    let uncertainty = full.pair.uncertainty.unwrap();
+    assert_eq!(
+        (uncertainty.thrust_percent, uncertainty.torque_percent),
+        (1.5, 100.0)
+    );
+}

@@ -7,6 +7,7 @@ use super::check::{LARGEST_EFFORT, word};
 use super::power::{self, Power};
 use super::rotor_alone::{self, RotorAlone};
 use super::throttle::Throttle;
+use super::uncertainty::{self, Uncertainty};
 use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec;
 
@@ -67,6 +68,8 @@ pub struct Pair {
     pub upper_out: Option<RotorAlone>,
     /// Electrical power; `None` where the file has no `[pair.power]`.
     pub power: Option<Power>,
+    /// Error of the model; `None` where the file has no `[pair.uncertainty]`.
+    pub uncertainty: Option<Uncertainty>,
 }
 
 pub(super) fn check(
@@ -95,7 +98,10 @@ pub(super) fn check(
         .power
         .as_ref()
         .map(|table| power::check(table, throttle, faults));
+    let uncertainty = pair.uncertainty.as_ref();
+    let uncertainty = uncertainty.map(|table| uncertainty::check(table, faults));
     Some(Pair {
+        uncertainty: uncertainty.map_or(Some(None), |checked| checked.map(Some))?,
         power: power.map_or(Some(None), |power| power.map(Some))?,
         lower_out: lower_out.map_or(Some(None), |alone| alone.map(Some))?,
         upper_out: upper_out.map_or(Some(None), |alone| alone.map(Some))?,

@@ -36,6 +36,8 @@ pub enum Kind {
     NotNegative,
     /// A number from 0 to 1.
     Share,
+    /// A number above 0 and at most 100.
+    Percent,
     /// A whole number in this range.
     Count([usize; 2]),
     /// Numbers, as many as in this range.
@@ -162,6 +164,16 @@ pub(crate) const PAIR: Shape = shape! { "[pair]":
         "What the lower rotor gives alone, the upper one at rest: used while the upper one is out.";
     "power" => "[pair.power]", Kind::Table(&POWER),
         "Electrical power, for what `check` and the report say of least power.";
+    "uncertainty" => "[pair.uncertainty]", Kind::Table(&UNCERTAINTY),
+        "How far the model of the pair may be from the pair.";
+};
+
+/// `[pair.uncertainty]`
+pub(crate) const UNCERTAINTY: Shape = shape! { "[pair.uncertainty]":
+    "thrust_percent" required => "thrust_percent = 1.5", Kind::Percent,
+        "Standard deviation of the thrust, % of the thrust at full throttle.";
+    "torque_percent" required => "torque_percent = 3.7", Kind::Percent,
+        "Standard deviation of the torque, % of the largest torque.";
 };
 
 /// `[pair.lower_out]`
@@ -265,9 +277,23 @@ pub(crate) const ALLOCATION: Shape = shape! { "[allocation]":
 pub(crate) const VEHICLE: Shape = shape! { "[vehicle]":
     "mass_kg" required => "mass_kg = 3.2", Kind::Positive,
         "Take-off mass, kg.";
+    "inertia_kg_m2" => "inertia_kg_m2 = [0.080, 0.087, 0.160]", Kind::Numbers([3, 3]),
+        "Moments of inertia about the forward, right and down axes, kg m2, for simulators.";
 };
 
 /// Every table, to tell where a misplaced key belongs.
 pub(crate) const ALL: &[Shape] = &[
-    FILE, THROTTLE, PAIR, LOWER_OUT, UPPER_OUT, POWER, VOLTAGE, LAYOUT, UNIT, INVERSE, ALLOCATION, VEHICLE,
+    FILE,
+    THROTTLE,
+    PAIR,
+    LOWER_OUT,
+    UPPER_OUT,
+    POWER,
+    UNCERTAINTY,
+    VOLTAGE,
+    LAYOUT,
+    UNIT,
+    INVERSE,
+    ALLOCATION,
+    VEHICLE,
 ];
