@@ -1,11 +1,19 @@
-//! The electrical power of one pair over its throttles.
+//! `[pair.power]`: the electrical power of one pair over its throttles.
 
 use super::basis::Basis;
-use super::check::LARGEST_EFFORT;
+use super::limits::LARGEST_EFFORT;
 use super::throttle::Throttle;
 use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec;
-use crate::spec::keys::POWER_TERMS;
+use crate::spec::keys::{Kind, keys};
+use crate::spec::{Fields, Numbers};
+
+/// Coefficients of a power map: the quartic's and a constant.
+const POWER_TERMS: usize = 15;
+
+keys! { TABLE = "[pair.power]":
+    POWER_W "power_w" = "[0, 0, 0, 0, 0, 620, 90, 40, 560, 160, -60, 150, 8, 6, 5]", Kind::Numbers([POWER_TERMS, POWER_TERMS]),
+        "Electrical power of both rotors, W: the quartic's coefficients and a constant; `identify` writes it.".required();
+}
 
 /// `[pair.power]`: what `check` and the report say of power comes from it, nothing else does.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,14 +58,10 @@ impl Power {
 /// Throttles per side of the range at which the power is looked at.
 const STEPS: u32 = 64;
 
-/// Checks `[pair.power]`.
-pub(super) fn check(
-    table: &spec::Power,
-    throttle: Option<&Throttle>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<Power> {
+pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> Option<Power> {
     let key = "pair.power.power_w";
-    let field = table.power_w.as_ref()?;
+    let field = table.read::<Numbers>(&POWER_W)?;
+    let faults = &mut *table.faults;
     let power_w: Vec<f64> = field.get_ref().iter().map(|c| *c.get_ref()).collect();
     let fault = |code, message: String| Diagnostic::new(code, key, field.span(), message);
     if power_w.len() != POWER_TERMS {

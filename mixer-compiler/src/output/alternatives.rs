@@ -72,7 +72,7 @@ impl Compiled {
             let mut observed = Residual::over_set(&pair, &tables);
             let certificate = proof::prove(&self.airframe, &pair, &tables, &correction, &mut observed, true);
             Alternative {
-                evaluator: evaluator.name(),
+                evaluator: evaluator.name().to_owned(),
                 description: evaluator.description(),
                 instructions: evaluator.instructions(basis),
                 cost: evaluator.cost(basis),

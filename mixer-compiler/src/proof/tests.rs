@@ -43,7 +43,7 @@ fn nothing_is_observed_beyond_the_bound() {
                 &format!("torque_tolerance_nm = 0.0217\nmethod = {method}"),
             )
     };
-    let mut texts: Vec<(String, String)> = crate::spec::keys::EVALUATORS
+    let mut texts: Vec<(String, String)> = crate::airframe::METHODS[2..]
         .iter()
         .map(|name| ((*name).to_owned(), loose(&isae, &format!("\"{name}\""))))
         .collect();
