@@ -10,6 +10,7 @@ mod attainable;
 mod border;
 mod budget;
 mod inverse;
+mod part;
 mod rows;
 mod single;
 
@@ -29,7 +30,8 @@ use crate::model::voltage::TabulatedLaw;
 pub use attainable::{AttainableTable, LevelFlightTable};
 pub use border::BorderTable;
 use budget::budget;
-pub use inverse::{InverseTable, SeedTable};
+pub use inverse::{InverseTable, PolynomialTable, SeedTable};
+pub(crate) use part::{Part, identifier};
 use rows::rows;
 use single::single_tables;
 
@@ -111,11 +113,6 @@ impl ClosedFormTable {
     /// 1 / n.
     pub(crate) fn torque_share(&self) -> f32 {
         1.0 / self.units.len() as f32
-    }
-
-    fn floats(&self) -> usize {
-        // Range, share, floor, middle and rounding beside the border, the units and the facets.
-        2 + 4 + self.border.floats() + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
     }
 }
 
@@ -260,23 +257,26 @@ impl MixerTables {
         Ok((throttle, achieved, saturation))
     }
 
-    /// Bytes of the tables in flash: four per number, one per channel.
+    /// Bytes of the tables in flash.
     pub(crate) fn bytes(&self) -> usize {
-        let floats = self.units.len() * 24
-            + 2 * self.pair.thrust.terms()
-            + 2 * 2 * 4 // single rotors
-            + self.inverse.floats()
-            + 2 // throttle range
-            + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
-            + 5 + 8 * self.attainable.corners.len()
-            + 2 + 4 * self.level.efforts.len()
-            + 4 + 8 // rows, of them those of the centres
-            + self.closed_form.as_ref().map_or(0, ClosedFormTable::floats)
-            + 2 // desaturation
-            + 1 // power bias
-            + 6; // tolerance
-        let channels = 2 * self.units.len() * (1 + usize::from(self.closed_form.is_some()));
-        4 * floats + channels
+        let view = self.view();
+        let parts: [&dyn Part; 14] = [
+            &view.units,
+            &view.pair,
+            &view.singles,
+            &view.inverse,
+            &view.throttle,
+            &view.voltage,
+            &view.attainable,
+            &view.level,
+            &view.rows,
+            &view.centre,
+            &view.desaturation,
+            &view.power_bias_nm_per_n,
+            &view.closed_form,
+            &view.tolerance,
+        ];
+        parts.into_iter().map(Part::bytes).sum()
     }
 }
 
@@ -291,11 +291,6 @@ impl QuantityTable {
             Basis::Cubic => QuantityTable::Cubic(Cubic(rounded(coefficients))),
             Basis::Quartic => QuantityTable::Quartic(Quartic(rounded(coefficients))),
         }
-    }
-
-    /// Number of terms.
-    pub(crate) fn terms(&self) -> usize {
-        self.coefficients().len()
     }
 
     /// The coefficients in the order of the airframe file.
@@ -369,13 +364,6 @@ impl LawTable {
                 coefficients,
             },
             LawTable::Points(points) => VoltageLaw::Points(points),
-        }
-    }
-
-    fn floats(&self) -> usize {
-        match self {
-            LawTable::Polynomial { coefficients, .. } => 2 + coefficients.len(),
-            LawTable::Points(points) => 2 * points.len(),
         }
     }
 }

@@ -16,7 +16,7 @@ use crate::model::PairMap;
 use crate::output::cost;
 use crate::proof::residual::Residual;
 use crate::proof::{self, CorrectionBounds};
-use crate::tables::{InverseTable, MixerTables};
+use crate::tables::{InverseTable, MixerTables, Part};
 
 /// One evaluator as it would be emitted.
 #[derive(Clone, Debug, Serialize)]
@@ -77,7 +77,7 @@ impl Compiled {
                 instructions: evaluator.instructions(basis),
                 cost: evaluator.cost(basis),
                 delivered: cost::delivered(self, evaluator),
-                bytes: 4 * tables.inverse.floats(),
+                bytes: tables.inverse.bytes(),
                 proven: certificate.stated,
                 observed: observed.efforts,
                 holds: certificate.holds(),
