@@ -16,14 +16,14 @@ fn compiled(text: String) -> crate::compiled::Compiled {
     crate::compile(&Source::new("test.toml", text)).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-fn prove_again(compiled: &crate::compiled::Compiled, tables: &MixerTables) -> Certificate {
+fn prove_again(compiled: &crate::compiled::Compiled, tables: &crate::tables::MixerTables) -> Certificate {
     let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
     let correction = CorrectionBounds::new(&compiled.airframe, tables.voltage.as_ref());
     let mut observed = compiled.residual;
     prove(
         &compiled.airframe,
         &pair,
-        tables,
+        &tables.map(),
         &correction,
         &mut observed,
         true,
@@ -147,7 +147,7 @@ fn flipped_bits_are_refused_where_they_matter() {
             let slot = slots.into_iter().nth(place).unwrap();
             *slot = f32::from_bits(slot.to_bits() ^ (1 << bit));
             let certificate = prove_again(&compiled, &tables);
-            let observed = Residual::over_set(&pair, &tables);
+            let observed = Residual::over_set(&pair, &tables.map());
             if certificate.holds() {
                 assert!(
                     certificate.agrees(&observed),
