@@ -59,13 +59,14 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let mut faults = Vec::new();
+    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let effectiveness = keep(Effectiveness::new(&airframe), &mut faults);
     let authority = effectiveness
         .as_ref()
-        .and_then(|effectiveness| keep(plausible::authority(&airframe, effectiveness), &mut faults));
+        .and_then(|effectiveness| keep(plausible::authority(&airframe, effectiveness, &pair), &mut faults));
     let invertible = keep(injectivity::prove(&airframe), &mut faults);
     let voltage = keep(voltage::tabulate(&airframe), &mut faults);
-    let tolerances = keep(plausible::tolerances(&airframe), &mut faults);
+    let tolerances = keep(plausible::tolerances(&airframe, &pair), &mut faults);
     let (Some(effectiveness), Some(()), Some((injectivity, least_idle)), Some(voltage), Some(())) =
         (effectiveness, authority, invertible, voltage, tolerances)
     else {
@@ -73,7 +74,6 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     };
     let voltage = VoltageTable::new(&airframe, voltage.as_ref());
     let voltage = voltage.as_ref();
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let selected = selection::select(&airframe, &pair, voltage)?;
     let polygon = Polygon::new(&pair);
     let parts = Parts {
@@ -104,7 +104,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         lost_between_sides,
     };
     probe.run()?;
-    let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);
+    let warnings = plausible::warnings(&airframe, &effectiveness, &pair, thrust_range_n);
     Ok(Compiled {
         source_name: source.file_name(),
         warnings: Diagnostics::new(source.clone(), warnings),
@@ -135,7 +135,7 @@ const GENERATED: &str = "// @generated from an airframe file by mixer-compiler; 
 impl Compiled {
     /// Wrench that one unit of a normalised setpoint asks for: `SCALE` of the generated module.
     pub fn scale(&self) -> mixer_rt::Wrench {
-        scale::scale(&self.airframe, &self.effectiveness)
+        scale::scale(&self.airframe, &self.effectiveness, &self.pair)
     }
 
     /// The generated Rust as tokens: one module.

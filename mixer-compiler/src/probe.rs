@@ -193,7 +193,7 @@ impl<'a> At<'a> {
             probe,
             physics: Physics {
                 airframe: probe.airframe,
-                map: &unit.map,
+                map: unit.map,
             },
             volts,
             health,

@@ -1,11 +1,9 @@
 //! `[pair.lower_out]`, `[pair.upper_out]`: what one rotor of a unit gives alone, the other one at
 //! rest.
 
-use std::ops::Range;
-
 use super::limits::LARGEST_EFFORT;
 use super::throttle::Throttle;
-use crate::diagnostic::{Code, Diagnostic, number};
+use crate::diagnostic::{Code, number};
 use crate::spec::keys::{Key, Kind, keys};
 use crate::spec::{Fields, Triple};
 
@@ -50,62 +48,48 @@ pub(super) fn read(table: &mut Fields<'_, '_>, sign: f64, throttle: Option<&Thro
         ([&LOWER_THRUST_N, &LOWER_TORQUE_NM], "lower", "above")
     };
     let [thrust, torque] = keys.map(|key| coefficients(table, key));
-    let ((thrust_n, thrust_place), (torque_nm, torque_place)) = (thrust?, torque?);
+    let (thrust_n, torque_nm) = (thrust?, torque?);
     let throttle = throttle?;
-    let [thrust_key, torque_key] = keys.map(|key| table.key_path(key.name));
+    let [thrust_path, torque_path] = keys.map(|key| table.key_path(key.name));
     let before = table.faults.len();
     let (slope, at) = least_slope(thrust_n, throttle);
     if slope <= 0.0 {
+        let [min, max] = [throttle.min, throttle.max].map(number);
         let message = format!(
-            "the thrust of `{thrust_key}` does not grow with the throttle: its slope is {slope:.3} N at {at:.3}"
+            "the thrust of `{thrust_path}` does not grow with the throttle: its slope is {slope:.3} N at {at:.3}"
         );
-        table.faults.push(
-            Diagnostic::new(Code::RotorAlone, thrust_key, thrust_place, message)
-                .label(format!(
-                    "must grow from {} to {}",
-                    number(throttle.min),
-                    number(throttle.max)
-                ))
-                .help("a1 x + a2 x^2 + a3 x^3 with a1, a2, a3 in this order, from a run of that rotor over all throttles"),
-        );
+        let help = "a1 x + a2 x^2 + a3 x^3 with a1, a2, a3 in this order, from a run of that rotor over all throttles";
+        let label = format!("must grow from {min} to {max}");
+        table.refuse::<()>(keys[0], Code::RotorAlone, message, label, help);
     }
     let full = value(torque_nm, throttle.max);
     if sign * full <= 0.0 {
         let message = format!(
-            "the torque of `{torque_key}` is {full:.4} N m at full throttle, that of the {turning} rotor alone is {side} 0"
+            "the torque of `{torque_path}` is {full:.4} N m at full throttle, that of the {turning} rotor alone is {side} 0"
         );
         let help = format!(
             "torque is positive where the lower rotor outweighs the upper; in `[{}]` the {turning} rotor turns",
             table.path()
         );
-        table.faults.push(
-            Diagnostic::new(Code::RotorAlone, torque_key, torque_place, message)
-                .label("torque of the other rotor, or of the other sign")
-                .help(help),
-        );
+        let label = "torque of the other rotor, or of the other sign";
+        table.refuse::<()>(keys[1], Code::RotorAlone, message, label, help);
     }
     (table.faults.len() == before).then_some(RotorAlone { thrust_n, torque_nm })
 }
 
-/// Three coefficients and their place.
-fn coefficients(table: &mut Fields<'_, '_>, key: &'static Key) -> Option<([f64; 3], Range<usize>)> {
-    let field = table.read::<Triple>(key)?;
-    let coefficients = field.get_ref().each_ref().map(|c| *c.get_ref());
+/// Three coefficients.
+fn coefficients(table: &mut Fields<'_, '_>, key: &'static Key) -> Option<[f64; 3]> {
+    let coefficients = table.read::<Triple>(key)?.into_inner().map(|c| c.into_inner());
     let Some(beyond) = coefficients.iter().find(|c| c.abs() > LARGEST_EFFORT) else {
-        return Some((coefficients, field.span()));
+        return Some(coefficients);
     };
-    let path = table.key_path(key.name);
+    let [beyond, largest] = [*beyond, LARGEST_EFFORT].map(number);
     let message = format!(
-        "a coefficient of {} in `{path}` is beyond {}",
-        number(*beyond),
-        number(LARGEST_EFFORT)
+        "a coefficient of {beyond} in `{}` is beyond {largest}",
+        table.key_path(key.name)
     );
-    table.faults.push(
-        Diagnostic::new(Code::OutOfRange, path, field.span(), message)
-            .label("no rotor gives that")
-            .help("the throttle of the polynomial runs from 0 to 1, not in microseconds"),
-    );
-    None
+    let help = "the throttle of the polynomial runs from 0 to 1, not in microseconds";
+    table.refuse(key, Code::OutOfRange, message, "no rotor gives that", help)
 }
 
 fn value([a1, a2, a3]: [f64; 3], x: f64) -> f64 {

@@ -55,7 +55,7 @@ pub(super) fn keys() -> Vec<Table> {
             Kind::Table(shape) | Kind::Tables(shape) => format!("`{}`", shape.header),
             kind => kind.words(),
         };
-        let optional = if key.required { "" } else { "optional. " };
+        let optional = if key.required { "" } else { "Optional. " };
         vec![
             format!("`{}`", key.name),
             value,

@@ -76,61 +76,42 @@ pub(in crate::airframe) fn read(table: &mut Fields<'_, '_>) -> Option<Voltage> {
 fn supply(table: &mut Fields<'_, '_>) -> Option<Supply> {
     let reference = table.read::<f64>(&REFERENCE_V);
     let range = table.read::<[Spanned<f64>; 2]>(&RANGE_V)?;
-    let faults = &mut *table.faults;
     let [low, high] = range.get_ref().each_ref().map(|volts| *volts.get_ref());
-    let fault =
-        |message: String| Diagnostic::new(Code::VoltageRange, "voltage.range_v", range.span(), message);
+    let [low_v, high_v] = [low, high].map(number);
+    const PACK: &str = "write the pack's voltage under load when empty, then when full";
     if low < LEAST_V || low >= high {
-        let (low, high) = (number(low), number(high));
-        faults.push(
-            fault(format!(
-                "the voltage range from {low} V to {high} V is empty or goes below {LEAST_V} V"
-            ))
-            .label("expected [lowest, highest]")
-            .help("write the pack's voltage under load when empty, then when full"),
+        let message =
+            format!("the voltage range from {low_v} V to {high_v} V is empty or goes below {LEAST_V} V");
+        return table.refuse(
+            &RANGE_V,
+            Code::VoltageRange,
+            message,
+            "expected [lowest, highest]",
+            PACK,
         );
-        return None;
     }
     if high - low < LEAST_STEP * high {
-        let (least, high) = (rounded(LEAST_STEP * high * 1000.0), number(high));
-        faults.push(
-            fault(format!(
-                "the voltage range up to {high} V is {} mV wide",
-                rounded((range.get_ref()[1].get_ref() - low) * 1000.0)
-            ))
-            .label(format!("expected {least} mV at least"))
-            .help("write the pack's voltage under load when empty, then when full, or leave `[voltage]` out"),
-        );
-        return None;
+        let [wide, least] = [high - low, LEAST_STEP * high].map(|volts| rounded(volts * 1000.0));
+        let message = format!("the voltage range up to {high_v} V is {wide} mV wide");
+        let label = format!("expected {least} mV at least");
+        let help = format!("{PACK}, or leave `[voltage]` out");
+        return table.refuse(&RANGE_V, Code::VoltageRange, message, label, help);
     }
     if high > LARGEST_V {
-        faults.push(
-            fault(format!("a voltage of {} V is beyond {LARGEST_V} V", number(high)))
-                .label("expected volts")
-                .help(format!(
-                    "if millivolts were meant, write {} V",
-                    number(high / 1000.0)
-                )),
-        );
-        return None;
+        let message = format!("a voltage of {high_v} V is beyond {LARGEST_V} V");
+        let help = format!("if millivolts were meant, write {} V", number(high / 1000.0));
+        return table.refuse(&RANGE_V, Code::VoltageRange, message, "expected volts", help);
     }
-    let reference = reference?;
-    let reference_v = *reference.get_ref();
+    let reference_v = *reference?.get_ref();
     if !(low..=high).contains(&reference_v) {
-        let (reference_v, low, high) = (number(reference_v), number(low), number(high));
-        faults.push(
-            Diagnostic::new(
-                Code::VoltageRange,
-                "voltage.reference_v",
-                reference.span(),
-                format!("the reference of {reference_v} V is outside the range from {low} V to {high} V"),
-            )
-            .label(format!("not in [{low}, {high}]"))
-            .help(
-                "the reference is the voltage at which the bench model holds; widen `range_v` to contain it",
-            ),
+        let message = format!(
+            "the reference of {} V is outside the range from {low_v} V to {high_v} V",
+            number(reference_v)
         );
-        return None;
+        let label = format!("not in [{low_v}, {high_v}]");
+        let help =
+            "the reference is the voltage at which the bench model holds; widen `range_v` to contain it";
+        return table.refuse(&REFERENCE_V, Code::VoltageRange, message, label, help);
     }
     Some(Supply {
         reference_v,
