@@ -4,7 +4,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mixer_compiler::spec::keys::{FILE, Key, Kind, Shape};
+use mixer_compiler::airframe::KEYS;
+use mixer_compiler::spec::keys::{Key, Kind, Range, Shape};
 use serde_json::{Map, Value, json};
 
 /// Prints the JSON schema of the airframe file, by which editors complete and check it
@@ -41,7 +42,7 @@ pub fn text() -> String {
 
 /// The schema, draft 7: what editors' language servers know.
 pub fn schema() -> Value {
-    let mut schema = table(&FILE);
+    let mut schema = table(KEYS);
     let head = [
         ("$schema", json!("http://json-schema.org/draft-07/schema#")),
         ("title", json!("Airframe of a coaxial multirotor, version 1")),
@@ -86,11 +87,14 @@ fn property(key: &Key) -> Value {
         Kind::Name => json!({ "type": "string", "pattern": "^[a-z][a-z0-9]*([-_][a-z0-9]+)*$" }),
         Kind::Word(words) => json!({ "type": "string", "enum": words }),
         Kind::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words } }),
-        Kind::Number => number(),
-        Kind::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
-        Kind::NotNegative => json!({ "type": "number", "minimum": 0 }),
-        Kind::Share => json!({ "type": "number", "minimum": 0, "maximum": 1 }),
-        Kind::Percent => json!({ "type": "number", "exclusiveMinimum": 0, "maximum": 100 }),
+        Kind::Number(Range::Finite) => number(),
+        Kind::Number(Range::Positive) => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        Kind::Number(Range::UpTo(most)) => {
+            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": most })
+        }
+        Kind::Number(Range::Within([least, most])) => {
+            json!({ "type": "number", "minimum": least, "maximum": most })
+        }
         Kind::Count([least, most]) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         Kind::Numbers(count) => array(number(), count),
         Kind::Points => json!({ "type": "array", "items": array(number(), [2, 2]) }),
@@ -99,6 +103,6 @@ fn property(key: &Key) -> Value {
         Kind::Table(shape) => table(shape),
         Kind::Tables(shape) => json!({ "type": "array", "items": table(shape), "minItems": 1 }),
     };
-    property["description"] = json!(key.meaning);
+    property["description"] = json!(key.meaning());
     property
 }

@@ -2,9 +2,9 @@
 
 mod allocation;
 mod basis;
-mod check;
 mod inverse;
 mod layout;
+mod limits;
 mod name;
 mod pair;
 mod power;
@@ -17,10 +17,11 @@ mod voltage;
 
 use std::ops::Range;
 
-use toml::Spanned;
+use toml::de::DeTable;
 
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::basis::Basis;
+pub(crate) use self::inverse::METHODS;
 pub use self::inverse::{Inverse, Method};
 pub use self::pair::{Pair, Spin};
 pub use self::power::Power;
@@ -32,7 +33,35 @@ pub use self::vehicle::{GRAVITY, Vehicle};
 pub use self::voltage::{Voltage, VoltageLaw};
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::spec::{self, Places, Spec};
+use crate::spec::keys::{Kind, Shape, keys};
+use crate::spec::{self, Fields, Places, Spanned};
+use layout::Layout;
+
+keys! { FILE = "":
+    NAME "name" = "\"my-x8\"", Kind::Name,
+        "Name of the airframe; becomes the Rust module and type.".required();
+    DESCRIPTION "description" = "\"X8 with 15 inch propellers\"", Kind::Text,
+        "Free text.";
+    THROTTLE "throttle" = "", Kind::Table(&throttle::TABLE),
+        "The range of every rotor's throttle.".required();
+    PAIR "pair" = "", Kind::Table(&pair::TABLE),
+        "Total thrust and torque of one unit at the reference voltage, from the bench.".required();
+    VOLTAGE "voltage" = "", Kind::Table(&voltage::TABLE),
+        "How thrust and torque follow the battery's voltage; without it they do not.";
+    LAYOUT "layout" = "", Kind::Table(&layout::TABLE),
+        "A regular frame, instead of [[unit]].";
+    UNIT "unit" = "", Kind::Tables(&unit::TABLE),
+        "One for each pair of rotors.";
+    INVERSE "inverse" = "", Kind::Table(&inverse::TABLE),
+        "How truly, and how, the pair's map is inverted.";
+    ALLOCATION "allocation" = "", Kind::Table(&allocation::TABLE),
+        "Which axes are served, and what gives way when not all can be had.";
+    VEHICLE "vehicle" = "", Kind::Table(&vehicle::TABLE),
+        "The vehicle, for what `check` and the report say of hover.";
+}
+
+/// The keys of the airframe file, version 1.
+pub const KEYS: &Shape = &FILE;
 
 /// An airframe whose values are checked, in SI units. Made by [`Airframe::read`] alone, so that the
 /// ranges stated on the fields hold.
@@ -72,7 +101,8 @@ impl Airframe {
     /// refused for that alone.
     pub fn read(source: &Source) -> Result<Airframe, Diagnostics> {
         let mut faults = Vec::new();
-        let airframe = Spec::read(source, &mut faults).and_then(|spec| check(spec, &mut faults));
+        let table = spec::parse(source, &mut faults);
+        let airframe = table.and_then(|table| read(&table, &mut faults));
         match airframe {
             Some(airframe) if faults.is_empty() => Ok(airframe),
             _ => Err(Diagnostics::new(source.clone(), faults)),
@@ -160,97 +190,94 @@ impl Airframe {
     }
 }
 
-fn check(spec: Spec, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
-    let name = spec.name.as_ref().and_then(|field| name::check(field, faults));
-    let throttle = spec
-        .throttle
-        .as_ref()
-        .and_then(|table| throttle::check(table, faults));
-    let pair = spec
-        .pair
-        .as_ref()
-        .and_then(|table| pair::check(table, throttle.as_ref(), faults));
-    let voltage = spec.voltage.as_ref().map(|table| voltage::check(table, faults));
-    let units = units(&spec, faults).and_then(|units| unit::check(&units, faults));
-    let inverse = spec
-        .inverse
-        .as_ref()
-        .map_or(Some(Inverse::default()), |table| inverse::check(table, faults));
-    let allocation = spec
-        .allocation
-        .as_ref()
-        .map_or(Some(Allocation::default()), |table| {
-            allocation::check(table, faults)
-        });
-
-    let vehicle = spec.vehicle.as_ref().map(|table| vehicle::check(table, faults));
-
-    let units = units?;
-    let mut places = spec.places;
-    if let Some(layout) = &spec.layout {
-        // Later stages know units alone; what they find in one is to be pointed at in the layout.
-        let of_units = (0..units.len()).map(|k| (format!("unit[{k}]"), layout.place.clone()));
-        places.extend(of_units.chain([("unit".to_string(), layout.place.clone())]));
+fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
+    let mut places = spec::places(table);
+    let top = places.get("name").cloned().unwrap_or(0..0);
+    if table.is_empty() {
+        faults.push(
+            Diagnostic::new(Code::MissingKey, "name", top, "the file is empty")
+                .label("expected an airframe")
+                .help("an airframe has a `name`, `[throttle]`, `[pair]`, and a `[[unit]]` for each pair of rotors"),
+        );
+        return None;
     }
+    let mut file = Fields::of_file(table, &FILE, top, faults);
+    let name = file
+        .read(&NAME)
+        .and_then(|field| name::check(&field, file.faults));
+    let description = file.read::<String>(&DESCRIPTION);
+    let throttle = file.table(&THROTTLE, throttle::read).flatten();
+    let (pair, bench_spin) = file
+        .table(&PAIR, |table| pair::read(table, throttle.as_ref()))
+        .unwrap_or_default();
+    let voltage = file.table(&VOLTAGE, voltage::read);
+    let layout = file.table(&LAYOUT, |table| layout::read(table, bench_spin));
+    let units = file.tables(&UNIT, unit::read);
+    let inverse = file.table(&INVERSE, inverse::read);
+    let allocation = file.table(&ALLOCATION, allocation::read);
+    let vehicle = file.table(&VEHICLE, vehicle::read);
+
+    if let Some(fault) = units_stated_once(&file, layout.as_ref(), units.len()) {
+        file.faults.push(fault);
+        return None;
+    }
+    let first_angle_deg = layout.as_ref().and_then(|layout| layout.first_angle_deg);
+    let units = match layout {
+        None => units,
+        Some(layout) => {
+            let units = layout.units?;
+            // Later stages know units alone; what they find in one is to be pointed at in the
+            // layout.
+            let of_units = (0..units.len()).map(|k| format!("unit[{k}]"));
+            places.extend(
+                of_units
+                    .chain(["unit".to_owned()])
+                    .map(|key| (key, layout.place.clone())),
+            );
+            units
+        }
+    };
+    // A table that was refused left its faults, so that no default takes its place.
     Some(Airframe {
+        units: unit::check(&units, file.faults)?,
         name: name?,
-        description: spec.description.map(Spanned::into_inner).unwrap_or_default(),
+        description: description.map(Spanned::into_inner).unwrap_or_default(),
         throttle: throttle?,
         pair: pair?,
-        voltage: match voltage {
-            Some(voltage) => Some(voltage?),
-            None => None,
-        },
-        units,
-        inverse: inverse?,
-        allocation: allocation?,
-        vehicle: match vehicle {
-            Some(vehicle) => Some(vehicle?),
-            None => None,
-        },
-        first_angle_deg: spec
-            .layout
-            .and_then(|layout| layout.first_angle_deg)
-            .map(Spanned::into_inner),
+        voltage: voltage.flatten(),
+        inverse: inverse.flatten().unwrap_or_default(),
+        allocation: allocation.flatten().unwrap_or_default(),
+        vehicle: vehicle.flatten(),
+        first_angle_deg,
         places,
     })
 }
 
-/// The units as written, from `[[unit]]` or from `[layout]`.
-fn units(spec: &Spec, faults: &mut Vec<Diagnostic>) -> Option<Vec<spec::Unit>> {
-    let written = spec.places.get("unit");
-    let Some(layout) = &spec.layout else {
-        if let Some(place) = written
-            && spec.units.is_empty()
-            && !faults.iter().any(|fault| fault.key.starts_with("unit"))
-        {
-            faults.push(
-                Diagnostic::new(
-                    Code::WrongLength,
-                    "unit",
-                    place.clone(),
-                    "the airframe has 0 units",
-                )
-                .label("empty")
-                .help("add a `[[unit]]` for each pair of rotors"),
-            );
+/// The fault of units that are written in no place, or in two.
+fn units_stated_once(file: &Fields<'_, '_>, layout: Option<&Layout>, units: usize) -> Option<Diagnostic> {
+    let written = file.key_place(&UNIT);
+    let fault = match (written, layout) {
+        (Some(_), Some(layout)) => Diagnostic::new(
+            Code::Conflict,
+            "layout",
+            layout.place.clone(),
+            format!("the file has `[layout]` and {units} `[[unit]]`"),
+        )
+        .label("second description of the units")
+        .help("keep one: `[layout]` for a regular frame, else `[[unit]]`"),
+        (None, None) if file.key_place(&LAYOUT).is_none() => {
+            Diagnostic::new(Code::MissingKey, "unit", file.place(), "the airframe has 0 units")
+                .label("this airframe has no `[[unit]]`")
+                .help("add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame")
         }
-        return (!spec.units.is_empty()).then(|| spec.units.clone());
+        (Some(place), None)
+            if units == 0 && !file.faults.iter().any(|fault| fault.key.starts_with("unit")) =>
+        {
+            Diagnostic::new(Code::WrongLength, "unit", place, "the airframe has 0 units")
+                .label("empty")
+                .help("add a `[[unit]]` for each pair of rotors")
+        }
+        _ => return None,
     };
-    if written.is_some() {
-        faults.push(
-            Diagnostic::new(
-                Code::Conflict,
-                "layout",
-                layout.place.clone(),
-                format!("the file has `[layout]` and {} `[[unit]]`", spec.units.len()),
-            )
-            .label("second description of the units")
-            .help("keep one: `[layout]` for a regular frame, else `[[unit]]`"),
-        );
-        return None;
-    }
-    let bench_spin = spec.pair.as_ref().and_then(|pair| pair.upper_spin.as_ref());
-    let bench_spin = bench_spin.and_then(|spin| Spin::WORDS.iter().find(|(word, _)| word == spin.get_ref()));
-    layout::expand(layout, bench_spin.map(|&(_, spin)| spin), faults)
+    Some(fault)
 }

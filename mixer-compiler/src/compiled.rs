@@ -4,6 +4,7 @@ use crate::airframe::Airframe;
 use crate::desaturation::attainable::AreaLoss;
 use crate::diagnostic::Diagnostics;
 use crate::inverse::evaluator::Evaluator;
+use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::injectivity::Injectivity;
 use crate::proof::Certificate;
@@ -19,6 +20,8 @@ pub struct Compiled {
     pub airframe: Airframe,
     /// M and M+.
     pub effectiveness: Effectiveness,
+    /// The forward map of a unit at the reference voltage.
+    pub pair: PairMap,
     /// Proof that the forward map can be inverted.
     pub injectivity: Injectivity,
     /// Least idle at which the forward map can be inverted.

@@ -22,16 +22,17 @@ pub mod spec;
 pub mod tables;
 
 use airframe::Airframe;
+use desaturation::attainable::Polygon;
 use desaturation::{closed_form, thrust_range};
 use diagnostic::{Diagnostic, Diagnostics};
+use model::PairMap;
 use model::effectiveness::Effectiveness;
 use model::injectivity;
 use model::voltage;
 use output::{emit, scale};
 use probe::Probe;
 use proc_macro2::TokenStream;
-use selection::Selected;
-use tables::VoltageTable;
+use tables::{LevelFlightTable, MixerTables, Parts, VoltageTable};
 
 pub use compiled::Compiled;
 pub use desaturation::attainable::AreaLoss;
@@ -58,54 +59,64 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let mut faults = Vec::new();
+    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let effectiveness = keep(Effectiveness::new(&airframe), &mut faults);
     let authority = effectiveness
         .as_ref()
-        .and_then(|effectiveness| keep(plausible::authority(&airframe, effectiveness), &mut faults));
+        .and_then(|effectiveness| keep(plausible::authority(&airframe, effectiveness, &pair), &mut faults));
     let invertible = keep(injectivity::prove(&airframe), &mut faults);
     let voltage = keep(voltage::tabulate(&airframe), &mut faults);
-    let tolerances = keep(plausible::tolerances(&airframe), &mut faults);
+    let tolerances = keep(plausible::tolerances(&airframe, &pair), &mut faults);
     let (Some(effectiveness), Some(()), Some((injectivity, least_idle)), Some(voltage), Some(())) =
         (effectiveness, authority, invertible, voltage, tolerances)
     else {
         return Err(faults);
     };
     let voltage = VoltageTable::new(&airframe, voltage.as_ref());
-    let Selected {
-        evaluator,
-        mut tables,
-        lost_area,
-        residual,
-        certificate,
-    } = selection::select(&airframe, &effectiveness, voltage)?;
-    let (in_polygon, level) = thrust_range::thrust_range(&airframe, &effectiveness, &tables)?;
-    let (closed_form, lost_between_sides) = closed_form::table(&airframe, &effectiveness).unzip();
-    if closed_form.is_none() {
-        tables.level = level;
-    }
-    tables.closed_form = closed_form;
+    let voltage = voltage.as_ref();
+    let selected = selection::select(&airframe, &pair, voltage)?;
+    let polygon = Polygon::new(&pair);
+    let parts = Parts {
+        airframe: &airframe,
+        effectiveness: &effectiveness,
+        pair: &pair,
+        attainable: &polygon.table(),
+        voltage,
+        map: &selected.map,
+        tolerance: selection::tolerance(&airframe, &effectiveness, &pair, voltage, &selected),
+    };
+    let (in_polygon, level) = thrust_range::thrust_range(&parts)?;
+    let (closed_form, lost_between_sides) = closed_form::table(&airframe, &effectiveness, &pair).unzip();
+    let level = match closed_form {
+        Some(_) => LevelFlightTable::default(),
+        None => level,
+    };
+    let tables = MixerTables::new(&parts, level, closed_form);
     let thrust_range_n = thrust_range::delivered_range(&airframe, &tables, in_polygon);
+    let lost_area = polygon.lost;
     let probe = Probe {
         airframe: &airframe,
         effectiveness: &effectiveness,
+        pair: &pair,
         tables: &tables,
         thrust_range_n: in_polygon,
         lost_area,
         lost_between_sides,
     };
     probe.run()?;
-    let warnings = plausible::warnings(&airframe, &effectiveness, thrust_range_n);
+    let warnings = plausible::warnings(&airframe, &effectiveness, &pair, thrust_range_n);
     Ok(Compiled {
         source_name: source.file_name(),
         warnings: Diagnostics::new(source.clone(), warnings),
         airframe,
         effectiveness,
+        pair,
         injectivity,
         least_idle,
-        evaluator,
-        residual,
+        evaluator: selected.evaluator,
+        residual: selected.residual,
         thrust_range_n,
-        certificate,
+        certificate: selected.certificate,
         lost_area,
         lost_between_sides,
         tables,
@@ -124,7 +135,7 @@ const GENERATED: &str = "// @generated from an airframe file by mixer-compiler; 
 impl Compiled {
     /// Wrench that one unit of a normalised setpoint asks for: `SCALE` of the generated module.
     pub fn scale(&self) -> mixer_rt::Wrench {
-        scale::scale(&self.airframe, &self.effectiveness)
+        scale::scale(&self.airframe, &self.effectiveness, &self.pair)
     }
 
     /// The generated Rust as tokens: one module.

@@ -48,22 +48,25 @@ const RULES: &[Rule] = &[
 pub(crate) fn warnings(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
+    pair: &PairMap,
     thrust_range_n: [f32; 2],
 ) -> Vec<Diagnostic> {
-    apply(airframe, Some(effectiveness), Some(thrust_range_n.map(f64::from)))
+    let thrust_range_n = thrust_range_n.map(f64::from);
+    apply(airframe, pair, Some(effectiveness), Some(thrust_range_n))
 }
 
 /// Warnings of an airframe that is refused: one of them may be the reason.
 pub(crate) fn warnings_of_refused(airframe: &Airframe) -> Vec<Diagnostic> {
-    apply(airframe, None, None)
+    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+    apply(airframe, &pair, None, None)
 }
 
 fn apply(
     airframe: &Airframe,
+    map: &PairMap,
     effectiveness: Option<&Effectiveness>,
     thrust_range_n: Option<[f64; 2]>,
 ) -> Vec<Diagnostic> {
-    let map = PairMap::new(&airframe.pair, &airframe.throttle);
     let facts = Facts {
         airframe,
         effectiveness,
@@ -86,8 +89,8 @@ fn apply(
 ///
 /// # Errors
 /// A tolerance above a tenth of a unit's largest effort.
-pub(crate) fn tolerances(airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
-    let faults = limits::absurd_tolerances(airframe);
+pub(crate) fn tolerances(airframe: &Airframe, pair: &PairMap) -> Result<(), Vec<Diagnostic>> {
+    let faults = limits::absurd_tolerances(airframe, pair);
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
@@ -96,6 +99,10 @@ pub(crate) fn tolerances(airframe: &Airframe) -> Result<(), Vec<Diagnostic>> {
 ///
 /// # Errors
 /// The first such axis.
-pub(crate) fn authority(airframe: &Airframe, effectiveness: &Effectiveness) -> Result<(), Vec<Diagnostic>> {
-    limits::authority(airframe, effectiveness).map_or(Ok(()), |fault| Err(vec![fault]))
+pub(crate) fn authority(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    pair: &PairMap,
+) -> Result<(), Vec<Diagnostic>> {
+    limits::authority(airframe, effectiveness, pair).map_or(Ok(()), |fault| Err(vec![fault]))
 }

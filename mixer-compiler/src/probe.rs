@@ -73,6 +73,8 @@ pub(crate) struct Probe<'a> {
     pub(crate) airframe: &'a Airframe,
     /// M and M+.
     pub(crate) effectiveness: &'a Effectiveness,
+    /// The map of every unit in f64.
+    pub(crate) pair: &'a PairMap,
     /// What is emitted.
     pub(crate) tables: &'a MixerTables,
     /// Least and largest thrust of level flight at the reference voltage, N.
@@ -84,8 +86,8 @@ pub(crate) struct Probe<'a> {
 }
 
 /// The map of every unit in f64.
-struct UnitModel {
-    map: PairMap,
+struct UnitModel<'a> {
+    map: &'a PairMap,
     /// Its largest thrust, N, and torque, N m: [`PairMap::scale`], which looks along the whole border.
     scale: [f64; 2],
 }
@@ -96,9 +98,10 @@ impl Probe<'_> {
     /// # Errors
     /// The first one that fails: a fault of the compiler.
     pub(crate) fn run(&self) -> Result<(), Vec<Diagnostic>> {
-        let map = PairMap::new(&self.airframe.pair, &self.airframe.throttle);
-        let scale = map.scale();
-        let unit = &UnitModel { map, scale };
+        let unit = &UnitModel {
+            map: self.pair,
+            scale: self.pair.scale(),
+        };
         self.sets(unit)
             .and_then(|()| self.whole(unit))
             .and_then(|()| self.rotors_out(unit))
@@ -114,7 +117,7 @@ impl Probe<'_> {
     }
 
     /// Wrenches with all rotors.
-    fn whole(&self, unit: &UnitModel) -> Result<(), String> {
+    fn whole(&self, unit: &UnitModel<'_>) -> Result<(), String> {
         for (volts, thrusts) in self.points() {
             let at = At::new(self, unit, volts, Health::GOOD);
             for &share in thrusts {
@@ -131,7 +134,7 @@ impl Probe<'_> {
     }
 
     /// Wrenches with one and with two rotors out, where the others keep the frame level.
-    fn rotors_out(&self, unit: &UnitModel) -> Result<(), String> {
+    fn rotors_out(&self, unit: &UnitModel<'_>) -> Result<(), String> {
         let rotors = self.airframe.rotors() as u8;
         let singles = (0..rotors).map(|rotor| Health::GOOD.with_failed(rotor));
         let pairs: Vec<Health> = (0..rotors)
@@ -190,7 +193,7 @@ impl<'a> At<'a> {
             probe,
             physics: Physics {
                 airframe: probe.airframe,
-                map: &unit.map,
+                map: unit.map,
             },
             volts,
             health,

@@ -22,7 +22,7 @@ use std::collections::BinaryHeap;
 use crate::airframe::Airframe;
 use crate::model::PairMap;
 use crate::proof::residual::Residual;
-use crate::tables::MixerTables;
+use crate::tables::UnitMap;
 use cell::{Subject, ThrottleCell};
 use expansion::Monomials;
 
@@ -91,14 +91,14 @@ const STALE: u8 = 6;
 pub(crate) fn prove(
     airframe: &Airframe,
     pair: &PairMap,
-    tables: &MixerTables,
+    map: &UnitMap,
     correction: &CorrectionBounds,
     observed: &mut Residual,
     to_the_end: bool,
 ) -> Certificate {
     let inverse = &airframe.inverse;
     let tolerance = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
-    let subject = Subject::new(airframe, tables, correction);
+    let subject = Subject::new(airframe, map, correction);
     let aim = |observed: &Residual| {
         [0, 1].map(|k| (SHARP * observed.efforts[k]).min(tolerance[k] / correction.largest[k]))
     };
@@ -115,11 +115,7 @@ pub(crate) fn prove(
             break;
         }
         let Some(worst) = open.pop() else { break };
-        observed.look(
-            pair,
-            tables,
-            worst.cell.centre.map(|throttle| pair.clamp(throttle)),
-        );
+        observed.look(pair, map, worst.cell.centre.map(|throttle| pair.clamp(throttle)));
         let refuted = (0..2).any(|k| observed.efforts[k] * correction.largest[k] > tolerance[k]);
         if refuted && !to_the_end {
             open.push(worst);
@@ -163,14 +159,14 @@ pub(crate) fn prove(
 /// How far the efforts that the runtime computes of its throttles may be from those of the file's
 /// map, and the efforts that the inverse is given from those that were asked: `[N, N m]` at the
 /// reference voltage.
-pub(crate) fn rounding(airframe: &Airframe, tables: &MixerTables, correction: &CorrectionBounds) -> [f64; 2] {
-    let subject = Subject::new(airframe, tables, correction);
+pub(crate) fn rounding(airframe: &Airframe, map: &UnitMap, correction: &CorrectionBounds) -> [f64; 2] {
+    let subject = Subject::new(airframe, map, correction);
     let mut largest = [0.0f64; 2];
     for ThrottleCell { centre, half } in
         ThrottleCell::grid([airframe.throttle.min, airframe.throttle.max], START)
     {
         let at = [0, 1].map(|k: usize| Taylor::coordinate(centre[k], half[k], k == 1));
-        for (k, efforts) in tables.pair.efforts(at).into_iter().enumerate() {
+        for (k, efforts) in map.pair.efforts(at).into_iter().enumerate() {
             let asked = efforts.magnitude() * subject.input[k];
             largest[k] = largest[k].max(efforts.error() + subject.coefficients[k][0] + asked);
         }
@@ -234,7 +230,7 @@ impl PartialEq for Open {
 impl Eq for Open {}
 
 impl<'a> Subject<'a> {
-    fn new(airframe: &Airframe, tables: &'a MixerTables, correction: &CorrectionBounds) -> Self {
+    fn new(airframe: &Airframe, map: &'a UnitMap, correction: &CorrectionBounds) -> Self {
         let (pair, basis) = (&airframe.pair, airframe.pair.basis);
         let gap = |terms: &[f64], rounded: &[f32]| {
             let (mut value, mut derivative) = (0.0, 0.0);
@@ -252,13 +248,13 @@ impl<'a> Subject<'a> {
                 Monomials::new(basis, &pair.thrust_n),
                 Monomials::new(basis, &pair.torque_nm),
             ],
-            pair: &tables.pair,
-            inverse: &tables.inverse,
-            throttle: tables.throttle,
+            pair: &map.pair,
+            inverse: &map.inverse,
+            throttle: map.throttle,
             input: correction.input,
             coefficients: [
-                gap(&pair.thrust_n, tables.pair.thrust.coefficients()),
-                gap(&pair.torque_nm, tables.pair.torque.coefficients()),
+                gap(&pair.thrust_n, map.pair.thrust.coefficients()),
+                gap(&pair.torque_nm, map.pair.torque.coefficients()),
             ],
         }
     }

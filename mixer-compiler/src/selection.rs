@@ -5,7 +5,6 @@ mod refusal;
 use mixer_rt::tables::Tolerance;
 
 use crate::airframe::Airframe;
-use crate::desaturation::attainable::{AreaLoss, Polygon};
 use crate::diagnostic::Diagnostic;
 use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::Inversion;
@@ -14,17 +13,15 @@ use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage;
 use crate::proof::residual::Residual;
 use crate::proof::{self, Certificate, CorrectionBounds};
-use crate::tables::{self, InverseTable, MixerTables, VoltageTable};
+use crate::tables::{self, InverseTable, UnitMap, VoltageTable};
 
-/// An evaluator with its tables and what is known about them.
+/// An evaluator with its table and what is known about it.
 #[derive(Clone, Debug)]
 pub(crate) struct Selected {
     /// The evaluator.
     pub(crate) evaluator: Evaluator,
-    /// The tables; a closed form of desaturation is left open.
-    pub(crate) tables: MixerTables,
-    /// Share of the attainable set's area that the polygon loses.
-    pub(crate) lost_area: AreaLoss,
+    /// The map of a unit with the evaluator's inverse.
+    pub(crate) map: UnitMap,
     /// What was observed.
     pub(crate) residual: Residual,
     /// What is proven.
@@ -37,12 +34,14 @@ pub(crate) struct Selected {
 /// No evaluator meets the tolerance; the best bound that could be proven.
 pub(crate) fn select(
     airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    voltage: Option<VoltageTable>,
+    pair: &PairMap,
+    voltage: Option<&VoltageTable>,
 ) -> Result<Selected, Vec<Diagnostic>> {
-    let voltage = voltage.as_ref();
-    choose(airframe, effectiveness, voltage).map_err(|best| {
-        let meets = |airframe: &Airframe| choose(airframe, effectiveness, voltage).is_ok();
+    choose(airframe, pair, voltage).map_err(|best| {
+        let meets = |airframe: &Airframe| {
+            let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+            choose(airframe, &pair, voltage).is_ok()
+        };
         vec![match best {
             Some((evaluator, certificate)) => refusal::tolerance(airframe, evaluator, &certificate, meets),
             None => refusal::name(airframe),
@@ -54,132 +53,63 @@ pub(crate) fn select(
 /// name asked for.
 type Best = Option<(Evaluator, Certificate)>;
 
-/// What the tables of an evaluator are judged by.
-struct Judge<'a> {
-    airframe: &'a Airframe,
-    effectiveness: &'a Effectiveness,
-    pair: &'a PairMap,
-    polygon: &'a Polygon,
-    correction: CorrectionBounds,
-}
-
-impl Judge<'_> {
-    /// The evaluator with its tables, where they are proven to meet the tolerance. Else what is
-    /// proven of them: a proof that is not `thorough` is given up where it takes long.
-    fn accept(
-        &self,
-        evaluator: Evaluator,
-        tables: &MixerTables,
-        thorough: bool,
-        mut residual: Residual,
-    ) -> Result<Selected, Certificate> {
-        let Judge {
-            airframe,
-            effectiveness,
-            pair,
-            polygon,
-            correction,
-        } = self;
-        let certificate = proof::prove(airframe, pair, tables, correction, &mut residual, thorough);
+/// Tries the evaluators by their cost. Where none is proven at once, the one that came closest gets
+/// a thorough proof: others are given up where they take long.
+fn choose(airframe: &Airframe, pair: &PairMap, voltage: Option<&VoltageTable>) -> Result<Selected, Best> {
+    let correction = CorrectionBounds::new(airframe, voltage);
+    let tolerance = correction.tolerance_at_reference(airframe);
+    let accept = |evaluator: Evaluator, map: &UnitMap, mut residual: Residual, thorough: bool| {
+        let certificate = proof::prove(airframe, pair, map, &correction, &mut residual, thorough);
         if !(certificate.holds() && certificate.agrees(&residual)) {
-            return Err(certificate);
+            return Err(Some((evaluator, certificate)));
         }
         Ok(Selected {
             evaluator,
-            tables: MixerTables {
-                tolerance: proven(airframe, effectiveness, pair, tables, correction, &certificate),
-                ..tables.clone()
-            },
-            lost_area: polygon.lost,
+            map: map.clone(),
             residual,
             certificate,
         })
-    }
-}
-
-/// Tries the evaluators by their cost. Where none is proven at once, the one that came closest gets
-/// a thorough proof.
-fn choose(
-    airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    voltage: Option<&VoltageTable>,
-) -> Result<Selected, Best> {
-    let pair = &PairMap::new(&airframe.pair, &airframe.throttle);
-    let polygon = &Polygon::new(pair);
-    let correction = CorrectionBounds::new(airframe, voltage);
-    let tolerance = tolerance_at_reference(airframe, &correction);
-    let judge = Judge {
-        airframe,
-        effectiveness,
-        pair,
-        polygon,
-        correction,
     };
     let candidates = Evaluator::candidates(&airframe.inverse.method);
     let mut inversion = Inversion::new(pair, tolerance, candidates.len() == 1);
-    let mut best: Option<(Evaluator, MixerTables, f64)> = None;
+    let mut best: Option<(Evaluator, UnitMap, f64)> = None;
     for evaluator in candidates {
         let (fitted, fit_error) = inversion.fit(evaluator);
-        let inverse = InverseTable::new(&fitted);
-        let tables = match &best {
-            Some((_, tables, _)) => MixerTables {
-                inverse,
-                ..tables.clone()
-            },
-            None => MixerTables::new(
-                airframe,
-                effectiveness,
-                pair,
-                polygon.table(),
-                voltage.cloned(),
-                inverse,
-            ),
-        };
+        let map = UnitMap::new(airframe, InverseTable::new(&fitted));
         // The grid of the fit is part of the set: what fails there, fails.
-        let error = Residual::coarse_check(pair, &tables)
-            .ratio(tolerance)
-            .max(fit_error);
+        let error = Residual::coarse_check(pair, &map).ratio(tolerance).max(fit_error);
         if error <= 1.0 {
-            let residual = Residual::over_set(pair, &tables);
+            let residual = Residual::over_set(pair, &map);
             if residual.within(tolerance)
-                && let Ok(selected) = judge.accept(evaluator, &tables, false, residual)
+                && let Ok(selected) = accept(evaluator, &map, residual, false)
             {
                 return Ok(selected);
             }
         }
         if best.as_ref().is_none_or(|(_, _, so_far)| error < *so_far) {
-            best = Some((evaluator, tables, error));
+            best = Some((evaluator, map, error));
         }
     }
-    let Some((evaluator, tables, _)) = best else {
+    let Some((evaluator, map, _)) = best else {
         return Err(None);
     };
-    judge
-        .accept(evaluator, &tables, true, Residual::over_set(pair, &tables))
-        .map_err(|certificate| Some((evaluator, certificate)))
-}
-
-/// The file's tolerance for one unit, at the reference voltage: what remains of it at the voltage
-/// where efforts are largest.
-fn tolerance_at_reference(airframe: &Airframe, correction: &CorrectionBounds) -> [f64; 2] {
-    let inverse = &airframe.inverse;
-    let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
-    std::array::from_fn(|k| stated[k] / correction.largest[k])
+    accept(evaluator, &map, Residual::over_set(pair, &map), true)
 }
 
 /// What the mixer may miss where it delivers: what is proven, not what the file allows, so that
 /// every shortage is flagged.
-fn proven(
+pub(crate) fn tolerance(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,
-    tables: &MixerTables,
-    correction: &CorrectionBounds,
-    certificate: &Certificate,
+    voltage: Option<&VoltageTable>,
+    selected: &Selected,
 ) -> Tolerance {
+    let certificate = &selected.certificate;
     // The mixer compares what it computes, not what is: a request that is delivered must not look
     // missed.
-    let rounding = proof::rounding(airframe, tables, correction);
+    let correction = CorrectionBounds::new(airframe, voltage);
+    let rounding = proof::rounding(airframe, &selected.map, &correction);
     tables::tolerance_table(
         [0, 1].map(|k| certificate.reference[k] + rounding[k]),
         wrench_tolerance(airframe, effectiveness, pair, certificate.stated),

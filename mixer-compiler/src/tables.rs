@@ -10,14 +10,15 @@ mod attainable;
 mod border;
 mod budget;
 mod inverse;
+mod part;
 mod rows;
 mod single;
 
 use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
-        Biquadratic, ClosedForm, ClosedFormUnit, Cubic, Desaturation, Facets, Pair, Quantity, Quartic,
-        Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Voltage, VoltageLaw,
+        Biquadratic, ClosedForm, ClosedFormUnit, Cubic, Desaturation, Facets, Inverse, Pair, Quantity,
+        Quartic, Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Voltage, VoltageLaw,
     },
 };
 
@@ -29,7 +30,8 @@ use crate::model::voltage::TabulatedLaw;
 pub use attainable::{AttainableTable, LevelFlightTable};
 pub use border::BorderTable;
 use budget::budget;
-pub use inverse::{InverseTable, SeedTable};
+pub use inverse::{InverseTable, PolynomialTable, SeedTable};
+pub(crate) use part::{Part, identifier};
 use rows::rows;
 use single::single_tables;
 
@@ -66,6 +68,51 @@ pub struct MixerTables {
     pub closed_form: Option<ClosedFormTable>,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
+}
+
+/// What is fitted and proven: the map of a unit, its inverse, and the throttles that it may give.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct UnitMap {
+    /// The forward map.
+    pub(crate) pair: Pair<QuantityTable>,
+    /// The inverse map.
+    pub(crate) inverse: InverseTable,
+    /// The allowed throttles.
+    pub(crate) throttle: ThrottleRange,
+}
+
+impl UnitMap {
+    /// Rounds the airframe's map beside an inverse of it.
+    pub(crate) fn new(airframe: &Airframe, inverse: InverseTable) -> Self {
+        UnitMap {
+            pair: pair_table(airframe),
+            inverse,
+            throttle: throttle_table(airframe),
+        }
+    }
+
+    /// Throttles `[u, l]` that give `efforts` (N, N m at the reference voltage), by `mixer-rt`.
+    pub(crate) fn throttles(&self, efforts: [f32; 2]) -> [f32; 2] {
+        (&self.inverse).throttles(&self.pair, &self.throttle, efforts)
+    }
+}
+
+/// What the tables are made of, but for desaturation.
+pub(crate) struct Parts<'a> {
+    /// The airframe.
+    pub(crate) airframe: &'a Airframe,
+    /// M and M+.
+    pub(crate) effectiveness: &'a Effectiveness,
+    /// The forward map in f64.
+    pub(crate) pair: &'a PairMap,
+    /// A polygon inside the attainable set.
+    pub(crate) attainable: &'a AttainableTable,
+    /// The voltage correction.
+    pub(crate) voltage: Option<&'a VoltageTable>,
+    /// The map of a unit and its inverse.
+    pub(crate) map: &'a UnitMap,
+    /// What the mixer may miss.
+    pub(crate) tolerance: Tolerance,
 }
 
 /// The closed form for vertical axes.
@@ -112,11 +159,6 @@ impl ClosedFormTable {
     pub(crate) fn torque_share(&self) -> f32 {
         1.0 / self.units.len() as f32
     }
-
-    fn floats(&self) -> usize {
-        // Range, share, floor, middle and rounding beside the border, the units and the facets.
-        2 + 4 + self.border.floats() + 10 * self.units.len() + 4 * (self.slopes.len() + self.walls.len())
-    }
 }
 
 /// A quantity in any basis.
@@ -157,19 +199,22 @@ pub enum LawTable {
 pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
-    /// The tables of a fitted inverse. Level flight, the closed form and the tolerance are filled in
-    /// later.
+    /// The tables of an airframe with its level flight, or with a closed form, which needs none.
     pub(crate) fn new(
-        airframe: &Airframe,
-        effectiveness: &Effectiveness,
-        pair: &PairMap,
-        attainable: AttainableTable,
-        voltage: Option<VoltageTable>,
-        inverse: InverseTable,
+        parts: &Parts<'_>,
+        level: LevelFlightTable,
+        closed_form: Option<ClosedFormTable>,
     ) -> Self {
+        let &Parts {
+            airframe,
+            effectiveness,
+            map,
+            ..
+        } = parts;
         let allocation = &airframe.allocation;
-        let (singles, throttle) = (single_tables(airframe), throttle_table(airframe));
-        let rows = rows(airframe, effectiveness, pair);
+        let singles = single_tables(airframe);
+        let rows = rows(airframe, effectiveness, parts.pair);
+        let attainable = parts.attainable.with_singles(&singles, &map.throttle);
         let units = unit_tables(airframe, effectiveness, rows, attainable.scale);
         MixerTables {
             centre: std::array::from_fn(|k| {
@@ -178,13 +223,13 @@ impl MixerTables {
             }),
             is_vertical: effectiveness.is_vertical(),
             units,
-            pair: pair_table(airframe),
-            attainable: attainable.with_singles(&singles, &throttle),
+            pair: map.pair,
+            attainable,
             singles,
-            inverse,
-            throttle,
-            voltage,
-            level: LevelFlightTable::default(),
+            inverse: map.inverse.clone(),
+            throttle: map.throttle,
+            voltage: parts.voltage.cloned(),
+            level,
             rows,
             desaturation: Desaturation {
                 airmode: allocation.airmode,
@@ -192,11 +237,18 @@ impl MixerTables {
                 budget: budget(airframe.units.len(), effectiveness.is_vertical()),
             },
             power_bias_nm_per_n: allocation.power_bias_nm_per_n as f32,
-            closed_form: None,
-            tolerance: Tolerance {
-                efforts: [0.0; 2],
-                wrench: [0.0; 4],
-            },
+            closed_form,
+            tolerance: parts.tolerance,
+        }
+    }
+
+    /// The map of a unit alone.
+    #[cfg(test)]
+    pub(crate) fn map(&self) -> UnitMap {
+        UnitMap {
+            pair: self.pair,
+            inverse: self.inverse.clone(),
+            throttle: self.throttle,
         }
     }
 
@@ -260,23 +312,26 @@ impl MixerTables {
         Ok((throttle, achieved, saturation))
     }
 
-    /// Bytes of the tables in flash: four per number, one per channel.
+    /// Bytes of the tables in flash.
     pub(crate) fn bytes(&self) -> usize {
-        let floats = self.units.len() * 24
-            + 2 * self.pair.thrust.terms()
-            + 2 * 2 * 4 // single rotors
-            + self.inverse.floats()
-            + 2 // throttle range
-            + self.voltage.as_ref().map_or(0, |v| 2 + v.laws.iter().map(LawTable::floats).sum::<usize>())
-            + 5 + 8 * self.attainable.corners.len()
-            + 2 + 4 * self.level.efforts.len()
-            + 4 + 8 // rows, of them those of the centres
-            + self.closed_form.as_ref().map_or(0, ClosedFormTable::floats)
-            + 2 // desaturation
-            + 1 // power bias
-            + 6; // tolerance
-        let channels = 2 * self.units.len() * (1 + usize::from(self.closed_form.is_some()));
-        4 * floats + channels
+        let view = self.view();
+        let parts: [&dyn Part; 14] = [
+            &view.units,
+            &view.pair,
+            &view.singles,
+            &view.inverse,
+            &view.throttle,
+            &view.voltage,
+            &view.attainable,
+            &view.level,
+            &view.rows,
+            &view.centre,
+            &view.desaturation,
+            &view.power_bias_nm_per_n,
+            &view.closed_form,
+            &view.tolerance,
+        ];
+        parts.into_iter().map(Part::bytes).sum()
     }
 }
 
@@ -291,11 +346,6 @@ impl QuantityTable {
             Basis::Cubic => QuantityTable::Cubic(Cubic(rounded(coefficients))),
             Basis::Quartic => QuantityTable::Quartic(Quartic(rounded(coefficients))),
         }
-    }
-
-    /// Number of terms.
-    pub(crate) fn terms(&self) -> usize {
-        self.coefficients().len()
     }
 
     /// The coefficients in the order of the airframe file.
@@ -369,13 +419,6 @@ impl LawTable {
                 coefficients,
             },
             LawTable::Points(points) => VoltageLaw::Points(points),
-        }
-    }
-
-    fn floats(&self) -> usize {
-        match self {
-            LawTable::Polynomial { coefficients, .. } => 2 + coefficients.len(),
-            LawTable::Points(points) => 2 * points.len(),
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use mixer_compiler::airframe::GRAVITY;
 use mixer_compiler::hover::Hover;
-use mixer_compiler::model::PairMap;
 use mixer_compiler::report::{Report, Summary};
 use mixer_compiler::{Compiled, Source, compile};
 
@@ -21,7 +20,7 @@ fn hover_is_that_of_the_pair() {
     assert!((hover.thrust_over_weight - 3.159).abs() < 0.01, "{hover:?}");
     let volts: Vec<_> = hover.at.iter().map(|at| at.voltage_v).collect();
     assert_eq!(volts, [Some(12.8), Some(14.8)]);
-    let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
+    let pair = &compiled.pair;
     let voltage = compiled.airframe.voltage.as_ref().unwrap();
     for at in &hover.at {
         let [f, q] = pair.efforts([at.upper_throttle.unwrap(), at.lower_throttle.unwrap()]);

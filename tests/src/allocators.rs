@@ -8,7 +8,6 @@ use std::path::PathBuf;
 
 use isolated_rotors::IsolatedTables;
 use mixer_compiler::Compiled;
-use mixer_compiler::model::PairMap;
 use mixer_rt::{Wrench, tables::Airmode};
 
 use crate::frames::{self, Options};
@@ -106,7 +105,7 @@ pub fn measure() -> Result<Vec<Row>, String> {
 }
 
 fn compare(name: &str, compiled: &Compiled) -> [Row; 4] {
-    let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
+    let pair = &compiled.pair;
     let matrix = &compiled.effectiveness.matrix;
     let n = compiled.airframe.units.len();
     let [size_f, size_q] = pair.scale();

@@ -114,7 +114,7 @@ pub fn rotors_out(compiled: &Compiled, vectors: &[Vector]) -> Vec<RotorsOut> {
 /// Random setpoints of one airframe.
 struct Draw<'a> {
     compiled: &'a Compiled,
-    pair: PairMap,
+    pair: &'a PairMap,
     /// Efforts `[f, Q]` along the border of the throttle box.
     border: Vec<[f64; 2]>,
     /// Largest wrench on each axis: all units at their best, whatever the others lose.
@@ -127,7 +127,7 @@ struct Draw<'a> {
 impl<'a> Draw<'a> {
     fn new(compiled: &'a Compiled) -> Self {
         let airframe = &compiled.airframe;
-        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+        let pair = &compiled.pair;
         let [f, q] = pair.scale();
         let n = airframe.units.len();
         let matrix = &compiled.effectiveness.matrix;

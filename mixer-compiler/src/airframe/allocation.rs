@@ -1,22 +1,29 @@
 //! `[allocation]`: the controlled axes, and their priorities where a request is not attainable.
 
 pub use mixer_rt::{Axis, tables::Airmode};
-use toml::Spanned;
 
-use super::check::{LARGEST_EFFORT, word};
+use super::limits::LARGEST_EFFORT;
 use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec;
-
-/// The words for airmodes in the file.
-const AIRMODES: [(&str, Airmode); 3] = [
-    ("disabled", Airmode::Disabled),
-    ("roll-pitch", Airmode::RollPitch),
-    ("roll-pitch-yaw", Airmode::RollPitchYaw),
-];
+use crate::spec::keys::{Kind, Range, keys};
+use crate::spec::{Fields, Spanned};
 
 /// Largest torque per thrust of a pair, N m per N: a propeller of 2 m with the other one at rest
 /// has a tenth.
 const LARGEST_POWER_BIAS: f64 = 1.0;
+
+const AIRMODES: [Airmode; 3] = [Airmode::Disabled, Airmode::RollPitch, Airmode::RollPitchYaw];
+
+keys! { TABLE = "[allocation]":
+    AIRMODE "airmode" = "\"disabled\"", Kind::Word(&["disabled", "roll-pitch", "roll-pitch-yaw"]),
+        "For which torques the thrust may rise, with PX4's meaning; disabled without it.";
+    AXES "axes" = "[\"roll\", \"pitch\", \"yaw\", \"thrust\"]", Kind::Words(&["roll", "pitch", "yaw", "thrust"]),
+        "The served axes, all four without it; fewer for one or two units, which cannot produce all.";
+    YAW_RESERVE_NM "yaw_reserve_nm" = "0.05", Kind::Number(Range::Within([0.0, LARGEST_EFFORT])),
+        "Yaw torque that is kept available before roll and pitch, N m.".default(0.0)
+        .refusing("must be 0 or more newton metres", "the reserve holds either way about zero yaw; write its size");
+    POWER_BIAS_NM_PER_N "power_bias_nm_per_n" = "0.005", Kind::Number(Range::Within([-LARGEST_POWER_BIAS, LARGEST_POWER_BIAS])),
+        "Least power: torque per thrust of every unit while none is near its limits, N m per N.".default(0.0);
+}
 
 /// `[allocation]` with its defaults.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,44 +59,34 @@ impl Allocation {
     }
 }
 
-pub(super) fn check(allocation: &spec::Allocation, faults: &mut Vec<Diagnostic>) -> Option<Allocation> {
+pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Allocation> {
     let default = Allocation::default();
-    let airmode = match &allocation.airmode {
-        Some(field) => word(field, "allocation.airmode", &AIRMODES, faults),
-        None => Some(default.airmode),
-    };
-    let axes = match &allocation.axes {
-        Some(field) => axes(field, faults),
+    let airmode = table.word(&AIRMODE, &AIRMODES);
+    let axes = match table.read(&AXES) {
+        Some(field) => axes(table, &field),
         None => Some(default.axes),
     };
-    let yaw_reserve_nm = match &allocation.yaw_reserve_nm {
-        Some(field) => yaw_reserve(field, axes.as_deref(), faults),
-        None => Some(default.yaw_reserve_nm),
-    };
-    let power_bias_nm_per_n = match &allocation.power_bias_nm_per_n {
-        Some(field) => power_bias(field, axes.as_deref(), faults),
-        None => Some(default.power_bias_nm_per_n),
-    };
+    let yaw_reserve_nm = yaw_reserve(table, axes.as_deref());
+    let power_bias_nm_per_n = power_bias(table, axes.as_deref());
     Some(Allocation {
-        airmode: airmode?,
+        airmode: airmode.unwrap_or(default.airmode),
         axes: axes?,
         yaw_reserve_nm: yaw_reserve_nm?,
         power_bias_nm_per_n: power_bias_nm_per_n?,
     })
 }
 
-fn axes(field: &Spanned<Vec<Spanned<String>>>, faults: &mut Vec<Diagnostic>) -> Option<Vec<Axis>> {
-    let words = Axis::ALL.map(|axis| (axis.name(), axis));
-    let before = faults.len();
+fn axes(table: &mut Fields<'_, '_>, field: &Spanned<Vec<Spanned<String>>>) -> Option<Vec<Axis>> {
+    let before = table.faults.len();
     let fault =
         |place, message: String| Diagnostic::new(Code::ControlAxes, "allocation.axes", place, message);
     let mut axes = Vec::new();
     for written in field.get_ref() {
-        let Some(axis) = word(written, "allocation.axes", &words, faults) else {
+        let Some(axis) = table.meaning(&AXES, written, &Axis::ALL) else {
             continue;
         };
         if axes.contains(&axis) {
-            faults.push(
+            table.faults.push(
                 fault(written.span(), format!("`{}` is listed twice", axis.name()))
                     .label("again")
                     .help("list every controlled axis once"),
@@ -98,7 +95,7 @@ fn axes(field: &Spanned<Vec<Spanned<String>>>, faults: &mut Vec<Diagnostic>) -> 
             axes.push(axis);
         }
     }
-    if faults.len() > before {
+    if table.faults.len() > before {
         return None;
     }
     if !axes.contains(&Axis::Thrust) {
@@ -109,7 +106,7 @@ fn axes(field: &Spanned<Vec<Spanned<String>>>, faults: &mut Vec<Diagnostic>) -> 
                 format!("`allocation.axes` has {} and no thrust", names.join(", "))
             }
         };
-        faults.push(
+        table.faults.push(
             fault(field.span(), message)
                 .label("`thrust` must be among them")
                 .help("leave out only what the units cannot produce, as in `axes = [\"yaw\", \"thrust\"]`"),
@@ -120,81 +117,57 @@ fn axes(field: &Spanned<Vec<Spanned<String>>>, faults: &mut Vec<Diagnostic>) -> 
     Some(axes)
 }
 
-fn yaw_reserve(field: &Spanned<f64>, axes: Option<&[Axis]>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
-    let reserve = *field.get_ref();
-    let key = "allocation.yaw_reserve_nm";
-    if !(0.0..=LARGEST_EFFORT).contains(&reserve) {
-        faults.push(
-            Diagnostic::new(
-                Code::OutOfRange,
-                key,
-                field.span(),
-                format!(
-                    "`{key}` = {} is not between 0 and {}",
-                    number(reserve),
-                    number(LARGEST_EFFORT)
-                ),
-            )
-            .label("must be 0 or more newton metres")
-            .help("the reserve holds either way about zero yaw; write its size"),
-        );
-        return None;
-    }
+fn yaw_reserve(table: &mut Fields<'_, '_>, axes: Option<&[Axis]>) -> Option<f64> {
+    let reserve = table.number(&YAW_RESERVE_NM)?;
     if reserve > 0.0 && axes.is_some_and(|axes| !axes.contains(&Axis::Yaw)) {
-        faults.push(
-            Diagnostic::new(
-                Code::YawReserve,
-                key,
-                field.span(),
-                format!(
-                    "a yaw reserve of {} N m without yaw in `allocation.axes`",
-                    number(reserve)
-                ),
-            )
-            .label("yaw is not controlled")
-            .help("remove the reserve, or add `yaw` to `axes`"),
+        let message = format!(
+            "a yaw reserve of {} N m without yaw in `allocation.axes`",
+            number(reserve)
         );
-        return None;
+        return table.refuse(
+            &YAW_RESERVE_NM,
+            Code::YawReserve,
+            message,
+            "yaw is not controlled",
+            "remove the reserve, or add `yaw` to `axes`",
+        );
     }
-    Some(reserve + 0.0)
+    Some(reserve)
 }
 
-fn power_bias(field: &Spanned<f64>, axes: Option<&[Axis]>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
-    let bias = *field.get_ref();
-    let key = "allocation.power_bias_nm_per_n";
+fn power_bias(table: &mut Fields<'_, '_>, axes: Option<&[Axis]>) -> Option<f64> {
+    let key = &POWER_BIAS_NM_PER_N;
+    let bias = table.number(key)?;
     if bias.abs() > LARGEST_POWER_BIAS {
         let help = if bias.abs() <= 1e3 * LARGEST_POWER_BIAS {
             format!("if mN m per N were meant, write {}", number(bias / 1e3))
         } else {
             "`cargo mixer identify` finds it from voltage and current; 0.002 to 0.02 are usual".to_string()
         };
-        faults.push(
-            Diagnostic::new(
-                Code::OutOfRange,
-                key,
-                field.span(),
-                format!("`{key}` = {} is not between -1 and 1", number(bias)),
-            )
-            .label("no pair has that torque per thrust")
-            .help(help),
+        let message = format!(
+            "`allocation.power_bias_nm_per_n` = {} is not between -1 and 1",
+            number(bias)
         );
-        return None;
+        return table.refuse(
+            key,
+            Code::OutOfRange,
+            message,
+            "no pair has that torque per thrust",
+            help,
+        );
     }
     if bias != 0.0 && axes.is_some_and(|axes| !axes.contains(&Axis::Yaw)) {
-        faults.push(
-            Diagnostic::new(
-                Code::PowerBias,
-                key,
-                field.span(),
-                format!(
-                    "a power bias of {} N m per N without yaw in `allocation.axes`",
-                    number(bias)
-                ),
-            )
-            .label("nothing would cancel these torques")
-            .help("remove the bias, or add `yaw` to `axes`"),
+        let message = format!(
+            "a power bias of {} N m per N without yaw in `allocation.axes`",
+            number(bias)
         );
-        return None;
+        return table.refuse(
+            key,
+            Code::PowerBias,
+            message,
+            "nothing would cancel these torques",
+            "remove the bias, or add `yaw` to `axes`",
+        );
     }
-    Some(bias + 0.0)
+    Some(bias)
 }

@@ -18,13 +18,12 @@ impl Basis {
     /// All bases, by ascending number of terms.
     pub const ALL: [Basis; 3] = [Basis::Biquadratic, Basis::Cubic, Basis::Quartic];
 
+    /// Their words in the file.
+    pub(crate) const WORDS: [&'static str; 3] = ["biquadratic", "cubic", "quartic"];
+
     /// The word in the file.
     pub fn name(self) -> &'static str {
-        match self {
-            Basis::Biquadratic => "biquadratic",
-            Basis::Cubic => "cubic",
-            Basis::Quartic => "quartic",
-        }
+        Self::WORDS[self as usize]
     }
 
     /// Exponents (of u, of l) of each term, in the order of the file's coefficients. No term is

@@ -1,10 +1,40 @@
 //! How the pair's map is to be inverted, and how truly.
 
-use toml::Spanned;
+use crate::diagnostic::{Code, Diagnostic, any_of, nearest, quoted};
+use crate::spec::keys::{Kind, Range, keys};
+use crate::spec::{Fields, Spanned};
 
-use crate::diagnostic::{Code, Diagnostic, any_of, nearest, number, quoted};
-use crate::spec;
-use crate::spec::keys::{EVALUATORS, HIGHEST_INVERSE_DEGREE};
+/// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.
+const HIGHEST_INVERSE_DEGREE: usize = 15;
+
+/// What `method` can be: a choice, the paper's polynomials, then the seeded evaluators by their cost.
+pub(crate) const METHODS: [&str; 8] = [
+    "auto",
+    "polynomial",
+    "bilinear-newton",
+    "quadratic-newton",
+    "cubic-newton",
+    "bilinear-newton2",
+    "quadratic-newton2",
+    "cubic-newton2",
+];
+
+keys! { TABLE = "[inverse]":
+    THRUST_TOLERANCE_N "thrust_tolerance_n" = "0.01", Kind::Number(Range::Positive),
+        "What a unit's thrust may miss at any voltage, N.".default(THRUST_TOLERANCE)
+        .refusing("must be above 0", "the largest error that the mixer may make; 0.01 N is the default");
+    TORQUE_TOLERANCE_NM "torque_tolerance_nm" = "1e-4", Kind::Number(Range::Positive),
+        "What a unit's torque may miss at any voltage, N m.".default(TORQUE_TOLERANCE)
+        .refusing("must be above 0", "the largest error that the mixer may make; 0.0001 N m is the default");
+    METHOD "method" = "\"auto\"", Kind::Word(&METHODS),
+        "auto: the cheapest evaluator that is proven to meet the tolerances; polynomial: the paper's, with a degree; or one by name.";
+    DEGREE "degree" = "7", Kind::Count([1, HIGHEST_INVERSE_DEGREE]),
+        "Total degree of method = \"polynomial\".";
+}
+
+/// Tolerances of the thrust, N, and of the torque, N m, where the file has none.
+const THRUST_TOLERANCE: f64 = 0.01;
+const TORQUE_TOLERANCE: f64 = 1e-4;
 
 /// Which evaluator of the inverse to emit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,30 +65,17 @@ pub struct Inverse {
 impl Default for Inverse {
     fn default() -> Self {
         Self {
-            thrust_tolerance_n: 0.01,
-            torque_tolerance_nm: 1e-4,
+            thrust_tolerance_n: THRUST_TOLERANCE,
+            torque_tolerance_nm: TORQUE_TOLERANCE,
             method: Method::Auto,
         }
     }
 }
 
-pub(super) fn check(inverse: &spec::Inverse, faults: &mut Vec<Diagnostic>) -> Option<Inverse> {
-    let default = Inverse::default();
-    let thrust = tolerance(
-        "inverse.thrust_tolerance_n",
-        inverse.thrust_tolerance_n.as_ref(),
-        default.thrust_tolerance_n,
-        "N",
-        faults,
-    );
-    let torque = tolerance(
-        "inverse.torque_tolerance_nm",
-        inverse.torque_tolerance_nm.as_ref(),
-        default.torque_tolerance_nm,
-        "N m",
-        faults,
-    );
-    let method = method(inverse, faults);
+pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Inverse> {
+    let [thrust, torque] = [&THRUST_TOLERANCE_N, &TORQUE_TOLERANCE_NM].map(|key| table.number(key));
+    let (method_field, degree) = (table.read(&METHOD), table.read(&DEGREE));
+    let method = method(table, method_field.as_ref(), degree.as_ref());
     Some(Inverse {
         thrust_tolerance_n: thrust?,
         torque_tolerance_nm: torque?,
@@ -66,79 +83,47 @@ pub(super) fn check(inverse: &spec::Inverse, faults: &mut Vec<Diagnostic>) -> Op
     })
 }
 
-fn tolerance(
-    key: &str,
-    field: Option<&Spanned<f64>>,
-    default: f64,
-    unit: &str,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<f64> {
-    let Some(field) = field else { return Some(default) };
-    let tolerance = *field.get_ref();
-    if tolerance > 0.0 {
-        return Some(tolerance);
+fn method(
+    table: &mut Fields<'_, '_>,
+    field: Option<&Spanned<String>>,
+    degree: Option<&Spanned<usize>>,
+) -> Option<Method> {
+    let name = field.map_or("auto", |field| field.get_ref().as_str());
+    if let ("polynomial", Some(field)) = (name, field) {
+        return polynomial(table, field, degree);
     }
-    faults.push(
-        Diagnostic::new(
-            Code::OutOfRange,
-            key,
-            field.span(),
-            format!("`{key}` = {} is not positive", number(tolerance)),
-        )
-        .label("must be above 0")
-        .help(format!(
-            "the largest error that the mixer may make; {} {unit} is the default",
-            number(default)
-        )),
-    );
-    None
-}
-
-fn method(inverse: &spec::Inverse, faults: &mut Vec<Diagnostic>) -> Option<Method> {
-    let Some(field) = &inverse.method else {
-        return no_degree(inverse, "auto", faults).then_some(Method::Auto);
-    };
-    match field.get_ref().as_str() {
-        "auto" => no_degree(inverse, "auto", faults).then_some(Method::Auto),
-        "polynomial" => polynomial(inverse, field, faults),
-        name if EVALUATORS.contains(&name) => {
-            no_degree(inverse, name, faults).then(|| Method::Named(name.to_string()))
-        }
-        name => {
-            let words = || {
-                ["auto", "polynomial"]
-                    .into_iter()
-                    .chain(EVALUATORS.iter().copied())
-            };
-            let label = match nearest(name, words()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => "unknown method".to_string(),
-            };
-            faults.push(
-                Diagnostic::new(
-                    Code::UnknownWord,
-                    "inverse.method",
-                    field.span(),
-                    format!("`inverse.method` cannot be {}", quoted(name)),
-                )
-                .label(label)
-                .help(format!("write {}", any_of(words()))),
-            );
-            None
-        }
+    if !METHODS.contains(&name) {
+        let label = match nearest(name, METHODS) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "unknown method".to_string(),
+        };
+        let message = format!("`inverse.method` cannot be {}", quoted(name));
+        let help = format!("write {}", any_of(METHODS));
+        return table.refuse(&METHOD, Code::UnknownWord, message, label, help);
     }
+    if let Some(degree) = degree {
+        let message = format!(
+            "`inverse.degree` = {} means nothing to method \"{name}\"",
+            degree.get_ref()
+        );
+        let help = "remove it, or set `method = \"polynomial\"`";
+        return table.refuse(&DEGREE, Code::Conflict, message, "only for the polynomial", help);
+    }
+    Some(match name {
+        "auto" => Method::Auto,
+        name => Method::Named(name.to_string()),
+    })
 }
 
 fn polynomial(
-    inverse: &spec::Inverse,
+    table: &mut Fields<'_, '_>,
     method: &Spanned<String>,
-    faults: &mut Vec<Diagnostic>,
+    degree: Option<&Spanned<usize>>,
 ) -> Option<Method> {
-    let Some(field) = &inverse.degree else {
-        // A degree of a wrong shape was reported and leaves no field; saying that it is missing
-        // would be wrong.
-        if !faults.iter().any(|fault| fault.key == "inverse.degree") {
-            faults.push(
+    let Some(field) = degree else {
+        // A degree of a wrong shape was reported; saying that it is missing would be wrong.
+        if table.key_place(&DEGREE).is_none() {
+            table.faults.push(
                 Diagnostic::new(
                     Code::MissingKey,
                     "inverse.degree",
@@ -157,32 +142,11 @@ fn polynomial(
     if (1..=HIGHEST_INVERSE_DEGREE).contains(&degree) {
         return Some(Method::Polynomial { degree });
     }
-    faults.push(
-        Diagnostic::new(
-            Code::OutOfRange,
-            "inverse.degree",
-            field.span(),
-            format!("`inverse.degree` = {degree} is not between 1 and {HIGHEST_INVERSE_DEGREE}"),
-        )
-        .label(format!("expected 1 to {HIGHEST_INVERSE_DEGREE}"))
-        .help("errors shrink slowly with the degree; `method = \"auto\"` finds a cheaper evaluator"),
-    );
-    None
-}
-
-/// Notes a degree that nothing would use.
-fn no_degree(inverse: &spec::Inverse, method: &str, faults: &mut Vec<Diagnostic>) -> bool {
-    let Some(field) = &inverse.degree else { return true };
-    let degree = field.get_ref();
-    faults.push(
-        Diagnostic::new(
-            Code::Conflict,
-            "inverse.degree",
-            field.span(),
-            format!("`inverse.degree` = {degree} means nothing to method \"{method}\""),
-        )
-        .label("only for the polynomial")
-        .help("remove it, or set `method = \"polynomial\"`"),
-    );
-    false
+    table.refuse(
+        &DEGREE,
+        Code::OutOfRange,
+        format!("`inverse.degree` = {degree} is not between 1 and {HIGHEST_INVERSE_DEGREE}"),
+        format!("expected 1 to {HIGHEST_INVERSE_DEGREE}"),
+        "errors shrink slowly with the degree; `method = \"auto\"` finds a cheaper evaluator",
+    )
 }

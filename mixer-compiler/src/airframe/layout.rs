@@ -8,16 +8,31 @@
 //! `channels` says otherwise.
 
 use std::f64::consts::PI;
-use std::ops::Range;
+use std::ops;
 
-use toml::Spanned;
-
-use super::check::word;
 use super::pair::Spin;
-use super::unit::FARTHEST_M;
-use crate::diagnostic::{Code, Diagnostic, number, rounded};
-use crate::spec::keys::MOST_UNITS;
-use crate::spec::{Channels, Layout, Unit};
+use super::unit::{self, FARTHEST_M, MOST_UNITS};
+use crate::diagnostic::{Code, number, rounded};
+use crate::spec::keys::{Key, Kind, Range, keys};
+use crate::spec::{Channels, Fields, Spanned};
+
+const ARM: &str = "the distance of every unit from the centre of gravity, in metres";
+
+keys! { TABLE = "[layout]":
+    ARM_M "arm_m" = "0.45", Kind::Number(Range::Positive),
+        "From the centre of gravity to each mast, m.".required()
+        .refusing("must be above 0", ARM);
+    UNITS "units" = "4", Kind::Count([1, MOST_UNITS]),
+        "Pairs of rotors.".required();
+    FIRST_ANGLE_DEG "first_angle_deg" = "45", Kind::Number(Range::Finite),
+        "Of the first unit, degrees clockwise from the nose as seen from above.".required();
+    FIRST_SPIN "first_spin" = "\"cw\"", Kind::Word(&Spin::WORDS),
+        "Of the first unit's upper rotor. They alternate for an even number of units and turn alike for an odd one.";
+    SPINS "spins" = "[\"cw\", \"ccw\", \"cw\", \"ccw\"]", Kind::Words(&Spin::WORDS),
+        "Of every unit's upper rotor, instead of first_spin.";
+    CHANNELS "channels" = "[[0, 4], [1, 5], [2, 6], [3, 7]]", Kind::ListOfChannels,
+        "Outputs of the upper and of the lower rotor of every unit; k and n + k without it.";
+}
 
 /// Coordinates below this share of the arm are the rounding of sin and cos at multiples of 90
 /// degrees.
@@ -26,42 +41,48 @@ const ROUNDING: f64 = 1e-12;
 /// Nearest neighbours on the circle, m.
 const NEAREST_M: f64 = 1e-3;
 
-/// The units of a layout, or `None` after noting why there are none. `bench_spin` is the default of
-/// `first_spin`.
-pub(crate) fn expand(
-    layout: &Layout,
-    bench_spin: Option<Spin>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<Vec<Unit>> {
-    let units = layout.units.as_ref().and_then(|field| count(field, faults));
-    let arm_m = layout.arm_m.as_ref().and_then(|field| arm(field, units, faults));
-    let first_deg = layout
-        .first_angle_deg
-        .as_ref()
-        .and_then(|field| angle(field, faults));
-    let spins = spins(layout, units, bench_spin, faults);
-    let channels = channels(layout, units, faults);
+/// What a layout says.
+pub(super) struct Layout {
+    /// Place of the header.
+    pub(super) place: ops::Range<usize>,
+    pub(super) first_angle_deg: Option<f64>,
+    /// The units that it stands for; `None` where it was refused.
+    pub(super) units: Option<Vec<unit::Written>>,
+}
 
-    let (count, arm_m, first_deg) = (units?, arm_m?, first_deg?);
-    let units = (0..count)
-        .zip(spins?)
-        .zip(channels?)
-        .map(|((k, spin), channels)| {
-            let place = layout.place.clone();
+/// Reads `[layout]`; `bench_spin` is the default of `first_spin`.
+pub(super) fn read(table: &mut Fields<'_, '_>, bench_spin: Option<Spin>) -> Layout {
+    let units = count(table);
+    let arm_m = arm(table, units);
+    let first_angle_deg = angle(table);
+    let spins = spins(table, units, bench_spin);
+    let channels = channels(table, units);
+    let place = table.place();
+    let arm_place = table.value_place(&ARM_M);
+    let expanded = || {
+        let (count, arm_m, first_deg) = (units?, arm_m?, first_angle_deg?);
+        let units = (0..count).zip(spins?).zip(channels?);
+        let units = units.map(|((k, spin), channels)| {
             let [x, y] = on_circle(arm_m, first_deg + 360.0 * k as f64 / count as f64);
-            Unit {
+            unit::Written {
                 path: format!("unit[{k}]"),
                 position_m: Some(Spanned::new(
-                    layout.arm_m.as_ref().map_or(place.clone(), Spanned::span),
+                    arm_place.clone(),
                     [x, y, 0.0].map(|x| Spanned::new(place.clone(), x)),
                 )),
-                upper_spin: Some(Spanned::new(place.clone(), spin.name().to_string())),
+                upper_spin: Some(spin),
                 channels: Some(channels),
                 axis: None,
-                place,
+                place: place.clone(),
             }
         });
-    Some(units.collect())
+        Some(units.collect())
+    };
+    Layout {
+        units: expanded(),
+        first_angle_deg,
+        place,
+    }
 }
 
 /// x forward and y right of a point on a circle, m, from its angle clockwise from the nose.
@@ -70,12 +91,8 @@ fn on_circle(arm_m: f64, angle_deg: f64) -> [f64; 2] {
     [libm::cos(angle), libm::sin(angle)].map(|x| if x.abs() < ROUNDING { 0.0 } else { arm_m * x })
 }
 
-fn fault(code: Code, key: &str, place: Range<usize>, message: String) -> Diagnostic {
-    Diagnostic::new(code, format!("layout.{key}"), place, message)
-}
-
-fn count(field: &Spanned<usize>, faults: &mut Vec<Diagnostic>) -> Option<usize> {
-    let count = *field.get_ref();
+fn count(table: &mut Fields<'_, '_>) -> Option<usize> {
+    let count = *table.read::<usize>(&UNITS)?.get_ref();
     if (1..=MOST_UNITS).contains(&count) {
         return Some(count);
     }
@@ -84,94 +101,55 @@ fn count(field: &Spanned<usize>, faults: &mut Vec<Diagnostic>) -> Option<usize> 
     } else {
         Code::TooManyUnits
     };
-    faults.push(
-        fault(
-            code,
-            "units",
-            field.span(),
-            format!("`layout.units` = {count} is not between 1 and {MOST_UNITS}"),
-        )
-        .label("number of pairs")
-        .help("a unit is one pair of rotors: an X8 has 4, a Y6 has 3"),
-    );
-    None
+    let message = format!("`layout.units` = {count} is not between 1 and {MOST_UNITS}");
+    let help = "a unit is one pair of rotors: an X8 has 4, a Y6 has 3";
+    table.refuse(&UNITS, code, message, "number of pairs", help)
 }
 
-fn arm(field: &Spanned<f64>, units: Option<usize>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
-    let arm_m = *field.get_ref();
-    let bad = |code, message| fault(code, "arm_m", field.span(), message);
-    if arm_m <= 0.0 {
-        faults.push(
-            bad(
-                Code::OutOfRange,
-                format!("`layout.arm_m` = {} is not positive", number(arm_m)),
-            )
-            .label("must be above 0")
-            .help("the distance of every unit from the centre of gravity, in metres"),
-        );
-        return None;
-    }
+fn arm(table: &mut Fields<'_, '_>, units: Option<usize>) -> Option<f64> {
+    let arm_m = table.number(&ARM_M)?;
     if arm_m > FARTHEST_M {
-        faults.push(
-            bad(
-                Code::FarUnit,
-                format!("the units are {} m from the centre of gravity", number(arm_m)),
-            )
-            .label(format!("expected metres, at most {FARTHEST_M}"))
-            .help(format!(
-                "if millimetres were meant, write {}",
-                number(arm_m / 1000.0)
-            )),
-        );
-        return None;
+        let message = format!("the units are {} m from the centre of gravity", number(arm_m));
+        let label = format!("expected metres, at most {FARTHEST_M}");
+        let help = format!("if millimetres were meant, write {}", number(arm_m / 1000.0));
+        return table.refuse(&ARM_M, Code::FarUnit, message, label, help);
     }
     let units = units?;
     let apart_m = 2.0 * arm_m * libm::sin(PI / units as f64);
     if units > 1 && apart_m < NEAREST_M {
-        let apart = rounded(apart_m * 1000.0);
-        faults.push(
-            bad(
-                Code::SamePlace,
-                format!("neighbouring units are {apart} mm apart"),
-            )
-            .label("all units are in one place")
-            .help("the distance of every unit from the centre of gravity, in metres"),
+        let message = format!("neighbouring units are {} mm apart", rounded(apart_m * 1000.0));
+        return table.refuse(
+            &ARM_M,
+            Code::SamePlace,
+            message,
+            "all units are in one place",
+            ARM,
         );
-        return None;
     }
     Some(arm_m)
 }
 
-fn angle(field: &Spanned<f64>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
-    let angle = *field.get_ref();
+fn angle(table: &mut Fields<'_, '_>) -> Option<f64> {
+    let angle = *table.read::<f64>(&FIRST_ANGLE_DEG)?.get_ref();
     if angle.abs() <= 360.0 {
         return Some(angle);
     }
-    faults.push(
-        fault(
-            Code::OutOfRange,
-            "first_angle_deg",
-            field.span(),
-            format!("`layout.first_angle_deg` = {} is more than a turn", number(angle)),
-        )
-        .label("expected -360 to 360")
-        .help("degrees clockwise from the nose, seen from above"),
-    );
-    None
+    let message = format!("`layout.first_angle_deg` = {} is more than a turn", number(angle));
+    let help = "degrees clockwise from the nose, seen from above";
+    table.refuse(
+        &FIRST_ANGLE_DEG,
+        Code::OutOfRange,
+        message,
+        "expected -360 to 360",
+        help,
+    )
 }
 
-fn spins(
-    layout: &Layout,
-    units: Option<usize>,
-    bench_spin: Option<Spin>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<Vec<Spin>> {
-    let first = match &layout.first_spin {
-        Some(field) => word(field, "layout.first_spin", &Spin::WORDS, faults),
-        None => bench_spin,
-    };
-    let Some(field) = &layout.spins else {
-        let (units, first) = (units?, first?);
+fn spins(table: &mut Fields<'_, '_>, units: Option<usize>, bench_spin: Option<Spin>) -> Option<Vec<Spin>> {
+    let written = table.key_place(&FIRST_SPIN).is_some();
+    let first = table.word(&FIRST_SPIN, &Spin::ALL);
+    let Some(field) = table.read::<Vec<Spanned<String>>>(&SPINS) else {
+        let (units, first) = (units?, if written { first } else { bench_spin }?);
         let alternates = units % 2 == 0;
         let spin = |k| {
             if alternates && k % 2 == 1 {
@@ -182,61 +160,51 @@ fn spins(
         };
         return Some((0..units).map(spin).collect());
     };
-    if let Some(first) = &layout.first_spin {
+    if written {
         let message = "`first_spin` and `spins` both say how the first unit turns".to_string();
-        faults.push(
-            fault(Code::Conflict, "first_spin", first.span(), message)
-                .label("`spins` says it too")
-                .help("remove `first_spin`: `spins` names every unit's upper rotor"),
-        );
+        let help = "remove `first_spin`: `spins` names every unit's upper rotor";
+        table.refuse::<()>(&FIRST_SPIN, Code::Conflict, message, "`spins` says it too", help);
     }
     let spins: Vec<_> = field
         .get_ref()
         .iter()
-        .map(|spin| word(spin, "layout.spins", &Spin::WORDS, faults))
+        .map(|spin| table.meaning(&SPINS, spin, &Spin::ALL))
         .collect();
-    same_count("spins", field.get_ref().len(), field.span(), units, faults)?;
+    same_count(table, &SPINS, spins.len(), units)?;
     spins.into_iter().collect()
 }
 
-fn channels(
-    layout: &Layout,
-    units: Option<usize>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<Vec<Spanned<Channels>>> {
-    let Some(field) = &layout.channels else {
-        let (units, place) = (units?, layout.place.clone());
+fn channels(table: &mut Fields<'_, '_>, units: Option<usize>) -> Option<Vec<Spanned<Channels>>> {
+    let Some(field) = table.read::<Vec<Spanned<Channels>>>(&CHANNELS) else {
+        let (units, place) = (units?, table.place());
         let channel = |output| Spanned::new(place.clone(), output);
-        return Some(
-            (0..units)
-                .map(|k| Spanned::new(place.clone(), [channel(k), channel(units + k)]))
-                .collect(),
-        );
+        let pair = |k| Spanned::new(place.clone(), [channel(k), channel(units + k)]);
+        return Some((0..units).map(pair).collect());
     };
-    same_count("channels", field.get_ref().len(), field.span(), units, faults)?;
-    Some(field.get_ref().clone())
+    same_count(table, &CHANNELS, field.get_ref().len(), units)?;
+    Some(field.into_inner())
 }
 
 fn same_count(
-    key: &str,
+    table: &mut Fields<'_, '_>,
+    key: &'static Key,
     found: usize,
-    place: Range<usize>,
     units: Option<usize>,
-    faults: &mut Vec<Diagnostic>,
 ) -> Option<()> {
     let units = units?;
     if found == units {
         return Some(());
     }
-    faults.push(
-        fault(
-            Code::WrongLength,
-            key,
-            place,
-            format!("`layout.{key}` has {found} entries, `layout.units` is {units}"),
-        )
-        .label(format!("expected {units} entries"))
-        .help("one entry for each unit, clockwise from the first"),
+    let message = format!(
+        "`layout.{}` has {found} entries, `layout.units` is {units}",
+        key.name
     );
-    None
+    let label = format!("expected {units} entries");
+    table.refuse(
+        key,
+        Code::WrongLength,
+        message,
+        label,
+        "one entry for each unit, clockwise from the first",
+    )
 }

@@ -1,15 +1,36 @@
-//! The model of one pair: total thrust and torque as polynomials of the two throttles.
-
-use toml::Spanned;
+//! `[pair]`: the model of one pair, total thrust and torque as polynomials of the two throttles.
 
 use super::basis::Basis;
-use super::check::{LARGEST_EFFORT, word};
+use super::limits::LARGEST_EFFORT;
 use super::power::{self, Power};
 use super::rotor_alone::{self, RotorAlone};
 use super::throttle::Throttle;
 use super::uncertainty::{self, Uncertainty};
 use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec;
+use crate::spec::keys::{Key, Kind, keys};
+use crate::spec::{Fields, Numbers};
+
+/// Terms of the smallest and of the largest basis.
+const TERMS: [usize; 2] = [8, 14];
+
+keys! { TABLE = "[pair]":
+    BASIS "basis" = "\"biquadratic\"", Kind::Word(&Basis::WORDS),
+        "Terms of the polynomials in the upper throttle u and the lower throttle l. biquadratic: u2l2, u2l, u2, ul2, ul, u, l2, l; cubic: u3, u2l, ul2, l3, u2, ul, l2, u, l; quartic: u4, u3l, u2l2, ul3, l4, then as cubic.".required();
+    THRUST_N "thrust_n" = "[5.2075, -2.1892, ..]", Kind::Numbers(TERMS),
+        "Coefficients of the total thrust, N, in the order of the basis.".required();
+    TORQUE_NM "torque_nm" = "[-0.0673, -0.0606, ..]", Kind::Numbers(TERMS),
+        "Coefficients of the total torque, N m, positive where the lower rotor outweighs the upper.".required();
+    UPPER_SPIN "upper_spin" = "\"cw\"", Kind::Word(&Spin::WORDS),
+        "How the upper rotor turned on the bench, seen from above.".required();
+    LOWER_OUT "lower_out" = "", Kind::Table(&rotor_alone::LOWER_OUT),
+        "What the upper rotor gives alone, the lower one at rest: used while the lower one is out.";
+    UPPER_OUT "upper_out" = "", Kind::Table(&rotor_alone::UPPER_OUT),
+        "What the lower rotor gives alone, the upper one at rest: used while the upper one is out.";
+    POWER "power" = "", Kind::Table(&power::TABLE),
+        "Electrical power, for what `check` and the report say of least power.";
+    UNCERTAINTY "uncertainty" = "", Kind::Table(&uncertainty::TABLE),
+        "How far the model of the pair may be from the pair.";
+}
 
 /// Sense of rotation of a unit's upper rotor, seen from above. The lower rotor turns the other way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,15 +42,15 @@ pub enum Spin {
 }
 
 impl Spin {
+    /// Both, as [`Spin::WORDS`] has them.
+    pub(crate) const ALL: [Spin; 2] = [Spin::Cw, Spin::Ccw];
+
     /// The words in the file.
-    pub(crate) const WORDS: [(&'static str, Spin); 2] = [("cw", Spin::Cw), ("ccw", Spin::Ccw)];
+    pub(crate) const WORDS: [&'static str; 2] = ["cw", "ccw"];
 
     /// The word in the file.
     pub fn name(self) -> &'static str {
-        match self {
-            Spin::Cw => "cw",
-            Spin::Ccw => "ccw",
-        }
+        Self::WORDS[self as usize]
     }
 
     /// The sense in words.
@@ -72,53 +93,33 @@ pub struct Pair {
     pub uncertainty: Option<Uncertainty>,
 }
 
-pub(super) fn check(
-    pair: &spec::Pair,
-    throttle: Option<&Throttle>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<Pair> {
-    let bases = Basis::ALL.map(|basis| (basis.name(), basis));
-    let basis = pair
-        .basis
-        .as_ref()
-        .and_then(|field| word(field, "pair.basis", &bases, faults));
-    let thrust_n = coefficients("pair.thrust_n", pair.thrust_n.as_ref(), basis, faults);
-    let torque_nm = coefficients("pair.torque_nm", pair.torque_nm.as_ref(), basis, faults);
-    let upper_spin = pair
-        .upper_spin
-        .as_ref()
-        .and_then(|field| word(field, "pair.upper_spin", &Spin::WORDS, faults));
-    let mut alone = |key, table: &Option<spec::RotorAlone>, sign| {
-        let table = table.as_ref()?;
-        Some(rotor_alone::check(key, table, sign, throttle, faults))
+/// The pair, and its bench's spin also where other keys are at fault.
+pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (Option<Pair>, Option<Spin>) {
+    let basis = table.word(&BASIS, &Basis::ALL);
+    let [thrust_n, torque_nm] = [&THRUST_N, &TORQUE_NM].map(|key| coefficients(table, key, basis));
+    let upper_spin = table.word(&UPPER_SPIN, &Spin::ALL);
+    let lower_out = table.table(&LOWER_OUT, |table| rotor_alone::read(table, -1.0, throttle));
+    let upper_out = table.table(&UPPER_OUT, |table| rotor_alone::read(table, 1.0, throttle));
+    let power = table.table(&POWER, |table| power::read(table, throttle));
+    let uncertainty = table.table(&UNCERTAINTY, uncertainty::read);
+    let pair = || {
+        Some(Pair {
+            basis: basis?,
+            thrust_n: thrust_n?,
+            torque_nm: torque_nm?,
+            upper_spin: upper_spin?,
+            lower_out: lower_out.flatten(),
+            upper_out: upper_out.flatten(),
+            power: power.flatten(),
+            uncertainty: uncertainty.flatten(),
+        })
     };
-    let lower_out = alone("lower_out", &pair.lower_out, -1.0);
-    let upper_out = alone("upper_out", &pair.upper_out, 1.0);
-    let power = pair
-        .power
-        .as_ref()
-        .map(|table| power::check(table, throttle, faults));
-    let uncertainty = pair.uncertainty.as_ref();
-    let uncertainty = uncertainty.map(|table| uncertainty::check(table, faults));
-    Some(Pair {
-        uncertainty: uncertainty.map_or(Some(None), |checked| checked.map(Some))?,
-        power: power.map_or(Some(None), |power| power.map(Some))?,
-        lower_out: lower_out.map_or(Some(None), |alone| alone.map(Some))?,
-        upper_out: upper_out.map_or(Some(None), |alone| alone.map(Some))?,
-        basis: basis?,
-        thrust_n: thrust_n?,
-        torque_nm: torque_nm?,
-        upper_spin: upper_spin?,
-    })
+    (pair(), upper_spin)
 }
 
-fn coefficients(
-    key: &str,
-    field: Option<&Spanned<Vec<Spanned<f64>>>>,
-    basis: Option<Basis>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<Vec<f64>> {
-    let (field, basis) = (field?, basis?);
+fn coefficients(table: &mut Fields<'_, '_>, key: &'static Key, basis: Option<Basis>) -> Option<Vec<f64>> {
+    let (field, basis) = (table.read::<Numbers>(key)?, basis?);
+    let (key, faults) = (&table.key_path(key.name), &mut *table.faults);
     let (found, terms) = (field.get_ref().len(), basis.exponents().len());
     if found != terms {
         let fits = Basis::ALL

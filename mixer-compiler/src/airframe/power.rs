@@ -1,11 +1,19 @@
-//! The electrical power of one pair over its throttles.
+//! `[pair.power]`: the electrical power of one pair over its throttles.
 
 use super::basis::Basis;
-use super::check::LARGEST_EFFORT;
+use super::limits::LARGEST_EFFORT;
 use super::throttle::Throttle;
-use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec;
-use crate::spec::keys::POWER_TERMS;
+use crate::diagnostic::{Code, number};
+use crate::spec::keys::{Kind, keys};
+use crate::spec::{Fields, Numbers};
+
+/// Coefficients of a power map: the quartic's and a constant.
+const POWER_TERMS: usize = 15;
+
+keys! { TABLE = "[pair.power]":
+    POWER_W "power_w" = "[0, 0, 0, 0, 0, 620, 90, 40, 560, 160, -60, 150, 8, 6, 5]", Kind::Numbers([POWER_TERMS, POWER_TERMS]),
+        "Electrical power of both rotors, W: the quartic's coefficients and a constant; `identify` writes it.".required();
+}
 
 /// `[pair.power]`: what `check` and the report say of power comes from it, nothing else does.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,60 +58,33 @@ impl Power {
 /// Throttles per side of the range at which the power is looked at.
 const STEPS: u32 = 64;
 
-/// Checks `[pair.power]`.
-pub(super) fn check(
-    table: &spec::Power,
-    throttle: Option<&Throttle>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<Power> {
+pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> Option<Power> {
     let key = "pair.power.power_w";
-    let field = table.power_w.as_ref()?;
+    let field = table.read::<Numbers>(&POWER_W)?;
     let power_w: Vec<f64> = field.get_ref().iter().map(|c| *c.get_ref()).collect();
-    let fault = |code, message: String| Diagnostic::new(code, key, field.span(), message);
+    let terms = format!("the terms are {}, 1, in this order", Basis::Quartic.terms());
     if power_w.len() != POWER_TERMS {
-        let message = format!(
-            "`{key}` has {} coefficients, a power map takes {POWER_TERMS}",
-            power_w.len()
-        );
-        faults.push(
-            fault(Code::WrongLength, message)
-                .label(format!("expected {POWER_TERMS} numbers"))
-                .help(format!(
-                    "the terms are {}, 1, in this order",
-                    Basis::Quartic.terms()
-                )),
-        );
-        return None;
+        let found = power_w.len();
+        let message = format!("`{key}` has {found} coefficients, a power map takes {POWER_TERMS}");
+        let label = format!("expected {POWER_TERMS} numbers");
+        return table.refuse(&POWER_W, Code::WrongLength, message, label, terms);
     }
     if let Some(beyond) = power_w.iter().find(|c| c.abs() > LARGEST_EFFORT) {
-        let message = format!(
-            "a coefficient of {} in `{key}` is beyond {}",
-            number(*beyond),
-            number(LARGEST_EFFORT)
-        );
-        faults.push(
-            fault(Code::OutOfRange, message)
-                .label("no rotor takes that")
-                .help("the throttles of the polynomial run from 0 to 1, not in microseconds"),
-        );
-        return None;
+        let [beyond, largest] = [*beyond, LARGEST_EFFORT].map(number);
+        let message = format!("a coefficient of {beyond} in `{key}` is beyond {largest}");
+        let help = "the throttles of the polynomial run from 0 to 1, not in microseconds";
+        return table.refuse(&POWER_W, Code::OutOfRange, message, "no rotor takes that", help);
     }
     let Throttle { min, max } = throttle?;
-    match Power::over(power_w, [*min, *max]) {
-        Ok(power) => Some(power),
-        Err(reason) => {
-            faults.push(
-                fault(Code::PowerMap, format!("the power of `{key}` {reason}"))
-                    .label("must be positive and grow with the throttles")
-                    .help(format!(
-                        "the terms are {}, 1, in this order; `cargo mixer identify` writes them for the throttles it states; without \
-                         [pair.power] only the figures of power are missing",
-                        Basis::Quartic.terms()
-                    )),
-            );
-            None
-        }
-    }
+    Power::over(power_w, [*min, *max]).map(Some).unwrap_or_else(|reason| {
+        let message = format!("the power of `{key}` {reason}");
+        let label = "must be positive and grow with the throttles";
+        let help = format!(
+            "{terms}; `cargo mixer identify` writes them for the throttles it states; without [pair.power] only the \
+             figures of power are missing"
+        );
+        table.refuse(&POWER_W, Code::PowerMap, message, label, help)
+    })
 }
 
 fn value(coefficients: &[f64], [u, l]: [f64; 2]) -> f64 {

@@ -1,11 +1,25 @@
-//! What one rotor of a unit gives alone, the other one at rest.
+//! `[pair.lower_out]`, `[pair.upper_out]`: what one rotor of a unit gives alone, the other one at
+//! rest.
 
-use toml::Spanned;
-
-use super::check::LARGEST_EFFORT;
+use super::limits::LARGEST_EFFORT;
 use super::throttle::Throttle;
-use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec;
+use crate::diagnostic::{Code, number};
+use crate::spec::keys::{Key, Kind, keys};
+use crate::spec::{Fields, Triple};
+
+keys! { LOWER_OUT = "[pair.lower_out]":
+    UPPER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
+        "Thrust of the upper rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.".required();
+    UPPER_TORQUE_NM "torque_nm" = "[-0.01, -0.2, 0.02]", Kind::Numbers([3, 3]),
+        "Its torque, N m, signed as that of the pair.".required();
+}
+
+keys! { UPPER_OUT = "[pair.upper_out]":
+    LOWER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
+        "Thrust of the lower rotor alone, N: a1, a2, a3 of a1 x + a2 x2 + a3 x3.".required();
+    LOWER_TORQUE_NM "torque_nm" = "[0.01, 0.2, -0.02]", Kind::Numbers([3, 3]),
+        "Its torque, N m, signed as that of the pair.".required();
+}
 
 /// `[pair.lower_out]` or `[pair.upper_out]`: a1 x + a2 x2 + a3 x3 in the throttle x of the rotor
 /// that turns.
@@ -26,75 +40,56 @@ impl RotorAlone {
     }
 }
 
-/// Checks `pair.KEY`; `sign` is that of its torque.
-pub(super) fn check(
-    key: &str,
-    table: &spec::RotorAlone,
-    sign: f64,
-    throttle: Option<&Throttle>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<RotorAlone> {
-    let coefficients =
-        |name: &str, field: &Option<Spanned<[Spanned<f64>; 3]>>, faults: &mut Vec<Diagnostic>| {
-            let field = field.as_ref()?;
-            let coefficients = field.get_ref().each_ref().map(|c| *c.get_ref());
-            let beyond = coefficients.iter().find(|c| c.abs() > LARGEST_EFFORT);
-            if let Some(beyond) = beyond {
-                let key = format!("pair.{key}.{name}");
-                let message = format!(
-                    "a coefficient of {} in `{key}` is beyond {}",
-                    number(*beyond),
-                    number(LARGEST_EFFORT)
-                );
-                let fault = Diagnostic::new(Code::OutOfRange, key, field.span(), message)
-                    .label("no rotor gives that")
-                    .help("the throttle of the polynomial runs from 0 to 1, not in microseconds");
-                faults.push(fault);
-                return None;
-            }
-            Some((coefficients, field.span()))
-        };
-    let thrust = coefficients("thrust_n", &table.thrust_n, faults);
-    let torque = coefficients("torque_nm", &table.torque_nm, faults);
-    let ((thrust_n, thrust_place), (torque_nm, torque_place)) = (thrust?, torque?);
+/// Reads a table of the rotor whose torque has this sign.
+pub(super) fn read(table: &mut Fields<'_, '_>, sign: f64, throttle: Option<&Throttle>) -> Option<RotorAlone> {
+    let (keys, turning, side) = if sign < 0.0 {
+        ([&UPPER_THRUST_N, &UPPER_TORQUE_NM], "upper", "below")
+    } else {
+        ([&LOWER_THRUST_N, &LOWER_TORQUE_NM], "lower", "above")
+    };
+    let [thrust, torque] = keys.map(|key| coefficients(table, key));
+    let (thrust_n, torque_nm) = (thrust?, torque?);
     let throttle = throttle?;
-    let before = faults.len();
+    let [thrust_path, torque_path] = keys.map(|key| table.key_path(key.name));
+    let before = table.faults.len();
     let (slope, at) = least_slope(thrust_n, throttle);
     if slope <= 0.0 {
-        let key = format!("pair.{key}.thrust_n");
+        let [min, max] = [throttle.min, throttle.max].map(number);
         let message = format!(
-            "the thrust of `{key}` does not grow with the throttle: its slope is {slope:.3} N at {at:.3}"
+            "the thrust of `{thrust_path}` does not grow with the throttle: its slope is {slope:.3} N at {at:.3}"
         );
-        faults.push(
-            Diagnostic::new(Code::RotorAlone, key, thrust_place, message)
-                .label(format!(
-                    "must grow from {} to {}",
-                    number(throttle.min),
-                    number(throttle.max)
-                ))
-                .help("a1 x + a2 x^2 + a3 x^3 with a1, a2, a3 in this order, from a run of that rotor over all throttles"),
-        );
+        let help = "a1 x + a2 x^2 + a3 x^3 with a1, a2, a3 in this order, from a run of that rotor over all throttles";
+        let label = format!("must grow from {min} to {max}");
+        table.refuse::<()>(keys[0], Code::RotorAlone, message, label, help);
     }
     let full = value(torque_nm, throttle.max);
     if sign * full <= 0.0 {
-        let key_of = format!("pair.{key}.torque_nm");
-        let (turning, side) = if sign < 0.0 {
-            ("upper", "below")
-        } else {
-            ("lower", "above")
-        };
         let message = format!(
-            "the torque of `{key_of}` is {full:.4} N m at full throttle, that of the {turning} rotor alone is {side} 0"
+            "the torque of `{torque_path}` is {full:.4} N m at full throttle, that of the {turning} rotor alone is {side} 0"
         );
-        faults.push(
-            Diagnostic::new(Code::RotorAlone, key_of, torque_place, message)
-                .label("torque of the other rotor, or of the other sign")
-                .help(format!(
-                    "torque is positive where the lower rotor outweighs the upper; in `[pair.{key}]` the {turning} rotor turns"
-                )),
+        let help = format!(
+            "torque is positive where the lower rotor outweighs the upper; in `[{}]` the {turning} rotor turns",
+            table.path()
         );
+        let label = "torque of the other rotor, or of the other sign";
+        table.refuse::<()>(keys[1], Code::RotorAlone, message, label, help);
     }
-    (faults.len() == before).then_some(RotorAlone { thrust_n, torque_nm })
+    (table.faults.len() == before).then_some(RotorAlone { thrust_n, torque_nm })
+}
+
+/// Three coefficients.
+fn coefficients(table: &mut Fields<'_, '_>, key: &'static Key) -> Option<[f64; 3]> {
+    let coefficients = table.read::<Triple>(key)?.into_inner().map(|c| c.into_inner());
+    let Some(beyond) = coefficients.iter().find(|c| c.abs() > LARGEST_EFFORT) else {
+        return Some(coefficients);
+    };
+    let [beyond, largest] = [*beyond, LARGEST_EFFORT].map(number);
+    let message = format!(
+        "a coefficient of {beyond} in `{}` is beyond {largest}",
+        table.key_path(key.name)
+    );
+    let help = "the throttle of the polynomial runs from 0 to 1, not in microseconds";
+    table.refuse(key, Code::OutOfRange, message, "no rotor gives that", help)
 }
 
 fn value([a1, a2, a3]: [f64; 3], x: f64) -> f64 {

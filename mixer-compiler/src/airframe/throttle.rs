@@ -1,7 +1,18 @@
-//! The range of the throttles.
+//! `[throttle]`: the range of every rotor's throttle.
 
-use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec;
+use crate::diagnostic::{Code, number};
+use crate::spec::Fields;
+use crate::spec::keys::{Kind, Range, keys};
+
+/// A share of full throttle.
+const SHARE: Kind = Kind::Number(Range::Within([0.0, 1.0]));
+
+keys! { TABLE = "[throttle]":
+    MIN "min" = "0.10", SHARE,
+        "Idle: no rotor is ever commanded below. Below some idle the map of every pair folds; the compiler names the least that works.".required();
+    MAX "max" = "1.0", SHARE,
+        "No rotor is ever commanded above.".required();
+}
 
 /// Least range from idle to full throttle. A narrower one is a mistake and may vanish in single
 /// precision.
@@ -17,58 +28,39 @@ pub struct Throttle {
     pub max: f64,
 }
 
-/// Checks `[throttle]`.
-pub(super) fn check(table: &spec::Throttle, faults: &mut Vec<Diagnostic>) -> Option<Throttle> {
-    let before = faults.len();
-    for (key, field) in [("min", &table.min), ("max", &table.max)] {
-        if let Some(field) = field
-            && !(0.0..=1.0).contains(field.get_ref())
-        {
-            let help = match *field.get_ref() {
-                percent if (2.0..=100.0).contains(&percent) => {
-                    format!("if per cent were meant, write {}", number(percent / 100.0))
-                }
-                _ => "0 is a rotor at rest, 1 is full throttle".to_string(),
-            };
-            faults.push(
-                Diagnostic::new(
-                    Code::ThrottleRange,
-                    format!("throttle.{key}"),
-                    field.span(),
-                    format!(
-                        "`throttle.{key}` = {} is not between 0 and 1",
-                        number(*field.get_ref())
-                    ),
-                )
-                .label("outside [0, 1]")
-                .help(help),
-            );
+pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Throttle> {
+    let [min, max] = [&MIN, &MAX].map(|key| {
+        let field = table.read::<f64>(key)?;
+        let x = *field.get_ref();
+        if (0.0..=1.0).contains(&x) {
+            return Some(x);
         }
-    }
-    let (min, max) = (table.min.as_ref()?, table.max.as_ref()?);
-    if faults.len() > before {
-        return None;
-    }
-    let (low, high) = (*min.get_ref(), *max.get_ref());
-    if high - low < LEAST_THROTTLE_RANGE {
-        faults.push(
-            Diagnostic::new(
-                Code::ThrottleRange,
-                "throttle.min",
-                min.span(),
-                format!(
-                    "`throttle.min` = {} is not {LEAST_THROTTLE_RANGE} or more below `throttle.max` = {}",
-                    number(low),
-                    number(high)
-                ),
-            )
-            .label("too high, or `max` too low")
-            .help("`min` is the idle, typically 0.05 to 0.15, and `max` is mostly 1"),
+        let help = match x {
+            percent if (2.0..=100.0).contains(&percent) => {
+                format!("if per cent were meant, write {}", number(percent / 100.0))
+            }
+            _ => "0 is a rotor at rest, 1 is full throttle".to_string(),
+        };
+        let path = table.key_path(key.name);
+        let message = format!("`{path}` = {} is not between 0 and 1", number(x));
+        table.refuse(key, Code::ThrottleRange, message, "outside [0, 1]", help)
+    });
+    let (min, max) = (min?, max?);
+    if max - min < LEAST_THROTTLE_RANGE {
+        let message = format!(
+            "`throttle.min` = {} is not {LEAST_THROTTLE_RANGE} or more below `throttle.max` = {}",
+            number(min),
+            number(max)
         );
-        return None;
+        let help = "`min` is the idle, typically 0.05 to 0.15, and `max` is mostly 1";
+        return table.refuse(
+            &MIN,
+            Code::ThrottleRange,
+            message,
+            "too high, or `max` too low",
+            help,
+        );
     }
-    Some(Throttle {
-        min: low + 0.0,
-        max: high,
-    })
+    // No negative zero: it would show in the generated code.
+    Some(Throttle { min: min + 0.0, max })
 }

@@ -1,9 +1,18 @@
-//! How far the model of the pair may be from the pair itself.
+//! `[pair.uncertainty]`: how far the model of the pair may be from the pair itself.
 
-use toml::Spanned;
+use crate::spec::Fields;
+use crate::spec::keys::{Kind, Range, keys};
 
-use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec;
+const PERCENT: Kind = Kind::Number(Range::UpTo(100.0));
+const LABEL: &str = "expected per cent of full scale";
+const HELP: &str = "one standard deviation; leave `[pair.uncertainty]` out where it is not known";
+
+keys! { TABLE = "[pair.uncertainty]":
+    THRUST_PERCENT "thrust_percent" = "1.5", PERCENT,
+        "Standard deviation of the thrust, % of the thrust at full throttle.".required().refusing(LABEL, HELP);
+    TORQUE_PERCENT "torque_percent" = "3.7", PERCENT,
+        "Standard deviation of the torque, % of the largest torque.".required().refusing(LABEL, HELP);
+}
 
 /// `[pair.uncertainty]`: one standard deviation of the model's error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,27 +24,10 @@ pub struct Uncertainty {
     pub torque_percent: f64,
 }
 
-pub(super) fn check(table: &spec::Uncertainty, faults: &mut Vec<Diagnostic>) -> Option<Uncertainty> {
-    let thrust = percent("thrust_percent", table.thrust_percent.as_ref(), faults);
-    let torque = percent("torque_percent", table.torque_percent.as_ref(), faults);
+pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Uncertainty> {
+    let [thrust, torque] = [&THRUST_PERCENT, &TORQUE_PERCENT].map(|key| table.number(key));
     Some(Uncertainty {
         thrust_percent: thrust?,
         torque_percent: torque?,
     })
-}
-
-fn percent(name: &str, field: Option<&Spanned<f64>>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
-    let field = field?;
-    let percent = *field.get_ref();
-    if percent > 0.0 && percent <= 100.0 {
-        return Some(percent);
-    }
-    let key = format!("pair.uncertainty.{name}");
-    let message = format!("`{key}` = {} is not above 0 and at most 100", number(percent));
-    faults.push(
-        Diagnostic::new(Code::OutOfRange, key, field.span(), message)
-            .label("expected per cent of full scale")
-            .help("one standard deviation; leave `[pair.uncertainty]` out where it is not known"),
-    );
-    None
 }

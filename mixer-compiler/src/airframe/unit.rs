@@ -1,12 +1,25 @@
 //! The units: where they are, where they push, how they turn and which channels drive them.
 
-use toml::Spanned;
+use std::ops::Range;
 
-use super::check::word;
 use super::pair::Spin;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
-use crate::spec;
-use crate::spec::keys::MOST_UNITS;
+use crate::spec::keys::{Kind, keys};
+use crate::spec::{Channels, Fields, Spanned, Triple};
+
+keys! { TABLE = "[[unit]]":
+    POSITION_M "position_m" = "[0.3182, 0.3182, 0.0]", Kind::Numbers([3, 3]),
+        "Forward, right and down from the centre of gravity, m.".required();
+    UPPER_SPIN "upper_spin" = "\"cw\"", Kind::Word(&Spin::WORDS),
+        "How this unit's upper rotor turns, seen from above.".required();
+    CHANNELS "channels" = "[0, 4]", Kind::Channels,
+        "Outputs of the upper and of the lower rotor; all units together have 0 to 2n - 1.".required();
+    AXIS "axis" = "[0.0, 0.0, -1.0]", Kind::Numbers([3, 3]),
+        "Unit vector of the thrust, straight up without it.";
+}
+
+/// Most units of an airframe.
+pub(super) const MOST_UNITS: usize = 32;
 
 /// Units nearer than this are one and the same, m.
 const SAME_PLACE_M: f64 = 1e-3;
@@ -47,8 +60,31 @@ impl Unit {
     }
 }
 
+/// A unit as written, or as a layout stands for it.
+pub(super) struct Written {
+    /// Path, like `unit[3]`.
+    pub(super) path: String,
+    /// Place of the header.
+    pub(super) place: Range<usize>,
+    pub(super) position_m: Option<Spanned<Triple>>,
+    pub(super) upper_spin: Option<Spin>,
+    pub(super) channels: Option<Spanned<Channels>>,
+    pub(super) axis: Option<Spanned<Triple>>,
+}
+
+pub(super) fn read(table: &mut Fields<'_, '_>) -> Written {
+    Written {
+        path: table.path().to_owned(),
+        place: table.place(),
+        position_m: table.read(&POSITION_M),
+        upper_spin: table.word(&UPPER_SPIN, &Spin::ALL),
+        channels: table.read(&CHANNELS),
+        axis: table.read(&AXIS),
+    }
+}
+
 /// Checks every unit, and the units together.
-pub(super) fn check(units: &[spec::Unit], faults: &mut Vec<Diagnostic>) -> Option<Vec<Unit>> {
+pub(super) fn check(units: &[Written], faults: &mut Vec<Diagnostic>) -> Option<Vec<Unit>> {
     if let Some(extra) = units.get(MOST_UNITS) {
         faults.push(
             Diagnostic::new(
@@ -68,11 +104,7 @@ pub(super) fn check(units: &[spec::Unit], faults: &mut Vec<Diagnostic>) -> Optio
     checked.into_iter().collect()
 }
 
-fn check_one(unit: &spec::Unit, faults: &mut Vec<Diagnostic>) -> Option<Unit> {
-    let upper_spin = unit
-        .upper_spin
-        .as_ref()
-        .and_then(|field| word(field, &format!("{}.upper_spin", unit.path), &Spin::WORDS, faults));
+fn check_one(unit: &Written, faults: &mut Vec<Diagnostic>) -> Option<Unit> {
     let position_m = unit
         .position_m
         .as_ref()
@@ -85,13 +117,13 @@ fn check_one(unit: &spec::Unit, faults: &mut Vec<Diagnostic>) -> Option<Unit> {
     Some(Unit {
         position_m: position_m?,
         axis: axis?,
-        upper_spin: upper_spin?,
+        upper_spin: unit.upper_spin?,
         upper_channel: *upper.get_ref(),
         lower_channel: *lower.get_ref(),
     })
 }
 
-fn numbers(triple: &Spanned<spec::Triple>) -> [f64; 3] {
+fn numbers(triple: &Spanned<Triple>) -> [f64; 3] {
     triple.get_ref().each_ref().map(|x| *x.get_ref())
 }
 
@@ -99,11 +131,7 @@ fn length([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
-fn position(
-    unit: &spec::Unit,
-    field: &Spanned<spec::Triple>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<[f64; 3]> {
+fn position(unit: &Written, field: &Spanned<Triple>, faults: &mut Vec<Diagnostic>) -> Option<[f64; 3]> {
     let position = numbers(field);
     let distance = length(position);
     if distance <= FARTHEST_M {
@@ -134,7 +162,7 @@ fn position(
     None
 }
 
-fn axis(unit: &spec::Unit, field: &Spanned<spec::Triple>, faults: &mut Vec<Diagnostic>) -> Option<[f64; 3]> {
+fn axis(unit: &Written, field: &Spanned<Triple>, faults: &mut Vec<Diagnostic>) -> Option<[f64; 3]> {
     let axis = numbers(field);
     let length = length(axis);
     let key = format!("{}.axis", unit.path);
@@ -188,7 +216,7 @@ fn axis(unit: &spec::Unit, field: &Spanned<spec::Triple>, faults: &mut Vec<Diagn
     Some(axis.map(|x| x / length + 0.0))
 }
 
-fn same_places(units: &[spec::Unit], faults: &mut Vec<Diagnostic>) {
+fn same_places(units: &[Written], faults: &mut Vec<Diagnostic>) {
     let placed: Vec<_> = units
         .iter()
         .filter_map(|unit| {
@@ -222,7 +250,7 @@ fn same_places(units: &[spec::Unit], faults: &mut Vec<Diagnostic>) {
 }
 
 /// Every output from 0 to 2n - 1 must drive exactly one rotor.
-fn channels(units: &[spec::Unit], faults: &mut Vec<Diagnostic>) {
+fn channels(units: &[Written], faults: &mut Vec<Diagnostic>) {
     let rotors = 2 * units.len();
     // Who drives each output, and where that is written.
     let mut driven: Vec<Option<String>> = vec![None; rotors];

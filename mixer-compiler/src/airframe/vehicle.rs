@@ -1,15 +1,19 @@
-//! The vehicle that the units carry.
-
-use toml::Spanned;
+//! `[vehicle]`: what the units carry.
 
 use crate::diagnostic::{Code, Diagnostic, number};
-use crate::spec;
+use crate::spec::keys::{Kind, Range, keys};
+use crate::spec::{Fields, Spanned, Triple};
+
+keys! { TABLE = "[vehicle]":
+    MASS_KG "mass_kg" = "3.2", Kind::Number(Range::UpTo(1e4)),
+        "Take-off mass, kg.".required()
+        .refusing("expected kilograms", "the take-off mass, battery and payload included");
+    INERTIA_KG_M2 "inertia_kg_m2" = "[0.080, 0.087, 0.160]", Kind::Numbers([3, 3]),
+        "Moments of inertia about the forward, right and down axes, kg m2, for simulators.";
+}
 
 /// Standard gravity, m/s^2.
 pub const GRAVITY: f64 = 9.806_65;
-
-/// Heaviest vehicle, kg.
-const HEAVIEST_KG: f64 = 1e4;
 
 /// `[vehicle]`
 #[derive(Clone, Debug, PartialEq)]
@@ -22,47 +26,21 @@ pub struct Vehicle {
     pub inertia_kg_m2: Option<[f64; 3]>,
 }
 
-pub(super) fn check(vehicle: &spec::Vehicle, faults: &mut Vec<Diagnostic>) -> Option<Vehicle> {
-    let mass_kg = vehicle.mass_kg.as_ref().and_then(|field| mass(field, faults));
-    let inertia_kg_m2 = vehicle.inertia_kg_m2.as_ref().map(|field| inertia(field, faults));
+pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Vehicle> {
+    let inertia = table.read(&INERTIA_KG_M2);
     Some(Vehicle {
-        mass_kg: mass_kg?,
-        inertia_kg_m2: inertia_kg_m2.map_or(Some(None), |checked| checked.map(Some))?,
+        inertia_kg_m2: inertia.and_then(|field| inertia_kg_m2(&field, table.faults)),
+        mass_kg: table.number(&MASS_KG)?,
     })
 }
 
-fn mass(field: &Spanned<f64>, faults: &mut Vec<Diagnostic>) -> Option<f64> {
-    let mass_kg = *field.get_ref();
-    if mass_kg > 0.0 && mass_kg <= HEAVIEST_KG {
-        return Some(mass_kg);
-    }
-    faults.push(
-        Diagnostic::new(
-            Code::OutOfRange,
-            "vehicle.mass_kg",
-            field.span(),
-            format!(
-                "`vehicle.mass_kg` = {} is not above 0 and at most {}",
-                number(mass_kg),
-                number(HEAVIEST_KG)
-            ),
-        )
-        .label("expected kilograms")
-        .help("the take-off mass, battery and payload included"),
-    );
-    None
-}
-
-fn inertia(field: &Spanned<spec::Triple>, faults: &mut Vec<Diagnostic>) -> Option<[f64; 3]> {
+fn inertia_kg_m2(field: &Spanned<Triple>, faults: &mut Vec<Diagnostic>) -> Option<[f64; 3]> {
     let moments = field.get_ref();
     let Some(wrong) = moments.iter().find(|moment| *moment.get_ref() <= 0.0) else {
         return Some(moments.each_ref().map(|moment| *moment.get_ref()));
     };
-    let key = "vehicle.inertia_kg_m2";
-    let message = format!(
-        "a moment of inertia of {} in `{key}` is not positive",
-        number(*wrong.get_ref())
-    );
+    let (key, moment) = ("vehicle.inertia_kg_m2", number(*wrong.get_ref()));
+    let message = format!("a moment of inertia of {moment} in `{key}` is not positive");
     faults.push(
         Diagnostic::new(Code::OutOfRange, key, wrong.span(), message)
             .label("must be above 0")

@@ -5,5 +5,5 @@ mod largest;
 mod law;
 mod least;
 
-pub(super) use self::check::check;
+pub(super) use self::check::{TABLE, read};
 pub use self::law::{Voltage, VoltageLaw};

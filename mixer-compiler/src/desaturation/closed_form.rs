@@ -26,7 +26,11 @@ const NO_PART: f64 = 1e-5;
 
 /// The table, where the layout and the priorities allow a closed form, and the share of the area of
 /// a unit's attainable set that its border loses.
-pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Option<(ClosedFormTable, f64)> {
+pub(crate) fn table(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    pair: &PairMap,
+) -> Option<(ClosedFormTable, f64)> {
     let n = airframe.units.len();
     let allocation = &airframe.allocation;
     let matrix = &effectiveness.matrix;
@@ -44,7 +48,6 @@ pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Optio
     if !vertical || !spanned || coupled || !allocation.controls(Axis::Yaw) {
         return None;
     }
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
     let [low, high] = pair.range();
     let columns: Vec<Vector3<f64>> = (0..n)
         .map(|i| {
@@ -55,7 +58,7 @@ pub(crate) fn table(airframe: &Airframe, effectiveness: &Effectiveness) -> Optio
     let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
     // f32 rounding, inwards.
     let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
-    let (border, lost) = border::border(&pair)?;
+    let (border, lost) = border::border(pair)?;
     let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
     let mut table = ClosedFormTable {
         units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),

@@ -7,8 +7,7 @@ use mixer_rt::{Axis, Direction, Saturation, Wrench};
 use crate::airframe::{Airframe, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::PairMap;
-use crate::model::effectiveness::Effectiveness;
-use crate::tables::{AnyMix, LevelFlightTable, MixerTables};
+use crate::tables::{AnyMix, LevelFlightTable, MixerTables, Parts};
 
 /// Halvings of the thrusts between one that is delivered and one that is not.
 const HALVINGS: usize = 24;
@@ -23,19 +22,16 @@ const ROOM: f32 = 0.03;
 ///
 /// # Errors
 /// A layout that cannot hover: at no thrust, or at a single one only, the served torques vanish.
-pub(crate) fn thrust_range(
-    airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    tables: &MixerTables,
-) -> Result<([f32; 2], LevelFlightTable), Vec<Diagnostic>> {
+pub(crate) fn thrust_range(parts: &Parts<'_>) -> Result<([f32; 2], LevelFlightTable), Vec<Diagnostic>> {
     // Thrust is given up before the torques, in as many steps as that takes.
-    let mut tables = tables.clone();
+    let (airframe, pair) = (parts.airframe, parts.pair);
+    let mut tables = MixerTables::new(parts, LevelFlightTable::default(), None);
     tables.desaturation.airmode = Airmode::RollPitchYaw;
     tables.desaturation.budget = Budget {
         pivots: u8::MAX,
         flips: u8::MAX,
     };
-    let level = level_flight(airframe, &tables).ok_or_else(|| {
+    let level = level_flight(airframe, pair, &tables).ok_or_else(|| {
         vec![airframe.diagnostic(
             Code::Hover,
             "unit",
@@ -45,16 +41,15 @@ pub(crate) fn thrust_range(
         )]
     })?;
     let range_n = level.thrust_n;
-    if effectiveness.is_vertical() {
+    if tables.is_vertical {
         return Ok((range_n, level));
     }
     tables.attainable = tables.attainable.drawn_in(ROOM);
-    Ok((range_n, level_flight(airframe, &tables).unwrap_or(level)))
+    Ok((range_n, level_flight(airframe, pair, &tables).unwrap_or(level)))
 }
 
 /// Level flight at the least and the largest thrust; `None` where these are not two.
-fn level_flight(airframe: &Airframe, tables: &MixerTables) -> Option<LevelFlightTable> {
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+fn level_flight(airframe: &Airframe, pair: &PairMap, tables: &MixerTables) -> Option<LevelFlightTable> {
     let end = |thrust_n: f32| {
         let (throttle, achieved, saturation) = mix_bare(airframe, tables, thrust_n)?;
         let mut axes = airframe.allocation.axes.iter();

@@ -2,7 +2,7 @@
 
 pub mod cost;
 
-use crate::airframe::Method;
+use crate::airframe::{METHODS, Method};
 
 /// A form of the inverse map; `mixer-rt` has the code of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,8 @@ pub enum SeedForm {
     Cubic,
 }
 
-/// The evaluators that `method = "auto"` tries, by their cost: the order is that of any basis.
+/// The evaluators that `method = "auto"` tries, by their cost: the order is that of any basis, and of
+/// their names in [`METHODS`].
 const CANDIDATES: [Evaluator; 6] = [
     seeded(SeedForm::Bilinear, 1),
     seeded(SeedForm::Quadratic, 1),
@@ -56,20 +57,18 @@ impl Evaluator {
             }],
             Method::Named(name) => CANDIDATES
                 .into_iter()
-                .filter(|evaluator| evaluator.name() == *name)
+                .filter(|evaluator| evaluator.name() == name)
                 .collect(),
         }
     }
 
     /// The name in airframe files (`inverse.method`), reports and JSON.
-    pub fn name(self) -> String {
-        match self {
-            Evaluator::Polynomial { .. } => "polynomial".to_owned(),
-            Evaluator::Seeded { seed, steps } => {
-                let newton = if steps == 1 { "newton" } else { "newton2" };
-                format!("{}-{newton}", seed.name())
-            }
-        }
+    pub fn name(self) -> &'static str {
+        let [_, polynomial, seeded @ ..] = &METHODS;
+        let index = CANDIDATES.iter().position(|candidate| *candidate == self);
+        index
+            .and_then(|index| seeded.get(index).copied())
+            .unwrap_or(polynomial)
     }
 
     /// The name with its parameters, for people.
@@ -118,14 +117,17 @@ impl SeedForm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::keys::EVALUATORS;
 
     #[test]
-    fn every_name_of_the_file_is_an_evaluator() {
-        let names = CANDIDATES.map(Evaluator::name);
-        for name in &names {
-            assert!(EVALUATORS.contains(&name.as_str()), "{name}");
+    fn every_name_of_the_file_is_its_evaluator() {
+        assert_eq!(METHODS.len(), 2 + CANDIDATES.len());
+        for evaluator in CANDIDATES {
+            let Evaluator::Seeded { seed, steps } = evaluator else {
+                panic!("{evaluator:?} has no seed");
+            };
+            let newton = ["newton", "newton2"][usize::from(steps) - 1];
+            assert_eq!(evaluator.name(), format!("{}-{newton}", seed.name()));
         }
-        assert_eq!(names.len(), EVALUATORS.len());
+        assert_eq!(Evaluator::Polynomial { degree: 3 }.name(), "polynomial");
     }
 }

@@ -12,11 +12,10 @@ use crate::airframe::Method;
 use crate::compiled::Compiled;
 use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::Inversion;
-use crate::model::PairMap;
 use crate::output::cost;
 use crate::proof::residual::Residual;
 use crate::proof::{self, CorrectionBounds};
-use crate::tables::{InverseTable, MixerTables};
+use crate::tables::{InverseTable, Part, UnitMap};
 
 /// One evaluator as it would be emitted.
 #[derive(Clone, Debug, Serialize)]
@@ -57,27 +56,23 @@ impl Alternative {
 impl Compiled {
     /// All evaluators that `method = "auto"` tries, in its order: by cost.
     pub fn front(&self) -> Vec<Alternative> {
-        let pair = PairMap::new(&self.airframe.pair, &self.airframe.throttle);
+        let pair = &self.pair;
         let correction = CorrectionBounds::new(&self.airframe, self.tables.voltage.as_ref());
         let basis = self.airframe.pair.basis;
-        let inverse = &self.airframe.inverse;
-        let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
-        let tolerance = [0, 1].map(|k| stated[k] / correction.largest[k]);
-        let mut inversion = Inversion::new(&pair, tolerance, true);
+        let tolerance = correction.tolerance_at_reference(&self.airframe);
+        let mut inversion = Inversion::new(pair, tolerance, true);
         let alternative = |evaluator: Evaluator| {
-            let tables = MixerTables {
-                inverse: InverseTable::new(&inversion.fit(evaluator).0),
-                ..self.tables.clone()
-            };
-            let mut observed = Residual::over_set(&pair, &tables);
-            let certificate = proof::prove(&self.airframe, &pair, &tables, &correction, &mut observed, true);
+            let inverse = InverseTable::new(&inversion.fit(evaluator).0);
+            let map = UnitMap::new(&self.airframe, inverse);
+            let mut observed = Residual::over_set(pair, &map);
+            let certificate = proof::prove(&self.airframe, pair, &map, &correction, &mut observed, true);
             Alternative {
-                evaluator: evaluator.name(),
+                evaluator: evaluator.name().to_owned(),
                 description: evaluator.description(),
                 instructions: evaluator.instructions(basis),
                 cost: evaluator.cost(basis),
                 delivered: cost::delivered(self, evaluator),
-                bytes: 4 * tables.inverse.floats(),
+                bytes: map.inverse.bytes(),
                 proven: certificate.stated,
                 observed: observed.efforts,
                 holds: certificate.holds(),

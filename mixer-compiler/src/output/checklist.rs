@@ -111,9 +111,9 @@ fn throttles(compiled: &Compiled, wrench: &Wrench) -> Option<Vec<f32>> {
 
 /// The largest thrust, or a torque in proportion to what the units' efforts make of the axis.
 fn size(compiled: &Compiled, axis: Axis) -> f64 {
-    let airframe = &compiled.airframe;
-    let scale = crate::model::PairMap::new(&airframe.pair, &airframe.throttle).scale();
-    compiled.effectiveness.largest(axis as usize, scale)
+    compiled
+        .effectiveness
+        .largest(axis as usize, compiled.pair.scale())
 }
 
 /// Where a unit is among the others: `front right`.

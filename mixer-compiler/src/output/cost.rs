@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::compiled::Compiled;
 use crate::inverse::evaluator::Evaluator;
+use crate::tables::Part;
 
 pub use kind::DesaturationKind;
 
@@ -78,7 +79,7 @@ impl Cost {
             desaturation: DesaturationKind::of(compiled),
             bound_instructions: bound::bound(compiled),
             bound_with_rotors_out_instructions: bound::with_rotors_out(compiled),
-            inverse_bytes: 4 * compiled.tables.inverse.floats(),
+            inverse_bytes: compiled.tables.inverse.bytes(),
             table_bytes: compiled.tables.bytes(),
         }
     }

@@ -1,14 +1,10 @@
 //! The generated Rust: the tables as constants and one inline mixer function.
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::compiled::Compiled;
-use crate::tables::{
-    AttainableTable, BorderTable, ClosedFormTable, InverseTable, LawTable, LevelFlightTable, MixerTables,
-    QuantityTable, SeedTable,
-};
-use mixer_rt::tables::{BilinearSeed, CubicSeed, Facets, QuadraticSeed};
+use crate::tables::{MixerTables, Part, identifier};
 
 /// The module of an airframe.
 pub(crate) fn module(compiled: &Compiled) -> TokenStream {
@@ -19,7 +15,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let tables = tables(&compiled.tables);
     let units = Literal::usize_unsuffixed(compiled.tables.units.len());
     let channels = Literal::usize_unsuffixed(2 * compiled.tables.units.len());
-    let [roll, pitch, yaw, thrust] = compiled.scale().to_array().map(float);
+    let [roll, pitch, yaw, thrust] = compiled.scale().to_array().map(|x| x.tokens());
     quote! {
         #module_doc
         #[allow(dead_code, unreachable_pub)]
@@ -163,46 +159,26 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
 
 /// The tables: a constant per part, and the static that `mixer-rt` reads.
 fn tables(tables: &MixerTables) -> TokenStream {
-    let units = tables.units.iter().map(|unit| {
-        let allocation = matrix(&unit.allocation);
-        let [effectiveness, columns] = [unit.effectiveness, unit.columns].map(|part| matrix(&part));
-        let channels = unit
-            .channels
-            .iter()
-            .map(|&channel| Literal::u8_unsuffixed(channel));
-        quote! {
-            tables::Unit { allocation: #allocation, effectiveness: #effectiveness, columns: #columns, channels: [#(#channels),*] }
-        }
-    });
-    let thrust = quantity(&tables.pair.thrust);
-    let torque = quantity(&tables.pair.torque);
-    let singles = tables.singles.iter().map(|single| {
-        let (thrust, torque) = (vector(&single.thrust), vector(&single.torque));
-        quote!(tables::SingleRotor { thrust: #thrust, torque: #torque })
-    });
-    let inverse = inverse(&tables.inverse);
-    let (min, max) = (float(tables.throttle.min), float(tables.throttle.max));
-    let voltage = voltage(tables);
-    let attainable = attainable(&tables.attainable);
-    let level = level(&tables.level);
-    let rows = vector(&tables.rows);
-    let (centre, is_vertical) = (matrix(&tables.centre), tables.is_vertical);
-    let closed_form = closed_form(tables.closed_form.as_ref());
-    let [basis, inverse_type, closed_form_type] = types(tables);
-    let limits = &tables.desaturation;
-    let airmode = identifier(&format!("{:?}", limits.airmode));
-    let reserve = float(limits.yaw_reserve_nm);
-    let [pivots, flips] = [limits.budget.pivots, limits.budget.flips].map(Literal::u8_unsuffixed);
-    let power_bias = float(tables.power_bias_nm_per_n);
-    let efforts = vector(&tables.tolerance.efforts);
-    let wrench = vector(&tables.tolerance.wrench);
+    let view = tables.view();
+    let units = (*view.units).tokens();
+    let (pair, singles, inverse) = (view.pair.tokens(), view.singles.tokens(), view.inverse.tokens());
+    let (attainable, level) = (view.attainable.tokens(), view.level.tokens());
+    let (throttle, voltage, rows) = (view.throttle.tokens(), view.voltage.tokens(), view.rows.tokens());
+    let (centre, is_vertical) = (view.centre.tokens(), view.is_vertical);
+    let desaturation = view.desaturation.tokens();
+    let (power_bias, tolerance) = (view.power_bias_nm_per_n.tokens(), view.tolerance.tokens());
+    let (closed_form, closed_form_type) = match &view.closed_form {
+        Some(table) => (Part::tokens(&table), quote!(&tables::ClosedForm<'static>)),
+        None => (quote!(tables::NoClosedForm), quote!(tables::NoClosedForm)),
+    };
+    let (basis, inverse_type) = (tables.pair.thrust.type_tokens(), tables.inverse.type_tokens());
     quote! {
         /// The units: rows of M+, columns of M, output channels.
-        const UNIT_TABLES: [tables::Unit; UNITS] = [#(#units),*];
+        const UNIT_TABLES: [tables::Unit; UNITS] = #units;
         /// The forward map of a unit: thrust and torque as polynomials of both throttles.
-        const PAIR: tables::Pair<#basis> = tables::Pair { thrust: #thrust, torque: #torque };
+        const PAIR: tables::Pair<#basis> = #pair;
         /// Thrust and torque of the upper and of the lower rotor alone.
-        const ROTORS_ALONE: [tables::SingleRotor; 2] = [#(#singles),*];
+        const ROTORS_ALONE: [tables::SingleRotor; 2] = #singles;
         /// The inverse map of a unit.
         const INVERSE: #inverse_type = #inverse;
         /// The voltage correction.
@@ -221,247 +197,18 @@ fn tables(tables: &MixerTables) -> TokenStream {
             pair: PAIR,
             singles: ROTORS_ALONE,
             inverse: INVERSE,
-            throttle: tables::ThrottleRange { min: #min, max: #max },
+            throttle: #throttle,
             voltage: VOLTAGE,
             attainable: ATTAINABLE,
             level: LEVEL,
             rows: #rows,
             centre: #centre,
             is_vertical: #is_vertical,
-            desaturation: tables::Desaturation {
-                airmode: tables::Airmode::#airmode,
-                yaw_reserve_nm: #reserve,
-                budget: tables::Budget { pivots: #pivots, flips: #flips },
-            },
+            desaturation: #desaturation,
             power_bias_nm_per_n: #power_bias,
             closed_form: CLOSED_FORM,
-            tolerance: tables::Tolerance { efforts: #efforts, wrench: #wrench },
+            tolerance: #tolerance,
         };
-    }
-}
-
-fn closed_form(table: Option<&ClosedFormTable>) -> TokenStream {
-    let Some(table) = table else {
-        return quote!(tables::NoClosedForm);
-    };
-    let units = table.units.iter().map(|unit| {
-        let (allocation, arms, ends) = (vector(&unit.allocation), vector(&unit.arms), vector(&unit.ends));
-        let [spin, null, per_null] = [unit.spin, unit.null, unit.per_null].map(float);
-        let channels = unit
-            .channels
-            .iter()
-            .map(|&channel| Literal::u8_unsuffixed(channel));
-        quote! {
-            tables::ClosedFormUnit {
-                allocation: #allocation,
-                arms: #arms,
-                spin: #spin,
-                null: #null,
-                per_null: #per_null,
-                ends: #ends,
-                channels: [#(#channels),*],
-            }
-        }
-    });
-    let facets = |facets: &[Facets]| {
-        let facets = facets.iter().map(|facets| {
-            let (normal, bounds) = (vector(&facets.normal), vector(&facets.bounds));
-            quote!(tables::Facets { normal: #normal, bounds: #bounds })
-        });
-        quote!(&[#(#facets),*])
-    };
-    let (thrust, border) = (vector(&table.thrust_n), border(&table.border));
-    let (slopes, walls) = (facets(&table.slopes), facets(&table.walls));
-    let (share, complete) = (float(table.torque_share()), table.complete);
-    let (floor, middle) = (float(table.thrust_floor_n), float(table.thrust_middle_n));
-    let rounding = float(table.yaw_rounding_nm);
-    quote! {
-        &tables::ClosedForm {
-            units: &[#(#units),*],
-            complete: #complete,
-            thrust_n: #thrust,
-            border: #border,
-            slopes: #slopes,
-            walls: #walls,
-            torque_share: #share,
-            thrust_floor_n: #floor,
-            thrust_middle_n: #middle,
-            yaw_rounding_nm: #rounding,
-        }
-    }
-}
-
-fn border(table: &BorderTable) -> TokenStream {
-    let corners = vector(&table.corners_n);
-    let grids = table.grids.iter().map(|grid| {
-        let [offset, per_n] = [grid.offset, grid.per_n].map(float);
-        quote!(tables::Grid { offset: #offset, per_n: #per_n })
-    });
-    let cells = table.cells.iter().map(|cell| {
-        let (middle, half) = (vector(&cell.middle), vector(&cell.half));
-        quote!(tables::Cell { middle: #middle, half: #half })
-    });
-    let outlines = table.outlines.iter().map(|outline| {
-        let slope = float(outline.slope);
-        let knots = outline.knots.iter().map(|knot| {
-            let [thrust, drop] = [knot.thrust_n, knot.drop].map(float);
-            quote!(tables::Knot { thrust_n: #thrust, drop: #drop })
-        });
-        quote!(tables::Outline { slope: #slope, knots: [#(#knots),*] })
-    });
-    let lost = float(table.lost_nm);
-    quote! {
-        tables::Border {
-            corners_n: #corners,
-            grids: [#(#grids),*],
-            cells: &[#(#cells),*],
-            outlines: [#(#outlines),*],
-            lost_nm: #lost,
-        }
-    }
-}
-
-fn attainable(set: &AttainableTable) -> TokenStream {
-    let (scale, centre) = (vector(&set.scale), vector(&set.centre));
-    let corners = set.corners.iter().map(|corner| {
-        let (at, bound) = (vector(&corner.at), float(corner.bound));
-        let ways = corner.ways.map(|way| vector(&way));
-        let links = corner.links.map(Literal::u8_unsuffixed);
-        quote!(tables::Corner { at: #at, ways: [#(#ways),*], bound: #bound, links: [#(#links),*] })
-    });
-    let count = Literal::u8_unsuffixed(set.count);
-    quote!(tables::AttainableSet { scale: #scale, centre: #centre, corners: &[#(#corners),*], count: #count })
-}
-
-fn level(level: &LevelFlightTable) -> TokenStream {
-    let thrust = vector(&level.thrust_n);
-    let efforts = level.efforts.iter().map(|ends| {
-        let [least, largest] = ends.map(|efforts| vector(&efforts));
-        quote!([#least, #largest])
-    });
-    quote!(tables::LevelFlight { thrust_n: #thrust, efforts: &[#(#efforts),*] })
-}
-
-/// Types of the pair's basis, of the inverse map and of the closed form.
-fn types(tables: &MixerTables) -> [TokenStream; 3] {
-    let inverse = match &tables.inverse {
-        InverseTable::Polynomial { .. } => quote!(tables::PolynomialInverse<'static>),
-        InverseTable::Seeded { seed, steps, .. } => {
-            let (seed, steps) = (identifier(seed.type_name()), Literal::u8_unsuffixed(*steps));
-            quote!(tables::Seeded<tables::#seed, #steps>)
-        }
-    };
-    let closed_form = match &tables.closed_form {
-        Some(_) => quote!(&tables::ClosedForm<'static>),
-        None => quote!(tables::NoClosedForm),
-    };
-    [basis(&tables.pair.thrust), inverse, closed_form]
-}
-
-fn basis(quantity: &QuantityTable) -> TokenStream {
-    match quantity {
-        QuantityTable::Biquadratic(_) => quote!(tables::Biquadratic),
-        QuantityTable::Cubic(_) => quote!(tables::Cubic),
-        QuantityTable::Quartic(_) => quote!(tables::Quartic),
-    }
-}
-
-fn quantity(quantity: &QuantityTable) -> TokenStream {
-    let (basis, coefficients) = (basis(quantity), vector(quantity.coefficients()));
-    quote!(#basis(#coefficients))
-}
-
-fn inverse(inverse: &InverseTable) -> TokenStream {
-    match inverse {
-        InverseTable::Polynomial {
-            thrust,
-            torque,
-            degree,
-            coefficients: [upper, lower],
-        } => {
-            let (thrust, torque) = (vector(thrust), vector(torque));
-            let degree = Literal::u8_unsuffixed(*degree);
-            let (upper, lower) = (vector(upper), vector(lower));
-            quote! {
-                tables::PolynomialInverse {
-                    thrust: #thrust,
-                    torque: #torque,
-                    degree: #degree,
-                    upper: &#upper,
-                    lower: &#lower,
-                }
-            }
-        }
-        InverseTable::Seeded {
-            coordinates, seed, ..
-        } => {
-            let (x, y) = (vector(&coordinates.x), vector(&coordinates.y));
-            let name = identifier(seed.type_name());
-            let seed = match seed {
-                SeedTable::Bilinear(BilinearSeed { upper, lower }) => coefficients(upper, lower),
-                SeedTable::Quadratic(QuadraticSeed { upper, lower }) => coefficients(upper, lower),
-                SeedTable::Cubic(CubicSeed { upper, lower }) => coefficients(upper, lower),
-            };
-            quote! {
-                tables::Seeded {
-                    coordinates: tables::RootCoordinates { x: #x, y: #y },
-                    seed: tables::#name { #seed },
-                }
-            }
-        }
-    }
-}
-
-fn coefficients(upper: &[f32], lower: &[f32]) -> TokenStream {
-    let (upper, lower) = (vector(upper), vector(lower));
-    quote!(upper: #upper, lower: #lower)
-}
-
-fn voltage(tables: &MixerTables) -> TokenStream {
-    let Some(voltage) = &tables.voltage else {
-        return quote!(::core::option::Option::None);
-    };
-    let law = |law: &LawTable| match law {
-        LawTable::Polynomial {
-            variable,
-            coefficients,
-        } => {
-            let (variable, coefficients) = (vector(variable), vector(coefficients));
-            quote!(tables::VoltageLaw::Polynomial { variable: #variable, coefficients: &#coefficients })
-        }
-        LawTable::Points(points) => {
-            let points = matrix(points);
-            quote!(tables::VoltageLaw::Points(&#points))
-        }
-    };
-    let range = vector(&voltage.range_v);
-    let [thrust, torque] = [law(&voltage.laws[0]), law(&voltage.laws[1])];
-    quote! {
-        ::core::option::Option::Some(tables::Voltage { range_v: #range, thrust: #thrust, torque: #torque })
-    }
-}
-
-fn identifier(name: &str) -> Ident {
-    Ident::new(name, Span::call_site())
-}
-
-fn matrix<const COLUMNS: usize>(rows: &[[f32; COLUMNS]]) -> TokenStream {
-    let rows = rows.iter().map(|row| vector(row));
-    quote!([#(#rows),*])
-}
-
-fn vector(values: &[f32]) -> TokenStream {
-    let values = values.iter().map(|&value| float(value));
-    quote!([#(#values),*])
-}
-
-/// A literal that reads back to the same bits.
-fn float(value: f32) -> TokenStream {
-    let magnitude = Literal::f32_unsuffixed(value.abs());
-    if value < 0.0 {
-        quote!(-#magnitude)
-    } else {
-        quote!(#magnitude)
     }
 }
 

@@ -189,9 +189,8 @@ pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
 
 /// A torque that no throttles exceed: all units at their largest thrust and torque.
 fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
-    let airframe = &compiled.airframe;
-    let [f, q] = crate::model::PairMap::new(&airframe.pair, &airframe.throttle).scale();
-    let [k_f, k_q] = crate::model::voltage::largest_factors(airframe);
+    let [f, q] = compiled.pair.scale();
+    let [k_f, k_q] = crate::model::voltage::largest_factors(&compiled.airframe);
     compiled.effectiveness.largest(axis as usize, [f * k_f, q * k_q])
 }
 

@@ -146,7 +146,7 @@ impl Summary {
             name: airframe.name.clone(),
             units: airframe.units.len(),
             rotors: airframe.rotors(),
-            evaluator: compiled.evaluator.name(),
+            evaluator: compiled.evaluator.name().to_owned(),
             evaluator_description: compiled.evaluator.description(),
             proven_thrust_n: compiled.certificate.stated[0],
             proven_torque_nm: compiled.certificate.stated[1],

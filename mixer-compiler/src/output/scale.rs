@@ -35,10 +35,10 @@ const NO_SHARE: f64 = 1e-9;
 
 /// Wrench that one unit of a normalised setpoint asks for at the reference voltage; zero on axes
 /// that are not served.
-pub(crate) fn scale(airframe: &Airframe, effectiveness: &Effectiveness) -> Wrench {
+pub(crate) fn scale(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> Wrench {
     let axes = &airframe.allocation.axes;
     // The rotors' columns are combinations of those of M, which has full rank.
-    let rotors = rotor_columns(airframe, effectiveness);
+    let rotors = rotor_columns(airframe, effectiveness, pair);
     let Ok(mixing) = PseudoInverse::new(&rotors, &vec![1.0; rotors.ncols()]) else {
         return Wrench::default();
     };
@@ -74,8 +74,7 @@ pub(crate) fn scale(airframe: &Airframe, effectiveness: &Effectiveness) -> Wrenc
 }
 
 /// B, a row per served axis, 2n columns: upper rotors, then lower ones.
-fn rotor_columns(airframe: &Airframe, effectiveness: &Effectiveness) -> DMatrix<f64> {
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+fn rotor_columns(airframe: &Airframe, effectiveness: &Effectiveness, pair: &PairMap) -> DMatrix<f64> {
     let [min, max] = pair.range();
     let most_thrust = 0.5 * pair.efforts([max, max])[0];
     let most_torque = 0.5 * (pair.efforts([min, max])[1] - pair.efforts([max, min])[1]);

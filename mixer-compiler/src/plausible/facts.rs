@@ -9,7 +9,7 @@ pub(super) struct Facts<'a> {
     pub(super) airframe: &'a Airframe,
     /// `None` where the airframe is refused.
     pub(super) effectiveness: Option<&'a Effectiveness>,
-    pub(super) map: PairMap,
+    pub(super) map: &'a PairMap,
     /// Largest thrust (N) and largest absolute torque (N m) of one unit at the reference voltage.
     pub(super) scale: [f64; 2],
     /// Least and largest bare thrust at the reference voltage, N; `None` where the airframe is

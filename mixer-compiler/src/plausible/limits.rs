@@ -64,9 +64,8 @@ fn is_absurd(airframe: &Airframe, (key, _, tolerance, largest): (&str, &str, f64
 }
 
 /// Tolerances above a tenth of the largest effort.
-pub(super) fn absurd_tolerances(airframe: &Airframe) -> Vec<Diagnostic> {
-    let scale = PairMap::new(&airframe.pair, &airframe.throttle).scale();
-    each(airframe, scale)
+pub(super) fn absurd_tolerances(airframe: &Airframe, pair: &PairMap) -> Vec<Diagnostic> {
+    each(airframe, pair.scale())
         .into_iter()
         .filter(|tolerance| is_absurd(airframe, *tolerance))
         .map(|tolerance| diagnostic(airframe, Code::ToleranceAbsurd, tolerance, ABSURD))
@@ -75,12 +74,13 @@ pub(super) fn absurd_tolerances(airframe: &Airframe) -> Vec<Diagnostic> {
 
 /// An axis of which the rotors give more, at the voltage where they give most, than requests are
 /// limited to.
-pub(super) fn authority(airframe: &Airframe, effectiveness: &Effectiveness) -> Option<Diagnostic> {
+pub(super) fn authority(
+    airframe: &Airframe,
+    effectiveness: &Effectiveness,
+    pair: &PairMap,
+) -> Option<Diagnostic> {
     let limit = f64::from(REQUEST_LIMIT);
-    let (scale, factors) = (
-        PairMap::new(&airframe.pair, &airframe.throttle).scale(),
-        voltage::largest_factors(airframe),
-    );
+    let (scale, factors) = (pair.scale(), voltage::largest_factors(airframe));
     let efforts = [0, 1].map(|k| factors[k] * scale[k]);
     let most = |axis: Axis| effectiveness.largest(axis as usize, efforts);
     let axis = Axis::ALL.into_iter().rev().find(|axis| most(*axis) > limit)?;

@@ -102,7 +102,7 @@ impl Probe<'_> {
         let table = &self.tables.level;
         let physics = Physics {
             airframe: self.airframe,
-            map: &unit.map,
+            map: unit.map,
         };
         let scale = self.tables.attainable.scale;
         let authority = unit.scale;

@@ -13,6 +13,7 @@ fn judged(compiled: &Compiled, plant: impl Fn(&mut MixerTables)) -> Result<(), S
     let probe = Probe {
         airframe: &compiled.airframe,
         effectiveness: &compiled.effectiveness,
+        pair: &compiled.pair,
         tables: &tables,
         thrust_range_n: compiled.thrust_range_n,
         lost_area: compiled.lost_area,

@@ -26,6 +26,14 @@ const UNIT: f64 = 1.0 / 16_777_216.0;
 const PIECES: usize = 24;
 
 impl CorrectionBounds {
+    /// The file's tolerance for one unit, `[N, N m]`, at the reference voltage: what remains of it at
+    /// the voltage where efforts are largest.
+    pub(crate) fn tolerance_at_reference(&self, airframe: &Airframe) -> [f64; 2] {
+        let inverse = &airframe.inverse;
+        let stated = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
+        [0, 1].map(|k| stated[k] / self.largest[k])
+    }
+
     /// Of an airframe with its tabulated correction.
     pub(crate) fn new(airframe: &Airframe, table: Option<&VoltageTable>) -> Self {
         let (Some(voltage), Some(table)) = (&airframe.voltage, table) else {

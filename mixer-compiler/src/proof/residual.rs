@@ -4,10 +4,8 @@
 //! file's, in f64. This observes: it rejects evaluators at little cost, and it tells the proof how
 //! sharp a bound can be. A proof that contradicted it would be wrong.
 
-use mixer_rt::tables::Inverse;
-
 use crate::model::PairMap;
-use crate::tables::MixerTables;
+use crate::tables::UnitMap;
 
 /// The largest residual |forward(inverse(f, Q)) - (f, Q)| of one unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,34 +29,34 @@ const COARSE_GRID: usize = 15;
 
 impl Residual {
     /// Over the whole set, all edges included.
-    pub(crate) fn over_set(pair: &PairMap, tables: &MixerTables) -> Self {
+    pub(crate) fn over_set(pair: &PairMap, map: &UnitMap) -> Self {
         let mut points = pair.grid(GRID);
         points.extend(pair.border(EDGE));
-        Self::over(pair, tables, &points)
+        Self::over(pair, map, &points)
     }
 
     /// A first look that rejects most evaluators.
-    pub(crate) fn coarse_check(pair: &PairMap, tables: &MixerTables) -> Self {
-        Self::over(pair, tables, &pair.grid(COARSE_GRID))
+    pub(crate) fn coarse_check(pair: &PairMap, map: &UnitMap) -> Self {
+        Self::over(pair, map, &pair.grid(COARSE_GRID))
     }
 
-    fn over(pair: &PairMap, tables: &MixerTables, points: &[[f64; 2]]) -> Self {
+    fn over(pair: &PairMap, map: &UnitMap, points: &[[f64; 2]]) -> Self {
         let mut residual = Residual {
             efforts: [0.0; 2],
             at: [[0.0; 2]; 2],
             points: 0,
         };
         for &throttles in points {
-            residual.look(pair, tables, throttles);
+            residual.look(pair, map, throttles);
         }
         residual
     }
 
     /// Looks at the efforts of one more pair of throttles.
-    pub(crate) fn look(&mut self, pair: &PairMap, tables: &MixerTables, throttles: [f64; 2]) {
+    pub(crate) fn look(&mut self, pair: &PairMap, map: &UnitMap, throttles: [f64; 2]) {
         let efforts = pair.efforts(throttles);
         let asked = efforts.map(|effort| effort as f32);
-        let found = (&tables.inverse).throttles(&tables.pair, &tables.throttle, asked);
+        let found = map.throttles(asked);
         let given = pair.efforts(found.map(f64::from));
         self.points += 1;
         for k in 0..2 {

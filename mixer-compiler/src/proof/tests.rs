@@ -16,14 +16,14 @@ fn compiled(text: String) -> crate::compiled::Compiled {
     crate::compile(&Source::new("test.toml", text)).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-fn prove_again(compiled: &crate::compiled::Compiled, tables: &MixerTables) -> Certificate {
-    let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
+fn prove_again(compiled: &crate::compiled::Compiled, tables: &crate::tables::MixerTables) -> Certificate {
+    let pair = &compiled.pair;
     let correction = CorrectionBounds::new(&compiled.airframe, tables.voltage.as_ref());
     let mut observed = compiled.residual;
     prove(
         &compiled.airframe,
-        &pair,
-        tables,
+        pair,
+        &tables.map(),
         &correction,
         &mut observed,
         true,
@@ -43,7 +43,7 @@ fn nothing_is_observed_beyond_the_bound() {
                 &format!("torque_tolerance_nm = 0.0217\nmethod = {method}"),
             )
     };
-    let mut texts: Vec<(String, String)> = crate::spec::keys::EVALUATORS
+    let mut texts: Vec<(String, String)> = crate::airframe::METHODS[2..]
         .iter()
         .map(|name| ((*name).to_owned(), loose(&isae, &format!("\"{name}\""))))
         .collect();
@@ -61,7 +61,7 @@ fn nothing_is_observed_beyond_the_bound() {
         assert!(certificate.agrees(&compiled.residual), "{name}");
         let mut next = numbers();
         let mut worst = [0.0f64; 2];
-        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+        let pair = &compiled.pair;
         let view = tables.view();
         for index in 0..40_000 {
             // Half of the points on the border and close to it.
@@ -125,7 +125,7 @@ fn airframe_tolerance(airframe: &Airframe) -> [f64; 2] {
 #[test]
 fn flipped_bits_are_refused_where_they_matter() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
-    let pair = PairMap::new(&compiled.airframe.pair, &compiled.airframe.throttle);
+    let pair = &compiled.pair;
     let (mut refused, mut harmless) = (0, 0);
     for place in 0..14 {
         for bit in [30, 26, 23, 22, 20, 17, 8, 0] {
@@ -147,7 +147,7 @@ fn flipped_bits_are_refused_where_they_matter() {
             let slot = slots.into_iter().nth(place).unwrap();
             *slot = f32::from_bits(slot.to_bits() ^ (1 << bit));
             let certificate = prove_again(&compiled, &tables);
-            let observed = Residual::over_set(&pair, &tables);
+            let observed = Residual::over_set(pair, &tables.map());
             if certificate.holds() {
                 assert!(
                     certificate.agrees(&observed),
@@ -232,8 +232,8 @@ fn delivered_efforts_do_not_look_missed() {
         .replace("tolerance_n = 0.01", "tolerance_n = 3e-5")
         .replace("tolerance_nm = 1e-4", "tolerance_nm = 4e-7");
     let compiled = compiled(text);
-    let (airframe, tables) = (&compiled.airframe, &compiled.tables);
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+    let tables = &compiled.tables;
+    let pair = &compiled.pair;
     let proven = compiled.certificate.reference;
     let slack = [0, 1].map(|k| f64::from(tables.tolerance.efforts[k]) - proven[k]);
     let mut next = numbers();

@@ -6,28 +6,40 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::keys::{self, Key, Shape};
+use super::keys::{Key, Kind, Shape};
 use super::value::{Item, Read, place_of};
-use crate::diagnostic::{Code, Diagnostic, MOST_FAULTS, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, MOST_FAULTS, any_of, nearest, number, quoted};
 
 /// One table of the file while it is read.
 pub(crate) struct Fields<'a, 'f> {
     table: &'a DeTable<'a>,
-    shape: Shape,
+    shape: &'static Shape,
+    /// The shape of the whole file, to tell where a misplaced key belongs.
+    file: &'static Shape,
     /// Path of the table; empty for the top of the file.
     path: String,
     /// Where to point for what the table lacks.
     place: Range<usize>,
     /// Which keys the unknown ones are likely to be meant for, and where these are.
     meant: Vec<(&'static str, Range<usize>)>,
-    faults: &'f mut Vec<Diagnostic>,
+    /// The faults found so far.
+    pub(crate) faults: &'f mut Vec<Diagnostic>,
 }
 
 impl<'a, 'f> Fields<'a, 'f> {
-    /// Starts on a table; reports its unknown keys.
-    pub(crate) fn new(
+    /// Starts on the whole file; reports unknown and missing keys of its top.
+    pub(crate) fn of_file(
         table: &'a DeTable<'a>,
-        shape: Shape,
+        file: &'static Shape,
+        place: Range<usize>,
+        faults: &'f mut Vec<Diagnostic>,
+    ) -> Self {
+        Self::new(table, [file, file], String::new(), place, faults)
+    }
+
+    fn new(
+        table: &'a DeTable<'a>,
+        [shape, file]: [&'static Shape; 2],
         path: String,
         place: Range<usize>,
         faults: &'f mut Vec<Diagnostic>,
@@ -35,6 +47,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         let mut fields = Self {
             table,
             shape,
+            file,
             path,
             place,
             meant: Vec::new(),
@@ -51,35 +64,84 @@ impl<'a, 'f> Fields<'a, 'f> {
                 fields.faults.push(fault);
             }
         }
+        // A misspelt key was reported in the stead of the one that it is meant for.
+        for key in shape.keys.iter().filter(|key| key.required) {
+            if fields.key_place(key).is_none() {
+                let fault = fields.missing(key);
+                fields.faults.push(fault);
+            }
+        }
         fields
     }
 
     /// The value of a key, `None` where it is absent or was reported.
-    pub(crate) fn read<T: Read>(&mut self, name: &str) -> Option<Spanned<T>> {
-        let item = self.item(name)?;
+    pub(crate) fn read<T: Read>(&mut self, key: &'static Key) -> Option<Spanned<T>> {
+        let item = self.item(key)?;
         let value = T::read(&item, self.faults)?;
         Some(Spanned::new(item.place, value))
     }
 
-    /// Reports required keys that are absent, except where a misspelt key was reported in their
-    /// stead.
-    pub(crate) fn require(&mut self) {
-        for key in self.shape.keys.iter().filter(|key| key.required) {
-            if self.key_place(key.name).is_none() {
-                let fault = self.missing(key.name);
-                self.faults.push(fault);
-            }
+    /// A number within the key's range, or its default; `None` where there is none.
+    pub(crate) fn number(&mut self, key: &'static Key) -> Option<f64> {
+        if self.item(key).is_none() {
+            return key.default_number();
         }
+        let field = self.read::<f64>(key)?;
+        // No negative zeros: they would show in the generated code.
+        let x = *field.get_ref() + 0.0;
+        if let Kind::Number(range) = key.kind
+            && let Some([label, help]) = key.refusal
+            && !range.contains(x)
+        {
+            let (path, x) = (self.key_path(key.name), number(*field.get_ref()));
+            let message = format!("`{path}` = {x} is not {}", range.words());
+            return self.refuse(key, Code::OutOfRange, message, label, help);
+        }
+        Some(x)
+    }
+
+    /// The value that a word stands for, of as many as the key has words; `None` where the key is
+    /// absent or was reported.
+    pub(crate) fn word<T: Copy>(&mut self, key: &'static Key, meanings: &[T]) -> Option<T> {
+        let field = self.read::<String>(key)?;
+        self.meaning(key, &field, meanings)
+    }
+
+    /// [`Fields::word`] of a word that was read already.
+    pub(crate) fn meaning<T: Copy>(
+        &mut self,
+        key: &'static Key,
+        field: &Spanned<String>,
+        meanings: &[T],
+    ) -> Option<T> {
+        let (Kind::Word(words) | Kind::Words(words)) = key.kind else {
+            return None;
+        };
+        let written = field.get_ref();
+        let index = words.iter().position(|word| word == written);
+        if index.is_none() {
+            let path = self.key_path(key.name);
+            let label = match nearest(written, words.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => "unknown word".to_string(),
+            };
+            let message = format!("`{path}` cannot be {}", quoted(written));
+            let fault = Diagnostic::new(Code::UnknownWord, path, field.span(), message)
+                .label(label)
+                .help(format!("write {}", any_of(words.iter().copied())));
+            self.faults.push(fault);
+        }
+        meanings.get(index?).copied()
     }
 
     /// A table in this one.
     pub(crate) fn table<T>(
         &mut self,
-        name: &str,
-        shape: Shape,
+        key: &'static Key,
         read: impl FnOnce(&mut Fields<'a, '_>) -> T,
     ) -> Option<T> {
-        let item = self.item(name)?;
+        let item = self.item(key)?;
+        let Kind::Table(shape) = key.kind else { return None };
         let DeValue::Table(table) = item.value else {
             let help = match item.value {
                 DeValue::Array(_) => format!("there is one such table: head it `{}`", shape.header),
@@ -88,9 +150,10 @@ impl<'a, 'f> Fields<'a, 'f> {
             self.faults.push(item.wrong_type("a table").help(help));
             return None;
         };
+        let shapes = [shape, self.file];
         Some(read(&mut Fields::new(
             table,
-            shape,
+            shapes,
             item.path,
             item.place,
             self.faults,
@@ -100,11 +163,10 @@ impl<'a, 'f> Fields<'a, 'f> {
     /// An array of tables in this one; empty where it is absent or was reported.
     pub(crate) fn tables<T>(
         &mut self,
-        name: &str,
-        shape: Shape,
+        key: &'static Key,
         mut read: impl FnMut(&mut Fields<'a, '_>) -> T,
     ) -> Vec<T> {
-        let Some(item) = self.item(name) else {
+        let (Some(item), Kind::Tables(shape)) = (self.item(key), key.kind) else {
             return Vec::new();
         };
         let DeValue::Array(elements) = item.value else {
@@ -120,7 +182,8 @@ impl<'a, 'f> Fields<'a, 'f> {
             let element = item.element(index, element);
             match element.value {
                 DeValue::Table(table) => {
-                    let mut fields = Fields::new(table, shape, element.path, element.place, self.faults);
+                    let shapes = [shape, self.file];
+                    let mut fields = Fields::new(table, shapes, element.path, element.place, self.faults);
                     values.push(read(&mut fields));
                 }
                 _ => self.faults.push(
@@ -144,7 +207,8 @@ impl<'a, 'f> Fields<'a, 'f> {
     }
 
     /// Place of a key, if the table has it, or what is likely to be meant for it.
-    pub(crate) fn key_place(&self, name: &str) -> Option<Range<usize>> {
+    pub(crate) fn key_place(&self, key: &Key) -> Option<Range<usize>> {
+        let name = key.name;
         let written = self.table.get_key_value(name).map(|(key, _)| key.span());
         let meant = || {
             self.meant
@@ -155,19 +219,39 @@ impl<'a, 'f> Fields<'a, 'f> {
         written.or_else(meant)
     }
 
-    /// Reports a fault of the table as a whole.
-    pub(crate) fn report(&mut self, fault: Diagnostic) {
+    /// A fault of a key of the table, at its value.
+    pub(crate) fn fault(&self, key: &'static Key, code: Code, message: String) -> Diagnostic {
+        Diagnostic::new(code, self.key_path(key.name), self.value_place(key), message)
+    }
+
+    /// Notes a fault of a key of the table at its value, which is then refused.
+    pub(crate) fn refuse<T>(
+        &mut self,
+        key: &'static Key,
+        code: Code,
+        message: String,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        let fault = self.fault(key, code, message).label(label).help(help);
         self.faults.push(fault);
+        None
+    }
+
+    /// Place of a key's value, or of the table that lacks it.
+    pub(crate) fn value_place(&self, key: &'static Key) -> Range<usize> {
+        self.item(key).map_or(self.place(), |item| item.place)
     }
 
     /// The key that an unknown one is likely to be meant for, rather one that the table still
     /// lacks.
     fn nearest(&self, key: &str) -> Option<&'static str> {
-        let names = || self.shape.keys.iter().map(|key| key.name);
+        let names = || self.shape.names();
         nearest(key, names().filter(|name| !self.table.contains_key(*name))).or_else(|| nearest(key, names()))
     }
 
-    fn key_path(&self, name: &str) -> String {
+    /// Path of a key of the table, like `unit[3].channels`.
+    pub(crate) fn key_path(&self, name: &str) -> String {
         if self.path.is_empty() {
             name.to_string()
         } else {
@@ -175,29 +259,24 @@ impl<'a, 'f> Fields<'a, 'f> {
         }
     }
 
-    fn item(&self, name: &str) -> Option<Item<'a>> {
-        let key = self.shape.key(name)?;
-        let (written, value) = self.table.get_key_value(name)?;
+    fn item(&self, key: &'static Key) -> Option<Item<'a>> {
+        let (written, value) = self.table.get_key_value(key.name)?;
         Some(Item {
-            path: self.key_path(name),
+            path: self.key_path(key.name),
             key,
             place: place_of(written.span(), value),
             value: value.get_ref(),
         })
     }
 
-    fn missing(&self, name: &str) -> Diagnostic {
-        let path = self.key_path(name);
-        let example = self.shape.key(name).map_or(name, |key| key.example);
-        let (message, help) = match example.strip_prefix('[') {
-            Some(_) => {
-                let shape = keys::ALL.iter().find(|shape| shape.header == example);
-                let keys = shape.map_or(&[] as &[Key], |shape| shape.keys);
-                let keys: Vec<_> = keys.iter().map(|key| key.name).collect();
-                let help = format!("add the table `{example}` with {}", keys.join(", "));
-                (format!("the table `{example}` is missing"), help)
-            }
-            None => (
+    fn missing(&self, key: &Key) -> Diagnostic {
+        let (name, path, example) = (key.name, self.key_path(key.name), key.example());
+        let (message, help) = match key.kind {
+            Kind::Table(shape) | Kind::Tables(shape) => (
+                format!("the table `{example}` is missing"),
+                format!("add the table `{example}` with {}", joined(shape.names())),
+            ),
+            _ => (
                 format!("`{path}` is missing"),
                 format!("add a line like `{example}`"),
             ),
@@ -217,53 +296,51 @@ impl<'a, 'f> Fields<'a, 'f> {
             "" => ("at the top of the file".to_string(), "the file".to_string()),
             header => (format!("in `{header}`"), format!("`{header}`")),
         };
-        let home = keys::ALL.iter().find(|shape| shape.key(name).is_some());
+        let shapes = self.file.all();
+        let home = shapes.iter().find(|shape| shape.key(name).is_some());
         // What is spelt as a key of another table is that key, unless this table lacks one that is
         // nearly spelt so.
         let near = near.filter(|near| home.is_none() || !self.table.contains_key(*near));
-        let elsewhere = keys::ALL.iter().find_map(|shape| {
-            let names = shape.keys.iter().map(|key| key.name);
-            Some((shape.header, nearest(name, names)?))
-        });
-        let (label, help) = match (near, home) {
-            (Some(near), _) => (
+        let elsewhere = shapes
+            .iter()
+            .find_map(|shape| Some((shape.header, nearest(name, shape.names())?)));
+        let belongs = |header: &str| match header {
+            "" => "at the top".to_owned(),
+            header => format!("in `{header}`"),
+        };
+        let under = |header: &str| match header {
+            "" => "above the first `[table]` of the file".to_owned(),
+            header => format!("under `{header}`"),
+        };
+        let (label, help) = match (near, home, elsewhere) {
+            (Some(near), ..) => (
                 format!("did you mean `{near}`?"),
                 format!("rename it `{near}`, or remove it"),
             ),
             // A key written under the wrong header is spelt as elsewhere.
-            (None, Some(Shape { header: "", .. })) => (
-                "belongs at the top".into(),
-                "move it above the first `[table]` of the file".into(),
+            (None, Some(Shape { header, .. }), _) => (
+                format!("belongs {}", belongs(header)),
+                format!("move it {}", under(header)),
             ),
-            (None, Some(home)) => (
-                format!("belongs in `{}`", home.header),
-                format!("move it under `{}`", home.header),
+            (None, None, Some((header, near))) => (
+                format!("did you mean `{near}`, which belongs {}?", belongs(header)),
+                format!("rename it `{near}` and move it {}, or remove it", under(header)),
             ),
-            (None, None) if elsewhere.is_some() => {
-                let (header, near) = elsewhere.unwrap_or_default();
-                let (belongs, place) = match header {
-                    "" => (
-                        "at the top".to_owned(),
-                        "above the first `[table]` of the file".to_owned(),
-                    ),
-                    header => (format!("in `{header}`"), format!("under `{header}`")),
-                };
-                (
-                    format!("did you mean `{near}`, which belongs {belongs}?"),
-                    format!("rename it `{near}` and move it {place}, or remove it"),
-                )
-            }
-            (None, None) => {
-                let known: Vec<_> = self.shape.keys.iter().map(|key| key.name).collect();
-                (
-                    "unknown".into(),
-                    format!("remove it; the keys of {shape} are {}", known.join(", ")),
-                )
-            }
+            (None, None, None) => (
+                "unknown".to_owned(),
+                format!(
+                    "remove it; the keys of {shape} are {}",
+                    joined(self.shape.names())
+                ),
+            ),
         };
         let message = format!("there is no key {} {here}", quoted(name));
         Diagnostic::new(Code::UnknownKey, self.key_path(name), key.span(), message)
             .label(label)
             .help(help)
     }
+}
+
+fn joined<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    names.collect::<Vec<_>>().join(", ")
 }

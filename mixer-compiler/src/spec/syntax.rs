@@ -23,7 +23,7 @@ const DUPLICATE: &str = "duplicate key";
 const MOST: usize = 100;
 
 /// Parses the text and notes its faults. `None` where they leave the values in doubt.
-pub(super) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Option<DeTable<'a>> {
+pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Option<DeTable<'a>> {
     let (table, mut errors) = DeTable::parse_recoverable(&source.text);
     let table = table.into_inner();
     let sound = errors.iter().all(|error| error.message() == DUPLICATE);
@@ -177,7 +177,7 @@ fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
 }
 
 /// Where each key is, by its path: see [`place_of`].
-pub(super) fn places(table: &DeTable<'_>) -> Places {
+pub(crate) fn places(table: &DeTable<'_>) -> Places {
     let mut places = Places::new();
     for (key, value) in table {
         let place = place_of(key.span(), value);

@@ -35,7 +35,7 @@ impl<'a> Item<'a> {
             format!("`{}` is {found}, not {wanted}", self.path),
         )
         .label(format!("expected {wanted}"))
-        .help(format!("write it like `{}`", self.key.example))
+        .help(format!("write it like `{}`", self.key.example()))
     }
 
     fn not_plain(&self, other: char) -> Diagnostic {
@@ -50,7 +50,7 @@ impl<'a> Item<'a> {
             ),
         )
         .label("expected plain text on one line")
-        .help(format!("write it like `{}`", self.key.example))
+        .help(format!("write it like `{}`", self.key.example()))
     }
 }
 
@@ -163,7 +163,7 @@ impl Read for usize {
                     format!("`{}` = {} is not a count", item.path, quoted(integer.as_str())),
                 )
                 .label("expected a small whole number, from 0")
-                .help(format!("write it like `{}`", item.key.example)),
+                .help(format!("write it like `{}`", item.key.example())),
             );
         }
         number.map(|number| number as usize)
@@ -204,7 +204,7 @@ impl<T: Read, const N: usize> Read for [Spanned<T>; N] {
                     format!("`{}` has {found} {elements}, not {N}", item.path),
                 )
                 .label(format!("expected {N} elements"))
-                .help(format!("write it like `{}`", item.key.example)),
+                .help(format!("write it like `{}`", item.key.example())),
             );
         }
         array

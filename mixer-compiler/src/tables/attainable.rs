@@ -33,8 +33,8 @@ impl AttainableTable {
     }
 
     /// The same with the chords of the upper and of the lower rotor alone.
-    pub(crate) fn with_singles(mut self, singles: &[SingleRotor; 2], range: &ThrottleRange) -> Self {
-        let scale = self.scale;
+    pub(crate) fn with_singles(&self, singles: &[SingleRotor; 2], range: &ThrottleRange) -> Self {
+        let (mut table, scale) = (self.clone(), self.scale);
         for (first, single) in [AttainableSet::UPPER, AttainableSet::LOWER]
             .into_iter()
             .zip(singles)
@@ -43,9 +43,9 @@ impl AttainableTable {
                 let [f, q] = single.efforts(throttle);
                 [f / scale[0], q / scale[1]]
             });
-            self.put(first, &ends);
+            table.put(first, &ends);
         }
-        self
+        table
     }
 
     /// Puts the corners of a set into the table from an index on.

@@ -28,9 +28,4 @@ impl BorderTable {
             lost_nm: self.lost_nm,
         }
     }
-
-    pub(super) fn floats(&self) -> usize {
-        // Corners, grids, the slice's address and length, outlines, what is lost.
-        2 + 6 + 2 + 2 * (1 + 2 * Outline::KNOTS) + 1 + 4 * self.cells.len()
-    }
 }

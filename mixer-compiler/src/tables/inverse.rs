@@ -12,16 +12,7 @@ use crate::inverse::fit::FittedInverse;
 #[derive(Clone, Debug, PartialEq)]
 pub enum InverseTable {
     /// [`PolynomialInverse`].
-    Polynomial {
-        /// Scale and offset of f.
-        thrust: [f32; 2],
-        /// Scale and offset of Q.
-        torque: [f32; 2],
-        /// Total degree.
-        degree: u8,
-        /// Coefficients of u and of l.
-        coefficients: [Vec<f32>; 2],
-    },
+    Polynomial(PolynomialTable),
     /// [`Seeded`].
     Seeded {
         /// The coordinates.
@@ -31,6 +22,33 @@ pub enum InverseTable {
         /// Newton steps.
         steps: u8,
     },
+}
+
+/// [`PolynomialInverse`] with its coefficients.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolynomialTable {
+    /// Scale and offset of f.
+    pub thrust: [f32; 2],
+    /// Scale and offset of Q.
+    pub torque: [f32; 2],
+    /// Total degree.
+    pub degree: u8,
+    /// Coefficients of u and of l.
+    pub coefficients: [Vec<f32>; 2],
+}
+
+impl PolynomialTable {
+    /// The polynomials as `mixer-rt` reads them.
+    pub(crate) fn view(&self) -> PolynomialInverse<'_> {
+        let [upper, lower] = &self.coefficients;
+        PolynomialInverse {
+            thrust: self.thrust,
+            torque: self.torque,
+            degree: self.degree,
+            upper,
+            lower,
+        }
+    }
 }
 
 /// A seed in any form.
@@ -65,24 +83,6 @@ impl SeedTable {
             }),
         }
     }
-
-    /// Name of the type in `mixer-rt`.
-    pub(crate) fn type_name(&self) -> &'static str {
-        match self {
-            SeedTable::Bilinear(_) => "BilinearSeed",
-            SeedTable::Quadratic(_) => "QuadraticSeed",
-            SeedTable::Cubic(_) => "CubicSeed",
-        }
-    }
-
-    /// Number of f32.
-    fn floats(&self) -> usize {
-        match self {
-            SeedTable::Bilinear(_) => 2 * 4,
-            SeedTable::Quadratic(_) => 2 * 6,
-            SeedTable::Cubic(_) => 2 * 10,
-        }
-    }
 }
 
 impl Seed for SeedTable {
@@ -104,14 +104,14 @@ impl InverseTable {
                 thrust,
                 torque,
                 coefficients,
-            } => InverseTable::Polynomial {
+            } => InverseTable::Polynomial(PolynomialTable {
                 thrust: thrust.map(|x| x as f32),
                 torque: torque.map(|x| x as f32),
                 degree: *degree,
                 coefficients: coefficients
                     .clone()
                     .map(|c| c.iter().map(|&x| x as f32).collect()),
-            },
+            }),
             FittedInverse::Seeded {
                 seed,
                 steps,
@@ -128,18 +128,10 @@ impl InverseTable {
         }
     }
 
-    /// Number of f32 in the table.
-    pub(crate) fn floats(&self) -> usize {
-        match self {
-            InverseTable::Polynomial { coefficients, .. } => 4 + 2 * coefficients[0].len(),
-            InverseTable::Seeded { seed, .. } => 6 + seed.floats(),
-        }
-    }
-
     /// Newton steps.
     pub fn steps(&self) -> u8 {
         match self {
-            InverseTable::Polynomial { .. } => 0,
+            InverseTable::Polynomial(_) => 0,
             InverseTable::Seeded { steps, .. } => *steps,
         }
     }
@@ -147,7 +139,7 @@ impl InverseTable {
     /// The throttles `[u, l]` before any step, not limited to the range.
     pub fn guess<S: Scalar>(&self, efforts: [S; 2]) -> [S; 2] {
         match self {
-            InverseTable::Polynomial { .. } => self.polynomial().map_or(efforts, |p| p.guess(efforts)),
+            InverseTable::Polynomial(polynomial) => polynomial.view().guess(efforts),
             InverseTable::Seeded {
                 coordinates, seed, ..
             } => {
@@ -156,38 +148,10 @@ impl InverseTable {
             }
         }
     }
-
-    fn polynomial(&self) -> Option<PolynomialInverse<'_>> {
-        match self {
-            InverseTable::Polynomial {
-                thrust,
-                torque,
-                degree,
-                coefficients: [upper, lower],
-            } => Some(PolynomialInverse {
-                thrust: *thrust,
-                torque: *torque,
-                degree: *degree,
-                upper,
-                lower,
-            }),
-            InverseTable::Seeded { .. } => None,
-        }
-    }
 }
 
 impl<P: Quantity> Inverse<P> for &InverseTable {
     fn throttles(&self, pair: &Pair<P>, range: &ThrottleRange, efforts: [f32; 2]) -> [f32; 2] {
-        let InverseTable::Seeded {
-            coordinates,
-            seed,
-            steps,
-        } = self
-        else {
-            return self
-                .polynomial()
-                .map_or(efforts, |polynomial| polynomial.throttles(pair, range, efforts));
-        };
         fn seeded<P: Quantity, const STEPS: usize>(
             coordinates: RootCoordinates,
             seed: SeedTable,
@@ -197,11 +161,20 @@ impl<P: Quantity> Inverse<P> for &InverseTable {
         ) -> [f32; 2] {
             Seeded::<SeedTable, STEPS> { coordinates, seed }.throttles(pair, range, efforts)
         }
-        let evaluate = match steps {
-            0 => seeded::<P, 0>,
-            1 => seeded::<P, 1>,
-            _ => seeded::<P, 2>,
-        };
-        evaluate(*coordinates, *seed, pair, range, efforts)
+        match self {
+            InverseTable::Polynomial(polynomial) => polynomial.view().throttles(pair, range, efforts),
+            InverseTable::Seeded {
+                coordinates,
+                seed,
+                steps,
+            } => {
+                let evaluate = match steps {
+                    0 => seeded::<P, 0>,
+                    1 => seeded::<P, 1>,
+                    _ => seeded::<P, 2>,
+                };
+                evaluate(*coordinates, *seed, pair, range, efforts)
+            }
+        }
     }
 }

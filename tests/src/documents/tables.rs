@@ -1,13 +1,15 @@
 //! The tables, in Markdown.
 
 use isolated_rotors::IsolatedTables;
-use mixer_compiler::airframe::Basis;
+use mixer_compiler::airframe::{Basis, KEYS};
 use mixer_compiler::report::{Summary, rounded_up};
+use mixer_compiler::spec::keys::{Key, Kind, Shape};
 use mixer_compiler::{Compiled, Source, hover};
 use mixer_report::comparison::{Answer, Comparison, throttles};
 use mixer_report::study::Study;
 use mixer_rt::Wrench;
 
+use super::Table;
 use crate::counts;
 use crate::{airframes, allocators, bases, golden, root};
 
@@ -44,6 +46,34 @@ fn wrench(values: [f64; 4], decimals: usize) -> String {
         .map(cell)
         .collect::<Vec<_>>()
         .join(", ")
+}
+
+/// The keys of the airframe file, a table for each of its tables.
+pub(super) fn keys() -> Vec<Table> {
+    let row = |key: &Key| {
+        let value = match key.kind {
+            Kind::Table(shape) | Kind::Tables(shape) => format!("`{}`", shape.header),
+            kind => kind.words(),
+        };
+        let optional = if key.required { "" } else { "Optional. " };
+        vec![
+            format!("`{}`", key.name),
+            value,
+            format!("{optional}{}", key.meaning()),
+        ]
+    };
+    let table = |shape: &Shape| Table {
+        page: "docs/airframe.md",
+        name: match shape.header.trim_matches(['[', ']']) {
+            "" => "file",
+            name => name,
+        },
+        text: markdown(
+            &["key", "value", "meaning"],
+            &shape.keys.iter().map(row).collect::<Vec<_>>(),
+        ),
+    };
+    KEYS.all().into_iter().map(table).collect()
 }
 
 /// Four requests to the paper's X8, and what isolated rotors and this mixer give by the pair's map.

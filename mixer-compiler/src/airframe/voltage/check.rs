@@ -2,13 +2,12 @@
 
 use std::ops::Range;
 
-use toml::Spanned;
-
 use super::largest::{Supply, not_too_large};
 use super::law::{Voltage, VoltageLaw};
 use super::least::{LEAST_FACTOR, below_least};
 use crate::diagnostic::{Code, Diagnostic, any_of, number, rounded};
-use crate::spec;
+use crate::spec::keys::{self, Key, Kind, keys};
+use crate::spec::{Fields, Numbers, Point, Spanned};
 
 /// How far k may be from 1 at the reference voltage: coefficients and points are written to three
 /// or four digits.
@@ -30,10 +29,41 @@ const LEAST_STEP: f64 = 1e-4;
 /// Above this, millivolts were meant.
 const LARGEST_V: f64 = 1000.0;
 
-pub(in crate::airframe) fn check(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Voltage> {
-    let supply = supply(voltage, faults);
-    let thrust = law("thrust", &voltage.thrust, voltage, supply, faults);
-    let torque = law("torque", &voltage.torque, voltage, supply, faults);
+const EXPONENT: Kind = Kind::Number(keys::Range::Within([0.0, LARGEST_EXPONENT]));
+const EXPONENT_LABEL: &str = "not a motor's exponent";
+const EXPONENT_HELP: &str = "thrust and torque follow about the power 1.75 of the voltage";
+
+const COEFFICIENTS: Kind = Kind::Numbers([1, HIGHEST_LAW_DEGREE + 1]);
+
+keys! { TABLE = "[voltage]":
+    REFERENCE_V "reference_v" = "14.8", Kind::Number(keys::Range::Positive),
+        "Voltage of the bench, V.".required();
+    RANGE_V "range_v" = "[12.8, 16.8]", Kind::Numbers([2, 2]),
+        "Lowest and highest voltage in flight, V; outside it is clamped and flagged.".required();
+    THRUST_EXPONENT "thrust_exponent" = "1.75", EXPONENT,
+        "Thrust is multiplied by (V / reference)^exponent.".refusing(EXPONENT_LABEL, EXPONENT_HELP);
+    THRUST_POLYNOMIAL "thrust_polynomial" = "[-0.7, 1.7]", COEFFICIENTS,
+        "Thrust is multiplied by c0 + c1 x + .., x = V / reference.";
+    THRUST_POINTS "thrust_points" = "[[12.8, 0.78], [14.8, 1.0], [16.8, 1.25]]", Kind::Points,
+        "Thrust is multiplied by a factor between these points [V, factor].";
+    TORQUE_EXPONENT "torque_exponent" = "1.75", EXPONENT,
+        "Torque is multiplied by (V / reference)^exponent.".refusing(EXPONENT_LABEL, EXPONENT_HELP);
+    TORQUE_POLYNOMIAL "torque_polynomial" = "[-0.7, 1.7]", COEFFICIENTS,
+        "Torque is multiplied by c0 + c1 x + .., x = V / reference.";
+    TORQUE_POINTS "torque_points" = "[[12.8, 0.78], [14.8, 1.0], [16.8, 1.25]]", Kind::Points,
+        "Torque is multiplied by a factor between these points [V, factor].";
+}
+
+/// The exponent, the polynomial and the points of a law.
+type Forms = [&'static Key; 3];
+
+const THRUST: Forms = [&THRUST_EXPONENT, &THRUST_POLYNOMIAL, &THRUST_POINTS];
+const TORQUE: Forms = [&TORQUE_EXPONENT, &TORQUE_POLYNOMIAL, &TORQUE_POINTS];
+
+pub(in crate::airframe) fn read(table: &mut Fields<'_, '_>) -> Option<Voltage> {
+    let supply = supply(table);
+    let thrust = law(table, "thrust", THRUST, supply);
+    let torque = law(table, "torque", TORQUE, supply);
     let supply = supply?;
     Some(Voltage {
         reference_v: supply.reference_v,
@@ -43,62 +73,45 @@ pub(in crate::airframe) fn check(voltage: &spec::Voltage, faults: &mut Vec<Diagn
     })
 }
 
-fn supply(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Supply> {
-    let range = voltage.range_v.as_ref()?;
+fn supply(table: &mut Fields<'_, '_>) -> Option<Supply> {
+    let reference = table.read::<f64>(&REFERENCE_V);
+    let range = table.read::<[Spanned<f64>; 2]>(&RANGE_V)?;
     let [low, high] = range.get_ref().each_ref().map(|volts| *volts.get_ref());
-    let fault =
-        |message: String| Diagnostic::new(Code::VoltageRange, "voltage.range_v", range.span(), message);
+    let [low_v, high_v] = [low, high].map(number);
+    const PACK: &str = "write the pack's voltage under load when empty, then when full";
     if low < LEAST_V || low >= high {
-        let (low, high) = (number(low), number(high));
-        faults.push(
-            fault(format!(
-                "the voltage range from {low} V to {high} V is empty or goes below {LEAST_V} V"
-            ))
-            .label("expected [lowest, highest]")
-            .help("write the pack's voltage under load when empty, then when full"),
+        let message =
+            format!("the voltage range from {low_v} V to {high_v} V is empty or goes below {LEAST_V} V");
+        return table.refuse(
+            &RANGE_V,
+            Code::VoltageRange,
+            message,
+            "expected [lowest, highest]",
+            PACK,
         );
-        return None;
     }
     if high - low < LEAST_STEP * high {
-        let (least, high) = (rounded(LEAST_STEP * high * 1000.0), number(high));
-        faults.push(
-            fault(format!(
-                "the voltage range up to {high} V is {} mV wide",
-                rounded((range.get_ref()[1].get_ref() - low) * 1000.0)
-            ))
-            .label(format!("expected {least} mV at least"))
-            .help("write the pack's voltage under load when empty, then when full, or leave `[voltage]` out"),
-        );
-        return None;
+        let [wide, least] = [high - low, LEAST_STEP * high].map(|volts| rounded(volts * 1000.0));
+        let message = format!("the voltage range up to {high_v} V is {wide} mV wide");
+        let label = format!("expected {least} mV at least");
+        let help = format!("{PACK}, or leave `[voltage]` out");
+        return table.refuse(&RANGE_V, Code::VoltageRange, message, label, help);
     }
     if high > LARGEST_V {
-        faults.push(
-            fault(format!("a voltage of {} V is beyond {LARGEST_V} V", number(high)))
-                .label("expected volts")
-                .help(format!(
-                    "if millivolts were meant, write {} V",
-                    number(high / 1000.0)
-                )),
-        );
-        return None;
+        let message = format!("a voltage of {high_v} V is beyond {LARGEST_V} V");
+        let help = format!("if millivolts were meant, write {} V", number(high / 1000.0));
+        return table.refuse(&RANGE_V, Code::VoltageRange, message, "expected volts", help);
     }
-    let reference = voltage.reference_v.as_ref()?;
-    let reference_v = *reference.get_ref();
+    let reference_v = *reference?.get_ref();
     if !(low..=high).contains(&reference_v) {
-        let (reference_v, low, high) = (number(reference_v), number(low), number(high));
-        faults.push(
-            Diagnostic::new(
-                Code::VoltageRange,
-                "voltage.reference_v",
-                reference.span(),
-                format!("the reference of {reference_v} V is outside the range from {low} V to {high} V"),
-            )
-            .label(format!("not in [{low}, {high}]"))
-            .help(
-                "the reference is the voltage at which the bench model holds; widen `range_v` to contain it",
-            ),
+        let message = format!(
+            "the reference of {} V is outside the range from {low_v} V to {high_v} V",
+            number(reference_v)
         );
-        return None;
+        let label = format!("not in [{low_v}, {high_v}]");
+        let help =
+            "the reference is the voltage at which the bench model holds; widen `range_v` to contain it";
+        return table.refuse(&REFERENCE_V, Code::VoltageRange, message, label, help);
     }
     Some(Supply {
         reference_v,
@@ -107,99 +120,71 @@ fn supply(voltage: &spec::Voltage, faults: &mut Vec<Diagnostic>) -> Option<Suppl
 }
 
 fn law(
+    table: &mut Fields<'_, '_>,
     quantity: &str,
-    forms: &spec::VoltageLaw,
-    voltage: &spec::Voltage,
+    forms: Forms,
     supply: Option<Supply>,
-    faults: &mut Vec<Diagnostic>,
 ) -> Option<VoltageLaw> {
-    let path = |name: &str| format!("voltage.{name}");
-    match forms.present.as_slice() {
+    let written: Vec<_> = forms
+        .into_iter()
+        .filter_map(|key| Some((key, table.key_place(key)?)))
+        .collect();
+    match written.as_slice() {
         [] => {
-            faults.push(
-                Diagnostic::new(
-                    Code::MissingKey,
-                    format!("voltage.{quantity}_exponent"),
-                    voltage.place.clone(),
-                    format!("`[voltage]` says nothing of the {quantity}"),
-                )
-                .label(format!(
-                    "no `{quantity}_exponent`, `{quantity}_polynomial` or `{quantity}_points`"
-                ))
-                .help(format!(
-                    "where only one voltage was measured, `{quantity}_exponent = 1.75` is typical"
-                )),
-            );
-            return None;
+            let [exponent, polynomial, points] = forms.map(|key| key.name);
+            let message = format!("`[voltage]` says nothing of the {quantity}");
+            table.refuse(
+                forms[0],
+                Code::MissingKey,
+                message,
+                format!("no `{exponent}`, `{polynomial}` or `{points}`"),
+                format!("where only one voltage was measured, `{exponent} = 1.75` is typical"),
+            )
         }
-        [_] => {}
+        [(key, _)] => {
+            let path = &table.key_path(key.name);
+            match forms.iter().position(|form| form.name == key.name)? {
+                0 => exponent(table, key, supply),
+                1 => polynomial(path, &table.read(key)?, supply?, table.faults),
+                _ => points(path, &table.read(key)?, supply?, table.faults),
+            }
+        }
         [(first, _), others @ ..] => {
+            let names = || written.iter().map(|(key, _)| key.name);
             for (other, place) in others {
-                faults.push(
-                    Diagnostic::new(
-                        Code::Conflict,
-                        path(other),
-                        place.clone(),
-                        format!("`{other}` and `{first}` are two laws for the {quantity}"),
-                    )
-                    .label("second law")
-                    .help(format!(
-                        "keep one: {}",
-                        any_of(forms.present.iter().map(|(name, _)| *name))
-                    )),
+                let message = format!(
+                    "`{}` and `{}` are two laws for the {quantity}",
+                    other.name, first.name
+                );
+                let path = table.key_path(other.name);
+                table.faults.push(
+                    Diagnostic::new(Code::Conflict, path, place.clone(), message)
+                        .label("second law")
+                        .help(format!("keep one: {}", any_of(names()))),
                 );
             }
-            return None;
+            None
         }
-    }
-    let (name, _) = forms.present.first()?;
-    let key = path(name);
-    if let Some(field) = &forms.exponent {
-        exponent(&key, field, supply, faults)
-    } else if let Some(field) = &forms.polynomial {
-        polynomial(&key, field, supply?, faults)
-    } else {
-        points(&key, forms.points.as_ref()?, supply?, faults)
     }
 }
 
-fn exponent(
-    key: &str,
-    field: &Spanned<f64>,
-    supply: Option<Supply>,
-    faults: &mut Vec<Diagnostic>,
-) -> Option<VoltageLaw> {
-    let exponent = *field.get_ref();
-    if (0.0..=LARGEST_EXPONENT).contains(&exponent) {
-        let (supply, law) = (supply?, VoltageLaw::Exponent(exponent));
-        let low = supply.range_v[0];
-        let k = law.factor(low, supply.reference_v);
-        if k < LEAST_FACTOR {
-            faults.push(too_small(key, field.span(), k, low).help("raise the lower end of `range_v`"));
-            return None;
-        }
-        not_too_large(key, field.span(), &law, supply, faults)?;
-        return Some(law);
+fn exponent(table: &mut Fields<'_, '_>, key: &'static Key, supply: Option<Supply>) -> Option<VoltageLaw> {
+    let law = VoltageLaw::Exponent(table.number(key)?);
+    let (supply, path, place) = (supply?, &table.key_path(key.name), table.value_place(key));
+    let low = supply.range_v[0];
+    let k = law.factor(low, supply.reference_v);
+    if k < LEAST_FACTOR {
+        let fault = too_small(path, place, k, low);
+        table.faults.push(fault.help("raise the lower end of `range_v`"));
+        return None;
     }
-    faults.push(
-        Diagnostic::new(
-            Code::OutOfRange,
-            key,
-            field.span(),
-            format!(
-                "`{key}` = {} is not between 0 and {LARGEST_EXPONENT}",
-                number(exponent)
-            ),
-        )
-        .label("not a motor's exponent")
-        .help("thrust and torque follow about the power 1.75 of the voltage"),
-    );
-    None
+    not_too_large(path, place, &law, supply, table.faults)?;
+    Some(law)
 }
 
 fn polynomial(
     key: &str,
-    field: &Spanned<Vec<Spanned<f64>>>,
+    field: &Spanned<Numbers>,
     supply: Supply,
     faults: &mut Vec<Diagnostic>,
 ) -> Option<VoltageLaw> {
@@ -237,7 +222,7 @@ fn polynomial(
 
 fn points(
     key: &str,
-    field: &Spanned<Vec<spec::Point>>,
+    field: &Spanned<Vec<Point>>,
     supply: Supply,
     faults: &mut Vec<Diagnostic>,
 ) -> Option<VoltageLaw> {

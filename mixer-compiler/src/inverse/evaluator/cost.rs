@@ -34,7 +34,7 @@ impl Evaluator {
         let column = Basis::ALL.iter().position(|&known| known == basis)?;
         let name = match self {
             Evaluator::Polynomial { degree } => format!("polynomial-{degree}"),
-            Evaluator::Seeded { .. } => self.name(),
+            Evaluator::Seeded { .. } => self.name().to_owned(),
         };
         let (_, counts) = INSTRUCTIONS.iter().find(|(known, _)| *known == name)?;
         Some(counts[column])

@@ -1,0 +1,216 @@
+//! The parts of `mixer-rt`'s tables as the generated Rust writes them, and what they take in flash.
+//! The fields of each type are named once, below.
+
+use mixer_rt::tables::{
+    Airmode, AttainableSet, BilinearSeed, Border, Budget, Cell, ClosedForm, ClosedFormUnit, Corner,
+    CubicSeed, Desaturation, Facets, Grid, Knot, LevelFlight, Outline, Pair, PolynomialInverse,
+    QuadraticSeed, RootCoordinates, SingleRotor, ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw,
+};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::{ToTokens, quote};
+
+use super::{InverseTable, QuantityTable, SeedTable};
+
+/// A part of the tables.
+pub(crate) trait Part {
+    /// The expression that gives it, and its bytes in flash: four per number, one per channel. Of
+    /// addresses, only that of the border's cells is counted.
+    fn written(&self) -> (TokenStream, usize);
+
+    /// The expression that gives it.
+    fn tokens(&self) -> TokenStream {
+        self.written().0
+    }
+
+    /// Its bytes in flash.
+    fn bytes(&self) -> usize {
+        self.written().1
+    }
+}
+
+impl Part for f32 {
+    /// A literal that reads back to the same bits.
+    fn written(&self) -> (TokenStream, usize) {
+        let magnitude = Literal::f32_unsuffixed(self.abs());
+        let sign = (*self < 0.0).then(|| quote!(-));
+        (quote!(#sign #magnitude), 4)
+    }
+}
+
+impl Part for u8 {
+    fn written(&self) -> (TokenStream, usize) {
+        (Literal::u8_unsuffixed(*self).into_token_stream(), 1)
+    }
+}
+
+impl Part for bool {
+    fn written(&self) -> (TokenStream, usize) {
+        (quote!(#self), 0)
+    }
+}
+
+impl Part for Airmode {
+    fn written(&self) -> (TokenStream, usize) {
+        let name = identifier(&format!("{self:?}"));
+        (quote!(tables::Airmode::#name), 0)
+    }
+}
+
+impl<T: Part> Part for [T] {
+    fn written(&self) -> (TokenStream, usize) {
+        let (items, bytes): (Vec<_>, Vec<usize>) = self.iter().map(Part::written).unzip();
+        (quote!([#(#items),*]), bytes.iter().sum())
+    }
+}
+
+impl<T: Part, const N: usize> Part for [T; N] {
+    fn written(&self) -> (TokenStream, usize) {
+        self.as_slice().written()
+    }
+}
+
+impl<T: Part + ?Sized> Part for &T {
+    fn written(&self) -> (TokenStream, usize) {
+        let (referenced, bytes) = (**self).written();
+        (quote!(&#referenced), bytes)
+    }
+}
+
+impl<T: Part> Part for Option<T> {
+    fn written(&self) -> (TokenStream, usize) {
+        let Some((part, bytes)) = self.as_ref().map(Part::written) else {
+            return (quote!(::core::option::Option::None), 0);
+        };
+        (quote!(::core::option::Option::Some(#part)), bytes)
+    }
+}
+
+/// Structures of `mixer-rt` by their fields, with the bytes that alignment or an address adds.
+macro_rules! parts {
+    ($($name:ident $(<$generic:tt>)? { $($field:ident),+ } $(+ $more:literal)?;)+) => {$(
+        impl Part for $name $(<$generic>)? {
+            fn written(&self) -> (TokenStream, usize) {
+                // By the field's own type: a method call would look through references.
+                $(let $field = Part::written(&self.$field);)+
+                let bytes = 0 $(+ $field.1)+ $(+ $more)?;
+                $(let $field = $field.0;)+
+                (quote!(tables::$name { $($field: #$field),+ }), bytes)
+            }
+        }
+    )+};
+}
+
+parts! {
+    Unit { allocation, effectiveness, columns, channels };
+    Pair<QuantityTable> { thrust, torque };
+    SingleRotor { thrust, torque };
+    PolynomialInverse<'_> { thrust, torque, degree, upper, lower };
+    RootCoordinates { x, y };
+    BilinearSeed { upper, lower };
+    QuadraticSeed { upper, lower };
+    CubicSeed { upper, lower };
+    ThrottleRange { min, max };
+    Voltage<'_> { range_v, thrust, torque };
+    Corner { at, ways, bound, links } + 2;
+    AttainableSet<'_> { scale, centre, corners, count } + 3;
+    LevelFlight<'_> { thrust_n, efforts };
+    Budget { pivots, flips } + 2;
+    Desaturation { airmode, yaw_reserve_nm, budget };
+    ClosedForm<'_> {
+        units, complete, thrust_n, border, slopes, walls, torque_share, thrust_floor_n, thrust_middle_n,
+        yaw_rounding_nm
+    };
+    ClosedFormUnit { allocation, arms, spin, null, per_null, ends, channels };
+    Border<'_> { corners_n, grids, cells, outlines, lost_nm } + 8;
+    Grid { offset, per_n };
+    Cell { middle, half };
+    Outline { slope, knots };
+    Knot { thrust_n, drop };
+    Facets { normal, bounds };
+    Tolerance { efforts, wrench };
+}
+
+impl Part for QuantityTable {
+    fn written(&self) -> (TokenStream, usize) {
+        let (basis, (coefficients, bytes)) = (self.type_tokens(), self.coefficients().written());
+        (quote!(#basis(#coefficients)), bytes)
+    }
+}
+
+impl QuantityTable {
+    /// The type in `mixer-rt`.
+    pub(crate) fn type_tokens(&self) -> TokenStream {
+        match self {
+            QuantityTable::Biquadratic(_) => quote!(tables::Biquadratic),
+            QuantityTable::Cubic(_) => quote!(tables::Cubic),
+            QuantityTable::Quartic(_) => quote!(tables::Quartic),
+        }
+    }
+}
+
+impl Part for VoltageLaw<'_> {
+    fn written(&self) -> (TokenStream, usize) {
+        match self {
+            VoltageLaw::Polynomial {
+                variable,
+                coefficients,
+            } => {
+                let ((variable, two), (coefficients, more)) = (variable.written(), coefficients.written());
+                let law = quote!(tables::VoltageLaw::Polynomial { variable: #variable, coefficients: #coefficients });
+                (law, two + more)
+            }
+            VoltageLaw::Points(points) => {
+                let (points, bytes) = points.written();
+                (quote!(tables::VoltageLaw::Points(#points)), bytes)
+            }
+        }
+    }
+}
+
+impl Part for InverseTable {
+    fn written(&self) -> (TokenStream, usize) {
+        match self {
+            InverseTable::Polynomial(polynomial) => {
+                let (polynomial, bytes) = polynomial.view().written();
+                // The degree is folded into the code.
+                (polynomial, bytes - 1)
+            }
+            InverseTable::Seeded {
+                coordinates, seed, ..
+            } => {
+                let (coordinates, of_coordinates) = coordinates.written();
+                let (seed, of_seed) = match seed {
+                    SeedTable::Bilinear(seed) => seed.written(),
+                    SeedTable::Quadratic(seed) => seed.written(),
+                    SeedTable::Cubic(seed) => seed.written(),
+                };
+                (
+                    quote!(tables::Seeded { coordinates: #coordinates, seed: #seed }),
+                    of_coordinates + of_seed,
+                )
+            }
+        }
+    }
+}
+
+impl InverseTable {
+    /// The type in `mixer-rt`.
+    pub(crate) fn type_tokens(&self) -> TokenStream {
+        match self {
+            InverseTable::Polynomial(_) => quote!(tables::PolynomialInverse<'static>),
+            InverseTable::Seeded { seed, steps, .. } => {
+                let steps = Literal::u8_unsuffixed(*steps);
+                let seed = match seed {
+                    SeedTable::Bilinear(_) => quote!(BilinearSeed),
+                    SeedTable::Quadratic(_) => quote!(QuadraticSeed),
+                    SeedTable::Cubic(_) => quote!(CubicSeed),
+                };
+                quote!(tables::Seeded<tables::#seed, #steps>)
+            }
+        }
+    }
+}
+
+pub(crate) fn identifier(name: &str) -> Ident {
+    Ident::new(name, Span::call_site())
+}
