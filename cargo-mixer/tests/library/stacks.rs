@@ -20,13 +20,14 @@ struct Stack {
     folder: &'static str,
     source: &'static str,
     /// What the stack compiles with.
-    standards: &'static [&'static str],
+    flags: &'static [&'static [&'static str]],
 }
 
 const PX4: Stack = Stack {
     name: "px4",
     headers: &[
         "drivers/drv_hrt.h",
+        "parameters/param.h",
         "px4_platform_common/module.h",
         "px4_platform_common/px4_work_queue/WorkItem.hpp",
         "uORB/Publication.hpp",
@@ -35,6 +36,7 @@ const PX4: Stack = Stack {
         "uORB/topics/actuator_motors.h",
         "uORB/topics/battery_status.h",
         "uORB/topics/control_allocator_status.h",
+        "uORB/topics/failure_detector_status.h",
         "uORB/topics/vehicle_control_mode.h",
         "uORB/topics/vehicle_thrust_setpoint.h",
         "uORB/topics/vehicle_torque_setpoint.h",
@@ -42,7 +44,11 @@ const PX4: Stack = Stack {
     declarations: "px4.hpp",
     folder: "examples/px4/src/modules/coaxial_mixer",
     source: "CoaxialMixer.cpp",
-    standards: &["-std=gnu++14", "-std=gnu++20"],
+    flags: &[
+        &["-std=gnu++14"],
+        &["-std=gnu++20"],
+        &["-std=gnu++17", "-DMODULE_BASE_HAS_DESCRIPTOR"],
+    ],
 };
 
 const ARDUPILOT: Stack = Stack {
@@ -51,14 +57,14 @@ const ARDUPILOT: Stack = Stack {
     declarations: "ardupilot.h",
     folder: "examples/ardupilot",
     source: "AP_MotorsCoaxialMixer.cpp",
-    standards: &["-std=gnu++11", "-std=gnu++17"],
+    flags: &[&["-std=gnu++11"], &["-std=gnu++17"]],
 };
 
 impl Stack {
     fn drive(&self) {
         let folder = Folder::new(self.name);
         let stand_ins = source("stand_ins");
-        run(&mut library(&["airframes/isae-x8.toml"], &folder.join("lib")));
+        run(&mut library(&["airframes/isae-x8.toml", "--health"], &folder.join("lib")));
         for header in self.headers {
             let path = folder.join("include").join(header);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -66,10 +72,10 @@ impl Stack {
             fs::write(path, forward).unwrap();
         }
         let example = root().join(self.folder);
-        for standard in self.standards {
+        for flags in self.flags {
             let program = folder.join("drive");
             let mut compiler = Command::new("g++");
-            compiler.args(WARNINGS).arg(standard);
+            compiler.args(WARNINGS).args(*flags);
             for include in [&folder.join("include"), &folder.join("lib"), &stand_ins, &example] {
                 compiler.arg("-I").arg(include);
             }

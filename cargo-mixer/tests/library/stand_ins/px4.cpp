@@ -62,6 +62,22 @@ static bool same(float roll, float pitch, float yaw, float thrust, float voltage
 	return equal && motors.timestamp_sample == stand_in::now_us() - 100;
 }
 
+// The same with the rotors of these channels out, whose motors PX4 is told to stop.
+static bool same_without(unsigned failed, float roll, float pitch, float yaw, float thrust, float voltage_v)
+{
+	const mixer_wrench_t setpoint{roll * ISAE_X8_ROLL_NM, pitch * ISAE_X8_PITCH_NM, yaw * ISAE_X8_YAW_NM, thrust * ISAE_X8_THRUST_N};
+	isae_x8_mix_t mix;
+	const actuator_motors_s motors = last<actuator_motors_s>();
+	bool equal = isae_x8_mix_with_health(&setpoint, voltage_v, failed, &mix) == MIXER_OK;
+
+	for (int i = 0; i < ISAE_X8_CHANNELS; ++i) {
+		equal = equal && (failed & (1u << i) ? std::isnan(motors.control[i])
+				  : memcmp(&motors.control[i], &mix.throttle[i], sizeof(float)) == 0);
+	}
+
+	return equal;
+}
+
 int main()
 {
 	// PX4's allocator still runs.
@@ -73,7 +89,7 @@ int main()
 	// Allocation is not enabled: a status, but no motors.
 	cycle(0.f, 0.f, 0.f, 0.f);
 	CHECK(published<actuator_motors_s>() == 0 && published<control_allocator_status_s>() == 1);
-	publish(vehicle_control_mode_s{0, true});
+	publish(vehicle_control_mode_s{0, true, true});
 
 	// Before a voltage is measured it is the reference voltage.
 	cycle(0.02f, -0.01f, 0.05f, 0.3f);
@@ -128,6 +144,26 @@ int main()
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
 
+	// A rotor that is found out: nothing by the default, mixed without by CA_FAILURE_MODE 1, until the vehicle is disarmed.
+	publish(failure_detector_status_s{0, true, 1u << 2});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
+	stand_in::failure_mode() = 1;
+	publish(failure_detector_status_s{0, true, 1u << 2});
+	cycle(0.01f, 0.f, 0.f, 0.3f);
+	CHECK(same_without(1u << 2, 0.01f, 0.f, 0.f, 0.3f, 15.5f));
+	CHECK(last<control_allocator_status_s>().handled_motor_failure_mask == 1u << 2);
+	publish(failure_detector_status_s{0, false, 0});
+	cycle(0.01f, 0.f, 0.f, 0.3f);
+	CHECK(same_without(1u << 2, 0.01f, 0.f, 0.f, 0.3f, 15.5f));
+	publish(failure_detector_status_s{0, true, 1u << 5});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(same_without(1u << 2 | 1u << 5, 0.f, 0.f, 0.f, 0.3f, 15.5f));
+	publish(vehicle_control_mode_s{0, false, true});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
+	publish(vehicle_control_mode_s{0, true, true});
+
 	CHECK(command("status") == PX4_OK);
 	CHECK(command("nonsense") == 0);
 	CHECK(command("stop") == PX4_OK);
@@ -135,6 +171,19 @@ int main()
 	const unsigned after = published<actuator_motors_s>();
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(published<actuator_motors_s>() == after);
+
+	// PX4's allocator is started while the module runs: the module yields.
+	stand_in::topic<actuator_motors_s>()->advertised = false;
+	CHECK(command("start") == PX4_OK);
+	publish(vehicle_control_mode_s{0, true, true});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	const unsigned alone = published<actuator_motors_s>();
+	CHECK(alone == after + 2);
+	publish(actuator_motors_s{});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(published<actuator_motors_s>() == alone + 1);
 
 	printf("%u faults\n", faults);
 	return faults != 0;

@@ -57,14 +57,42 @@ struct control_allocator_status_s {
 	float unallocated_torque[3];
 	float unallocated_thrust[3];
 	int8_t actuator_saturation[16];
+	uint16_t handled_motor_failure_mask;
 	bool torque_setpoint_achieved;
 	bool thrust_setpoint_achieved;
 };
 
+struct failure_detector_status_s {
+	uint64_t timestamp;
+	bool fd_motor;
+	uint16_t motor_failure_mask;
+};
+
 struct vehicle_control_mode_s {
 	uint64_t timestamp;
+	bool flag_armed;
 	bool flag_control_allocation_enabled;
 };
+
+// Parameters: CA_FAILURE_MODE alone.
+typedef int param_t;
+
+namespace stand_in
+{
+inline int32_t &failure_mode()
+{
+	static int32_t mode = 0;
+	return mode;
+}
+}
+
+inline param_t param_find(const char *name) { return strcmp(name, "CA_FAILURE_MODE") == 0 ? 1 : -1; }
+
+inline int param_get(param_t parameter, int32_t *value)
+{
+	*value = stand_in::failure_mode();
+	return parameter == 1 ? PX4_OK : PX4_ERROR;
+}
 
 struct vehicle_thrust_setpoint_s {
 	uint64_t timestamp;
@@ -191,6 +219,59 @@ private:
 
 constexpr int task_id_is_work_queue = -2;
 
+#ifdef MODULE_BASE_HAS_DESCRIPTOR
+// Since February 2026: a plain class, and a descriptor per module.
+class ModuleBase
+{
+public:
+	struct Descriptor {
+		int (*task_spawn)(int argc, char *argv[]);
+		int (*custom_command)(int argc, char *argv[]);
+		int (*print_usage)(const char *reason);
+		struct Object {
+			ModuleBase *instance;
+			void store(ModuleBase *object) { instance = object; }
+		} object{nullptr};
+		int task_id{-1};
+
+		Descriptor(int (*spawn)(int, char *[]), int (*custom)(int, char *[]), int (*usage)(const char *))
+			: task_spawn(spawn), custom_command(custom), print_usage(usage) {}
+	};
+
+	virtual ~ModuleBase() = default;
+	virtual int print_status() = 0;
+
+	static int main(Descriptor &module, int argc, char *argv[])
+	{
+		const char *command = argc > 1 ? argv[1] : "";
+
+		if (strcmp(command, "start") == 0) {
+			return module.task_spawn(argc - 1, argv + 1);
+
+		} else if (strcmp(command, "status") == 0 && module.object.instance) {
+			return module.object.instance->print_status();
+
+		} else if (strcmp(command, "stop") == 0 && module.object.instance) {
+			module.object.instance->_exit = true;
+			return PX4_OK;
+		}
+
+		return module.custom_command(argc - 1, argv + 1);
+	}
+
+protected:
+	bool should_exit() const { return _exit; }
+
+	void exit_and_cleanup(Descriptor &module)
+	{
+		delete module.object.instance;
+		module.object.store(nullptr);
+	}
+
+private:
+	bool _exit{false};
+};
+#else
 template<class T>
 class ModuleBase
 {
@@ -239,3 +320,4 @@ private:
 
 template<class T> typename ModuleBase<T>::Object ModuleBase<T>::_object{nullptr};
 template<class T> int ModuleBase<T>::_task_id{-1};
+#endif

@@ -2,13 +2,26 @@
 
 #include <cmath>
 
-CoaxialMixer::CoaxialMixer() : WorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl) {}
+#ifdef MODULE_BASE_HAS_DESCRIPTOR
+ModuleBase::Descriptor CoaxialMixer::desc {task_spawn, custom_command, print_usage};
+#endif
+
+CoaxialMixer::CoaxialMixer() : WorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl)
+{
+	// What was published before this module started.
+	actuator_motors_s before;
+	_motors_sub.update(&before);
+}
 
 void CoaxialMixer::Run()
 {
 	if (should_exit()) {
 		_torque_sub.unregisterCallback();
+#ifdef MODULE_BASE_HAS_DESCRIPTOR
+		exit_and_cleanup(desc);
+#else
 		exit_and_cleanup();
+#endif
 		return;
 	}
 
@@ -20,6 +33,11 @@ void CoaxialMixer::Run()
 
 	_thrust_sub.update(&_thrust);
 	_mode_sub.update(&_mode);
+
+	if (is_displaced()) {
+		return;
+	}
+
 	update_voltage();
 
 	// FRD as in PX4, but thrust counts upwards.
@@ -29,13 +47,14 @@ void CoaxialMixer::Run()
 		torque.xyz[2] * ISAE_X8_YAW_NM,
 		-_thrust.xyz[2] * ISAE_X8_THRUST_N,
 	};
-	isae_x8_mix_t mix;
+	update_failed(setpoint);
+	isae_x8_mix_t mixed;
 
-	if (isae_x8_mix(&setpoint, _voltage_v, &mix) == MIXER_OK) {
+	if (mix(setpoint, mixed) == MIXER_OK) {
 		_last_mix = hrt_absolute_time();
-		_saturation = mix.saturation;
-		publish_motors(mix.throttle, torque.timestamp_sample);
-		publish_status(setpoint, mix);
+		_saturation = mixed.saturation;
+		publish_motors(mixed.throttle, torque.timestamp_sample);
+		publish_status(setpoint, mixed);
 
 	} else {
 		// The outputs hold the last throttles.
@@ -44,6 +63,58 @@ void CoaxialMixer::Run()
 		if (hrt_elapsed_time(&_last_mix) > PATIENCE_US) {
 			publish_motors(nullptr, torque.timestamp_sample);
 		}
+	}
+}
+
+int CoaxialMixer::mix(const mixer_wrench_t &setpoint, isae_x8_mix_t &out) const
+{
+	return _failed ? isae_x8_mix_with_health(&setpoint, _voltage_v, _failed, &out) : isae_x8_mix(&setpoint, _voltage_v, &out);
+}
+
+// Whether another module publishes the motors, too. It would be control_allocator, started later: PX4's own flies on.
+bool CoaxialMixer::is_displaced()
+{
+	actuator_motors_s other;
+
+	if (!_displaced && _motors_sub.update(&other)) {
+		_displaced = true;
+		PX4_ERR("another module publishes actuator_motors: this one publishes no more");
+	}
+
+	return _displaced;
+}
+
+// Rotors that the failure detector finds out stay out until the vehicle is disarmed.
+void CoaxialMixer::update_failed(const mixer_wrench_t &setpoint)
+{
+	failure_detector_status_s detected;
+	const bool is_new = _failure_sub.update(&detected);
+
+	if (!_mode.flag_armed) {
+		_failed = 0;
+		return;
+	}
+
+	if (!is_new || !detected.fd_motor || !(detected.motor_failure_mask & ~_failed)) {
+		return;
+	}
+
+	int32_t mode = 0;
+	param_get(param_find("CA_FAILURE_MODE"), &mode);
+
+	if (mode != 1) {
+		return;
+	}
+
+	_failed |= detected.motor_failure_mask;
+	PX4_WARN("mixing without the rotors 0x%x", static_cast<unsigned>(_failed));
+
+	// Whether the present thrust is held level without them.
+	const mixer_wrench_t level{0.f, 0.f, 0.f, setpoint.thrust_n};
+	isae_x8_mix_t mixed;
+
+	if (mix(level, mixed) != MIXER_OK || (mixed.saturation & ~MIXER_VOLTAGE_CLAMPED)) {
+		PX4_ERR("without the rotors 0x%x this thrust is not held level", static_cast<unsigned>(_failed));
 	}
 }
 
@@ -67,12 +138,13 @@ void CoaxialMixer::publish_motors(const float *throttle, hrt_abstime timestamp_s
 	actuator_motors_s motors{};
 
 	for (int i = 0; i < actuator_motors_s::NUM_CONTROLS; ++i) {
-		motors.control[i] = throttle && i < ISAE_X8_CHANNELS ? throttle[i] : NAN;
+		motors.control[i] = throttle && i < ISAE_X8_CHANNELS && !(_failed & (1u << i)) ? throttle[i] : NAN;
 	}
 
 	motors.timestamp_sample = timestamp_sample;
 	motors.timestamp = hrt_absolute_time();
 	_motors_pub.publish(motors);
+	_motors_sub.update(&motors);
 }
 
 void CoaxialMixer::publish_status(const mixer_wrench_t &setpoint, const isae_x8_mix_t &mix)
@@ -97,6 +169,7 @@ void CoaxialMixer::publish_status(const mixer_wrench_t &setpoint, const isae_x8_
 						: control_allocator_status_s::ACTUATOR_SATURATION_OK;
 	}
 
+	status.handled_motor_failure_mask = _failed;
 	status.timestamp = hrt_absolute_time();
 	_status_pub.publish(status);
 }
@@ -112,8 +185,13 @@ int CoaxialMixer::task_spawn(int, char *[])
 	CoaxialMixer *instance = new CoaxialMixer();
 
 	if (instance && instance->_torque_sub.registerCallback()) {
+#ifdef MODULE_BASE_HAS_DESCRIPTOR
+		desc.object.store(instance);
+		desc.task_id = task_id_is_work_queue;
+#else
 		_object.store(instance);
 		_task_id = task_id_is_work_queue;
+#endif
 		return PX4_OK;
 	}
 
@@ -124,8 +202,9 @@ int CoaxialMixer::task_spawn(int, char *[])
 
 int CoaxialMixer::print_status()
 {
-	PX4_INFO("%s %s, %.2f V, saturation 0x%x, refused %u", ISAE_X8_AIRFRAME, ISAE_X8_VERSION, static_cast<double>(_voltage_v),
-		 static_cast<unsigned>(_saturation), _refused);
+	PX4_INFO("%s %s, %.2f V, saturation 0x%x, rotors out 0x%x, refused %u%s", ISAE_X8_AIRFRAME, ISAE_X8_VERSION,
+		 static_cast<double>(_voltage_v), static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed), _refused,
+		 _displaced ? ", displaced by another module" : "");
 	return 0;
 }
 
@@ -149,5 +228,9 @@ int CoaxialMixer::print_usage(const char *reason)
 
 extern "C" __EXPORT int coaxial_mixer_main(int argc, char *argv[])
 {
+#ifdef MODULE_BASE_HAS_DESCRIPTOR
+	return ModuleBase::main(CoaxialMixer::desc, argc, argv);
+#else
 	return CoaxialMixer::main(argc, argv);
+#endif
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <drivers/drv_hrt.h>
+#include <parameters/param.h>
 #include <px4_platform_common/module.h>
 #include <px4_platform_common/px4_work_queue/WorkItem.hpp>
 #include <uORB/Publication.hpp>
@@ -10,15 +11,30 @@
 #include <uORB/topics/actuator_motors.h>
 #include <uORB/topics/battery_status.h>
 #include <uORB/topics/control_allocator_status.h>
+#include <uORB/topics/failure_detector_status.h>
 #include <uORB/topics/vehicle_control_mode.h>
 #include <uORB/topics/vehicle_thrust_setpoint.h>
 #include <uORB/topics/vehicle_torque_setpoint.h>
 
 #include "isae_x8.h"
 
-class CoaxialMixer : public ModuleBase<CoaxialMixer>, public px4::WorkItem
+class CoaxialMixer;
+
+// PX4 has two forms of ModuleBase: a template, and since February 2026 a plain class with a descriptor per module.
+// CMakeLists.txt looks which one it is.
+#ifdef MODULE_BASE_HAS_DESCRIPTOR
+using Module = ModuleBase;
+#else
+using Module = ModuleBase<CoaxialMixer>;
+#endif
+
+class CoaxialMixer : public Module, public px4::WorkItem
 {
 public:
+#ifdef MODULE_BASE_HAS_DESCRIPTOR
+	static Descriptor desc;
+#endif
+
 	CoaxialMixer();
 
 	static int task_spawn(int argc, char *argv[]);
@@ -29,6 +45,9 @@ public:
 private:
 	void Run() override;
 	void update_voltage();
+	void update_failed(const mixer_wrench_t &setpoint);
+	int mix(const mixer_wrench_t &setpoint, isae_x8_mix_t &out) const;
+	bool is_displaced();
 	void publish_motors(const float *throttle, hrt_abstime timestamp_sample);
 	void publish_status(const mixer_wrench_t &setpoint, const isae_x8_mix_t &mix);
 
@@ -39,6 +58,9 @@ private:
 	uORB::Subscription _thrust_sub{ORB_ID(vehicle_thrust_setpoint)};
 	uORB::Subscription _battery_sub{ORB_ID(battery_status)};
 	uORB::Subscription _mode_sub{ORB_ID(vehicle_control_mode)};
+	uORB::Subscription _failure_sub{ORB_ID(failure_detector_status)};
+	// Sees what others publish: this module's own messages are taken from it at once.
+	uORB::Subscription _motors_sub{ORB_ID(actuator_motors)};
 	uORB::Publication<actuator_motors_s> _motors_pub{ORB_ID(actuator_motors)};
 	uORB::Publication<control_allocator_status_s> _status_pub{ORB_ID(control_allocator_status)};
 
@@ -47,6 +69,9 @@ private:
 	hrt_abstime _last_mix{0};
 	// The last voltage that was measured.
 	float _voltage_v{ISAE_X8_REFERENCE_V};
+	// Bit k: the rotor on channel k is out, until the vehicle is disarmed.
+	uint16_t _failed{0};
+	bool _displaced{false};
 	unsigned _refused{0};
 	uint32_t _saturation{0};
 };
