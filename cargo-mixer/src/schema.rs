@@ -90,10 +90,10 @@ fn property(key: &Key) -> Value {
         Kind::Number(Range::Finite) => number(),
         Kind::Number(Range::Positive) => json!({ "type": "number", "exclusiveMinimum": 0 }),
         Kind::Number(Range::UpTo(most)) => {
-            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": most })
+            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": bound(most) })
         }
         Kind::Number(Range::Within([least, most])) => {
-            json!({ "type": "number", "minimum": least, "maximum": most })
+            json!({ "type": "number", "minimum": bound(least), "maximum": bound(most) })
         }
         Kind::Count([least, most]) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         Kind::Numbers(count) => array(number(), count),
@@ -105,4 +105,13 @@ fn property(key: &Key) -> Value {
     };
     property["description"] = json!(key.meaning());
     property
+}
+
+/// A bound, without `.0` where it is whole.
+fn bound(x: f64) -> Value {
+    if x.fract() == 0.0 {
+        json!(x as i64)
+    } else {
+        json!(x)
+    }
 }

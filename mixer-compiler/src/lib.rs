@@ -43,7 +43,7 @@ pub use proof::Certificate;
 pub use proof::residual::Residual;
 
 /// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> voltage ->
-/// inverse -> tables -> proof -> closed form -> probes -> warnings.
+/// proven inverse -> level flight -> closed form -> tables -> probes -> warnings.
 ///
 /// # Errors
 /// All faults that were found, and with faults of later stages the warnings, one of which may be

@@ -11,18 +11,19 @@ mod border;
 mod budget;
 mod inverse;
 mod part;
+mod quantity;
 mod rows;
 mod single;
 
 use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
-        Biquadratic, ClosedForm, ClosedFormUnit, Cubic, Desaturation, Facets, Inverse, Pair, Quantity,
-        Quartic, Scalar, SingleRotor, Tables, ThrottleRange, Tolerance, Unit, Variable, Voltage, VoltageLaw,
+        ClosedForm, ClosedFormUnit, Desaturation, Facets, Inverse, Pair, SingleRotor, Tables, ThrottleRange,
+        Tolerance, Unit, Variable, Voltage, VoltageLaw,
     },
 };
 
-use crate::airframe::{Airframe, Basis};
+use crate::airframe::Airframe;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage::TabulatedLaw;
@@ -32,6 +33,7 @@ pub use border::BorderTable;
 use budget::budget;
 pub use inverse::{InverseTable, PolynomialTable, SeedTable};
 pub(crate) use part::{Part, identifier};
+pub use quantity::QuantityTable;
 use rows::rows;
 use single::single_tables;
 
@@ -159,17 +161,6 @@ impl ClosedFormTable {
     pub(crate) fn torque_share(&self) -> f32 {
         1.0 / self.units.len() as f32
     }
-}
-
-/// A quantity in any basis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum QuantityTable {
-    /// Eight terms.
-    Biquadratic(Biquadratic),
-    /// Nine terms.
-    Cubic(Cubic),
-    /// Fourteen terms.
-    Quartic(Quartic),
 }
 
 /// The voltage correction.
@@ -332,47 +323,6 @@ impl MixerTables {
             &view.tolerance,
         ];
         parts.into_iter().map(Part::bytes).sum()
-    }
-}
-
-impl QuantityTable {
-    /// Rounds the coefficients of a quantity.
-    fn new(basis: Basis, coefficients: &[f64]) -> Self {
-        fn rounded<const TERMS: usize>(coefficients: &[f64]) -> [f32; TERMS] {
-            std::array::from_fn(|index| coefficients.get(index).map_or(0.0, |&c| c as f32))
-        }
-        match basis {
-            Basis::Biquadratic => QuantityTable::Biquadratic(Biquadratic(rounded(coefficients))),
-            Basis::Cubic => QuantityTable::Cubic(Cubic(rounded(coefficients))),
-            Basis::Quartic => QuantityTable::Quartic(Quartic(rounded(coefficients))),
-        }
-    }
-
-    /// The coefficients in the order of the airframe file.
-    pub(crate) fn coefficients(&self) -> &[f32] {
-        match self {
-            QuantityTable::Biquadratic(quantity) => &quantity.0,
-            QuantityTable::Cubic(quantity) => &quantity.0,
-            QuantityTable::Quartic(quantity) => &quantity.0,
-        }
-    }
-}
-
-impl Quantity for QuantityTable {
-    fn value<S: Scalar>(&self, u: S, l: S) -> S {
-        match self {
-            QuantityTable::Biquadratic(quantity) => quantity.value(u, l),
-            QuantityTable::Cubic(quantity) => quantity.value(u, l),
-            QuantityTable::Quartic(quantity) => quantity.value(u, l),
-        }
-    }
-
-    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
-        match self {
-            QuantityTable::Biquadratic(quantity) => quantity.value_and_gradient(u, l),
-            QuantityTable::Cubic(quantity) => quantity.value_and_gradient(u, l),
-            QuantityTable::Quartic(quantity) => quantity.value_and_gradient(u, l),
-        }
     }
 }
 

@@ -84,7 +84,7 @@ impl<'a, 'f> Fields<'a, 'f> {
     /// A number within the key's range, or its default; `None` where there is none.
     pub(crate) fn number(&mut self, key: &'static Key) -> Option<f64> {
         if self.item(key).is_none() {
-            return key.default_number();
+            return key.default;
         }
         let field = self.read::<f64>(key)?;
         // No negative zeros: they would show in the generated code.
@@ -219,11 +219,6 @@ impl<'a, 'f> Fields<'a, 'f> {
         written.or_else(meant)
     }
 
-    /// A fault of a key of the table, at its value.
-    pub(crate) fn fault(&self, key: &'static Key, code: Code, message: String) -> Diagnostic {
-        Diagnostic::new(code, self.key_path(key.name), self.value_place(key), message)
-    }
-
     /// Notes a fault of a key of the table at its value, which is then refused.
     pub(crate) fn refuse<T>(
         &mut self,
@@ -233,8 +228,8 @@ impl<'a, 'f> Fields<'a, 'f> {
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> Option<T> {
-        let fault = self.fault(key, code, message).label(label).help(help);
-        self.faults.push(fault);
+        let fault = Diagnostic::new(code, self.key_path(key.name), self.value_place(key), message);
+        self.faults.push(fault.label(label).help(help));
         None
     }
 

@@ -18,7 +18,7 @@ pub struct Key {
     /// What it means, in a sentence.
     meaning: &'static str,
     /// The number that stands for it where the file does not have it.
-    default: Option<f64>,
+    pub(crate) default: Option<f64>,
     /// Label and help of the fault of a number out of range; without them the table's own check
     /// judges it.
     pub(crate) refusal: Option<[&'static str; 2]>,
@@ -78,10 +78,6 @@ impl Key {
             (Some(default), Some(meaning)) => format!("{meaning}; {} without it.", number(default)),
             _ => meaning.to_owned(),
         }
-    }
-
-    pub(crate) fn default_number(&self) -> Option<f64> {
-        self.default
     }
 }
 

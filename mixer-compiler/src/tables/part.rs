@@ -9,7 +9,8 @@ use mixer_rt::tables::{
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
 
-use super::{InverseTable, QuantityTable, SeedTable};
+use super::inverse::{InverseTable, SeedTable};
+use super::quantity::QuantityTable;
 
 /// A part of the tables.
 pub(crate) trait Part {
