@@ -13,6 +13,12 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
 {
     update_voltage();
 
+    // Stopped motors give nothing, whatever is asked.
+    if (_spool_state == SpoolState::SHUT_DOWN) {
+        _throttle_out = 0.0f;
+        return;
+    }
+
     // The spool logic raises the limit while the motors start and lowers it while they stop.
     float throttle = get_throttle();
     if (throttle <= 0.0f) {
@@ -41,8 +47,9 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
 void AP_MotorsCoaxialMixer::update_voltage()
 {
     const AP_BattMonitor &battery = AP::battery();
-    const float voltage_v = battery.voltage();
-    if (battery.healthy() && isfinite(voltage_v) && voltage_v > 0.0f) {
+    // Of the first monitor; `healthy()` would speak for all of them.
+    const float voltage_v = battery.voltage(AP_BATT_PRIMARY_INSTANCE);
+    if (battery.healthy(AP_BATT_PRIMARY_INSTANCE) && isfinite(voltage_v) && voltage_v > 0.0f) {
         _voltage_v = voltage_v;
     }
 }

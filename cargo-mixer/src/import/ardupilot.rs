@@ -126,6 +126,7 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
             parameters.or("MOT_SPIN_MAX", SPIN_MAX),
         ]),
         range_v: battery(parameters),
+        airmode: Some(("roll-pitch", "ArduPilot asks for roll and pitch at any throttle")),
         notes,
     })
 }

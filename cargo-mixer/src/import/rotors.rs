@@ -35,6 +35,8 @@ pub(super) struct Imported {
     pub(super) throttle: Option<[f64; 2]>,
     /// The battery's range, V.
     pub(super) range_v: Option<[f64; 2]>,
+    /// The airmode with which the stack's controllers work, and why.
+    pub(super) airmode: Option<(&'static str, &'static str)>,
     /// What is assumed, or not said.
     pub(super) notes: Vec<String>,
 }

@@ -13,8 +13,9 @@ const IDLE: f64 = 0.1;
 /// Median over many motors and propellers measured at two voltages.
 const EXPONENT: f64 = 1.75;
 
-/// Tables of a pair's file that an airframe takes over; `[throttle]` is made of both files.
-const TAKEN: &[&str] = &["pair", "voltage", "inverse", "allocation", "vehicle"];
+/// Tables of a pair's file that an airframe takes over; `[throttle]` is made of both files. The others
+/// describe another vehicle.
+const TAKEN: &[&str] = &["pair", "voltage"];
 
 /// The text, and the notes on it in `imported`.
 pub(super) fn airframe(
@@ -66,6 +67,9 @@ pub(super) fn airframe(
     match pair {
         Some((_, text)) => out += &sections(text),
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
+    }
+    if let Some((airmode, reason)) = imported.airmode {
+        let _ = writeln!(out, "[allocation]\nairmode = \"{airmode}\"                 # {reason}\n");
     }
     for (index, unit) in units.iter().enumerate() {
         let [x, y, z] = unit.position_m;

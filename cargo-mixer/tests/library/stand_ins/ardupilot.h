@@ -8,11 +8,13 @@
 using std::isfinite;
 
 #define AP_MOTORS_MAX_NUM_MOTORS 32
+#define AP_BATT_PRIMARY_INSTANCE 0
 
 class AP_BattMonitor {
 public:
-    float voltage() const { return volts; }
-    bool healthy() const { return good; }
+    // Of one monitor; there is but one here.
+    float voltage(uint8_t) const { return volts; }
+    bool healthy(uint8_t) const { return good; }
 
     float volts = 0.0f;
     bool good = false;
