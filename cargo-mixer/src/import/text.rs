@@ -69,7 +69,10 @@ pub(super) fn airframe(
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
     }
     if let Some((airmode, reason)) = imported.airmode {
-        let _ = writeln!(out, "[allocation]\nairmode = \"{airmode}\"                 # {reason}\n");
+        let _ = writeln!(
+            out,
+            "[allocation]\nairmode = \"{airmode}\"                 # {reason}\n"
+        );
     }
     for (index, unit) in units.iter().enumerate() {
         let [x, y, z] = unit.position_m;

@@ -64,7 +64,10 @@ impl Stack {
     fn drive(&self) {
         let folder = Folder::new(self.name);
         let stand_ins = source("stand_ins");
-        run(&mut library(&["airframes/isae-x8.toml", "--health"], &folder.join("lib")));
+        run(&mut library(
+            &["airframes/isae-x8.toml", "--health"],
+            &folder.join("lib"),
+        ));
         for header in self.headers {
             let path = folder.join("include").join(header);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
