@@ -73,8 +73,7 @@ impl Budget {
         Budget::of(units, 7, 7)
     }
 
-    /// Programmes at most with rotors out and no reserve of yaw: for the request and for level flight.
-    /// A reserve adds one: the request without it.
+    /// Programmes at most with rotors out: for the request and for level flight.
     pub const PROGRAMMES: u8 = 2;
 
     /// Work for each of these a second time, with the throttles of single rotors decided.
@@ -105,19 +104,29 @@ pub(crate) fn is_bounded(request: &[f32; 4]) -> bool {
     request.iter().all(|value| value.to_bits() << 1 <= limit)
 }
 
-/// `request` within [`REQUEST_LIMIT`], with the direction of (roll, pitch) kept.
-#[cold]
-pub(crate) fn limited([roll, pitch, yaw, thrust]: [f32; 4]) -> [f32; 4] {
+/// A request within a limit of roll and pitch, whose direction is kept, one of yaw, and a range of
+/// thrust.
+#[inline(never)]
+pub(crate) fn limited(
+    [roll, pitch, yaw, thrust]: [f32; 4],
+    limit: f32,
+    most_yaw: f32,
+    [least, most]: [f32; 2],
+) -> [f32; 4] {
     let largest = if roll.abs() > pitch.abs() {
         roll.abs()
     } else {
         pitch.abs()
     };
-    let share = if largest > REQUEST_LIMIT {
-        REQUEST_LIMIT / divisor(largest)
+    let share = if largest > limit {
+        limit / divisor(largest)
     } else {
         1.0
     };
-    let limit = |value| clamp(value, -REQUEST_LIMIT, REQUEST_LIMIT);
-    [roll * share, pitch * share, limit(yaw), limit(thrust)]
+    [
+        roll * share,
+        pitch * share,
+        clamp(yaw, -most_yaw, most_yaw),
+        clamp(thrust, least, most),
+    ]
 }

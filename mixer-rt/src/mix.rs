@@ -3,7 +3,7 @@
 use crate::desaturation::closed_form::{Attained, ClosedForm, DesaturationMethod, Efforts, Request};
 use crate::desaturation::general::{Variable, allocate};
 use crate::desaturation::power_bias::add_power_bias;
-use crate::desaturation::{is_bounded, limited};
+use crate::desaturation::{REQUEST_LIMIT, is_bounded, limited};
 use crate::layout::Tables;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Inverse, Quantity};
@@ -279,7 +279,8 @@ fn bounded(setpoint: &Wrench) -> Result<([f32; 4], [f32; 4]), SetpointError> {
     if is_bounded(&request) {
         return Ok((request, request));
     }
-    Ok((request, limited(finite(setpoint)?)))
+    const LIMIT: f32 = REQUEST_LIMIT;
+    Ok((request, limited(finite(setpoint)?, LIMIT, LIMIT, [-LIMIT, LIMIT])))
 }
 
 /// The setpoint as `[roll, pitch, yaw, thrust]`.

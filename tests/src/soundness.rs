@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use mixer_rt::{Axis, Direction, tables::Airmode};
+use mixer_rt::{Axis, Direction, Health, tables::Airmode};
 
 use crate::optimum::Oracle;
 use crate::request::{Answer, Frame, Request};
@@ -181,7 +181,9 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
 
 /// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode
 /// "disabled" does not raise the thrust beyond the request or the floor: all where roll = pitch = 0
-/// is attainable at all within the yaw asked and its reserve.
+/// is attainable at all within the yaw asked and its reserve. With rotors out it has to be within the
+/// mixer's polygons: a bicopter with a rotor out may have level flight at one end of its throttles only,
+/// by less than the polygons leave out.
 fn overstepping(
     frame: &Frame,
     request: &Request,
@@ -232,12 +234,12 @@ fn overstepping(
     if faults.is_empty() && !raised {
         return Ok(faults);
     }
-    let oracle = Oracle::new(
-        &frame.physics,
-        frame.allocation(),
-        frame.physics.factors(request.volts),
-        request.health,
-    );
+    let oracle = if request.health == Health::GOOD {
+        let factors = frame.physics.factors(request.volts);
+        Oracle::new(&frame.physics, frame.allocation(), factors, request.health)
+    } else {
+        Oracle::of_polygons(frame, request.volts, request.health)
+    };
     let Some(mut floor) = oracle.thrust_floor(asked[2])? else {
         return Ok(Vec::new());
     };

@@ -11,14 +11,13 @@
 //! 3. towards the efforts of least norm as far as the polygons allow
 //! ```
 //!
-//! Where the pivots end before the programme of 2 is solved, its basis serves the rows, but units may
-//! be outside their polygons: the answer is on the way from stored level flight to there, as far as
-//! the polygons allow.
+//! Every answer of the programme is judged by what its efforts give ([`Wanted::accepts`]), not by how
+//! it came about: an axis that is reversed or exceeded is not accepted. With all rotors the answer
+//! then is on the way from stored level flight to there, as far as the polygons and the axes allow.
 //!
 //! With rotors out the curves of single rotors take the place of their chords until the efforts are
-//! on them. If they do not settle, or the pivots end, the throttles of single rotors are decided, and
-//! the programme for the others, which is convex, is solved. If that serves no torque, the torques are
-//! given up.
+//! on them. Where that answer is not accepted, the throttles of single rotors are decided, and the
+//! programme for the others, which is convex, is solved; then both for level flight.
 //!
 //! # Bound
 //!
@@ -42,7 +41,7 @@ use crate::desaturation::Budget;
 use crate::layout::Tables;
 use crate::pair::Quantity;
 use crate::{clamp, divisor, rolled};
-use problem::Problem;
+use problem::{ANY, Problem, Wanted};
 use programme::{RAY, REACH, start};
 use simplex::Simplex;
 use variable::{Set, between, positive};
@@ -51,25 +50,11 @@ use variable::{Set, between, positive};
 /// be missed by.
 const TOUCHING: f32 = 0.25;
 
-/// How far a torque may be from its curve where it does not settle, as a share of the torque's scale.
-const BESIDE: f32 = 5e-4;
-
 /// A frame at one voltage.
 struct Frame<'a, 't, P, I, S> {
     tables: &'a Tables<'t, P, I, S>,
     /// `[k_f, k_Q]`.
     factors: [f32; 2],
-}
-
-/// How a programme has ended; the units are where it has left them.
-struct Ending {
-    /// To which share of the way from their centres they have to be drawn back.
-    share: f32,
-    is_solved: bool,
-    /// The share of the wrench that exceeds no axis; `None` where a torque is missed.
-    served: Option<f32>,
-    /// How far the torque of a single rotor is from its curve, scaled.
-    beside: f32,
 }
 
 /// Writes attainable efforts (`[f, Q]` at the reference voltage, N and N m, in the variables) that
@@ -126,24 +111,20 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         true
     }
 
-    /// The share of its rate by which a unit may move, at most `share`: until it is at the border of
-    /// its polygon.
+    /// Moves all units along their rates by `share` at most, as far as the polygons allow.
     #[inline(never)]
-    fn reach(&self, variable: &Variable, mut share: f32) -> f32 {
-        for corner in self.tables.attainable.polygon() {
+    fn advance(&self, variables: &mut [Variable], mut share: f32) {
+        for variable in variables.iter() {
             rolled();
-            let out = corner.outward(variable.rate);
-            let beyond = corner.beyond(variable.at);
-            if out > 0.0 && share * out + beyond > 0.0 {
-                share = positive(-beyond) / divisor(out);
+            for corner in self.tables.attainable.polygon() {
+                rolled();
+                let out = corner.outward(variable.rate);
+                let beyond = corner.beyond(variable.at);
+                if out > 0.0 && share * out + beyond > 0.0 {
+                    share = positive(-beyond) / divisor(out);
+                }
             }
         }
-        share
-    }
-
-    /// Moves all units along their rates.
-    #[inline(never)]
-    fn advance(&self, variables: &mut [Variable], share: f32) {
         for variable in variables {
             rolled();
             variable.at = [0, 1].map(|k| variable.at[k] + share * variable.rate[k]);
@@ -166,13 +147,11 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     #[inline(never)]
     fn move_to_least_norm(&self, variables: &mut [Variable]) {
         self.aim_at_least_norm(&self.wrench(variables), variables);
-        let mut share = 1.0;
         for variable in variables.iter_mut() {
             rolled();
             variable.rate = [0, 1].map(|k| variable.rate[k] - variable.at[k]);
-            share = self.reach(variable, share);
         }
-        self.advance(variables, share);
+        self.advance(variables, 1.0);
     }
 
     /// Moves the units of a programme that is solved to the optimum nearest the efforts of least norm
@@ -203,165 +182,143 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     /// where it is known, the compiler leaves the other way out of what it is handed to.
     #[inline(always)]
     fn serve(&self, request: &[f32; 4], variables: &mut [Variable], is_whole: bool) {
-        let per_row = 1.0 / self.factors[0];
-        let wanted = [0, 1, 2, 3].map(|k| request[k] * (self.tables.rows[k] * per_row));
-        let reserve = self.tables.desaturation.yaw_reserve_nm * (self.tables.rows[2] * per_row);
-        let ending = if is_whole {
+        let Frame { tables, factors } = *self;
+        let per_row = 1.0 / factors[0];
+        let problem = Problem::new(tables, factors[1] / factors[0]);
+        let rows = [0, 1, 2, 3].map(|k| request[k] * (tables.rows[k] * per_row));
+        let reserve = tables.desaturation.yaw_reserve_nm * (tables.rows[2] * per_row);
+        let wanted = problem.wanted(rows, reserve);
+        if !is_whole {
+            self.serve_with_rotors_out(&problem, wanted, variables);
+            return;
+        }
+        let is_solved = self.programme(&problem, &wanted, variables, tables.desaturation.budget, is_whole);
+        let missed = problem.missed(&wanted.rows, variables);
+        if !is_solved || !wanted.accepts(&missed, variables.len()) {
+            self.set_out_from_level_flight(&problem, (&wanted, &missed), request[3], variables);
+        }
+    }
+
+    /// Programmes until one is accepted: for the request, then for level flight; each with the curves of
+    /// single rotors, then with their throttles decided and without a reserve.
+    #[inline(never)]
+    fn serve_with_rotors_out(&self, problem: &Problem<'_>, mut wanted: Wanted, variables: &mut [Variable]) {
+        let units = variables.len();
+        for _ in 0..black_box(Budget::PROGRAMMES) {
             for variable in variables.iter_mut() {
                 rolled();
                 variable.reset();
             }
-            self.programme(
-                wanted,
-                reserve,
-                variables,
-                self.tables.desaturation.budget,
-                is_whole,
-            )
-        } else {
-            self.serve_with_rotors_out(wanted, reserve, variables)
-        };
-        if ending.is_solved && ending.share >= 1.0 {
-            return;
-        }
-        let set = &self.tables.attainable;
-        for variable in variables.iter_mut() {
-            rolled();
-            variable.at = between(variable.inside(set), variable.at, ending.share);
-        }
-        if !is_whole {
-            return;
-        }
-        if ending.is_solved {
-            self.move_to_least_norm(variables);
-        } else {
-            self.set_out_from_level_flight(request, ending.served, variables);
-        }
-    }
-
-    /// [`programme`](Self::programme) with rotors out, until its answer is on the curves of single
-    /// rotors and misses no torque, or none does.
-    #[inline(never)]
-    fn serve_with_rotors_out(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable]) -> Ending {
-        let mut ending = self.settle(wanted, reserve, variables);
-        if reserve > 0.0 && ending.served.is_none() {
-            ending = self.settle(wanted, 0.0, variables);
-        }
-        if !ending.is_solved {
-            let [.., thrust] = wanted;
-            ending = self.settle([0.0, 0.0, 0.0, thrust], 0.0, variables);
-        }
-        ending
-    }
-
-    /// A programme, and if its single rotors do not settle on their curves or its pivots end, another
-    /// one in which their throttles are decided. One that misses a torque then is not solved.
-    #[inline(never)]
-    fn settle(&self, wanted: [f32; 4], reserve: f32, variables: &mut [Variable]) -> Ending {
-        let budget = Budget::with_rotors_out(variables.len());
-        for variable in variables.iter_mut() {
-            rolled();
-            variable.reset();
-        }
-        let ending = self.programme(wanted, reserve, variables, budget, false);
-        if ending.is_solved && ending.beside <= BESIDE {
-            return ending;
-        }
-        for variable in variables.iter_mut() {
-            rolled();
-            if variable.set == Set::Segment {
-                variable.at = self.on_curve(variable, ending.share);
-                variable.set = Set::Point;
+            if self.is_accepted(problem, &wanted, variables, Budget::with_rotors_out(units)) {
+                return;
             }
+            let mut is_changed = wanted.reserve > 0.0;
+            wanted.reserve = 0.0;
+            for variable in variables.iter_mut() {
+                rolled();
+                is_changed |= variable.decide();
+            }
+            let budget = Budget::with_throttles_decided(units);
+            if is_changed && self.is_accepted(problem, &wanted, variables, budget) {
+                return;
+            }
+            let [.., thrust] = wanted.rows;
+            wanted = Wanted::new([0.0, 0.0, 0.0, thrust], 0.0);
         }
-        let budget = Budget::with_throttles_decided(variables.len());
-        let mut ending = self.programme(wanted, reserve, variables, budget, false);
-        ending.is_solved &= ending.served.is_some();
-        ending
     }
 
-    /// What the single rotor of a unit gives, scaled, at the thrust to which it is drawn back.
+    /// Runs a programme with rotors out; true where it is solved and what the units then give neither
+    /// reverses nor exceeds a torque.
     #[inline(never)]
-    fn on_curve(&self, variable: &Variable, share: f32) -> [f32; 2] {
-        let tables = self.tables;
-        let set = &tables.attainable;
-        let [f, _] = between(variable.inside(set), variable.at, share);
-        let Tables { pair, singles, .. } = tables;
-        let throttles = variable
-            .rotors
-            .invert(singles, &tables.throttle, set.scale[0] * f);
-        let efforts = variable.rotors.efforts(pair, singles, throttles);
-        [0, 1].map(|k| efforts[k] / set.scale[k])
+    fn is_accepted(
+        &self,
+        problem: &Problem<'_>,
+        wanted: &Wanted,
+        variables: &mut [Variable],
+        budget: Budget,
+    ) -> bool {
+        let is_solved = self.programme(problem, wanted, variables, budget, false);
+        let missed = problem.missed(&wanted.rows, variables);
+        is_solved && wanted.accepts(&missed, variables.len())
     }
 
-    /// The linear programme for a request in rows. While some single rotor is beside its curve, its
-    /// line moves there, and the programme goes on.
+    /// What the single rotor of a unit gives, scaled, at the unit's thrust.
+    #[inline(never)]
+    fn on_curve(&self, variable: &Variable) -> [f32; 2] {
+        let Tables { pair, singles, .. } = self.tables;
+        let scale = self.tables.attainable.scale;
+        let f = scale[0] * variable.at[0];
+        let throttles = variable.rotors.invert(singles, &self.tables.throttle, f);
+        let efforts = variable.rotors.efforts(pair, singles, throttles);
+        [0, 1].map(|k| efforts[k] / scale[k])
+    }
+
+    /// Puts the units at the answer of the linear programme; true where it is solved. While some single
+    /// rotor is beside its curve, its line moves there, and the programme goes on.
     #[inline(never)]
     fn programme(
         &self,
-        wanted: [f32; 4],
-        reserve: f32,
+        problem: &Problem<'_>,
+        wanted: &Wanted,
         variables: &mut [Variable],
         budget: Budget,
         is_whole: bool,
-    ) -> Ending {
-        let Frame { tables, factors } = *self;
-        let airmode = tables.desaturation.airmode;
-        let ratio = factors[1] / factors[0];
-        let problem = Problem::new(tables, ratio);
+    ) -> bool {
+        let tables = self.tables;
         let centre = if is_whole {
             let [by_thrust, by_torque] = &tables.centre;
-            [0, 1, 2, 3].map(|k| by_thrust[k] + ratio * by_torque[k])
+            [0, 1, 2, 3].map(|k| by_thrust[k] + problem.ratio * by_torque[k])
         } else {
             problem.centre(variables)
         };
         let touching = TOUCHING * tables.tolerance.wrench[2] / tables.attainable.scale[1];
         let mut rounds = if is_whole { 0 } else { Budget::ROUNDS };
-        let mut simplex = start(&problem, variables, [wanted, centre], reserve, airmode, budget);
+        let mut simplex = start(
+            problem,
+            variables,
+            wanted,
+            centre,
+            tables.desaturation.airmode,
+            budget,
+        );
         loop {
-            let mut beside = 0.0;
             let is_solved = simplex.solve();
             let beyond = clamp(simplex.place(RAY), -0.5, 1.5);
             let share = 1.0 / (1.0 + beyond * REACH);
-            if !is_whole {
-                beside = self.bend(&mut simplex, share);
+            for variable in simplex.variables.iter_mut() {
+                rolled();
+                variable.at = between(variable.inside(problem.set), variable.at, share);
             }
-            if !is_solved || rounds == 0 || beside <= touching {
-                if is_whole && is_solved && share >= 1.0 {
+            if is_whole {
+                if is_solved && share >= 1.0 {
                     self.break_ties(&mut simplex);
+                } else if is_solved {
+                    self.move_to_least_norm(simplex.variables);
                 }
-                // A programme that is solved with all rotors misses no torque.
-                let served = if is_whole && is_solved {
-                    Some(1.0)
-                } else {
-                    simplex.served(RAY)
-                };
-                return Ending {
-                    share,
-                    is_solved,
-                    served,
-                    beside,
-                };
+                return is_solved;
+            }
+            let beside = self.bend(&mut simplex, share);
+            if !is_solved || rounds == 0 || beside <= touching {
+                return is_solved;
             }
             rounds -= 1;
         }
     }
 
-    /// Moves the lines of single rotors to their curves at the thrusts that they have come to when
-    /// drawn back by `share`; returns how far the torques were beside, at most.
+    /// Puts single rotors on their curves at the thrusts that they have come to, drawn back by `share`,
+    /// and moves their lines there; returns how far the torques were beside, at most.
     #[inline(never)]
     fn bend(&self, simplex: &mut Simplex<'_>, share: f32) -> f32 {
-        let set = &self.tables.attainable;
         let problem = simplex.problem;
         let mut most = 0.0;
-        for (variable, unit) in simplex.variables.iter_mut().zip(self.tables.units) {
+        for (variable, unit) in simplex.variables.iter_mut().zip(problem.units) {
             rolled();
             if variable.set != Set::Segment {
                 continue;
             }
-            let [_, on_line] = between(variable.inside(set), variable.at, share);
-            let [_, on_curve] = self.on_curve(variable, share);
-            let beside = on_curve - on_line;
+            let [_, on_line] = variable.at;
+            variable.at = self.on_curve(variable);
+            let beside = variable.at[1] - on_line;
             if beside.abs() > most {
                 most = beside.abs();
             }
@@ -372,14 +329,15 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         most
     }
 
-    /// Takes the units from the stored level flight nearest the thrust asked to where they are, as far
-    /// as the polygons allow and by `served` at most. So no axis is reversed or exceeded, and the
-    /// direction of (roll, pitch) is kept.
+    /// Takes the units from the stored level flight nearest the thrust asked, N, to where they are, as
+    /// far as the polygons allow and no torque is reversed or exceeded. `missed` is what they miss
+    /// there.
     #[inline(never)]
     fn set_out_from_level_flight(
         &self,
-        &[.., thrust]: &[f32; 4],
-        served: Option<f32>,
+        problem: &Problem<'_>,
+        (wanted, missed): (&Wanted, &[f32; 4]),
+        thrust: f32,
         variables: &mut [Variable],
     ) {
         let level = &self.tables.level;
@@ -400,18 +358,16 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         let [roll, pitch, yaw, _] = self.wrench(variables);
         if yaw.abs() > self.tables.tolerance.wrench[2] {
             self.aim_at_least_norm(&[-roll, -pitch, -yaw, 0.0], variables);
-            let mut share = 1.0;
-            for variable in variables.iter() {
-                rolled();
-                share = self.reach(variable, share);
-            }
-            self.advance(variables, share);
+            self.advance(variables, 1.0);
         }
-        let Some(mut share) = served else { return };
+        let mut from = problem.missed(&wanted.rows, variables);
+        if self.tables.desaturation.airmode.may_raise_thrust() {
+            from[3] = ANY;
+        }
+        let share = wanted.sound_share(&from, missed, variables.len());
         for variable in variables.iter_mut() {
             rolled();
             variable.rate = [0, 1].map(|k| variable.gain[k] - variable.at[k]);
-            share = self.reach(variable, share);
         }
         self.advance(variables, share);
     }

@@ -99,8 +99,7 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let units = compiled.tables.units.len();
     let n = units as u32;
-    let has_reserve = compiled.tables.desaturation.yaw_reserve_nm > 0.0;
-    let programmes = usize::from(Budget::PROGRAMMES) + usize::from(has_reserve);
+    let programmes = usize::from(Budget::PROGRAMMES);
     let budgets = [
         Budget::with_rotors_out(units),
         Budget::with_throttles_decided(units),

@@ -17,10 +17,13 @@
 //! nothing to all that was asked for, so that nothing is reversed. Thrust needs no such limit: its
 //! row is missed at a price.
 
+use core::hint::black_box;
+
 use super::variable::{Variable, dot};
 use crate::desaturation::attainable::AttainableSet;
+use crate::desaturation::limited;
 use crate::layout::{Tables, Unit};
-use crate::{clamp, divisor, rolled};
+use crate::{clamp, divisor, rolled, sqrt};
 
 /// How many shortages and rays there are.
 pub(super) const SEGMENTS: usize = 4;
@@ -41,6 +44,16 @@ const TORQUE_PRICES: [f32; 3] = [1e5, 9e4, 8e4];
 const LIMIT: f32 = 1.1;
 const LEAST_THRUST: f32 = -0.05;
 const MOST_THRUST: f32 = 1.05;
+
+/// A torque that is reversed or exceeded by more than this share of its authority is not accepted. A
+/// single unit may reverse it by `LEAST_WIDTH` of the programme.
+const ACCEPTED: f32 = 1.5e-3;
+
+/// The same where an answer is taken back, so that the model's and the inverse map's errors have room.
+const AIMED_AT: f32 = 1e-4;
+
+/// More thrust missed below zero than there is: no bound.
+pub(super) const ANY: f32 = -1e9;
 
 /// What of a frame, its health and the voltage the programme reads.
 pub(super) struct Problem<'a> {
@@ -121,26 +134,97 @@ impl<'a> Problem<'a> {
         centre.map(|row| -row)
     }
 
+    /// What a request in rows misses where the units are.
+    #[inline(never)]
+    pub(super) fn missed(&self, rows: &[f32; 4], variables: &[Variable]) -> [f32; 4] {
+        let mut missed = *rows;
+        for (variable, unit) in variables.iter().zip(self.units) {
+            rolled();
+            self.subtract_inline(unit, variable.at, &mut missed);
+        }
+        missed
+    }
+
     /// A request in rows, limited to what is looked at.
     #[inline(always)]
-    pub(super) fn limited(&self, [roll, pitch, yaw, thrust]: [f32; 4], units: f32) -> [f32; 4] {
+    pub(super) fn wanted(&self, rows: [f32; 4], reserve: f32) -> Wanted {
+        let units = self.units.len() as f32;
         let limit = LIMIT * units;
-        let largest = if roll.abs() > pitch.abs() {
-            roll.abs()
+        let thrusts = [LEAST_THRUST * units, MOST_THRUST * units];
+        Wanted::new(limited(rows, limit, limit * self.ratio, thrusts), reserve)
+    }
+}
+
+/// A request in rows.
+pub(super) struct Wanted {
+    pub(super) rows: [f32; 4],
+    /// Size and direction of (roll, pitch).
+    pub(super) level: f32,
+    pub(super) direction: [f32; 2],
+    /// Size and sign of yaw.
+    pub(super) yaw: f32,
+    pub(super) sign: f32,
+    /// The yaw that is kept before roll and pitch.
+    pub(super) reserve: f32,
+}
+
+impl Wanted {
+    #[inline(never)]
+    pub(super) fn new(rows: [f32; 4], reserve: f32) -> Self {
+        let [roll, pitch, yaw, _] = rows;
+        let level = sqrt(roll * roll + pitch * pitch);
+        let direction = if level > 0.0 {
+            [roll, pitch].map(|row| row / divisor(level))
         } else {
-            pitch.abs()
+            [1.0, 0.0]
         };
-        let share = if largest > limit {
-            limit / divisor(largest)
-        } else {
-            1.0
-        };
-        let most_yaw = limit * self.ratio;
-        [
-            share * roll,
-            share * pitch,
-            clamp(yaw, -most_yaw, most_yaw),
-            clamp(thrust, LEAST_THRUST * units, MOST_THRUST * units),
-        ]
+        Wanted {
+            rows,
+            level,
+            direction,
+            yaw: yaw.abs(),
+            sign: if yaw < 0.0 { -1.0 } else { 1.0 },
+            reserve,
+        }
+    }
+
+    /// True where efforts that miss this neither reverse nor exceed a torque, nor turn (roll, pitch).
+    #[inline(always)]
+    pub(super) fn accepts(&self, missed: &[f32; 4], units: usize) -> bool {
+        let [roll, pitch, yaw, _] = self.rows;
+        self.share(&[roll, pitch, yaw, ANY], missed, ACCEPTED * units as f32) >= 1.0
+    }
+
+    /// The share of the way from efforts that miss `from` to those that miss `to` which is sound.
+    #[inline(always)]
+    pub(super) fn sound_share(&self, from: &[f32; 4], to: &[f32; 4], units: usize) -> f32 {
+        self.share(from, to, AIMED_AT * units as f32)
+    }
+
+    /// The share of the way from efforts that miss `from` to those that miss `to` up to which no torque
+    /// is reversed or exceeded, (roll, pitch) keeps its direction, and thrust is not exceeded by more
+    /// than `from` does. Each of these is linear in what is missed.
+    #[inline(never)]
+    fn share(&self, from: &[f32; 4], to: &[f32; 4], slack: f32) -> f32 {
+        let [east, north] = self.direction;
+        let bounded = [
+            ([east, north, 0.0, 0.0], self.level),
+            ([-north, east, 0.0, 0.0], 0.0),
+            ([0.0, 0.0, self.sign, 0.0], self.yaw),
+            ([0.0, 0.0, 0.0, 1.0], -ANY),
+        ];
+        let mut share = 1.0;
+        for (along, most) in black_box(bounded.as_slice()) {
+            rolled();
+            let [from, to] = [from, to].map(|rows| dot(along, rows));
+            let (low, high) = (-slack, most + slack);
+            let low = if from < low { from } else { low };
+            let bound = clamp(to, low, high);
+            let (room, way) = ((bound - from).abs(), (to - from).abs());
+            if to != bound && share * way > room {
+                share = room / divisor(way);
+            }
+        }
+        share
     }
 }

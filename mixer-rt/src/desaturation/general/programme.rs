@@ -4,11 +4,13 @@
 //! So that requests within the attainable set do not end at corners, a segment leads beyond the
 //! request, along the ray from the units' centres, at a small reward.
 
-use super::problem::{LAST, LEVEL_TORQUE, MIDDLE, Problem, RESERVED};
+use core::hint::black_box;
+
+use super::problem::{LAST, LEVEL_TORQUE, MIDDLE, Problem, RESERVED, Wanted};
 use super::simplex::{Basis, Simplex};
 use super::variable::{Segment, Variable, dot, positive};
 use crate::desaturation::{Airmode, Budget};
-use crate::{divisor, rolled, sqrt};
+use crate::rolled;
 
 /// Indices of the segments; the last one is yaw within its reserve.
 const LEVEL: usize = 0;
@@ -29,34 +31,33 @@ const BIAS: f32 = 4e-3;
 /// Requests further than this from the centre, squared, as a share of the units, start at the prices.
 const FAR: f32 = 0.25;
 
-/// Sets the programme of a request in rows up, given what the units give at their centres, `reserve` the yaw that is kept before roll and pitch,
-/// in rows. The start changes no answer, since the optimum is unique: far out it is at the prices of
-/// what will be short, near it is on the ray.
+/// Sets the programme of a request up, given what the units give at their centres, rows. The start
+/// changes no answer, since the optimum is unique: far out it is at the prices of what will be short,
+/// near it is on the ray.
 #[inline(never)]
 pub(super) fn start<'a>(
     problem: &'a Problem<'a>,
     variables: &'a mut [Variable],
-    [request, centre]: [[f32; 4]; 2],
-    reserve: f32,
+    wanted: &Wanted,
+    centre: [f32; 4],
     airmode: Airmode,
     budget: Budget,
 ) -> Simplex<'a> {
     let units = variables.len() as f32;
-    let wanted = problem.limited(request, units);
-    let [roll, pitch, yaw, _] = wanted;
-    let size = sqrt(roll * roll + pitch * pitch);
+    let Wanted {
+        rows,
+        level: size,
+        direction: [east, north],
+        yaw,
+        sign,
+        reserve,
+    } = *wanted;
     let width = size + LEAST_WIDTH;
-    let [east, north] = if size > 0.0 {
-        [roll / divisor(size), pitch / divisor(size)]
-    } else {
-        [1.0, 0.0]
-    };
-    let sign = if yaw < 0.0 { -1.0 } else { 1.0 };
-    let beyond = positive(yaw.abs() - reserve);
-    let kept = yaw.abs() - beyond;
+    let beyond = positive(yaw - reserve);
+    let kept = yaw - beyond;
     let beyond = beyond + LEAST_WIDTH;
     let yaw_cost = if airmode.is_yaw_first() { MIDDLE } else { LAST };
-    let away = [0, 1, 2, 3].map(|k| wanted[k] - centre[k]);
+    let away = [0, 1, 2, 3].map(|k| rows[k] - centre[k]);
     let [a0, a1, a2, a3] = away;
     let length = (a0.abs() + a1.abs()) + (a2.abs() + a3.abs());
     let mut segments = [
@@ -109,8 +110,8 @@ pub(super) fn start<'a>(
         let reward = REWARD * length / (REACH * square + 1e-9);
         multipliers = away.map(|row| reward * row);
     }
-    let mut residual = wanted;
-    for segment in &mut segments {
+    let mut residual = rows;
+    for segment in black_box(segments.as_mut_slice()) {
         rolled();
         segment.gain += dot(&segment.column, &multipliers);
         if segment.is_basic {

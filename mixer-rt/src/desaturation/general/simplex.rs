@@ -49,13 +49,6 @@ const SENSELESS: f32 = 1e6;
 /// No bound.
 const FAR: f32 = 1e30;
 
-/// A row counts as missed from here on.
-const MISSED: f32 = 5e-4;
-
-/// Where the pivots end the ray may be as far outside [0, 1] as this, for its basis to be of use.
-const LEAST_RAY: f32 = -0.3;
-const MOST_RAY: f32 = 1.3;
-
 /// Indices of what may enter: a unit, a segment or a row.
 const SEGMENT: u8 = 64;
 const ROW: u8 = 128;
@@ -554,40 +547,6 @@ impl Simplex<'_> {
         self.basis.slots[along & 3] = Slot::effort(Holds::Thrust, index);
         self.basis.slots[slot & 3] = Slot::effort(Holds::Torque, index);
         self.basis.has_free = true;
-    }
-
-    /// The share of the wrench that no shortage exceeds, where the basis serves the rows but that
-    /// units may be outside their sets; `None` where a torque is missed, or reversed.
-    #[inline(never)]
-    pub(super) fn served(&self, ray: usize) -> Option<f32> {
-        let mut share = 1.0;
-        for (slot, &value) in self.basis.slots.iter().zip(&self.values) {
-            rolled();
-            match slot.holds {
-                Holds::Row if slot.of != 3 && !(-MISSED..=MISSED).contains(&value) => return None,
-                Holds::Row if value < -MISSED || value > slot.high + MISSED => return None,
-                Holds::Along => {
-                    let short = self
-                        .segments
-                        .get(usize::from(slot.of))
-                        .map_or(0.0, |s| s.share(value));
-                    if usize::from(slot.of) == ray {
-                        if !(LEAST_RAY..=MOST_RAY).contains(&short) {
-                            return None;
-                        }
-                        continue;
-                    }
-                    if short > 1.0 + TOLERANCE {
-                        return None;
-                    }
-                    if short < 0.0 && share * (1.0 - short) > 1.0 {
-                        share = 1.0 / divisor(1.0 - short);
-                    }
-                }
-                _ => {}
-            }
-        }
-        Some(share)
     }
 
     /// Writes the efforts of all units; returns the share of the ray.

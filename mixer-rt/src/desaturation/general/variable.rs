@@ -176,6 +176,16 @@ impl Variable {
         (self.at, self.curve, self.moved) = ([0.0; 2], 0.0, 0.0);
     }
 
+    /// A single rotor stays at its throttle; true where there is one.
+    #[inline(always)]
+    pub(super) fn decide(&mut self) -> bool {
+        let is_single = self.set == Set::Segment;
+        if is_single {
+            self.set = Set::Point;
+        }
+        is_single
+    }
+
     /// By how much the line of a single rotor moves that is `beside` its curve: half as far where it
     /// goes to and fro.
     #[inline(always)]
