@@ -202,6 +202,13 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         return None;
     }
     let mut file = Fields::of_file(table, &FILE, top, faults);
+    if file.key_place(&UNIT).is_none() && file.key_place(&LAYOUT).is_none() {
+        file.faults.push(
+            Diagnostic::new(Code::MissingKey, "unit", file.place(), "the airframe has 0 units")
+                .label("this airframe has no `[[unit]]`")
+                .help("add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame"),
+        );
+    }
     let name = file
         .read(&NAME)
         .and_then(|field| name::check(&field, file.faults));
@@ -217,7 +224,8 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let allocation = file.table(&ALLOCATION, allocation::read);
     let vehicle = file.table(&VEHICLE, vehicle::read);
 
-    if let Some(fault) = units_stated_once(&file, layout.as_ref(), units.len()) {
+    let written = places.get("unit").cloned();
+    if let Some(fault) = units_stated_once(written, layout.as_ref(), units.len(), file.faults) {
         file.faults.push(fault);
         return None;
     }
@@ -253,9 +261,13 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     })
 }
 
-/// The fault of units that are written in no place, or in two.
-fn units_stated_once(file: &Fields<'_, '_>, layout: Option<&Layout>, units: usize) -> Option<Diagnostic> {
-    let written = file.key_place(&UNIT);
+/// The fault of units that are `written` without any, or beside a layout.
+fn units_stated_once(
+    written: Option<Range<usize>>,
+    layout: Option<&Layout>,
+    units: usize,
+    faults: &[Diagnostic],
+) -> Option<Diagnostic> {
     let fault = match (written, layout) {
         (Some(_), Some(layout)) => Diagnostic::new(
             Code::Conflict,
@@ -265,14 +277,7 @@ fn units_stated_once(file: &Fields<'_, '_>, layout: Option<&Layout>, units: usiz
         )
         .label("second description of the units")
         .help("keep one: `[layout]` for a regular frame, else `[[unit]]`"),
-        (None, None) if file.key_place(&LAYOUT).is_none() => {
-            Diagnostic::new(Code::MissingKey, "unit", file.place(), "the airframe has 0 units")
-                .label("this airframe has no `[[unit]]`")
-                .help("add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame")
-        }
-        (Some(place), None)
-            if units == 0 && !file.faults.iter().any(|fault| fault.key.starts_with("unit")) =>
-        {
+        (Some(place), None) if units == 0 && !faults.iter().any(|fault| fault.key.starts_with("unit")) => {
             Diagnostic::new(Code::WrongLength, "unit", place, "the airframe has 0 units")
                 .label("empty")
                 .help("add a `[[unit]]` for each pair of rotors")

@@ -122,7 +122,7 @@ fn polynomial(
 ) -> Option<Method> {
     let Some(field) = degree else {
         // A degree of a wrong shape was reported; saying that it is missing would be wrong.
-        if table.key_place(&DEGREE).is_none() {
+        if !table.faults.iter().any(|fault| fault.key == "inverse.degree") {
             table.faults.push(
                 Diagnostic::new(
                     Code::MissingKey,

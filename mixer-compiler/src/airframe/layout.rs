@@ -146,10 +146,13 @@ fn angle(table: &mut Fields<'_, '_>) -> Option<f64> {
 }
 
 fn spins(table: &mut Fields<'_, '_>, units: Option<usize>, bench_spin: Option<Spin>) -> Option<Vec<Spin>> {
-    let written = table.key_place(&FIRST_SPIN).is_some();
-    let first = table.word(&FIRST_SPIN, &Spin::ALL);
+    let written = table.read::<String>(&FIRST_SPIN);
+    let first = match &written {
+        Some(field) => table.meaning(&FIRST_SPIN, field, &Spin::ALL),
+        None => bench_spin,
+    };
     let Some(field) = table.read::<Vec<Spanned<String>>>(&SPINS) else {
-        let (units, first) = (units?, if written { first } else { bench_spin }?);
+        let (units, first) = (units?, first?);
         let alternates = units % 2 == 0;
         let spin = |k| {
             if alternates && k % 2 == 1 {
@@ -160,7 +163,7 @@ fn spins(table: &mut Fields<'_, '_>, units: Option<usize>, bench_spin: Option<Sp
         };
         return Some((0..units).map(spin).collect());
     };
-    if written {
+    if written.is_some() {
         let message = "`first_spin` and `spins` both say how the first unit turns".to_string();
         let help = "remove `first_spin`: `spins` names every unit's upper rotor";
         table.refuse::<()>(&FIRST_SPIN, Code::Conflict, message, "`spins` says it too", help);

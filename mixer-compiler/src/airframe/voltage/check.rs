@@ -150,6 +150,11 @@ fn law(
             }
         }
         [(first, _), others @ ..] => {
+            // Faults of their shape are told all the same.
+            let [exponent, polynomial, points] = forms;
+            table.read::<f64>(exponent);
+            table.read::<Numbers>(polynomial);
+            table.read::<Vec<Point>>(points);
             let names = || written.iter().map(|(key, _)| key.name);
             for (other, place) in others {
                 let message = format!(
