@@ -1,7 +1,6 @@
 //! Bench points beside the model, compared at the voltage at which they were measured.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::model::PairMap;
 
 use crate::effort::Effort;
 use crate::number::significant;
@@ -81,8 +80,7 @@ impl BenchPoints {
         measured: [f64; 2],
         voltage_v: Option<f64>,
     ) {
-        let airframe = &compiled.airframe;
-        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+        let (airframe, pair) = (&compiled.airframe, &compiled.pair);
         let [low, high] = pair.range();
         let within = throttles.iter().all(|t| (low - 1e-9..=high + 1e-9).contains(t));
         let k = match (&airframe.voltage, voltage_v) {
@@ -112,7 +110,7 @@ impl BenchPoints {
     /// Why these files may not be of the airframe's pair; empty where nothing speaks against them.
     pub fn doubts(&self, compiled: &Compiled) -> Vec<String> {
         let airframe = &compiled.airframe;
-        let scale = PairMap::new(&airframe.pair, &airframe.throttle).scale();
+        let scale = compiled.pair.scale();
         let mut doubts = Vec::new();
         for (effort, largest) in Effort::BOTH.into_iter().zip(LARGEST_MISFIT) {
             let Some(misfit) = self.misfit(effort) else {

@@ -1,7 +1,7 @@
 //! Colour maps: forward (Fig. 3 and 4 of the paper), inverse over the attainable set (Fig. 5),
 //! error of the inverse.
 
-use mixer_compiler::report::{Summary, rounded_up};
+use mixer_compiler::report::rounded_up;
 
 use crate::bench::{BenchPoint, BenchPoints};
 use crate::colour::Scale;
@@ -232,7 +232,7 @@ fn outline(study: &Study<'_>, figure: &mut Figure) {
 
 /// The proven bound of the error at the reference voltage, N or N m.
 pub fn error_bound(study: &Study<'_>, effort: Effort) -> f64 {
-    Summary::new(study.compiled).certificate.bound_at_reference[effort as usize]
+    study.summary.certificate.bound_at_reference[effort as usize]
 }
 
 /// The factor and the prefix with which `x` is a number of one to three digits.

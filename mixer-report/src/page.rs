@@ -8,7 +8,7 @@ use mixer_compiler::airframe::Axis;
 use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::cost::Cost;
 use mixer_compiler::diagnostic::printable;
-use mixer_compiler::report::{Summary, rounded_up};
+use mixer_compiler::report::rounded_up;
 
 use crate::authority;
 use crate::bench::{BenchPoint, BenchPoints};
@@ -320,7 +320,7 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[
         .into_iter()
         .zip(fields)
         .map(|(effort, field)| {
-            let summary = Summary::new(study.compiled);
+            let summary = &study.summary;
             let observed = [summary.observed_thrust_n, summary.observed_torque_nm][effort as usize];
             let caption = format!(
                 "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}. At the reference voltage.",

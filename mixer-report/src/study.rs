@@ -3,6 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::model::PairMap;
+use mixer_compiler::report::Summary;
 use mixer_rt::{Health, Wrench, tables::Inverse};
 
 use crate::number::round_half_digit;
@@ -14,6 +15,8 @@ pub struct Study<'a> {
     pub compiled: &'a Compiled,
     /// Its forward map in f64.
     pub pair: PairMap,
+    /// What `check` prints of it.
+    pub summary: Summary,
     /// Total thrust of the comparisons at constant thrust, N.
     pub thrust_n: f64,
 }
@@ -33,10 +36,10 @@ const HOVER_SHARE: f64 = 0.4;
 impl<'a> Study<'a> {
     /// A study at `thrust_n` N in all; without it at about 40 % of the ceiling, a round number.
     pub fn new(compiled: &'a Compiled, thrust_n: Option<f64>) -> Self {
-        let airframe = &compiled.airframe;
         Study {
             compiled,
-            pair: PairMap::new(&airframe.pair, &airframe.throttle),
+            pair: compiled.pair.clone(),
+            summary: Summary::new(compiled),
             thrust_n: thrust_n
                 .unwrap_or_else(|| round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1]))),
         }

@@ -7,7 +7,7 @@ use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::diagnostic::printable;
 use mixer_compiler::hover::Hover;
 use mixer_compiler::power::LevelPower;
-use mixer_compiler::report::{Summary, rounded_up};
+use mixer_compiler::report::rounded_up;
 
 use crate::bench::BenchPoints;
 use crate::comparison::{Answer, Comparison};
@@ -53,7 +53,7 @@ pub fn facts_table(facts: &[(&str, impl Render)]) -> Markup {
 pub fn summary(study: &Study<'_>, origin: &Origin) -> Markup {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
-    let summary = Summary::new(compiled);
+    let summary = &study.summary;
     let inverse = &airframe.inverse;
     let facts = [
         (
