@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 use std::fs::{self, File, Metadata};
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
@@ -46,6 +46,35 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Largest file that is read, bytes. Airframes and parameters have kilobytes; a device without an end
+/// would fill the memory.
+const LARGEST: u64 = 64 << 20;
+
+/// Reads a whole file.
+///
+/// # Errors
+/// What cannot be read, by its path, and why; a file above 64 MB.
+pub fn read(path: &Path) -> Result<Vec<u8>, String> {
+    let fault = |reason: &dyn Display| format!("{}: {reason}", path.display());
+    let file = File::open(path).map_err(|error| fault(&error))?;
+    let mut bytes = Vec::new();
+    file.take(LARGEST + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| fault(&error))?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(fault(&"is above 64 MB; name a smaller file"));
+    }
+    Ok(bytes)
+}
+
+/// [`read`] for text.
+///
+/// # Errors
+/// As [`read`]; what is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, String> {
+    String::from_utf8(read(path)?).map_err(|_| format!("{}: is not UTF-8 text", path.display()))
 }
 
 /// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to

@@ -15,8 +15,7 @@ mod px4;
 mod rotors;
 mod text;
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use parameters::Parameters;
@@ -80,7 +79,7 @@ fn import(args: &ImportArgs) -> Result<Vec<String>, String> {
     let mut imported = read(args)?;
     let units = pairs::pair(&imported.rotors, &args.upper)?;
     let pair = match &args.pair {
-        Some(path) => Some((path.as_path(), read_text(path)?)),
+        Some(path) => Some((path.as_path(), crate::file::read_text(path)?)),
         None => None,
     };
     let pair = pair.as_ref().map(|(path, text)| (*path, text.as_str()));
@@ -92,7 +91,7 @@ fn import(args: &ImportArgs) -> Result<Vec<String>, String> {
 fn read(args: &ImportArgs) -> Result<Imported, String> {
     let mut texts = Vec::new();
     for path in &args.files {
-        texts.push((path.display().to_string(), read_text(path)?));
+        texts.push((path.display().to_string(), crate::file::read_text(path)?));
     }
     if texts.iter().any(|(_, text)| geometry::is_geometry(text)) {
         return geometry::read(&texts);
@@ -114,8 +113,4 @@ fn read(args: &ImportArgs) -> Result<Imported, String> {
             parameters.count()
         ))
     }
-}
-
-fn read_text(path: &Path) -> Result<String, String> {
-    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -3,10 +3,10 @@
 //! Exit status 0, 1 for a bad input, 2 for bad usage; errors go to stderr.
 
 use std::fmt::Display;
+use std::io;
 use std::io::{IsTerminal as _, Write};
 use std::path::Path;
 use std::process::ExitCode;
-use std::{fs, io};
 
 use mixer_compiler::diagnostic::{Diagnostics, printable};
 use mixer_compiler::{Compiled, Source};
@@ -103,7 +103,7 @@ fn compile(path: &Path) -> Result<Compiled, Refusal> {
 /// Reads and compiles an airframe file.
 fn compile_quietly(path: &Path) -> Result<Compiled, Refusal> {
     let name = path.display().to_string();
-    let bytes = fs::read(path).map_err(|error| Refusal::Unreadable(format!("{name}: {error}")))?;
+    let bytes = file::read(path).map_err(Refusal::Unreadable)?;
     let source = Source::from_bytes(name, bytes).map_err(Refusal::Faulty)?;
     mixer_compiler::compile(&source).map_err(Refusal::Faulty)
 }

@@ -37,9 +37,9 @@ pub fn run(args: &NewArgs) -> ExitCode {
     }
     let tables = match &args.pair {
         None => STAND_IN.to_owned(),
-        Some(path) => match std::fs::read_to_string(path) {
+        Some(path) => match crate::file::read_text(path) {
             Ok(text) => fragment::without_instructions(&text),
-            Err(error) => return crate::print_error(format_args!("{}: {error}", path.display())),
+            Err(message) => return crate::print_error(message),
         },
     };
     match args.frame.airframe(Some(&args.output), &tables, None) {

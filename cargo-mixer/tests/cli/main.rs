@@ -317,3 +317,30 @@ fn a_closed_stderr_changes_no_status() {
         assert_eq!(output.status.code(), Some(status), "{arguments:?}");
     }
 }
+
+/// A file without an end is refused, within bounded memory.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_without_an_end_is_refused() {
+    for arguments in [
+        &["check", "/dev/zero"][..],
+        &["import", "/dev/zero", "-o", "never.toml"],
+        &[
+            "new",
+            "--frame",
+            "single",
+            "--pair",
+            "/dev/zero",
+            "-o",
+            "never.toml",
+        ],
+    ] {
+        let output = run(arguments);
+        assert_status(&output, 1);
+        assert!(
+            stderr(&output).contains("/dev/zero: is above 64 MB"),
+            "{}",
+            stderr(&output)
+        );
+    }
+}
