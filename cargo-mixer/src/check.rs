@@ -1,5 +1,7 @@
 //! `cargo mixer check`.
 
+mod verdict;
+
 use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -12,10 +14,11 @@ use mixer_compiler::diagnostic::{Record, Severity, printable};
 use mixer_compiler::report::{Report, Summary};
 use serde::Serialize;
 
+use self::verdict::Verdict;
 use crate::Refusal;
 use crate::stack::Stack;
 
-/// Validates and compiles an airframe file and prints what came of it
+/// Validates and compiles an airframe file and says what came of it
 #[derive(clap::Args, Debug)]
 pub struct CheckArgs {
     /// The airframe file
@@ -23,6 +26,9 @@ pub struct CheckArgs {
     /// Print JSON; faults are then listed under "errors" on stdout as well as on stderr
     #[arg(long)]
     json: bool,
+    /// Print every number: M, M+, proof, costs, parameters of flight stacks, check list for the bench
+    #[arg(long, conflicts_with = "json")]
+    verbose: bool,
     /// Exit with status 1 where there is a warning
     #[arg(long)]
     deny_warnings: bool,
@@ -64,6 +70,13 @@ pub fn run(args: &CheckArgs) -> ExitCode {
                     compile_ms,
                 };
                 json(&mut out, &success)
+            } else if !args.verbose {
+                let verdict = Verdict {
+                    compiled: &compiled,
+                    summary: &Summary::new(&compiled),
+                    file: &args.airframe,
+                };
+                write!(out, "{verdict}")
             } else {
                 let (report, cost) = (Report(&compiled), Cost::new(&compiled));
                 let (list, stack) = (Checklist(&compiled), Stack::new(&compiled));

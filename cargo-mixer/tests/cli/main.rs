@@ -65,7 +65,7 @@ fn assert_status(output: &Output, status: i32) {
 
 #[test]
 fn check_prints_the_key_lines() {
-    let output = run(&["check", X8]);
+    let output = run(&["check", "--verbose", X8]);
     assert_status(&output, 0);
     for line in [
         "isae-x8: ISAE-SUPAERO X8 after Chebbi et al. 2020, Table I\n",
@@ -100,6 +100,42 @@ fn check_prints_the_key_lines() {
     }
 }
 
+/// The verdict: at most 30 lines, nothing that only an engineer of the compiler asks for.
+#[test]
+fn check_begins_with_a_verdict() {
+    for entry in std::fs::read_dir(root().join("airframes")).unwrap() {
+        let path = format!("airframes/{}", entry.unwrap().file_name().to_str().unwrap());
+        let output = run(&["check", &path]);
+        assert_status(&output, 0);
+        let text = stdout(&output);
+        assert!(text.lines().count() <= 30, "{text}");
+        for word in [
+            "\nthrust ",
+            "\nidle ",
+            "\nhover ",
+            "\nvoltage ",
+            "\nwarnings        none\n",
+            "\nnext ",
+        ] {
+            assert!(text.contains(word), "{path}: no {word:?} in\n{text}");
+        }
+        assert!(!text.contains("M+"), "{text}");
+    }
+    let text = stdout(&run(&["check", X8])).to_owned();
+    assert!(
+        text.contains("\nthrust          2.3 to 99.2 N without torque at 14.8 V\n"),
+        "{text}"
+    );
+    assert!(
+        text.contains("\nhover           add [vehicle] mass_kg to see"),
+        "{text}"
+    );
+    assert!(
+        text.contains("\n+yaw            raises outputs 1, 3, 4, 6\n"),
+        "{text}"
+    );
+}
+
 /// With a mass, hover is a number in both lists of parameters.
 #[test]
 fn check_gives_the_hover_throttle_of_a_vehicle() {
@@ -108,7 +144,10 @@ fn check_gives_the_hover_throttle_of_a_vehicle() {
     let path = std::env::temp_dir().join(format!("cargo-mixer-hover-{}.toml", std::process::id()));
     std::fs::write(&path, text).unwrap();
     let name = path.to_str().unwrap();
-    let [output, json] = [run(&["check", name]), run(&["check", "--json", name])];
+    let [output, json] = [
+        run(&["check", "--verbose", name]),
+        run(&["check", "--json", name]),
+    ];
     std::fs::remove_file(&path).unwrap();
     assert_status(&output, 0);
     // 3.2 kg of 99.1508 N: 31.3813 N.

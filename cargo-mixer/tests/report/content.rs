@@ -194,7 +194,7 @@ fn power_and_its_saving_are_told() {
     let file = "airframes/x8-11in-least-power.toml";
     let mut command = Command::new(env!("CARGO_BIN_EXE_cargo-mixer"));
     let run = command
-        .args(["check", file])
+        .args(["check", "--verbose", file])
         .current_dir(root())
         .output()
         .unwrap();

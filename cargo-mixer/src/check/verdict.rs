@@ -1,0 +1,121 @@
+//! The verdict on an airframe: what `check` says without `--verbose`, at most 30 lines.
+
+use std::fmt;
+use std::path::Path;
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Axis;
+use mixer_compiler::checklist::Checklist;
+use mixer_compiler::diagnostic::{printable, rounded_up};
+use mixer_compiler::report::Summary;
+
+/// The verdict; its `Display` is the text.
+pub(super) struct Verdict<'a> {
+    pub(super) compiled: &'a Compiled,
+    pub(super) summary: &'a Summary,
+    /// The airframe file, for the commands that come next.
+    pub(super) file: &'a Path,
+}
+
+impl fmt::Display for Verdict<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Verdict {
+            compiled, summary, ..
+        } = self;
+        let airframe = &compiled.airframe;
+        writeln!(f, "{}: {}", airframe.name, airframe.description)?;
+        writeln!(
+            f,
+            "{} coaxial units, {} rotors; serves {}\n",
+            summary.units,
+            summary.rotors,
+            summary.axes.join(", ")
+        )?;
+
+        let [floor, ceiling] = compiled.thrust_range_n.map(f64::from);
+        let at = match &airframe.voltage {
+            Some(voltage) => format!(" at {} V", voltage.reference_v),
+            None => String::new(),
+        };
+        writeln!(
+            f,
+            "thrust          {floor:.1} to {ceiling:.1} N without torque{at}"
+        )?;
+        writeln!(
+            f,
+            "idle            {:?} gives {:.1} % of the largest thrust; the map needs {} at least",
+            airframe.throttle.min,
+            100.0 * floor / ceiling,
+            summary.min_idle
+        )?;
+        match &summary.hover {
+            Some(hover) => write!(f, "{hover}")?,
+            None => writeln!(
+                f,
+                "hover           add [vehicle] mass_kg to see hover and its margins"
+            )?,
+        }
+        if let Some(uncertainty) = &airframe.pair.uncertainty {
+            writeln!(
+                f,
+                "model error     {} % of the largest thrust, {} % of the largest torque (one standard deviation)",
+                uncertainty.thrust_percent, uncertainty.torque_percent
+            )?;
+        }
+        match &airframe.voltage {
+            Some(voltage) => writeln!(
+                f,
+                "voltage         {} to {} V is corrected for",
+                voltage.range_v[0], voltage.range_v[1]
+            )?,
+            None => writeln!(f, "voltage         not corrected for: the file has no [voltage]")?,
+        }
+        writeln!(
+            f,
+            "inverse map     proven to {} N, {} N m per unit; {} bytes of tables",
+            rounded_up(summary.proven_thrust_n),
+            rounded_up(summary.proven_torque_nm),
+            summary.table_bytes
+        )?;
+        if let (Some(mean), Some(bound)) = (
+            summary.cost.attainable_instructions,
+            summary.cost.bound_instructions,
+        ) {
+            writeln!(
+                f,
+                "cost            about {mean} instructions of a Cortex-M4F in the mean, {bound} at most"
+            )?;
+        }
+        self.outputs(f)?;
+        match compiled.warnings.faults().len() {
+            0 => writeln!(f, "warnings        none")?,
+            count => writeln!(f, "warnings        {count}, told on stderr")?,
+        }
+        let file = printable(&self.file.display().to_string());
+        writeln!(
+            f,
+            "next            cargo mixer report {file} -o report.html (pictures), or check --verbose (every number)"
+        )
+    }
+}
+
+impl Verdict<'_> {
+    /// Which outputs rise for every axis, in order.
+    fn outputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for axis in Axis::ALL {
+            let Some(rising) = Checklist(self.compiled).rising(axis) else {
+                continue;
+            };
+            let mut outputs: Vec<usize> = rising.iter().filter_map(|output| output.parse().ok()).collect();
+            outputs.sort_unstable();
+            let outputs: Vec<String> = outputs.iter().map(usize::to_string).collect();
+            writeln!(
+                f,
+                "{:<15} raises outputs {}",
+                format!("+{}", axis.name()),
+                outputs.join(", ")
+            )?;
+        }
+        Ok(())
+    }
+}
