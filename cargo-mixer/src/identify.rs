@@ -16,8 +16,9 @@ use mixer_identify::sign::{SignChoice, SignPolicy};
 use mixer_identify::wishes::Wishes;
 use mixer_identify::{date, fragment, report};
 
-use crate::bench_files::identify_with_runs;
+use crate::bench_files::{identify_with_runs, read_all};
 use crate::frame::FrameArgs;
+use crate::predict::{self, Place, RotorArgs};
 use crate::{output, print_error, print_note};
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
@@ -102,6 +103,13 @@ pub struct IdentifyArgs {
     /// median of 104 motors with propellers.
     #[arg(long, value_name = "K[,K]", value_parser = exponents)]
     pub voltage_exponent: Option<DeclaredExponents>,
+    /// Few rows of the pair on top of what this run of one rotor predicts (`cargo mixer predict`):
+    /// four rows serve, thrust alone serves a little. From 16 rows on leave it out.
+    #[arg(long, value_name = "SINGLE.csv")]
+    pub prior: Option<PathBuf>,
+    /// What is known of the rotors beside the run
+    #[command(flatten)]
+    pub rotors: RotorArgs,
     /// Date of the measurement, YYYY-MM-DD [default: from the file names].
     #[arg(long, value_name = "DATE", value_parser = date_given)]
     pub date: Option<String>,
@@ -134,6 +142,7 @@ impl IdentifyArgs {
         let by_hand = ByHand {
             columns: self.columns.clone(),
             units: self.units.clone(),
+            full_rpm: None,
             swap: self.swap,
         };
         Settings {
@@ -148,6 +157,8 @@ impl IdentifyArgs {
                     thrust: self.thrust_sign,
                     torque: self.torque_sign,
                 },
+                torque_may_lack: self.prior.is_some(),
+                own_columns: false,
                 date: self.date.clone(),
             },
             wishes: Wishes {
@@ -182,6 +193,9 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     if let Some(message) = contradiction(args, file) {
         print_error(message);
         return Err(ExitCode::from(BAD_USAGE));
+    }
+    if let Some(single) = &args.prior {
+        return corrected(args, single);
     }
     if let Some(path) = file {
         crate::file::not_there(path, args.force).map_err(print_error)?;
@@ -236,9 +250,35 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     Ok(())
 }
 
+/// `--prior`: the rows of the pair correct what a run of one rotor predicts.
+fn corrected(args: &IdentifyArgs, single: &Path) -> Result<(), ExitCode> {
+    let place = Place {
+        output: args.output.as_deref(),
+        force: args.force,
+        frame: args.frame.as_ref(),
+        json: args.json,
+    };
+    place.check(&[single])?;
+    let refused = |refusals: Vec<_>| {
+        for refusal in refusals {
+            print_error(refusal);
+        }
+        ExitCode::FAILURE
+    };
+    let maps = read_all(&args.files, &args.settings()).map_err(refused)?;
+    let predicted = predict::correct(&maps, single, &args.rotors, args.reference_voltage, args.throttle)
+        .map_err(print_error)?;
+    place.write(&predicted)
+}
+
 /// The fault of the arguments taken together; `file` is the output unless that is standard
 /// output.
 fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
+    if args.prior.is_none() && args.rotors.is_given() {
+        return Some(
+            "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given".into(),
+        );
+    }
     let Some(output) = file else {
         return (args.json && args.output.is_some())
             .then(|| "--json and -o - would both write to standard output".into());
@@ -265,7 +305,7 @@ fn finite(text: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("{text:?} is not a number"))
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     finite(text).and_then(|x| {
         if x > 0.0 {
             Ok(x)
@@ -296,7 +336,7 @@ fn two(text: &str) -> Result<[f64; 2], String> {
     Ok([finite(a)?, finite(b)?])
 }
 
-fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
+pub(crate) fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
     let [min, max] = two(text)?;
     if 0.0 <= min && min < max && max <= 1.0 {
         Ok(ThrottleBox { min, max })
@@ -315,7 +355,7 @@ pub(crate) fn pwm_range(text: &str) -> Result<PulseRange, String> {
     }
 }
 
-fn role(text: &str) -> Result<(String, String), String> {
+pub(crate) fn role(text: &str) -> Result<(String, String), String> {
     let (role, value) = text
         .split_once('=')
         .ok_or_else(|| format!("{text:?} is not ROLE=VALUE"))?;
@@ -325,7 +365,7 @@ fn role(text: &str) -> Result<(String, String), String> {
     }
 }
 
-fn sign_choice(text: &str) -> Result<SignChoice, String> {
+pub(crate) fn sign_choice(text: &str) -> Result<SignChoice, String> {
     let one = |t: &str| match t.trim() {
         "+" | "1" | "+1" | "plus" => Ok(1.0),
         "-" | "-1" | "minus" => Ok(-1.0),

@@ -26,6 +26,7 @@ pub mod library;
 pub mod mix;
 pub mod new;
 pub mod plan;
+pub mod predict;
 pub mod report;
 pub mod schema;
 pub mod setpoints;
