@@ -5,8 +5,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::{
-    check, compare, expand, finish, golden, identify, import, library, mix, new, plan, predict, report, schema, shell,
-    sweep,
+    check, compare, expand, finish, golden, identify, import, library, mix, new, plan, predict, report,
+    schema, shell, sweep,
 };
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)

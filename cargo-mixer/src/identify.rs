@@ -9,13 +9,14 @@ use clap::{Args, ValueEnum};
 use mixer_compiler::airframe::Basis;
 use mixer_identify::basis::ThrottleBox;
 use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
-use mixer_identify::header::{ByHand, ROLES, unknown_role};
+use mixer_identify::header::ByHand;
 use mixer_identify::identified::Settings;
 use mixer_identify::read::Reading;
 use mixer_identify::sign::{SignChoice, SignPolicy};
 use mixer_identify::wishes::Wishes;
 use mixer_identify::{date, fragment, report};
 
+use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::{identify_with_runs, read_all};
 use crate::frame::FrameArgs;
 use crate::predict::{self, Place, RotorArgs};
@@ -131,10 +132,6 @@ pub enum BasisChoice {
 /// `--voltage-exponent`, of thrust and of torque.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeclaredExponents(pub [f64; 2]);
-
-/// `--pwm-range`, microseconds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PulseRange(pub [f64; 2]);
 
 impl IdentifyArgs {
     /// The settings that the arguments ask for.
@@ -297,24 +294,6 @@ fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
     })
 }
 
-fn finite(text: &str) -> Result<f64, String> {
-    text.trim()
-        .parse::<f64>()
-        .ok()
-        .filter(|x| x.is_finite())
-        .ok_or_else(|| format!("{text:?} is not a number"))
-}
-
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    finite(text).and_then(|x| {
-        if x > 0.0 {
-            Ok(x)
-        } else {
-            Err(format!("{x} is not positive"))
-        }
-    })
-}
-
 fn exponents(text: &str) -> Result<DeclaredExponents, String> {
     let (thrust, torque) = text.split_once(',').unwrap_or((text, text));
     Ok(DeclaredExponents([positive(thrust)?, positive(torque)?]))
@@ -327,57 +306,6 @@ fn part(text: &str) -> Result<f64, String> {
             .filter(within)
             .ok_or_else(|| format!("{x} is not in [0, 1)"))
     })
-}
-
-fn two(text: &str) -> Result<[f64; 2], String> {
-    let (a, b) = text
-        .split_once(',')
-        .ok_or_else(|| format!("{text:?} is not two numbers with a comma"))?;
-    Ok([finite(a)?, finite(b)?])
-}
-
-pub(crate) fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
-    let [min, max] = two(text)?;
-    if 0.0 <= min && min < max && max <= 1.0 {
-        Ok(ThrottleBox { min, max })
-    } else {
-        Err(format!("{min},{max} is not 0 <= MIN < MAX <= 1"))
-    }
-}
-
-/// `LOW,HIGH`, increasing.
-pub(crate) fn pwm_range(text: &str) -> Result<PulseRange, String> {
-    let [low, high] = two(text)?;
-    if low < high {
-        Ok(PulseRange([low, high]))
-    } else {
-        Err(format!("{low} is not below {high}"))
-    }
-}
-
-pub(crate) fn role(text: &str) -> Result<(String, String), String> {
-    let (role, value) = text
-        .split_once('=')
-        .ok_or_else(|| format!("{text:?} is not ROLE=VALUE"))?;
-    match ROLES.iter().any(|(known, _)| *known == role) {
-        true => Ok((role.to_string(), value.trim().to_string())),
-        false => Err(unknown_role(role).to_string()),
-    }
-}
-
-pub(crate) fn sign_choice(text: &str) -> Result<SignChoice, String> {
-    let one = |t: &str| match t.trim() {
-        "+" | "1" | "+1" | "plus" => Ok(1.0),
-        "-" | "-1" | "minus" => Ok(-1.0),
-        other => Err(format!("{other:?} is neither auto, + nor -")),
-    };
-    if text.trim() == "auto" {
-        return Ok(SignChoice::Auto);
-    }
-    match text.split_once(',') {
-        Some((upper, lower)) => Ok(SignChoice::Given([one(upper)?, one(lower)?])),
-        None => one(text).map(|s| SignChoice::Given([s, s])),
-    }
 }
 
 fn date_given(text: &str) -> Result<String, String> {

@@ -13,6 +13,7 @@ use mixer_compiler::{Compiled, Source};
 
 mod airframe_file;
 pub mod arguments;
+pub mod bench_args;
 pub mod bench_files;
 pub mod check;
 pub mod compare;

@@ -30,8 +30,8 @@ pub struct PlanArgs {
     #[arg(long, value_enum, default_value_t = Format::Template)]
     format: Format,
     /// Pulse widths of throttle 0 and 1 in a script, microseconds
-    #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = crate::identify::pwm_range)]
-    pwm_range: crate::identify::PulseRange,
+    #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = crate::bench_args::pwm_range)]
+    pwm_range: crate::bench_args::PulseRange,
     /// The file to write, whole or not at all [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,

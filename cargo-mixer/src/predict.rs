@@ -15,9 +15,9 @@ use mixer_identify::refusal::Refusal;
 use mixer_identify::sign::{SignChoice, SignPolicy};
 use mixer_identify::single::{Known, Single};
 
+use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::read_one;
 use crate::frame::FrameArgs;
-use crate::identify::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::{output, print_error, print_note};
 
 /// Predict a pair's thrust and torque from a run of one rotor, or the table of its data sheet
