@@ -96,6 +96,19 @@ fn a_table_of_five_rows_becomes_an_airframe() {
     }
     let checked = json(&run(&folder, &["check", "my-x8.toml", "--json"]));
     assert_eq!(checked["rotors"], 8);
+    // With a mass, hover and margins have their bands.
+    let with_mass = file.clone() + "\n[vehicle]\nmass_kg = 5.0\n";
+    fs::write(folder.join("heavy.toml"), with_mass).expect("a file");
+    let checked = json(&run(&folder, &["check", "heavy.toml", "--json"]));
+    let hover = &checked["hover"]["at"][0];
+    let number = |value: &serde_json::Value| value.as_f64().unwrap_or_else(|| panic!("{hover}"));
+    let upper = number(&hover["upper_throttle"]);
+    let [least, most] = [0, 1].map(|k| number(&hover["throttle_band"][k][0]));
+    assert!(least < upper && upper < most && most - least < 0.1, "{hover}");
+    let margins = hover["margins"].as_array().expect("margins");
+    assert!(margins.iter().all(|margin| number(&margin["band_nm"]) > 0.0));
+    let said = run(&folder, &["check", "heavy.toml"]);
+    assert!(String::from_utf8_lossy(&said.stdout).contains("by [pair.uncertainty]: throttle"));
     // It is not overwritten.
     assert_eq!(run(&folder, &arguments).status.code(), Some(1));
 }

@@ -63,6 +63,7 @@ pub mod rotor;
 pub mod sign;
 pub mod single;
 pub mod text;
+pub mod uncertainty;
 pub mod units;
 pub mod voltage;
 pub mod wishes;

@@ -20,6 +20,7 @@ use super::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
 use super::posterior::{self, BETWEEN_SYSTEMS, Case, scaled};
 use super::refusal::Refusal;
 use super::single::{EXPONENT, Single};
+use super::uncertainty::Uncertainty;
 use super::wording::wrapped;
 
 /// z/D where the user does not say: spacing matters little (docs/no-bench.md).
@@ -130,15 +131,6 @@ pub struct Out {
     pub thrust_n: [f64; 3],
     /// Of torque, N m.
     pub torque_nm: [f64; 3],
-}
-
-/// `[pair.uncertainty]`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Uncertainty {
-    /// % of full scale.
-    pub thrust_percent: f64,
-    /// % of full scale.
-    pub torque_percent: f64,
 }
 
 /// Predicts the pair of a rotor, or of two that differ.
@@ -327,12 +319,9 @@ fn uncertainty(runs: &[Single], rows_with_torque: usize) -> Uncertainty {
         for (is, adds) in [(few, FEW_ROWS[k]), (no_torque, WITHOUT_TORQUE[k])] {
             squares += if is { adds * adds } else { 0.0 };
         }
-        (10.0 * squares.sqrt()).round() / 10.0
+        squares.sqrt()
     };
-    Uncertainty {
-        thrust_percent: percent(0),
-        torque_percent: percent(1),
-    }
+    Uncertainty::rounded(percent(0), percent(1))
 }
 
 /// The cubic of the map over the box whose idle the compiler takes: the least from the wished one
@@ -471,12 +460,7 @@ fn write_keys(out: &mut String, pair: &PredictedPair) -> std::fmt::Result {
             out_of.thrust_n, out_of.torque_nm
         )?;
     }
-    writeln!(
-        out,
-        "[pair.uncertainty]                     # one standard deviation, % of full scale\n\
-         thrust_percent = {:?}\ntorque_percent = {:?}",
-        pair.uncertainty.thrust_percent, pair.uncertainty.torque_percent
-    )
+    write!(out, "{}", pair.uncertainty)
 }
 
 /// The report: what was read, what came of it, how far to trust it.
