@@ -10,7 +10,7 @@ use std::path::Path;
 
 use mixer_compiler::Source;
 use mixer_compiler::diagnostic::{Code, Severity};
-use mixer_tests::{allocators, bases, documents, root};
+use mixer_tests::{allocators, bases, documents, interaction, root};
 
 fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
@@ -60,6 +60,32 @@ fn bases_measure_what_is_held() {
         bases::text(&rows),
         "run `cargo xtask bases`"
     );
+}
+
+#[test]
+fn predictions_measure_what_is_held() {
+    let Some(data) = std::env::var_os("MIXER_BENCH_DATA") else {
+        eprintln!("NOT RUN: predictions_measure_what_is_held needs MIXER_BENCH_DATA");
+        return;
+    };
+    let measured = interaction::measure(Path::new(&data)).unwrap_or_else(|error| panic!("{error}"));
+    for (path, text) in interaction::files().iter().zip(measured.texts()) {
+        assert_eq!(read(path), text, "run `cargo xtask interaction`");
+    }
+    let mean = |name: &str, effort: usize| {
+        let column = interaction::PREDICTIONS
+            .iter()
+            .position(|known| *known == name)
+            .expect("a column");
+        let errors = measured.rows.iter().map(|row| row.percent[column][effort]);
+        errors.sum::<f64>() / measured.rows.len() as f64
+    };
+    assert!(mean("shipped", 0) < 1.7 && mean("shipped", 1) < 4.3);
+    // Of two systems alone the constants are worse, and still far better than none.
+    assert!(
+        mean("left out", 0) < 0.25 * mean("isolated", 0) && mean("left out", 1) < 0.65 * mean("isolated", 1)
+    );
+    assert!(mean("four points", 0) < 1.35 && mean("four points", 1) < 2.8);
 }
 
 /// A stranger reads it in two minutes.

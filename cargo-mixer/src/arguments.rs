@@ -5,8 +5,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::{
-    check, compare, expand, finish, golden, identify, import, library, mix, new, plan, report, schema, shell,
-    sweep,
+    check, compare, expand, finish, golden, identify, import, library, mix, new, plan, predict, report,
+    schema, shell, sweep,
 };
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -32,6 +32,7 @@ enum Command {
     Identify(Box<identify::IdentifyArgs>),
     New(new::NewArgs),
     Plan(plan::PlanArgs),
+    Predict(Box<predict::PredictArgs>),
     Import(import::ImportArgs),
     Library(library::LibraryArgs),
     Report(report::ReportArgs),
@@ -68,6 +69,7 @@ pub fn run() -> ExitCode {
         Command::Identify(args) => identify::run(&args),
         Command::New(args) => new::run(&args),
         Command::Plan(args) => plan::run(&args),
+        Command::Predict(args) => predict::run(&args),
         Command::Import(args) => import::run(&args),
         Command::Library(args) => library::run(&args),
         Command::Report(args) => report::run(&args),

@@ -9,15 +9,17 @@ use clap::{Args, ValueEnum};
 use mixer_compiler::airframe::Basis;
 use mixer_identify::basis::ThrottleBox;
 use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
-use mixer_identify::header::{ByHand, ROLES, unknown_role};
+use mixer_identify::header::ByHand;
 use mixer_identify::identified::Settings;
 use mixer_identify::read::Reading;
 use mixer_identify::sign::{SignChoice, SignPolicy};
 use mixer_identify::wishes::Wishes;
 use mixer_identify::{date, fragment, report};
 
-use crate::bench_files::identify_with_runs;
+use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choice, throttle_box};
+use crate::bench_files::{identify_with_runs, read_all};
 use crate::frame::FrameArgs;
+use crate::predict::{self, Place, RotorArgs};
 use crate::{output, print_error, print_note};
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
@@ -102,6 +104,13 @@ pub struct IdentifyArgs {
     /// median of 104 motors with propellers.
     #[arg(long, value_name = "K[,K]", value_parser = exponents)]
     pub voltage_exponent: Option<DeclaredExponents>,
+    /// Few rows of the pair on top of what this run of one rotor predicts (`cargo mixer predict`):
+    /// four rows serve, thrust alone serves a little. From 16 rows on leave it out.
+    #[arg(long, value_name = "SINGLE.csv")]
+    pub prior: Option<PathBuf>,
+    /// What is known of the rotors beside the run
+    #[command(flatten)]
+    pub rotors: RotorArgs,
     /// Date of the measurement, YYYY-MM-DD [default: from the file names].
     #[arg(long, value_name = "DATE", value_parser = date_given)]
     pub date: Option<String>,
@@ -124,16 +133,13 @@ pub enum BasisChoice {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeclaredExponents(pub [f64; 2]);
 
-/// `--pwm-range`, microseconds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PulseRange(pub [f64; 2]);
-
 impl IdentifyArgs {
     /// The settings that the arguments ask for.
     pub fn settings(&self) -> Settings {
         let by_hand = ByHand {
             columns: self.columns.clone(),
             units: self.units.clone(),
+            full_rpm: None,
             swap: self.swap,
         };
         Settings {
@@ -148,6 +154,8 @@ impl IdentifyArgs {
                     thrust: self.thrust_sign,
                     torque: self.torque_sign,
                 },
+                torque_may_lack: self.prior.is_some(),
+                own_columns: false,
                 date: self.date.clone(),
             },
             wishes: Wishes {
@@ -182,6 +190,9 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     if let Some(message) = contradiction(args, file) {
         print_error(message);
         return Err(ExitCode::from(BAD_USAGE));
+    }
+    if let Some(single) = &args.prior {
+        return corrected(args, single);
     }
     if let Some(path) = file {
         crate::file::not_there(path, args.force).map_err(print_error)?;
@@ -236,9 +247,35 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     Ok(())
 }
 
+/// `--prior`: the rows of the pair correct what a run of one rotor predicts.
+fn corrected(args: &IdentifyArgs, single: &Path) -> Result<(), ExitCode> {
+    let place = Place {
+        output: args.output.as_deref(),
+        force: args.force,
+        frame: args.frame.as_ref(),
+        json: args.json,
+    };
+    place.check(&[single])?;
+    let refused = |refusals: Vec<_>| {
+        for refusal in refusals {
+            print_error(refusal);
+        }
+        ExitCode::FAILURE
+    };
+    let maps = read_all(&args.files, &args.settings()).map_err(refused)?;
+    let predicted = predict::correct(&maps, single, &args.rotors, args.reference_voltage, args.throttle)
+        .map_err(print_error)?;
+    place.write(&predicted)
+}
+
 /// The fault of the arguments taken together; `file` is the output unless that is standard
 /// output.
 fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
+    if args.prior.is_none() && args.rotors.is_given() {
+        return Some(
+            "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given".into(),
+        );
+    }
     let Some(output) = file else {
         return (args.json && args.output.is_some())
             .then(|| "--json and -o - would both write to standard output".into());
@@ -257,24 +294,6 @@ fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
     })
 }
 
-fn finite(text: &str) -> Result<f64, String> {
-    text.trim()
-        .parse::<f64>()
-        .ok()
-        .filter(|x| x.is_finite())
-        .ok_or_else(|| format!("{text:?} is not a number"))
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    finite(text).and_then(|x| {
-        if x > 0.0 {
-            Ok(x)
-        } else {
-            Err(format!("{x} is not positive"))
-        }
-    })
-}
-
 fn exponents(text: &str) -> Result<DeclaredExponents, String> {
     let (thrust, torque) = text.split_once(',').unwrap_or((text, text));
     Ok(DeclaredExponents([positive(thrust)?, positive(torque)?]))
@@ -287,57 +306,6 @@ fn part(text: &str) -> Result<f64, String> {
             .filter(within)
             .ok_or_else(|| format!("{x} is not in [0, 1)"))
     })
-}
-
-fn two(text: &str) -> Result<[f64; 2], String> {
-    let (a, b) = text
-        .split_once(',')
-        .ok_or_else(|| format!("{text:?} is not two numbers with a comma"))?;
-    Ok([finite(a)?, finite(b)?])
-}
-
-fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
-    let [min, max] = two(text)?;
-    if 0.0 <= min && min < max && max <= 1.0 {
-        Ok(ThrottleBox { min, max })
-    } else {
-        Err(format!("{min},{max} is not 0 <= MIN < MAX <= 1"))
-    }
-}
-
-/// `LOW,HIGH`, increasing.
-pub(crate) fn pwm_range(text: &str) -> Result<PulseRange, String> {
-    let [low, high] = two(text)?;
-    if low < high {
-        Ok(PulseRange([low, high]))
-    } else {
-        Err(format!("{low} is not below {high}"))
-    }
-}
-
-fn role(text: &str) -> Result<(String, String), String> {
-    let (role, value) = text
-        .split_once('=')
-        .ok_or_else(|| format!("{text:?} is not ROLE=VALUE"))?;
-    match ROLES.iter().any(|(known, _)| *known == role) {
-        true => Ok((role.to_string(), value.trim().to_string())),
-        false => Err(unknown_role(role).to_string()),
-    }
-}
-
-fn sign_choice(text: &str) -> Result<SignChoice, String> {
-    let one = |t: &str| match t.trim() {
-        "+" | "1" | "+1" | "plus" => Ok(1.0),
-        "-" | "-1" | "minus" => Ok(-1.0),
-        other => Err(format!("{other:?} is neither auto, + nor -")),
-    };
-    if text.trim() == "auto" {
-        return Ok(SignChoice::Auto);
-    }
-    match text.split_once(',') {
-        Some((upper, lower)) => Ok(SignChoice::Given([one(upper)?, one(lower)?])),
-        None => one(text).map(|s| SignChoice::Given([s, s])),
-    }
 }
 
 fn date_given(text: &str) -> Result<String, String> {

@@ -13,6 +13,7 @@ use mixer_compiler::{Compiled, Source};
 
 mod airframe_file;
 pub mod arguments;
+pub mod bench_args;
 pub mod bench_files;
 pub mod check;
 pub mod compare;
@@ -26,6 +27,7 @@ pub mod library;
 pub mod mix;
 pub mod new;
 pub mod plan;
+pub mod predict;
 pub mod report;
 pub mod schema;
 pub mod setpoints;

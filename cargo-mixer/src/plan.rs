@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::ValueEnum;
-use mixer_identify::plan::{flight_stand, plan, rcbenchmark, template};
+use mixer_identify::plan::{CORRECTING, flight_stand, plan, rcbenchmark, template};
 
 /// Writes the throttle pairs to run on the bench, in an order that averages temperature and sag
 ///
@@ -17,8 +17,12 @@ pub struct PlanArgs {
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(4..=20))]
     levels: u8,
     /// The lowest throttle: the least at which both rotors turn steadily
-    #[arg(long, value_name = "THROTTLE", value_parser = throttle)]
-    min: f64,
+    #[arg(long, value_name = "THROTTLE", value_parser = throttle, required_unless_present = "prior")]
+    min: Option<f64>,
+    /// The four points that correct a prediction, for `cargo mixer identify --prior`, in place of a
+    /// grid
+    #[arg(long, conflicts_with_all = ["levels", "min", "max"])]
+    prior: bool,
     /// The highest throttle
     #[arg(long, value_name = "THROTTLE", default_value_t = 1.0, value_parser = throttle)]
     max: f64,
@@ -26,8 +30,8 @@ pub struct PlanArgs {
     #[arg(long, value_enum, default_value_t = Format::Template)]
     format: Format,
     /// Pulse widths of throttle 0 and 1 in a script, microseconds
-    #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = crate::identify::pwm_range)]
-    pwm_range: crate::identify::PulseRange,
+    #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = crate::bench_args::pwm_range)]
+    pwm_range: crate::bench_args::PulseRange,
     /// The file to write, whole or not at all [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -56,11 +60,15 @@ fn throttle(text: &str) -> Result<f64, String> {
 
 /// Runs the command.
 pub fn run(args: &PlanArgs) -> ExitCode {
-    if args.min >= args.max {
-        crate::print_error(format_args!("--min {} is not below --max {}", args.min, args.max));
-        return ExitCode::from(2);
-    }
-    let pairs = plan(usize::from(args.levels), args.min, args.max);
+    let pairs = match args.min {
+        Some(min) if min < args.max => plan(usize::from(args.levels), min, args.max),
+        Some(min) => {
+            crate::print_error(format_args!("--min {min} is not below --max {}", args.max));
+            return ExitCode::from(2);
+        }
+        // clap asks for one of the two.
+        None => CORRECTING.to_vec(),
+    };
     let text = match args.format {
         Format::Template => template(&pairs),
         Format::Rcbenchmark => rcbenchmark(&pairs, args.pwm_range.0),

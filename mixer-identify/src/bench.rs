@@ -88,6 +88,11 @@ pub struct Preparation {
     pub settle: f64,
     /// Signs of thrust and torque.
     pub signs: SignPolicy,
+    /// Whether rows of a pair may lack their torque.
+    pub torque_may_lack: bool,
+    /// Whether a run of one rotor is of that rotor, not of the whole: what it drives through the
+    /// one at rest, which has a drag, is then left aside.
+    pub own_columns: bool,
     /// Date given by hand.
     pub date: Option<String>,
 }
@@ -106,6 +111,8 @@ impl Default for Preparation {
                 thrust: SignChoice::Auto,
                 torque: SignChoice::Auto,
             },
+            torque_may_lack: false,
+            own_columns: false,
             date: None,
         }
     }
@@ -136,10 +143,23 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     }
 
     let (signs, sums) = match kind {
-        Kind::Pair => sign::pair(&name, &columns, &samples, &how.signs, &mut notes)?,
-        Kind::SingleRotor => sign::single(&columns, rotor, &samples, &how.signs),
+        Kind::Pair => sign::pair(
+            &name,
+            &columns,
+            &samples,
+            &how.signs,
+            how.torque_may_lack,
+            &mut notes,
+        )?,
+        Kind::SingleRotor => sign::single(&columns, rotor, how.own_columns, &samples, &how.signs),
     };
-    let points = points_of(&name, kind, rotor, samples.iter().zip(sums), &mut refused);
+    let points = points_of(
+        &name,
+        &turned,
+        how.torque_may_lack,
+        samples.iter().zip(sums),
+        &mut refused,
+    );
     refused.sort_by_key(|r| r.line);
     if points.is_empty() {
         let dropped = format!("{start_stop_rows} start and stop rows, {settling_rows} settling");
@@ -265,8 +285,8 @@ fn turned(samples: &[Sample], columns: &Columns, stop_throttle: f64, notes: &mut
 /// The points of rows with all that a fit needs; the others are refused.
 fn points_of<'a>(
     name: &str,
-    kind: Kind,
-    rotor: usize,
+    &Turned { kind, rotor }: &Turned,
+    torque_may_lack: bool,
     rows: impl Iterator<Item = (&'a Sample, (f64, f64))>,
     refused: &mut Vec<RefusedRow>,
 ) -> Vec<Point> {
@@ -277,7 +297,7 @@ fn points_of<'a>(
             Some("the throttle is empty")
         } else if thrust.is_nan() {
             Some("the thrust is empty")
-        } else if both && torque.is_nan() {
+        } else if both && torque.is_nan() && !torque_may_lack {
             Some("the torque is empty")
         } else {
             None

@@ -150,7 +150,14 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
     writeln!(out, "[pair]\nbasis = \"{}\"", pair.basis.name())?;
     coefficients(out, "thrust_n", &pair.terms, &pair.thrust)?;
     coefficients(out, "torque_nm", &pair.terms, &pair.torque)?;
-    writeln!(out, "upper_spin = \"{}\"", pair.upper_spin)
+    writeln!(out, "upper_spin = \"{}\"", pair.upper_spin)?;
+    match &pair.uncertainty {
+        Some(uncertainty) => write!(
+            out,
+            "\n# The error on throttle levels that were left out.\n{uncertainty}"
+        ),
+        None => Ok(()),
+    }
 }
 
 fn coefficients(out: &mut String, key: &str, terms: &[String], fit: &Fit) -> std::fmt::Result {

@@ -62,6 +62,8 @@ pub struct ByHand {
     pub columns: Vec<(String, String)>,
     /// (role, unit), for headers without one.
     pub units: Vec<(String, String)>,
+    /// Speed at full throttle, revolutions per minute: throttle columns hold speeds.
+    pub full_rpm: Option<f64>,
     /// Exchange the two rotors that the header suggests.
     pub swap: bool,
 }
@@ -273,6 +275,9 @@ fn scaled(
         .map(|(_, u)| u.clone());
     let unit = given.or_else(|| name.unit.clone());
     let scale = match (&unit, quantity) {
+        (_, Quantity::Throttle) if by_hand.full_rpm.is_some() => {
+            by_hand.full_rpm.map(|full| Scale::Factor(1.0 / full))
+        }
         (Some(unit), _) => units::scale(quantity, unit),
         (None, Quantity::Throttle) if name.words().any(|w| w == "pwm" || w == "esc") => {
             Some(Scale::Pulse(1.0))

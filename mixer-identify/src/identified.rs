@@ -246,7 +246,8 @@ fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refus
         .map(|b| b.file.as_str())
         .collect::<Vec<_>>()
         .join(", ");
-    let for_pair = "for [pair]: a sweep of both throttles independently, with thrust and torque of the pair";
+    let for_pair = "for [pair]: a sweep of both throttles independently, with thrust and torque of the pair, or cargo mixer predict, which makes a pair of \
+                    a run of one rotor";
     match voltage.map(|v| &v.thrust) {
         Some(Exponent::Identified(_)) => Ok(()),
         Some(Exponent::Refused { reason, needed }) => Err(Refusal::of(

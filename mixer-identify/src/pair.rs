@@ -14,6 +14,7 @@ use super::monotone::{self, MonotoneCost};
 use super::refusal::Refusal;
 use super::robust::{self, Outlier};
 use super::rotor::Alone;
+use super::uncertainty::Uncertainty;
 use super::voltage::Voltage;
 use super::wishes::Wishes;
 
@@ -46,6 +47,8 @@ pub struct Pair {
     pub throttle: ThrottleBox,
     /// Measured range of throttle, of the upper and of the lower rotor.
     pub measured: [[f64; 2]; 2],
+    /// The error on throttle levels that were left out; none where too few were measured.
+    pub uncertainty: Option<Uncertainty>,
     /// Cross-validation, one entry per basis; one basis only if it was given.
     pub cross_validation: Vec<Candidate>,
     /// Rows that stand out.
@@ -123,6 +126,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
             ..throttle_box
         },
         measured,
+        uncertainty: of_levels(&cross_validation),
         cross_validation,
         outliers_left_out: wishes.robust,
         outliers,
@@ -185,6 +189,15 @@ fn choose(points: &[Placed], throttle_box: ThrottleBox, wishes: &Wishes) -> Resu
         outliers: confirmed(basis, points, &suspects, &clean, throttle_box),
         cross_validation,
     })
+}
+
+/// The error of the chosen basis on throttle levels that were left out.
+fn of_levels(candidates: &[Candidate]) -> Option<Uncertainty> {
+    let errors = candidates.iter().find(|c| c.chosen)?.errors?;
+    Some(Uncertainty::rounded(
+        errors.thrust_leave_level_out,
+        errors.torque_leave_level_out,
+    ))
 }
 
 fn without_outliers<'a>(points: &[Placed<'a>], outliers: &[Outlier]) -> Vec<Placed<'a>> {

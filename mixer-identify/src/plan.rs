@@ -13,6 +13,10 @@ use mixer_compiler::airframe::Basis;
 
 use super::basis::monomials;
 
+/// The throttles `[u, l]` that correct a prediction (`identify --prior`): both rotors at half and at
+/// full thrust, and either one far above the other.
+pub const CORRECTING: [[f64; 2]; 4] = [[0.6, 0.6], [0.95, 0.4], [0.4, 0.95], [0.95, 0.95]];
+
 /// The throttles `[u, l]` in the order of the plan: each of `levels` x `levels` pairs once.
 pub fn plan(levels: usize, min: f64, max: f64) -> Vec<[f64; 2]> {
     let count = levels * levels;

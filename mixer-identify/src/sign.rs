@@ -89,10 +89,20 @@ pub fn pair(
     columns: &Columns,
     samples: &[Sample],
     policy: &SignPolicy,
+    torque_may_lack: bool,
     notes: &mut Vec<String>,
 ) -> Result<(Signs, Vec<(f64, f64)>), Refusal> {
-    both_measured(file, columns)?;
-    let torque = pair_torque(file, columns, samples, policy.torque, notes)?;
+    let lacks = torque_may_lack && !has_torque(columns, samples);
+    thrust_measured(file, columns)?;
+    let torque = if lacks {
+        Channel {
+            signs: Vec::new(),
+            sums: vec![f64::NAN; samples.len()],
+        }
+    } else {
+        torque_measured(file, columns)?;
+        pair_torque(file, columns, samples, policy.torque, notes)?
+    };
     let thrust = pair_thrust(columns, samples, policy.thrust, notes);
     let signs = Signs {
         thrust: thrust.signs,
@@ -103,8 +113,17 @@ pub fn pair(
     Ok((signs, thrust.sums.into_iter().zip(torque.sums).collect()))
 }
 
-/// Refuses a pair without a channel of the whole or of each rotor.
-fn both_measured(file: &str, columns: &Columns) -> Result<(), Refusal> {
+/// Whether any row has the torque of the whole pair.
+fn has_torque(columns: &Columns, samples: &[Sample]) -> bool {
+    let measured = |s: &Sample| match columns.torque {
+        Some(_) => s.torque.is_finite(),
+        None => s.rotor_torque.iter().all(|q| q.is_finite()),
+    };
+    samples.iter().any(measured)
+}
+
+/// Refuses a pair without thrust of the whole or of each rotor.
+fn thrust_measured(file: &str, columns: &Columns) -> Result<(), Refusal> {
     if columns.thrust.is_none() && columns.rotor_thrust.iter().any(Option::is_none) {
         return Err(Refusal::of(
             file,
@@ -112,6 +131,11 @@ fn both_measured(file: &str, columns: &Columns) -> Result<(), Refusal> {
             "a column of total thrust, or one per rotor",
         ));
     }
+    Ok(())
+}
+
+/// Refuses a pair without torque of the whole or of each rotor.
+fn torque_measured(file: &str, columns: &Columns) -> Result<(), Refusal> {
     if columns.torque.is_none() && columns.rotor_torque.iter().any(Option::is_none) {
         return Err(Refusal::of(
             format!("{file}:1"),
@@ -217,11 +241,14 @@ fn no_magnitudes(file: &str, by_upper: f64, by_lower: f64) -> Result<(), Refusal
 pub fn single(
     columns: &Columns,
     rotor: usize,
+    own_columns: bool,
     samples: &[Sample],
     policy: &SignPolicy,
 ) -> (Signs, Vec<(f64, f64)>) {
     // The whole where it is measured: a rotor at rest in the wake has a drag of its own.
-    let (whole_thrust, whole_torque) = (columns.thrust.is_some(), columns.torque.is_some());
+    let whole = |total: bool, own: bool| total && !(own_columns && own);
+    let whole_thrust = whole(columns.thrust.is_some(), columns.rotor_thrust[rotor].is_some());
+    let whole_torque = whole(columns.torque.is_some(), columns.rotor_torque[rotor].is_some());
     let thrust = |s: &Sample| {
         if whole_thrust {
             s.thrust

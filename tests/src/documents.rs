@@ -34,6 +34,12 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/evaluation.md", "static", tables::static_comparison()?),
         of("docs/evaluation.md", "allocators", tables::allocators()?),
         of("docs/bench.md", "bases", tables::bases()?),
+        of("docs/no-bench.md", "interaction", tables::interaction()?),
+        of(
+            "docs/no-bench.md",
+            "interaction-constants",
+            tables::interaction_constants()?,
+        ),
         of("docs/bench-run.md", "levels", tables::levels()?),
         of("docs/bench-run.md", "spacings", tables::spacings()?),
         of("docs/allocation.md", "logged-saving", tables::logged_saving()?),

@@ -13,6 +13,7 @@ pub mod firmware;
 pub mod frames;
 pub mod golden;
 pub mod image;
+pub mod interaction;
 pub mod interior_point;
 pub mod motion;
 pub mod optimum;

@@ -71,6 +71,11 @@ const TASKS: &[Task] = &[
         does: "compares bases on MIXER_BENCH_DATA and writes tests/measurements/bases.csv",
     },
     Task {
+        name: "interaction",
+        program: tests!(=> "interaction"),
+        does: "fits the constants of the interaction on MIXER_BENCH_DATA, leaves systems out and writes interaction.csv and interaction-constants.csv of tests/measurements/",
+    },
+    Task {
         name: "bench-data",
         program: &[
             "sh",

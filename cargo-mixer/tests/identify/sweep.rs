@@ -252,6 +252,8 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
                 thrust: SignChoice::Auto,
                 torque: SignChoice::Auto,
             },
+            torque_may_lack: false,
+            own_columns: false,
             date: None,
         },
         wishes: Wishes {

@@ -71,6 +71,11 @@ pub struct HoverAt {
     pub upper_throttle: Option<f64>,
     /// Mean throttle of the lower rotors, likewise.
     pub lower_throttle: Option<f64>,
+    /// Mean throttles `[upper, lower]` where the pair gives one standard deviation of
+    /// `[pair.uncertainty]` more and less thrust than its model; `None` without that table, or where
+    /// the weight is then not carried.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub throttle_band: Option<[[f64; 2]; 2]>,
     /// Largest torques `[negative, positive]` about the served axes that are delivered with the
     /// weight, each alone, N m.
     pub margins: Vec<Margin>,
@@ -83,6 +88,10 @@ pub struct Margin {
     pub axis: &'static str,
     /// Least and largest torque, N m.
     pub torque_nm: [f64; 2],
+    /// What all units may be off together by one standard deviation of `[pair.uncertainty]`, N m;
+    /// `None` without that table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub band_nm: Option<f64>,
 }
 
 impl Hover {
@@ -129,17 +138,30 @@ impl HoverAt {
                 voltage_v,
                 upper_throttle: None,
                 lower_throttle: None,
+                throttle_band: None,
                 margins: Vec::new(),
             };
         };
         let units = &compiled.airframe.units;
-        let mean = |channels: &mut dyn Iterator<Item = usize>| {
+        let mean = |throttles: &[f32], channels: &mut dyn Iterator<Item = usize>| {
             let sum: f64 = channels
                 .filter_map(|channel| throttles.get(channel))
                 .map(|&throttle| f64::from(throttle))
                 .sum();
-            Some(sum / units.len() as f64)
+            sum / units.len() as f64
         };
+        let means = |throttles: &[f32]| {
+            [
+                mean(throttles, &mut units.iter().map(|unit| unit.upper_channel)),
+                mean(throttles, &mut units.iter().map(|unit| unit.lower_channel)),
+            ]
+        };
+        let [upper, lower] = means(&throttles);
+        let band = |axis: Axis| band(compiled, axis, voltage_v);
+        let throttle_band = band(Axis::Thrust).and_then(|off| {
+            let at = |thrust: f64| Some(means(&mix([0.0, 0.0, 0.0, thrust])?));
+            Some([at(weight_n - off)?, at(weight_n + off)?])
+        });
         let margins = served.map(|axis| {
             let largest = largest_torque(compiled, axis);
             let reach = |sign: f64| {
@@ -153,12 +175,14 @@ impl HoverAt {
             Margin {
                 axis: axis.name(),
                 torque_nm: [reach(-1.0), reach(1.0)],
+                band_nm: band(axis),
             }
         });
         HoverAt {
             voltage_v,
-            upper_throttle: mean(&mut units.iter().map(|unit| unit.upper_channel)),
-            lower_throttle: mean(&mut units.iter().map(|unit| unit.lower_channel)),
+            upper_throttle: Some(upper),
+            lower_throttle: Some(lower),
+            throttle_band,
             margins: margins.collect(),
         }
     }
@@ -194,6 +218,24 @@ fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
     compiled.effectiveness.largest(axis as usize, [f * k_f, q * k_q])
 }
 
+/// What an axis is off by where every unit misses its model by one standard deviation, all to the
+/// same end: the units have one model, so their errors go together. N or N m; `None` without
+/// `[pair.uncertainty]`.
+fn band(compiled: &Compiled, axis: Axis, voltage_v: Option<f64>) -> Option<f64> {
+    let airframe = &compiled.airframe;
+    let uncertainty = airframe.pair.uncertainty.as_ref()?;
+    let [k_f, k_q] = match (&airframe.voltage, voltage_v) {
+        (Some(voltage), Some(volts)) => [voltage.thrust_factor(volts), voltage.torque_factor(volts)],
+        _ => [1.0, 1.0],
+    };
+    let [f, q] = compiled.pair.scale();
+    let off = [
+        0.01 * uncertainty.thrust_percent * k_f * f,
+        0.01 * uncertainty.torque_percent * k_q * q,
+    ];
+    Some(compiled.effectiveness.largest(axis as usize, off))
+}
+
 impl fmt::Display for Hover {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
@@ -215,8 +257,19 @@ impl fmt::Display for Hover {
                 let [least, largest] = margin.torque_nm;
                 let comma = if index > 0 { "," } else { "" };
                 write!(f, "{comma} {} {least:.3} to {largest:.3}", margin.axis)?;
+                if let Some(band) = margin.band_nm {
+                    write!(f, " +- {band:.3}")?;
+                }
             }
             writeln!(f)?;
+            if let Some([[least_upper, least_lower], [upper, lower]]) = at.throttle_band {
+                writeln!(
+                    f,
+                    "  {:<14}by [pair.uncertainty]: throttle {least_upper:.3} to {upper:.3} upper, {least_lower:.3} to {lower:.3} \
+                     lower (one standard deviation)",
+                    ""
+                )?;
+            }
         }
         Ok(())
     }

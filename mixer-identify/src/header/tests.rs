@@ -109,6 +109,7 @@ fn by_hand() {
         ],
         units: vec![("thrust".into(), "kgf".into())],
         swap: false,
+        full_rpm: None,
     };
     let c = find_by_hand("cmd_one,x,F,M (N⋅m)", &hand).expect("mapped");
     assert_eq!(

@@ -34,7 +34,7 @@ fn totals_are_turned_to_the_convention() {
     for (a, b, sign) in [(-1.0, 0.8, 1.0), (1.0, -0.8, -1.0)] {
         let s = samples(a, b);
         let mut notes = Vec::new();
-        let (signs, sums) = pair("b.csv", &c, &s, &AUTO, &mut notes).expect("signs");
+        let (signs, sums) = pair("b.csv", &c, &s, &AUTO, false, &mut notes).expect("signs");
         assert_eq!((signs.thrust, signs.torque), (vec![-1.0], vec![sign]));
         assert!(sums[0].1 > 0.0 && sums[1].1 < 0.0 && sums[0].0 > 0.0);
         // Exchanged columns turn the torque, too.
@@ -50,7 +50,7 @@ fn rotor_columns_each_get_their_sign() {
     let c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
     for (a, b) in [(1.0, 0.8), (-1.0, 0.8), (-1.0, -0.8)] {
         let mut notes = Vec::new();
-        let (_, sums) = pair("b.csv", &c, &samples(a, b), &AUTO, &mut notes).expect("signs");
+        let (_, sums) = pair("b.csv", &c, &samples(a, b), &AUTO, false, &mut notes).expect("signs");
         assert!((sums[0].1 - (-0.04 + 0.8 * 0.64)).abs() < 1e-12, "{a} {b}");
         assert!((sums[0].0 - (0.2 + 0.4)).abs() < 1e-12);
         assert!(notes.is_empty(), "{notes:?}");
@@ -60,7 +60,7 @@ fn rotor_columns_each_get_their_sign() {
 #[test]
 fn magnitudes_are_refused_and_given_signs_help() {
     let c = columns("upper,lower,thrust_n,torque_nm");
-    let error = pair("b.csv", &c, &samples(1.0, 0.8), &AUTO, &mut Vec::new()).unwrap_err();
+    let error = pair("b.csv", &c, &samples(1.0, 0.8), &AUTO, false, &mut Vec::new()).unwrap_err();
     assert!(error.reason.contains("sum of magnitudes"), "{error}");
     let c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
     let given = SignPolicy {
@@ -68,7 +68,7 @@ fn magnitudes_are_refused_and_given_signs_help() {
         ..AUTO
     };
     let mut notes = Vec::new();
-    let (signs, sums) = pair("b.csv", &c, &samples(1.0, 0.8), &given, &mut notes).expect("signs");
+    let (signs, sums) = pair("b.csv", &c, &samples(1.0, 0.8), &given, false, &mut notes).expect("signs");
     assert!(notes[0].contains("written mirrored, for one"), "{notes:?}");
     assert_eq!(signs.torque, [-1.0, 1.0]);
     assert!(sums[0].1 > 0.0);
@@ -79,10 +79,10 @@ fn constant_and_missing_torque_are_refused() {
     let c = columns("upper,lower,thrust_n,torque_nm");
     let mut s = samples(-1.0, 0.8);
     s.iter_mut().for_each(|s| s.torque = 0.25);
-    let error = pair("b.csv", &c, &s, &AUTO, &mut Vec::new()).unwrap_err();
+    let error = pair("b.csv", &c, &s, &AUTO, false, &mut Vec::new()).unwrap_err();
     assert!(error.reason.contains("constant at 0.25"), "{error}");
     let c = columns("upper,lower,thrust_n");
-    let error = pair("b.csv", &c, &s, &AUTO, &mut Vec::new()).unwrap_err();
+    let error = pair("b.csv", &c, &s, &AUTO, false, &mut Vec::new()).unwrap_err();
     assert!(error.reason.contains("no torque column"), "{error}");
 }
 
@@ -95,7 +95,7 @@ fn the_rotor_in_the_wake_is_noticed() {
     for named in [false, true] {
         c.sides_named = named;
         let mut notes = Vec::new();
-        pair("b.csv", &c, &s, &AUTO, &mut notes).expect("signs");
+        pair("b.csv", &c, &s, &AUTO, false, &mut notes).expect("signs");
         assert!(notes[0].contains("--swap"), "{notes:?}");
     }
 }

@@ -11,7 +11,7 @@ use mixer_rt::Wrench;
 
 use super::Table;
 use crate::counts;
-use crate::{airframes, allocators, bases, golden, root};
+use crate::{airframes, allocators, bases, golden, interaction, root};
 
 /// The airframe of the paper.
 const PAPER: &str = "isae-x8";
@@ -287,6 +287,43 @@ pub(super) fn bases() -> Result<String, String> {
     Ok(markdown(
         &["map", "biquadratic", "cubic", "quartic", "chosen"],
         &rows,
+    ))
+}
+
+/// Errors of predicted pairs on real maps, and their means.
+pub(super) fn interaction() -> Result<String, String> {
+    let [path, _] = interaction::files();
+    let held = measured(&path)?;
+    let mut sums = [0.0; 12];
+    let mut rows = Vec::new();
+    for row in &held {
+        let fault = || format!("{}: not a row: {row:?}", path.display());
+        let [rotor, spacing_ratio, errors @ ..] = &row[..] else {
+            return Err(fault());
+        };
+        if errors.len() != sums.len() {
+            return Err(fault());
+        }
+        for (sum, error) in sums.iter_mut().zip(errors) {
+            *sum += error.parse::<f64>().map_err(|_| fault())? / held.len() as f64;
+        }
+        rows.push((format!("{rotor}, z/D {spacing_ratio}"), errors.to_vec()));
+    }
+    rows.push(("mean".to_owned(), sums.map(|mean| format!("{mean:.2}")).to_vec()));
+    let cells = rows.into_iter().map(|(name, errors)| {
+        let pairs = errors.chunks(2).map(|pair| pair.join(", "));
+        [name].into_iter().chain(pairs).collect::<Vec<String>>()
+    });
+    let header: Vec<&str> = ["map"].into_iter().chain(interaction::PREDICTIONS).collect();
+    Ok(markdown(&header, &cells.collect::<Vec<_>>()))
+}
+
+/// Constants of the interaction by what they were fitted on.
+pub(super) fn interaction_constants() -> Result<String, String> {
+    let [_, path] = interaction::files();
+    Ok(markdown(
+        &["fitted on", "B", "m0", "m1", "n", "a", "b"],
+        &measured(&path)?,
     ))
 }
 

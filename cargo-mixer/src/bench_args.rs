@@ -1,0 +1,78 @@
+//! Values of arguments that the commands about benches share.
+
+use mixer_identify::basis::ThrottleBox;
+use mixer_identify::header::{ROLES, unknown_role};
+use mixer_identify::sign::SignChoice;
+
+/// `--pwm-range`, microseconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PulseRange(pub [f64; 2]);
+
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse::<f64>()
+        .ok()
+        .filter(|x| x.is_finite())
+        .ok_or_else(|| format!("{text:?} is not a number"))
+}
+
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    finite(text).and_then(|x| {
+        if x > 0.0 {
+            Ok(x)
+        } else {
+            Err(format!("{x} is not positive"))
+        }
+    })
+}
+
+fn two(text: &str) -> Result<[f64; 2], String> {
+    let (a, b) = text
+        .split_once(',')
+        .ok_or_else(|| format!("{text:?} is not two numbers with a comma"))?;
+    Ok([finite(a)?, finite(b)?])
+}
+
+pub(crate) fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
+    let [min, max] = two(text)?;
+    if 0.0 <= min && min < max && max <= 1.0 {
+        Ok(ThrottleBox { min, max })
+    } else {
+        Err(format!("{min},{max} is not 0 <= MIN < MAX <= 1"))
+    }
+}
+
+/// `LOW,HIGH`, increasing.
+pub(crate) fn pwm_range(text: &str) -> Result<PulseRange, String> {
+    let [low, high] = two(text)?;
+    if low < high {
+        Ok(PulseRange([low, high]))
+    } else {
+        Err(format!("{low} is not below {high}"))
+    }
+}
+
+pub(crate) fn role(text: &str) -> Result<(String, String), String> {
+    let (role, value) = text
+        .split_once('=')
+        .ok_or_else(|| format!("{text:?} is not ROLE=VALUE"))?;
+    match ROLES.iter().any(|(known, _)| *known == role) {
+        true => Ok((role.to_string(), value.trim().to_string())),
+        false => Err(unknown_role(role).to_string()),
+    }
+}
+
+pub(crate) fn sign_choice(text: &str) -> Result<SignChoice, String> {
+    let one = |t: &str| match t.trim() {
+        "+" | "1" | "+1" | "plus" => Ok(1.0),
+        "-" | "-1" | "minus" => Ok(-1.0),
+        other => Err(format!("{other:?} is neither auto, + nor -")),
+    };
+    if text.trim() == "auto" {
+        return Ok(SignChoice::Auto);
+    }
+    match text.split_once(',') {
+        Some((upper, lower)) => Ok(SignChoice::Given([one(upper)?, one(lower)?])),
+        None => one(text).map(|s| SignChoice::Given([s, s])),
+    }
+}

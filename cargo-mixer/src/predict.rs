@@ -1,0 +1,326 @@
+//! `cargo mixer predict`: a pair's tables from a run of one rotor alone.
+
+use std::io::{Write as _, stdout};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use mixer_identify::basis::ThrottleBox;
+use mixer_identify::bench::{Bench, Preparation};
+use mixer_identify::header::ByHand;
+use mixer_identify::identified::Settings;
+use mixer_identify::predict::{self, LEAST_IDLE, Predicted, Wishes};
+use mixer_identify::read::Reading;
+use mixer_identify::refusal::Refusal;
+use mixer_identify::sign::{SignChoice, SignPolicy};
+use mixer_identify::single::{Known, Single};
+
+use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
+use crate::bench_files::read_one;
+use crate::frame::FrameArgs;
+use crate::{output, print_error, print_note};
+
+/// Predict a pair's thrust and torque from a run of one rotor, or the table of its data sheet
+///
+/// Without a coaxial bench: takes any run of one rotor that `cargo mixer identify` reads, or a plain
+/// table `throttle,thrust[,torque]` of five rows or more, with units in the header or by --unit, as
+/// `Throttle (%),Thrust (gf),Torque (N*m)`. The result is within some per cent of a measured map;
+/// docs/no-bench.md says how many, and how a few bench points make it better.
+#[derive(Debug, Clone, Args)]
+pub struct PredictArgs {
+    /// A run of one rotor alone, or its data sheet's table (CSV).
+    #[arg(value_name = "SINGLE.csv")]
+    pub single: PathBuf,
+    /// What is known of the rotors beside the run
+    #[command(flatten)]
+    pub rotors: RotorArgs,
+    /// The run's throttles are speeds, held by the speed controller: the speed at full throttle,
+    /// revolutions per minute. Takes the column RPM, or --column upper=HEADER.
+    #[arg(long, value_name = "RPM", value_parser = positive)]
+    pub rpm_at_full: Option<f64>,
+    /// Bring the run to this voltage, V, by an exponent of 1.75.
+    #[arg(long, value_name = "VOLT", value_parser = positive)]
+    pub reference_voltage: Option<f64>,
+    /// The throttles to command; the lower is raised where the map asks for it [default: 0.2,1].
+    #[arg(long, value_name = "MIN,MAX", value_parser = throttle_box)]
+    pub throttle: Option<ThrottleBox>,
+    /// Write the tables here, whole or not at all; `-` for standard output.
+    #[arg(short, long, value_name = "PAIR.toml")]
+    pub output: Option<PathBuf>,
+    /// Overwrite the output if it is there
+    #[arg(long)]
+    pub force: bool,
+    /// Write a whole airframe of this frame, not the tables alone
+    #[command(flatten)]
+    pub frame: Option<FrameArgs>,
+    /// Print everything as JSON in place of the report.
+    #[arg(long)]
+    pub json: bool,
+    /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
+    #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
+    pub pwm_range: Option<PulseRange>,
+    /// A column by hand, as throttle="ESC" or thrust=#2 (number from 1).
+    #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = single_role)]
+    pub columns: Vec<(String, String)>,
+    /// A unit by hand, as throttle=% or thrust=gf, for a header without one.
+    #[arg(long = "unit", value_name = "ROLE=UNIT", value_parser = single_role)]
+    pub units: Vec<(String, String)>,
+    /// Sign of thrust: auto, + or -.
+    #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
+    pub thrust_sign: SignChoice,
+}
+
+/// What is known of the rotors beside the run.
+#[derive(Debug, Clone, Default, Args)]
+pub struct RotorArgs {
+    /// A run of the lower rotor alone, where it differs from the upper one.
+    #[arg(long, value_name = "RUN.csv")]
+    pub lower_single: Option<PathBuf>,
+    /// Distance of the rotors over their diameter, z/D [default: 0.25].
+    #[arg(long, value_name = "RATIO", value_parser = positive, conflicts_with = "spacing")]
+    pub spacing_ratio: Option<f64>,
+    /// Distance of the rotors, m.
+    #[arg(long, value_name = "METRE", value_parser = positive, requires = "diameter")]
+    pub spacing: Option<f64>,
+    /// Diameter of the propeller, m.
+    #[arg(long, value_name = "METRE", value_parser = positive)]
+    pub diameter: Option<f64>,
+    /// Torque per thrust, m, for a run without torque [default: 0.048 of the diameter].
+    #[arg(long, value_name = "METRE", value_parser = positive)]
+    pub kappa: Option<f64>,
+    /// Voltage of the run, V, where it has no column for it.
+    #[arg(long, value_name = "VOLT", value_parser = positive)]
+    pub run_voltage: Option<f64>,
+}
+
+impl RotorArgs {
+    /// z/D, where it is given.
+    pub(crate) fn ratio(&self) -> Option<f64> {
+        let spacing = self.spacing.zip(self.diameter);
+        self.spacing_ratio.or(spacing.map(|(z, diameter)| z / diameter))
+    }
+
+    /// The runs of the upper and, where it differs, of the lower rotor.
+    ///
+    /// # Errors
+    /// A file that cannot be read or used.
+    pub(crate) fn runs(
+        &self,
+        single: &Path,
+        reference_v: Option<f64>,
+        settings: &Settings,
+        warnings: &mut Vec<String>,
+    ) -> Result<(Single, Option<Single>), Refusal> {
+        let known = Known {
+            kappa_m: self.kappa,
+            diameter_m: self.diameter,
+            run_v: self.run_voltage,
+            reference_v,
+        };
+        let mut of = |path: &Path| Single::of(&read_one(path, settings)?, &known, warnings);
+        let upper = of(single)?;
+        Ok((upper, self.lower_single.as_deref().map(of).transpose()?))
+    }
+
+    /// Whether anything is given.
+    pub(crate) fn is_given(&self) -> bool {
+        self.lower_single.is_some()
+            || self.ratio().is_some()
+            || [self.diameter, self.kappa, self.run_voltage]
+                .iter()
+                .any(Option::is_some)
+    }
+}
+
+/// A role of a file with one rotor, whose throttle is that of `upper`.
+fn single_role(text: &str) -> Result<(String, String), String> {
+    match text.strip_prefix("throttle=") {
+        Some(value) => role(&format!("upper={value}")),
+        None => role(text),
+    }
+}
+
+impl PredictArgs {
+    fn settings(&self) -> Settings {
+        let mut columns = self.columns.clone();
+        if self.rpm_at_full.is_some() && !columns.iter().any(|(role, _)| role == "upper") {
+            columns.push(("upper".into(), "RPM".into()));
+        }
+        Settings {
+            reading: Reading {
+                by_hand: ByHand {
+                    columns,
+                    units: self.units.clone(),
+                    full_rpm: self.rpm_at_full,
+                    swap: false,
+                },
+                pwm_range: self.pwm_range.map(|range| range.0),
+            },
+            preparation: Preparation {
+                own_columns: true,
+                signs: SignPolicy {
+                    thrust: self.thrust_sign,
+                    torque: SignChoice::Auto,
+                },
+                ..Preparation::default()
+            },
+            ..Settings::default()
+        }
+    }
+
+    fn wishes(&self) -> Wishes {
+        Wishes {
+            spacing_ratio: self.rotors.ratio(),
+            closed_loop: self.rpm_at_full.is_some(),
+            throttle: self.throttle.unwrap_or(Wishes::default().throttle),
+        }
+    }
+
+    /// Predicts the pair.
+    ///
+    /// # Errors
+    /// Files that cannot serve.
+    pub fn predicted(&self) -> Result<Predicted, Refusal> {
+        let mut warnings = Vec::new();
+        let settings = self.settings();
+        let (upper, lower) =
+            self.rotors
+                .runs(&self.single, self.reference_voltage, &settings, &mut warnings)?;
+        predict::predict(upper, lower, &self.wishes(), warnings)
+    }
+}
+
+/// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
+pub fn run(args: &PredictArgs) -> ExitCode {
+    let place = Place {
+        output: args.output.as_deref(),
+        force: args.force,
+        frame: args.frame.as_ref(),
+        json: args.json,
+    };
+    let inputs = [Some(&args.single), args.rotors.lower_single.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let done = place.check(&inputs).and_then(|()| {
+        let predicted = args.predicted().map_err(print_error)?;
+        place.write(&predicted)
+    });
+    done.err().unwrap_or(ExitCode::SUCCESS)
+}
+
+/// [`predict::correct`] of files: `identify MAP.csv.. --prior SINGLE.csv`.
+///
+/// # Errors
+/// Files that cannot serve.
+pub(crate) fn correct(
+    maps: &[Bench],
+    single: &Path,
+    rotors: &RotorArgs,
+    reference_v: Option<f64>,
+    throttle: Option<ThrottleBox>,
+) -> Result<Predicted, Refusal> {
+    let mut warnings = Vec::new();
+    let settings = Settings {
+        preparation: Preparation {
+            own_columns: true,
+            ..Preparation::default()
+        },
+        ..Settings::default()
+    };
+    let (upper, lower) = rotors.runs(single, reference_v, &settings, &mut warnings)?;
+    let wishes = Wishes {
+        spacing_ratio: rotors.ratio(),
+        closed_loop: false,
+        throttle: throttle.unwrap_or(ThrottleBox {
+            min: LEAST_IDLE,
+            max: 1.0,
+        }),
+    };
+    predict::correct(upper, lower, maps, &wishes, warnings)
+}
+
+/// Where a prediction goes.
+pub(crate) struct Place<'a> {
+    pub(crate) output: Option<&'a Path>,
+    pub(crate) force: bool,
+    pub(crate) frame: Option<&'a FrameArgs>,
+    pub(crate) json: bool,
+}
+
+const BAD_USAGE: u8 = 2;
+
+impl Place<'_> {
+    fn to_stdout(&self) -> bool {
+        self.output == Some(Path::new("-"))
+    }
+
+    fn file(&self) -> Option<&Path> {
+        self.output.filter(|_| !self.to_stdout())
+    }
+
+    /// Refuses a place that cannot be written, before there is anything to write.
+    pub(crate) fn check(&self, inputs: &[&Path]) -> Result<(), ExitCode> {
+        let usage = |message: String| {
+            print_error(message);
+            Err(ExitCode::from(BAD_USAGE))
+        };
+        if self.json && self.to_stdout() {
+            return usage("--json and -o - would both write to standard output".into());
+        }
+        let Some(path) = self.file() else { return Ok(()) };
+        if inputs.iter().any(|input| {
+            *input == path
+                || input
+                    .canonicalize()
+                    .is_ok_and(|a| path.canonicalize().is_ok_and(|b| a == b))
+        }) {
+            return usage(format!(
+                "{} is one of the inputs and would be overwritten",
+                path.display()
+            ));
+        }
+        crate::file::not_there(path, self.force).map_err(print_error)
+    }
+
+    /// Writes report and tables.
+    pub(crate) fn write(&self, predicted: &Predicted) -> Result<(), ExitCode> {
+        let tables = predict::text(predicted);
+        let text = match self.frame {
+            None => tables,
+            Some(frame) => frame.airframe(self.file(), &tables, None).map_err(|message| {
+                print_error(message);
+                ExitCode::from(BAD_USAGE)
+            })?,
+        };
+        // Names and headers of the files are in it.
+        let text = crate::printable_lines(&text);
+        let report = if self.json {
+            serde_json::to_string_pretty(predicted).map_err(print_error)?
+        } else {
+            crate::printable_lines(predict::report(predicted).trim_end())
+        };
+        let out = if self.to_stdout() {
+            print_note(&report);
+            text.trim_end()
+        } else {
+            &report
+        };
+        output(writeln!(stdout().lock(), "{out}"))?;
+        match self.file() {
+            Some(path) if self.frame.is_some() => {
+                let status = crate::airframe_file::write(path, &text);
+                if status != ExitCode::SUCCESS {
+                    return Err(status);
+                }
+            }
+            Some(path) => {
+                crate::file::write(path, &text).map_err(print_error)?;
+                print_note(format_args!("wrote {}", path.display()));
+            }
+            None if !self.to_stdout() && !self.json => {
+                print_note("\n(nothing written: -o PAIR.toml writes the tables)");
+            }
+            None => {}
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,515 @@
+//! The map of a pair, predicted from runs of its rotors alone, with or without rows of the pair.
+//!
+//! runs -> [`Single`] -> [`interaction`](mod@super::interaction), its constants moved by rows of the
+//! pair where there are some ([`posterior`]) -> cubic basis over the box -> the
+//! idle raised until the compiler takes it -> `[throttle]`, `[pair]`, `[pair.uncertainty]`,
+//! `[pair.lower_out]`, `[pair.upper_out]`.
+
+use std::fmt::Write as _;
+
+use mixer_compiler::Source;
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::model::injectivity::EnclosedPairMap;
+use serde::Serialize;
+
+use super::basis::ThrottleBox;
+use super::bench::{Bench, Kind};
+use super::curve::Rotor;
+use super::fit::{Design, ten_digits};
+use super::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
+use super::posterior::{self, BETWEEN_SYSTEMS, Case, scaled};
+use super::refusal::Refusal;
+use super::single::{EXPONENT, Single};
+use super::uncertainty::Uncertainty;
+use super::wording::wrapped;
+
+/// z/D where the user does not say: spacing matters little (docs/no-bench.md).
+pub const SPACING_RATIO: f64 = 0.25;
+/// The range of z/D that was measured.
+const KNOWN_SPACINGS: [f64; 2] = [0.1, 1.0];
+/// Least idle of a predicted map: below, a rotor idles under a fast one, which was not measured.
+pub const LEAST_IDLE: f64 = 0.20;
+/// Greatest idle that is tried.
+const MOST_IDLE: f64 = 0.45;
+/// Over the least idle without a fold, as `identify` keeps it.
+const CLEAR: f64 = 1.03;
+/// Thrust of the two rotors alone at full throttle, as a ratio less 1, above which they are not of
+/// one kind.
+const UNEQUAL: f64 = 0.1;
+/// Rows of a pair from which on they describe it better by themselves.
+pub const ENOUGH_ROWS: usize = 16;
+
+/// One standard deviation of a prediction, % of full scale of thrust and of torque: the root mean
+/// square error on 52 maps of five systems, each system left out of the fit of the constants; what
+/// a table of few rows and a torque that was not measured add to it, in squares; and what four rows
+/// of the pair leave. docs/no-bench.md has the maps that the project can measure.
+const PREDICTED: [f64; 2] = [1.5, 3.7];
+const FEW_ROWS: [f64; 2] = [1.5, 2.4];
+const WITHOUT_TORQUE: [f64; 2] = [0.0, 2.0];
+const CORRECTED: [f64; 2] = [1.2, 2.8];
+/// Rows with torque that a correction of it takes.
+const CORRECTING_ROWS: usize = 4;
+
+/// What the user decides.
+#[derive(Debug, Clone)]
+pub struct Wishes {
+    /// z/D.
+    pub spacing_ratio: Option<f64>,
+    /// Whether a throttle commands a speed that the controller holds.
+    pub closed_loop: bool,
+    /// The box to command; its least idle is raised where the map asks for it.
+    pub throttle: ThrottleBox,
+}
+
+impl Default for Wishes {
+    fn default() -> Self {
+        Wishes {
+            spacing_ratio: None,
+            closed_loop: false,
+            throttle: ThrottleBox {
+                min: LEAST_IDLE,
+                max: 1.0,
+            },
+        }
+    }
+}
+
+/// All that `--json` prints.
+#[derive(Debug, Clone, Serialize)]
+pub struct Predicted {
+    /// Program and version.
+    pub generator: String,
+    /// The map.
+    pub pair: PredictedPair,
+    /// The runs of the upper and of the lower rotor alone.
+    pub runs: Vec<Single>,
+    /// Files with rows of the pair, and the rows used.
+    pub corrected_by: Vec<(String, usize)>,
+    /// z/D.
+    pub spacing_ratio: f64,
+    /// B, m0, m1, n, a, b.
+    pub constants: [f64; 6],
+    /// Factors of thrust, of the upper and of the lower torque alone that the rows of the pair ask for.
+    pub factors: [f64; 3],
+    /// Voltage at which the map holds, V, where it is known.
+    pub reference_v: Option<f64>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// The predicted map, as in `[throttle]` and `[pair]`.
+#[derive(Debug, Clone, Serialize)]
+pub struct PredictedPair {
+    /// Cubic.
+    pub basis: Basis,
+    /// Terms in the order of the coefficients.
+    pub terms: Vec<String>,
+    /// Coefficients of thrust, N.
+    pub thrust_n: Vec<f64>,
+    /// Coefficients of torque, N m.
+    pub torque_nm: Vec<f64>,
+    /// `cw`, as `identify` has it.
+    pub upper_spin: &'static str,
+    /// The box that the file commands.
+    pub throttle: ThrottleBox,
+    /// Its least throttle.
+    pub min_idle: f64,
+    /// The upper rotor alone.
+    pub lower_out: Out,
+    /// The lower rotor alone.
+    pub upper_out: Out,
+    /// One standard deviation.
+    pub uncertainty: Uncertainty,
+    /// What the basis misses of the model, rms, % of the greatest thrust and torque.
+    pub misfit_percent: [f64; 2],
+}
+
+/// One rotor alone, with the signs of the airframe file.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Out {
+    /// Of thrust, N.
+    pub thrust_n: [f64; 3],
+    /// Of torque, N m.
+    pub torque_nm: [f64; 3],
+}
+
+/// Predicts the pair of a rotor, or of two that differ.
+///
+/// # Errors
+/// A map that the compiler does not take at any idle.
+pub fn predict(
+    upper: Single,
+    lower: Option<Single>,
+    wishes: &Wishes,
+    warnings: Vec<String>,
+) -> Result<Predicted, Refusal> {
+    correct(upper, lower, &[], wishes, warnings)
+}
+
+/// [`predict`] with rows of the pair, which move the constants.
+///
+/// # Errors
+/// Files that are no maps, and a map that the compiler does not take at any idle.
+pub fn correct(
+    upper: Single,
+    lower: Option<Single>,
+    maps: &[Bench],
+    wishes: &Wishes,
+    mut warnings: Vec<String>,
+) -> Result<Predicted, Refusal> {
+    let runs: Vec<Single> = [Some(upper), lower].into_iter().flatten().collect();
+    let of = |k: usize| runs.get(k).unwrap_or(&runs[0]);
+    remarks(&runs, wishes, &mut warnings);
+    let alone = [of(0).rotor, of(1).rotor];
+    let spacing_ratio = wishes.spacing_ratio.unwrap_or(SPACING_RATIO);
+    let general = if wishes.closed_loop {
+        CLOSED_LOOP
+    } else {
+        OPEN_LOOP
+    };
+    let mut constants = general;
+    let mut factors = [1.0; 3];
+    let mut rows_with_torque = 0;
+    if !maps.is_empty() {
+        let case = case(
+            &runs,
+            maps,
+            general,
+            alone,
+            spacing_ratio,
+            wishes.throttle,
+            &mut warnings,
+        )?;
+        rows_with_torque = case.rows.iter().filter(|row| row[3].is_finite()).count();
+        advise(case.rows.len(), rows_with_torque, &mut warnings);
+        let found = posterior::fit(general, BETWEEN_SYSTEMS, &[case]);
+        constants = found.0;
+        factors = found.1.first().copied().unwrap_or(factors);
+    }
+    let rotors = scaled(&alone, factors);
+    let uncertainty = uncertainty(&runs, rows_with_torque);
+    let map = |throttles| constants.pair(&rotors, spacing_ratio, throttles);
+    let pair = compiled(&map, rotors, uncertainty, wishes.throttle, &runs[0].file)?;
+    if pair.min_idle > wishes.throttle.min + 1e-9 {
+        warnings.push(format!(
+            "throttle.min is raised from {} to {}: below, the predicted map folds or is not inverted to its tolerance",
+            wishes.throttle.min, pair.min_idle
+        ));
+    }
+    Ok(Predicted {
+        generator: format!("cargo mixer predict {}", env!("CARGO_PKG_VERSION")),
+        pair,
+        reference_v: runs[0].voltage_v,
+        runs,
+        corrected_by: maps
+            .iter()
+            .map(|map| (map.file.clone(), map.points.len()))
+            .collect(),
+        spacing_ratio,
+        constants: constants.constants.map(ten_digits),
+        factors: factors.map(ten_digits),
+        warnings,
+    })
+}
+
+/// What speaks against the model, for these runs.
+fn remarks(runs: &[Single], wishes: &Wishes, warnings: &mut Vec<String>) {
+    let [least, most] = KNOWN_SPACINGS;
+    if let Some(ratio) = wishes.spacing_ratio
+        && !(least..=most).contains(&ratio)
+    {
+        warnings.push(format!(
+            "z/D is {ratio}: the interaction was measured from {least} to {most} and is extrapolated"
+        ));
+    }
+    if wishes.throttle.min < LEAST_IDLE {
+        warnings.push(format!(
+            "the idle of {} is below {LEAST_IDLE}, where a prediction was not held against benches",
+            wishes.throttle.min
+        ));
+    }
+    let [upper, lower] =
+        [runs.first(), runs.last()].map(|run| run.map_or(0.0, |run| run.rotor.thrust.at(1.0)));
+    if (upper / lower - 1.0).abs() > UNEQUAL {
+        warnings.push(format!(
+            "the rotors alone give {upper:.2} and {lower:.2} N at full throttle: the interaction was measured on equal \
+             rotors, so trust this the less, and look whether one run was blocked or at another voltage"
+        ));
+    }
+    let volts: Vec<f64> = runs.iter().filter_map(|run| run.voltage_v).collect();
+    if let [a, b] = volts[..]
+        && (a / b - 1.0).abs() > 0.03
+    {
+        warnings.push(format!(
+            "the runs are of {a:.2} and {b:.2} V: --reference-voltage brings both to one"
+        ));
+    }
+}
+
+/// The rows of maps at the voltage of the runs.
+fn case(
+    runs: &[Single],
+    maps: &[Bench],
+    general: Interaction,
+    rotors: [Rotor; 2],
+    spacing_ratio: f64,
+    ThrottleBox { max, .. }: ThrottleBox,
+    warnings: &mut Vec<String>,
+) -> Result<Case, Refusal> {
+    let mut rows = Vec::new();
+    for map in maps {
+        if map.kind != Kind::Pair {
+            return Err(Refusal::of(
+                &map.file,
+                "one rotor stands still in it: it is no row of the pair",
+                "rows in which both rotors turn; a run of one rotor alone by --prior",
+            ));
+        }
+        rows.extend(map.points.iter().map(|p| [p.u, p.l, p.thrust, p.torque]));
+    }
+    let volts: Vec<f64> = maps
+        .iter()
+        .flat_map(|map| &map.points)
+        .map(|p| p.voltage)
+        .filter(|v| v.is_finite())
+        .collect();
+    let mean = volts.iter().sum::<f64>() / volts.len() as f64;
+    if let Some(of_run) = runs[0].voltage_v
+        && (mean / of_run - 1.0).abs() > 0.1
+    {
+        warnings.push(format!(
+            "the rows of the pair are of {mean:.2} V, the run of {of_run:.2} V: what lies between is taken as a factor of \
+             thrust and torque; --reference-voltage {mean:.2} brings the run to them"
+        ));
+    }
+    // The greatest torque is that of one rotor fast and the other slow.
+    let [full, _] = general.pair(&rotors, spacing_ratio, [max; 2]);
+    let corners =
+        [[LEAST_IDLE, max], [max, LEAST_IDLE]].map(|t| general.pair(&rotors, spacing_ratio, t)[1].abs());
+    Ok(Case {
+        rotors,
+        spacing_ratio,
+        rows,
+        full_scale: [full, corners[0].max(corners[1])],
+    })
+}
+
+fn advise(rows: usize, with_torque: usize, warnings: &mut Vec<String>) {
+    if with_torque >= ENOUGH_ROWS {
+        warnings.push(format!(
+            "{with_torque} rows of the pair with torque: from {ENOUGH_ROWS} on, spread over both throttles, a plain identify \
+             is truer; leave --prior out"
+        ));
+    } else if with_torque < CORRECTING_ROWS {
+        warnings.push(format!(
+            "{rows} rows of the pair, {with_torque} of them with torque, correct little: four with both, at (0.6, 0.6), \
+             (0.95, 0.4), (0.4, 0.95) and (0.95, 0.95), halve the error"
+        ));
+    }
+}
+
+fn uncertainty(runs: &[Single], rows_with_torque: usize) -> Uncertainty {
+    let few = runs.iter().any(Single::is_sparse);
+    let no_torque = runs.iter().any(|run| run.kappa_m.is_some());
+    let percent = |k: usize| {
+        if rows_with_torque >= CORRECTING_ROWS {
+            return CORRECTED[k];
+        }
+        let mut squares = PREDICTED[k] * PREDICTED[k];
+        for (is, adds) in [(few, FEW_ROWS[k]), (no_torque, WITHOUT_TORQUE[k])] {
+            squares += if is { adds * adds } else { 0.0 };
+        }
+        squares.sqrt()
+    };
+    Uncertainty::rounded(percent(0), percent(1))
+}
+
+/// The cubic of the map over the box whose idle the compiler takes: the least from the wished one
+/// on, in steps of a hundredth.
+fn compiled(
+    map: &dyn Fn([f64; 2]) -> [f64; 2],
+    [upper, lower]: [Rotor; 2],
+    uncertainty: Uncertainty,
+    wished: ThrottleBox,
+    file: &str,
+) -> Result<PredictedPair, Refusal> {
+    let basis = Basis::Cubic;
+    let fault = || {
+        Refusal::of(
+            file,
+            format!(
+                "the predicted map cannot be inverted at any idle from {} to {MOST_IDLE}",
+                wished.min
+            ),
+            "check the units of thrust and of torque; else a run of a rotor whose thrust and torque grow over the whole throttle, or \
+             a bench for the pair",
+        )
+    };
+    let out = |rotor: Rotor, sign: f64| Out {
+        thrust_n: rotor.thrust.0.map(ten_digits),
+        torque_nm: rotor.torque.0.map(|c| ten_digits(sign * c)),
+    };
+    for step in 0.. {
+        let throttle = ThrottleBox {
+            min: (1e4 * (wished.min + 0.01 * f64::from(step))).round() / 1e4,
+            ..wished
+        };
+        if throttle.min > MOST_IDLE.max(wished.min) {
+            break;
+        }
+        let grid = throttle.grid(20);
+        let points: Vec<[f64; 2]> = grid
+            .clone()
+            .flat_map(|u| grid.clone().map(move |l| [u, l]))
+            .collect();
+        let design = Design::new(basis, &points, throttle).map_err(|_| fault())?;
+        let values: Vec<[f64; 2]> = points.iter().map(|&t| map(t)).collect();
+        let channel = |k: usize| {
+            let y: Vec<f64> = values.iter().map(|v| v[k]).collect();
+            let z = design.coordinates(&y);
+            let squares: f64 = design.residuals(&y, &z).iter().map(|e| e * e).sum();
+            let greatest = y.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
+            let coefficients: Vec<f64> = design.coefficients(&z).into_iter().map(ten_digits).collect();
+            (coefficients, 100.0 * (squares / y.len() as f64).sqrt() / greatest)
+        };
+        let ((thrust_n, f), (torque_nm, q)) = (channel(0), channel(1));
+        let enclosed = EnclosedPairMap::of(basis, &thrust_n, &torque_nm);
+        let clear = ThrottleBox {
+            min: throttle.min / CLEAR,
+            ..throttle
+        };
+        if enclosed.prove_injective(clear.into()).is_err() {
+            continue;
+        }
+        let pair = PredictedPair {
+            basis,
+            terms: basis.term_names(),
+            thrust_n,
+            torque_nm,
+            upper_spin: "cw",
+            throttle,
+            min_idle: throttle.min,
+            lower_out: out(upper, -1.0),
+            upper_out: out(lower, 1.0),
+            uncertainty,
+            misfit_percent: [f, q].map(ten_digits),
+        };
+        if mixer_compiler::compile(&Source::new("predicted.toml", one_pair(&pair))).is_ok() {
+            return Ok(pair);
+        }
+    }
+    Err(fault())
+}
+
+/// An airframe of one such pair, for the compiler to judge.
+fn one_pair(pair: &PredictedPair) -> String {
+    let mut text = String::from("name = \"predicted\"\n");
+    let _ = write_keys(&mut text, pair);
+    text + "[[unit]]\nposition_m = [0.0, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n\
+            [allocation]\naxes = [\"yaw\", \"thrust\"]\n"
+}
+
+/// The tables, with where they come from in comments.
+pub fn text(predicted: &Predicted) -> String {
+    let mut out = String::new();
+    // Writing to a String cannot fail; the result is dropped.
+    let _ = write_text(&mut out, predicted);
+    out
+}
+
+fn write_text(out: &mut String, predicted: &Predicted) -> std::fmt::Result {
+    writeln!(out, "# Predicted by {}, not measured.", predicted.generator)?;
+    for line in lines(predicted) {
+        for (k, line) in wrapped(&line, 104).iter().enumerate() {
+            writeln!(out, "# {}{line}", if k == 0 { "" } else { "  " })?;
+        }
+    }
+    writeln!(out)?;
+    write_keys(out, &predicted.pair)?;
+    let (at, mark) = match predicted.reference_v {
+        Some(volts) => (format!("{:?}", (100.0 * volts).round() / 100.0), ""),
+        None => ("?".to_owned(), " The run does not say at which voltage."),
+    };
+    writeln!(
+        out,
+        "\n# No [voltage]: the mixer takes k = 1 at any voltage.{mark} To follow the battery, complete\n\
+         # [voltage]\n# reference_v = {at}\n# range_v = [?, ?]                   # what the battery gives in flight, under load\n\
+         # thrust_exponent = {EXPONENT}\n# torque_exponent = {EXPONENT}"
+    )
+}
+
+fn write_keys(out: &mut String, pair: &PredictedPair) -> std::fmt::Result {
+    let ThrottleBox { min, max } = pair.throttle;
+    writeln!(out, "[throttle]\nmin = {min:?}\nmax = {max:?}\n")?;
+    writeln!(
+        out,
+        "[pair]\nbasis = \"{}\"                       # {}\nthrust_n = {:?}\ntorque_nm = {:?}\nupper_spin = \"{}\"\n",
+        pair.basis.name(),
+        pair.terms.join(", "),
+        pair.thrust_n,
+        pair.torque_nm,
+        pair.upper_spin
+    )?;
+    for (key, out_of, which) in [
+        ("lower_out", pair.lower_out, "upper"),
+        ("upper_out", pair.upper_out, "lower"),
+    ] {
+        writeln!(
+            out,
+            "[pair.{key}]                       # the {which} rotor alone\nthrust_n = {:?}\ntorque_nm = {:?}\n",
+            out_of.thrust_n, out_of.torque_nm
+        )?;
+    }
+    write!(out, "{}", pair.uncertainty)
+}
+
+/// The report: what was read, what came of it, how far to trust it.
+pub fn report(predicted: &Predicted) -> String {
+    let mut out = String::from("Predicted, not measured\n");
+    for line in lines(predicted) {
+        for (k, line) in wrapped(&line, 96).iter().enumerate() {
+            let _ = writeln!(out, "  {}{line}", if k == 0 { "" } else { "  " });
+        }
+    }
+    let pair = &predicted.pair;
+    let _ = writeln!(
+        out,
+        "\nThrottle {} .. {}; the cubic misses the model by {:.2} % of thrust and {:.2} % of torque, rms",
+        pair.throttle.min, pair.throttle.max, pair.misfit_percent[0], pair.misfit_percent[1]
+    );
+    out
+}
+
+fn lines(predicted: &Predicted) -> Vec<String> {
+    let mut lines = Vec::new();
+    for run in &predicted.runs {
+        lines.push(format!(
+            "from {}: {} points of one rotor, throttle {:.2} to {:.2}{}",
+            run.file,
+            run.points,
+            run.measured[0],
+            run.measured[1],
+            run.voltage_v
+                .map_or(String::new(), |volts| format!(", {volts:.2} V"))
+        ));
+    }
+    for (file, rows) in &predicted.corrected_by {
+        lines.push(format!("corrected by {rows} rows of the pair in {file}"));
+    }
+    let [b, m0, m1, n, a, limit] = predicted.constants;
+    lines.push(format!(
+        "z/D {}; constants B {b}, m0 {m0}, m1 {m1}, n {n}, a {a}, b {limit}",
+        predicted.spacing_ratio
+    ));
+    let Uncertainty {
+        thrust_percent,
+        torque_percent,
+    } = predicted.pair.uncertainty;
+    lines.push(format!(
+        "to trust: thrust within {thrust_percent} %, torque within {torque_percent} % of full scale (one standard deviation), for \
+         open, equal rotors that turn against each other, z/D 0.1 to 1; not for ducts, co-rotating or blocked rotors. In the \
+         first hover compare the thrust asked with the weight; docs/no-bench.md goes on from there."
+    ));
+    lines.extend(predicted.warnings.iter().map(|warning| format!("! {warning}")));
+    lines
+}

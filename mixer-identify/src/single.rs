@@ -1,0 +1,252 @@
+//! A run of one rotor, or the table of its data sheet, as thrust and torque over throttle.
+
+use serde::Serialize;
+
+use super::bench::{Bench, Kind, Point};
+use super::curve::{Curve, Rotor};
+use super::refusal::Refusal;
+
+/// Distinct throttles that a curve of three terms takes, to be judged as well.
+const FEWEST: usize = 5;
+/// Throttle below which a run says too little of the upper half.
+const REACHES: f64 = 0.7;
+/// Throttle up to which a run ends at full throttle.
+const FULL: f64 = 0.95;
+/// Misfit of a curve, rms of the greatest value, that real runs keep below; and one that no rotor
+/// has. Runs of three pairs have up to 0.009.
+const MISFIT: [f64; 2] = [0.02, 0.06];
+/// Torque per thrust of open propellers from 4 to 40 inch with an ample margin, m.
+const KAPPA: [f64; 2] = [0.002, 0.12];
+/// Torque per thrust over diameter, where torque was not measured. Six runs of 11 to 22 inch.
+pub const KAPPA_PER_DIAMETER: f64 = 0.048;
+/// Exponent of voltage, the median of 104 motors with propellers.
+pub const EXPONENT: f64 = 1.75;
+
+/// What the user knows of a run beside its file.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Known {
+    /// Torque per thrust, m, for a run without torque.
+    pub kappa_m: Option<f64>,
+    /// Diameter of the propeller, m.
+    pub diameter_m: Option<f64>,
+    /// Voltage of the run, V, where it has no column for it.
+    pub run_v: Option<f64>,
+    /// Voltage to which the run is brought, V.
+    pub reference_v: Option<f64>,
+}
+
+/// A rotor alone.
+#[derive(Debug, Clone, Serialize)]
+pub struct Single {
+    /// The run.
+    pub file: String,
+    /// Points.
+    pub points: usize,
+    /// Range of throttle.
+    pub measured: [f64; 2],
+    /// Misfit of thrust and of torque, rms, % of the greatest.
+    pub misfit_percent: [Option<f64>; 2],
+    /// Torque per thrust that stands for the torque, m; none where torque was measured.
+    pub kappa_m: Option<f64>,
+    /// Voltage at which the curves hold, V, where it is known.
+    pub voltage_v: Option<f64>,
+    /// Thrust and torque.
+    #[serde(skip)]
+    pub rotor: Rotor,
+}
+
+impl Single {
+    /// The rotor of a run.
+    ///
+    /// # Errors
+    /// A file that is no run of one rotor, or too little of one.
+    pub fn of(bench: &Bench, known: &Known, warnings: &mut Vec<String>) -> Result<Single, Refusal> {
+        let file = &bench.file;
+        if bench.kind == Kind::Pair {
+            return Err(Refusal::of(
+                file,
+                "both rotors turn in it: it is a map of the pair",
+                format!(
+                    "a run of one rotor; of this file, cargo mixer identify {file} finds the pair itself"
+                ),
+            ));
+        }
+        let points = &bench.points;
+        let measured = range(points);
+        enough(file, points, measured)?;
+        if measured[1] < FULL {
+            warnings.push(format!(
+                "{file} ends at a throttle of {:.2}: what is above is extrapolated",
+                measured[1]
+            ));
+        }
+        let thrust = channel(file, "thrust", points, |p| p.thrust, warnings)?;
+        let with_torque: Vec<Point> = points.iter().copied().filter(|p| p.torque.is_finite()).collect();
+        let torque_is_measured = distinct(&with_torque) >= FEWEST;
+        let (torque, kappa_m) = if torque_is_measured {
+            (
+                channel(file, "torque", &with_torque, |p| p.torque, warnings)?,
+                None,
+            )
+        } else {
+            let (kappa, why) = stand_in(file, known)?;
+            warnings.push(format!(
+                "torque was not measured in {file}: {kappa:.4} N m per N stands for it, {why}"
+            ));
+            let torque = Channel {
+                curve: thrust.curve.times(kappa),
+                misfit_percent: None,
+            };
+            (torque, Some(kappa))
+        };
+        let kappa = torque.curve.at(measured[1]) / thrust.curve.at(measured[1]);
+        if !(KAPPA[0]..=KAPPA[1]).contains(&kappa) {
+            warnings.push(format!(
+                "torque per thrust in {file} is {kappa:.4} m, of propellers from 4 to 40 inch it is 0.005 to 0.05: check the \
+                 units of both"
+            ));
+        }
+        let (factor, voltage_v) = brought(bench, known, warnings)?;
+        Ok(Single {
+            file: file.clone(),
+            points: points.len(),
+            measured,
+            misfit_percent: [thrust.misfit_percent, torque.misfit_percent],
+            kappa_m,
+            voltage_v,
+            rotor: Rotor {
+                thrust: thrust.curve.times(factor),
+                torque: torque.curve.times(factor),
+            },
+        })
+    }
+
+    /// Whether a table of few rows is behind the curves.
+    pub fn is_sparse(&self) -> bool {
+        self.points < 10
+    }
+}
+
+fn range(points: &[Point]) -> [f64; 2] {
+    let throttles = points.iter().map(|p| p.u);
+    throttles.fold([f64::MAX, f64::MIN], |[a, b], u| [a.min(u), b.max(u)])
+}
+
+fn distinct(points: &[Point]) -> usize {
+    let mut levels: Vec<i64> = points.iter().map(|p| (1000.0 * p.u).round() as i64).collect();
+    levels.sort_unstable();
+    levels.dedup();
+    levels.len()
+}
+
+fn enough(file: &str, points: &[Point], [_, highest]: [f64; 2]) -> Result<(), Refusal> {
+    let needed = format!("{FEWEST} throttles or more, up to full throttle or near it");
+    if distinct(points) < FEWEST {
+        let reason = format!(
+            "{} distinct throttles, at least {FEWEST} are needed",
+            distinct(points)
+        );
+        return Err(Refusal::of(file, reason, needed));
+    }
+    if highest < REACHES {
+        let reason = format!("the run stops at a throttle of {highest:.2}, below {REACHES}");
+        return Err(Refusal::of(file, reason, needed));
+    }
+    Ok(())
+}
+
+struct Channel {
+    curve: Curve,
+    misfit_percent: Option<f64>,
+}
+
+fn channel(
+    file: &str,
+    name: &str,
+    points: &[Point],
+    of: fn(&Point) -> f64,
+    warnings: &mut Vec<String>,
+) -> Result<Channel, Refusal> {
+    let places: Vec<[f64; 2]> = points.iter().map(|p| [p.u, of(p)]).collect();
+    let greatest = places.iter().fold(0.0_f64, |m, [_, y]| m.max(*y));
+    let curve = Curve::fit(&places).filter(|curve| greatest > 0.0 && curve.at(1.0) > 0.0);
+    let Some(curve) = curve else {
+        return Err(Refusal::of(
+            file,
+            format!("the {name} does not grow with the throttle"),
+            format!("a run of one rotor; the sign of a column by --{name}-sign"),
+        ));
+    };
+    let squares: f64 = places
+        .iter()
+        .map(|[x, y]| (y - curve.at(*x)) * (y - curve.at(*x)))
+        .sum();
+    let share = (squares / places.len() as f64).sqrt() / greatest;
+    if share > MISFIT[1] {
+        return Err(Refusal::of(
+            file,
+            format!(
+                "the {name} misses a growing curve over the throttle by {:.0} % rms of its greatest value",
+                100.0 * share
+            ),
+            "one run of one rotor, at a supply that holds, with the throttle that was commanded",
+        ));
+    }
+    if share > MISFIT[0] {
+        warnings.push(format!(
+            "the {name} in {file} misses a growing curve over the throttle by {:.1} % rms of its greatest value; good \
+             runs miss it by 1 % or less",
+            100.0 * share
+        ));
+    }
+    Ok(Channel {
+        curve,
+        misfit_percent: Some(100.0 * share),
+    })
+}
+
+/// What stands for a torque that was not measured: torque per thrust, m, and why.
+fn stand_in(file: &str, known: &Known) -> Result<(f64, String), Refusal> {
+    match (known.kappa_m, known.diameter_m) {
+        (Some(kappa), _) => Ok((kappa, "as --kappa says".into())),
+        (None, Some(diameter)) => Ok((
+            KAPPA_PER_DIAMETER * diameter,
+            format!(
+                "{KAPPA_PER_DIAMETER} of a diameter of {diameter} m, which real propellers miss by 10 to 20 %"
+            ),
+        )),
+        (None, None) => Err(Refusal::of(
+            file,
+            "torque was not measured, and neither --kappa nor --diameter is given",
+            "--diameter METRE of the propeller, or --kappa METRE, its torque per thrust; or a column of torque",
+        )),
+    }
+}
+
+/// The factor that brings a run to the reference voltage, and the voltage where its curves hold.
+fn brought(bench: &Bench, known: &Known, warnings: &mut Vec<String>) -> Result<(f64, Option<f64>), Refusal> {
+    let volts: Vec<f64> = bench
+        .points
+        .iter()
+        .map(|p| p.voltage)
+        .filter(|v| v.is_finite())
+        .collect();
+    let mean = (!volts.is_empty()).then(|| volts.iter().sum::<f64>() / volts.len() as f64);
+    match (known.run_v.or(mean), known.reference_v) {
+        (own, None) => Ok((1.0, own)),
+        (Some(own), Some(reference)) => {
+            if (own / reference - 1.0).abs() > 0.005 {
+                warnings.push(format!(
+                    "{} was run at {own:.2} V and is brought to {reference} V by an exponent of {EXPONENT}",
+                    bench.file
+                ));
+            }
+            Ok((libm::pow(reference / own, EXPONENT), Some(reference)))
+        }
+        (None, Some(_)) => Err(Refusal::of(
+            &bench.file,
+            "--reference-voltage has nothing to start from: the run has no voltage",
+            "--run-voltage VOLT, or a column of the voltage",
+        )),
+    }
+}
