@@ -34,6 +34,7 @@ pub mod setpoints;
 pub mod shell;
 pub mod stack;
 pub mod sweep;
+mod today;
 
 /// The exit status for a bad input.
 const BAD_INPUT: u8 = 1;

@@ -18,6 +18,7 @@ use mixer_identify::single::{Known, Single};
 use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::read_one;
 use crate::frame::FrameArgs;
+use crate::today::today;
 use crate::{output, print_error, print_note};
 
 /// Predict a pair's thrust and torque from a run of one rotor, or the table of its data sheet
@@ -173,6 +174,7 @@ impl PredictArgs {
             spacing_ratio: self.rotors.ratio(),
             closed_loop: self.rpm_at_full.is_some(),
             throttle: self.throttle.unwrap_or(Wishes::default().throttle),
+            date: today(),
         }
     }
 
@@ -234,6 +236,7 @@ pub(crate) fn correct(
             min: LEAST_IDLE,
             max: 1.0,
         }),
+        date: today(),
     };
     predict::correct(upper, lower, maps, &wishes, warnings)
 }

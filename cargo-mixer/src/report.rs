@@ -2,14 +2,15 @@
 
 mod bench;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::{SystemTime, UNIX_EPOCH};
-use std::{env, fs};
 
 use mixer_report::origin::Origin;
 use mixer_report::page;
 use mixer_report::study::Study;
+
+use crate::today::today;
 
 /// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and
 /// tables
@@ -61,35 +62,12 @@ pub fn run(args: &ReportArgs) -> ExitCode {
     }
 }
 
-/// The origin of a page that is made now of this file. `SOURCE_DATE_EPOCH`, seconds since 1970,
-/// stands for now (reproducible-builds.org).
+/// The origin of a page that is made now of this file.
 fn origin(airframe: &Path) -> Origin {
-    let stated = env::var("SOURCE_DATE_EPOCH")
-        .ok()
-        .and_then(|text| text.parse().ok());
-    let seconds = stated.or_else(|| {
-        let passed = SystemTime::now().duration_since(UNIX_EPOCH);
-        passed.ok().map(|passed| passed.as_secs())
-    });
     Origin {
         sha256: fs::read(airframe).ok().map(|bytes| crate::file::sha256(&bytes)),
-        date: seconds.map(date),
+        date: today(),
     }
-}
-
-/// The date (UTC) of seconds since 1970. Days are counted from 1 March of year 0, so that leap days
-/// end their years; 400 years have 146,097 days.
-fn date(seconds: u64) -> String {
-    let days = seconds / 86_400 + 719_468;
-    let (cycle, day) = (days / 146_097, days % 146_097);
-    let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    // Months from March on have 153 days in five.
-    let month = (5 * day + 2) / 153;
-    let day = day - (153 * month + 2) / 5 + 1;
-    let month = if month < 10 { month + 3 } else { month - 9 };
-    let year = 400 * cycle + year + u64::from(month <= 2);
-    format!("{year:04}-{month:02}-{day:02}")
 }
 
 /// Complains where the output is one of the inputs; the exit status for bad usage.
@@ -115,27 +93,5 @@ pub(crate) fn thrust(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(thrust) if thrust > 0.0 && thrust.is_finite() => Ok(thrust),
         _ => Err(format!("{text:?} is not a positive number of newtons")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::date;
-
-    /// By GNU date.
-    #[test]
-    fn dates_are_those_of_the_calendar() {
-        let days = [
-            (0, "1970-01-01"),
-            (951_782_399, "2000-02-28"),
-            (951_782_400, "2000-02-29"),
-            (951_868_800, "2000-03-01"),
-            (1_735_689_599, "2024-12-31"),
-            (1_795_392_000, "2026-11-23"),
-            (4_107_542_400, "2100-03-01"),
-        ];
-        for (seconds, day) in days {
-            assert_eq!(date(seconds), day);
-        }
     }
 }

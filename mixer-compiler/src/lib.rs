@@ -104,10 +104,10 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         lost_between_sides,
     };
     probe.run()?;
-    let warnings = plausible::warnings(&airframe, &effectiveness, &pair, thrust_range_n);
-    Ok(Compiled {
+    let mut warnings = plausible::warnings(&airframe, &effectiveness, &pair, thrust_range_n);
+    let mut compiled = Compiled {
         source_name: source.file_name(),
-        warnings: Diagnostics::new(source.clone(), warnings),
+        warnings: Diagnostics::new(source.clone(), Vec::new()),
         airframe,
         effectiveness,
         pair,
@@ -120,7 +120,10 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         lost_area,
         lost_between_sides,
         tables,
-    })
+    };
+    warnings.extend(hover::warnings(&compiled));
+    compiled.warnings = Diagnostics::new(source.clone(), warnings);
+    Ok(compiled)
 }
 
 /// The value, or its faults added to the others.

@@ -59,6 +59,8 @@ pub struct Wishes {
     pub closed_loop: bool,
     /// The box to command; its least idle is raised where the map asks for it.
     pub throttle: ThrottleBox,
+    /// `YYYY-MM-DD`, for the comment of the tables.
+    pub date: Option<String>,
 }
 
 impl Default for Wishes {
@@ -70,6 +72,7 @@ impl Default for Wishes {
                 min: LEAST_IDLE,
                 max: 1.0,
             },
+            date: None,
         }
     }
 }
@@ -79,6 +82,8 @@ impl Default for Wishes {
 pub struct Predicted {
     /// Program and version.
     pub generator: String,
+    /// The day of the prediction, `YYYY-MM-DD`.
+    pub date: Option<String>,
     /// The map.
     pub pair: PredictedPair,
     /// The runs of the upper and of the lower rotor alone.
@@ -198,6 +203,7 @@ pub fn correct(
     }
     Ok(Predicted {
         generator: format!("cargo mixer predict {}", env!("CARGO_PKG_VERSION")),
+        date: wishes.date.clone(),
         pair,
         reference_v: runs[0].voltage_v,
         runs,
@@ -321,7 +327,7 @@ fn uncertainty(runs: &[Single], rows_with_torque: usize) -> Uncertainty {
         }
         squares.sqrt()
     };
-    Uncertainty::rounded(percent(0), percent(1))
+    Uncertainty::rounded(percent(0), percent(1)).of_prediction()
 }
 
 /// The cubic of the map over the box whose idle the compiler takes: the least from the wished one
@@ -418,7 +424,13 @@ pub fn text(predicted: &Predicted) -> String {
 }
 
 fn write_text(out: &mut String, predicted: &Predicted) -> std::fmt::Result {
-    writeln!(out, "# Predicted by {}, not measured.", predicted.generator)?;
+    let day = predicted.date.iter().map(|date| format!(" on {date}"));
+    writeln!(
+        out,
+        "# Predicted by {}{}, not measured.",
+        predicted.generator,
+        day.collect::<String>()
+    )?;
     for line in lines(predicted) {
         for (k, line) in wrapped(&line, 104).iter().enumerate() {
             writeln!(out, "# {}{line}", if k == 0 { "" } else { "  " })?;
@@ -498,12 +510,13 @@ fn lines(predicted: &Predicted) -> Vec<String> {
     }
     let [b, m0, m1, n, a, limit] = predicted.constants;
     lines.push(format!(
-        "z/D {}; constants B {b}, m0 {m0}, m1 {m1}, n {n}, a {a}, b {limit}",
+        "z/D {:.3}; constants B {b}, m0 {m0}, m1 {m1}, n {n}, a {a}, b {limit}",
         predicted.spacing_ratio
     ));
     let Uncertainty {
         thrust_percent,
         torque_percent,
+        ..
     } = predicted.pair.uncertainty;
     lines.push(format!(
         "to trust: thrust within {thrust_percent} %, torque within {torque_percent} % of full scale (one standard deviation), for \

@@ -11,6 +11,9 @@ pub struct Uncertainty {
     pub thrust_percent: f64,
     /// Of torque, % of full scale.
     pub torque_percent: f64,
+    /// Whether the map was predicted from one rotor instead of measured.
+    #[serde(skip)]
+    pub is_predicted: bool,
 }
 
 impl Uncertainty {
@@ -20,6 +23,15 @@ impl Uncertainty {
         Uncertainty {
             thrust_percent: tenths(thrust_percent),
             torque_percent: tenths(torque_percent),
+            is_predicted: false,
+        }
+    }
+
+    /// The same of a map that was predicted from one rotor.
+    pub fn of_prediction(self) -> Self {
+        Uncertainty {
+            is_predicted: true,
+            ..self
         }
     }
 }
@@ -32,6 +44,10 @@ impl fmt::Display for Uncertainty {
             "[pair.uncertainty]                     # one standard deviation, % of full scale\n\
              thrust_percent = {:?}\ntorque_percent = {:?}",
             self.thrust_percent, self.torque_percent
-        )
+        )?;
+        if self.is_predicted {
+            writeln!(f, "source = \"prediction\"")?;
+        }
+        Ok(())
     }
 }

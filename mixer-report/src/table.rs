@@ -7,7 +7,7 @@ use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::diagnostic::printable;
 use mixer_compiler::hover::Hover;
 use mixer_compiler::power::LevelPower;
-use mixer_compiler::report::rounded_up;
+use mixer_compiler::report::{in_words, rounded_up};
 
 use crate::bench::BenchPoints;
 use crate::comparison::{Answer, Comparison};
@@ -116,7 +116,8 @@ pub fn summary(study: &Study<'_>, origin: &Origin) -> Markup {
     ];
     let hover = summary.hover.iter().flat_map(hover);
     let power = summary.power.iter().map(power);
-    let facts = facts.into_iter().chain(hover).chain(power);
+    let pair = airframe.pair.uncertainty.iter().map(|u| ("Pair", in_words(u)));
+    let facts = facts.into_iter().chain(pair).chain(hover).chain(power);
     let mut facts: Vec<(&str, Markup)> = facts.map(|(name, value)| (name, html! { (value) })).collect();
     let file = html! {
         code { (printable(&compiled.source_name)) }
@@ -150,10 +151,20 @@ fn hover(hover: &Hover) -> Vec<(&'static str, String)> {
             .iter()
             .map(|margin| {
                 let [least, largest] = margin.torque_nm.map(|torque| fixed(torque, 2));
-                format!("{} {least} to {largest} N m", margin.axis)
+                let band = margin
+                    .band_nm
+                    .map_or_else(String::new, |band| format!(" \u{b1} {}", fixed(band, 2)));
+                format!("{} {least} to {largest}{band} N m", margin.axis)
             })
             .collect();
-        let throttles = format!("throttle {} upper, {} lower", fixed(upper, 3), fixed(lower, 3));
+        let mut throttles = format!("throttle {} upper, {} lower", fixed(upper, 3), fixed(lower, 3));
+        if let Some(band) = at.throttle_band {
+            let [[least_upper, least_lower], [upper, lower]] = band.map(|end| end.map(|x| fixed(x, 3)));
+            let _ = write!(
+                throttles,
+                " ({least_upper} to {upper}, {least_lower} to {lower} by the pair\u{2019}s uncertainty)"
+            );
+        }
         (
             "Hover",
             format!("{volts}{throttles}; left are {}", margins.join(", ")),

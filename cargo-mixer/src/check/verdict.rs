@@ -7,7 +7,7 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::checklist::Checklist;
 use mixer_compiler::diagnostic::{printable, rounded_up};
-use mixer_compiler::report::Summary;
+use mixer_compiler::report::{Summary, in_words};
 
 /// The verdict; its `Display` is the text.
 pub(super) struct Verdict<'a> {
@@ -56,11 +56,7 @@ impl fmt::Display for Verdict<'_> {
             )?,
         }
         if let Some(uncertainty) = &airframe.pair.uncertainty {
-            writeln!(
-                f,
-                "model error     {} % of the largest thrust, {} % of the largest torque (one standard deviation)",
-                uncertainty.thrust_percent, uncertainty.torque_percent
-            )?;
+            writeln!(f, "pair            {}", in_words(uncertainty))?;
         }
         match &airframe.voltage {
             Some(voltage) => writeln!(

@@ -12,6 +12,8 @@ keys! { TABLE = "[pair.uncertainty]":
         "Standard deviation of the thrust, % of the thrust at full throttle.".required().refusing(LABEL, HELP);
     TORQUE_PERCENT "torque_percent" = "3.7", PERCENT,
         "Standard deviation of the torque, % of the largest torque.".required().refusing(LABEL, HELP);
+    SOURCE "source" = "\"prediction\"", Kind::Word(&["bench", "prediction"]),
+        "Whether the pair was measured or predicted from one rotor; bench without it.";
 }
 
 /// `[pair.uncertainty]`: one standard deviation of the model's error.
@@ -22,12 +24,27 @@ pub struct Uncertainty {
     pub thrust_percent: f64,
     /// Of the torque, % of full scale, above 0, at most 100.
     pub torque_percent: f64,
+    /// Whether the pair was predicted from one rotor instead of measured.
+    pub is_predicted: bool,
+}
+
+impl Uncertainty {
+    /// `predicted` or `measured`.
+    pub fn source(&self) -> &'static str {
+        if self.is_predicted {
+            "predicted"
+        } else {
+            "measured"
+        }
+    }
 }
 
 pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Uncertainty> {
     let [thrust, torque] = [&THRUST_PERCENT, &TORQUE_PERCENT].map(|key| table.number(key));
+    let is_predicted = table.word(&SOURCE, &[false, true]);
     Some(Uncertainty {
         thrust_percent: thrust?,
         torque_percent: torque?,
+        is_predicted: is_predicted.unwrap_or(false),
     })
 }

@@ -160,6 +160,8 @@ catalogue! {
     FloatsAtIdle = 341,
     /// A vehicle that hovers with little thrust left.
     HoversHigh = 342,
+    /// Hover leaves less of an axis than the pair may be off by.
+    MarginBelowBand = 343,
 }
 
 impl Code {

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::airframe::{Axis, GRAVITY};
 use crate::compiled::Compiled;
+use crate::diagnostic::{Code, Diagnostic, rounded};
 
 /// How finely a largest torque is looked for.
 #[derive(Clone, Copy, Debug)]
@@ -117,6 +118,40 @@ impl Hover {
                 .collect(),
         })
     }
+}
+
+/// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.
+pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
+    let airframe = &compiled.airframe;
+    if airframe.pair.uncertainty.is_none() {
+        return Vec::new();
+    }
+    let Some(at) = Hover::new(compiled).and_then(|hover| hover.at.into_iter().next()) else {
+        return Vec::new();
+    };
+    let is_small = |margin: &&Margin| {
+        let left = margin.torque_nm[1].min(-margin.torque_nm[0]);
+        margin.band_nm.is_some_and(|band| left < band)
+    };
+    let small = at.margins.iter().filter(is_small);
+    small
+        .map(|margin| {
+            let [least, largest] = margin.torque_nm;
+            let message = format!(
+                "hover leaves {} N m of {}, and the model of the pair may be off by {} N m",
+                rounded(largest.min(-least)),
+                margin.axis,
+                rounded(margin.band_nm.unwrap_or_default())
+            );
+            airframe.diagnostic(
+                Code::MarginBelowBand,
+                "vehicle.mass_kg",
+                message,
+                "perhaps nothing is left",
+                "measure the pair (docs/bench-run.md), or fly with less mass",
+            )
+        })
+        .collect()
 }
 
 impl HoverAt {

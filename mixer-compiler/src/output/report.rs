@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::airframe::Uncertainty;
 use crate::compiled::Compiled;
 pub use crate::diagnostic::rounded_up;
 use crate::output::cost::Cost;
@@ -57,6 +58,8 @@ pub struct Summary {
     /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque,
     /// N.
     pub thrust_range_n: [f32; 2],
+    /// How far the model of the pair may be off; null where the file does not say.
+    pub uncertainty: Option<UncertaintySummary>,
     /// The vehicle in hover; null where the file has no mass.
     pub hover: Option<Hover>,
     /// The torque per thrust at which units start for the least power, N m per N.
@@ -67,6 +70,37 @@ pub struct Summary {
     pub rotor_out: RotorOut,
     /// What it costs on the target.
     pub cost: Cost,
+}
+
+/// How far the model of the pair may be from the pair, for people.
+pub fn in_words(uncertainty: &Uncertainty) -> String {
+    format!(
+        "{}: +- {} % of the largest thrust, {} % of the largest torque (one standard deviation)",
+        uncertainty.source(),
+        uncertainty.thrust_percent,
+        uncertainty.torque_percent
+    )
+}
+
+/// `[pair.uncertainty]` in `cargo mixer check --json`.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct UncertaintySummary {
+    /// `measured` or `predicted`.
+    pub source: &'static str,
+    /// One standard deviation of the thrust, % of full scale.
+    pub thrust_percent: f64,
+    /// Of the torque, likewise.
+    pub torque_percent: f64,
+}
+
+impl UncertaintySummary {
+    fn new(uncertainty: &Uncertainty) -> Self {
+        UncertaintySummary {
+            source: uncertainty.source(),
+            thrust_percent: uncertainty.thrust_percent,
+            torque_percent: uncertainty.torque_percent,
+        }
+    }
 }
 
 /// What a unit with one rotor left is taken to give, by the rotor that is out.
@@ -164,6 +198,12 @@ impl Summary {
             attainable_area_lost_to_convexity: compiled.lost_area.convexity,
             attainable_area_lost_in_closed_form: compiled.lost_between_sides,
             thrust_range_n: compiled.thrust_range_n,
+            uncertainty: compiled
+                .airframe
+                .pair
+                .uncertainty
+                .as_ref()
+                .map(UncertaintySummary::new),
             hover: Hover::new(compiled),
             power_bias_nm_per_n: airframe.allocation.power_bias_nm_per_n,
             power: LevelPower::new(compiled),
@@ -336,7 +376,11 @@ impl Report<'_> {
             100.0 * summary.attainable_area_lost_to_convexity
         )?;
         let [floor, ceiling] = summary.thrust_range_n;
-        writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")
+        writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;
+        if let Some(uncertainty) = &self.0.airframe.pair.uncertainty {
+            writeln!(f, "pair            {}", in_words(uncertainty))?;
+        }
+        Ok(())
     }
 
     /// Rotors out, hover and power.
