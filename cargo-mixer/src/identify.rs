@@ -5,7 +5,8 @@ use std::io::{Write as _, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_compiler::airframe::Basis;
 use mixer_identify::basis::ThrottleBox;
 use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
@@ -47,7 +48,7 @@ pub struct IdentifyArgs {
     #[arg(long)]
     pub json: bool,
     /// Terms of the model; auto chooses by cross-validation.
-    #[arg(long, value_enum, default_value_t = BasisChoice::Auto)]
+    #[arg(long, default_value = AUTO, value_parser = bases())]
     pub basis: BasisChoice,
     /// Leave out the rows that stand out (they are named with or without this).
     #[arg(long)]
@@ -116,17 +117,23 @@ pub struct IdentifyArgs {
     pub date: Option<String>,
 }
 
-/// `--basis`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum BasisChoice {
-    /// 8 terms, eq. (1) of the paper.
-    Biquadratic,
-    /// 9 terms.
-    Cubic,
-    /// 14 terms.
-    Quartic,
-    /// By cross-validation.
-    Auto,
+/// `--basis`; none is to be chosen by cross-validation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BasisChoice(pub Option<Basis>);
+
+const AUTO: &str = "auto";
+
+/// The bases by their words, each with its terms, and `auto`.
+fn bases() -> impl TypedValueParser<Value = BasisChoice> {
+    let bases = Basis::ALL.map(|basis| {
+        let terms = basis.term_names();
+        PossibleValue::new(basis.name()).help(format!("{} terms: {}", terms.len(), terms.join(", ")))
+    });
+    let auto = PossibleValue::new(AUTO).help("By cross-validation");
+    PossibleValuesParser::new(bases.into_iter().chain([auto])).map(|word| {
+        let mut bases = Basis::ALL.into_iter();
+        BasisChoice(bases.find(|basis| basis.name() == word))
+    })
 }
 
 /// `--voltage-exponent`, of thrust and of torque.
@@ -159,12 +166,7 @@ impl IdentifyArgs {
                 date: self.date.clone(),
             },
             wishes: Wishes {
-                basis: match self.basis {
-                    BasisChoice::Biquadratic => Some(Basis::Biquadratic),
-                    BasisChoice::Cubic => Some(Basis::Cubic),
-                    BasisChoice::Quartic => Some(Basis::Quartic),
-                    BasisChoice::Auto => None,
-                },
+                basis: self.basis.0,
                 robust: self.robust,
                 monotone: self.monotone,
                 throttle: self.throttle,

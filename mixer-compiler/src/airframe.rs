@@ -21,6 +21,7 @@ use toml::de::DeTable;
 
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::basis::Basis;
+pub(crate) use self::basis::POWERS;
 pub(crate) use self::inverse::METHODS;
 pub use self::inverse::{Inverse, Method};
 pub use self::pair::{Pair, Spin};

@@ -54,11 +54,18 @@ pub fn determinant(basis: Basis, thrust: &Polynomial, torque: &Polynomial) -> Po
         .du()
         .times(&torque.dl())
         .plus(-1.0, &thrust.dl().times(&torque.du()));
-    det.resized(match basis {
-        Basis::Biquadratic => 3, // (1, 2) and (2, 1) multiplied
-        Basis::Cubic => 4,       // twice the total degree of a derivative
-        Basis::Quartic => 6,
-    })
+    det.resized(degree(basis))
+}
+
+/// Highest power of a throttle in det J. Of two terms u^i l^j and u^m l^n it has
+/// u^(i + m - 1) l^(j + n - 1), with a factor of i n - j m.
+fn degree(basis: Basis) -> usize {
+    let terms = basis.exponents();
+    let pairs = terms.iter().flat_map(|a| terms.iter().map(move |b| (a, b)));
+    let powers = pairs
+        .filter(|((i, j), (m, n))| i * n != j * m)
+        .map(|((i, j), (m, n))| (i + m).max(j + n) - 1);
+    powers.max().map_or(0, usize::from)
 }
 
 /// The least idle of both rotors from the box's on, rounded up to 1e-5, from which on the map is

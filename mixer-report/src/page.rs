@@ -8,6 +8,7 @@ use mixer_compiler::airframe::Axis;
 use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::cost::Cost;
 use mixer_compiler::diagnostic::printable;
+use mixer_compiler::hover;
 use mixer_compiler::report::rounded_up;
 
 use crate::authority;
@@ -18,7 +19,7 @@ use crate::effort::Effort;
 use crate::figure::Figure;
 use crate::layout;
 use crate::maps;
-use crate::number::shortest;
+use crate::number::{shortest, significant};
 use crate::origin::Origin;
 use crate::plots;
 use crate::study::Study;
@@ -218,11 +219,23 @@ fn authority_section(study: &Study<'_>) -> Markup {
     } else {
         "With one rotor out, whichever it is, no thrust is held without a torque."
     };
+    let airframe = &study.compiled.airframe;
+    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
+    let off: Vec<String> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
+        .into_iter()
+        .filter(|&axis| study.serves(axis))
+        .filter_map(|axis| Some((axis, hover::band(study.compiled, axis, reference_v)?)))
+        .map(|(axis, band)| format!("\u{b1} {} N m of {}", significant(band, 2), axis.name()))
+        .collect();
     html! {
         p {
             "The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
              holds the thrust and no other torque is asked, found by asking the mixer itself. "
             (rotor_out)
+            @if let Some(uncertainty) = &airframe.pair.uncertainty {
+                " The pair is " (uncertainty.source()) ": by one standard deviation of its uncertainty the true torques are off by "
+                (off.join(", ")) "."
+            }
         }
         div.figures.three { @for plot in &plots { (plot) } }
     }

@@ -213,3 +213,23 @@ fn power_and_its_saving_are_told() {
     assert_eq!(told(file).as_deref(), Some(format!("Power{line}").as_str()));
     assert_eq!(told("airframes/isae-x8.toml"), None, "it has no power map");
 }
+
+/// The page says that a pair was predicted, and by how much its hover and authority may be off.
+#[test]
+fn predictions_are_said_with_their_bands() {
+    let text = fs::read_to_string(root().join("airframes/single-pair.toml")).unwrap();
+    let uncertain = "\n[pair.uncertainty]\nthrust_percent = 2.0\ntorque_percent = 4.0\nsource = \"prediction\"\n\n\
+                     [vehicle]\nmass_kg = 1.0\n";
+    let page_of = |text: &str| {
+        let compiled = compile_text(text);
+        page(&Study::new(&compiled, None), None, &Origin::default())
+    };
+    let with = page_of(&(text.clone() + uncertain));
+    let document = parsed(&with);
+    let rows: Vec<String> = named(document.root(), "tr").map(text_of).collect();
+    let told = "Pairpredicted: +- 2 % of the largest thrust, 4 % of the largest torque (one standard deviation)";
+    assert!(rows.iter().any(|row| row == told), "{rows:?}");
+    assert!(with.contains("by the pair\u{2019}s uncertainty)"));
+    assert!(with.contains("The pair is predicted: by one standard deviation of its uncertainty"));
+    assert!(!page_of(&text).contains("predicted"));
+}

@@ -14,6 +14,26 @@ pub enum Basis {
     Quartic,
 }
 
+/// Powers of one throttle in the terms of any basis, the power 0 included.
+pub(crate) const POWERS: usize = {
+    let mut powers = 0;
+    let mut index = 0;
+    while index < Basis::ALL.len() {
+        let terms = Basis::ALL[index].exponents();
+        let mut term = 0;
+        while term < terms.len() {
+            let (i, j) = terms[term];
+            let most = if i > j { i } else { j } as usize;
+            if most + 1 > powers {
+                powers = most + 1;
+            }
+            term += 1;
+        }
+        index += 1;
+    }
+    powers
+};
+
 impl Basis {
     /// All bases, by ascending number of terms.
     pub const ALL: [Basis; 3] = [Basis::Biquadratic, Basis::Cubic, Basis::Quartic];
@@ -28,7 +48,7 @@ impl Basis {
 
     /// Exponents (of u, of l) of each term, in the order of the file's coefficients. No term is
     /// constant: rotors that stand still give nothing.
-    pub fn exponents(self) -> &'static [(u8, u8)] {
+    pub const fn exponents(self) -> &'static [(u8, u8)] {
         match self {
             // u2l2, u2l, u2, ul2, ul, u, l2, l
             Basis::Biquadratic => &[(2, 2), (2, 1), (2, 0), (1, 2), (1, 1), (1, 0), (0, 2), (0, 1)],

@@ -1,18 +1,15 @@
 //! The forward map of one unit in f64, with its Jacobian: what inverses are fitted to and checked
 //! against.
 
-use crate::airframe::{Pair, Throttle};
-
-/// One more than the largest exponent of any basis.
-const SIZE: usize = 5;
+use crate::airframe::{POWERS, Pair, Throttle};
 
 /// Thrust and torque of one unit at the reference voltage (eq. (1)).
 #[derive(Clone, Debug)]
 pub struct PairMap {
     /// Coefficients in thrust (N) and in torque (N m), by exponents of u and of l.
-    coefficients: [[[f64; 2]; SIZE]; SIZE],
+    coefficients: [[[f64; 2]; POWERS]; POWERS],
     /// How many of each row are in use, and how many rows.
-    widths: [usize; SIZE],
+    widths: [usize; POWERS],
     rows: usize,
     range: [f64; 2],
 }
@@ -29,8 +26,8 @@ impl PairMap {
     /// The map of a pair over the allowed throttles.
     pub fn new(pair: &Pair, throttle: &Throttle) -> Self {
         let mut map = PairMap {
-            coefficients: [[[0.0; 2]; SIZE]; SIZE],
-            widths: [0; SIZE],
+            coefficients: [[[0.0; 2]; POWERS]; POWERS],
+            widths: [0; POWERS],
             rows: 0,
             range: [throttle.min, throttle.max],
         };

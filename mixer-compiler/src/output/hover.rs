@@ -256,7 +256,7 @@ fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
 /// What an axis is off by where every unit misses its model by one standard deviation, all to the
 /// same end: the units have one model, so their errors go together. N or N m; `None` without
 /// `[pair.uncertainty]`.
-fn band(compiled: &Compiled, axis: Axis, voltage_v: Option<f64>) -> Option<f64> {
+pub fn band(compiled: &Compiled, axis: Axis, voltage_v: Option<f64>) -> Option<f64> {
     let airframe = &compiled.airframe;
     let uncertainty = airframe.pair.uncertainty.as_ref()?;
     let [k_f, k_q] = match (&airframe.voltage, voltage_v) {

@@ -9,15 +9,12 @@
 //! ```
 
 use super::taylor::Taylor;
-use crate::airframe::Basis;
-
-/// One more than the largest exponent of any basis.
-const SIZE: usize = 5;
+use crate::airframe::{Basis, POWERS};
 
 /// Coefficients by exponents of u and l, and their largest exponents.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Monomials {
-    coefficients: [[f64; SIZE]; SIZE],
+    coefficients: [[f64; POWERS]; POWERS],
     degree: [usize; 2],
     /// Sum of absolute coefficients.
     size: f64,
@@ -26,7 +23,7 @@ pub(super) struct Monomials {
 impl Monomials {
     /// A quantity of the airframe file.
     pub(super) fn new(basis: Basis, terms: &[f64]) -> Self {
-        let mut coefficients = [[0.0; SIZE]; SIZE];
+        let mut coefficients = [[0.0; POWERS]; POWERS];
         let mut degree = [0; 2];
         let mut size = 0.0;
         for (&(i, j), &term) in basis.exponents().iter().zip(terms) {
@@ -47,7 +44,7 @@ impl Monomials {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expansion {
     /// Coefficients of (u - centre)^i (l - centre)^j.
-    p: [[f64; SIZE]; SIZE],
+    p: [[f64; POWERS]; POWERS],
     degree: [usize; 2],
     half: [f64; 2],
     /// Bound of the rounding in any value or derivative read from here: each coefficient is a sum
@@ -63,16 +60,23 @@ pub(super) struct Curvature {
     centre: [f64; 3],
     radius: [f64; 3],
     /// Bounds of the higher coefficients, by exponents.
-    higher: [[f64; SIZE]; SIZE],
+    higher: [[f64; POWERS]; POWERS],
 }
 
-const BINOMIAL: [[f64; SIZE]; SIZE] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0, 0.0, 0.0],
-    [1.0, 2.0, 1.0, 0.0, 0.0],
-    [1.0, 3.0, 3.0, 1.0, 0.0],
-    [1.0, 4.0, 6.0, 4.0, 1.0],
-];
+const BINOMIAL: [[f64; POWERS]; POWERS] = {
+    let mut rows = [[0.0; POWERS]; POWERS];
+    let mut n = 0;
+    while n < POWERS {
+        rows[n][0] = 1.0;
+        let mut k = 1;
+        while k <= n {
+            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    rows
+};
 
 /// Makes up for the rounding of sums of non-negative terms.
 const UP: f64 = 1.0 + 256.0 * f64::EPSILON;
@@ -145,7 +149,7 @@ impl Expansion {
         let mut curvature = Curvature {
             centre: [0.0; 3],
             radius: [0.0; 3],
-            higher: [[0.0; SIZE]; SIZE],
+            higher: [[0.0; POWERS]; POWERS],
         };
         for i in 0..=self.degree[0] {
             for j in 0..=self.degree[1] {
@@ -194,11 +198,11 @@ impl Expansion {
 }
 
 /// Powers of two functions up to the fourth total degree, `[exponent of the first][of the second]`.
-pub(super) type Powers = [[Taylor; SIZE]; SIZE];
+pub(super) type Powers = [[Taylor; POWERS]; POWERS];
 
 /// Products of `v` up to the total degree `degree`.
 pub(super) fn powers(v: &[Taylor; 2], degree: usize) -> Powers {
-    let mut powers = [[Taylor::exact(0.0); SIZE]; SIZE];
+    let mut powers = [[Taylor::exact(0.0); POWERS]; POWERS];
     powers[0][0] = Taylor::exact(1.0);
     for total in 1..=degree {
         for i in 0..=total {
@@ -216,13 +220,13 @@ pub(super) fn powers(v: &[Taylor; 2], degree: usize) -> Powers {
 
 /// F^(i,j)(t) / (i! j!) for i + j >= 2 as functions over the cell, by exponents; `None` where they
 /// vanish.
-pub(super) type Derivatives = [[Option<Taylor>; SIZE]; SIZE];
+pub(super) type Derivatives = [[Option<Taylor>; POWERS]; POWERS];
 
 impl Expansion {
     /// The higher derivatives at a point t; `offset` are the [`powers`] of its distance from the
     /// centre, of the second degree at least.
     pub(super) fn derivatives(&self, offset: &Powers) -> Derivatives {
-        let mut derivatives = [[None; SIZE]; SIZE];
+        let mut derivatives = [[None; POWERS]; POWERS];
         for (i, row) in derivatives.iter_mut().enumerate().take(self.degree[0] + 1) {
             for (j, slot) in row.iter_mut().enumerate().take(self.degree[1] + 1) {
                 if i + j < 2 {
