@@ -134,7 +134,7 @@ fn the_parser_agrees_key_by_key() {
     let alone = "[pair.lower_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [-0.01, -0.2, 0.0]\n\
                  [pair.upper_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [0.01, 0.2, 0.0]\n\
                  [pair.power]\npower_w = [0, 0, 0, 0, 0, 260, 30, 20, 240, 20, -10, 40, 2, 3, 4]\n\
-                 [pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 100\n";
+                 [pair.uncertainty]\nthrust_percent = 1.5\ntorque_percent = 100\nsource = \"bench\"\n";
     let forms = [
         format!(
             "name = \"one\"\ndescription = \"x\"\n{pair}{UNIT}[inverse]\nthrust_tolerance_n = 0.1\ntorque_tolerance_nm = 0.01\n\

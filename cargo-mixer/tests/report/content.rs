@@ -227,7 +227,8 @@ fn predictions_are_said_with_their_bands() {
     let with = page_of(&(text.clone() + uncertain));
     let document = parsed(&with);
     let rows: Vec<String> = named(document.root(), "tr").map(text_of).collect();
-    let told = "Pairpredicted: +- 2 % of the largest thrust, 4 % of the largest torque (one standard deviation)";
+    let told =
+        "Pairpredicted: +- 2 % of the largest thrust, 4 % of the largest torque (one standard deviation)";
     assert!(rows.iter().any(|row| row == told), "{rows:?}");
     assert!(with.contains("by the pair\u{2019}s uncertainty)"));
     assert!(with.contains("The pair is predicted: by one standard deviation of its uncertainty"));
