@@ -383,3 +383,33 @@ fn a_device_without_an_end_is_refused() {
         );
     }
 }
+
+/// The README's quick start runs as it stands, in its order.
+#[test]
+fn the_quick_start_runs() {
+    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    let (_, section) = readme.split_once("## Quick start").unwrap();
+    let (_, block) = section.split_once("```sh\n").unwrap();
+    let (block, _) = block.split_once("```").unwrap();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("quick-start");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut count = 0;
+    for line in block.lines() {
+        let command = line.split('#').next().unwrap();
+        let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
+        assert_eq!(words[..2], ["cargo", "mixer"], "{line}");
+        if let Some(place) = words.iter().position(|word| word == "-o") {
+            words[place + 1] = folder.join(&words[place + 1]).display().to_string();
+        }
+        let words: Vec<&str> = words[2..].iter().map(String::as_str).collect();
+        let output = run(&words);
+        assert_eq!(output.status.code(), Some(0), "{line}\n{}", stderr(&output));
+        count += 1;
+    }
+    assert!(count >= 5, "{count} commands");
+    // What `new` writes is a file of its own; the others are tables and a page.
+    for file in ["my-x8.toml", "pair.toml", "predicted.toml", "report.html"] {
+        assert!(folder.join(file).is_file(), "{file}");
+    }
+}
