@@ -1,11 +1,7 @@
-//! Bench files from the file system, with progress on a terminal.
+//! Bench files from the file system.
 
-use std::fs::File;
-use std::io::{BufReader, IsTerminal as _};
 use std::path::{Path, PathBuf};
-use std::slice;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mixer_compiler::diagnostic::printable;
 use mixer_identify::bench::{self, Bench};
 use mixer_identify::identified::{Identified, Settings, with_runs};
@@ -42,17 +38,14 @@ pub fn identify_with_runs(
 /// # Errors
 /// Files that cannot be read or used.
 pub fn read_all(paths: &[PathBuf], settings: &Settings) -> Result<Vec<Bench>, Vec<Refusal>> {
-    let bar = progress(paths);
     let mut benches = Vec::new();
     let mut refusals = Vec::new();
     for path in paths {
-        let log = read_with(path, &settings.reading, &bar);
-        match log.and_then(|log| bench::prepare(log, &settings.preparation)) {
+        match read_one(path, settings) {
             Ok(bench) => benches.push(bench),
             Err(refusal) => refusals.push(refusal),
         }
     }
-    bar.finish_and_clear();
     if refusals.is_empty() {
         Ok(benches)
     } else {
@@ -65,40 +58,16 @@ pub fn read_all(paths: &[PathBuf], settings: &Settings) -> Result<Vec<Bench>, Ve
 /// # Errors
 /// A file that cannot be read or used.
 pub fn read_one(path: &Path, settings: &Settings) -> Result<Bench, Refusal> {
-    let bar = progress(slice::from_ref(&path.to_path_buf()));
-    let log = read_with(path, &settings.reading, &bar);
-    bar.finish_and_clear();
-    bench::prepare(log?, &settings.preparation)
+    read_file(path, &settings.reading).and_then(|log| bench::prepare(log, &settings.preparation))
 }
 
-/// Reads a file, in silence.
+/// Reads a file.
 ///
 /// # Errors
-/// A file that cannot be read.
+/// A file that cannot be read, or is larger than any bench's.
 pub fn read_file(path: &Path, reading: &Reading) -> Result<Log, Refusal> {
-    read_with(path, reading, &ProgressBar::hidden())
-}
-
-fn read_with(path: &Path, reading: &Reading, bar: &ProgressBar) -> Result<Log, Refusal> {
     let name = printable(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
-    let file = File::open(path)
+    let bytes = crate::file::bytes(path)
         .map_err(|error| read::unreadable(&path.display().to_string(), &error.to_string()))?;
-    let source = BufReader::with_capacity(1 << 16, bar.wrap_read(file));
-    read::read(&name, source, reading)
-}
-
-/// A bar over the bytes of all files, on a terminal and for long inputs only.
-fn progress(paths: &[PathBuf]) -> ProgressBar {
-    const LONG: u64 = 20 << 20; // about a third of a second
-    let bytes = paths
-        .iter()
-        .filter_map(|p| p.metadata().ok())
-        .map(|m| m.len())
-        .sum();
-    if bytes < LONG || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("reading {bytes} of {total_bytes} {wide_bar} {eta}");
-    let bar = ProgressBar::with_draw_target(Some(bytes), ProgressDrawTarget::stderr());
-    style.map_or(bar.clone(), |style| bar.with_style(style))
+    read::read(&name, bytes.as_slice(), reading)
 }

@@ -52,21 +52,25 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
 /// would fill the memory.
 const LARGEST: u64 = 64 << 20;
 
-/// Reads a whole file.
+/// The bytes of a whole file.
 ///
 /// # Errors
-/// What cannot be read, by its path, and why; a file above 64 MB.
-pub fn read(path: &Path) -> Result<Vec<u8>, String> {
-    let fault = |reason: &dyn Display| format!("{}: {reason}", path.display());
-    let file = File::open(path).map_err(|error| fault(&error))?;
+/// What cannot be read; a file above 64 MB.
+pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    file.take(LARGEST + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|error| fault(&error))?;
+    File::open(path)?.take(LARGEST + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > LARGEST {
-        return Err(fault(&"is above 64 MB; name a smaller file"));
+        return Err(io::Error::other("it is above 64 MB; name a smaller file"));
     }
     Ok(bytes)
+}
+
+/// [`bytes`], with an error that names the file.
+///
+/// # Errors
+/// As [`bytes`].
+pub fn read(path: &Path) -> Result<Vec<u8>, String> {
+    bytes(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 /// [`read`] for text.

@@ -121,6 +121,9 @@ pub struct IdentifyArgs {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BasisChoice(pub Option<Basis>);
 
+/// Most refused rows that are told one by one.
+const MOST_TOLD: usize = 200;
+
 const AUTO: &str = "auto";
 
 /// The bases by their words, each with its terms, and `auto`.
@@ -206,8 +209,13 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
         }
         ExitCode::FAILURE
     })?;
-    for row in identified.files.iter().flat_map(|f| &f.refused_rows) {
+    let refused = || identified.files.iter().flat_map(|f| &f.refused_rows);
+    for row in refused().take(MOST_TOLD) {
         print_note(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
+    }
+    let more = refused().count().saturating_sub(MOST_TOLD);
+    if more > 0 {
+        print_note(format_args!("refused: {more} rows more"));
     }
     let fragment = match &args.frame {
         None => fragment::text(&identified),

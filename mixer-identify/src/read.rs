@@ -8,9 +8,15 @@ use std::io::{BufRead, BufReader, Read};
 use serde::Serialize;
 
 use super::header::{ByHand, Column, Columns};
-use super::refusal::Refusal;
+use super::refusal::{Refusal, cut};
 use super::text::{self, Normalised};
 use super::units::Scale;
+
+/// Most columns of a log; loggers of whole vehicles have some hundred.
+const MOST_COLUMNS: usize = 2000;
+
+/// Longest header line, bytes.
+const LONGEST_HEADER: usize = 100_000;
 
 /// A row that was left out, and why.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -105,6 +111,17 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
             ));
         }
     };
+    if headers.len() > MOST_COLUMNS || header.len() > LONGEST_HEADER {
+        return Err(Refusal::of(
+            format!("{name}:{header_line}"),
+            format!(
+                "a header line of {} columns and {} bytes",
+                headers.len(),
+                header.len()
+            ),
+            format!("at most {MOST_COLUMNS} columns and {LONGEST_HEADER} bytes"),
+        ));
+    }
     let columns = Columns::find(name, &headers, &reading.by_hand)?;
     require(name, &columns, &headers)?;
 
@@ -140,7 +157,7 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
             Err(reason) => log.refused.push(RefusedRow {
                 file: name.to_string(),
                 line,
-                reason,
+                reason: cut(reason),
             }),
         }
     }

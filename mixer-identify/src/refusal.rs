@@ -13,12 +13,23 @@ pub struct Refusal {
     pub needed: String,
 }
 
+/// Longest message, characters: cells and lists of columns of a broken file can have megabytes.
+const LONGEST: usize = 500;
+
+/// The text, of which at most [`LONGEST`] characters are left.
+pub(crate) fn cut(text: String) -> String {
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} ..", &text[..end]),
+        None => text,
+    }
+}
+
 impl Refusal {
     /// A refusal of the file (or of file:line) `place`.
     pub fn of(place: impl Into<String>, reason: impl Into<String>, needed: impl Into<String>) -> Self {
         Self {
-            place: Some(place.into()),
-            reason: reason.into(),
+            place: Some(cut(place.into())),
+            reason: cut(reason.into()),
             needed: needed.into(),
         }
     }
@@ -27,7 +38,7 @@ impl Refusal {
     pub fn general(reason: impl Into<String>, needed: impl Into<String>) -> Self {
         Self {
             place: None,
-            reason: reason.into(),
+            reason: cut(reason.into()),
             needed: needed.into(),
         }
     }

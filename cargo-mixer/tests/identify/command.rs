@@ -273,3 +273,24 @@ fn sixteen_thousand_rows_are_read_in_well_under_a_second() {
     let best = (0..3).map(|_| read()).min().expect("a time");
     assert!(best < Duration::from_millis(700), "{best:?} without optimisation");
 }
+
+/// Messages do not grow with the input: megabytes of a broken file give a few lines.
+#[test]
+fn messages_of_broken_files_are_short() {
+    let folder = folder("broken");
+    let header = "upper,lower,thrust_n,torque_nm\n";
+    let bad_rows: String = (0..50_000).map(|k| format!("0.5,none-{k},1,0.1\n")).collect();
+    let texts = [
+        format!("{header}0.5,0.5,{},1\n", "9".repeat(1_000_000)),
+        "x".repeat(1_000_000),
+        "c,".repeat(100_000),
+        text(&plain(&rows(1))) + &bad_rows,
+    ];
+    for (k, broken) in texts.iter().enumerate() {
+        fs::write(folder.join("broken.csv"), broken).expect("written");
+        let output = run(&folder, &["broken.csv"]);
+        let told = output.stderr.len();
+        assert!((1..25_000).contains(&told), "{k}: {told} bytes");
+        assert!(!text(&output.stderr).contains("panicked"), "{k}");
+    }
+}
