@@ -26,6 +26,11 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     })
 }
 
+/// A number above 0 of `units`, as `metres`.
+pub(crate) fn quantity(text: &str, units: &str) -> Result<f64, String> {
+    positive(text).map_err(|_| format!("{text:?} is not a positive number of {units}"))
+}
+
 fn two(text: &str) -> Result<[f64; 2], String> {
     let (a, b) = text
         .split_once(',')

@@ -55,7 +55,7 @@ const LARGEST: u64 = 64 << 20;
 /// The bytes of a whole file.
 ///
 /// # Errors
-/// What cannot be read; a file above 64 MB.
+/// A file that cannot be read, or is above 64 MB.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(LARGEST + 1).read_to_end(&mut bytes)?;

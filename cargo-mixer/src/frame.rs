@@ -7,6 +7,7 @@ use std::path::Path;
 use clap::ValueEnum;
 use mixer_compiler::{Source, hover};
 
+use crate::bench_args::quantity;
 use crate::schema::DIRECTIVE;
 
 /// A frame of coaxial pairs.
@@ -41,10 +42,7 @@ pub struct FrameArgs {
 }
 
 fn arm(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(arm) if arm > 0.0 && arm.is_finite() => Ok(arm),
-        _ => Err(format!("{text:?} is not a positive number of metres")),
-    }
+    quantity(text, "metres")
 }
 
 /// Where the first pair is, how many there are, and what they serve.

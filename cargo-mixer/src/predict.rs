@@ -9,7 +9,7 @@ use mixer_identify::basis::ThrottleBox;
 use mixer_identify::bench::{Bench, Preparation};
 use mixer_identify::header::ByHand;
 use mixer_identify::identified::Settings;
-use mixer_identify::predict::{self, LEAST_IDLE, Predicted, Wishes};
+use mixer_identify::predict::{self, Predicted, Wishes};
 use mixer_identify::read::Reading;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::sign::{SignChoice, SignPolicy};
@@ -232,10 +232,7 @@ pub(crate) fn correct(
     let wishes = Wishes {
         spacing_ratio: rotors.ratio(),
         closed_loop: false,
-        throttle: throttle.unwrap_or(ThrottleBox {
-            min: LEAST_IDLE,
-            max: 1.0,
-        }),
+        throttle: throttle.unwrap_or(Wishes::default().throttle),
         date: today(),
     };
     predict::correct(upper, lower, maps, &wishes, warnings)

@@ -2,7 +2,6 @@
 
 mod bench;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -10,6 +9,8 @@ use mixer_report::origin::Origin;
 use mixer_report::page;
 use mixer_report::study::Study;
 
+use crate::bench_args::quantity;
+use crate::file;
 use crate::today::today;
 
 /// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and
@@ -53,7 +54,7 @@ pub fn run(args: &ReportArgs) -> ExitCode {
     }
     let study = Study::new(&compiled, args.thrust);
     let page = page::page(&study, bench.as_ref(), &origin(&args.airframe));
-    match crate::file::write(&args.output, &page) {
+    match file::write(&args.output, &page) {
         Ok(()) => {
             crate::print_note(format_args!("wrote {}", args.output.display()));
             ExitCode::SUCCESS
@@ -65,7 +66,7 @@ pub fn run(args: &ReportArgs) -> ExitCode {
 /// The origin of a page that is made now of this file.
 fn origin(airframe: &Path) -> Origin {
     Origin {
-        sha256: fs::read(airframe).ok().map(|bytes| crate::file::sha256(&bytes)),
+        sha256: file::bytes(airframe).ok().map(|bytes| file::sha256(&bytes)),
         date: today(),
     }
 }
@@ -90,8 +91,5 @@ pub(crate) fn overwriting<'a>(
 
 /// A thrust on the command line, N.
 pub(crate) fn thrust(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(thrust) if thrust > 0.0 && thrust.is_finite() => Ok(thrust),
-        _ => Err(format!("{text:?} is not a positive number of newtons")),
-    }
+    quantity(text, "newtons")
 }

@@ -246,12 +246,6 @@ pub fn matrices(study: &Study<'_>) -> Markup {
     }
 }
 
-/// One line of the comparison: columns of both mixers.
-struct Line {
-    cells: Vec<String>,
-    limited: bool,
-}
-
 /// Units by what both mixers make of them: those that always give the same as one another share
 /// their columns.
 fn alike(comparison: &Comparison) -> Vec<Vec<usize>> {
@@ -291,7 +285,8 @@ fn columns(comparison: &Comparison) -> Vec<String> {
     columns
 }
 
-fn lines(comparison: &Comparison) -> Vec<Line> {
+/// Rows of both mixers; an asterisk marks a throttle at its limit.
+fn lines(comparison: &Comparison) -> Vec<Vec<String>> {
     let groups = alike(comparison);
     let count = comparison.rows.len();
     let mut lines = Vec::new();
@@ -302,13 +297,11 @@ fn lines(comparison: &Comparison) -> Vec<Line> {
         };
         for (name, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
             let Answer { efforts, wrench, .. } = answer;
-            let mut cells = vec![fixed(row.yaw_nm, 3), name.to_owned()];
+            let limited = if answer.within { "" } else { "*" };
+            let mut cells = vec![fixed(row.yaw_nm, 3), format!("{name}{limited}")];
             cells.extend(groups.iter().flat_map(|group| rounded(efforts[group[0]])));
             cells.extend([fixed(wrench[2], 3), fixed(wrench[3], 2)]);
-            lines.push(Line {
-                cells,
-                limited: !answer.within,
-            });
+            lines.push(cells);
         }
     }
     lines
@@ -321,27 +314,13 @@ pub fn comparison(comparison: &Comparison) -> Markup {
         shortest(comparison.thrust_n),
         significant(comparison.kappa_m, 4)
     );
-    let rows: Vec<Vec<String>> = lines(comparison)
-        .into_iter()
-        .map(|mut line| {
-            if line.limited {
-                line.cells[1].push('*');
-            }
-            line.cells
-        })
-        .collect();
-    table(&caption, &columns(comparison), &rows)
+    table(&caption, &columns(comparison), &lines(comparison))
 }
 
 /// The static comparison as text in columns.
 pub fn comparison_text(comparison: &Comparison) -> String {
     let mut rows = vec![columns(comparison)];
-    rows.extend(lines(comparison).into_iter().map(|mut line| {
-        if line.limited {
-            line.cells[1].push('*');
-        }
-        line.cells
-    }));
+    rows.extend(lines(comparison));
     let widths: Vec<usize> = (0..rows[0].len())
         .map(|column| {
             rows.iter()

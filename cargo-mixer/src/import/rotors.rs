@@ -25,7 +25,7 @@ pub(super) struct Unit {
     pub(super) channels: [usize; 2],
 }
 
-/// What a flight stack's files say.
+/// Rotors and settings of a flight stack's files.
 #[derive(Debug, Default)]
 pub(super) struct Imported {
     /// The stack and the frame, for people.
@@ -37,6 +37,6 @@ pub(super) struct Imported {
     pub(super) range_v: Option<[f64; 2]>,
     /// The airmode with which the stack's controllers work, and why.
     pub(super) airmode: Option<(&'static str, &'static str)>,
-    /// What is assumed, or not said.
+    /// Assumptions, and settings that the files lack.
     pub(super) notes: Vec<String>,
 }

@@ -123,35 +123,30 @@ impl Hover {
 /// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.
 pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
     let airframe = &compiled.airframe;
-    if airframe.pair.uncertainty.is_none() {
-        return Vec::new();
-    }
-    let Some(at) = Hover::new(compiled).and_then(|hover| hover.at.into_iter().next()) else {
+    let (Some(vehicle), Some(_)) = (&airframe.vehicle, &airframe.pair.uncertainty) else {
         return Vec::new();
     };
-    let is_small = |margin: &&Margin| {
-        let left = margin.torque_nm[1].min(-margin.torque_nm[0]);
-        margin.band_nm.is_some_and(|band| left < band)
+    let lowest_v = airframe.voltage.as_ref().map(|voltage| voltage.range_v[0]);
+    let at = HoverAt::new(compiled, GRAVITY * vehicle.mass_kg, lowest_v);
+    let warning = |margin: &Margin| {
+        let [least, largest] = margin.torque_nm;
+        let left = largest.min(-least);
+        let band = margin.band_nm.filter(|band| left < *band)?;
+        let message = format!(
+            "hover leaves {} N m of {}, and the model of the pair may be off by {} N m",
+            rounded(left),
+            margin.axis,
+            rounded(band)
+        );
+        Some(airframe.diagnostic(
+            Code::MarginBelowBand,
+            "vehicle.mass_kg",
+            message,
+            "perhaps nothing is left",
+            "measure the pair (docs/bench-run.md), or fly with less mass",
+        ))
     };
-    let small = at.margins.iter().filter(is_small);
-    small
-        .map(|margin| {
-            let [least, largest] = margin.torque_nm;
-            let message = format!(
-                "hover leaves {} N m of {}, and the model of the pair may be off by {} N m",
-                rounded(largest.min(-least)),
-                margin.axis,
-                rounded(margin.band_nm.unwrap_or_default())
-            );
-            airframe.diagnostic(
-                Code::MarginBelowBand,
-                "vehicle.mass_kg",
-                message,
-                "perhaps nothing is left",
-                "measure the pair (docs/bench-run.md), or fly with less mass",
-            )
-        })
-        .collect()
+    at.margins.iter().filter_map(warning).collect()
 }
 
 impl HoverAt {

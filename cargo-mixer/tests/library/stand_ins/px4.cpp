@@ -46,36 +46,23 @@ static void cycle(float roll, float pitch, float yaw, float thrust)
 	publish(vehicle_torque_setpoint_s{0, stand_in::now_us() - 100, {roll, pitch, yaw}});
 }
 
-// Whether the motors are, bit by bit, those of the library.
-static bool same(float roll, float pitch, float yaw, float thrust, float voltage_v)
+// Whether the motors are, bit by bit, those of the library without the rotors of the channels in `failed`, whose motors
+// PX4 is told to stop.
+static bool same(float roll, float pitch, float yaw, float thrust, float voltage_v, unsigned failed = 0)
 {
 	const mixer_wrench_t setpoint{roll * ISAE_X8_ROLL_NM, pitch * ISAE_X8_PITCH_NM, yaw * ISAE_X8_YAW_NM, thrust * ISAE_X8_THRUST_N};
 	isae_x8_mix_t mix;
 	const actuator_motors_s motors = last<actuator_motors_s>();
-	bool equal = isae_x8_mix(&setpoint, voltage_v, &mix) == MIXER_OK
-		     && memcmp(motors.control, mix.throttle, sizeof(mix.throttle)) == 0;
+	bool equal = (failed ? isae_x8_mix_with_health(&setpoint, voltage_v, failed, &mix)
+		      : isae_x8_mix(&setpoint, voltage_v, &mix)) == MIXER_OK;
 
-	for (int i = ISAE_X8_CHANNELS; i < actuator_motors_s::NUM_CONTROLS; ++i) {
-		equal = equal && std::isnan(motors.control[i]);
-	}
-
-	return equal && motors.timestamp_sample == stand_in::now_us() - 100;
-}
-
-// The same with the rotors of these channels out, whose motors PX4 is told to stop.
-static bool same_without(unsigned failed, float roll, float pitch, float yaw, float thrust, float voltage_v)
-{
-	const mixer_wrench_t setpoint{roll * ISAE_X8_ROLL_NM, pitch * ISAE_X8_PITCH_NM, yaw * ISAE_X8_YAW_NM, thrust * ISAE_X8_THRUST_N};
-	isae_x8_mix_t mix;
-	const actuator_motors_s motors = last<actuator_motors_s>();
-	bool equal = isae_x8_mix_with_health(&setpoint, voltage_v, failed, &mix) == MIXER_OK;
-
-	for (int i = 0; i < ISAE_X8_CHANNELS; ++i) {
-		equal = equal && (failed & (1u << i) ? std::isnan(motors.control[i])
+	for (int i = 0; i < actuator_motors_s::NUM_CONTROLS; ++i) {
+		const bool stopped = i >= ISAE_X8_CHANNELS || (failed & (1u << i));
+		equal = equal && (stopped ? std::isnan(motors.control[i])
 				  : memcmp(&motors.control[i], &mix.throttle[i], sizeof(float)) == 0);
 	}
 
-	return equal;
+	return equal && motors.timestamp_sample == stand_in::now_us() - 100;
 }
 
 int main()
@@ -151,14 +138,14 @@ int main()
 	stand_in::failure_mode() = 1;
 	publish(failure_detector_status_s{0, true, 1u << 2});
 	cycle(0.01f, 0.f, 0.f, 0.3f);
-	CHECK(same_without(1u << 2, 0.01f, 0.f, 0.f, 0.3f, 15.5f));
+	CHECK(same(0.01f, 0.f, 0.f, 0.3f, 15.5f, 1u << 2));
 	CHECK(last<control_allocator_status_s>().handled_motor_failure_mask == 1u << 2);
 	publish(failure_detector_status_s{0, false, 0});
 	cycle(0.01f, 0.f, 0.f, 0.3f);
-	CHECK(same_without(1u << 2, 0.01f, 0.f, 0.f, 0.3f, 15.5f));
+	CHECK(same(0.01f, 0.f, 0.f, 0.3f, 15.5f, 1u << 2));
 	publish(failure_detector_status_s{0, true, 1u << 5});
 	cycle(0.f, 0.f, 0.f, 0.3f);
-	CHECK(same_without(1u << 2 | 1u << 5, 0.f, 0.f, 0.f, 0.3f, 15.5f));
+	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f, 1u << 2 | 1u << 5));
 	publish(vehicle_control_mode_s{0, false, true});
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
