@@ -9,5 +9,6 @@ mod pair_map;
 pub mod polynomial;
 pub mod pseudo_inverse;
 pub mod voltage;
+pub mod wake;
 
 pub use self::pair_map::PairMap;

@@ -10,6 +10,7 @@ mod geometry;
 mod limits;
 mod pair;
 mod power_bias;
+mod rotors;
 mod supply;
 mod vehicle;
 
@@ -25,11 +26,15 @@ type Rule = fn(&Facts<'_>, &mut Vec<Diagnostic>);
 
 const RULES: &[Rule] = &[
     pair::units,
-    pair::slopes,
+    rotors::slopes,
     pair::sum_of_rotors,
+    rotors::lopsided,
+    rotors::alone,
     pair::idle,
+    rotors::wake,
     pair::power,
     geometry::arms,
+    geometry::short_arms,
     geometry::radians,
     geometry::centre_of_gravity,
     geometry::channels,

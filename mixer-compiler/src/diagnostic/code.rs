@@ -130,8 +130,12 @@ catalogue! {
     NotCoaxial = 302,
     /// An idle at which a large share of the thrust is always on.
     HighIdle = 303,
-    /// Power and thrust in a ratio that no pair has: the power is in another unit.
+    /// Power that no pair of this thrust takes: in another unit, or with a coefficient that is off.
     PowerUnits = 304,
+    /// One rotor of the pair gives several times what the other gives.
+    LopsidedPair = 305,
+    /// A rotor alone that gives several times more or less than in its pair.
+    RotorAloneScale = 306,
     /// An arm far longer than the thrust makes plausible.
     LongArm = 310,
     /// An angle that looks like radians.
@@ -140,6 +144,8 @@ catalogue! {
     CentreOfGravity = 312,
     /// More units than the counted costs are of.
     ManyUnits = 313,
+    /// Arms so short that the rotors would overlap.
+    ShortArm = 314,
     /// A supply of one cell for rotors that need more.
     SingleCell = 320,
     /// A voltage law whose power of the voltage no propeller follows.

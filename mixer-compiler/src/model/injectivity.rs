@@ -15,7 +15,9 @@
 use crate::airframe::{Airframe, Basis, Pair};
 use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
+use crate::model::PairMap;
 use crate::model::polynomial::{Bivariate, Sign, ThrottleBox};
+use crate::model::wake::{self, Wake};
 
 /// The forward map with coefficients that are enclosed by intervals, for proofs. For its values see
 /// [`PairMap`](super::PairMap).
@@ -238,8 +240,7 @@ pub(crate) fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagn
             "pair.torque_nm",
             "det J is negative over the throttle box: this torque falls where the lower rotor speeds up",
             "signed for the other rotor",
-            "torque counts positive where the lower rotor outweighs the upper: negate every coefficient of torque_nm; if the \
-             columns of the two rotors were exchanged, exchange u and l in both polynomials instead",
+            reversed(airframe),
         ),
         Fold::NotGlobal => airframe.diagnostic(
             Code::NotInjective,
@@ -249,6 +250,26 @@ pub(crate) fn prove(airframe: &Airframe) -> Result<(Injectivity, f64), Vec<Diagn
             mend,
         ),
     }])
+}
+
+/// What to do about a det J below 0. The mean torque of the rotors in their true order is negative
+/// for a torque of the right sign.
+fn reversed(airframe: &Airframe) -> &'static str {
+    let map = PairMap::new(&airframe.pair, &airframe.throttle);
+    match Wake::told_by(wake::mean_torque(|at| map.efforts(at)[1], map.range())) {
+        Wake::Above => {
+            "by its mean the torque has the other sign: it counts positive where the lower rotor outweighs the upper; negate every \
+             coefficient of torque_nm"
+        }
+        Wake::Below => {
+            "by its mean the torque has the right sign, and the rotors are exchanged: run identify with --swap, or exchange u and l \
+             in both polynomials"
+        }
+        Wake::Untold => {
+            "torque counts positive where the lower rotor outweighs the upper: negate every coefficient of torque_nm; if the \
+             columns of the two rotors were exchanged, exchange u and l in both polynomials instead"
+        }
+    }
 }
 
 /// Points per side for the worst value in a message.

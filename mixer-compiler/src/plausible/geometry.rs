@@ -12,8 +12,9 @@ const MOST_COUNTED_UNITS: usize = 8;
 /// 0.2, arms in decimetres 0.6 and more.
 const ARM_PER_ROOT_THRUST: f64 = 0.5;
 
-/// Shortest arm that centimetres could have meant, m / sqrt(N): real frames have about 0.09.
-const SHORT_ARM_PER_ROOT_THRUST: f64 = 0.02;
+/// Shortest arm that rotors side by side leave, m / sqrt(N): real frames have 0.07 and more, rotors
+/// of an X8 overlap below about 0.045.
+const SHORT_ARM_PER_ROOT_THRUST: f64 = 0.03;
 
 /// Arms in centimetres.
 pub(super) fn arms(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
@@ -61,6 +62,49 @@ pub(super) fn arms(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
         } else {
             format!("if centimetres were meant, write {written}")
         },
+    ));
+}
+
+/// Arms in another unit, or a decimal point that slipped.
+pub(super) fn short_arms(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    let airframe = facts.airframe;
+    let [x, y] = [0, 1].map(|k| {
+        let places = airframe.units.iter().map(|unit| unit.position_m[k]);
+        places.fold(0.0, |most: f64, place| most.max(place.abs()))
+    });
+    // What is controlled needs an arm.
+    let arm = [(Axis::Pitch, x), (Axis::Roll, y)]
+        .into_iter()
+        .filter(|(axis, _)| airframe.allocation.controls(*axis))
+        .map(|(_, arm)| arm)
+        .reduce(f64::max);
+    let shortest = SHORT_ARM_PER_ROOT_THRUST * facts.scale[0].sqrt();
+    // An arm of 0 leaves an axis without control, which is an error; a wrong thrust is told already.
+    let Some(arm) = arm.filter(|arm| *arm > 0.0 && *arm < shortest) else {
+        return;
+    };
+    if found
+        .iter()
+        .any(|warning| matches!(warning.code, Code::PairUnits | Code::LopsidedPair))
+    {
+        return;
+    }
+    let key = if airframe.states("layout") {
+        "layout.arm_m"
+    } else {
+        "unit[0].position_m"
+    };
+    found.push(airframe.diagnostic(
+        Code::ShortArm,
+        key,
+        format!(
+            "no unit is further than {} m from the centre of gravity forward or to a side; rotors of {} N a unit overlap below {} m",
+            rounded(arm),
+            rounded(facts.scale[0]),
+            rounded(shortest)
+        ),
+        "expected metres",
+        "write the distance of each mast from the centre of gravity in metres",
     ));
 }
 

@@ -84,31 +84,6 @@ pub(super) fn units(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     ));
 }
 
-/// Torque falls with the upper throttle and rises with the lower one. Where both are exchanged, det
-/// J is negative and the file is refused. The corner of the fold tells nothing: real maps fold at
-/// (full, idle), the paper's at (idle, full).
-pub(super) fn slopes(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
-    let [low, high] = facts.map.range();
-    let torque = |u, l| facts.map.efforts([u, l])[1];
-    let by_upper = torque(high, low) - torque(low, low);
-    let by_lower = torque(low, high) - torque(low, low);
-    let is_refused = facts.effectiveness.is_none();
-    if is_refused || (by_upper < 0.0 && by_lower > 0.0) {
-        return;
-    }
-    found.push(facts.airframe.diagnostic(
-        Code::RotorsExchanged,
-        "pair.torque_nm",
-        format!(
-            "from idle to full the upper throttle changes the torque by {} N m, the lower one by {} N m",
-            rounded(by_upper),
-            rounded(by_lower)
-        ),
-        "expected a fall by the upper rotor, a rise by the lower one",
-        "check which rotor is the upper one (identify --swap exchanges them) and the sign of the torque",
-    ));
-}
-
 /// The wake costs thrust: both rotors give less than the sum of each alone. On real maps the share
 /// is 0.77 to 0.92.
 pub(super) fn sum_of_rotors(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
@@ -165,6 +140,14 @@ const THRUST_PER_POWER: [f64; 2] = [0.01, 0.5];
 /// Units of power in place of watts, with their size in W.
 const POWER_UNITS: [(&str, f64); 2] = [("mW", 0.001), ("kW", 1000.0)];
 
+/// Largest ratio of the powers of the two rotors, each at full throttle with the other at idle:
+/// 0.97 to 1.31 on real maps.
+const POWERS: f64 = 2.0;
+
+/// The power of the throttle that electrical power follows from idle to full: 1.7 to 2.6 on real
+/// maps; standby takes some at a low idle.
+const POWER_GROWTH: [f64; 2] = [1.2, 3.5];
+
 /// Thrust over power tells the unit of the power, unless that of the thrust is in doubt.
 pub(super) fn power(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     let Some(power) = &facts.airframe.pair.power else {
@@ -173,34 +156,59 @@ pub(super) fn power(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     if found.iter().any(|warning| warning.code == Code::PairUnits) {
         return;
     }
-    let [_, full] = facts.map.range();
+    let [idle, full] = facts.map.range();
     let [thrust, _] = facts.map.efforts([full; 2]);
     let watts = power.at([full; 2]);
     let [low, high] = THRUST_PER_POWER;
     let plausible = |watts: f64| (low..=high).contains(&(thrust / watts));
-    if plausible(watts) {
+    let (key, code) = ("pair.power.power_w", Code::PowerUnits);
+    if !plausible(watts) {
+        let unit = POWER_UNITS.iter().find(|(_, size)| plausible(watts * size));
+        let help = match unit {
+            Some((unit, size)) => format!(
+                "it would be plausible if power_w is in {unit} (multiply by {})",
+                number(*size)
+            ),
+            None => "check the unit of power_w (W, of both rotors)".to_owned(),
+        };
+        found.push(facts.airframe.diagnostic(
+            code,
+            key,
+            format!(
+                "at full throttle one unit takes {} W for {} N, {} N/W; pairs of 4 to 40 inch give {} to {} N/W",
+                rounded(watts),
+                rounded(thrust),
+                rounded(thrust / watts),
+                number(low),
+                number(high)
+            ),
+            "in another unit?",
+            help,
+        ));
         return;
     }
-    let unit = POWER_UNITS.iter().find(|(_, size)| plausible(watts * size));
-    let help = match unit {
-        Some((unit, size)) => format!(
-            "it would be plausible if power_w is in {unit} (multiply by {})",
-            number(*size)
-        ),
-        None => "check the unit of power_w (W, of both rotors)".to_owned(),
-    };
+    let [upper, lower] = [[full, idle], [idle, full]].map(|at| power.at(at));
+    let growth = libm::log(watts / power.at([idle; 2])) / libm::log(full / idle);
+    let [least, most] = POWER_GROWTH;
+    if (1.0 / POWERS..=POWERS).contains(&(upper / lower)) && (least..=most).contains(&growth) {
+        return;
+    }
     found.push(facts.airframe.diagnostic(
-        Code::PowerUnits,
-        "pair.power.power_w",
+        code,
+        key,
         format!(
-            "at full throttle one unit takes {} W for {} N, {} N/W; pairs of 4 to 40 inch give {} to {} N/W",
-            rounded(watts),
-            rounded(thrust),
-            rounded(thrust / watts),
-            number(low),
-            number(high)
+            "the power grows with the throttle to the power {}, and is {} W with the upper rotor alone at full throttle, {} W with \
+             the lower one",
+            rounded(growth),
+            rounded(upper),
+            rounded(lower)
         ),
-        "in another unit?",
-        help,
+        format!(
+            "expected a power of {} to {} and rotors within a factor of {}",
+            number(least),
+            number(most),
+            number(POWERS)
+        ),
+        "one coefficient may be off, or out of order: those of the quartic basis and a constant at the end",
     ));
 }
