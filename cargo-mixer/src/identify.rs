@@ -304,9 +304,18 @@ fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
     })
 }
 
+/// Largest exponent that is taken: a propeller has 2.5 at most.
+const LARGEST_EXPONENT: f64 = 4.0;
+
 fn exponents(text: &str) -> Result<DeclaredExponents, String> {
     let (thrust, torque) = text.split_once(',').unwrap_or((text, text));
-    Ok(DeclaredExponents([positive(thrust)?, positive(torque)?]))
+    let exponent = |text| match positive(text)? {
+        x if x > LARGEST_EXPONENT => Err(format!(
+            "{x} is above {LARGEST_EXPONENT}; propellers have 1 to 2.5"
+        )),
+        x => Ok(x),
+    };
+    Ok(DeclaredExponents([exponent(thrust)?, exponent(torque)?]))
 }
 
 fn part(text: &str) -> Result<f64, String> {

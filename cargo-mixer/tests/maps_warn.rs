@@ -3,11 +3,13 @@
 
 mod maps;
 
+use cargo_mixer::bench_files::read_one;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::diagnostic::Code;
+use mixer_identify::bench::Bench;
 use mixer_identify::fragment;
-use mixer_identify::identified::Identified;
+use mixer_identify::identified::{Identified, Settings, from_benches};
 
 const BASES: [&str; 3] = ["biquadratic", "cubic", "quartic"];
 
@@ -101,4 +103,62 @@ fn mistakes_in_real_maps_are_told() {
     );
     assert_eq!(exchanged, fits);
     assert!(10 * off >= 9 * coefficients, "{off} of {coefficients}");
+}
+
+/// What `identify` says of a bench.
+fn warnings(bench: Bench) -> String {
+    let notes = bench.notes.join("\n");
+    let told = match from_benches(vec![bench], &Settings::default().wishes) {
+        Ok(identified) => identified.warnings.join("\n"),
+        Err(refusal) => refusal.to_string(),
+    };
+    format!("{notes}\n{told}")
+}
+
+/// The same rows with something done to each.
+fn changed(bench: &Bench, change: impl Fn(&mut mixer_identify::bench::Point)) -> Bench {
+    let mut bench = bench.clone();
+    bench.points.iter_mut().for_each(change);
+    bench
+}
+
+#[test]
+fn mistakes_in_real_benches_are_told() {
+    let Some(files) = maps::files("mistakes_in_real_benches_are_told") else {
+        return;
+    };
+    let (exchanged, tare) = ("look exchanged", "set the load cell to zero");
+    let (mut full_range, mut tares) = (0, 0);
+    for map in &files {
+        let name = map.display();
+        let bench = read_one(map, &Settings::default()).unwrap_or_else(|refusal| panic!("{refusal}"));
+        let told = warnings(bench.clone());
+        for wrong in [
+            exchanged,
+            tare,
+            "right way round",
+            "differs from the sum",
+            "in disorder",
+            "voltage is",
+        ] {
+            assert!(!told.contains(wrong), "{name}: {wrong}\n{told}");
+        }
+        let swapped = changed(&bench, |p| (p.u, p.l, p.torque) = (p.l, p.u, -p.torque));
+        assert!(warnings(swapped).contains(exchanged), "{name}");
+        let lowest = bench.points.iter().map(|p| p.u).fold(1.0, f64::min);
+        let greatest = bench.points.iter().map(|p| p.thrust).fold(0.0, f64::max);
+        if lowest < 0.15 {
+            full_range += 1;
+            let offset = changed(&bench, |p| p.thrust += 0.02 * greatest);
+            tares += usize::from(warnings(offset).contains(tare));
+        }
+        // Each row with what the row before it gave.
+        let mut late = bench.clone();
+        for (point, before) in late.points.iter_mut().skip(1).zip(&bench.points) {
+            (point.thrust, point.torque) = (before.thrust, before.torque);
+        }
+        assert!(warnings(late).contains("in disorder"), "{name}");
+    }
+    println!("a missing tare is told of {tares} of {full_range} full-range maps");
+    assert_eq!(tares, full_range);
 }

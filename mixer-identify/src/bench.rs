@@ -137,7 +137,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         start_stop_rows,
         streaming,
         settling_rows,
-    } = steady(samples, &turned, how);
+    } = steady(&name, samples, &turned, how, &mut refused, &mut notes);
     if kind == Kind::Pair {
         notes.extend(uneven_levels(&samples));
     }
@@ -216,8 +216,16 @@ struct Steady {
     settling_rows: usize,
 }
 
-/// Drops start and stop rows, and reduces a streaming log to its plateaus.
-fn steady(mut samples: Vec<Sample>, turned: &Turned, how: &Preparation) -> Steady {
+/// Drops start and stop rows and those of a supply that was off, and reduces a streaming log to its
+/// plateaus.
+fn steady(
+    name: &str,
+    mut samples: Vec<Sample>,
+    turned: &Turned,
+    how: &Preparation,
+    refused: &mut Vec<RefusedRow>,
+    notes: &mut Vec<String>,
+) -> Steady {
     let before = samples.len();
     // An empty throttle is no start or stop row: it stays and is refused later, with its line.
     samples.retain(|s| match turned.kind {
@@ -228,6 +236,7 @@ fn steady(mut samples: Vec<Sample>, turned: &Turned, how: &Preparation) -> Stead
         }
     });
     let start_stop_rows = before - samples.len();
+    supplied(name, &mut samples, refused, notes);
     let streaming = plateau::is_streaming(&samples);
     let mut settling_rows = 0;
     if streaming {
@@ -239,6 +248,45 @@ fn steady(mut samples: Vec<Sample>, turned: &Turned, how: &Preparation) -> Stead
         streaming,
         settling_rows,
     }
+}
+
+/// Share of the median voltage below which a supply is off, or was not recorded.
+const OFF: f64 = 0.25;
+
+/// Refuses rows whose voltage cannot have driven the rotors. Where all are 0 none was recorded.
+fn supplied(name: &str, samples: &mut Vec<Sample>, refused: &mut Vec<RefusedRow>, notes: &mut Vec<String>) {
+    let mut volts: Vec<f64> = samples
+        .iter()
+        .map(|s| s.voltage)
+        .filter(|v| v.is_finite())
+        .collect();
+    volts.sort_by(f64::total_cmp);
+    let Some(&median) = volts.get(volts.len() / 2) else {
+        return;
+    };
+    if median <= 0.0 {
+        notes.push(format!(
+            "the voltage is {median} V in most rows: taken as not measured"
+        ));
+        for sample in samples {
+            (sample.voltage, sample.power_w) = (f64::NAN, f64::NAN);
+        }
+        return;
+    }
+    samples.retain(|s| {
+        let off = s.voltage <= OFF * median;
+        if off {
+            refused.push(RefusedRow {
+                file: name.to_owned(),
+                line: s.line,
+                reason: format!(
+                    "the voltage is {} V, in the middle of the rows {median} V",
+                    s.voltage
+                ),
+            });
+        }
+        !off
+    });
 }
 
 fn none_usable(name: String, rows: usize, dropped: &str, refused: &[RefusedRow]) -> Refusal {

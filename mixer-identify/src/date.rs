@@ -22,10 +22,22 @@ pub fn date_in(name: &str) -> Option<String> {
         if step == 1 && mark != bytes.get(at + 4) {
             return None;
         }
-        let day = number(at + 6 + 2 * step..at + 8 + 2 * step).filter(|d| (1..=31).contains(d))?;
+        let day =
+            number(at + 6 + 2 * step..at + 8 + 2 * step).filter(|d| (1..=days(year, month)).contains(d))?;
         let followed = bytes.get(at + 8 + 2 * step).is_some_and(u8::is_ascii_digit);
         (!followed).then(|| format!("{year:04}-{month:02}-{day:02}"))
     })
+}
+
+/// Days of a month.
+fn days(year: u32, month: u32) -> u32 {
+    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    match month {
+        2 if is_leap => 29,
+        2 => 28,
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    }
 }
 
 #[cfg(test)]
@@ -38,10 +50,13 @@ mod tests {
         assert_eq!(of("data2021_08_17_23_41_12_16p2in.csv"), "2021-08-17");
         assert_eq!(of("Log_2019-11-05_171350.csv"), "2019-11-05");
         assert_eq!(of("20210817_map.csv"), "2021-08-17");
+        assert_eq!(of("2024-02-29.csv"), "2024-02-29");
         for name in [
             "a1_11.csv",
             "map_2300kv_8045.csv",
             "2021-13-05.csv",
+            "2021-02-29.csv",
+            "2021-04-31.csv",
             "serial20210817123.csv",
             "",
         ] {

@@ -96,7 +96,7 @@ pub fn with_runs(
     if has(Kind::Pair) && has(Kind::SingleRotor) {
         warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
     }
-    let reference_v = reference(pair.as_ref(), voltage.as_ref(), wishes.reference_v, &mut warnings);
+    let reference_v = reference(pair.as_ref(), voltage.as_ref(), wishes.reference_v, &mut warnings)?;
     let power = pair
         .as_ref()
         .map(|pair| power::examine(&benches, pair, voltage.as_ref()));
@@ -160,7 +160,7 @@ fn reference(
     voltage: Option<&Voltage>,
     wished: Option<f64>,
     warnings: &mut Vec<String>,
-) -> Option<f64> {
+) -> Result<Option<f64>, Refusal> {
     let mean = match pair {
         Some(pair) => pair.normalised_to_v.or(pair.mean_v),
         None => voltage.map(|v| v.mean_v),
@@ -173,11 +173,20 @@ fn reference(
         && !(v.range_v[0]..=v.range_v[1]).contains(&reference)
     {
         let [low, high] = v.range_v;
+        if reference < low / FAR || reference > FAR * high {
+            return Err(Refusal::general(
+                format!("--reference-voltage {reference}: the rows were measured at {low:.2} to {high:.2} V"),
+                "a voltage that the bench had, or nothing for the mean of the rows",
+            ));
+        }
         let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
         warnings.push(told);
     }
-    reference_v
+    Ok(reference_v)
 }
+
+/// How many times beyond the measured voltages a reference may be: a pack of twice the cells.
+const FAR: f64 = 2.0;
 
 /// Rows are named by file name and line, so names must differ.
 fn distinct_names(benches: &[Bench]) -> Result<(), Refusal> {

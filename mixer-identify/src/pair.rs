@@ -14,6 +14,7 @@ use super::monotone::{self, MonotoneCost};
 use super::refusal::Refusal;
 use super::robust::{self, Outlier};
 use super::rotor::Alone;
+use super::sign::AUTO;
 use super::uncertainty::Uncertainty;
 use super::voltage::Voltage;
 use super::wishes::Wishes;
@@ -94,6 +95,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, &reason))?;
     let free = channels(&points).map(|values| fit(&design, &values, throttle_box));
     one_pair(basis, &points, throttle_box, &free, &mut warnings)?;
+    doubts::unexplained(&files, free.each_ref())?;
     let free_fold = fold_of(basis, &free, throttle_box);
     let (fits, monotone) = if !free_fold.injective && wishes.monotone {
         let (fits, cost) =
@@ -110,6 +112,9 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     let idle = idle(basis, &fits, &fold, &files, &mut warnings)?;
 
     let [thrust, torque] = fits;
+    let sign_is_found = benches.iter().any(|bench| bench.signs.torque_policy == AUTO);
+    doubts::exchanged(basis, &torque, throttle_box, sign_is_found, &mut warnings);
+    doubts::tare(&points, &mut warnings);
     judge_quality(&thrust, &torque, &mut warnings);
     Ok(Pair {
         basis,

@@ -52,12 +52,11 @@ pub struct Signs {
     pub torque_policy: &'static str,
 }
 
+/// The word for a sign that was found.
+pub const AUTO: &str = "auto";
+
 fn policy_word(choice: SignChoice) -> &'static str {
-    if choice == SignChoice::Auto {
-        "auto"
-    } else {
-        "given"
-    }
+    if choice == SignChoice::Auto { AUTO } else { "given" }
 }
 
 /// +1 or -1, the sign of the sum of what is not NaN.
@@ -170,9 +169,52 @@ fn pair_thrust(
     if !total {
         compare_sides(samples, signs, notes);
     }
+    let sums = signed(samples, |s| (s.thrust, s.rotor_thrust), total, &signs);
+    if total {
+        compare_sum("thrust", &sums, samples.iter().map(|s| s.rotor_thrust), notes);
+    }
     Channel {
-        sums: signed(samples, |s| (s.thrust, s.rotor_thrust), total, &signs),
+        sums,
         signs: signs[..if total { 1 } else { 2 }].to_vec(),
+    }
+}
+
+/// What a total may differ by from the sum of the rotors' columns, rms, in shares of the greatest
+/// total.
+const SUM: f64 = 0.02;
+
+/// A total that is not the sum of the rotors' columns, whatever their signs: says so.
+fn compare_sum(
+    what: &str,
+    totals: &[f64],
+    rotors: impl Iterator<Item = [f64; 2]> + Clone,
+    notes: &mut Vec<String>,
+) {
+    let largest = totals
+        .iter()
+        .filter(|x| x.is_finite())
+        .fold(0.0_f64, |most, x| most.max(x.abs()));
+    let differs = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[a, b]| {
+        let differences = totals
+            .iter()
+            .zip(rotors.clone())
+            .map(|(x, [upper, lower])| x - a * upper - b * lower);
+        let (sum, count) = differences
+            .filter(|d| d.is_finite())
+            .fold((0.0, 0), |(sum, count), d| (sum + d * d, count + 1));
+        if count > 0 {
+            (sum / f64::from(count)).sqrt()
+        } else {
+            0.0
+        }
+    });
+    let least = differs.into_iter().fold(f64::INFINITY, f64::min);
+    if least > SUM * largest {
+        notes.push(format!(
+            "the total {what} differs from the sum of the rotors' columns by {:.1} % of its greatest value, rms: the total is taken; \
+             --column {what}=HEADER names another",
+            100.0 * least / largest
+        ));
     }
 }
 
@@ -194,6 +236,9 @@ fn pair_torque(
         }
     };
     let mut sums = signed(samples, |s| (s.torque, s.rotor_torque), total, &signs);
+    if total {
+        compare_sum("torque", &sums, samples.iter().map(|s| s.rotor_torque), notes);
+    }
     constant(file, &sums)?;
     let [by_upper, by_lower] = slopes(samples, &sums);
     no_magnitudes(file, by_upper, by_lower)?;
@@ -208,8 +253,7 @@ fn pair_torque(
             );
         } else if total && columns.sides_named {
             notes.push(
-                "torque is turned, as of an upper rotor that turned counter-clockwise or a sensor mounted that way; \
-                 exchanged columns look the same: make sure which is the upper rotor's (--swap exchanges them)"
+                "torque is turned, as of an upper rotor that turned counter-clockwise or a sensor mounted that way"
                     .into(),
             );
         }

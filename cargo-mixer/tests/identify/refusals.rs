@@ -118,3 +118,15 @@ fn a_blank_row_of_a_map_is_named() {
     assert!(bench.refused_rows[1].reason.contains("torque is empty"));
     assert!(bench.refused_rows[2].reason.contains("--pwm-range"));
 }
+
+/// Commands a row late, or columns of another file.
+#[test]
+fn rows_in_disorder() {
+    let mut shuffled = rows(1);
+    let count = shuffled.len();
+    for (k, row) in rows(1).iter().enumerate() {
+        (shuffled[(7 * k + 3) % count].u, shuffled[(7 * k + 3) % count].l) = (row.u, row.l);
+    }
+    let text = reason(&plain(&shuffled));
+    assert!(text.contains("columns or rows are in disorder"), "{text}");
+}

@@ -37,11 +37,8 @@ fn totals_are_turned_to_the_convention() {
         let (signs, sums) = pair("b.csv", &c, &s, &AUTO, false, &mut notes).expect("signs");
         assert_eq!((signs.thrust, signs.torque), (vec![-1.0], vec![sign]));
         assert!(sums[0].1 > 0.0 && sums[1].1 < 0.0 && sums[0].0 > 0.0);
-        // Exchanged columns turn the torque, too.
-        let exchanged = notes
-            .iter()
-            .any(|note| note.contains("that way; exchanged columns"));
-        assert_eq!(exchanged, sign < 0.0, "{notes:?}");
+        let turned = notes.iter().any(|note| note.contains("torque is turned"));
+        assert_eq!(turned, sign < 0.0, "{notes:?}");
     }
 }
 
