@@ -4,9 +4,11 @@
 mod maps;
 
 use cargo_mixer::bench_files::read_one;
-use mixer_compiler::Source;
+use std::path::Path;
+
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::diagnostic::Code;
+use mixer_compiler::{Compiled, Source};
 use mixer_identify::bench::Bench;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, Settings, from_benches};
@@ -19,6 +21,13 @@ fn source(tables: &str) -> Source {
     Source::new("x8.toml", text)
 }
 
+/// Whether nothing is told; of maps that begin at a throttle of 0.4 their idle alone.
+fn is_quiet(compiled: &Compiled, map: &Path) -> bool {
+    let begins_high = !map.to_string_lossy().contains("full_range");
+    let told = compiled.warnings.faults().iter().map(|warning| warning.code);
+    told.eq(begins_high.then_some(Code::HighIdle))
+}
+
 #[test]
 fn no_real_map_warns() {
     let Some(files) = maps::files("no_real_map_warns") else {
@@ -29,7 +38,7 @@ fn no_real_map_warns() {
         for basis in BASES {
             fits += 1;
             match mixer_compiler::compile(&source(&fragment::text(&maps::identified(map, basis)))) {
-                Ok(compiled) if compiled.warnings.is_empty() => {}
+                Ok(compiled) if is_quiet(&compiled, map) => {}
                 Ok(compiled) => {
                     warned += 1;
                     println!("{} {basis}\n{}", map.display(), compiled.warnings);
@@ -93,7 +102,7 @@ fn mistakes_in_real_maps_are_told() {
                     both[channel][k] *= 10.0;
                     let told = codes(&tables(&identified, basis, [&both[0], &both[1]]));
                     coefficients += 1;
-                    off += usize::from(!told.is_empty());
+                    off += usize::from(told.iter().any(|code| *code != Code::HighIdle));
                 }
             }
         }

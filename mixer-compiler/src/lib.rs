@@ -122,6 +122,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         tables,
     };
     warnings.extend(hover::warnings(&compiled));
+    warnings.extend(power::warnings(&compiled));
     compiled.warnings = Diagnostics::new(source.clone(), warnings);
     Ok(compiled)
 }

@@ -21,10 +21,10 @@ fn an_x8_has_its_list() {
   unit 1         front left: output 1 upper, counter-clockwise; output 5 lower, clockwise
   unit 2         rear left: output 2 upper, clockwise; output 6 lower, counter-clockwise
   unit 3         rear right: output 3 upper, counter-clockwise; output 7 lower, clockwise
-  +roll          raises outputs 1, 2, 5, 6 (right side down)
-  +pitch         raises outputs 0, 1, 4, 5 (nose up)
-  +yaw           raises outputs 4, 6, 1, 3 (nose right)
-  +thrust        raises outputs 0, 1, 2, 3, 4, 5, 6, 7 (up)
+  +roll          raises outputs 1, 2, 5, 6 by 0.017 (right side down)
+  +pitch         raises outputs 0, 1, 4, 5 by 0.017 (nose up)
+  +yaw           raises outputs 4, 6 by 0.009; 1, 3 by 0.006 (nose right)
+  +thrust        raises outputs 0, 1, 2, 3, 4, 5, 6, 7 by 0.017 (up)
 "
     );
 }

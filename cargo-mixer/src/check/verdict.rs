@@ -43,10 +43,10 @@ impl fmt::Display for Verdict<'_> {
         )?;
         writeln!(
             f,
-            "idle            {:?} gives {:.1} % of the largest thrust; the map needs {} at least",
+            "idle            {:?} gives {:.1} % of the largest thrust; the map needs {:.3} at least",
             airframe.throttle.min,
             100.0 * floor / ceiling,
-            summary.min_idle
+            (1e3 * summary.min_idle).ceil() / 1e3
         )?;
         match &summary.hover {
             Some(hover) => write!(f, "{hover}")?,
@@ -64,7 +64,10 @@ impl fmt::Display for Verdict<'_> {
                 "voltage         {} to {} V is corrected for",
                 voltage.range_v[0], voltage.range_v[1]
             )?,
-            None => writeln!(f, "voltage         not corrected for: the file has no [voltage]")?,
+            None => writeln!(
+                f,
+                "voltage         not corrected for: no [voltage]; a pack that falls by 20 % loses 32 % of thrust"
+            )?,
         }
         writeln!(
             f,
@@ -96,21 +99,12 @@ impl fmt::Display for Verdict<'_> {
 }
 
 impl Verdict<'_> {
-    /// Which outputs rise for every axis, in order.
+    /// Which outputs rise for every axis, and by how much.
     fn outputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for axis in Axis::ALL {
-            let Some(rising) = Checklist(self.compiled).rising(axis) else {
-                continue;
-            };
-            let mut outputs: Vec<usize> = rising.iter().filter_map(|output| output.parse().ok()).collect();
-            outputs.sort_unstable();
-            let outputs: Vec<String> = outputs.iter().map(usize::to_string).collect();
-            writeln!(
-                f,
-                "{:<15} raises outputs {}",
-                format!("+{}", axis.name()),
-                outputs.join(", ")
-            )?;
+            if let Some(rises) = Checklist(self.compiled).rises_in_words(axis) {
+                writeln!(f, "{:<15} raises outputs {rises}", format!("+{}", axis.name()))?;
+            }
         }
         Ok(())
     }

@@ -85,7 +85,7 @@ fn check_prints_the_key_lines() {
         "\n  mix           about ",
         "\n  any request   at most ",
         "\non the bench    propellers off, ",
-        "\n  +yaw           raises outputs 4, 6, 1, 3 (nose right)\n",
+        "\n  +yaw           raises outputs 4, 6 by 0.009; 1, 3 by 0.006 (nose right)\n",
         "\nnormalised      one unit is 22.3091 N m roll, 22.3091 N m pitch, 1.7320 N m yaw, 99.151 N thrust\n",
         "\n  PX4           THR_MDL_FAC 0, MC_BAT_SCALE_EN 0, MPC_THR_HOVER 0.0989 per kg of the vehicle\n",
         "\n  ArduPilot     MOT_THST_EXPO 0, MOT_SPIN_MIN 0.1, MOT_SPIN_MAX 1, MOT_BAT_VOLT_MAX 0, MOT_BAT_VOLT_MIN 0, \
@@ -131,7 +131,7 @@ fn check_begins_with_a_verdict() {
         "{text}"
     );
     assert!(
-        text.contains("\n+yaw            raises outputs 1, 3, 4, 6\n"),
+        text.contains("\n+yaw            raises outputs 4, 6 by 0.009; 1, 3 by 0.006\n"),
         "{text}"
     );
 }

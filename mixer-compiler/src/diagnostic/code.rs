@@ -152,6 +152,8 @@ catalogue! {
     VoltageExponent = 321,
     /// A voltage law that leaves little of thrust or torque, or multiplies it, within the voltage range.
     VoltageFactor = 322,
+    /// No `[voltage]`: thrust is taken to be the same at any voltage of the pack.
+    NoVoltage = 323,
     /// A tolerance above a hundredth of a unit's largest effort.
     WideTolerance = 330,
     /// A yaw reserve that the units cannot hold at any thrust.
@@ -160,6 +162,8 @@ catalogue! {
     PowerBiasBeyond = 332,
     /// A power bias that saves nothing, as no upper rotors turn against each other.
     PowerBiasIdle = 333,
+    /// A power bias that costs power at the vehicle's weight.
+    PowerBiasCosts = 335,
     /// A vehicle that is too heavy to hover.
     TooHeavy = 340,
     /// A vehicle that rises at idle.

@@ -2,6 +2,7 @@
 //! turns, and which outputs rise for roll, pitch, yaw and thrust. Mirrored spins and exchanged
 //! channels are found so.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use mixer_rt::Wrench;
@@ -41,7 +42,7 @@ impl fmt::Display for Checklist<'_> {
             )?;
         }
         for axis in Axis::ALL {
-            if let Some(outputs) = self.rising(axis) {
+            if let Some(rises) = self.rises_in_words(axis) {
                 let motion = match axis {
                     Axis::Roll => "right side down",
                     Axis::Pitch => "nose up",
@@ -50,9 +51,8 @@ impl fmt::Display for Checklist<'_> {
                 };
                 writeln!(
                     f,
-                    "  {:<14} raises outputs {} ({motion})",
+                    "  {:<14} raises outputs {rises} ({motion})",
                     format!("+{}", axis.name()),
-                    outputs.join(", ")
                 )?;
             }
         }
@@ -61,9 +61,29 @@ impl fmt::Display for Checklist<'_> {
 }
 
 impl Checklist<'_> {
-    /// The outputs that rise where the axis is asked, most of all first; `None` where it is not
-    /// served or not delivered.
+    /// The outputs that rise where the axis is asked, in order; `None` where it is not served or not
+    /// delivered.
     pub fn rising(&self, axis: Axis) -> Option<Vec<String>> {
+        let rises = self.rises(axis)?;
+        Some(rises.into_iter().map(|(output, _)| output.to_string()).collect())
+    }
+
+    /// The outputs by how much they rise, most of all first: `4, 6 by 0.021; 1, 3 by 0.019`.
+    pub fn rises_in_words(&self, axis: Axis) -> Option<String> {
+        let mut by_rise: BTreeMap<i32, Vec<String>> = BTreeMap::new();
+        for (output, rise) in self.rises(axis)? {
+            let thousandths = (1000.0 * rise).round() as i32;
+            by_rise.entry(-thousandths).or_default().push(output.to_string());
+        }
+        let groups = by_rise
+            .into_iter()
+            .map(|(rise, outputs)| format!("{} by {:.3}", outputs.join(", "), -f64::from(rise) / 1000.0));
+        Some(groups.collect::<Vec<_>>().join("; "))
+    }
+
+    /// The outputs that rise where 2 % of the axis' size is asked, in order, each with the rise of
+    /// its throttle; `None` where it is not served or not delivered.
+    pub fn rises(&self, axis: Axis) -> Option<Vec<(usize, f32)>> {
         let compiled = self.0;
         if !compiled.airframe.allocation.controls(axis) {
             return None;
@@ -87,15 +107,7 @@ impl Checklist<'_> {
             .iter()
             .fold(0.0f32, |largest, (_, change)| largest.max(*change));
         changes.retain(|(_, change)| *change > COUNTS * largest);
-        // Equal up to rounding is equal: then the lower output first.
-        let rank = |change: f32| (-100.0 * change / largest).round() as i32;
-        changes.sort_by_key(|(output, change)| (rank(*change), *output));
-        Some(
-            changes
-                .into_iter()
-                .map(|(output, _)| output.to_string())
-                .collect(),
-        )
+        Some(changes)
     }
 }
 

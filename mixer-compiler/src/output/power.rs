@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::airframe::GRAVITY;
 use crate::compiled::Compiled;
+use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::tables::MixerTables;
 
 /// Share of the largest bare thrust at which vehicles without a mass are looked at.
@@ -51,6 +52,37 @@ impl LevelPower {
             is_hover: weight.is_some(),
         })
     }
+}
+
+/// Share of the power without a bias by which a bias may cost, for what the power map misses.
+const COSTS: f64 = 0.002;
+
+/// Warns of a power bias that costs power at the vehicle's weight: the best number for the mean of
+/// hovers at 0.3 to 0.7 of full thrust need not be the best at one of them.
+pub(crate) fn warnings(compiled: &Compiled) -> Option<Diagnostic> {
+    let airframe = &compiled.airframe;
+    let bias = airframe.allocation.power_bias_nm_per_n;
+    if bias == 0.0 {
+        return None;
+    }
+    let level = LevelPower::new(compiled).filter(|level| level.is_hover)?;
+    if level.power_w <= (1.0 + COSTS) * level.without_bias_w {
+        return None;
+    }
+    Some(airframe.diagnostic(
+        Code::PowerBiasCosts,
+        "allocation.power_bias_nm_per_n",
+        format!(
+            "a power bias of {} N m per N takes {} W in hover at {} N, {} W without it: {:+.1} %",
+            number(bias),
+            rounded(level.power_w),
+            rounded(level.thrust_n),
+            rounded(level.without_bias_w),
+            -level.saving_percent
+        ),
+        "costs flight time",
+        "remove it, or choose a smaller one: `cargo mixer check --verbose` says what it saves",
+    ))
 }
 
 /// Power of all rotors at a level thrust, W; `None` where it is not delivered.

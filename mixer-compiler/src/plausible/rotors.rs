@@ -30,14 +30,21 @@ pub(super) fn slopes(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     ));
 }
 
-/// The rotor in the wake takes less torque: [`wake`](crate::model::wake). Its limit is that of
-/// whole maps: above a high idle the paper's own pair is beyond it. Wrong slopes are told already.
+/// Idle over full throttle above which the mean torque is not looked at: the paper's own pair is
+/// beyond the limit there. Real maps that begin at 0.42 of full throttle are well within.
+const WHOLE_MAP: f64 = 0.45;
+
+/// The rotor in the wake takes less torque: [`wake`](crate::model::wake). Wrong slopes are told
+/// already.
 pub(super) fn wake(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     let mean = wake::mean_torque(|at| facts.map.efforts(at)[1], facts.map.range());
-    let is_told = found
-        .iter()
-        .any(|warning| matches!(warning.code, Code::RotorsExchanged | Code::HighIdle));
-    if facts.effectiveness.is_none() || is_told || Wake::told_by(mean) != Wake::Above {
+    let [low, high] = facts.map.range();
+    let is_told = found.iter().any(|warning| warning.code == Code::RotorsExchanged);
+    if facts.effectiveness.is_none()
+        || is_told
+        || low > WHOLE_MAP * high
+        || Wake::told_by(mean) != Wake::Above
+    {
         return;
     }
     found.push(facts.airframe.diagnostic(

@@ -4,6 +4,30 @@ use super::facts::Facts;
 use crate::airframe::{Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 
+/// What a pack of lithium cells loses of its voltage from full to empty, as a share.
+const PACK_FALLS: f64 = 0.2;
+
+/// Exponent of thrust over voltage: the median of benches.
+const TYPICAL: f64 = 1.75;
+
+/// A vehicle whose pack is not known. Without `[vehicle]` it may be a pair on a stand.
+pub(super) fn missing(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    if facts.airframe.voltage.is_some() || facts.airframe.vehicle.is_none() {
+        return;
+    }
+    found.push(facts.airframe.diagnostic(
+        Code::NoVoltage,
+        "vehicle.mass_kg",
+        format!(
+            "no [voltage]: thrust is taken to be the same at any voltage, but a pack that falls by {:.0} % loses {:.0} % of it",
+            100.0 * PACK_FALLS,
+            100.0 * (1.0 - libm::pow(1.0 - PACK_FALLS, TYPICAL))
+        ),
+        "flies at one voltage",
+        "add [voltage] with reference_v (the bench's), range_v (the pack's), thrust_exponent and torque_exponent (1.75 is typical)",
+    ));
+}
+
 /// Highest voltage of one cell, V.
 const ONE_CELL_V: f64 = 4.5;
 
