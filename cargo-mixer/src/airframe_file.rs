@@ -8,17 +8,24 @@ use mixer_compiler::Source;
 use crate::Refusal;
 
 /// Writes an airframe file that compiles; one that does not is refused with its faults, and nothing
-/// is written.
-pub(crate) fn write(path: &Path, text: &str) -> ExitCode {
-    let source = Source::new(path.display().to_string(), text);
+/// is written: they then name the file with the pair's model, if there is one.
+pub(crate) fn write(path: &Path, text: &str, model: Option<&Path>) -> ExitCode {
+    let name = match model {
+        Some(model) => format!(
+            "{} (with the pair of {}, not written)",
+            path.display(),
+            model.display()
+        ),
+        None => format!("{} (not written)", path.display()),
+    };
+    let source = Source::new(name, text);
     match mixer_compiler::compile(&source) {
         Err(faults) => return Refusal::Faulty(faults).report(),
         Ok(compiled) if !compiled.warnings.is_empty() => crate::show(&compiled.warnings),
         Ok(_) => {}
     }
-    match crate::file::write(path, text) {
+    match crate::file::save(path, text) {
         Ok(()) => {
-            crate::print_note(format_args!("wrote {}", path.display()));
             let schema = path.with_file_name("airframe.schema.json");
             if !schema.exists() {
                 crate::print_note(format_args!(

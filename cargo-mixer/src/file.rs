@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use sha2::{Digest as _, Sha256};
 
@@ -40,6 +41,40 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
         return Err(fault(&format_args!("there is no folder {}", folder.display())));
     }
     place(folder, &replaced, text, found.as_ref()).map_err(|error| fault(&error))
+}
+
+/// [`write`], and says so: what every command does with its output.
+///
+/// # Errors
+/// As [`write`].
+pub(crate) fn save(path: &Path, text: &str) -> Result<(), String> {
+    write(path, text)?;
+    crate::print_note(format_args!("wrote {}", path.display()));
+    Ok(())
+}
+
+/// Refuses an output that is one of the inputs, which is bad usage, or that is there already:
+/// before anything is computed.
+///
+/// # Errors
+/// The exit status; what is wrong is told.
+pub(crate) fn writable<'a>(
+    output: &Path,
+    force: bool,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), ExitCode> {
+    let same = |input: &Path| match (input.canonicalize(), output.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => input == output,
+    };
+    if inputs.into_iter().any(same) {
+        crate::print_error(format_args!(
+            "{} is an input and would be overwritten",
+            output.display()
+        ));
+        return Err(ExitCode::from(crate::BAD_USAGE));
+    }
+    not_there(output, force).map_err(crate::print_error)
 }
 
 /// The digest of a file's bytes in hexadecimal, as `sha256sum` prints it.

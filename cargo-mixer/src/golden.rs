@@ -39,6 +39,9 @@ pub struct GoldenArgs {
     /// airframe
     #[arg(long)]
     check: bool,
+    /// Overwrite outputs that have changed
+    #[arg(long)]
+    force: bool,
 }
 
 /// Runs the command.
@@ -50,7 +53,7 @@ pub fn run(args: &GoldenArgs) -> ExitCode {
     let done = if args.check {
         check(&args.output, &outputs)
     } else {
-        write(&args.output, &outputs)
+        write(&args.output, &outputs, args.force)
     };
     done.unwrap_or_else(crate::print_error)
 }
@@ -92,18 +95,20 @@ pub fn outputs(compiled: &Compiled) -> [(String, String); 5] {
     ]
 }
 
-fn write(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<ExitCode, String> {
+fn write(folder: &Path, outputs: &BTreeMap<String, String>, force: bool) -> Result<ExitCode, String> {
     fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let mut written = 0;
-    for (file, content) in outputs {
-        let path = folder.join(file);
-        if fs::read_to_string(&path).ok().as_ref() != Some(content) {
-            crate::file::write(&path, content)?;
-            crate::print_note(format_args!("wrote {}", path.display()));
-            written += 1;
-        }
+    let places = outputs.iter().map(|(file, content)| (folder.join(file), content));
+    let changed: Vec<(PathBuf, &String)> = places
+        .filter(|(path, content)| fs::read_to_string(path).ok().as_ref() != Some(*content))
+        .collect();
+    // All of them, or none.
+    for (path, _) in &changed {
+        crate::file::not_there(path, force)?;
     }
-    if written == 0 {
+    for (path, content) in &changed {
+        crate::file::save(path, content)?;
+    }
+    if changed.is_empty() {
         crate::print_note(format_args!("{}: nothing has changed", folder.display()));
     }
     for orphan in compare::orphans(folder, outputs)? {
@@ -124,7 +129,7 @@ fn check(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<ExitCode, 
         crate::print_note(format_args!("{}", folder.join(difference).display()));
     }
     Err(format!(
-        "{} of {} golden outputs differ; if that is meant, run the command without --check and look at what changes",
+        "{} of {} golden outputs differ; if that is meant, run the command with --force in place of --check and look at what changes",
         differences.len(),
         outputs.len()
     ))

@@ -15,13 +15,14 @@ use mixer_identify::identified::Settings;
 use mixer_identify::read::Reading;
 use mixer_identify::sign::{SignChoice, SignPolicy};
 use mixer_identify::wishes::Wishes;
-use mixer_identify::{date, fragment, report};
+use mixer_identify::{date, fragment, report, verdict};
 
 use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::{identify_with_runs, read_all};
 use crate::frame::FrameArgs;
+use crate::pack::PackArgs;
 use crate::predict::{self, Place, RotorArgs};
-use crate::{output, print_error, print_note};
+use crate::{BAD_USAGE, output, print_error, print_note};
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
 ///
@@ -44,9 +45,12 @@ pub struct IdentifyArgs {
     /// Write a whole airframe of this frame, not the tables alone
     #[command(flatten)]
     pub frame: Option<FrameArgs>,
-    /// Print everything as JSON in place of the report.
+    /// Print everything as JSON in place of the verdict.
     #[arg(long)]
     pub json: bool,
+    /// Print every number: cross-validation, coefficients with their intervals, fold, all warnings.
+    #[arg(long, conflicts_with = "json")]
+    pub verbose: bool,
     /// Terms of the model; auto chooses by cross-validation.
     #[arg(long, default_value = AUTO, value_parser = bases())]
     pub basis: BasisChoice,
@@ -105,6 +109,9 @@ pub struct IdentifyArgs {
     /// median of 104 motors with propellers.
     #[arg(long, value_name = "K[,K]", value_parser = exponents)]
     pub voltage_exponent: Option<DeclaredExponents>,
+    /// The battery of the vehicle
+    #[command(flatten)]
+    pub pack: PackArgs,
     /// Few rows of the pair on top of what this run of one rotor predicts (`cargo mixer predict`):
     /// four rows serve, thrust alone serves a little. From 16 rows on leave it out.
     #[arg(long, value_name = "SINGLE.csv")]
@@ -121,8 +128,8 @@ pub struct IdentifyArgs {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BasisChoice(pub Option<Basis>);
 
-/// Most refused rows that are told one by one.
-const MOST_TOLD: usize = 200;
+/// Most refused rows that are told one by one: without and with `--verbose`.
+const MOST_TOLD: [usize; 2] = [5, 200];
 
 const AUTO: &str = "auto";
 
@@ -175,14 +182,12 @@ impl IdentifyArgs {
                 throttle: self.throttle,
                 reference_v: self.reference_voltage,
                 voltage_exponent: self.voltage_exponent.map(|e| e.0),
+                pack_v: self.pack.range_v(),
                 rotor_out_from_map: self.rotor_out_from_map,
             },
         }
     }
 }
-
-/// The exit status for bad usage that clap cannot see.
-const BAD_USAGE: u8 = 2;
 
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
 pub fn run(args: &IdentifyArgs) -> ExitCode {
@@ -192,7 +197,7 @@ pub fn run(args: &IdentifyArgs) -> ExitCode {
 fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     let to_stdout = args.output.as_deref() == Some(Path::new("-"));
     let file = args.output.as_deref().filter(|_| !to_stdout);
-    if let Some(message) = contradiction(args, file) {
+    if let Some(message) = contradiction(args) {
         print_error(message);
         return Err(ExitCode::from(BAD_USAGE));
     }
@@ -200,7 +205,9 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
         return corrected(args, single);
     }
     if let Some(path) = file {
-        crate::file::not_there(path, args.force).map_err(print_error)?;
+        let runs = args.lower_out.iter().chain(&args.upper_out);
+        let inputs = args.files.iter().chain(runs).map(PathBuf::as_path);
+        crate::file::writable(path, args.force, inputs)?;
     }
     let runs = [args.lower_out.as_deref(), args.upper_out.as_deref()];
     let identified = identify_with_runs(&args.files, runs, &args.settings()).map_err(|refusals| {
@@ -210,10 +217,11 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
         ExitCode::FAILURE
     })?;
     let refused = || identified.files.iter().flat_map(|f| &f.refused_rows);
-    for row in refused().take(MOST_TOLD) {
+    let most = MOST_TOLD[usize::from(args.verbose)];
+    for row in refused().take(most) {
         print_note(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
     }
-    let more = refused().count().saturating_sub(MOST_TOLD);
+    let more = refused().count().saturating_sub(most);
     if more > 0 {
         print_note(format_args!("refused: {more} rows more"));
     }
@@ -230,8 +238,10 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     let fragment = crate::printable_lines(&fragment);
     let report = if args.json {
         serde_json::to_string_pretty(&identified).map_err(print_error)?
-    } else {
+    } else if args.verbose {
         crate::printable_lines(report::text(&identified).trim_end())
+    } else {
+        crate::printable_lines(&verdict::text(&identified))
     };
     let out = if to_stdout {
         print_note(&report);
@@ -242,19 +252,36 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     output(writeln!(stdout().lock(), "{out}"))?;
     match file {
         Some(path) if args.frame.is_some() => {
-            let status = crate::airframe_file::write(path, &fragment);
+            let status = crate::airframe_file::write(path, &fragment, None);
             if status != ExitCode::SUCCESS {
                 return Err(status);
             }
+            next(args, format_args!("cargo mixer check {}", path.display()));
         }
         Some(path) => {
-            crate::file::write(path, &fragment).map_err(print_error)?;
-            print_note(format_args!("wrote {}", path.display()));
+            crate::file::save(path, &fragment).map_err(print_error)?;
+            next(
+                args,
+                format_args!(
+                    "cargo mixer new --frame x8 --arm METRE --pair {} -o AIRFRAME.toml",
+                    path.display()
+                ),
+            );
         }
-        None if !to_stdout && !args.json => print_note("\n(nothing written: -o PAIR.toml writes the tables)"),
+        None if !to_stdout => next(
+            args,
+            "-o PAIR.toml writes the tables; nothing is written without it",
+        ),
         None => {}
     }
     Ok(())
+}
+
+/// Says what comes next, to a person.
+fn next(args: &IdentifyArgs, what: impl std::fmt::Display) {
+    if !args.json {
+        print_note(format_args!("next            {what}"));
+    }
 }
 
 /// `--prior`: the rows of the pair correct what a run of one rotor predicts.
@@ -265,7 +292,8 @@ fn corrected(args: &IdentifyArgs, single: &Path) -> Result<(), ExitCode> {
         frame: args.frame.as_ref(),
         json: args.json,
     };
-    place.check(&[single])?;
+    let inputs: Vec<&Path> = args.files.iter().map(PathBuf::as_path).chain([single]).collect();
+    place.check(&inputs)?;
     let refused = |refusals: Vec<_>| {
         for refusal in refusals {
             print_error(refusal);
@@ -278,30 +306,13 @@ fn corrected(args: &IdentifyArgs, single: &Path) -> Result<(), ExitCode> {
     place.write(&predicted)
 }
 
-/// The fault of the arguments taken together; `file` is the output unless that is standard
-/// output.
-fn contradiction(args: &IdentifyArgs, file: Option<&Path>) -> Option<String> {
+/// The fault of the arguments taken together.
+fn contradiction(args: &IdentifyArgs) -> Option<&'static str> {
     if args.prior.is_none() && args.rotors.is_given() {
-        return Some(
-            "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given".into(),
-        );
+        return Some("what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given");
     }
-    let Some(output) = file else {
-        return (args.json && args.output.is_some())
-            .then(|| "--json and -o - would both write to standard output".into());
-    };
-    let same = |input: &PathBuf| match (input.canonicalize(), output.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => input == output,
-    };
-    let runs = args.lower_out.iter().chain(&args.upper_out);
-    let overwritten = args.files.iter().chain(runs).any(same);
-    overwritten.then(|| {
-        format!(
-            "{} is one of the bench files and would be overwritten",
-            output.display()
-        )
-    })
+    (args.json && args.output.as_deref() == Some(Path::new("-")))
+        .then_some("--json and -o - would both write to standard output")
 }
 
 /// Largest exponent that is taken: a propeller has 2.5 at most.

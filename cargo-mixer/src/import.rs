@@ -18,6 +18,7 @@ mod text;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use crate::pair_file::PairFile;
 use parameters::Parameters;
 use rotors::Imported;
 
@@ -62,6 +63,10 @@ pub struct ImportArgs {
 
 /// Runs the command.
 pub fn run(args: &ImportArgs) -> ExitCode {
+    let inputs = args.files.iter().chain(&args.pair).map(PathBuf::as_path);
+    if let Err(status) = crate::file::writable(&args.output, args.force, inputs) {
+        return status;
+    }
     match import(args) {
         Ok(notes) => {
             for note in notes {
@@ -75,16 +80,17 @@ pub fn run(args: &ImportArgs) -> ExitCode {
 
 /// Writes the airframe file; what its user has to know of it.
 fn import(args: &ImportArgs) -> Result<Vec<String>, String> {
-    crate::file::not_there(&args.output, args.force)?;
     let mut imported = read(args)?;
     let units = pairs::pair(&imported.rotors, &args.upper)?;
-    let pair = match &args.pair {
-        Some(path) => Some((path.as_path(), crate::file::read_text(path)?)),
-        None => None,
-    };
-    let pair = pair.as_ref().map(|(path, text)| (*path, text.as_str()));
-    let text = text::airframe(args.name.as_deref(), &args.files, &mut imported, &units, pair)?;
-    crate::file::write(&args.output, &text)?;
+    let pair = args.pair.as_deref().map(PairFile::read).transpose()?;
+    let text = text::airframe(
+        args.name.as_deref(),
+        &args.files,
+        &mut imported,
+        &units,
+        pair.as_ref(),
+    );
+    crate::file::save(&args.output, &text)?;
     Ok(imported.notes)
 }
 

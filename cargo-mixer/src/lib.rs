@@ -26,6 +26,8 @@ pub mod import;
 pub mod library;
 pub mod mix;
 pub mod new;
+pub mod pack;
+mod pair_file;
 pub mod plan;
 pub mod predict;
 pub mod report;
@@ -38,6 +40,9 @@ mod today;
 
 /// The exit status for a bad input.
 const BAD_INPUT: u8 = 1;
+
+/// The exit status for bad usage that clap cannot see.
+const BAD_USAGE: u8 = 2;
 
 /// Why an airframe file gave no mixer.
 #[derive(Debug)]

@@ -62,6 +62,9 @@ pub struct LibraryArgs {
     /// The folder to write into; made where there is none
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    /// Overwrite files that have changed
+    #[arg(long)]
+    force: bool,
 }
 
 impl LibraryArgs {
@@ -72,6 +75,7 @@ impl LibraryArgs {
             target: Some(target.to_owned()),
             health: false,
             output,
+            force: true,
         }
     }
 }
@@ -123,7 +127,7 @@ fn library(args: &LibraryArgs, airframes: &[Airframe]) -> Result<(), String> {
             selftest::text(airframe, args.health),
         ));
     }
-    output::write(&args.output, &files)
+    output::write(&args.output, &files, args.force)
 }
 
 /// The object of one function, looked into.

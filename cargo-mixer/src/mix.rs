@@ -43,6 +43,12 @@ pub struct MixArgs {
 
 /// Runs the command.
 pub fn run(args: &MixArgs) -> ExitCode {
+    let inputs = [Some(&args.airframe), args.setpoints.as_ref()];
+    let inputs = inputs.into_iter().flatten().map(PathBuf::as_path);
+    let place = |output: &PathBuf| crate::file::writable(output, args.force, inputs);
+    if let Some(Err(status)) = args.output.as_ref().map(place) {
+        return status;
+    }
     let compiled = match crate::compile(&args.airframe) {
         Ok(compiled) => compiled,
         Err(refusal) => return refusal.report(),
@@ -68,13 +74,6 @@ pub fn run(args: &MixArgs) -> ExitCode {
         Ok(input) => input,
         Err(message) => return crate::print_error(message),
     };
-    if let Some(Err(message)) = args
-        .output
-        .as_deref()
-        .map(|path| crate::file::not_there(path, args.force))
-    {
-        return crate::print_error(message);
-    }
     let bad_line = |BadLine { line, message }| crate::print_error(format_args!("{name}:{line}: {message}"));
     let mixed = match &args.output {
         None => mix(
@@ -88,7 +87,7 @@ pub fn run(args: &MixArgs) -> ExitCode {
             let mut rows = Vec::new();
             let mixed = mix(&compiled, health, input, &mut rows, bad_line);
             if mixed.is_ok()
-                && let Err(message) = crate::file::write(path, &String::from_utf8_lossy(&rows))
+                && let Err(message) = crate::file::save(path, &String::from_utf8_lossy(&rows))
             {
                 return crate::print_error(message);
             }

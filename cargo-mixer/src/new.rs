@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mixer_identify::fragment;
-
 use crate::airframe_file;
 use crate::frame::FrameArgs;
+use crate::pair_file::PairFile;
 
 /// Writes a complete, commented airframe file of a regular frame
 ///
@@ -16,7 +15,7 @@ use crate::frame::FrameArgs;
 pub struct NewArgs {
     #[command(flatten)]
     frame: FrameArgs,
-    /// `[throttle]`, `[pair]` and `[voltage]`, as `cargo mixer identify -o` writes them
+    /// The pair's model: what `cargo mixer identify -o` writes, or another airframe's
     #[arg(long, value_name = "PAIR.toml")]
     pair: Option<PathBuf>,
     /// The airframe file to write
@@ -32,18 +31,20 @@ const STAND_IN: &str = include_str!("new/stand-in.toml");
 
 /// Runs the command.
 pub fn run(args: &NewArgs) -> ExitCode {
-    if let Err(message) = crate::file::not_there(&args.output, args.force) {
-        return crate::print_error(message);
+    let inputs = args.pair.iter().map(PathBuf::as_path);
+    if let Err(status) = crate::file::writable(&args.output, args.force, inputs) {
+        return status;
     }
-    let tables = match &args.pair {
-        None => STAND_IN.to_owned(),
-        Some(path) => match crate::file::read_text(path) {
-            Ok(text) => fragment::without_instructions(&text),
-            Err(message) => return crate::print_error(message),
-        },
+    let pair = match args.pair.as_deref().map(PairFile::read).transpose() {
+        Ok(pair) => pair,
+        Err(message) => return crate::print_error(message),
     };
-    match args.frame.airframe(Some(&args.output), &tables, None) {
-        Ok(text) => airframe_file::write(&args.output, &text),
+    let (tables, bias) = match &pair {
+        None => (STAND_IN.to_owned(), None),
+        Some(pair) => pair.model(),
+    };
+    match args.frame.airframe(Some(&args.output), &tables, bias) {
+        Ok(text) => airframe_file::write(&args.output, &crate::printable_lines(&text), args.pair.as_deref()),
         Err(message) => {
             crate::print_error(message);
             ExitCode::from(2)

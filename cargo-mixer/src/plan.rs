@@ -77,12 +77,9 @@ pub fn run(args: &PlanArgs) -> ExitCode {
     let Some(path) = &args.output else {
         return crate::finish(stdout().lock().write_all(text.as_bytes()));
     };
-    let written = crate::file::not_there(path, args.force).and_then(|()| crate::file::write(path, &text));
+    let written = crate::file::not_there(path, args.force).and_then(|()| crate::file::save(path, &text));
     match written {
-        Ok(()) => {
-            crate::print_note(format_args!("wrote {}", path.display()));
-            ExitCode::SUCCESS
-        }
+        Ok(()) => ExitCode::SUCCESS,
         Err(message) => crate::print_error(message),
     }
 }

@@ -19,7 +19,7 @@ use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, thro
 use crate::bench_files::read_one;
 use crate::frame::FrameArgs;
 use crate::today::today;
-use crate::{output, print_error, print_note};
+use crate::{BAD_USAGE, output, print_error, print_note};
 
 /// Predict a pair's thrust and torque from a run of one rotor, or the table of its data sheet
 ///
@@ -246,8 +246,6 @@ pub(crate) struct Place<'a> {
     pub(crate) json: bool,
 }
 
-const BAD_USAGE: u8 = 2;
-
 impl Place<'_> {
     fn to_stdout(&self) -> bool {
         self.output == Some(Path::new("-"))
@@ -259,26 +257,14 @@ impl Place<'_> {
 
     /// Refuses a place that cannot be written, before there is anything to write.
     pub(crate) fn check(&self, inputs: &[&Path]) -> Result<(), ExitCode> {
-        let usage = |message: String| {
-            print_error(message);
-            Err(ExitCode::from(BAD_USAGE))
-        };
         if self.json && self.to_stdout() {
-            return usage("--json and -o - would both write to standard output".into());
+            print_error("--json and -o - would both write to standard output");
+            return Err(ExitCode::from(BAD_USAGE));
         }
-        let Some(path) = self.file() else { return Ok(()) };
-        if inputs.iter().any(|input| {
-            *input == path
-                || input
-                    .canonicalize()
-                    .is_ok_and(|a| path.canonicalize().is_ok_and(|b| a == b))
-        }) {
-            return usage(format!(
-                "{} is one of the inputs and would be overwritten",
-                path.display()
-            ));
+        match self.file() {
+            Some(path) => crate::file::writable(path, self.force, inputs.iter().copied()),
+            None => Ok(()),
         }
-        crate::file::not_there(path, self.force).map_err(print_error)
     }
 
     /// Writes report and tables.
@@ -307,14 +293,13 @@ impl Place<'_> {
         output(writeln!(stdout().lock(), "{out}"))?;
         match self.file() {
             Some(path) if self.frame.is_some() => {
-                let status = crate::airframe_file::write(path, &text);
+                let status = crate::airframe_file::write(path, &text, None);
                 if status != ExitCode::SUCCESS {
                     return Err(status);
                 }
             }
             Some(path) => {
-                crate::file::write(path, &text).map_err(print_error)?;
-                print_note(format_args!("wrote {}", path.display()));
+                crate::file::save(path, &text).map_err(print_error)?;
             }
             None if !self.to_stdout() && !self.json => {
                 print_note("\n(nothing written: -o PAIR.toml writes the tables)");

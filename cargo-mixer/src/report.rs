@@ -24,6 +24,9 @@ pub struct ReportArgs {
     /// The page to write, whole or not at all
     #[arg(short, long, value_name = "REPORT.html")]
     output: PathBuf,
+    /// Overwrite the file if it is there
+    #[arg(long)]
+    force: bool,
     /// Bench files of the pair, to be shown beside the model
     #[arg(long, value_name = "BENCH.csv")]
     bench: Vec<PathBuf>,
@@ -35,7 +38,8 @@ pub struct ReportArgs {
 
 /// Runs the command.
 pub fn run(args: &ReportArgs) -> ExitCode {
-    if let Some(status) = overwriting(&args.output, args.bench.iter().chain([&args.airframe])) {
+    let inputs = args.bench.iter().chain([&args.airframe]);
+    if let Err(status) = file::writable(&args.output, args.force, inputs.map(PathBuf::as_path)) {
         return status;
     }
     let compiled = match crate::compile(&args.airframe) {
@@ -54,11 +58,8 @@ pub fn run(args: &ReportArgs) -> ExitCode {
     }
     let study = Study::new(&compiled, args.thrust);
     let page = page::page(&study, bench.as_ref(), &origin(&args.airframe));
-    match file::write(&args.output, &page) {
-        Ok(()) => {
-            crate::print_note(format_args!("wrote {}", args.output.display()));
-            ExitCode::SUCCESS
-        }
+    match file::save(&args.output, &page) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(message) => crate::print_error(message),
     }
 }
@@ -69,24 +70,6 @@ fn origin(airframe: &Path) -> Origin {
         sha256: file::bytes(airframe).ok().map(|bytes| file::sha256(&bytes)),
         date: today(),
     }
-}
-
-/// Complains where the output is one of the inputs; the exit status for bad usage.
-pub(crate) fn overwriting<'a>(
-    output: &Path,
-    inputs: impl IntoIterator<Item = &'a PathBuf>,
-) -> Option<ExitCode> {
-    let same = |input: &PathBuf| match (input.canonicalize(), output.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => input == output,
-    };
-    inputs.into_iter().any(same).then(|| {
-        crate::print_error(format_args!(
-            "{} is an input and would be overwritten",
-            output.display()
-        ));
-        ExitCode::from(2)
-    })
 }
 
 /// A thrust on the command line, N.

@@ -8,6 +8,8 @@ use mixer_compiler::airframe::KEYS;
 use mixer_compiler::spec::keys::{Key, Kind, Range, Shape};
 use serde_json::{Map, Value, json};
 
+use crate::file;
+
 /// Prints the JSON schema of the airframe file, by which editors complete and check it
 ///
 /// Beside an airframe that begins with `#:schema ./airframe.schema.json`, as those of `cargo mixer
@@ -18,6 +20,9 @@ pub struct SchemaArgs {
     /// The file to write [default: stdout]
     #[arg(short, long, value_name = "SCHEMA.json")]
     output: Option<PathBuf>,
+    /// Overwrite the file if it is there
+    #[arg(long)]
+    force: bool,
 }
 
 /// The line by which an airframe file names its schema.
@@ -28,7 +33,7 @@ pub fn run(args: &SchemaArgs) -> ExitCode {
     let text = text();
     match &args.output {
         None => crate::print(&text),
-        Some(path) => match crate::file::write(path, &text) {
+        Some(path) => match file::not_there(path, args.force).and_then(|()| file::save(path, &text)) {
             Ok(()) => ExitCode::SUCCESS,
             Err(message) => crate::print_error(message),
         },

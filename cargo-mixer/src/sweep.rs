@@ -8,7 +8,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_report::data::{Data, Sweep, sweep};
 use mixer_report::study::Study;
 
-use crate::report::{overwriting, thrust};
+use crate::file;
+use crate::report::thrust;
 
 /// Writes the data of a figure as CSV, with units in the header
 ///
@@ -23,6 +24,9 @@ pub struct SweepArgs {
     /// The file to write, whole or not at all [default: standard output]
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
+    /// Overwrite the file if it is there
+    #[arg(long)]
+    force: bool,
     /// Total thrust of the yaw sweep, N [default: about 40 % of the largest bare thrust]
     #[arg(long, value_name = "NEWTON", value_parser = thrust, allow_negative_numbers = true)]
     thrust: Option<f64>,
@@ -39,8 +43,8 @@ fn figures() -> impl TypedValueParser<Value = Data> {
 
 /// Runs the command.
 pub fn run(args: &SweepArgs) -> ExitCode {
-    let overwriting = |output: &PathBuf| overwriting(output, [&args.airframe]);
-    if let Some(status) = args.output.as_ref().and_then(overwriting) {
+    let place = |output: &PathBuf| file::writable(output, args.force, [args.airframe.as_path()]);
+    if let Some(Err(status)) = args.output.as_ref().map(place) {
         return status;
     }
     let compiled = match crate::compile(&args.airframe) {
@@ -57,7 +61,7 @@ pub fn run(args: &SweepArgs) -> ExitCode {
             let _ = write!(stderr().lock(), "{table}");
             crate::finish(stdout().lock().write_all(csv.as_bytes()))
         }
-        Some(path) => match crate::file::write(path, &csv) {
+        Some(path) => match file::save(path, &csv) {
             Ok(()) => crate::finish(write!(stdout().lock(), "{table}")),
             Err(message) => crate::print_error(message),
         },

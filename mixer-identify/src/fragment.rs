@@ -15,6 +15,9 @@ pub fn text(identified: &Identified) -> String {
     let mut out = format!("# Identified by {}.{INSTRUCTIONS}", identified.generator);
     // Writing to a String cannot fail; the result is dropped.
     let _ = write_tables(&mut out, identified);
+    if let Some(bias) = identified.power_bias() {
+        let _ = writeln!(out, "{BIAS}{bias:?}{BIAS_FOR}");
+    }
     out
 }
 
@@ -34,9 +37,25 @@ const INSTRUCTIONS: &str = " To make an airframe of it, add at the top
 #   upper_spin = \"cw\"           # seen from above
 #   channels = [upper, lower]   # outputs";
 
-/// Tables that [`text`] wrote, for a file that has the rest of an airframe.
-pub fn without_instructions(text: &str) -> String {
-    text.replacen(INSTRUCTIONS, "", 1)
+/// The torque of least power behind the tables, in a comment: of which airframe it is decides
+/// whether it saves anything.
+const BIAS: &str = "\n# power_bias_nm_per_n = ";
+const BIAS_FOR: &str =
+    "    # for [allocation]; cargo mixer new takes it over where upper rotors turn against each other";
+
+/// Tables that [`text`] wrote, for a file that has the rest of an airframe, and the torque of least
+/// power beside them, N m per N.
+pub fn of_text(text: &str) -> (String, Option<f64>) {
+    let text = text.replacen(INSTRUCTIONS, "", 1);
+    let Some((before, rest)) = text.split_once(BIAS) else {
+        return (text, None);
+    };
+    let (line, after) = rest.split_once('\n').unwrap_or((rest, ""));
+    let bias = line
+        .split('#')
+        .next()
+        .and_then(|number| number.trim().parse().ok());
+    (format!("{before}{after}"), bias)
 }
 
 fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
@@ -82,14 +101,14 @@ fn write_tables(out: &mut String, id: &Identified) -> std::fmt::Result {
         }
     }
     if let Some(voltage) = &id.voltage {
-        write_voltage(out, voltage, id.reference_v, id.pair.is_some())?;
+        write_voltage(out, voltage, id)
     } else {
         writeln!(
             out,
             "\n# No [voltage]: no file has a voltage column. The mixer takes k = 1 at any voltage."
         )?;
+        to_fill_in(out, None, id.pack_v)
     }
-    Ok(())
 }
 
 fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
@@ -171,14 +190,10 @@ fn coefficients(out: &mut String, key: &str, terms: &[String], fit: &Fit) -> std
 /// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one
 /// exponent only, or without the voltage of the map, it is written as a comment, for the user to
 /// complete.
-fn write_voltage(
-    out: &mut String,
-    voltage: &Voltage,
-    reference: Option<f64>,
-    beside_pair: bool,
-) -> std::fmt::Result {
+fn write_voltage(out: &mut String, voltage: &Voltage, id: &Identified) -> std::fmt::Result {
+    let (reference, beside_pair) = (id.reference_v, id.pair.is_some());
     // Outwards to hundredths, and around the reference.
-    let [low, high] = voltage.range_v;
+    let [low, high] = id.pack_v.unwrap_or(voltage.range_v);
     let low = (100.0 * reference.map_or(low, |v| v.min(low))).floor() / 100.0;
     let high = (100.0 * reference.map_or(high, |v| v.max(high))).ceil() / 100.0;
     let at = reference.map_or("?".to_string(), |v| format!("{v:?}"));
@@ -212,7 +227,7 @@ fn write_voltage(
         }
     }
     if thrust.is_none() && torque.is_none() {
-        return Ok(());
+        return to_fill_in(out, reference, id.pack_v);
     }
     writeln!(
         out,
@@ -230,6 +245,37 @@ fn write_voltage(
             Some(e) => writeln!(out, "{mark}{name}_exponent = {:?}", thousandths(e))?,
             None => writeln!(out, "# {name}_exponent = ?")?,
         }
+    }
+    Ok(())
+}
+
+/// `[voltage]` in comments, where the files do not give it.
+fn to_fill_in(out: &mut String, reference: Option<f64>, pack_v: Option<[f64; 2]>) -> std::fmt::Result {
+    let reference = reference.map_or("?".to_owned(), |volts| format!("{volts:?}"));
+    let range = pack_v.map_or("[?, ?]".to_owned(), |range| format!("{range:?}"));
+    writeln!(
+        out,
+        "# To follow the battery, fill in what is open and uncomment; 1.75 is the median of 104 motors with propellers:"
+    )?;
+    for (line, comment) in [
+        ("[voltage]".to_owned(), ""),
+        (
+            format!("reference_v = {reference}"),
+            "supply of the bench, under load",
+        ),
+        (
+            format!("range_v = {range}"),
+            "pack in flight, empty and full: 3.2 and 4.2 V a LiPo cell",
+        ),
+        ("thrust_exponent = 1.75".to_owned(), ""),
+        ("torque_exponent = 1.75".to_owned(), ""),
+    ] {
+        let line = if comment.is_empty() {
+            line
+        } else {
+            format!("{line:<34} # {comment}")
+        };
+        writeln!(out, "# {line}")?;
     }
     Ok(())
 }

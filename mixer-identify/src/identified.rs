@@ -40,6 +40,8 @@ pub struct Identified {
     /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was
     /// given.
     pub reference_v: Option<f64>,
+    /// Voltage of the empty and of the full pack, V, where the user said so.
+    pub pack_v: Option<[f64; 2]>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -90,13 +92,14 @@ pub fn with_runs(
         None
     };
     if let Some(v) = &voltage {
-        warnings.extend(voltage_warnings(v));
+        warnings.extend(voltage_warnings(v, wishes.pack_v.is_some()));
         warnings.extend(sag(&benches, v));
     }
     if has(Kind::Pair) && has(Kind::SingleRotor) {
         warnings.push("single-rotor files serve the voltage exponents only, not the pair's map".into());
     }
     let reference_v = reference(pair.as_ref(), voltage.as_ref(), wishes.reference_v, &mut warnings)?;
+    in_pack(reference_v, wishes.pack_v)?;
     let power = pair
         .as_ref()
         .map(|pair| power::examine(&benches, pair, voltage.as_ref()));
@@ -107,6 +110,7 @@ pub fn with_runs(
         power,
         files: benches,
         reference_v,
+        pack_v: wishes.pack_v,
         warnings,
     })
 }
@@ -187,6 +191,17 @@ fn reference(
 
 /// How many times beyond the measured voltages a reference may be: a pack of twice the cells.
 const FAR: f64 = 2.0;
+
+/// Refuses a pack whose voltages leave out the bench's: `[voltage]` holds around its reference.
+fn in_pack(reference_v: Option<f64>, pack_v: Option<[f64; 2]>) -> Result<(), Refusal> {
+    match (reference_v, pack_v) {
+        (Some(reference), Some([low, high])) if !(low..=high).contains(&reference) => Err(Refusal::general(
+            format!("the pack has {low:.1} to {high:.1} V, the bench had {reference} V"),
+            "the cells and chemistry of the pack that the rotors were measured for, or --reference-voltage within its range",
+        )),
+        _ => Ok(()),
+    }
+}
 
 /// Rows are named by file name and line, so names must differ.
 fn distinct_names(benches: &[Bench]) -> Result<(), Refusal> {
@@ -306,7 +321,7 @@ fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
     })
 }
 
-fn voltage_warnings(voltage: &Voltage) -> Vec<String> {
+fn voltage_warnings(voltage: &Voltage, pack_is_known: bool) -> Vec<String> {
     let [low, high] = voltage.range_v;
     let contradicted = voltage.channels().into_iter().filter_map(|(name, exponent)| match exponent {
         Exponent::Declared { exponent, measured: Some(e) } if (exponent - e.exponent).abs() > e.ci95 => Some(format!(
@@ -322,10 +337,12 @@ fn voltage_warnings(voltage: &Voltage) -> Vec<String> {
     let contradicted: Vec<String> = contradicted.collect();
     if matches!(voltage.thrust, Exponent::Declared { .. }) {
         let range = format!(
-            "range_v is {low:.2}..{high:.2} V, what the bench had: write what the battery gives in flight, since a voltage \
-             outside is clamped"
+            "range_v is {low:.2}..{high:.2} V, what the bench had, and a voltage outside is clamped: --cells N gives the pack's"
         );
-        return [contradicted, vec![range]].concat();
+        return match pack_is_known {
+            true => contradicted,
+            false => [contradicted, vec![range]].concat(),
+        };
     }
     if !voltage.varies() {
         let sag = 100.0 * (1.0 - low / high);

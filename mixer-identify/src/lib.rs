@@ -65,6 +65,7 @@ pub mod single;
 pub mod text;
 pub mod uncertainty;
 pub mod units;
+pub mod verdict;
 pub mod voltage;
 pub mod wishes;
 pub mod wording;

@@ -411,18 +411,5 @@ fn judge_quality(thrust: &Fit, torque: &Fit, warnings: &mut Vec<String>) {
         if fit.r2 < 0.98 {
             warnings.push(format!("{name} is poorly described: R2 = {:.4}", fit.r2));
         }
-        let weak = fit
-            .coefficients
-            .iter()
-            .zip(&fit.ci95)
-            .filter(|(c, ci)| c.abs() < **ci)
-            .count();
-        if weak > 0 {
-            warnings.push(format!(
-                "{weak} of {} {name} coefficients are smaller than their interval: trust the map inside the \
-                 measured range, not its single terms",
-                fit.coefficients.len()
-            ));
-        }
     }
 }

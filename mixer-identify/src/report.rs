@@ -212,6 +212,17 @@ fn write_statistics(out: &mut String, pair: &Pair) -> std::fmt::Result {
         "  {} points, {} degrees of freedom, condition number {:.1}; prediction widest at ({u:.2}, {l:.2})",
         pair.thrust.points, pair.thrust.degrees_of_freedom, pair.thrust.condition_number
     )?;
+    for (name, fit) in [("thrust", &pair.thrust), ("torque", &pair.torque)] {
+        let terms = fit.coefficients.iter().zip(&fit.ci95);
+        let weak = terms.filter(|(c, ci)| c.abs() < **ci).count();
+        if weak > 0 {
+            writeln!(
+                out,
+                "  {weak} of {} {name} coefficients are smaller than their interval: trust the map, not its single terms",
+                fit.coefficients.len()
+            )?;
+        }
+    }
     if let Some(v) = pair.normalised_to_v {
         writeln!(out, "  all points brought to {v} V by the exponents below")?;
     }

@@ -40,7 +40,7 @@ const TASKS: &[Task] = &[
         program: &[
             "sh",
             "-c",
-            "exec cargo run --quiet --locked -p cargo-mixer -- golden airframes/*.toml -o tests/golden \"$@\"",
+            "exec cargo run --quiet --locked -p cargo-mixer -- golden airframes/*.toml -o tests/golden --force \"$@\"",
             "sh",
         ],
         does: "writes the golden outputs of airframes/ to tests/golden/",
@@ -82,9 +82,10 @@ const TASKS: &[Task] = &[
             "-c",
             ": \"${MIXER_BENCH_DATA:?names the folder of bench data}\" && \
              MIXER_MEASUREMENTS=write exec cargo test --quiet --locked -p cargo-mixer --test identify --test flights -- \
-             five_levels two_spacings logged_flights in_hover",
+             five_levels two_spacings logged_flights in_hover report_of_the_documents",
         ],
-        does: "measures on MIXER_BENCH_DATA and writes levels.csv, spacings.csv, logged-saving.csv and logged-hover.csv",
+        does: "measures on MIXER_BENCH_DATA and writes levels.csv, spacings.csv, logged-saving.csv, logged-hover.csv and \
+               docs/identify-report.md",
     },
     Task {
         name: "flights",

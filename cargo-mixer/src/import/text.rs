@@ -1,11 +1,12 @@
 //! The airframe file.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use toml::{Table, Value};
 
 use super::rotors::{Imported, Unit};
+use crate::pair_file::PairFile;
 
 /// Idle where nothing says one.
 const IDLE: f64 = 0.1;
@@ -23,22 +24,12 @@ pub(super) fn airframe(
     files: &[PathBuf],
     imported: &mut Imported,
     units: &[Unit],
-    pair: Option<(&Path, &str)>,
-) -> Result<String, String> {
-    let table: Table = match pair {
-        Some((path, text)) => {
-            let table: Table = text
-                .parse()
-                .map_err(|error| format!("{}: {error}", path.display()))?;
-            if !table.contains_key("pair") {
-                return Err(format!("{}: no [pair] in it", path.display()));
-            }
-            table
-        }
-        None => Table::new(),
-    };
-    let [min, max] = throttle(imported, &table);
-    let voltage = voltage(imported, &table);
+    pair: Option<&PairFile>,
+) -> String {
+    let none = Table::new();
+    let table = pair.map_or(&none, |pair| &pair.table);
+    let [min, max] = throttle(imported, table);
+    let voltage = voltage(imported, table);
     if pair.is_none() {
         imported.notes.push(
             "no parameter describes the pair: `cargo mixer identify` makes [pair] of bench data; --pair takes it in".to_owned(),
@@ -65,7 +56,7 @@ pub(super) fn airframe(
     }
     let _ = writeln!(out, "\n[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}");
     match pair {
-        Some((_, text)) => out += &sections(text),
+        Some(pair) => out += &pair.tables(TAKEN),
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
     }
     if let Some((airmode, reason)) = imported.airmode {
@@ -90,7 +81,7 @@ pub(super) fn airframe(
         }
     }
     // Names of files and comments of the pair's file are in it.
-    Ok(crate::printable_lines(&out))
+    crate::printable_lines(&out)
 }
 
 /// Both files' ranges: the pair's model is known in its own alone.
@@ -143,46 +134,5 @@ fn default_name(units: usize) -> String {
     match units {
         3 => "imported-y6".to_owned(),
         units => format!("imported-x{}", 2 * units),
-    }
-}
-
-/// The tables of a pair's file that are taken over, as they stand there with their comments.
-fn sections(text: &str) -> String {
-    let mut out = String::new();
-    let mut taken = false;
-    for line in text.lines() {
-        if let Some(header) = header(line) {
-            let root = header.split('.').next().unwrap_or_default().trim();
-            taken = TAKEN.contains(&root);
-        }
-        if taken {
-            out += line;
-            out.push('\n');
-        }
-    }
-    let text = out.trim_end();
-    format!("{text}\n\n")
-}
-
-/// Name of the table that begins in this line.
-fn header(line: &str) -> Option<&str> {
-    let line = line.trim_start();
-    let inner = line.strip_prefix("[[").or_else(|| line.strip_prefix('['))?;
-    let (name, _) = inner.split_once(']')?;
-    let bare = |c: char| c.is_ascii_alphanumeric() || "_-. ".contains(c);
-    (name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(bare)).then_some(name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tables_are_taken_with_their_comments() {
-        let text = "# top\nname = \"a\"\n[throttle]\nmin = 0.1\n[pair] # bench\nthrust_n = [\n  [1.0, 2.0],\n]\n\
-                    [pair.lower_out]\nx = 1\n[[unit]]\nposition_m = 1\n[voltage]\nv = 1\n";
-        let expected =
-            "[pair] # bench\nthrust_n = [\n  [1.0, 2.0],\n]\n[pair.lower_out]\nx = 1\n[voltage]\nv = 1\n\n";
-        assert_eq!(sections(text), expected);
     }
 }

@@ -45,7 +45,13 @@ pub(super) fn check(folder: &Path) -> Result<(), String> {
 }
 
 /// Writes all files into a folder beside their places, then gives them their names.
-pub(super) fn write(folder: &Path, files: &[File]) -> Result<(), String> {
+pub(super) fn write(folder: &Path, files: &[File], force: bool) -> Result<(), String> {
+    for file in files {
+        let place = folder.join(&file.name);
+        if fs::read(&place).is_ok_and(|held| held != file.bytes) {
+            crate::file::not_there(&place, force)?;
+        }
+    }
     let made = !folder.exists();
     if made {
         fs::create_dir(folder).map_err(|error| fault(folder, format_args!("cannot be made: {error}")))?;
@@ -80,6 +86,7 @@ fn publish(staging: &Path, folder: &Path, files: &[File]) -> Result<(), String> 
     for file in files {
         let place = folder.join(&file.name);
         fs::rename(staging.join(&file.name), &place).map_err(|error| fault(&place, error))?;
+        crate::print_note(format_args!("wrote {}", place.display()));
     }
     Ok(())
 }
@@ -93,13 +100,19 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("cargo-mixer-output-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
         let files = [File::text("a.h", "a".into()), File::text("b.h", "b".into())];
-        write(&folder, &files).unwrap();
+        write(&folder, &files, false).unwrap();
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
 
         fs::remove_file(folder.join("b.h")).unwrap();
         fs::create_dir(folder.join("b.h")).unwrap();
         let other = [File::text("a.h", "other".into()), File::text("b.h", "b".into())];
-        assert!(write(&folder, &other).unwrap_err().ends_with("b.h: is a folder"));
+        let refused = write(&folder, &other, false).unwrap_err();
+        assert!(refused.ends_with("--force overwrites it"), "{refused}");
+        assert!(
+            write(&folder, &other, true)
+                .unwrap_err()
+                .ends_with("b.h: is a folder")
+        );
         assert_eq!(fs::read_to_string(folder.join("a.h")).unwrap(), "a");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
 

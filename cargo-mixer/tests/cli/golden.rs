@@ -131,7 +131,7 @@ fn outputs_do_not_depend_on_how_the_path_is_spelled() {
         let folder = folder("spelled");
         let page = format!("{folder}.html");
         assert_eq!(run(&["golden", airframe, "-o", &folder]).status.code(), Some(0));
-        let report = cargo_mixer(&["report", airframe, "-o", &page])
+        let report = cargo_mixer(&["report", airframe, "-o", &page, "--force"])
             .env("SOURCE_DATE_EPOCH", "0")
             .output()
             .unwrap();

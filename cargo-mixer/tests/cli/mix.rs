@@ -215,9 +215,14 @@ fn mix_takes_files() {
     let streamed = run_with(&["mix", X8, "--failed", "0,4"], input.as_bytes());
     assert_status(&streamed, 0);
     let output = run_with(&["mix", X8, setpoints, "--failed", "0,4", "-o", throttles], b"");
-    assert_status(&output, 0);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stderr(&output).starts_with("wrote "), "{}", stderr(&output));
     assert_eq!(std::fs::read(throttles).unwrap(), streamed.stdout);
-    // Not over a file that is there, and nothing of a bad header.
+    // Not over its input, nor over a file that is there, and nothing of a bad header.
+    assert_status(
+        &run_with(&["mix", X8, setpoints, "-o", setpoints, "--force"], b""),
+        2,
+    );
     assert_status(&run_with(&["mix", X8, setpoints, "-o", throttles], b""), 1);
     std::fs::write(setpoints, "roll\n0\n").unwrap();
     let output = run_with(&["mix", X8, setpoints, "-o", throttles, "--force"], b"");

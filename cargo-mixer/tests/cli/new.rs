@@ -112,7 +112,7 @@ fn new_overwrites_only_by_force() {
 #[test]
 fn new_refuses_what_check_would() {
     let (pair, file) = (path("bad-pair.toml"), path("bad.toml"));
-    fs::write(&pair, "[throttle]\nmin = 0.05\nmax = 1\n").unwrap();
+    fs::write(&pair, "[throttle]\nmin = 0.05\nmax = 1\n[pair]\n").unwrap();
     let output = run(&[
         "new", "--frame", "x8", "--arm", "0.45", "--pair", &pair, "-o", &file,
     ]);
@@ -145,7 +145,10 @@ fn identify_writes_a_whole_airframe() {
     }
     assert!(!text.contains("To make an airframe of it"), "{text}");
     // The tables alone and `new` come to the same.
-    assert_eq!(run(&["identify", &bench, "-o", &pair]).status.code(), Some(0));
+    assert_eq!(
+        run(&["identify", &bench, "-o", &pair, "--force"]).status.code(),
+        Some(0)
+    );
     let other = path("other.toml");
     let output = run(&[
         "new", "--frame", "x8", "--arm", "0.45", "--pair", &pair, "--name", "my-frame", "-o", &other,
@@ -185,10 +188,11 @@ fn the_stand_in_for_a_bench_has_no_row_that_stands_out() {
         "forward",
         "-o",
         &bench,
+        "--force",
     ]);
     assert_eq!(sweep.status.code(), Some(0), "{}", stderr(&sweep));
-    let output = run(&["identify", &bench, "-o", &pair]);
+    let output = run(&["identify", &bench, "-o", &pair, "--force"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let told = stdout(&output);
-    assert!(told.contains("Rows that stand out: none"), "{told}");
+    assert!(told.contains("no row stands out"), "{told}");
 }

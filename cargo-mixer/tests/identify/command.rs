@@ -156,7 +156,7 @@ fn statuses_and_streams() {
             .expect("TOML")
             .contains_key("pair")
     );
-    assert!(text(&output.stderr).contains("Model:"));
+    assert!(text(&output.stderr).contains("model error "));
 }
 
 #[test]

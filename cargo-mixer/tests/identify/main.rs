@@ -5,6 +5,7 @@ mod alone;
 mod bench_data;
 mod command;
 mod doubts;
+mod first_hour;
 mod formats;
 #[path = "../measured/mod.rs"]
 mod measured;

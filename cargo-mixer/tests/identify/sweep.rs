@@ -263,6 +263,7 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
             throttle: None,
             reference_v: None,
             voltage_exponent: None,
+            pack_v: None,
             rotor_out_from_map: false,
         },
     }

@@ -22,8 +22,18 @@ const APART: f64 = 0.01;
 /// Cost of the shape constraint in torque, as a share of the greatest torque.
 const COSTLY: f64 = 0.05;
 
+/// An idle that benches reach; maps that begin above leave much of the thrust always on.
+const LOW: f64 = 0.25;
+
 /// Throttles below and above those that were measured.
 pub(super) fn coverage(throttle: ThrottleBox, warnings: &mut Vec<String>) {
+    if throttle.min > LOW {
+        warnings.push(format!(
+            "throttle.min is {}: what is below is never commanded and its thrust always on; measure down to 0.05 to 0.15, then \
+             identify says the least idle",
+            throttle.min
+        ));
+    }
     if throttle.max < FULL {
         warnings.push(format!(
             "throttle.max is {}: what is above is never commanded; measure up to full throttle",
