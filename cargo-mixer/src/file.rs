@@ -83,37 +83,47 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Largest file that is read, bytes. Airframes and parameters have kilobytes; a device without an end
-/// would fill the memory.
-const LARGEST: u64 = 64 << 20;
+/// Largest bench file that is read, MB. A device without an end would fill the memory.
+const LARGEST_MB: u64 = 64;
+
+/// Largest airframe or parameter file, MB. They have kilobytes; read, they take forty times their
+/// size.
+const LARGEST_SMALL_MB: u64 = 1;
 
 /// The bytes of a whole file.
 ///
 /// # Errors
 /// A file that cannot be read, or is above 64 MB.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    up_to(path, LARGEST_MB)
+}
+
+fn up_to(path: &Path, most_mb: u64) -> io::Result<Vec<u8>> {
+    let most = most_mb << 20;
     let mut bytes = Vec::new();
-    File::open(path)?.take(LARGEST + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > LARGEST {
-        return Err(io::Error::other("it is above 64 MB; name a smaller file"));
+    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(io::Error::other(format!(
+            "it is above {most_mb} MB; name a smaller file"
+        )));
     }
     Ok(bytes)
 }
 
-/// [`bytes`], with an error that names the file.
+/// The bytes of an airframe or parameter file.
 ///
 /// # Errors
-/// As [`bytes`].
-pub fn read(path: &Path) -> Result<Vec<u8>, String> {
-    bytes(path).map_err(|error| format!("{}: {error}", path.display()))
+/// A file that cannot be read, or is above 1 MB; the message names it.
+pub fn read_small(path: &Path) -> Result<Vec<u8>, String> {
+    up_to(path, LARGEST_SMALL_MB).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// [`read`] for text.
+/// [`read_small`] for text.
 ///
 /// # Errors
-/// As [`read`]; what is not UTF-8.
+/// As [`read_small`]; what is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, String> {
-    String::from_utf8(read(path)?).map_err(|_| format!("{}: is not UTF-8 text", path.display()))
+    String::from_utf8(read_small(path)?).map_err(|_| format!("{}: is not UTF-8 text", path.display()))
 }
 
 /// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to

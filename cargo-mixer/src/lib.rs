@@ -72,10 +72,20 @@ fn print_error(message: impl Display) -> ExitCode {
     ExitCode::from(BAD_INPUT)
 }
 
+/// Longest line on stderr, characters: what a broken file has in it may have megabytes.
+const LONGEST_LINE: usize = 1000;
+
 /// Says a line on stderr. (`eprintln!` panics where stderr is a pipe that nobody reads any more, as
 /// in `2>&1 | head`.)
 fn print_note(message: impl Display) {
-    let _ = writeln!(io::stderr().lock(), "{}", printable_lines(&message.to_string()));
+    let text = printable_lines(&message.to_string());
+    let lines = text
+        .split('\n')
+        .map(|line| match line.char_indices().nth(LONGEST_LINE) {
+            Some((end, _)) => format!("{} ..", &line[..end]),
+            None => line.to_owned(),
+        });
+    let _ = writeln!(io::stderr().lock(), "{}", lines.collect::<Vec<_>>().join("\n"));
 }
 
 /// [`printable`] text, of which the ends of lines and tabs stay.
@@ -111,7 +121,7 @@ fn compile(path: &Path) -> Result<Compiled, Refusal> {
 /// Reads and compiles an airframe file.
 fn compile_quietly(path: &Path) -> Result<Compiled, Refusal> {
     let name = path.display().to_string();
-    let bytes = file::read(path).map_err(Refusal::Unreadable)?;
+    let bytes = file::read_small(path).map_err(Refusal::Unreadable)?;
     let source = Source::from_bytes(name, bytes).map_err(Refusal::Faulty)?;
     mixer_compiler::compile(&source).map_err(Refusal::Faulty)
 }

@@ -118,6 +118,9 @@ impl Default for Preparation {
     }
 }
 
+/// Most points of a file: 100 levels of each rotor, plateaus of a streaming log counted as one.
+const MOST_POINTS: usize = 10_000;
+
 /// Makes a log ready.
 pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     let Log {
@@ -138,6 +141,13 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         streaming,
         settling_rows,
     } = steady(&name, samples, &turned, how, &mut refused, &mut notes);
+    if samples.len() > MOST_POINTS {
+        return Err(Refusal::of(
+            name,
+            format!("{} points, at most {MOST_POINTS} are fitted", samples.len()),
+            "the mean of what was recorded at each command",
+        ));
+    }
     if kind == Kind::Pair {
         notes.extend(uneven_levels(&samples));
     }

@@ -8,7 +8,7 @@ use std::io::{BufRead, BufReader, Read};
 use serde::Serialize;
 
 use super::header::{ByHand, Column, Columns};
-use super::refusal::{Refusal, cut};
+use super::refusal::{Refusal, cut, cut_cell};
 use super::text::{self, Normalised};
 use super::units::Scale;
 
@@ -93,6 +93,14 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
         return Err(unreadable(name, "it holds zero bytes and is no text"));
     }
     let separator = text::separator(&header);
+    let columns = header.iter().filter(|byte| **byte == separator).count() + 1;
+    if columns > MOST_COLUMNS || header.len() > LONGEST_HEADER {
+        return Err(Refusal::of(
+            format!("{name}:{header_line}"),
+            format!("a header line of {columns} columns and {} bytes", header.len()),
+            format!("at most {MOST_COLUMNS} columns and {LONGEST_HEADER} bytes"),
+        ));
+    }
     let csv_of = |input| {
         let mut builder = csv::ReaderBuilder::new();
         builder.delimiter(separator).flexible(true).has_headers(false);
@@ -111,17 +119,6 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
             ));
         }
     };
-    if headers.len() > MOST_COLUMNS || header.len() > LONGEST_HEADER {
-        return Err(Refusal::of(
-            format!("{name}:{header_line}"),
-            format!(
-                "a header line of {} columns and {} bytes",
-                headers.len(),
-                header.len()
-            ),
-            format!("at most {MOST_COLUMNS} columns and {LONGEST_HEADER} bytes"),
-        ));
-    }
     let columns = Columns::find(name, &headers, &reading.by_hand)?;
     require(name, &columns, &headers)?;
 
@@ -288,7 +285,7 @@ impl Cells {
             _ => Err(format!(
                 "{:?} = {:?} is not a finite number",
                 column.name,
-                text::decode(cell)
+                cut_cell(text::decode(cell))
             )),
         }
     }

@@ -16,9 +16,21 @@ pub struct Refusal {
 /// Longest message, characters: cells and lists of columns of a broken file can have megabytes.
 const LONGEST: usize = 500;
 
+/// Longest cell in a message, characters.
+const LONGEST_CELL: usize = 80;
+
 /// The text, of which at most [`LONGEST`] characters are left.
 pub(crate) fn cut(text: String) -> String {
-    match text.char_indices().nth(LONGEST) {
+    cut_to(text, LONGEST)
+}
+
+/// The text of a cell, of which at most 80 characters are left.
+pub(crate) fn cut_cell(text: String) -> String {
+    cut_to(text, LONGEST_CELL)
+}
+
+fn cut_to(text: String, longest: usize) -> String {
+    match text.char_indices().nth(longest) {
         Some((end, _)) => format!("{} ..", &text[..end]),
         None => text,
     }

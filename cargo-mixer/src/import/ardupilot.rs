@@ -74,11 +74,17 @@ const SPIN_MIN: f64 = 0.15;
 const SPIN_MAX: f64 = 0.95;
 
 pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported, String> {
-    let file = parameters.file();
+    let file = parameters.place(if parameters.has("FRAME_TYPE") {
+        "FRAME_TYPE"
+    } else {
+        "FRAME_CLASS"
+    });
     let class = parameters.whole("FRAME_CLASS").unwrap_or(0);
     let kind = parameters.whole("FRAME_TYPE");
     if class != 5 && kind.is_none() {
-        return Err(format!("{file}: FRAME_TYPE is not a whole number, or is missing"));
+        return Err(format!(
+            "{file}: FRAME_TYPE is not a whole number, or is missing: 1 is an X"
+        ));
     }
     let kind = kind.unwrap_or(1);
     let Some((name, motors)) = motors(class, kind) else {
@@ -108,6 +114,7 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
         .zip(0..)
         .map(|((angle, spin, layer), channel)| Rotor {
             channel,
+            place: file.clone(),
             position_m: place(arm, *angle, *layer),
             axis: [0.0, 0.0, -1.0],
             spin: *spin,

@@ -14,6 +14,12 @@ pub(super) fn is_geometry(text: &str) -> bool {
 pub(super) fn read(files: &[(String, String)]) -> Result<Imported, String> {
     let mut imported = Imported::default();
     for (file, text) in files {
+        // The lines of the rotors' headers; values have no places of their own.
+        let mut lines = text
+            .lines()
+            .zip(1..)
+            .filter(|(line, _)| line.trim() == "[[rotors]]")
+            .map(|(_, number): (_, u32)| number);
         let table: Table = text.parse().map_err(|error| format!("{file}: {error}"))?;
         let rotors = table.get("rotors").and_then(Value::as_array);
         for (rotor, index) in rotors.into_iter().flatten().zip(0..) {
@@ -21,15 +27,17 @@ pub(super) fn read(files: &[(String, String)]) -> Result<Imported, String> {
                 .or_else(|| vector(table.get("rotor_default")?.get("axis")))
                 .unwrap_or([0.0, 0.0, -1.0]);
             let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let fault = |what: &str| format!("{file}: rotor {index}: {what}");
+            let place = lines.next().map_or(file.clone(), |line| format!("{file}:{line}"));
+            let fault = |what: &str| format!("{place}: rotor {index}: {what}");
             if length == 0.0 {
-                return Err(fault("its axis is 0"));
+                return Err(fault("its axis is 0: upward is [0.0, 0.0, -1.0]"));
             }
             imported.rotors.push(Rotor {
                 channel: imported.rotors.len(),
                 position_m: vector(rotor.get("position"))
                     .ok_or_else(|| fault("`position` is no array of three numbers"))?,
                 axis: axis.map(|x| x / length),
+                place: place.clone(),
                 spin: match rotor.get("direction").and_then(Value::as_str) {
                     Some("CW") => Spin::Cw,
                     Some("CCW") => Spin::Ccw,

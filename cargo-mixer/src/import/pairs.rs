@@ -34,14 +34,14 @@ pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, Strin
             (None, _) => {
                 let [x, y, _] = rotor.position_m;
                 return Err(format!(
-                    "rotor {} at ({x}, {y}) m is alone: a coaxial pair is two rotors in one place, one above the other",
-                    rotor.channel
+                    "{}: rotor {} at ({x}, {y}) m is alone: give the two rotors of a pair one place, one above the other",
+                    rotor.place, rotor.channel
                 ));
             }
             (Some((_, first)), Some((_, second))) => {
                 return Err(format!(
-                    "rotors {}, {} and {} are in one place: a coaxial pair is two",
-                    rotor.channel, first.channel, second.channel
+                    "{}: rotors {}, {} and {} are in one place: move the one that belongs to another pair",
+                    second.place, rotor.channel, first.channel, second.channel
                 ));
             }
         };
@@ -90,14 +90,16 @@ fn unit(rotor: &Rotor, other: &Rotor, upper: &[usize]) -> Result<Unit, String> {
         }
         (false, false) if higher.abs() < SAME_LAYER_M => {
             return Err(format!(
-                "rotors {a} and {b} are at one height: which is on top? --upper CHANNELS names all upper rotors"
+                "{}: rotors {a} and {b} are at one height: which is on top? --upper CHANNELS names all upper rotors",
+                other.place
             ));
         }
         (false, false) => higher > 0.0,
     };
     if rotor.spin == other.spin {
         return Err(format!(
-            "rotors {a} and {b} both turn {}: the mixer is for pairs that contra-rotate",
+            "{}: rotors {a} and {b} both turn {}: the mixer is for pairs that contra-rotate; turn one of them round",
+            other.place,
             rotor.spin.name()
         ));
     }
@@ -126,6 +128,7 @@ mod tests {
     fn rotor(channel: usize, position_m: [f64; 3], spin: Spin) -> Rotor {
         Rotor {
             channel,
+            place: format!("a.params:{channel}"),
             position_m,
             axis: [0.0, 0.0, -1.0],
             spin,
@@ -149,14 +152,22 @@ mod tests {
             (
                 vec![lower.clone(), level],
                 vec![],
-                "rotors 1 and 3 are at one height",
+                "a.params:3: rotors 1 and 3 are at one height",
             ),
-            (vec![lower.clone(), alike], vec![], "rotors 1 and 3 both turn ccw"),
-            (vec![lower.clone()], vec![], "rotor 1 at (0.1, 0.2) m is alone"),
+            (
+                vec![lower.clone(), alike],
+                vec![],
+                "a.params:3: rotors 1 and 3 both turn ccw",
+            ),
+            (
+                vec![lower.clone()],
+                vec![],
+                "a.params:1: rotor 1 at (0.1, 0.2) m is alone",
+            ),
             (
                 vec![lower.clone(), upper.clone(), third],
                 vec![],
-                "rotors 1, 3 and 4 are in one place",
+                "a.params:4: rotors 1, 3 and 4 are in one place",
             ),
             (
                 vec![lower.clone(), upper.clone()],

@@ -9,8 +9,12 @@ use std::collections::BTreeMap;
 #[derive(Debug)]
 pub(super) struct Parameters {
     file: String,
-    values: BTreeMap<String, f64>,
+    /// Each with its line.
+    values: BTreeMap<String, (f64, u32)>,
 }
+
+/// Longest piece of a bad line in a message, characters.
+const LONGEST_PIECE: usize = 80;
 
 impl Parameters {
     pub(super) fn read(file: &str, text: &str) -> Result<Self, String> {
@@ -29,14 +33,18 @@ impl Parameters {
             let Some((name, value)) = entry else {
                 return Err(format!(
                     "{file}:{number}: `{}` is no parameter: NAME,VALUE or a line of QGroundControl's",
-                    line.trim()
+                    line.trim().chars().take(LONGEST_PIECE).collect::<String>()
                 ));
             };
             if !value.is_finite() {
-                return Err(format!("{file}:{number}: {name} is {value}"));
+                return Err(format!(
+                    "{file}:{number}: {name} is {value}: write the number that the stack has"
+                ));
             }
-            if values.insert(name.to_owned(), value).is_some() {
-                return Err(format!("{file}:{number}: {name} is there twice"));
+            if let Some((_, first)) = values.insert(name.to_owned(), (value, number)) {
+                return Err(format!(
+                    "{file}:{number}: {name} is there twice, first in line {first}: leave one of them"
+                ));
             }
         }
         Ok(Parameters {
@@ -45,8 +53,12 @@ impl Parameters {
         })
     }
 
-    pub(super) fn file(&self) -> &str {
-        &self.file
+    /// Where a parameter is, `file:line`; the file where it is not there.
+    pub(super) fn place(&self, name: &str) -> String {
+        match self.values.get(name) {
+            Some((_, line)) => format!("{}:{line}", self.file),
+            None => self.file.clone(),
+        }
     }
 
     pub(super) fn count(&self) -> usize {
@@ -59,7 +71,7 @@ impl Parameters {
 
     /// A value. Stacks hold single precision, of which these are the decimal digits.
     pub(super) fn get(&self, name: &str) -> Option<f64> {
-        let value = self.values.get(name)?;
+        let (value, _) = self.values.get(name)?;
         format!("{}", *value as f32).parse().ok()
     }
 

@@ -14,12 +14,12 @@ const UPWARD: f64 = -1.0;
 const MOST_ROTORS: usize = 12;
 
 pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
-    let file = parameters.file();
     let count = match parameters.whole("CA_ROTOR_COUNT") {
         Some(count) if (1..=MOST_ROTORS).contains(&count) => count,
         _ => {
             return Err(format!(
-                "{file}: CA_ROTOR_COUNT is not a number from 1 to {MOST_ROTORS}: how many of CA_ROTOR0.. are there?"
+                "{}: CA_ROTOR_COUNT is not a number from 1 to {MOST_ROTORS}: how many of CA_ROTOR0.. are there?",
+                parameters.place("CA_ROTOR_COUNT")
             ));
         }
     };
@@ -42,20 +42,23 @@ fn rotor(parameters: &Parameters, index: usize) -> Result<Rotor, String> {
     let position_m = ["PX", "PY", "PZ"].map(|key| value(key, 0.0));
     let axis = [value("AX", 0.0), value("AY", 0.0), value("AZ", UPWARD)];
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let file = parameters.file();
+    let place = |key: &str| parameters.place(&format!("CA_ROTOR{index}_{key}"));
     if length == 0.0 {
         return Err(format!(
-            "{file}: CA_ROTOR{index}_AX, _AY and _AZ are all 0: it has no axis"
+            "{}: CA_ROTOR{index}_AX, _AY and _AZ are all 0: upward is 0, 0, -1",
+            place("AZ")
         ));
     }
     let moment = value("KM", MOMENT_RATIO);
     if moment == 0.0 {
         return Err(format!(
-            "{file}: CA_ROTOR{index}_KM is 0: the sign of it says how the rotor turns (positive: counter-clockwise)"
+            "{}: CA_ROTOR{index}_KM is 0: the sign of it says how the rotor turns (positive: counter-clockwise)",
+            place("KM")
         ));
     }
     Ok(Rotor {
         channel: index,
+        place: place("PX"),
         position_m,
         axis: axis.map(|x| x / length),
         spin: if moment > 0.0 { Spin::Ccw } else { Spin::Cw },

@@ -7,6 +7,8 @@ use mixer_compiler::airframe::Spin;
 pub(super) struct Rotor {
     /// Output, from 0.
     pub(super) channel: usize,
+    /// Where it is said: `file:line`.
+    pub(super) place: String,
     /// Forward, right, down, m.
     pub(super) position_m: [f64; 3],
     /// Direction of the thrust, a unit vector.

@@ -20,7 +20,7 @@ pub(super) struct Airframe {
 
 impl Airframe {
     pub(super) fn new(path: &Path, compiled: Compiled) -> Result<Self, String> {
-        let bytes = crate::file::read(path)?;
+        let bytes = crate::file::read_small(path)?;
         let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         Ok(Airframe {
             module: compiled.airframe.module_name(),

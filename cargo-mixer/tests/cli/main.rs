@@ -377,7 +377,7 @@ fn a_device_without_an_end_is_refused() {
         let output = run(arguments);
         assert_status(&output, 1);
         assert!(
-            stderr(&output).contains("/dev/zero: it is above 64 MB"),
+            stderr(&output).contains("/dev/zero: it is above 1 MB"),
             "{}",
             stderr(&output)
         );

@@ -258,3 +258,92 @@ fn the_report_of_the_documents_is_that_of_the_bench() {
         "run `cargo xtask bench-data`"
     );
 }
+
+/// What is said of a broken file does not grow with it.
+#[test]
+fn messages_are_bounded() {
+    let folder = folder("bounded");
+    let header = "upper,lower,thrust_n,torque_nm\n";
+    let good = String::from_utf8(plain(&rows(1))).expect("text");
+    let many = |row: &str| row.repeat(2_000_000 / row.len());
+    for (name, content, told) in [
+        (
+            "rows.csv",
+            format!("{header}{}", many("x,y,z,1\n")),
+            "rows.csv:2: none of 250000 rows",
+        ),
+        (
+            "some.csv",
+            format!("{good}{}", many("x,y,z,1\n")),
+            "refused: 249995 rows more",
+        ),
+        (
+            "cell.csv",
+            format!("{header}.1,.2,{},3\n", "z".repeat(2_000_000)),
+            "cell.csv:2: none of 1 rows",
+        ),
+        (
+            "header.csv",
+            format!("{}\n1\n", many("c,")),
+            "header.csv:1: a header line of 1000001 columns",
+        ),
+        (
+            "points.csv",
+            format!(
+                "{header}{}",
+                (0..20_000)
+                    .map(|k| format!("0.{:05},0.5,3,1\n", 1 + 7919 * k % 20_000))
+                    .collect::<String>()
+            ),
+            "points, at most 10000 are fitted",
+        ),
+    ] {
+        fs::write(folder.join(name), content).expect("written");
+        let output = mixer(&folder, &["identify", name]);
+        let err = text(&output.stderr);
+        assert!(err.contains(told), "{name}: {err:.500}");
+        assert!(
+            err.len() < 3000 && err.lines().all(|line| line.chars().count() <= 1003),
+            "{name}: {}",
+            err.len()
+        );
+        let cell = err
+            .split("zzz")
+            .next()
+            .map_or(0, |before| err.len() - before.len());
+        assert!(cell < 300, "{name}: a cell of {cell}");
+    }
+    for (command, name, content) in [
+        (
+            vec!["check"],
+            "a.toml",
+            format!("name = \"{}\"\n", "a".repeat(500_000)),
+        ),
+        (
+            vec!["import", "-o", "b.toml"],
+            "a.params",
+            "garbage ".repeat(100_000),
+        ),
+        (
+            vec!["new", "--frame", "single", "-o", "b.toml", "--pair"],
+            "p.toml",
+            many("k = ["),
+        ),
+    ] {
+        fs::write(folder.join(name), content).expect("written");
+        let output = mixer(&folder, &[&command[..], &[name]].concat());
+        assert_eq!(output.status.code(), Some(1), "{command:?}");
+        assert!(
+            output.stderr.len() < 20_000,
+            "{command:?}: {}",
+            output.stderr.len()
+        );
+        assert!(text(&output.stderr).contains(name), "{command:?}");
+    }
+    #[cfg(target_os = "linux")]
+    for command in [vec!["check"], vec!["identify"], vec!["import", "-o", "b.toml"]] {
+        let output = mixer(&folder, &[&command[..], &["/dev/zero"]].concat());
+        assert!(text(&output.stderr).contains("/dev/zero: "), "{command:?}");
+        assert_eq!(output.status.code(), Some(1), "{command:?}");
+    }
+}
