@@ -5,8 +5,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::{
-    check, compare, expand, finish, golden, identify, import, library, mix, new, plan, predict, report,
-    schema, shell, sweep,
+    check, compare, expand, finish, golden, identify, import, library, mix, new, params, plan, predict,
+    report, schema, shell, sweep,
 };
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
@@ -31,6 +31,7 @@ enum Command {
     Golden(golden::GoldenArgs),
     Identify(Box<identify::IdentifyArgs>),
     New(new::NewArgs),
+    Params(params::ParamsArgs),
     Plan(plan::PlanArgs),
     Predict(Box<predict::PredictArgs>),
     Import(import::ImportArgs),
@@ -68,6 +69,7 @@ pub fn run() -> ExitCode {
         Command::Golden(args) => golden::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::New(args) => new::run(&args),
+        Command::Params(args) => params::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Predict(args) => predict::run(&args),
         Command::Import(args) => import::run(&args),

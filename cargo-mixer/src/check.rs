@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use self::verdict::Verdict;
 use crate::Refusal;
-use crate::stack::Stack;
+use crate::stack::Stacks;
 
 /// Validates and compiles an airframe file and says what came of it
 #[derive(clap::Args, Debug)]
@@ -42,7 +42,7 @@ struct Success {
     /// What is plausibly a mistake and yet compiles.
     warnings: Vec<Record>,
     #[serde(flatten)]
-    stack: Stack,
+    stacks: Stacks,
     /// Time of the whole compilation, ms.
     compile_ms: f64,
 }
@@ -65,7 +65,7 @@ pub fn run(args: &CheckArgs) -> ExitCode {
             let written = if args.json {
                 let success = Success {
                     summary: Summary::new(&compiled),
-                    stack: Stack::new(&compiled),
+                    stacks: Stacks::new(&compiled),
                     warnings: compiled.warnings.records(),
                     compile_ms,
                 };
@@ -79,10 +79,10 @@ pub fn run(args: &CheckArgs) -> ExitCode {
                 write!(out, "{verdict}")
             } else {
                 let (report, cost) = (Report(&compiled), Cost::new(&compiled));
-                let (list, stack) = (Checklist(&compiled), Stack::new(&compiled));
+                let (list, stacks) = (Checklist(&compiled), Stacks::new(&compiled));
                 writeln!(
                     out,
-                    "{report}{cost}{stack}{list}compiled in     {compile_ms:.0} ms"
+                    "{report}{cost}{stacks}{list}compiled in     {compile_ms:.0} ms"
                 )
             };
             match crate::output(written.and_then(|()| out.flush())) {

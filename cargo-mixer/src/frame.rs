@@ -5,10 +5,12 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use clap::ValueEnum;
+use mixer_compiler::airframe::Spin;
 use mixer_compiler::{Source, hover};
 
 use crate::bench_args::quantity;
 use crate::schema::DIRECTIVE;
+use crate::stack::Stack;
 
 /// A frame of coaxial pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -25,7 +27,26 @@ pub enum Frame {
     Single,
 }
 
-/// `--frame`, `--arm`, `--name`.
+impl Frame {
+    /// Outputs of the upper and of the lower rotor of each unit, clockwise from the first, in a
+    /// stack's motor order, and how the first upper rotor turns there: PX4's geometries octa_cox,
+    /// hexa_cox, dodeca_top_cox and dodeca_bottom_cox; ArduPilot's octaquad X, Y6B and dodecahexa X.
+    fn outputs(self, stack: Stack) -> Option<(Vec<[usize; 2]>, Spin)> {
+        let pairs = |n: usize| (0..n).map(|k| [2 * k, 2 * k + 1]).collect();
+        match (self, stack) {
+            (Frame::X8, _) => Some((vec![[0, 5], [3, 6], [2, 7], [1, 4]], Spin::Ccw)),
+            (Frame::Y6, _) => Some((pairs(3), Spin::Cw)),
+            (Frame::X12, Stack::Ardupilot) => Some((pairs(6), Spin::Ccw)),
+            (Frame::X12, Stack::Px4) => Some((
+                [4, 0, 3, 5, 1, 2].into_iter().map(|top| [top, top + 6]).collect(),
+                Spin::Ccw,
+            )),
+            (Frame::Bicopter | Frame::Single, _) => None,
+        }
+    }
+}
+
+/// `--frame`, `--arm`, `--name`, `--outputs`.
 #[derive(clap::Args, Clone, Debug)]
 pub struct FrameArgs {
     /// The frame
@@ -39,6 +60,10 @@ pub struct FrameArgs {
     /// Name of the airframe [default: that of the output file]
     #[arg(long, requires = "frame")]
     pub name: Option<String>,
+    /// Outputs in the motor order of a flight stack, which has this frame; else the upper rotors
+    /// first, clockwise
+    #[arg(long, value_enum, value_name = "STACK", requires = "frame")]
+    pub outputs: Option<Stack>,
 }
 
 fn arm(text: &str) -> Result<f64, String> {
@@ -161,9 +186,14 @@ impl FrameArgs {
              \n[inverse]                              # what one unit may miss, at any voltage\n\
              thrust_tolerance_n = 0.01\n\
              torque_tolerance_nm = 1e-4\n\
-             \n[allocation]\n\
-             airmode = \"disabled\"                   # or \"roll-pitch\", \"roll-pitch-yaw\", with PX4's meaning\n"
+             \n[allocation]\n"
         );
+        text.push_str(match self.outputs {
+            Some(Stack::Ardupilot) => {
+                "airmode = \"roll-pitch\"                 # ArduPilot asks for roll and pitch at any throttle\n"
+            }
+            _ => "airmode = \"disabled\"                   # or \"roll-pitch\", \"roll-pitch-yaw\", with PX4's meaning\n",
+        });
         if let Some(axes) = axes {
             let _ = writeln!(text, "{axes}");
         }
@@ -211,6 +241,9 @@ impl FrameArgs {
         } = self.frame.shape();
         let arm = match (units, self.arm) {
             (1, Some(_)) => return Err("--arm: a single pair has none".to_owned()),
+            (1, None) if self.outputs.is_some() => {
+                return Err("--outputs: no flight stack has a frame of one pair".to_owned());
+            }
             (1, None) => {
                 return Ok("[[unit]]\n\
                            position_m = [0.0, 0.0, 0.0]           # forward, right, down from the centre of gravity\n\
@@ -226,7 +259,25 @@ impl FrameArgs {
             }
             (_, Some(arm)) => arm,
         };
-        let channels: Vec<String> = (0..units).map(|k| format!("[{k}, {}]", units + k)).collect();
+        let (channels, spin, order) = match self.outputs {
+            None => (
+                (0..units).map(|k| [k, units + k]).collect(),
+                Spin::Cw,
+                String::new(),
+            ),
+            Some(stack) => {
+                let name = stack.name();
+                let (channels, spin) = self
+                    .frame
+                    .outputs(stack)
+                    .ok_or_else(|| format!("--outputs: {name} has no such frame of coaxial pairs"))?;
+                (channels, spin, format!(", in {name}'s motor order"))
+            }
+        };
+        let channels: Vec<String> = channels
+            .iter()
+            .map(|pair: &[usize; 2]| format!("{pair:?}"))
+            .collect();
         let spins = match spins {
             Spins::Alternate => "they alternate",
             Spins::Alike => "all turn alike",
@@ -244,7 +295,7 @@ impl FrameArgs {
                 &format!("of the first unit, clockwise from the nose: {first}"),
             ),
             (
-                "first_spin = \"cw\"".to_owned(),
+                format!("first_spin = \"{}\"", spin.name()),
                 &format!("of the first unit's upper rotor, seen from above; {spins}"),
             ),
         ] {
@@ -252,7 +303,7 @@ impl FrameArgs {
         }
         let _ = writeln!(
             text,
-            "channels = [{}]\n{:<38} # outputs of the upper and of the lower rotor of each",
+            "channels = [{}]\n{:<38} # outputs of the upper and of the lower rotor of each{order}",
             channels.join(", "),
             ""
         );

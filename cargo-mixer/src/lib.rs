@@ -28,6 +28,7 @@ pub mod mix;
 pub mod new;
 pub mod pack;
 mod pair_file;
+pub mod params;
 pub mod plan;
 pub mod predict;
 pub mod report;

@@ -137,9 +137,50 @@ fn keep<T>(result: Result<T, Vec<Diagnostic>>, faults: &mut Vec<Diagnostic>) -> 
 const GENERATED: &str = "// @generated from an airframe file by mixer-compiler; do not edit.\n";
 
 impl Compiled {
-    /// Wrench that one unit of a normalised setpoint asks for: `SCALE` of the generated module.
+    /// Wrench that one unit of PX4's normalised setpoints asks for at the reference voltage: `SCALE`
+    /// of the generated module.
     pub fn scale(&self) -> mixer_rt::Wrench {
-        scale::scale(&self.airframe, &self.effectiveness, &self.pair)
+        self.rotors(self.airframe.reference_v()).px4()
+    }
+
+    /// Wrench that one unit of ArduPilot's inputs asks for at the highest voltage of the range, as
+    /// there with `MOT_BAT_VOLT_MAX` set to it: `ARDUPILOT_SCALE` of the generated module.
+    pub fn ardupilot_scale(&self) -> mixer_rt::Wrench {
+        self.rotors(self.highest_v()).ardupilot()
+    }
+
+    /// What ArduPilot multiplies roll, pitch and yaw by for each motor, 0.5 at most, by channel: its
+    /// frame of the same geometry has these factors.
+    pub fn ardupilot_factors(&self) -> Vec<[f64; 3]> {
+        self.rotors(self.airframe.reference_v()).ardupilot_factors()
+    }
+
+    /// The highest voltage of the range, V; 0 where the airframe has no correction.
+    pub fn highest_v(&self) -> f64 {
+        let voltage = self.airframe.voltage.as_ref();
+        voltage.map_or(0.0, |voltage| voltage.range_v[1])
+    }
+
+    /// Thrust (N) and torque (N m) of one rotor per unit of its share of the largest thrust, as
+    /// flight stacks take it, at the reference voltage. The torque is that of its slope in hover
+    /// where the mass is known, else half of the pair's largest.
+    pub fn per_rotor(&self) -> [f64; 2] {
+        self.rotors(self.airframe.reference_v()).per_rotor()
+    }
+
+    /// Throttle of all rotors alike that carries the weight at the reference voltage; `None` without
+    /// `[vehicle] mass_kg`, or where none does.
+    pub fn equal_hover_throttle(&self) -> Option<f64> {
+        self.rotors(self.airframe.reference_v()).hover_throttle()
+    }
+
+    fn rotors(&self, voltage_v: f64) -> scale::Rotors<'_> {
+        scale::Rotors {
+            airframe: &self.airframe,
+            effectiveness: &self.effectiveness,
+            pair: &self.pair,
+            voltage_v,
+        }
     }
 
     /// The generated Rust as tokens: one module.

@@ -18,13 +18,20 @@ pub mod coaxial_bicopter {
     pub const UNITS: usize = 2;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 4;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 15.774796,
         pitch_nm: 0.0,
         yaw_nm: 0.866016,
         thrust_n: 49.5754,
+    };
+    /// The same for ArduPilot's inputs, at 16.8 V as `MOT_BAT_VOLT_MAX`.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 13.924576,
+        pitch_nm: 0.0,
+        yaw_nm: 0.54054165,
+        thrust_n: 61.887005,
     };
     /// The mixer of `coaxial-bicopter` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

@@ -20,13 +20,20 @@ pub mod isae_x8 {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 22.309067,
         pitch_nm: 22.309067,
         yaw_nm: 1.732032,
         thrust_n: 99.1508,
+    };
+    /// The same for ArduPilot's inputs, at 16.8 V as `MOT_BAT_VOLT_MAX`.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 19.692446,
+        pitch_nm: 19.692446,
+        yaw_nm: 1.0810833,
+        thrust_n: 123.77401,
     };
     /// The mixer of `isae-x8` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

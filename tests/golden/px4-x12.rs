@@ -22,13 +22,20 @@ pub mod px4_x12 {
     pub const UNITS: usize = 6;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 12;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 60.71719,
         pitch_nm: 60.71719,
         yaw_nm: 2.598048,
         thrust_n: 148.7262,
+    };
+    /// The same for ArduPilot's inputs, at 16.8 V as `MOT_BAT_VOLT_MAX`.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 46.415253,
+        pitch_nm: 53.595695,
+        yaw_nm: 1.621625,
+        thrust_n: 185.66101,
     };
     /// The mixer of `px4-x12` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

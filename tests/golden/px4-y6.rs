@@ -19,13 +19,20 @@ pub mod px4_y6 {
     pub const UNITS: usize = 3;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 6;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 15.178859,
         pitch_nm: 15.178859,
         yaw_nm: 1.299024,
         thrust_n: 74.3631,
+    };
+    /// The same for ArduPilot's inputs, at 16.8 V as `MOT_BAT_VOLT_MAX`.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 13.398537,
+        pitch_nm: 11.603813,
+        yaw_nm: 0.8108125,
+        thrust_n: 92.830505,
     };
     /// The mixer of `px4-y6` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

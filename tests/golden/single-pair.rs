@@ -17,12 +17,19 @@ pub mod single_pair {
     pub const UNITS: usize = 1;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 2;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 0.0,
         pitch_nm: 0.0,
         yaw_nm: 0.433008,
+        thrust_n: 24.7877,
+    };
+    /// The same for ArduPilot's inputs.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 0.0,
+        pitch_nm: 0.0,
+        yaw_nm: 0.216504,
         thrust_n: 24.7877,
     };
     /// The mixer of `single-pair` as a type, for code that is generic over airframes.

@@ -20,12 +20,19 @@ pub mod x8_11in_cubic {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 10.811691,
         pitch_nm: 10.811691,
         yaw_nm: 1.5273476,
+        thrust_n: 72.07794,
+    };
+    /// The same for ArduPilot's inputs.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 7.64502,
+        pitch_nm: 7.64502,
+        yaw_nm: 0.7636738,
         thrust_n: 72.07794,
     };
     /// The mixer of `x8-11in-cubic` as a type, for code that is generic over airframes.

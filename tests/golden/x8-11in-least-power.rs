@@ -20,13 +20,20 @@ pub mod x8_11in_least_power {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 12.025281,
         pitch_nm: 12.025281,
-        yaw_nm: 1.5563747,
+        yaw_nm: 1.6896225,
         thrust_n: 80.16854,
+    };
+    /// The same for ArduPilot's inputs, at 12.6 V as `MOT_BAT_VOLT_MAX`.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 11.33751,
+        pitch_nm: 11.33751,
+        yaw_nm: 1.1298664,
+        thrust_n: 106.891075,
     };
     /// The mixer of `x8-11in-least-power` as a type, for code that is generic over airframes.
     #[derive(Clone, Copy, Debug, Default)]

@@ -20,12 +20,19 @@ pub mod x8_16in_biquadratic {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 37.81889,
         pitch_nm: 37.81889,
         yaw_nm: 4.220063,
+        thrust_n: 168.08395,
+    };
+    /// The same for ArduPilot's inputs.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 26.741993,
+        pitch_nm: 26.741993,
+        yaw_nm: 2.1100316,
         thrust_n: 168.08395,
     };
     /// The mixer of `x8-16in-biquadratic` as a type, for code that is generic over airframes.

@@ -20,12 +20,19 @@ pub mod x8_16in_quartic {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 36.24799,
         pitch_nm: 36.24799,
         yaw_nm: 3.757685,
+        thrust_n: 161.10217,
+    };
+    /// The same for ArduPilot's inputs.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 25.631199,
+        pitch_nm: 25.631199,
+        yaw_nm: 1.8788425,
         thrust_n: 161.10217,
     };
     /// The mixer of `x8-16in-quartic` as a type, for code that is generic over airframes.

@@ -20,12 +20,19 @@ pub mod x8_22in_cubic {
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
     pub const CHANNELS: usize = 8;
-    /// What one unit of a normalised setpoint asks for: see
+    /// What one unit of PX4's normalised setpoints asks for: see
     /// `mixer_rt::Wrench::from_normalised`.
     pub const SCALE: rt::Wrench = rt::Wrench {
         roll_nm: 70.42195,
         pitch_nm: 70.42195,
         yaw_nm: 7.9521227,
+        thrust_n: 234.73984,
+    };
+    /// The same for ArduPilot's inputs.
+    pub const ARDUPILOT_SCALE: rt::Wrench = rt::Wrench {
+        roll_nm: 49.795837,
+        pitch_nm: 49.795837,
+        yaw_nm: 3.9760613,
         thrust_n: 234.73984,
     };
     /// The mixer of `x8-22in-cubic` as a type, for code that is generic over airframes.

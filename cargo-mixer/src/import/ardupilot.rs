@@ -1,73 +1,8 @@
-//! ArduPilot's coaxial frames: `FRAME_CLASS`, `FRAME_TYPE`, and the motors' table of each
-//! (`AP_MotorsMatrix`).
-
-use mixer_compiler::airframe::Spin;
+//! ArduPilot's parameters: `FRAME_CLASS` and `FRAME_TYPE` name one of its frames.
 
 use super::parameters::Parameters;
 use super::rotors::{Imported, Rotor};
-
-use Layer::{Lower, Upper};
-use Spin::{Ccw, Cw};
-
-/// Of a pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Layer {
-    Upper,
-    Lower,
-}
-
-/// A motor: degrees clockwise from the nose, spin, layer.
-type Motor = (f64, Spin, Layer);
-
-/// Half the distance of two layers, m: any will do, the units lie between them.
-const LAYER_M: f64 = 0.05;
-
-/// A frame's motors, from motor 1 on.
-#[rustfmt::skip]
-fn motors(class: usize, kind: usize) -> Option<(&'static str, Vec<Motor>)> {
-    let cross = |first: f64, spins: [Spin; 2]| {
-        let [a, b] = spins;
-        vec![
-            (first, a, Upper), (first - 90.0, b, Upper), (first + 180.0, a, Upper), (first + 90.0, b, Upper),
-            (first - 90.0, a, Lower), (first, b, Lower), (first + 90.0, a, Lower), (first + 180.0, b, Lower),
-        ]
-    };
-    let betaflight = |a: Spin, b: Spin| vec![
-        (135.0, a, Upper), (45.0, b, Upper), (-135.0, b, Upper), (-45.0, a, Upper),
-        (135.0, b, Lower), (45.0, a, Lower), (-135.0, a, Lower), (-45.0, b, Lower),
-    ];
-    let around = |first: f64, step: f64, spins: &[Spin]| {
-        let arms = spins.iter().zip(0..);
-        arms.flat_map(|(spin, arm)| {
-            let angle = first + step * f64::from(arm);
-            [(angle, *spin, Upper), (angle, spin.reversed(), Lower)]
-        })
-        .collect()
-    };
-    let found = match (class, kind) {
-        (4, 0) => ("octaquad plus", cross(0.0, [Ccw, Cw])),
-        (4, 1) => ("octaquad X", cross(45.0, [Ccw, Cw])),
-        (4, 2) => ("octaquad V", cross(45.0, [Ccw, Cw])),
-        (4, 3) => ("octaquad H", cross(45.0, [Cw, Ccw])),
-        (4, 12) => ("octaquad X, Betaflight's order", betaflight(Cw, Ccw)),
-        (4, 14) => ("octaquad X, clockwise order", around(45.0, 90.0, &[Ccw, Cw, Ccw, Cw])),
-        (4, 18) => ("octaquad X, Betaflight's order, reversed", betaflight(Ccw, Cw)),
-        (5, 10) => ("Y6B", around(60.0, 120.0, &[Cw, Cw, Cw])),
-        (5, 11) => ("Y6F", vec![
-            (180.0, Ccw, Upper), (60.0, Ccw, Upper), (-60.0, Ccw, Upper),
-            (180.0, Cw, Lower), (60.0, Cw, Lower), (-60.0, Cw, Lower),
-        ]),
-        // Every other type is the default.
-        (5, _) => ("Y6A", vec![
-            (60.0, Ccw, Lower), (-60.0, Cw, Upper), (-60.0, Ccw, Lower),
-            (180.0, Cw, Lower), (60.0, Cw, Upper), (180.0, Ccw, Upper),
-        ]),
-        (12, 0) => ("dodecahexa plus", around(0.0, 60.0, &[Ccw, Cw, Ccw, Cw, Ccw, Cw])),
-        (12, 1) => ("dodecahexa X", around(30.0, 60.0, &[Ccw, Cw, Ccw, Cw, Ccw, Cw])),
-        _ => return None,
-    };
-    Some(found)
-}
+use crate::stack::frames::{Layer, motors};
 
 /// ArduPilot's defaults.
 const SPIN_MIN: f64 = 0.15;
@@ -109,16 +44,13 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
             ));
         }
     };
-    let rotors = motors
-        .iter()
-        .zip(0..)
-        .map(|((angle, spin, layer), channel)| Rotor {
-            channel,
-            place: file.clone(),
-            position_m: place(arm, *angle, *layer),
-            axis: [0.0, 0.0, -1.0],
-            spin: *spin,
-        });
+    let rotors = motors.iter().zip(0..).map(|(motor, channel)| Rotor {
+        channel,
+        place: file.clone(),
+        position_m: place(arm, motor.angle_deg, motor.layer),
+        axis: [0.0, 0.0, -1.0],
+        spin: motor.spin,
+    });
     let mut notes = vec![format!(
         "arms of {arm} m at equal angles are assumed, and the upper rotors of ArduPilot's table; --upper says otherwise"
     )];
@@ -138,12 +70,15 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
     })
 }
 
+/// Half the distance of two layers, m: any will do, the units lie between them.
+const LAYER_M: f64 = 0.05;
+
 /// Forward, right, down.
 fn place(arm: f64, angle_deg: f64, layer: Layer) -> [f64; 3] {
     let angle = angle_deg.to_radians();
     // To a tenth of a millimetre; nobody measures an arm better.
     let rounded = |x: f64| (x * 1e4).round() / 1e4 + 0.0;
-    let down = if layer == Upper { -LAYER_M } else { LAYER_M };
+    let down = if layer == Layer::Upper { -LAYER_M } else { LAYER_M };
     [
         rounded(arm * libm::cos(angle)),
         rounded(arm * libm::sin(angle)),

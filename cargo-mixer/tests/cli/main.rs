@@ -150,16 +150,19 @@ fn check_gives_the_hover_throttle_of_a_vehicle() {
     ];
     std::fs::remove_file(&path).unwrap();
     assert_status(&output, 0);
-    // 3.2 kg of 99.1508 N: 31.3813 N.
+    // 3.2 kg, 31.3813 N, of 99.1508 N at 14.8 V, PX4's unit, and (16.8 / 14.8)^1.75 of it at 16.8 V,
+    // ArduPilot's.
     let printed = stdout(&output);
-    assert!(printed.contains(", MPC_THR_HOVER 0.3165\n"), "{printed}");
-    assert!(printed.contains(", MOT_THST_HOVER 0.3165\n"), "{printed}");
     let summary: Value = serde_json::from_slice(&json.stdout).unwrap();
-    for (stack, name) in [("px4", "MPC_THR_HOVER"), ("ardupilot", "MOT_THST_HOVER")] {
+    for (stack, name, value) in [
+        ("px4", "MPC_THR_HOVER", 0.3165),
+        ("ardupilot", "MOT_THST_HOVER", 0.2535),
+    ] {
+        assert!(printed.contains(&format!(", {name} {value}")), "{printed}");
         let list = summary[stack].as_array().unwrap();
         assert!(
             list.iter()
-                .any(|parameter| parameter["name"] == name && parameter["value"] == 0.3165),
+                .any(|parameter| parameter["name"] == name && parameter["value"] == value),
             "{list:?}"
         );
     }

@@ -148,6 +148,7 @@ fn an_airframe_has_the_bias_where_it_gains_by_it() {
             frame,
             arm: Some(0.45),
             name: Some("written".into()),
+            outputs: None,
         };
         let text = frame.airframe(None, &fragment::tables(&found), found.power_bias());
         text.expect("an airframe")

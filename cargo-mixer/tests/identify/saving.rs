@@ -31,6 +31,7 @@ impl X8 {
             frame: Frame::X8,
             arm: Some(0.45),
             name: Some("x8".into()),
+            outputs: None,
         };
         let text = frame.airframe(None, &fragment::tables(&found), found.power_bias());
         let source = Source::new("x8.toml", text.expect("a frame"));

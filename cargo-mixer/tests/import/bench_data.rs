@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::{Folder, Unit, import, outline, refused};
 
-fn folder_of_data(test: &str) -> Option<PathBuf> {
+pub(crate) fn folder_of_data(test: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from);
     if folder.is_none() {
         eprintln!("NOT RUN: {test} needs MIXER_BENCH_DATA, the folder of real bench files");
@@ -64,7 +64,7 @@ fn px4_files_give_their_frames() {
 }
 
 /// FRAME_CLASS and FRAME_TYPE by ArduPilot's names.
-fn numbers(frame: &Value) -> (u32, u32) {
+pub(crate) fn numbers(frame: &Value) -> (u32, u32) {
     let class = match frame["frame_class"].as_str().unwrap() {
         "OCTAQUAD" => 4,
         "Y6" => 5,
@@ -89,7 +89,7 @@ fn numbers(frame: &Value) -> (u32, u32) {
 }
 
 /// Whether a unit is the pair of these motors: outputs, spin, and where it is.
-fn is_pair(unit: &Unit, frame: &Value, motors: &Value) -> bool {
+pub(crate) fn is_pair(unit: &Unit, frame: &Value, motors: &Value) -> bool {
     let all = frame["motors"].as_array().unwrap();
     let numbers = [0, 1].map(|k| motors[k].as_i64().unwrap());
     let upper = all.iter().find(|motor| motor["motor"] == numbers[0]).unwrap();

@@ -1,6 +1,7 @@
 //! `cargo mixer import` from outside: frames of PX4 and ArduPilot as airframe files.
 
 mod bench_data;
+mod stacks;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,6 @@
 //! The generated Rust: the tables as constants and one inline mixer function.
 
+use mixer_rt::Wrench;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -15,7 +16,15 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let tables = tables(&compiled.tables);
     let units = Literal::usize_unsuffixed(compiled.tables.units.len());
     let channels = Literal::usize_unsuffixed(2 * compiled.tables.units.len());
-    let [roll, pitch, yaw, thrust] = compiled.scale().to_array().map(|x| x.tokens());
+    let scale = wrench(compiled.scale());
+    let ardupilot_scale = wrench(compiled.ardupilot_scale());
+    let ardupilot_doc = doc(&[match &compiled.airframe.voltage {
+        Some(voltage) => format!(
+            " The same for ArduPilot's inputs, at {:?} V as `MOT_BAT_VOLT_MAX`.",
+            voltage.range_v[1]
+        ),
+        None => " The same for ArduPilot's inputs.".to_owned(),
+    }]);
     quote! {
         #module_doc
         #[allow(dead_code, unreachable_pub)]
@@ -26,14 +35,11 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
             pub const UNITS: usize = #units;
             /// Number of output channels, two per unit.
             pub const CHANNELS: usize = #channels;
-            /// What one unit of a normalised setpoint asks for: see
+            /// What one unit of PX4's normalised setpoints asks for: see
             /// `mixer_rt::Wrench::from_normalised`.
-            pub const SCALE: rt::Wrench = rt::Wrench {
-                roll_nm: #roll,
-                pitch_nm: #pitch,
-                yaw_nm: #yaw,
-                thrust_n: #thrust,
-            };
+            pub const SCALE: rt::Wrench = #scale;
+            #ardupilot_doc
+            pub const ARDUPILOT_SCALE: rt::Wrench = #ardupilot_scale;
 
             #mixer
 
@@ -209,6 +215,18 @@ fn tables(tables: &MixerTables) -> TokenStream {
             closed_form: CLOSED_FORM,
             tolerance: #tolerance,
         };
+    }
+}
+
+fn wrench(wrench: Wrench) -> TokenStream {
+    let [roll, pitch, yaw, thrust] = wrench.to_array().map(|x| x.tokens());
+    quote! {
+        rt::Wrench {
+            roll_nm: #roll,
+            pitch_nm: #pitch,
+            yaw_nm: #yaw,
+            thrust_n: #thrust,
+        }
     }
 }
 

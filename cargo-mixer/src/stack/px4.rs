@@ -1,0 +1,265 @@
+//! PX4's parameters.
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::{Spin, Unit};
+
+use super::{Parameter, Parameters, curve, on_curve, real, slope_in_hover, weight_n, whole};
+
+/// Most rotors that PX4 has parameters for.
+const MOST_ROTORS: usize = 12;
+
+/// PX4's own `MPC_THR_MIN` and `MPC_MANTHR_MIN`.
+const LEAST_THRUST: f64 = 0.12;
+const LEAST_MANUAL_THRUST: f64 = 0.08;
+
+/// Largest of PX4's `FD_ACT_MOT_C2T` and `FD_ACT_HIGH_OFF`, A.
+const MOST_SLOPE: f64 = 50.0;
+const MOST_OFFSET: f64 = 30.0;
+
+/// What PX4 has to be told where this mixer puts out the throttles.
+pub fn settings(compiled: &Compiled) -> Parameters {
+    let airframe = &compiled.airframe;
+    let mut notes = Vec::new();
+    let mut list = vec![real(
+        "THR_MDL_FAC",
+        0.0,
+        "The mixer inverts the rotors' curve; the outputs would bend the throttles once more.",
+    )];
+    if airframe.voltage.is_some() {
+        list.push(whole(
+            "MC_BAT_SCALE_EN",
+            0,
+            "The mixer follows the battery's voltage; the rate controller would scale by it once more.",
+        ));
+    }
+    let full_n = f64::from(compiled.scale().thrust_n);
+    let hover = weight_n(compiled).map(|weight| weight / full_n);
+    match hover {
+        Some(hover) => list.push(real(
+            "MPC_THR_HOVER",
+            hover,
+            "Weight over the thrust of all rotors at full throttle.",
+        )),
+        None => notes.push(no_mass("MPC_THR_HOVER")),
+    }
+    list.push(whole(
+        "MPC_THR_CURVE",
+        0,
+        "Throttle stick in the middle is hover thrust.",
+    ));
+    // Idle lifts most at the highest voltage.
+    let rise = airframe
+        .voltage
+        .as_ref()
+        .map_or(1.0, |voltage| voltage.thrust_factor(voltage.range_v[1]));
+    let idle = rise * f64::from(compiled.thrust_range_n[0].max(0.0)) / full_n;
+    let idle = libm::ceil(100.0 * idle) / 100.0;
+    let why = "Thrust of all rotors at idle, or PX4's default where that is more: less is not to be had.";
+    list.push(real("MPC_THR_MIN", idle.max(LEAST_THRUST), why));
+    list.push(real("MPC_MANTHR_MIN", idle.max(LEAST_MANUAL_THRUST), why));
+    if hover.is_some_and(|hover| idle >= hover) {
+        notes.push("all rotors at idle lift the vehicle: MPC_THR_MIN is above MPC_THR_HOVER".to_owned());
+    }
+    failure_detection(compiled, &mut list, &mut notes);
+    notes.push(gains(compiled));
+    Parameters { list, notes }
+}
+
+/// What PX4 has to be told where its own allocator puts out the throttles.
+pub fn own(compiled: &Compiled) -> Parameters {
+    let mut notes = Vec::new();
+    let factor = round2(curve(compiled, false));
+    let mut list = vec![real(
+        "THR_MDL_FAC",
+        factor,
+        "Fitted to the thrust of the pair with both rotors alike.",
+    )];
+    match compiled.equal_hover_throttle() {
+        Some(throttle) => list.push(real(
+            "MPC_THR_HOVER",
+            on_curve(factor, throttle),
+            "THR_MDL_FAC's curve at the throttle that carries the weight at the reference voltage.",
+        )),
+        None => notes.push(no_mass("MPC_THR_HOVER")),
+    }
+    list.push(whole(
+        "MPC_THR_CURVE",
+        0,
+        "Throttle stick in the middle is hover thrust.",
+    ));
+    failure_detection(compiled, &mut list, &mut notes);
+    Parameters { list, notes }
+}
+
+/// The rotors for PX4's own allocator, which takes each as isolated. `slopes` gives the two of a
+/// pair different constants, of the map's slopes in hover; otherwise they are alike.
+///
+/// # Errors
+/// Outputs that are not PX4's motors; slopes without a hover.
+pub fn geometry(compiled: &Compiled, slopes: bool) -> Result<Vec<Parameter>, String> {
+    let airframe = &compiled.airframe;
+    let count = airframe.rotors();
+    if count > MOST_ROTORS {
+        return Err(format!("{count} rotors: PX4 has parameters for {MOST_ROTORS}"));
+    }
+    let constants = constants(compiled, slopes)?;
+    let mut list = vec![
+        whole("CA_AIRFRAME", 0, "A multirotor."),
+        whole(
+            "CA_ROTOR_COUNT",
+            i32::try_from(count).unwrap_or_default(),
+            "A multirotor.",
+        ),
+        whole("CA_R_REV", 0, "No rotor turns backwards."),
+    ];
+    for channel in 0..count {
+        let is_on = |unit: &&Unit| unit.upper_channel == channel || unit.lower_channel == channel;
+        let Some(unit) = airframe.units.iter().find(is_on) else {
+            return Err(format!(
+                "no rotor is on output {channel}: PX4's motors are numbered without a gap; `channels` of the airframe \
+                 file gives their outputs, from 0"
+            ));
+        };
+        let is_upper = unit.upper_channel == channel;
+        let spin = if is_upper {
+            unit.upper_spin
+        } else {
+            unit.upper_spin.reversed()
+        };
+        let [thrust, torque] = constants[usize::from(!is_upper)];
+        let sign = if spin == Spin::Ccw { 1.0 } else { -1.0 };
+        let why = format!(
+            "Motor {}: {} rotor, turns {}.",
+            channel + 1,
+            if is_upper { "upper" } else { "lower" },
+            spin.name()
+        );
+        let mut add = |key: &str, value| list.push(real(format!("CA_ROTOR{channel}_{key}"), value, &why));
+        for (key, value) in ["PX", "PY", "PZ"].iter().zip(unit.position_m) {
+            add(key, value);
+        }
+        for (key, value) in ["AX", "AY", "AZ"].iter().zip(unit.axis) {
+            add(key, value);
+        }
+        add("CT", thrust);
+        add("KM", sign * torque / thrust);
+    }
+    Ok(list)
+}
+
+/// Thrust and torque of the upper and of the lower rotor per unit of PX4's output.
+fn constants(compiled: &Compiled, slopes: bool) -> Result<[[f64; 2]; 2], String> {
+    if !slopes {
+        return Ok([compiled.per_rotor(); 2]);
+    }
+    let throttle = compiled
+        .equal_hover_throttle()
+        .ok_or("--slopes: they are those in hover, which `[vehicle] mass_kg` of the airframe file gives")?;
+    let [[f_u, f_l], [q_u, q_l]] = compiled.pair.jacobian([throttle, throttle]);
+    Ok([[f_u, -q_u], [f_l, q_l]])
+}
+
+/// Which output drives which motor, as PX4's simulator needs it.
+pub fn simulated_outputs(compiled: &Compiled) -> Vec<Parameter> {
+    (1..=compiled.airframe.rotors())
+        .map(|motor| {
+            let function = 100 + i32::try_from(motor).unwrap_or_default();
+            whole(
+                format!("PWM_MAIN_FUNC{motor}"),
+                function,
+                "Motor n on the simulator's output n.",
+            )
+        })
+        .collect()
+}
+
+/// Pulse widths of throttle 0 and 1, microseconds.
+pub fn pulses(compiled: &Compiled, [low, high]: [f64; 2]) -> Vec<Parameter> {
+    let why = "Pulse widths of throttle 0 and 1 on the bench; a board whose motors are on AUX has PWM_AUX_..";
+    let pulse =
+        |name: &str, motor: usize, width: f64| whole(format!("PWM_MAIN_{name}{motor}"), width as i32, why);
+    let motors = 1..=compiled.airframe.rotors();
+    motors
+        .flat_map(|motor| [pulse("MIN", motor, low), pulse("MAX", motor, high)])
+        .collect()
+}
+
+/// A motor is found out where it draws too little current for its throttle: below `FD_ACT_MOT_C2T`
+/// times throttle less `FD_ACT_LOW_OFF`. Half of the tangent to the current in hover lies below the
+/// current everywhere, as that is convex in the throttle, and above zero around hover.
+fn failure_detection(compiled: &Compiled, list: &mut Vec<Parameter>, notes: &mut Vec<String>) {
+    list.push(whole(
+        "CA_FAILURE_MODE",
+        1,
+        "Motors that the failure detector finds out are left out of the mix.",
+    ));
+    let Some([slope, offset]) = current_tangent(compiled) else {
+        list.push(whole(
+            "FD_ACT_EN",
+            0,
+            "Without the motors' currents a healthy motor would be found out.",
+        ));
+        notes.push(
+            "FD_ACT_EN is off: `[pair.power]`, `[voltage]` and `[vehicle] mass_kg` of the airframe file would give \
+             FD_ACT_MOT_C2T and FD_ACT_LOW_OFF"
+                .to_owned(),
+        );
+        return;
+    };
+    let why = "Half of the tangent to a motor's current over its throttle in hover, from [pair.power]; needs ESCs that \
+               report their current.";
+    list.push(whole("FD_ACT_EN", 1, why));
+    list.push(real("FD_ACT_MOT_C2T", (0.5 * slope).min(MOST_SLOPE), why));
+    list.push(real(
+        "FD_ACT_LOW_OFF",
+        (0.5 * offset).clamp(0.0, MOST_OFFSET),
+        why,
+    ));
+    list.push(real(
+        "FD_ACT_HIGH_OFF",
+        MOST_OFFSET,
+        "As far as PX4 allows: a blocked motor is not looked for.",
+    ));
+}
+
+/// Step of the throttle for a slope.
+const STEP: f64 = 1e-3;
+
+/// Slope (A) and offset (A) of the tangent to a motor's current over its throttle in hover.
+fn current_tangent(compiled: &Compiled) -> Option<[f64; 2]> {
+    let airframe = &compiled.airframe;
+    let throttle = compiled.equal_hover_throttle()?;
+    let voltage_v = airframe.voltage.as_ref()?.reference_v;
+    let channels = airframe
+        .units
+        .iter()
+        .flat_map(|unit| [unit.upper_channel, unit.lower_channel]);
+    let most = channels.max()? + 1;
+    let current = |throttle: f64| {
+        let power_w = airframe.power_w(&vec![throttle; most])?;
+        Some(power_w / (airframe.rotors() as f64 * voltage_v))
+    };
+    let slope = (current(throttle + STEP)? - current(throttle - STEP)?) / (2.0 * STEP);
+    Some([slope, slope * throttle - current(throttle)?])
+}
+
+/// What becomes of the gains of a vehicle that was tuned with PX4's allocator.
+fn gains(compiled: &Compiled) -> String {
+    match slope_in_hover(compiled) {
+        Some(factor) => format!(
+            "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K: gains that were tuned with a fitted THR_MDL_FAC stay; those tuned \
+             with THR_MDL_FAC 0 are multiplied by {factor:.3}, the slope of thrust over throttle in hover"
+        ),
+        None => "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K: which factor keeps the loop gain is known with `[vehicle] \
+                 mass_kg` in the airframe file; one unit of yaw is then the pair's slope in hover"
+            .to_owned(),
+    }
+}
+
+pub(super) fn no_mass(name: &str) -> String {
+    format!("{name} is missing: `[vehicle] mass_kg` of the airframe file gives it")
+}
+
+fn round2(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0
+}
