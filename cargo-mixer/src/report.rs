@@ -30,8 +30,8 @@ pub struct ReportArgs {
     /// Bench files of the pair, to be shown beside the model
     #[arg(long, value_name = "BENCH.csv")]
     bench: Vec<PathBuf>,
-    /// Total thrust of the comparison at constant thrust, N [default: about 40 % of the largest
-    /// bare thrust]
+    /// Total thrust of the comparison at constant thrust, N [default: the weight, without a mass
+    /// about 40 % of the largest bare thrust]
     #[arg(long, value_name = "NEWTON", value_parser = thrust, allow_negative_numbers = true)]
     thrust: Option<f64>,
 }

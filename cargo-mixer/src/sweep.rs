@@ -27,7 +27,8 @@ pub struct SweepArgs {
     /// Overwrite the file if it is there
     #[arg(long)]
     force: bool,
-    /// Total thrust of the yaw sweep, N [default: about 40 % of the largest bare thrust]
+    /// Total thrust of the yaw sweep, N [default: the weight, without a mass about 40 % of the
+    /// largest bare thrust]
     #[arg(long, value_name = "NEWTON", value_parser = thrust, allow_negative_numbers = true)]
     thrust: Option<f64>,
 }

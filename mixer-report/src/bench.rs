@@ -8,6 +8,8 @@ use crate::number::significant;
 /// One bench point with what the model says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BenchPoint {
+    /// Index of its file in [`BenchPoints::files`].
+    pub file: usize,
     /// Line of the file.
     pub line: u64,
     /// Throttles `[u, l]`.
@@ -19,20 +21,9 @@ pub struct BenchPoint {
 }
 
 impl BenchPoint {
-    /// The point in words with its numbers.
-    pub fn text(&self, effort: Effort) -> String {
-        let (measured, model) = (self.measured[effort as usize], self.model[effort as usize]);
-        let [u, l] = self.throttles;
-        let unit = effort.unit();
-        format!(
-            "line {}: u {}, l {}: measured {} {unit}, model {} {unit}, model less measured {} {unit}",
-            self.line,
-            significant(u, 3),
-            significant(l, 3),
-            significant(measured, 4),
-            significant(model, 4),
-            significant(model - measured, 2)
-        )
+    /// Model less measured, N or N m.
+    pub fn residual(&self, effort: Effort) -> f64 {
+        self.model[effort as usize] - self.measured[effort as usize]
     }
 }
 
@@ -59,18 +50,20 @@ pub struct BenchPoints {
 const LARGEST_MISFIT: [f64; 2] = [0.06, 0.12];
 
 /// What remains between model and points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Misfit {
     /// Root of the mean square of model less measured.
     pub rms: f64,
     /// Largest absolute difference.
     pub largest: f64,
+    /// The point that has it.
+    pub at: BenchPoint,
     /// Share of the variance that the model explains.
     pub r_squared: f64,
 }
 
 impl BenchPoints {
-    /// Adds a point: throttles `[u, l]`, measured thrust (N) and torque (N m), and the voltage at
+    /// Adds a point of the file that is read now, the next of [`BenchPoints::files`]: throttles `[u, l]`, measured thrust (N) and torque (N m), and the voltage at
     /// which they were measured, V, where it is known.
     pub fn add(
         &mut self,
@@ -100,6 +93,7 @@ impl BenchPoints {
             &mut self.outside
         };
         list.push(BenchPoint {
+            file: self.files.len(),
             line,
             throttles,
             measured: [measured[0] / k[0], measured[1] / k[1]],
@@ -139,29 +133,46 @@ impl BenchPoints {
         doubts
     }
 
+    /// Where a point was read: `line 12`, with the file where there are several.
+    pub fn place(&self, point: &BenchPoint) -> String {
+        match self.files.get(point.file) {
+            Some(file) if self.files.len() > 1 => format!("{file}, line {}", point.line),
+            _ => format!("line {}", point.line),
+        }
+    }
+
+    /// A point in words with its numbers.
+    pub fn text(&self, point: &BenchPoint, effort: Effort) -> String {
+        let [u, l] = point.throttles;
+        let unit = effort.unit();
+        format!(
+            "{}: u {}, l {}: measured {} {unit}, model {} {unit}, model less measured {} {unit}",
+            self.place(point),
+            significant(u, 3),
+            significant(l, 3),
+            significant(point.measured[effort as usize], 4),
+            significant(point.model[effort as usize], 4),
+            significant(point.residual(effort), 2)
+        )
+    }
+
     /// What remains in thrust or in torque; `None` without points.
     pub fn misfit(&self, effort: Effort) -> Option<Misfit> {
         let count = self.points.len() as f64;
-        if self.points.is_empty() {
-            return None;
-        }
-        let mean = self
+        let size = |point: &&BenchPoint| point.residual(effort).abs();
+        let at = self.points.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let measured = || self.points.iter().map(|point| point.measured[effort as usize]);
+        let mean = measured().sum::<f64>() / count;
+        let variance: f64 = measured().map(|x| (x - mean) * (x - mean)).sum();
+        let squares: f64 = self
             .points
             .iter()
-            .map(|point| point.measured[effort as usize])
-            .sum::<f64>()
-            / count;
-        let (mut squares, mut largest, mut variance) = (0.0, 0.0f64, 0.0);
-        for point in &self.points {
-            let miss = point.model[effort as usize] - point.measured[effort as usize];
-            let spread = point.measured[effort as usize] - mean;
-            squares += miss * miss;
-            largest = largest.max(miss.abs());
-            variance += spread * spread;
-        }
+            .map(|point| point.residual(effort) * point.residual(effort))
+            .sum();
         Some(Misfit {
             rms: (squares / count).sqrt(),
-            largest,
+            largest: size(&at),
+            at: at.clone(),
             r_squared: 1.0 - squares / variance,
         })
     }

@@ -68,38 +68,35 @@ pub fn facts(cost: &Cost) -> Markup {
 }
 
 /// All evaluators, in the order of their cost.
-pub fn evaluators(units: usize, front: &[Alternative]) -> Markup {
-    let all = match units {
-        1 => "all units (instructions)".to_owned(),
-        units => format!("{units} units (instructions)"),
-    };
+pub fn evaluators(front: &[Alternative]) -> Markup {
     let header = [
-        "evaluator",
-        "",
-        "1 unit (instructions)",
-        "(cycles)",
-        &all,
-        "(cycles)",
+        "evaluator of one unit",
+        "instructions",
+        "cycles",
         "whole mix (instructions)",
         "constants (bytes)",
     ];
-    let times = |one: Option<u32>| number(one.map(|one| one * units as u32));
     let rows: Vec<Vec<String>> = front
         .iter()
         .map(|alternative| {
             vec![
-                alternative.description.clone(),
-                alternative.verdict().to_owned(),
+                named(alternative),
                 number(alternative.instructions),
                 number(alternative.cost),
-                times(alternative.instructions),
-                times(alternative.cost),
                 number(alternative.delivered),
                 alternative.bytes.to_string(),
             ]
         })
         .collect();
-    let caption = "Evaluators of the inverse map: instructions and cycles of one unit and of all, about the instructions of a \
-                   mix that least norm delivers, bytes of constants";
+    let caption = "Evaluators of the inverse map: instructions and cycles of one unit, about the instructions of a mix that least \
+                   norm delivers, bytes of constants";
     table(caption, &header, &rows)
+}
+
+/// An evaluator with what became of it.
+pub(crate) fn named(alternative: &Alternative) -> String {
+    match alternative.verdict() {
+        "" => alternative.description.clone(),
+        verdict => format!("{} ({verdict})", alternative.description),
+    }
 }

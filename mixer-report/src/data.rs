@@ -3,7 +3,9 @@
 use mixer_compiler::airframe::Axis;
 
 use crate::authority;
+use crate::bench::BenchPoints;
 use crate::comparison::Comparison;
+use crate::level;
 use crate::maps::ERROR_SIDE;
 use crate::number::range;
 use crate::page::{THRUSTS, YAW_COMMANDS};
@@ -13,6 +15,12 @@ use crate::table::comparison_text;
 /// A figure whose data can be had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Data {
+    /// Places, spins and outputs of the units.
+    Layout,
+    /// Throttles and power in level flight against thrust.
+    Level,
+    /// Throttles in hover against voltage.
+    Hover,
     /// Yaw sweep at constant thrust.
     Yaw,
     /// Attainable set against voltage.
@@ -29,7 +37,22 @@ pub enum Data {
 
 impl Data {
     /// Every figure with its word and with what its columns hold.
-    pub const ALL: [(Data, &str, &str); 6] = [
+    pub const ALL: [(Data, &str, &str); 9] = [
+        (
+            Data::Layout,
+            "layout",
+            "Place, spin and output channels of every unit",
+        ),
+        (
+            Data::Level,
+            "level",
+            "Mean throttles and electrical power in level flight against thrust, at the lowest, the reference and the highest voltage",
+        ),
+        (
+            Data::Hover,
+            "hover",
+            "Mean throttles in hover against voltage, with [vehicle] mass_kg and [voltage]",
+        ),
         (
             Data::Yaw,
             "yaw",
@@ -61,6 +84,12 @@ impl Data {
             "What the emitted inverse misses over the attainable set",
         ),
     ];
+
+    /// Its word on the command line.
+    pub(crate) fn word(self) -> &'static str {
+        let found = Data::ALL.into_iter().find(|(figure, ..)| *figure == self);
+        found.map_or("", |(_, word, _)| word)
+    }
 }
 
 /// Points per side of the maps.
@@ -78,7 +107,8 @@ pub struct Sweep {
 /// The data of `figure`.
 ///
 /// # Errors
-/// A yaw sweep of an airframe that does not serve yaw, or at a thrust that leaves no room for it.
+/// A yaw sweep of an airframe that does not serve yaw, or at a thrust that leaves no room for it;
+/// hover without a mass or without an effect of voltage.
 pub fn sweep(study: &Study<'_>, figure: Data) -> Result<Sweep, String> {
     let mut table = String::new();
     let lines = match figure {
@@ -87,6 +117,9 @@ pub fn sweep(study: &Study<'_>, figure: Data) -> Result<Sweep, String> {
             table = comparison_text(&comparison);
             yaw(&comparison)
         }
+        Data::Layout => layout(study),
+        Data::Level => level_lines(study),
+        Data::Hover => hover(study)?,
         Data::Attainable => attainable(study),
         Data::Authority => authority_lines(study),
         Data::Forward => forward(study),
@@ -147,6 +180,77 @@ fn yaw(comparison: &Comparison) -> Vec<String> {
         }
     }
     lines
+}
+
+fn layout(study: &Study<'_>) -> Vec<String> {
+    let mut lines = vec!["unit,x_m,y_m,z_m,upper_spin,lower_spin,upper_channel,lower_channel".to_owned()];
+    for (index, unit) in study.compiled.airframe.units.iter().enumerate() {
+        lines.push(format!(
+            "{index},{},{},{},{},{}",
+            line(unit.position_m),
+            unit.upper_spin.name(),
+            unit.upper_spin.reversed().name(),
+            unit.upper_channel,
+            unit.lower_channel
+        ));
+    }
+    lines
+}
+
+/// A number, or nothing where there is none.
+fn or_empty(x: f64) -> String {
+    if x.is_finite() { cell(x) } else { String::new() }
+}
+
+fn level_lines(study: &Study<'_>) -> Vec<String> {
+    let mut lines = vec!["voltage_v,thrust_n,upper_throttle,lower_throttle,power_w".to_owned()];
+    let reference_v = study.compiled.airframe.reference_v();
+    for (volts, _) in study.voltages() {
+        let text = volts.map_or(String::new(), cell);
+        for level in level::against_thrust(study, volts, THRUSTS) {
+            let [upper, lower] = level.throttles.map(or_empty);
+            // The file's map of power holds at the reference voltage.
+            let at_reference = volts.is_none_or(|volts| volts == reference_v);
+            let power = if at_reference {
+                or_empty(level.power_w)
+            } else {
+                String::new()
+            };
+            lines.push(format!("{text},{},{upper},{lower},{power}", cell(level.at)));
+        }
+    }
+    lines
+}
+
+fn hover(study: &Study<'_>) -> Result<Vec<String>, String> {
+    let levels = level::against_voltage(study);
+    if levels.is_empty() {
+        return Err(format!(
+            "{} has no [vehicle] mass_kg or no [voltage]: both are needed for hover against voltage",
+            study.compiled.airframe.name
+        ));
+    }
+    let mut lines = vec!["voltage_v,upper_throttle,lower_throttle".to_owned()];
+    for level in levels {
+        let [upper, lower] = level.throttles.map(or_empty);
+        lines.push(format!("{},{upper},{lower}", cell(level.at)));
+    }
+    Ok(lines)
+}
+
+/// The bench points beside the model, those outside the throttle range last.
+pub fn bench(bench: &BenchPoints) -> String {
+    let mut csv = "file_index,line,upper_throttle,lower_throttle,measured_thrust_n,measured_torque_nm,model_thrust_n,model_torque_nm\n".to_owned();
+    for point in bench.points.iter().chain(&bench.outside) {
+        let values = [point.throttles, point.measured, point.model];
+        csv.push_str(&format!(
+            "{},{},{}\n",
+            point.file,
+            point.line,
+            line(values.into_iter().flatten())
+        ));
+    }
+    csv
 }
 
 fn attainable(study: &Study<'_>) -> Vec<String> {
@@ -210,7 +314,8 @@ fn inverse(study: &Study<'_>) -> Vec<String> {
 fn error(study: &Study<'_>) -> Vec<String> {
     let header = "thrust_n,torque_nm,upper_throttle,lower_throttle,thrust_error_n,torque_error_nm";
     let mut lines = vec![header.to_owned()];
-    lines.extend(square(ERROR_SIDE).map(|point| {
+    // Every other node of the figure's grid.
+    lines.extend(square(ERROR_SIDE / 2 + 1).map(|point| {
         let [u, l] = study.throttles(point);
         let [f, q] = study.pair.efforts([u, l]);
         let [error_f, error_q] = study.error([u, l]);

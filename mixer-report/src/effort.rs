@@ -5,6 +5,9 @@ pub(crate) const THRUST: &str = "thrust f (N)";
 /// Label of an axis for torque.
 pub(crate) const TORQUE: &str = "torque Q (N m)";
 
+/// Name and unit of both in read-outs.
+pub(crate) const EFFORTS: [(&str, &str); 2] = [("thrust f", "N"), ("torque Q", "N m")];
+
 /// Thrust and torque of one unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {

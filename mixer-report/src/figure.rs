@@ -5,12 +5,16 @@
 //! attributes tell the page's script how pixels become quantities.
 
 mod bar;
+mod legend;
+mod mark;
 mod path;
+mod reading;
 
 use std::fmt::Write as _;
 
 use self::bar::Bar;
 use self::path::Label;
+pub use self::reading::Hover;
 use crate::number::{Ticks, escaped, pixel};
 
 /// Room around the plot for labels, px: left, top, right, bottom.
@@ -24,9 +28,6 @@ const LABEL_ROOM: f64 = 15.0;
 
 /// Where on a curve its value is tried, as shares of the length.
 const LABEL_PLACES: [f64; 9] = [0.5, 0.45, 0.55, 0.4, 0.6, 0.33, 0.67, 0.25, 0.75];
-
-/// Height of a row of the legend, px.
-const LEGEND_ROW: f64 = 18.0;
 
 /// One axis.
 #[derive(Clone, Debug)]
@@ -46,9 +47,15 @@ pub struct Figure {
     below: String,
     layers: String,
     above: String,
-    legend: Vec<(String, String)>,
+    legend: Vec<legend::Entry>,
     bar: Option<Bar>,
-    hover: String,
+    hover: Hover,
+    /// Quantities of the read-out with their units.
+    quantities: Vec<(String, String)>,
+    /// Curves with names.
+    curves: Vec<legend::Entry>,
+    /// Where the read-out begins; the middle where nothing is marked.
+    start: Option<[f64; 2]>,
     /// Where values stand on iso-curves.
     labels: Vec<[f64; 2]>,
 }
@@ -69,7 +76,10 @@ impl Figure {
             above: String::new(),
             legend: Vec::new(),
             bar: None,
-            hover: String::new(),
+            hover: Hover::Nothing,
+            quantities: Vec::new(),
+            curves: Vec::new(),
+            start: None,
             labels: Vec::new(),
         }
     }
@@ -91,13 +101,6 @@ impl Figure {
             let room = 0.5 * (coarser * size - (axis.range[1] - axis.range[0]));
             axis.range = [axis.range[0] - room, axis.range[1] + room];
         }
-        self
-    }
-
-    /// What the page's script shows at the pointer: `curves`, `plane`, or a map's kind.
-    #[must_use]
-    pub fn hovering(mut self, kind: &str) -> Self {
-        self.hover = kind.to_owned();
         self
     }
 
@@ -134,28 +137,34 @@ impl Figure {
         self.entry(class, name);
     }
 
-    /// A curve whose name is shown under the pointer only.
+    /// A curve whose name stands in the read-out only. With a name it is reached by the Tab key.
     pub fn unlisted_curve(&mut self, class: &str, name: &str, points: &[[f64; 2]]) {
         let data = self.path(points, false);
-        let _ = writeln!(
-            self.layers,
-            "<path class=\"line {class}\" data-name=\"{}\" d=\"{data}\"/>",
-            escaped(name)
-        );
+        self.line(class, name, &data);
     }
 
     /// A closed line without filling.
     pub fn outline(&mut self, class: &str, name: &str, points: &[[f64; 2]]) {
         let data = self.path(points, true);
-        let title = match name {
-            "" => String::new(),
-            name => format!("<title>{}</title>", escaped(name)),
-        };
-        let _ = writeln!(
-            self.layers,
-            "<path class=\"line {class}\" d=\"{data}\">{title}</path>"
-        );
+        self.line(class, name, &data);
         self.entry(class, name);
+    }
+
+    fn line(&mut self, class: &str, name: &str, data: &str) {
+        let named = match name {
+            "" => String::new(),
+            name => {
+                self.curves.push((class.to_owned(), name.to_owned()));
+                let focus = if self.hover.is_along_curves() {
+                    " tabindex=\"0\""
+                } else {
+                    ""
+                };
+                let name = escaped(name);
+                format!(" data-name=\"{name}\"{focus} role=\"img\" aria-label=\"{name}\"")
+            }
+        };
+        let _ = writeln!(self.layers, "<path class=\"line {class}\"{named} d=\"{data}\"/>");
     }
 
     /// An area of any number of rings (even-odd) in a colour of the data.
@@ -216,13 +225,14 @@ impl Figure {
         );
     }
 
-    /// A point in a colour of the data with its numbers for the pointer.
-    pub fn coloured_dot(&mut self, colour: &str, radius: f64, point: [f64; 2], title: &str) {
+    /// A point whose values the read-out shows, in the order of its quantities; `paint` is a class
+    /// or a colour as an attribute.
+    pub fn read_dot(&mut self, paint: &str, radius: f64, point: [f64; 2], values: &[String]) {
         let [x, y] = self.at(point);
         let _ = writeln!(
             self.above,
-            "<circle class=\"residual\" fill=\"{colour}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"><title>{}</title></circle>",
-            escaped(title)
+            "<circle {paint} cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" data-values=\"{}\"/>",
+            escaped(&values.join("|"))
         );
     }
 
@@ -271,27 +281,26 @@ impl Figure {
 
     /// The picture for a page that has the classes.
     pub fn svg(&self) -> String {
+        self.drawn(&self.legend)
+    }
+
+    fn drawn(&self, entries: &[legend::Entry]) -> String {
         let [width, height] = self.size;
-        let rows = self.legend_rows();
+        let rows = legend::rows(entries, width + MARGIN[2] + 18.0);
         let full_width = MARGIN[0] + width + if self.bar.is_some() { BAR_ROOM } else { MARGIN[2] };
-        let full_height = MARGIN[1] + height + MARGIN[3] + LEGEND_ROW * rows.len() as f64;
-        let [x, y] = &self.axes;
+        let full_height = MARGIN[1] + height + MARGIN[3] + legend::ROW * rows.len() as f64;
         let mut svg = String::new();
         let _ = writeln!(
             svg,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 {full_width} {full_height}\" \
-             role=\"img\" aria-label=\"{}\" data-hover=\"{}\" data-x=\"{:?} {:?}\" data-y=\"{:?} {:?}\" \
-             data-box=\"{} {} {width} {height}\" data-labels=\"{}|{}\">",
+             role=\"{}\" aria-label=\"{}\"{}>",
+            if self.hover.is_along_curves() {
+                "group"
+            } else {
+                "img"
+            },
             escaped(&self.title),
-            self.hover,
-            x.range[0],
-            x.range[1],
-            y.range[0],
-            y.range[1],
-            MARGIN[0],
-            MARGIN[1],
-            escaped(&x.label),
-            escaped(&y.label)
+            self.attributes()
         );
         svg.push_str(&self.below);
         self.frame(&mut svg);
@@ -301,27 +310,7 @@ impl Figure {
             let left = MARGIN[0] + self.size[0] + 14.0;
             bar.draw(&mut svg, [left, MARGIN[1]], self.size[1]);
         }
-        for (row, entries) in rows.iter().enumerate() {
-            let y = MARGIN[1] + height + MARGIN[3] + LEGEND_ROW * (row as f64 + 0.4);
-            for (left, (class, name)) in entries {
-                let x = MARGIN[0] + left;
-                if class.contains("dot") {
-                    let _ = writeln!(
-                        svg,
-                        "<circle class=\"{class}\" cx=\"{}\" cy=\"{y}\" r=\"3.5\"/>",
-                        x + 11.0
-                    );
-                } else {
-                    let _ = writeln!(svg, "<path class=\"line {class}\" d=\"M{x} {y}h22\"/>");
-                }
-                let _ = writeln!(
-                    svg,
-                    "<text class=\"legend\" x=\"{}\" y=\"{y}\" dy=\".35em\">{}</text>",
-                    x + 28.0,
-                    escaped(name)
-                );
-            }
-        }
+        legend::draw(&mut svg, [MARGIN[0], MARGIN[1] + height + MARGIN[3]], &rows);
         svg.push_str("</svg>\n");
         svg
     }
@@ -373,24 +362,5 @@ impl Figure {
             top + height / 2.0,
             escaped(&self.axes[1].label)
         );
-    }
-
-    /// Legend entries by rows, each with its distance from the left edge of the plot.
-    fn legend_rows(&self) -> Vec<Vec<(f64, &(String, String))>> {
-        let mut rows: Vec<Vec<(f64, &(String, String))>> = Vec::new();
-        let mut left = f64::INFINITY;
-        for entry in &self.legend {
-            // A letter of 12 px type is at most 6.8 px wide on average.
-            let width = 28.0 + 6.8 * entry.1.chars().count() as f64 + 18.0;
-            if left + width > self.size[0] + MARGIN[2] + 18.0 {
-                rows.push(Vec::new());
-                left = 0.0;
-            }
-            if let Some(row) = rows.last_mut() {
-                row.push((left, entry));
-            }
-            left += width;
-        }
-        rows
     }
 }

@@ -28,6 +28,7 @@ pub mod field;
 pub mod figure;
 pub mod gallery;
 pub mod layout;
+pub mod level;
 pub mod maps;
 pub mod number;
 pub mod origin;

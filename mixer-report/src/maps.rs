@@ -5,10 +5,10 @@ use mixer_compiler::report::rounded_up;
 
 use crate::bench::{BenchPoint, BenchPoints};
 use crate::colour::Scale;
-use crate::effort::{Effort, THRUST, TORQUE};
+use crate::effort::{EFFORTS, Effort, THRUST, TORQUE};
 use crate::field::{Field, Painting, paint};
-use crate::figure::Figure;
-use crate::number::{Ticks, range, shortest, widened};
+use crate::figure::{Figure, Hover};
+use crate::number::{Ticks, fixed, range, significant, widened};
 use crate::study::Study;
 
 /// Points per side of the grid from which smooth maps are traced.
@@ -45,7 +45,10 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
         (LOWER, throttles(1)),
     )
     .sized(300.0, 300.0)
-    .hovering("forward");
+    .reading(
+        Hover::Forward,
+        &[(UPPER, ""), (LOWER, ""), EFFORTS[0], EFFORTS[1]],
+    );
     let painting = Painting {
         scale: match effort {
             Effort::Thrust => Scale::sequential(values),
@@ -60,20 +63,24 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     };
     figure.keep_clear(points.iter().map(|point| point.throttles));
     paint(&mut figure, &field, &painting, |square| study.throttles(square));
-    for point in points {
-        figure.dot("bench-dot", 3.0, point.throttles, &point.text(effort));
+    if let Some(bench) = bench {
+        for point in points {
+            figure.dot("bench-dot", 3.0, point.throttles, &bench.text(point, effort));
+        }
     }
+    figure.mark(&study.hover_throttles(), "hover");
     figure
 }
 
-/// Model less measured at every bench point over both throttles; small where it lies outside the
-/// throttle range. `None` without points.
+/// Model less measured at every bench point over both throttles, in percent of the pair's largest
+/// effort; small where it lies outside the throttle range. `None` without points.
 pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Option<Figure> {
-    let residual = |point: &BenchPoint| point.model[effort as usize] - point.measured[effort as usize];
+    let scale = study.pair.scale()[effort as usize];
+    let percent = |point: &BenchPoint| 100.0 * point.residual(effort) / scale;
     let largest = bench
         .points
         .iter()
-        .fold(0.0f64, |largest, point| largest.max(residual(point).abs()));
+        .fold(0.0f64, |largest, point| largest.max(percent(point).abs()));
     if largest <= 0.0 {
         return None;
     }
@@ -86,41 +93,66 @@ pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Opti
         "Thrust by the model less thrust measured",
         "Torque by the model less torque measured",
     ];
+    let unit = effort.unit();
     let mut figure = Figure::new(
         title[effort as usize],
         (UPPER, throttles(0)),
         (LOWER, throttles(1)),
     )
-    .sized(300.0, 300.0);
+    .sized(300.0, 300.0)
+    .reading(
+        Hover::Dots,
+        &[
+            ("", ""),
+            (UPPER, ""),
+            (LOWER, ""),
+            ("measured", unit),
+            ("model", unit),
+            ("difference", unit),
+            ("that is", "%"),
+        ],
+    );
     let [low, high] = study.pair.range();
     figure.outline(
         "border",
         "throttle range",
         &[[low, low], [high, low], [high, high], [low, high]],
     );
-    let scale = Scale::signed([-largest, largest]);
+    let colours = Scale::signed([-largest, largest]);
     for point in all() {
         let within = point
             .throttles
             .iter()
             .all(|t| (low - 1e-9..=high + 1e-9).contains(t));
-        let colour = scale.hex(residual(point).clamp(-largest, largest));
+        let value = percent(point).clamp(-largest, largest);
         let radius = if within { 6.0 } else { 3.5 };
-        figure.coloured_dot(&colour, radius, point.throttles, &point.text(effort));
+        let [u, l] = point.throttles;
+        let [measured, model] = [point.measured, point.model].map(|efforts| efforts[effort as usize]);
+        let values = [
+            bench.place(point),
+            fixed(u, 3),
+            fixed(l, 3),
+            significant(measured, 4),
+            significant(model, 4),
+            significant(model - measured, 2),
+            fixed(percent(point), 2),
+        ];
+        let paint = format!("class=\"residual\" fill=\"{}\"", colours.hex(value));
+        figure.read_dot(&paint, radius, point.throttles, &values);
+        figure.sign(value, radius, point.throttles, colours.ink(value));
     }
-    let (factor, prefix) = prefixed(largest);
     let bands = (0..RESIDUAL_BANDS).map(|k| {
         let edge = |k: usize| largest * (2.0 * k as f64 / RESIDUAL_BANDS as f64 - 1.0);
-        (edge(k), edge(k + 1), scale.hex(0.5 * (edge(k) + edge(k + 1))))
+        (edge(k), edge(k + 1), colours.hex(0.5 * (edge(k) + edge(k + 1))))
     });
-    let ticks = Ticks::within([-largest * factor, largest * factor], 6);
+    let ticks = Ticks::within([-largest, largest], 6);
     figure.colour_bar(
-        &format!("model \u{2212} measured ({prefix}{})", effort.unit()),
+        &format!("model \u{2212} measured (% of {} {unit})", significant(scale, 3)),
         bands.collect(),
         ticks
             .values
             .iter()
-            .map(|&value| (value / factor, ticks.text(value)))
+            .map(|&value| (value, ticks.text(value)))
             .collect(),
     );
     Some(figure)
@@ -150,7 +182,10 @@ pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
     ];
     let mut figure = over_efforts(study, title[rotor], [1.0, 1.0])
         .sized(300.0, 260.0)
-        .hovering("inverse");
+        .reading(
+            Hover::Inverse,
+            &[EFFORTS[0], EFFORTS[1], (UPPER, ""), (LOWER, "")],
+        );
     let painting = Painting {
         scale: Scale::sequential(study.pair.range()),
         range: study.pair.range(),
@@ -162,6 +197,9 @@ pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
     };
     paint(&mut figure, &field, &painting, |square| study.efforts(square));
     outline(study, &mut figure);
+    let hover = study.hover_throttles().into_iter();
+    let hover: Vec<[f64; 2]> = hover.map(|throttles| study.pair.efforts(throttles)).collect();
+    figure.mark(&hover, "hover");
     figure
 }
 
@@ -177,9 +215,11 @@ pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
     let title = ["Thrust that the inverse misses", "Torque that the inverse misses"];
     let mut figure = over_efforts(study, title[effort as usize], [1.0, 1.0])
         .sized(300.0, 260.0)
-        .hovering(["error-thrust", "error-torque"][effort as usize]);
+        .reading(
+            [Hover::ErrorThrust, Hover::ErrorTorque][effort as usize],
+            &[EFFORTS[0], EFFORTS[1], ("error about", effort.unit())],
+        );
     let bound = error_bound(study, effort);
-    let (factor, prefix) = prefixed(bound);
     let decades = |x: f64| libm::log10(x / bound).max(-DECADES);
     let mut values = field.values().iter();
     let logarithms = Field::new(field.side(), |_| values.next().map_or(-DECADES, |&x| decades(x)));
@@ -190,9 +230,9 @@ pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
         levels: 4,
         bands: 3,
         iso_curves: false,
-        ticks: Some(log_ticks(bound * factor)),
+        ticks: Some(log_ticks(bound)),
         label: &format!(
-            "|error of {}| ({prefix}{})",
+            "|error of {}| ({})",
             ["thrust", "torque"][effort as usize],
             effort.unit()
         ),
@@ -216,7 +256,7 @@ fn log_ticks(bound: f64) -> Vec<(f64, String)> {
         [1.0, 2.0, 5.0].map(|digit| digit * power)
     });
     let mut ticks: Vec<(f64, String)> = round
-        .map(|value| (libm::log10(value / bound), shortest(value)))
+        .map(|value| (libm::log10(value / bound), significant(value, 1)))
         // Not on top of the bound's own tick.
         .filter(|(place, _)| (-DECADES - 1e-9..-0.08).contains(place))
         .collect();
@@ -233,12 +273,4 @@ fn outline(study: &Study<'_>, figure: &mut Figure) {
 /// The proven bound of the error at the reference voltage, N or N m.
 pub fn error_bound(study: &Study<'_>, effort: Effort) -> f64 {
     study.summary.certificate.bound_at_reference[effort as usize]
-}
-
-/// The factor and the prefix with which `x` is a number of one to three digits.
-fn prefixed(x: f64) -> (f64, &'static str) {
-    [(1.0, ""), (1e3, "m"), (1e6, "\u{b5}")]
-        .into_iter()
-        .find(|(scale, _)| x * scale >= 1.0)
-        .unwrap_or((1e9, "n"))
 }

@@ -1,4 +1,4 @@
-// Values under the pointer. The page is complete without this.
+// Values at the pointer, the finger and the cursor keys. The page is complete without this.
 "use strict";
 (function () {
   const model = JSON.parse(document.getElementById("model").textContent);
@@ -39,77 +39,119 @@
     return grid.thousandths[node(l) * grid.side + node(u)] * grid.largest / 1000;
   }
 
+  // Texts of the read-out at a place of a picture; what is missing is not attainable.
   const kinds = {
+    plane: ([f, q]) => [fixed(f, 3), fixed(q, 4)],
     forward([u, l]) {
-      if (u < low || u > high || l < low || l > high) return "outside the throttle range";
+      const throttles = [fixed(u, 3), fixed(l, 3)];
+      if (u < low || u > high || l < low || l > high) return throttles;
       const e = efforts(u, l);
-      return `u ${fixed(u, 3)}, l ${fixed(l, 3)}: f ${fixed(e.f, 3)} N, Q ${fixed(e.q, 4)} N m`;
+      return [...throttles, fixed(e.f, 3), fixed(e.q, 4)];
     },
     inverse([f, q]) {
-      const found = invert(f, q);
-      const where = `f ${fixed(f, 3)} N, Q ${fixed(q, 4)} N m: `;
-      return where + (found ? `u ${fixed(found[0], 4)}, l ${fixed(found[1], 4)}` : "not attainable");
+      const found = invert(f, q) || [];
+      return [...kinds.plane([f, q]), ...found.map((throttle) => fixed(throttle, 4))];
     },
-    plane([f, q]) { return `f ${fixed(f, 3)} N, Q ${fixed(q, 4)} N m`; },
-    "error-thrust": (at) => error(at, model.errors[0], "N"),
-    "error-torque": (at) => error(at, model.errors[1], "N m"),
+    "error-thrust": (at) => error(at, model.errors[0]),
+    "error-torque": (at) => error(at, model.errors[1]),
   };
-  function error([f, q], grid, unit) {
-    const found = invert(f, q);
-    const where = `f ${fixed(f, 3)} N, Q ${fixed(q, 4)} N m: `;
-    return where + (found ? `misses about ${digits(nearest(grid, found[0], found[1]), 2)} ${unit}` : "not attainable");
+  function error(at, grid) {
+    const found = invert(...at);
+    return [...kinds.plane(at), ...(found ? [digits(nearest(grid, ...found), 2)] : [])];
   }
+
+  const clamp = (x, from, to) => Math.min(to, Math.max(from, x));
+  const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+  const ring = ([x, y]) => `M${x - 4} ${y}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0`;
 
   for (const svg of document.querySelectorAll("svg[data-hover]")) {
     const kind = svg.dataset.hover;
-    if (!kind) continue;
-    const readout = svg.parentNode.querySelector(".readout");
+    const outputs = [...svg.parentNode.querySelectorAll("output")];
     const [left, top, width, height] = svg.dataset.box.split(" ").map(Number);
-    const axes = [svg.dataset.x, svg.dataset.y].map((range) => range.split(" ").map(Number));
-    const labels = svg.dataset.labels.split("|");
-    const toX = (px) => axes[0][0] + (px - left) / width * (axes[0][1] - axes[0][0]);
-    const toY = (py) => axes[1][1] - (py - top) / height * (axes[1][1] - axes[1][0]);
+    const [rangeX, rangeY] = [svg.dataset.x, svg.dataset.y].map((range) => range.split(" ").map(Number));
+    const toX = (px) => rangeX[0] + (px - left) / width * (rangeX[1] - rangeX[0]);
+    const toY = (py) => rangeY[1] - (py - top) / height * (rangeY[1] - rangeY[0]);
+    // Curves are drawn to a tenth of a pixel: no more digits than that.
+    const decimals = (range, size) => Math.max(0, -Math.floor(Math.log10((range[1] - range[0]) / size / 10)) - 1);
+    const [decimalsX, decimalsY] = [decimals(rangeX, width), decimals(rangeY, height)];
+    // Curves as drawn, back in pixels; a break begins with a move.
+    const curves = [...svg.querySelectorAll("path[data-name]")].map((path) =>
+      path.getAttribute("d").split(/(?=[ML])/).map((part) => [...part.slice(1).split(" ").map(Number), part[0] === "M"]));
+    const dots = [...svg.querySelectorAll("circle[data-values]")].map((circle) => ({
+      at: [Number(circle.getAttribute("cx")), Number(circle.getAttribute("cy"))],
+      texts: circle.dataset.values.split("|"),
+    }));
     const cross = document.createElementNS("http://www.w3.org/2000/svg", "path");
     cross.setAttribute("class", "cross");
     svg.append(cross);
-    // Curves as drawn, back in pixels: breaks are kept apart.
-    const curves = [...svg.querySelectorAll("path[data-name]")].map((path) => ({
-      name: path.dataset.name,
-      points: path.getAttribute("d").split(/[ML]/).slice(1).map((pair) => pair.split(" ").map(Number)),
-    })).filter((curve) => curve.name);
+    let cursor = [0, 0];
 
-    // Curves are drawn to a tenth of a pixel: no more digits than that.
-    const decimals = (range, size) => Math.max(0, -Math.floor(Math.log10((range[1] - range[0]) / size / 10)) - 1);
-    const [decimalsX, decimalsY] = [decimals(axes[0], width), decimals(axes[1], height)];
-
-    function valuesAt(px) {
-      const texts = [`${labels[0]} ${fixed(toX(px), decimalsX)}`];
-      for (const { name, points } of curves) {
-        for (let k = 1; k < points.length; k += 1) {
-          const [a, b] = [points[k - 1], points[k]];
-          if (a[0] <= px && px <= b[0] && b[0] > a[0]) {
-            const y = a[1] + (b[1] - a[1]) * (px - a[0]) / (b[0] - a[0]);
-            texts.push(`${name} ${fixed(toY(y), decimalsY)}`);
-            break;
-          }
-        }
+    // Where a curve is at px; null where it is not.
+    function height_at(points, px) {
+      for (let k = 1; k < points.length; k += 1) {
+        const [a, b] = [points[k - 1], points[k]];
+        if (!b[2] && a[0] <= px && px <= b[0] && b[0] > a[0]) return a[1] + (b[1] - a[1]) * (px - a[0]) / (b[0] - a[0]);
       }
-      return texts.join("; ");
+      return null;
     }
 
-    svg.addEventListener("pointermove", (event) => {
-      const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
-      const inside = point.x >= left && point.x <= left + width && point.y >= top && point.y <= top + height;
-      if (!inside) { clear(); return; }
+    function show(place) {
+      cursor = [clamp(place[0], left, left + width), clamp(place[1], top, top + height)];
+      let texts, rings = [];
       if (kind === "curves") {
-        cross.setAttribute("d", `M${point.x} ${top}v${height}`);
-        readout.textContent = valuesAt(point.x);
+        const heights = curves.map((points) => height_at(points, cursor[0]));
+        texts = [fixed(toX(cursor[0]), decimalsX), ...heights.map((y) => y === null ? null : fixed(toY(y), decimalsY))];
+        rings = heights.filter((y) => y !== null).map((y) => [cursor[0], y]);
+      } else if (kind === "dots") {
+        const dot = dots.reduce((a, b) => distance(b.at, cursor) < distance(a.at, cursor) ? b : a);
+        [cursor, texts] = [dot.at, dot.texts];
       } else {
-        cross.setAttribute("d", `M${point.x} ${top}v${height}M${left} ${point.y}h${width}`);
-        readout.textContent = kinds[kind]([toX(point.x), toY(point.y)]);
+        texts = kinds[kind]([toX(cursor[0]), toY(cursor[1])]);
       }
+      if (kind !== "curves") rings = [cursor];
+      outputs.forEach((output, k) => { output.textContent = texts[k] ?? "\u2013"; });
+      const across = kind === "curves" ? "" : `M${left} ${cursor[1]}h${width}`;
+      cross.setAttribute("d", `M${cursor[0]} ${top}v${height}${across}${rings.map(ring).join("")}`);
+    }
+
+    // One step by a cursor key: along the curve that has the focus, to the next dot, or in the plane.
+    function step(target, dx, dy) {
+      if (target.dataset.name) {
+        const length = target.getTotalLength();
+        const at = (share) => { const p = target.getPointAtLength(share * length); return [p.x, p.y]; };
+        let share = 0;
+        for (let k = 1; k <= 240; k += 1) if (distance(at(k / 240), cursor) < distance(at(share), cursor)) share = k / 240;
+        show(at(clamp(share + (dx - dy) / 60, 0, 1)));
+      } else if (kind === "dots") {
+        const here = dots.findIndex((dot) => dot.at === cursor);
+        show(dots[clamp(here + dx - dy, 0, dots.length - 1)].at);
+      } else {
+        show([cursor[0] + dx * width / 60, cursor[1] + dy * height / 60]);
+      }
+    }
+
+    function point(event) {
+      const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+      const inside = at.x >= left && at.x <= left + width && at.y >= top && at.y <= top + height;
+      if (inside) show([at.x, at.y]);
+    }
+    svg.addEventListener("pointerdown", point);
+    svg.addEventListener("pointermove", point);
+    svg.addEventListener("focusin", (event) => {
+      svg.parentNode.querySelector(".readout").setAttribute("aria-live", "polite");
+      if (event.target.matches(":focus-visible")) step(event.target, 0, 0);
     });
-    function clear() { cross.setAttribute("d", ""); readout.textContent = ""; }
-    svg.addEventListener("pointerleave", clear);
+    svg.addEventListener("keydown", (event) => {
+      const move = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+      if (!move) return;
+      event.preventDefault();
+      step(event.target, ...move);
+    });
+    const [startX, startY] = svg.dataset.at.split(" ").map(Number);
+    show([left + (startX - rangeX[0]) / (rangeX[1] - rangeX[0]) * width,
+      top + (rangeY[1] - startY) / (rangeY[1] - rangeY[0]) * height]);
   }
+
+  // Paper has no folds.
+  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((details) => { details.open = true; }));
 })();

@@ -3,6 +3,8 @@
 //! It is written as XML that is also HTML (every element closed, every attribute quoted), so that
 //! it can be checked by machine.
 
+use std::fmt::Write as _;
+
 use maud::{Markup, PreEscaped, html};
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::alternatives::Alternative;
@@ -15,9 +17,11 @@ use crate::authority;
 use crate::bench::{BenchPoint, BenchPoints};
 use crate::comparison::Comparison;
 use crate::cost;
+use crate::data::{self, Data};
 use crate::effort::Effort;
 use crate::figure::Figure;
 use crate::layout;
+use crate::level;
 use crate::maps;
 use crate::number::{shortest, significant};
 use crate::origin::Origin;
@@ -44,10 +48,12 @@ const THRUSTS_ROTOR_OUT: usize = 21;
 const HOVER_STRIDE: usize = 2;
 
 /// Sections of the page in their order: anchor and title.
-pub const SECTIONS: [(&str, &str); 9] = [
+pub const SECTIONS: [(&str, &str); 11] = [
     ("layout", "Layout"),
-    ("comparison", "Yaw at constant thrust"),
+    ("bench-check", "Check list on the bench"),
+    ("level", "Throttle and power"),
     ("authority", "Authority"),
+    ("comparison", "Yaw at constant thrust"),
     ("attainable", "Attainable set"),
     ("forward", "Forward maps"),
     ("inverse", "Inverse maps"),
@@ -64,6 +70,8 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
     let front = compiled.front();
     let section = |anchor| match anchor {
         "layout" => layout_section(study),
+        "bench-check" => table::bench_check(study),
+        "level" => level_section(study),
         "comparison" => comparison_section(study),
         "authority" => authority_section(study),
         "attainable" => attainable_section(study),
@@ -131,8 +139,7 @@ fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
 fn shown(figure: &Figure, caption: &str) -> Markup {
     html! {
         figure {
-            (PreEscaped(figure.svg()))
-            div.readout aria-live="polite" {}
+            (figure.with_readout())
             figcaption { (caption) }
         }
     }
@@ -147,10 +154,71 @@ fn figures(figures: &[Markup]) -> Markup {
     html! { div.figures { @for figure in figures { (figure) } } }
 }
 
+/// The link under figures to their data, which the page carries itself.
+fn data(study: &Study<'_>, figure: Data) -> Markup {
+    html! { @if let Ok(sweep) = data::sweep(study, figure) { (csv_link(study, figure.word(), &sweep.csv)) } }
+}
+
+fn csv_link(study: &Study<'_>, word: &str, csv: &str) -> Markup {
+    let file = format!("{}-{word}.csv", printable(&study.compiled.airframe.name));
+    let mut address = String::from("data:text/csv;charset=utf-8,");
+    for byte in csv.bytes() {
+        match byte {
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b',' | b'.' | b'-' | b'_' => {
+                address.push(char::from(byte))
+            }
+            _ => {
+                let _ = write!(address, "%{byte:02X}");
+            }
+        }
+    }
+    html! { p.data { "Data of these figures: " a download=(file) href=(address) { (file) } } }
+}
+
 fn layout_section(study: &Study<'_>) -> Markup {
     let figure = layout::layout(&study.compiled.airframe);
     let caption = "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.";
-    figures(&[still(figure.svg(), caption), table::units(study)])
+    html! {
+        (figures(&[still(figure.svg(), caption), table::units(study)]))
+        (data(study, Data::Layout))
+    }
+}
+
+fn level_section(study: &Study<'_>) -> Markup {
+    let voltages = study.voltages().into_iter();
+    let levels: Vec<_> = voltages
+        .map(|(volts, _)| (volts, level::against_thrust(study, volts, THRUSTS)))
+        .collect();
+    let reference = level::against_thrust(study, Some(study.compiled.airframe.reference_v()), THRUSTS);
+    let hover = level::against_voltage(study);
+    let at = study.at_reference();
+    let upper = shown(
+        &plots::throttle(study, &levels, 0),
+        "Mean throttle of the upper rotors.",
+    );
+    let lower = shown(
+        &plots::throttle(study, &levels, 1),
+        "Mean throttle of the lower rotors.",
+    );
+    let over_voltage = plots::hover_throttle(study, &hover)
+        .map(|figure| shown(&figure, "Mean throttles in hover against voltage."));
+    let power = plots::power(study, &reference).map(|figure| {
+        shown(
+            &figure,
+            &format!("Electrical power of all rotors{at}, by the file\u{2019}s map."),
+        )
+    });
+    let plots: Vec<Markup> = [upper, lower]
+        .into_iter()
+        .chain(over_voltage)
+        .chain(power)
+        .collect();
+    html! {
+        p { "Level flight: thrust and no torque, as the mixer delivers it. A curve ends where the thrust is no longer delivered in full." }
+        (figures(&plots))
+        (data(study, Data::Level))
+        (data(study, Data::Hover))
+    }
 }
 
 fn comparison_section(study: &Study<'_>) -> Markup {
@@ -165,9 +233,11 @@ fn comparison_section(study: &Study<'_>) -> Markup {
     };
     html! {
         p {
-            "A total thrust of " (shortest(comparison.thrust_n)) " N and yaw over the whole range that the coaxial mixer \
+            "A total thrust of " (shortest(comparison.thrust_n)) " N"
+            @if study.hover_n() == Some(comparison.thrust_n) { ", the weight," }
+            " and yaw over the whole range that the coaxial mixer \
              delivers there. The conventional mixer takes every rotor for isolated, with a torque proportional to its \
-             thrust. Both mixers\u{2019} throttles are put through the pair\u{2019}s map, at the reference voltage: what \
+             thrust. Both mixers\u{2019} throttles are put through the pair\u{2019}s map" (study.at_reference()) ": what \
              is shown is what the rotors give by that map, not what the mixers believe. An isolated rotor is the \
              map\u{2019}s upper one with the lower at rest, f(d, 0): an extrapolation where the bench kept both turning."
         }
@@ -180,16 +250,19 @@ fn comparison_section(study: &Study<'_>) -> Markup {
             shown(&plots::yaw_total(&comparison), "Total thrust given."),
             shown(&plots::yaw_error(&comparison), "Yaw given less yaw asked."),
         ]))
+        (data(study, Data::Yaw))
         (table::comparison(&comparison))
     }
 }
 
 fn authority_section(study: &Study<'_>) -> Markup {
     let all = authority::against_thrust(study, &study.reference(), THRUSTS);
-    let lowest = study.lowest().map(|lowest| {
+    let voltage = study.compiled.airframe.voltage.as_ref();
+    let lowest = voltage.map(|voltage| {
+        let lowest_v = voltage.range_v[0];
         (
-            lowest.voltage_v,
-            authority::against_thrust(study, &lowest, THRUSTS),
+            lowest_v,
+            authority::against_thrust(study, &study.at(Some(lowest_v)), THRUSTS),
         )
     });
     let rotor_out = authority::with_a_rotor_out(study, THRUSTS_ROTOR_OUT);
@@ -215,9 +288,12 @@ fn authority_section(study: &Study<'_>) -> Markup {
         })
         .collect();
     let rotor_out = if is_held {
-        "With any one rotor out: what is left whichever it is, at the reference voltage."
+        format!(
+            "With any one rotor out: what is left whichever it is{}.",
+            study.at_reference()
+        )
     } else {
-        "With one rotor out, whichever it is, no thrust is held without a torque."
+        "With one rotor out, whichever it is, no thrust is held without a torque.".to_owned()
     };
     let airframe = &study.compiled.airframe;
     let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
@@ -238,6 +314,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
             }
         }
         div.figures.three { @for plot in &plots { (plot) } }
+        (data(study, Data::Authority))
     }
 }
 
@@ -247,7 +324,10 @@ fn attainable_section(study: &Study<'_>) -> Markup {
     } else {
         "What one unit can give. The airframe has no voltage correction."
     };
-    figures(&[shown(&plots::attainable(study), caption)])
+    html! {
+        (figures(&[shown(&plots::attainable(study), caption)]))
+        (data(study, Data::Attainable))
+    }
 }
 
 fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
@@ -274,14 +354,18 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
         let measured = quantity.to_lowercase();
         Some(shown(
             &figure,
-            &format!("{quantity} by the model less {measured} measured."),
+            &format!(
+                "{quantity} by the model less {measured} measured, in % of the pair\u{2019}s largest; + is too much by the model."
+            ),
         ))
     };
     let residuals: Vec<Markup> = Effort::BOTH.into_iter().filter_map(residual).collect();
     html! {
         @if let Some(bench) = bench { (bench_points(study, bench)) }
         (figures(&maps))
+        (data(study, Data::Forward))
         @if !residuals.is_empty() { (figures(&residuals)) }
+        @if let Some(bench) = bench { (csv_link(study, "bench", &data::bench(bench))) }
         (table::coefficients(study))
     }
 }
@@ -289,7 +373,7 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
 /// What bench points there are, and how well the model meets them.
 fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
     let voltage = if bench.corrected {
-        "brought to the reference voltage"
+        "brought to the model\u{2019}s voltage"
     } else {
         "as measured"
     };
@@ -314,18 +398,19 @@ fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
             @if all > 0 { " " (outside) ": small in the maps of what the model misses, and in no number." }
         }
         @for row in &bench.refused { p { "Refused: " (printable(row)) } }
-        (table::bench(bench))
+        (table::bench(study, bench))
     }
 }
 
 fn inverse_section(study: &Study<'_>) -> Markup {
-    figures(&[0, 1].map(|rotor| {
+    let maps = [0, 1].map(|rotor| {
         let caption = [
             "The upper rotor\u{2019}s throttle. (Fig. 5 of the paper)",
             "The lower rotor\u{2019}s throttle.",
         ][rotor];
         shown(&maps::inverse(study, rotor), caption)
-    }))
+    });
+    html! { (figures(&maps)) (data(study, Data::Inverse)) }
 }
 
 fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[Alternative]) -> Markup {
@@ -334,9 +419,13 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[
         .zip(fields)
         .map(|(effort, field)| {
             let summary = &study.summary;
+            let at = match study.at_reference().as_str() {
+                "" => " with the pair\u{2019}s map".to_owned(),
+                at => at.to_owned(),
+            };
             let observed = [summary.observed_thrust_n, summary.observed_torque_nm][effort as usize];
             let caption = format!(
-                "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}. At the reference voltage.",
+                "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}, both{at}.",
                 rounded_up(maps::error_bound(study, effort)),
                 summary.observed_points,
                 rounded_up(observed),
@@ -352,13 +441,13 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[
              proven bound."
         }
         (figures(&plots))
-        (table::folded("All evaluators: what each is proven to miss", &table::front(front)))
+        (data(study, Data::Error))
+        (table::folded("All evaluators: what each is proven to miss", &table::front(study, front)))
     }
 }
 
 fn cost_section(study: &Study<'_>, front: &[Alternative]) -> Markup {
     let costs = Cost::new(study.compiled);
-    let units = study.compiled.airframe.units.len();
     html! {
         p {
             (costs.target)
@@ -369,7 +458,7 @@ fn cost_section(study: &Study<'_>, front: &[Alternative]) -> Markup {
             " take per unit and per mix beside it. Memory that makes the core wait is not in it."
         }
         (cost::facts(&costs))
-        (table::folded("All evaluators: what each costs", &cost::evaluators(units, front)))
+        (table::folded("All evaluators: what each costs", &cost::evaluators(front)))
     }
 }
 

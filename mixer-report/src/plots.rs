@@ -1,13 +1,15 @@
-//! Line plots: attainable set against voltage, the yaw sweep of both mixers (Fig. 6), authority
-//! against thrust.
+//! Line plots: attainable set against voltage, the yaw sweep of both mixers (Fig. 6), authority,
+//! throttle and power against thrust.
 
 use mixer_compiler::airframe::Axis;
 
 use crate::authority::Authority;
 use crate::comparison::{Answer, Comparison, Row};
-use crate::figure::Figure;
+use crate::effort::EFFORTS;
+use crate::figure::{Figure, Hover};
+use crate::level::Level;
 use crate::maps::over_efforts;
-use crate::number::{fixed, range, shortest, widened};
+use crate::number::{fixed, range, widened};
 use crate::study::Study;
 
 /// The attainable set of one unit at the lowest, the reference and the highest voltage.
@@ -16,8 +18,8 @@ pub fn attainable(study: &Study<'_>) -> Figure {
     let largest = voltages
         .iter()
         .fold([1.0f64; 2], |size, (_, k)| [size[0].max(k[0]), size[1].max(k[1])]);
-    let mut figure =
-        over_efforts(study, "Attainable thrust and torque of one unit", largest).hovering("plane");
+    let mut figure = over_efforts(study, "Attainable thrust and torque of one unit", largest)
+        .reading(Hover::Plane, &EFFORTS);
     let border = study.border();
     for (index, (volts, k)) in voltages.iter().enumerate() {
         let points: Vec<[f64; 2]> = border
@@ -26,13 +28,23 @@ pub fn attainable(study: &Study<'_>) -> Figure {
             .map(|[f, q]| [f * k[0], q * k[1]])
             .collect();
         let name = volts.map_or("attainable set".to_owned(), |volts| format!("{volts} V"));
-        let class = match volts {
-            Some(_) => ["series-3", "series-1", "series-2"][index % 3],
-            None => "series-1",
-        };
-        figure.outline(class, &name, &points);
+        figure.outline(of_voltage(*volts, index), &name, &points);
     }
+    let hover: Vec<[f64; 2]> = study
+        .hover_throttles()
+        .into_iter()
+        .map(|throttles| study.pair.efforts(throttles))
+        .collect();
+    figure.mark(&hover, "hover");
     figure
+}
+
+/// The class of the curve at the lowest, the reference and the highest voltage.
+fn of_voltage(voltage_v: Option<f64>, index: usize) -> &'static str {
+    match voltage_v {
+        Some(_) => ["series-3", "series-1", "series-2"][index % 3],
+        None => "series-1",
+    }
 }
 
 /// Names and classes of the two mixers, with how to get at their answers.
@@ -49,7 +61,16 @@ pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
         "Yaw commands in the attainable set of each unit",
         [1.0, 1.0],
     )
-    .hovering("plane");
+    .reading(
+        Hover::Dots,
+        &[
+            ("", ""),
+            ("unit", ""),
+            ("yaw asked", "N m"),
+            EFFORTS[0],
+            EFFORTS[1],
+        ],
+    );
     let border: Vec<[f64; 2]> = study.border().iter().map(|&t| study.pair.efforts(t)).collect();
     figure.outline("border", "attainable set", &border);
     for (name, class, answer) in MIXERS {
@@ -64,17 +85,14 @@ pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
         }
         for row in &comparison.rows {
             for (unit, &efforts) in answer(row).efforts.iter().enumerate() {
-                figure.dot(
-                    &format!("dot {class}"),
-                    2.4,
-                    efforts,
-                    &format!(
-                        "{name}, unit {unit}, yaw asked {} N m: f {} N, Q {} N m",
-                        fixed(row.yaw_nm, 3),
-                        fixed(efforts[0], 3),
-                        fixed(efforts[1], 4)
-                    ),
-                );
+                let values = [
+                    name.to_owned(),
+                    unit.to_string(),
+                    fixed(row.yaw_nm, 3),
+                    fixed(efforts[0], 3),
+                    fixed(efforts[1], 4),
+                ];
+                figure.read_dot(&format!("class=\"dot {class}\""), 2.4, efforts, &values);
             }
         }
         figure.entry(&format!("dot {class}"), name);
@@ -102,19 +120,19 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
             widened(range(thrusts.chain(shares.iter().copied())), 0.08),
         ),
     )
-    .hovering("curves");
+    .reading_curves();
     for &share in &shares {
-        let each = if shares.len() == 1 { " each" } else { "" };
-        figure.level(
-            "reference",
-            &format!("share of the thrust: {} N{each}", shortest(share)),
-            share,
-        );
+        let each = if shares.len() == 1 { " of each" } else { "" };
+        figure.level("reference", &format!("share of the thrust{each}"), share);
     }
     for (name, class, answer) in MIXERS {
         let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
         for (count, (curve, of)) in distinct(comparison, units, answer).into_iter().enumerate() {
-            let dash = ["", " dashed", " dotted"][count % 3];
+            // Six dashes that are told apart without colour too.
+            let dash = match class {
+                "series-1" => ["", " long", " long-dot"],
+                _ => [" dotted", " dashed", " dash-dot"],
+            }[count % 3];
             let name = format!("{name}, {}", listed(&of));
             figure.curve(&format!("{class}{dash}"), &name, &curve);
         }
@@ -172,12 +190,8 @@ pub fn yaw_total(comparison: &Comparison) -> Figure {
         ("yaw asked (N m)", yaw_range(comparison)),
         ("total thrust given (N)", widened(range(totals), 0.08)),
     )
-    .hovering("curves");
-    figure.level(
-        "reference",
-        &format!("asked: {} N", shortest(comparison.thrust_n)),
-        comparison.thrust_n,
-    );
+    .reading_curves();
+    figure.level("reference", "asked", comparison.thrust_n);
     for (name, class, answer) in MIXERS {
         let curve: Vec<[f64; 2]> = comparison
             .rows
@@ -202,7 +216,7 @@ pub fn yaw_error(comparison: &Comparison) -> Figure {
         ("yaw asked (N m)", yaw_range(comparison)),
         ("yaw given \u{2212} asked (N m)", widened(range(errors), 0.08)),
     )
-    .hovering("curves");
+    .reading_curves();
     figure.level("reference", "", 0.0);
     for (name, class, answer) in MIXERS {
         let curve: Vec<[f64; 2]> = comparison
@@ -239,22 +253,24 @@ pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis:
         ),
     )
     .sized(300.0, 240.0)
-    .hovering("curves");
+    .reading_curves();
     let side = |k: usize| -> Vec<[f64; 2]> {
         all.iter()
             .map(|at| [at.thrust_n, at.torque_nm[index][k]])
             .collect()
     };
     let (least, largest) = (side(0), side(1));
+    let voltage = study.compiled.airframe.voltage.as_ref();
+    let volts = voltage.map_or_else(String::new, |voltage| format!("{} V, ", voltage.reference_v));
     let mut ring = largest.clone();
     ring.extend(least.iter().rev());
     let data = figure.path(&ring, true);
     figure.raw(&format!("<path class=\"fill-1\" d=\"{data}\"/>"));
     figure.level("axis-line", "", 0.0);
-    figure.unlisted_curve("series-1", "largest", &largest);
-    figure.unlisted_curve("series-1", "least", &least);
-    if !cases.is_empty() {
-        figure.entry("series-1", "all rotors, reference voltage");
+    figure.unlisted_curve("series-1", &format!("{volts}largest"), &largest);
+    figure.unlisted_curve("series-1", &format!("{volts}least"), &least);
+    if let Some(weight_n) = study.hover_n() {
+        figure.mark_x(weight_n, "hover");
     }
     for (name, class, all) in cases {
         for side in 0..2 {
@@ -270,7 +286,90 @@ pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis:
             let curve: Vec<[f64; 2]> = all.iter().map(|at| [at.thrust_n, torque(at)]).collect();
             figure.unlisted_curve(class, &format!("{name}, {}", ["least", "largest"][side]), &curve);
         }
-        figure.entry(class, name);
+    }
+    Some(figure)
+}
+
+/// Throttles in level flight against thrust at every voltage: of the upper (0) or of the lower (1)
+/// rotors.
+pub fn throttle(study: &Study<'_>, levels: &[(Option<f64>, Vec<Level>)], rotor: usize) -> Figure {
+    let name = ["upper", "lower"][rotor];
+    let curve = |levels: &[Level]| -> Vec<[f64; 2]> {
+        levels
+            .iter()
+            .map(|level| [level.at, level.throttles[rotor]])
+            .collect()
+    };
+    let mut figure = Figure::new(
+        format!("Throttle of the {name} rotors in level flight against thrust"),
+        (
+            "total thrust (N)",
+            range(
+                levels
+                    .iter()
+                    .flat_map(|(_, all)| all.iter().map(|level| level.at)),
+            ),
+        ),
+        (&format!("throttle of the {name} rotors"), [0.0, 1.0]),
+    )
+    .sized(372.0, 240.0)
+    .reading_curves();
+    for (index, (volts, all)) in levels.iter().enumerate() {
+        let name = volts.map_or_else(|| "throttle".to_owned(), |volts| format!("{volts} V"));
+        figure.curve(of_voltage(*volts, index), &name, &curve(all));
+    }
+    if let Some(weight_n) = study.hover_n() {
+        figure.mark_x(weight_n, "hover");
+    }
+    figure
+}
+
+/// Throttles of both rotors in hover against voltage; `None` without a mass or an effect of
+/// voltage.
+pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
+    let voltage = study.compiled.airframe.voltage.as_ref()?;
+    if levels.is_empty() {
+        return None;
+    }
+    let mut figure = Figure::new(
+        "Throttles in hover against voltage",
+        ("voltage (V)", range(levels.iter().map(|level| level.at))),
+        ("throttle in hover", [0.0, 1.0]),
+    )
+    .sized(372.0, 240.0)
+    .reading_curves();
+    for (rotor, name, class) in [(0, "upper rotors", "series-1"), (1, "lower rotors", "series-2")] {
+        let curve: Vec<[f64; 2]> = levels
+            .iter()
+            .map(|level| [level.at, level.throttles[rotor]])
+            .collect();
+        figure.curve(class, name, &curve);
+    }
+    figure.mark_x(voltage.reference_v, "reference");
+    Some(figure)
+}
+
+/// Electrical power in level flight against thrust; `None` where the file has no power map.
+pub fn power(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
+    study.compiled.airframe.pair.power.as_ref()?;
+    let powers = levels
+        .iter()
+        .map(|level| level.power_w)
+        .filter(|power| power.is_finite());
+    let mut figure = Figure::new(
+        "Electrical power in level flight against thrust",
+        ("total thrust (N)", range(levels.iter().map(|level| level.at))),
+        (
+            "power of all rotors (W)",
+            widened(range(powers.chain([0.0])), 0.04),
+        ),
+    )
+    .sized(372.0, 240.0)
+    .reading_curves();
+    let curve: Vec<[f64; 2]> = levels.iter().map(|level| [level.at, level.power_w]).collect();
+    figure.curve("series-1", "power", &curve);
+    if let Some(weight_n) = study.hover_n() {
+        figure.mark_x(weight_n, "hover");
     }
     Some(figure)
 }

@@ -34,15 +34,50 @@ pub struct Condition {
 const HOVER_SHARE: f64 = 0.4;
 
 impl<'a> Study<'a> {
-    /// A study at `thrust_n` N in all; without it at about 40 % of the ceiling, a round number.
+    /// A study at `thrust_n` N in all; without it at the weight, or where that is not known or not
+    /// carried at about 40 % of the ceiling, a round number.
     pub fn new(compiled: &'a Compiled, thrust_n: Option<f64>) -> Self {
-        Study {
+        let mut study = Study {
             compiled,
             pair: compiled.pair.clone(),
             summary: Summary::new(compiled),
-            thrust_n: thrust_n
-                .unwrap_or_else(|| round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1]))),
+            thrust_n: round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1])),
+        };
+        if let Some(thrust_n) = thrust_n.or_else(|| study.hover_n()) {
+            study.thrust_n = thrust_n;
         }
+        study
+    }
+
+    /// The weight, N; `None` where the file has no mass, or the weight is not carried at the
+    /// reference voltage.
+    pub fn hover_n(&self) -> Option<f64> {
+        let weight_n = self.summary.hover.as_ref()?.weight_n;
+        let (_, delivered) = self.mix([0.0, 0.0, 0.0, weight_n], &self.reference());
+        delivered.then_some(weight_n)
+    }
+
+    /// Throttles `[u, l]` in hover at the reference voltage, those of units that differ; empty
+    /// where there is no hover.
+    pub fn hover_throttles(&self) -> Vec<[f64; 2]> {
+        let Some(weight_n) = self.hover_n() else {
+            return Vec::new();
+        };
+        let (throttles, _) = self.mix([0.0, 0.0, 0.0, weight_n], &self.reference());
+        let mut distinct: Vec<[f64; 2]> = Vec::new();
+        for pair in throttles {
+            let same = |other: &[f64; 2]| (0..2).all(|k| (other[k] - pair[k]).abs() < 1e-3);
+            if !distinct.iter().any(same) {
+                distinct.push(pair);
+            }
+        }
+        distinct
+    }
+
+    /// The words ` at 14.8 V` with the reference voltage; none where voltage has no effect.
+    pub fn at_reference(&self) -> String {
+        let voltage = self.compiled.airframe.voltage.as_ref();
+        voltage.map_or_else(String::new, |voltage| format!(" at {} V", voltage.reference_v))
     }
 
     /// Throttles `[u, l]` from `[s, t]` in the unit square.
@@ -106,19 +141,15 @@ impl<'a> Study<'a> {
 
     /// All rotors at the reference voltage.
     pub fn reference(&self) -> Condition {
-        Condition {
-            voltage_v: self.compiled.airframe.reference_v() as f32,
-            health: Health::GOOD,
-        }
+        self.at(Some(self.compiled.airframe.reference_v()))
     }
 
-    /// All rotors at the lowest voltage; `None` where voltage has no effect.
-    pub fn lowest(&self) -> Option<Condition> {
-        let voltage = self.compiled.airframe.voltage.as_ref()?;
-        Some(Condition {
-            voltage_v: voltage.range_v[0] as f32,
+    /// All rotors at a voltage, V; any where voltage has no effect.
+    pub fn at(&self, voltage_v: Option<f64>) -> Condition {
+        Condition {
+            voltage_v: voltage_v.unwrap_or(0.0) as f32,
             health: Health::GOOD,
-        })
+        }
     }
 
     /// Whether the airframe serves an axis.

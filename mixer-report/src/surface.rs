@@ -110,7 +110,7 @@ pub fn surface(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
             svg,
             "<path class=\"stem\" d=\"M{x:.1} {y:.1}V{foot:.1}\"/><circle class=\"bench-dot\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.2\">\
              <title>{}</title></circle>",
-            escaped(&point.text(effort))
+            escaped(&bench.map_or_else(String::new, |bench| bench.text(point, effort)))
         );
     }
     svg.push_str("</svg>\n");

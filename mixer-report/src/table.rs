@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use maud::{Markup, Render, html};
+use mixer_compiler::airframe::Axis;
 use mixer_compiler::alternatives::Alternative;
+use mixer_compiler::checklist::{self, Checklist};
 use mixer_compiler::diagnostic::printable;
 use mixer_compiler::hover::Hover;
 use mixer_compiler::power::LevelPower;
@@ -11,6 +13,7 @@ use mixer_compiler::report::{in_words, rounded_up};
 
 use crate::bench::BenchPoints;
 use crate::comparison::{Answer, Comparison};
+use crate::cost;
 use crate::effort::Effort;
 use crate::number::{fixed, shortest, significant};
 use crate::origin::Origin;
@@ -49,13 +52,70 @@ pub fn facts_table(facts: &[(&str, impl Render)]) -> Markup {
     }
 }
 
-/// Names with values: what `check` prints.
+/// Names with values, in the order in which an engineer asks for them: does it fly, what is left,
+/// what it costs, how true it is, from what it was made.
 pub fn summary(study: &Study<'_>, origin: &Origin) -> Markup {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let summary = &study.summary;
     let inverse = &airframe.inverse;
-    let facts = [
+    let [floor, ceiling] = compiled.thrust_range_n.map(f64::from);
+    let at = study.at_reference();
+    let mut facts = vec![(
+        "Bare thrust",
+        format!(
+            "{} to {} N in all without torque{at}",
+            fixed(floor, 1),
+            fixed(ceiling, 1)
+        ),
+    )];
+    match &summary.hover {
+        Some(vehicle) => facts.extend(hover(vehicle)),
+        None => facts.push((
+            "Hover",
+            "add [vehicle] mass_kg to see hover and its margins".to_owned(),
+        )),
+    }
+    facts.extend(summary.power.iter().map(|at| power(study, at)));
+    facts.push((
+        "Throttle",
+        format!(
+            "{:?} to {:?}; idle gives {} % of the largest thrust; the map is proven invertible from an idle of {}",
+            airframe.throttle.min,
+            airframe.throttle.max,
+            fixed(100.0 * floor / ceiling, 1),
+            summary.min_idle
+        ),
+    ));
+    facts.push((
+        "Voltage",
+        airframe
+            .voltage
+            .as_ref()
+            .map_or("no correction".to_owned(), |voltage| {
+                format!(
+                    "{} to {} V, reference {} V",
+                    voltage.range_v[0], voltage.range_v[1], voltage.reference_v
+                )
+            }),
+    ));
+    facts.extend(airframe.pair.uncertainty.iter().map(|u| ("Pair", in_words(u))));
+    let at_every = if airframe.voltage.is_some() {
+        " at every voltage"
+    } else {
+        ""
+    };
+    facts.extend([
+        (
+            "Largest error of one unit",
+            format!(
+                "{} N, {} N m{at_every}, proven; allowed are {:?} N, {:?} N m",
+                rounded_up(summary.proven_thrust_n),
+                rounded_up(summary.proven_torque_nm),
+                inverse.thrust_tolerance_n,
+                inverse.torque_tolerance_nm
+            ),
+        ),
         (
             "Rotors",
             format!("{} in {} coaxial units", summary.rotors, summary.units),
@@ -70,61 +130,24 @@ pub fn summary(study: &Study<'_>, origin: &Origin) -> Markup {
             ),
         ),
         (
-            "Throttle",
-            format!(
-                "{:?} to {:?}; the map is proven invertible from an idle of {}",
-                airframe.throttle.min, airframe.throttle.max, summary.min_idle
-            ),
-        ),
-        (
             "Inverse map",
             format!(
                 "{}, {} bytes of tables",
                 summary.evaluator_description, summary.table_bytes
             ),
         ),
-        (
-            "Largest error of one unit",
-            format!(
-                "{} N, {} N m at every voltage, proven; allowed are {:?} N, {:?} N m",
-                rounded_up(summary.proven_thrust_n),
-                rounded_up(summary.proven_torque_nm),
-                inverse.thrust_tolerance_n,
-                inverse.torque_tolerance_nm
-            ),
-        ),
-        (
-            "Bare thrust",
-            format!(
-                "{} to {} N in all without torque, at the reference voltage",
-                fixed(f64::from(summary.thrust_range_n[0]), 1),
-                fixed(f64::from(summary.thrust_range_n[1]), 1)
-            ),
-        ),
-        (
-            "Voltage",
-            airframe
-                .voltage
-                .as_ref()
-                .map_or("no correction".to_owned(), |voltage| {
-                    format!(
-                        "{} to {} V, reference {} V",
-                        voltage.range_v[0], voltage.range_v[1], voltage.reference_v
-                    )
-                }),
-        ),
-    ];
-    let hover = summary.hover.iter().flat_map(hover);
-    let power = summary.power.iter().map(power);
-    let pair = airframe.pair.uncertainty.iter().map(|u| ("Pair", in_words(u)));
-    let facts = facts.into_iter().chain(pair).chain(hover).chain(power);
-    let mut facts: Vec<(&str, Markup)> = facts.map(|(name, value)| (name, html! { (value) })).collect();
-    let file = html! {
-        code { (printable(&compiled.source_name)) }
-        @if let Some(hash) = &origin.sha256 { ", SHA-256 " code { (hash) } }
-    };
-    facts.push(("Airframe file", file));
+    ]);
+    let mut facts: Vec<(&str, Markup)> = facts
+        .into_iter()
+        .map(|(name, value)| (name, html! { (value) }))
+        .collect();
+    facts.push((
+        "Airframe file",
+        html! { code { (printable(&compiled.source_name)) } },
+    ));
     facts.extend(origin.date.iter().map(|date| ("Date", html! { (date) })));
+    let hash = origin.sha256.iter();
+    facts.extend(hash.map(|hash| ("SHA-256 of the file", html! { code { (hash) } })));
     facts_table(&facts)
 }
 
@@ -174,11 +197,12 @@ fn hover(hover: &Hover) -> Vec<(&'static str, String)> {
 }
 
 /// Electrical power in level flight.
-fn power(power: &LevelPower) -> (&'static str, String) {
+fn power(study: &Study<'_>, power: &LevelPower) -> (&'static str, String) {
     let mut text = format!(
-        "{} W at {} N at the reference voltage",
+        "{} W at {} N{}",
         fixed(power.power_w, 1),
-        fixed(power.thrust_n, 1)
+        fixed(power.thrust_n, 1),
+        study.at_reference()
     );
     if power.power_w != power.without_bias_w {
         let _ = write!(
@@ -232,16 +256,17 @@ pub fn matrices(study: &Study<'_>) -> Markup {
         };
         names.iter().enumerate().map(row).collect()
     };
-    let m = rows(&axes, &|row, column| effectiveness.matrix[(row, column)], 2 * n);
+    // Transposed, as M+ is: four columns fit a phone whatever the number of units.
+    let m = rows(&efforts, &|effort, axis| effectiveness.matrix[(axis, effort)], 4);
     let m_plus = rows(
         &efforts,
         &|row, column| effectiveness.pseudo_inverse[(row, column)],
         4,
     );
-    let caption = "M: wrench (N m, N m, N m, N) = M \u{b7} efforts (f in N, Q in N m)";
+    let caption = html! { "M" sup { "T" } ": wrench (N m, N m, N m, N) = M \u{b7} efforts (f in N, Q in N m); a row is what one unit\u{2019}s thrust or torque adds" };
     let inverse_caption = html! { "M" sup { "+" } ": least-norm efforts = M" sup { "+" } " \u{b7} wrench" };
     html! {
-        (table(caption, &header(&efforts), &m))
+        (table(caption, &header(&axes), &m))
         (table(inverse_caption, &header(&axes), &m_plus))
     }
 }
@@ -330,7 +355,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
         })
         .collect();
     let mut text = format!(
-        "{} N asked in all, reference voltage; conventional: kappa = {} m; *: a throttle is at its limit\n",
+        "{} N asked in all; conventional: kappa = {} m; *: a throttle is at its limit\n",
         shortest(comparison.thrust_n),
         significant(comparison.kappa_m, 4)
     );
@@ -347,11 +372,9 @@ pub fn comparison_text(comparison: &Comparison) -> String {
 }
 
 /// The evaluators to choose from.
-pub fn front(alternatives: &[Alternative]) -> Markup {
+pub fn front(study: &Study<'_>, alternatives: &[Alternative]) -> Markup {
     let header = [
-        "evaluator",
-        "",
-        "cycles",
+        "evaluator of one unit",
         "f proven (N)",
         "observed",
         "Q proven (N m)",
@@ -370,9 +393,7 @@ pub fn front(alternatives: &[Alternative]) -> Markup {
             let observed = alternative.observed.map(rounded_up);
             let [[proven_f, proven_q], [observed_f, observed_q]] = [proven, observed];
             vec![
-                alternative.description.clone(),
-                alternative.verdict().to_owned(),
-                alternative.cost.map_or_else(String::new, |cost| cost.to_string()),
+                cost::named(alternative),
                 proven_f,
                 observed_f,
                 proven_q,
@@ -380,28 +401,102 @@ pub fn front(alternatives: &[Alternative]) -> Markup {
             ]
         })
         .collect();
-    let caption = "Evaluators by about the cycles of one unit on a Cortex-M4F, with what one unit misses over the attainable set: proven at \
-                   every voltage, observed at the reference voltage";
+    let at = match study.at_reference().as_str() {
+        "" => String::new(),
+        at => format!(": proven at every voltage, observed{at}"),
+    };
+    let caption =
+        format!("Evaluators, the cheapest first, with what one unit misses over the attainable set{at}");
     table(caption, &header, &rows)
 }
 
-/// Model against bench.
-pub fn bench(bench: &BenchPoints) -> Markup {
-    let header = ["", "rms", "largest", "R\u{b2}"].map(str::to_owned);
+/// Model against bench; percent of the pair's largest thrust and torque.
+pub fn bench(study: &Study<'_>, bench: &BenchPoints) -> Markup {
+    let header = [
+        "",
+        "rms",
+        "rms (%)",
+        "largest",
+        "largest (%)",
+        "of the row",
+        "R\u{b2}",
+    ]
+    .map(str::to_owned);
+    let scale = study.pair.scale();
     let rows: Vec<Vec<String>> = Effort::BOTH
         .into_iter()
         .filter_map(|effort| {
             let misfit = bench.misfit(effort)?;
+            let percent = |x: f64| fixed(100.0 * x / scale[effort as usize], 2);
+            let [u, l] = misfit.at.throttles.map(|throttle| significant(throttle, 3));
             Some(vec![
                 effort.label().to_owned(),
                 significant(misfit.rms, 3),
+                percent(misfit.rms),
                 significant(misfit.largest, 3),
+                percent(misfit.largest),
+                format!("{} (u {u}, l {l})", bench.place(&misfit.at)),
                 fixed(misfit.r_squared, 5),
             ])
         })
         .collect();
-    table("Model less measurement", &header, &rows)
+    let caption = format!(
+        "Model less measurement; percent of the pair\u{2019}s largest, {} N and {} N m",
+        significant(scale[0], 3),
+        significant(scale[1], 3)
+    );
+    table(&caption, &header, &rows)
 }
+
+/// What to try on the bench before the first flight: outputs one by one, then the axes.
+pub fn bench_check(study: &Study<'_>) -> Markup {
+    let checklist = Checklist(study.compiled);
+    let mut outputs: Vec<(usize, Vec<String>)> = Vec::new();
+    for (index, unit) in study.compiled.airframe.units.iter().enumerate() {
+        let rotors = [
+            (unit.upper_channel, "upper", unit.upper_spin),
+            (unit.lower_channel, "lower", unit.upper_spin.reversed()),
+        ];
+        for (channel, rotor, spin) in rotors {
+            let place = checklist.place(unit);
+            let words = format!("unit {index}, {place}: {rotor} rotor");
+            outputs.push((
+                channel,
+                vec![
+                    channel.to_string(),
+                    words,
+                    spin.in_words().to_owned(),
+                    BOX.to_owned(),
+                ],
+            ));
+        }
+    }
+    outputs.sort_by_key(|(channel, _)| *channel);
+    let outputs: Vec<Vec<String>> = outputs.into_iter().map(|(_, row)| row).collect();
+    let commands: Vec<Vec<String>> = Axis::ALL
+        .into_iter()
+        .filter_map(|axis| {
+            let rising = checklist.rising(axis)?.join(", ");
+            let command = format!("+{}", axis.name());
+            Some(vec![
+                command,
+                rising,
+                checklist::motion(axis).to_owned(),
+                BOX.to_owned(),
+            ])
+        })
+        .collect();
+    html! {
+        p { "Propellers off. Drive the outputs one by one, then command each axis; spins are as seen from above." }
+        div.figures.words {
+            (table("Outputs", &["output", "drives", "turns", "seen"], &outputs))
+            (table("Commands, the strongest output first", &["command", "raises outputs", "moves", "seen"], &commands))
+        }
+    }
+}
+
+/// To be ticked on paper.
+const BOX: &str = "\u{2610}";
 
 /// The pair's coefficients, as the file has them.
 pub fn coefficients(study: &Study<'_>) -> Markup {

@@ -16,10 +16,10 @@ use super::{airframes, scratch};
 /// Moves the pointer over every picture that answers, and lists what it says in the page's own
 /// text.
 const POINTER: &str = r#"<script>
-for (const svg of document.querySelectorAll('svg[data-hover]:not([data-hover=""])')) {
+for (const svg of document.querySelectorAll("svg[data-hover]")) {
   const [left, top, width, height] = svg.dataset.box.split(" ").map(Number);
   const at = new DOMPoint(left + 0.42 * width, top + 0.48 * height).matrixTransform(svg.getScreenCTM());
-  svg.dispatchEvent(new PointerEvent("pointermove", { clientX: at.x, clientY: at.y }));
+  svg.dispatchEvent(new PointerEvent("pointerdown", { clientX: at.x, clientY: at.y }));
 }
 </script></body>"#;
 
@@ -27,7 +27,8 @@ for (const svg of document.querySelectorAll('svg[data-hover]:not([data-hover=""]
 const PHONE: &str = r#"<iframe src="PAGE" style="width:390px;height:30000px;border:0"></iframe><script>
 addEventListener("load", () => {
   const page = document.querySelector("iframe").contentDocument;
-  const wide = [...page.querySelectorAll("section > .wide, .figures > .wide")].filter((box) => box.scrollWidth > box.clientWidth);
+  page.querySelectorAll("details").forEach((details) => { details.open = true; });
+  const wide = [...page.querySelectorAll(".wide")].filter((box) => box.scrollWidth > box.clientWidth);
   const names = wide.map((box) => box.closest("section").querySelector("h2").textContent);
   const root = page.documentElement;
   document.body.textContent = `${root.scrollWidth} of ${root.clientWidth}: ${[...new Set(names)].join("; ")}`;
@@ -99,20 +100,25 @@ fn pages_open_without_errors_and_show_values() {
         let (dom, messages) = open(&browser, &path);
         assert!(messages.is_empty(), "{name}: {messages:#?}");
         let answers: Vec<&str> = dom
-            .split("<div class=\"readout\" aria-live=\"polite\">")
+            .split("<div class=\"readout\">")
             .skip(1)
             .map(|rest| rest.split("</div>").next().unwrap_or_default())
             .collect();
         assert!(answers.len() >= 10, "{name}: {answers:?}");
         for answer in &answers {
+            let values = answer.split("<output>").skip(1);
+            let values: Vec<&str> = values
+                .map(|rest| rest.split('<').next().unwrap_or_default())
+                .collect();
+            // A tap fills the values, at least that of the place itself.
             assert!(
-                answer.contains(" N") || answer.contains("(N"),
+                values.len() >= 2 && values[0] != "\u{2013}",
                 "{name}: {answers:#?}"
             );
             assert!(!answer.contains("NaN"), "{name}: {answers:#?}");
         }
         assert!(
-            answers.iter().any(|text| text.contains("misses about")),
+            answers.iter().any(|text| text.contains("error about")),
             "{name}: {answers:#?}"
         );
     }
@@ -141,7 +147,7 @@ fn pages_open_without_errors_and_show_values() {
     );
 }
 
-/// Of the tables that are not folded M alone scrolls, with its two columns per unit.
+/// No table is cut, folded ones opened.
 #[test]
 fn pages_fit_a_phone() {
     let Some(browser) = wanted_browser() else {
@@ -159,6 +165,6 @@ fn pages_fit_a_phone() {
         let (_, told) = dom.split_once("<body>").expect("a body");
         let told = told.split("</body>").next().unwrap_or_default();
         let told = told.strip_prefix("390 of 390: ").unwrap_or(told);
-        assert!(["", "Allocation"].contains(&told.trim()), "{name}: {told}");
+        assert!(told.trim().is_empty(), "{name}: {told}");
     }
 }

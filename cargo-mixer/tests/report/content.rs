@@ -105,7 +105,7 @@ fn authority_is_shown_at_the_lowest_voltage_and_with_a_rotor_out() {
         (curves, text_of(section))
     };
     let (curves, _) = of("isae-x8");
-    for curve in ["largest", "12.8 V, largest", "any one rotor out, least"] {
+    for curve in ["14.8 V, largest", "12.8 V, largest", "any one rotor out, least"] {
         assert_eq!(curves.iter().filter(|name| *name == curve).count(), 3, "{curve}");
     }
     // One pair turns where a rotor is out.
@@ -145,6 +145,7 @@ fn residuals_are_mapped() {
     let point = |u: f64, off: f64| {
         let model = study.pair.efforts([u, 1.0]);
         BenchPoint {
+            file: 0,
             line: 2,
             throttles: [u, 1.0],
             measured: [model[0] - off, model[1] + 0.1 * off],
@@ -160,7 +161,10 @@ fn residuals_are_mapped() {
     assert!(page.contains("1 more lie below the idle of 0.1: small"));
     let document = parsed(&page);
     let maps: Vec<Node> = named(document.root(), "svg")
-        .filter(|svg| svg.attribute("aria-label").unwrap().contains("by the model less"))
+        .filter(|svg| {
+            svg.attribute("aria-label")
+                .is_some_and(|label| label.contains("by the model less"))
+        })
         .collect();
     assert_eq!(maps.len(), 2);
     for map in maps {
@@ -170,7 +174,9 @@ fn residuals_are_mapped() {
             .split(' ')
             .map(|number| number.parse().unwrap())
             .collect();
-        let dots: Vec<Node> = named(map, "circle").collect();
+        let dots: Vec<Node> = named(map, "circle")
+            .filter(|dot| dot.has_attribute("data-values"))
+            .collect();
         let radii: Vec<&str> = dots.iter().map(|dot| dot.attribute("r").unwrap()).collect();
         assert_eq!(radii, ["6", "6", "6", "3.5"]);
         let mut colours: Vec<&str> = dots.iter().map(|dot| dot.attribute("fill").unwrap()).collect();
@@ -208,7 +214,7 @@ fn power_and_its_saving_are_told() {
         let mut rows = named(document.root(), "tr").map(text_of);
         rows.find(|row| row.starts_with("Power"))
     };
-    let line = "476.7 W at 35.3 N at the reference voltage; without the power bias 488.6 W. It saves 2.44 %, which is \
+    let line = "476.7 W at 35.3 N at 10.69 V; without the power bias 488.6 W. It saves 2.44 %, which is \
                 2.50 % of flight time";
     assert_eq!(told(file).as_deref(), Some(format!("Power{line}").as_str()));
     assert_eq!(told("airframes/isae-x8.toml"), None, "it has no power map");
@@ -233,4 +239,96 @@ fn predictions_are_said_with_their_bands() {
     assert!(with.contains("by the pair\u{2019}s uncertainty)"));
     assert!(with.contains("The pair is predicted: by one standard deviation of its uncertainty"));
     assert!(!page_of(&text).contains("predicted"));
+}
+
+/// Every section with a plot has the data of its plots, and every plot that is read is reached by
+/// the Tab key: itself or each of its curves.
+#[test]
+fn figures_have_data_and_are_reached_by_keyboard() {
+    for compiled in airframes() {
+        let name = &compiled.airframe.name;
+        let study = Study::new(&compiled, None);
+        let page = page(&study, None, &Origin::default());
+        let document = parsed(&page);
+        for section in named(document.root(), "section") {
+            let links = named(section, "a").filter(|link| link.has_attribute("download"));
+            let has_plots = named(section, "figure").next().is_some();
+            assert_eq!(
+                links.count() > 0,
+                has_plots,
+                "{name}: {:?}",
+                section.attribute("id")
+            );
+        }
+        let read: Vec<Node> = named(document.root(), "svg")
+            .filter(|svg| svg.has_attribute("data-hover"))
+            .collect();
+        assert!(read.len() >= 8, "{name}");
+        for svg in read {
+            let curves: Vec<Node> = svg
+                .descendants()
+                .filter(|node| node.has_attribute("data-name"))
+                .collect();
+            let along_curves = svg.attribute("role") == Some("group");
+            assert!(!along_curves || !curves.is_empty(), "{name}: {svg:?}");
+            assert_eq!(svg.has_attribute("tabindex"), !along_curves, "{name}: {svg:?}");
+            assert!(
+                curves
+                    .iter()
+                    .all(|curve| curve.has_attribute("tabindex") == along_curves),
+                "{name}: {svg:?}"
+            );
+            let outputs = named(svg.parent().unwrap(), "output").count();
+            assert!(outputs >= 2, "{name}: {outputs}");
+        }
+        // A link holds what the command writes.
+        let csv = sweep(&study, Data::Attainable).unwrap().csv;
+        assert!(page.contains(&csv.replace('\n', "%0A")), "{name}");
+    }
+}
+
+/// Hover is marked where the mass is known, and the comparison is made there.
+#[test]
+fn hover_is_marked_and_compared() {
+    let compiled = compiled(&root().join("airframes/x8-11in-least-power.toml"));
+    let study = Study::new(&compiled, None);
+    assert!(
+        (study.thrust_n - 9.80665 * 3.6).abs() < 1e-9,
+        "{}",
+        study.thrust_n
+    );
+    let page = page(&study, None, &Origin::default());
+    let document = parsed(&page);
+    let marked = |id: &str| {
+        let marks = section(&document, id).descendants();
+        marks
+            .filter(|node| matches!(node.attribute("class"), Some("mark" | "mark-point")))
+            .count()
+    };
+    assert_eq!(marked("authority"), 3);
+    assert_eq!(marked("level"), 4, "two throttles, voltage, power");
+    for id in ["attainable", "inverse", "forward"] {
+        assert!(marked(id) > 0, "{id}");
+    }
+    let unknown = x8();
+    let page = super::page(&Study::new(&unknown, None), None, &Origin::default());
+    assert!(page.contains("add [vehicle] mass_kg") && !page.contains("class=\"mark-point\""));
+}
+
+/// Without `[voltage]` no voltage is spoken of but that there is no correction.
+#[test]
+fn there_is_no_reference_voltage_without_one() {
+    let text = fs::read_to_string(root().join("airframes/isae-x8.toml")).unwrap();
+    let (before, rest) = text.split_once("[voltage]").unwrap();
+    let after = rest.split_once("\n[").unwrap().1;
+    let compiled = compile_text(&format!("{before}[{after}"));
+    let page = page(&Study::new(&compiled, None), None, &Origin::default());
+    let document = parsed(&page);
+    let told = text_of(named(document.root(), "body").next().unwrap());
+    for words in ["reference", "every voltage", " V,", " V."] {
+        let place = told
+            .find(words)
+            .map(|at| &told[at.saturating_sub(60)..at + words.len()]);
+        assert_eq!(place, None, "{words}");
+    }
 }

@@ -54,7 +54,7 @@ impl Spin {
     }
 
     /// The sense in words.
-    pub(crate) fn in_words(self) -> &'static str {
+    pub fn in_words(self) -> &'static str {
         match self {
             Spin::Cw => "clockwise",
             Spin::Ccw => "counter-clockwise",

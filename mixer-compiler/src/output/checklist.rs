@@ -43,16 +43,11 @@ impl fmt::Display for Checklist<'_> {
         }
         for axis in Axis::ALL {
             if let Some(rises) = self.rises_in_words(axis) {
-                let motion = match axis {
-                    Axis::Roll => "right side down",
-                    Axis::Pitch => "nose up",
-                    Axis::Yaw => "nose right",
-                    Axis::Thrust => "up",
-                };
                 writeln!(
                     f,
-                    "  {:<14} raises outputs {rises} ({motion})",
+                    "  {:<14} raises outputs {rises} ({})",
                     format!("+{}", axis.name()),
+                    motion(axis)
                 )?;
             }
         }
@@ -60,7 +55,22 @@ impl fmt::Display for Checklist<'_> {
     }
 }
 
+/// How the vehicle moves where the axis is asked.
+pub fn motion(axis: Axis) -> &'static str {
+    match axis {
+        Axis::Roll => "right side down",
+        Axis::Pitch => "nose up",
+        Axis::Yaw => "nose right",
+        Axis::Thrust => "up",
+    }
+}
+
 impl Checklist<'_> {
+    /// Where a unit is among the others: `front right`.
+    pub fn place(&self, unit: &Unit) -> String {
+        place(unit, &self.0.airframe.units)
+    }
+
     /// The outputs that rise where the axis is asked, in order; `None` where it is not served or not
     /// delivered.
     pub fn rising(&self, axis: Axis) -> Option<Vec<String>> {

@@ -1,0 +1,109 @@
+//! What the page's script reads in a figure, and the room for it.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::{Figure, MARGIN, legend};
+
+/// What a figure tells at the pointer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hover {
+    /// Nothing.
+    Nothing,
+    /// All curves at one x.
+    Curves,
+    /// Thrust and torque of the place itself.
+    Plane,
+    /// The values of the nearest point.
+    Dots,
+    /// Thrust and torque at throttles.
+    Forward,
+    /// Throttles at thrust and torque.
+    Inverse,
+    /// The error of the inverse in thrust.
+    ErrorThrust,
+    /// In torque.
+    ErrorTorque,
+}
+
+impl Hover {
+    /// Its name in the page's script.
+    fn name(self) -> &'static str {
+        match self {
+            Hover::Nothing => "",
+            Hover::Curves => "curves",
+            Hover::Plane => "plane",
+            Hover::Dots => "dots",
+            Hover::Forward => "forward",
+            Hover::Inverse => "inverse",
+            Hover::ErrorThrust => "error-thrust",
+            Hover::ErrorTorque => "error-torque",
+        }
+    }
+
+    /// Whether the Tab key reaches the curves; else it reaches the picture.
+    pub(super) fn is_along_curves(self) -> bool {
+        matches!(self, Hover::Curves | Hover::Plane)
+    }
+}
+
+impl Figure {
+    /// What the page's script reads at the pointer or by the keyboard.
+    #[must_use]
+    pub fn reading(mut self, hover: Hover, quantities: &[(&str, &str)]) -> Self {
+        self.hover = hover;
+        let owned = |(name, unit): &(&str, &str)| ((*name).to_owned(), (*unit).to_owned());
+        self.quantities = quantities.iter().map(owned).collect();
+        self
+    }
+
+    /// Every curve is read at one x.
+    #[must_use]
+    pub fn reading_curves(self) -> Self {
+        self.reading(Hover::Curves, &[])
+    }
+
+    /// The picture for the page's script, with the read-out below it. Where curves are read, their
+    /// names stand there and not in a legend.
+    pub fn with_readout(&self) -> Markup {
+        let (svg, x) = match self.hover {
+            Hover::Curves => (self.drawn(&[]), legend::parted(&self.axes[0].label)),
+            _ => (self.svg(), ("", "")),
+        };
+        let unit = legend::parted(&self.axes[1].label).1;
+        html! {
+            (PreEscaped(svg))
+            div.readout {
+                @if self.hover == Hover::Curves {
+                    (legend::reading(None, x.0, x.1))
+                    @for (class, name) in &self.curves { (legend::reading(Some(class), name, unit)) }
+                } @else {
+                    @for (name, unit) in &self.quantities { (legend::reading(None, name, unit)) }
+                }
+            }
+        }
+    }
+
+    /// What the page's script needs to turn pixels into quantities; the picture itself is reached
+    /// by the Tab key where its curves are not.
+    pub(super) fn attributes(&self) -> String {
+        if self.hover == Hover::Nothing {
+            return String::new();
+        }
+        let [[left, right], [bottom, top]] = [&self.axes[0].range, &self.axes[1].range];
+        let [x, y] = self.start.unwrap_or([0.5 * (left + right), 0.5 * (bottom + top)]);
+        let focus = if self.hover.is_along_curves() {
+            ""
+        } else {
+            " tabindex=\"0\""
+        };
+        format!(
+            "{focus} data-hover=\"{}\" data-x=\"{left:?} {right:?}\" data-y=\"{bottom:?} {top:?}\" \
+             data-box=\"{} {} {} {}\" data-at=\"{x:?} {y:?}\"",
+            self.hover.name(),
+            MARGIN[0],
+            MARGIN[1],
+            self.size[0],
+            self.size[1]
+        )
+    }
+}
