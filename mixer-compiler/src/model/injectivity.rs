@@ -20,7 +20,7 @@ use crate::model::polynomial::{Bivariate, Sign, ThrottleBox};
 use crate::model::wake::{self, Wake};
 
 /// The forward map with coefficients that are enclosed by intervals, for proofs. For its values see
-/// [`PairMap`](super::PairMap).
+/// [`PairMap`].
 #[derive(Clone, Debug)]
 pub struct EnclosedPairMap {
     thrust: [Bivariate; 2],
