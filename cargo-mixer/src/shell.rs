@@ -8,9 +8,12 @@ use clap_complete::Shell;
 
 /// Prints a script that completes commands and options in a shell
 ///
-/// For bash:
-///   cargo-mixer completions bash > ~/.local/share/bash-completion/completions/cargo-mixer
-/// The scripts complete the program `cargo-mixer`.
+/// bash, in ~/.bashrc:                eval "$(cargo-mixer completions bash)"
+/// fish, in ~/.config/fish/config.fish: cargo-mixer completions fish | source
+/// zsh, in a folder of $fpath:          cargo-mixer completions zsh > _cargo-mixer
+///
+/// In these shells `cargo mixer` is completed, too: in zsh by cargo's own completion. In others the
+/// program `cargo-mixer` is.
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
 pub struct CompletionsArgs {
@@ -24,6 +27,22 @@ const PROGRAM: &str = "cargo-mixer";
 /// Prints the completions of `command`.
 pub fn run(args: &CompletionsArgs, command: Command) -> ExitCode {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut command.bin_name(PROGRAM), PROGRAM, &mut script);
+    // clap_complete's script for bash loses the subcommands of a program whose name has a hyphen.
+    let name = match args.shell {
+        Shell::Bash => "cargo_mixer",
+        _ => PROGRAM,
+    };
+    clap_complete::generate(args.shell, &mut command.name(name), name, &mut script);
+    script.extend_from_slice(as_subcommand(args.shell).as_bytes());
     crate::finish(stdout().lock().write_all(&script))
+}
+
+/// What completes `cargo mixer` by the completions of `cargo-mixer`. In zsh cargo's own completion
+/// calls the function of that name.
+fn as_subcommand(shell: Shell) -> &'static str {
+    match shell {
+        Shell::Bash => include_str!("shell/cargo.bash"),
+        Shell::Fish => include_str!("shell/cargo.fish"),
+        _ => "",
+    }
 }

@@ -5,7 +5,7 @@ use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::cost::Cost;
 
 use crate::number::fixed;
-use crate::table::{facts_table, table};
+use crate::rows::{facts_table, table};
 
 /// Where an evaluator has not been counted.
 const NOT_COUNTED: &str = "not counted";

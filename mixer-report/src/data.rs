@@ -8,9 +8,14 @@ use crate::comparison::Comparison;
 use crate::level;
 use crate::maps::ERROR_SIDE;
 use crate::number::range;
-use crate::page::{THRUSTS, YAW_COMMANDS};
 use crate::study::Study;
 use crate::table::comparison_text;
+
+/// Yaw commands of the comparison; the table shows every third.
+pub const YAW_COMMANDS: usize = 25;
+
+/// Thrusts at which authority is found.
+pub const THRUSTS: usize = 61;
 
 /// A figure whose data can be had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,6 +5,7 @@
 //! attributes tell the page's script how pixels become quantities.
 
 mod bar;
+mod hover;
 mod legend;
 mod mark;
 mod path;
@@ -13,8 +14,8 @@ mod reading;
 use std::fmt::Write as _;
 
 use self::bar::Bar;
+pub use self::hover::Hover;
 use self::path::Label;
-pub use self::reading::Hover;
 use crate::number::{Ticks, escaped, pixel};
 
 /// Room around the plot for labels, px: left, top, right, bottom.

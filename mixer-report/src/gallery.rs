@@ -9,10 +9,11 @@ use mixer_compiler::airframe::Axis;
 
 use crate::authority;
 use crate::comparison::Comparison;
+use crate::data::{THRUSTS, YAW_COMMANDS};
 use crate::effort::Effort;
 use crate::figure::Figure;
 use crate::maps;
-use crate::page::{FIGURE_STYLE, THRUSTS, YAW_COMMANDS};
+use crate::page::FIGURE_STYLE;
 use crate::plots;
 use crate::study::Study;
 use crate::surface;

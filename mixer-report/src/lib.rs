@@ -34,6 +34,7 @@ pub mod number;
 pub mod origin;
 pub mod page;
 pub mod plots;
+mod rows;
 pub mod study;
 pub mod surface;
 pub mod table;

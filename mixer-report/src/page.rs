@@ -17,7 +17,7 @@ use crate::authority;
 use crate::bench::{BenchPoint, BenchPoints};
 use crate::comparison::Comparison;
 use crate::cost;
-use crate::data::{self, Data};
+use crate::data::{self, Data, THRUSTS, YAW_COMMANDS};
 use crate::effort::Effort;
 use crate::figure::Figure;
 use crate::layout;
@@ -34,12 +34,6 @@ use crate::table;
 pub const FIGURE_STYLE: &str = include_str!("style.css");
 const PAGE_STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
-
-/// Yaw commands of the comparison; the table shows every third.
-pub const YAW_COMMANDS: usize = 25;
-
-/// Thrusts at which authority is found.
-pub const THRUSTS: usize = 61;
 
 /// Thrusts at which it is found with every rotor out in turn.
 const THRUSTS_ROTOR_OUT: usize = 21;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use maud::{Markup, Render, html};
+use maud::{Markup, html};
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::alternatives::Alternative;
 use mixer_compiler::checklist::{self, Checklist};
@@ -17,40 +17,11 @@ use crate::cost;
 use crate::effort::Effort;
 use crate::number::{fixed, shortest, significant};
 use crate::origin::Origin;
+use crate::rows::{facts_table, table};
 use crate::study::Study;
 
 /// Rows of the comparison that the page and the command show of the whole sweep.
 const SHOWN_ROWS: usize = 9;
-
-/// A table: the caption, one header row, rows whose first cell is their name.
-pub fn table(caption: impl Render, header: &[impl Render], rows: &[Vec<impl Render>]) -> Markup {
-    html! {
-        div.wide {
-            table {
-                caption { (caption) }
-                thead { tr { @for cell in header { th scope="col" { (cell) } } } }
-                tbody {
-                    @for row in rows {
-                        tr {
-                            @for (index, cell) in row.iter().enumerate() {
-                                @if index == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Names with values.
-pub fn facts_table(facts: &[(&str, impl Render)]) -> Markup {
-    html! {
-        table.facts {
-            tbody { @for (name, value) in facts { tr { th scope="row" { (name) } td { (value) } } } }
-        }
-    }
-}
 
 /// Names with values, in the order in which an engineer asks for them: does it fly, what is left,
 /// what it costs, how true it is, from what it was made.

@@ -2,8 +2,10 @@
 
 use mixer_compiler::Compiled;
 
-use super::px4::no_mass;
-use super::{Parameter, Parameters, curve, frames, on_curve, real, slope_in_hover, weight_n, whole};
+use super::frames;
+use super::parameter::{
+    Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, weight_n, whole,
+};
 
 /// ArduPilot does not arm with more (`AP_MotorsMulticopter::arming_checks`).
 const MOST_SPIN_MIN: f64 = 0.3;

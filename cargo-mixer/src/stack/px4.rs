@@ -3,7 +3,9 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Spin, Unit};
 
-use super::{Parameter, Parameters, curve, on_curve, real, slope_in_hover, weight_n, whole};
+use super::parameter::{
+    Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, weight_n, whole,
+};
 
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
@@ -254,10 +256,6 @@ fn gains(compiled: &Compiled) -> String {
                  mass_kg` in the airframe file; one unit of yaw is then the pair's slope in hover"
             .to_owned(),
     }
-}
-
-pub(super) fn no_mass(name: &str) -> String {
-    format!("{name} is missing: `[vehicle] mass_kg` of the airframe file gives it")
 }
 
 fn round2(value: f64) -> f64 {

@@ -86,10 +86,12 @@ fn check_prints_the_key_lines() {
         "\n  any request   at most ",
         "\non the bench    propellers off, ",
         "\n  +yaw           raises outputs 4, 6 by 0.009; 1, 3 by 0.006 (nose right)\n",
-        "\nnormalised      one unit is 22.3091 N m roll, 22.3091 N m pitch, 1.7320 N m yaw, 99.151 N thrust\n",
-        "\n  PX4           THR_MDL_FAC 0, MC_BAT_SCALE_EN 0, MPC_THR_HOVER 0.0989 per kg of the vehicle\n",
-        "\n  ArduPilot     MOT_THST_EXPO 0, MOT_SPIN_MIN 0.1, MOT_SPIN_MAX 1, MOT_BAT_VOLT_MAX 0, MOT_BAT_VOLT_MIN 0, \
-         MOT_THST_HOVER 0.0989 per kg of the vehicle\n",
+        "\nPX4             one unit is 22.3091 N m roll, 22.3091 N m pitch, 1.7320 N m yaw, 99.151 N thrust at 14.8 V\n",
+        "\n                THR_MDL_FAC 0, MC_BAT_SCALE_EN 0, ",
+        " MPC_THR_HOVER 0.0989 per kg of the vehicle\n",
+        "\nArduPilot       one unit is 19.6924 N m roll, 19.6924 N m pitch, 1.0811 N m yaw, 123.774 N thrust at 16.8 V\n",
+        "\n                MOT_THST_EXPO 0, MOT_SPIN_MIN 0.1, MOT_SPIN_MAX 1, ",
+        " MOT_THST_HOVER 0.0792 per kg of the vehicle\n",
         "\ncompiled in ",
     ] {
         assert!(

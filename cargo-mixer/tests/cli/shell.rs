@@ -14,6 +14,24 @@ fn shells_complete_every_command() {
     assert_status(&run(&["completions", "tcsh"]), 2);
 }
 
+/// As a subcommand of cargo, too, whose own completion still serves the other commands.
+#[cfg(target_os = "linux")]
+#[test]
+fn bash_completes_cargo_mixer() {
+    let script = format!(
+        r#"own() {{ COMPREPLY=(own); }}
+complete -F own cargo
+eval "$({} completions bash)"
+try() {{ COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMPREPLY=(); _cargo_with_mixer cargo "${{!#}}" "${{COMP_WORDS[$#-2]}}"; echo "${{COMPREPLY[@]}}"; }}
+try cargo mixer ident
+try cargo mixer check --deny
+try cargo bu"#,
+        env!("CARGO_BIN_EXE_cargo-mixer")
+    );
+    let output = Command::new("bash").args(["-c", &script]).output().unwrap();
+    assert_eq!(stdout(&output), "identify\n--deny-warnings\nown\n", "{output:?}");
+}
+
 /// What cannot be written is no success; a reader that has seen enough is no fault.
 #[cfg(target_os = "linux")]
 #[test]

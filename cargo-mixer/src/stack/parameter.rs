@@ -1,0 +1,117 @@
+//! A parameter of a flight stack, and what of an airframe the parameters of both stacks need.
+
+use std::fmt;
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::GRAVITY;
+use serde::Serialize;
+
+/// A parameter of a flight stack.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: Value,
+    /// Why it has this value; parameters of one reason follow each other.
+    pub why: String,
+}
+
+/// A parameter's value, in the type that the stack holds it in.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// A whole number.
+    Whole(i32),
+    /// A number in single precision.
+    Real(f64),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Whole(value) => write!(f, "{value}"),
+            Value::Real(value) => write!(f, "{value}"),
+        }
+    }
+}
+
+pub(super) fn whole(name: impl Into<String>, value: i32, why: &str) -> Parameter {
+    Parameter {
+        name: name.into(),
+        value: Value::Whole(value),
+        why: why.to_owned(),
+    }
+}
+
+/// With four significant digits and at least four decimals: more is not known of any of them.
+pub(super) fn real(name: impl Into<String>, value: f64, why: &str) -> Parameter {
+    let digits = 3.0 - libm::floor(libm::log10(value.abs().max(1e-12)));
+    let unit = libm::pow(10.0, digits.max(4.0));
+    Parameter {
+        name: name.into(),
+        value: Value::Real((value * unit).round() / unit + 0.0),
+        why: why.to_owned(),
+    }
+}
+
+/// Parameters, and what of them cannot be known or deserves a look.
+#[derive(Clone, Debug, Default)]
+pub struct Parameters {
+    /// In the order in which they are written.
+    pub list: Vec<Parameter>,
+    /// A sentence each.
+    pub notes: Vec<String>,
+}
+
+/// The vehicle's weight, N; `None` without a mass.
+pub(super) fn weight_n(compiled: &Compiled) -> Option<f64> {
+    let vehicle = compiled.airframe.vehicle.as_ref()?;
+    Some(GRAVITY * vehicle.mass_kg)
+}
+
+/// Slope in hover of the share of the largest thrust over the throttle, both rotors alike: what a
+/// stack's loop gain is multiplied by that takes the one for the other. `None` without a hover.
+pub(super) fn slope_in_hover(compiled: &Compiled) -> Option<f64> {
+    let h = compiled.equal_hover_throttle()?;
+    let [[f_u, f_l], _] = compiled.pair.jacobian([h, h]);
+    Some((f_u + f_l) / largest_thrust(compiled))
+}
+
+/// Of one unit at the reference voltage, N.
+pub(super) fn largest_thrust(compiled: &Compiled) -> f64 {
+    let [_, max] = compiled.pair.range();
+    compiled.pair.efforts([max, max])[0]
+}
+
+/// Points at which a curve is fitted.
+const POINTS: u32 = 50;
+
+/// The a in [0, 1] with which a t^2 + (1 - a) t is nearest to the share of the largest thrust that
+/// both rotors give at the throttle t, least squares over the airframe's range; both stacks
+/// describe a rotor by this curve. `stretched` counts t from 0 at the least throttle to 1 at the
+/// largest.
+pub(super) fn curve(compiled: &Compiled, stretched: bool) -> f64 {
+    let [min, max] = compiled.pair.range();
+    let full = largest_thrust(compiled);
+    let (mut products, mut squares) = (0.0, 0.0);
+    for k in 0..=POINTS {
+        let share = f64::from(k) / f64::from(POINTS);
+        let throttle = min + (max - min) * share;
+        let t = if stretched { share } else { throttle };
+        let bend = t * t - t;
+        products += bend * (compiled.pair.efforts([throttle, throttle])[0] / full - t);
+        squares += bend * bend;
+    }
+    (products / squares).clamp(0.0, 1.0)
+}
+
+/// Value of such a curve.
+pub(super) fn on_curve(a: f64, t: f64) -> f64 {
+    a * t * t + (1.0 - a) * t
+}
+
+/// The note on a parameter that needs the vehicle's mass.
+pub(super) fn no_mass(name: &str) -> String {
+    format!("{name} is missing: `[vehicle] mass_kg` of the airframe file gives it")
+}
