@@ -3,6 +3,9 @@
 //! Run with `--nocapture` (or through `tests/run`) to see the tables.
 #![allow(missing_docs)]
 
+use std::fs;
+use std::process::Command;
+
 use mixer_compiler::Compiled;
 use mixer_setpoints::Digest;
 use mixer_tests::counts::{self, Images, worst};
@@ -201,6 +204,45 @@ fn panic_symbols_are_found_where_there_are_some() {
     let this_test = std::env::current_exe().expect("path of this test");
     let image = Image::read(&this_test).unwrap_or_else(|e| panic!("{e}"));
     assert!(!image.panic_symbols().is_empty());
+}
+
+/// `docs/firmware.md`, "A crate of your own": the commands from an empty folder, but for `rustup`,
+/// whose part `tests/run` has done, and the files as they stand there.
+#[test]
+fn the_guide_builds_from_an_empty_folder() {
+    let toolchain = Toolchain::find().unwrap_or_else(|missing| panic!("{missing}"));
+    let guide = fs::read_to_string(mixer_tests::root().join("docs/firmware.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::os::unix::fs::symlink(mixer_tests::root(), folder.path().join("coaxial-mixer")).unwrap();
+    let package = folder.path().join("my-firmware");
+    let mut files = 0;
+    for block in guide.split("\n```").skip(1).step_by(2).take(4) {
+        let (language, text) = block.split_once('\n').unwrap();
+        if language == "sh" {
+            let commands = text.lines().filter(|line| !line.starts_with("rustup"));
+            let script: Vec<&str> = commands.collect();
+            let status = Command::new("sh")
+                .args(["-ec", &script.join("\n")])
+                .current_dir(folder.path())
+                .status();
+            assert!(status.unwrap().success(), "{text}");
+            continue;
+        }
+        let (name, text) = text.split_once('\n').unwrap();
+        let path = package.join(name.trim_start_matches(['#', '/', ' ']));
+        // `cargo new` ends with an empty table of the same name.
+        let begun = match name {
+            "# Cargo.toml" => fs::read_to_string(&path).unwrap().replace("[dependencies]\n", ""),
+            _ => String::new(),
+        };
+        fs::write(&path, begun + text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        files += 1;
+    }
+    assert_eq!(files, 3);
+    fs::copy(mixer_tests::root().join("Cargo.lock"), package.join("Cargo.lock")).unwrap();
+    toolchain
+        .build_package(&package)
+        .unwrap_or_else(|e| panic!("{e}"));
 }
 
 /// The flight of `flight::setpoint`: 1200 cycles less three lost ones are mixed; the three are

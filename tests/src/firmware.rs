@@ -270,7 +270,37 @@ impl Toolchain {
         }
     }
 
+    /// Builds the package in `folder`, which is none of the project's, in release mode, with what
+    /// cargo has fetched for the project.
+    ///
+    /// # Errors
+    ///
+    /// What the compiler said.
+    pub fn build_package(&self, folder: &Path) -> Result<(), String> {
+        let output = self
+            .cargo()
+            .current_dir(folder)
+            .args(["build", "--quiet", "--offline", "--release"])
+            .args(&self.arguments)
+            .output()
+            .map_err(|e| format!("cannot start cargo: {e}"))?;
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+        }
+        Ok(())
+    }
+
     fn command(&self, subcommand: &str, image: &str) -> Command {
+        let mut command = self.cargo();
+        command
+            .current_dir(&self.folder)
+            .args([subcommand, "--quiet", "--locked", "--release", "--bin", image])
+            .args(&self.arguments);
+        command
+    }
+
+    /// Cargo with its environment and its folder for what it builds.
+    fn cargo(&self) -> Command {
         let mut command = Command::new(&self.cargo);
         // What the toolchain of the tests, or its caller, has set for itself would mislead the
         // other one.
@@ -286,12 +316,8 @@ impl Toolchain {
             command.env_remove(variable);
         }
         command
-            .current_dir(&self.folder)
             .stdin(Stdio::null())
-            .args([subcommand, "--quiet", "--locked", "--release", "--bin", image])
-            .args(&self.arguments)
-            .arg("--target-dir")
-            .arg(&self.target_dir)
+            .env("CARGO_TARGET_DIR", &self.target_dir)
             .envs(self.environment.iter().map(|(name, value)| (name, value)));
         command
     }
