@@ -4,11 +4,6 @@
 
 static_assert(ISAE_X8_CHANNELS <= AP_MOTORS_MAX_NUM_MOTORS, "more rotors than ArduPilot has motors");
 
-// A torque of 1 is half of every motor's thrust here; in isae_x8.h it is PX4's, which on an X frame is 0.7071 of it in
-// roll and pitch, and all of it in yaw. So the attitude controller's gains keep their meaning.
-static const float ROLL_PITCH_UNIT = 0.7071f;
-static const float YAW_UNIT = 0.5f;
-
 void AP_MotorsCoaxialMixer::output_armed_stabilizing()
 {
     update_voltage();
@@ -29,12 +24,13 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
         limit.throttle_upper = true;
     }
 
-    // No compensation gain: voltage and curve are the mixer's.
+    // No compensation gain: voltage and curve are the mixer's. The units are those of ArduPilot's own mixer, so that the
+    // attitude controller's gains keep their meaning.
     const mixer_wrench_t setpoint {
-        (_roll_in + _roll_in_ff) * ROLL_PITCH_UNIT * ISAE_X8_ROLL_NM,
-        (_pitch_in + _pitch_in_ff) * ROLL_PITCH_UNIT * ISAE_X8_PITCH_NM,
-        (_yaw_in + _yaw_in_ff) * YAW_UNIT * ISAE_X8_YAW_NM,
-        throttle * ISAE_X8_THRUST_N,
+        (_roll_in + _roll_in_ff) * ISAE_X8_ARDUPILOT_ROLL_NM,
+        (_pitch_in + _pitch_in_ff) * ISAE_X8_ARDUPILOT_PITCH_NM,
+        (_yaw_in + _yaw_in_ff) * ISAE_X8_ARDUPILOT_YAW_NM,
+        throttle * ISAE_X8_ARDUPILOT_THRUST_N,
     };
     isae_x8_mix_t mix;
     if (isae_x8_mix(&setpoint, _voltage_v, &mix) == MIXER_OK) {
@@ -62,7 +58,7 @@ void AP_MotorsCoaxialMixer::mixed(const isae_x8_mix_t &mix)
         // What logs, notch filter and the check for a failed motor read.
         _thrust_rpyt_out[i] = mix.throttle[i];
     }
-    _throttle_out = mix.achieved.thrust_n / ISAE_X8_THRUST_N;
+    _throttle_out = mix.achieved.thrust_n / ISAE_X8_ARDUPILOT_THRUST_N;
 
     // The spool logic has cleared or set the limits; the mixer adds its own.
     const uint32_t flags = mix.saturation;

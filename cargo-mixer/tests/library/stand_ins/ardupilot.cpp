@@ -14,9 +14,9 @@ static unsigned faults;
     } while (0)
 
 // Half of every motor's thrust, in N m.
-static const float ROLL_NM = 0.7071f * ISAE_X8_ROLL_NM;
-static const float PITCH_NM = 0.7071f * ISAE_X8_PITCH_NM;
-static const float YAW_NM = 0.5f * ISAE_X8_YAW_NM;
+static const float ROLL_NM = ISAE_X8_ARDUPILOT_ROLL_NM;
+static const float PITCH_NM = ISAE_X8_ARDUPILOT_PITCH_NM;
+static const float YAW_NM = ISAE_X8_ARDUPILOT_YAW_NM;
 
 class Bench : public AP_MotorsCoaxialMixer {
 public:
@@ -56,7 +56,7 @@ public:
     // Whether the actuators are those of the library, as they come.
     bool same(float roll, float pitch, float yaw, float throttle, float voltage_v) const
     {
-        const mixer_wrench_t setpoint {roll * ROLL_NM, pitch * PITCH_NM, yaw * YAW_NM, throttle * ISAE_X8_THRUST_N};
+        const mixer_wrench_t setpoint {roll * ROLL_NM, pitch * PITCH_NM, yaw * YAW_NM, throttle * ISAE_X8_ARDUPILOT_THRUST_N};
         isae_x8_mix_t mix;
         if (isae_x8_mix(&setpoint, voltage_v, &mix) != MIXER_OK) {
             return false;
@@ -67,7 +67,7 @@ public:
                 return false;
             }
         }
-        return std::fabs(_throttle_out - mix.achieved.thrust_n / ISAE_X8_THRUST_N) < 1e-5f;
+        return std::fabs(_throttle_out - mix.achieved.thrust_n / ISAE_X8_ARDUPILOT_THRUST_N) < 1e-5f;
     }
 
     void spool_limit(float throttle) { _throttle_thrust_max = throttle; }
