@@ -27,6 +27,7 @@ type Rule = fn(&Facts<'_>, &mut Vec<Diagnostic>);
 const RULES: &[Rule] = &[
     pair::units,
     rotors::slopes,
+    rotors::bench_spin,
     rotors::wake,
     pair::sum_of_rotors,
     rotors::lopsided,

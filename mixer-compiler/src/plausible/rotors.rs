@@ -1,7 +1,7 @@
 //! Rules on the two rotors of a pair against each other, and each alone.
 
 use super::facts::Facts;
-use crate::airframe::RotorAlone;
+use crate::airframe::{RotorAlone, Spin};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::wake::{self, Wake};
 
@@ -27,6 +27,27 @@ pub(super) fn slopes(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
         ),
         "expected a fall by the upper rotor, a rise by the lower one",
         "check which rotor is the upper one (identify --swap exchanges them) and the sign of the torque",
+    ));
+}
+
+/// The lower rotor of a bench whose upper one turned counter-clockwise turns clockwise: it yaws to the
+/// left, but the torque counts it positive.
+pub(super) fn bench_spin(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
+    if facts.airframe.pair.upper_spin == Spin::Cw {
+        return;
+    }
+    let [low, high] = facts.map.range();
+    let torque = |u, l| facts.map.efforts([u, l])[1];
+    found.push(facts.airframe.diagnostic(
+        Code::RotorsExchanged,
+        "pair.upper_spin",
+        format!(
+            "at full throttle the lower rotor adds {} N m clockwise, but it turns clockwise itself where the upper one turned \"ccw\": yaw \
+             would go to the wrong side",
+            rounded(torque(low, high) - torque(low, low))
+        ),
+        "expected \"cw\"",
+        "write upper_spin = \"cw\" under [pair], whichever way the bench turned; those of the units are the real ones",
     ));
 }
 
