@@ -20,7 +20,7 @@ use crate::stack::{Parameter, Parameters, Stack, Value, ardupilot, px4};
 ///            FILE.post, what starts this mixer in place of control_allocator.
 /// ArduPilot: FRAME_CLASS and FRAME_TYPE where one fits, MOT_*.
 ///
-/// What the airframe file does not say is named on stderr and in the file.
+/// Parameters that need more than the airframe file says are named on stderr and in the file.
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
 pub struct ParamsArgs {
@@ -49,10 +49,10 @@ pub struct ParamsArgs {
     force: bool,
 }
 
-/// Of the file.
+/// The form of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// What a ground station loads: QGroundControl's .params, ArduPilot's .parm
+    /// A file for a ground station: QGroundControl's .params, ArduPilot's .parm
     Parameters,
     /// A start script of PX4's simulator
     Airframe,
@@ -116,11 +116,13 @@ fn params(args: &ParamsArgs, compiled: &Compiled) -> Result<ExitCode, String> {
         PathBuf::from(path)
     };
     for (suffix, _) in &files {
-        crate::file::not_there(&path(suffix), args.force)?;
+        let inputs = [args.airframe.as_path()];
+        if let Err(status) = crate::file::writable(&path(suffix), args.force, inputs) {
+            return Ok(status);
+        }
     }
     for (suffix, text) in &files {
-        crate::file::write(&path(suffix), text)?;
-        crate::print_note(format_args!("wrote {}", path(suffix).display()));
+        crate::file::save(&path(suffix), text)?;
     }
     say(&notes);
     Ok(ExitCode::SUCCESS)

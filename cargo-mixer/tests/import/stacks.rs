@@ -384,3 +384,15 @@ fn ardupilot_units_are_those_of_its_tables() {
         assert_eq!(found, [Some(f64::from(class)), Some(f64::from(kind))], "{name}");
     }
 }
+
+/// The airframe is an input, with `--force` too.
+#[test]
+fn parameters_spare_the_airframe() {
+    let folder = Folder::new("params-over-airframe");
+    let airframe = with_mass(&folder);
+    let before = fs::read(&airframe).unwrap();
+    let path = airframe.to_str().unwrap();
+    let output = cargo_mixer(&["params", path, "--stack", "px4", "-o", path, "--force"]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert_eq!(fs::read(&airframe).unwrap(), before);
+}
