@@ -33,7 +33,8 @@ fn an_x8_has_its_list() {
 #[test]
 fn mistakes_show_in_the_list() {
     let rising = |text: &str, axis| {
-        let mut outputs = Checklist(&compiled(text)).rising(axis).unwrap();
+        let rises = Checklist(&compiled(text)).rises(axis).unwrap();
+        let mut outputs: Vec<String> = rises.iter().map(|(output, _)| output.to_string()).collect();
         outputs.sort();
         outputs
     };
@@ -50,7 +51,7 @@ fn mistakes_show_in_the_list() {
 #[test]
 fn only_served_axes_are_listed() {
     let bicopter = compiled(include_str!("../airframes/coaxial-bicopter.toml"));
-    assert!(Checklist(&bicopter).rising(Axis::Pitch).is_none());
+    assert!(Checklist(&bicopter).rises(Axis::Pitch).is_none());
     let text = Checklist(&bicopter).to_string();
     assert!(
         !text.contains("+pitch") && text.contains("unit 0         right: output 0 upper"),

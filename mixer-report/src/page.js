@@ -87,7 +87,7 @@
     let cursor = [0, 0];
 
     // Where a curve is at px; null where it is not.
-    function height_at(points, px) {
+    function heightAt(points, px) {
       for (let k = 1; k < points.length; k += 1) {
         const [a, b] = [points[k - 1], points[k]];
         if (!b[2] && a[0] <= px && px <= b[0] && b[0] > a[0]) return a[1] + (b[1] - a[1]) * (px - a[0]) / (b[0] - a[0]);
@@ -99,7 +99,7 @@
       cursor = [clamp(place[0], left, left + width), clamp(place[1], top, top + height)];
       let texts, rings = [];
       if (kind === "curves") {
-        const heights = curves.map((points) => height_at(points, cursor[0]));
+        const heights = curves.map((points) => heightAt(points, cursor[0]));
         texts = [fixed(toX(cursor[0]), decimalsX), ...heights.map((y) => y === null ? null : fixed(toY(y), decimalsY))];
         rings = heights.filter((y) => y !== null).map((y) => [cursor[0], y]);
       } else if (kind === "dots") {

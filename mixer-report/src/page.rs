@@ -183,7 +183,10 @@ fn level_section(study: &Study<'_>) -> Markup {
     let levels: Vec<_> = voltages
         .map(|(volts, _)| (volts, level::against_thrust(study, volts, THRUSTS)))
         .collect();
-    let reference = level::against_thrust(study, Some(study.compiled.airframe.reference_v()), THRUSTS);
+    let reference_v = study.compiled.airframe.reference_v();
+    let reference = levels
+        .iter()
+        .find(|(volts, _)| volts.is_none_or(|volts| volts == reference_v));
     let hover = level::against_voltage(study);
     let at = study.at_reference();
     let upper = shown(
@@ -196,7 +199,8 @@ fn level_section(study: &Study<'_>) -> Markup {
     );
     let over_voltage = plots::hover_throttle(study, &hover)
         .map(|figure| shown(&figure, "Mean throttles in hover against voltage."));
-    let power = plots::power(study, &reference).map(|figure| {
+    let power = reference.and_then(|(_, levels)| plots::power(study, levels));
+    let power = power.map(|figure| {
         shown(
             &figure,
             &format!("Electrical power of all rotors{at}, by the file\u{2019}s map."),

@@ -447,11 +447,11 @@ pub fn bench_check(study: &Study<'_>) -> Markup {
     let commands: Vec<Vec<String>> = Axis::ALL
         .into_iter()
         .filter_map(|axis| {
-            let rising = checklist.rising(axis)?.join(", ");
+            let rises = checklist.rises_in_words(axis)?;
             let command = format!("+{}", axis.name());
             Some(vec![
                 command,
-                rising,
+                rises,
                 checklist::motion(axis).to_owned(),
                 BOX.to_owned(),
             ])
@@ -461,7 +461,7 @@ pub fn bench_check(study: &Study<'_>) -> Markup {
         p { "Propellers off. Drive the outputs one by one, then command each axis; spins are as seen from above." }
         div.figures.words {
             (table("Outputs", &["output", "drives", "turns", "seen"], &outputs))
-            (table("Commands, the strongest output first", &["command", "raises outputs", "moves", "seen"], &commands))
+            (table("Commands, the strongest outputs first", &["command", "raises outputs", "moves", "seen"], &commands))
         }
     }
 }

@@ -71,13 +71,6 @@ impl Checklist<'_> {
         place(unit, &self.0.airframe.units)
     }
 
-    /// The outputs that rise where the axis is asked, in order; `None` where it is not served or not
-    /// delivered.
-    pub fn rising(&self, axis: Axis) -> Option<Vec<String>> {
-        let rises = self.rises(axis)?;
-        Some(rises.into_iter().map(|(output, _)| output.to_string()).collect())
-    }
-
     /// The outputs by how much they rise, most of all first: `4, 6 by 0.021; 1, 3 by 0.019`.
     pub fn rises_in_words(&self, axis: Axis) -> Option<String> {
         let mut by_rise: BTreeMap<i32, Vec<String>> = BTreeMap::new();
