@@ -82,10 +82,7 @@ fn print_note(message: impl Display) {
     let text = printable_lines(&message.to_string());
     let lines = text
         .split('\n')
-        .map(|line| match line.char_indices().nth(LONGEST_LINE) {
-            Some((end, _)) => format!("{} ..", &line[..end]),
-            None => line.to_owned(),
-        });
+        .map(|line| mixer_identify::refusal::cut_to(line.to_owned(), LONGEST_LINE));
     let _ = writeln!(io::stderr().lock(), "{}", lines.collect::<Vec<_>>().join("\n"));
 }
 

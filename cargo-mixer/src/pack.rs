@@ -9,7 +9,7 @@ pub struct PackArgs {
     /// had
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100))]
     pub cells: Option<u8>,
-    /// What the cells are of
+    /// Chemistry of the cells
     #[arg(long, value_enum, default_value_t = Chemistry::Lipo, requires = "cells")]
     pub chemistry: Chemistry,
 }

@@ -8,7 +8,7 @@ use clap_complete::Shell;
 
 /// Prints a script that completes commands and options in a shell
 ///
-/// bash, in ~/.bashrc:                eval "$(cargo-mixer completions bash)"
+/// bash, in ~/.bashrc:                  eval "$(cargo-mixer completions bash)"
 /// fish, in ~/.config/fish/config.fish: cargo-mixer completions fish | source
 /// zsh, in a folder of $fpath:          cargo-mixer completions zsh > _cargo-mixer
 ///
@@ -37,7 +37,7 @@ pub fn run(args: &CompletionsArgs, command: Command) -> ExitCode {
     crate::finish(stdout().lock().write_all(&script))
 }
 
-/// What completes `cargo mixer` by the completions of `cargo-mixer`. In zsh cargo's own completion
+/// The script that completes `cargo mixer` by the completions of `cargo-mixer`. In zsh cargo's own completion
 /// calls the function of that name.
 fn as_subcommand(shell: Shell) -> &'static str {
     match shell {

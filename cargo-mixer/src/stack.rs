@@ -1,4 +1,4 @@
-//! Parameters of flight stacks for an airframe: what `check --verbose` and `params` print.
+//! Parameters of flight stacks for an airframe, as `check --verbose` and `params` print them.
 
 pub mod ardupilot;
 pub(crate) mod frames;
@@ -38,9 +38,9 @@ impl Stack {
 /// for the battery's voltage; the `Display` is what `check --verbose` prints.
 #[derive(Clone, Debug, Serialize)]
 pub struct Stacks {
-    /// What one unit of PX4's normalised setpoints asks for: `SCALE` of the generated module.
+    /// Wrench of one unit of PX4's normalised setpoints: `SCALE` of the generated module.
     pub normalised: Normalised,
-    /// What one unit of ArduPilot's inputs asks for: `ARDUPILOT_SCALE` of the generated module.
+    /// Wrench of one unit of ArduPilot's inputs: `ARDUPILOT_SCALE` of the generated module.
     pub normalised_ardupilot: Normalised,
     /// PX4's parameters.
     pub px4: Vec<Parameter>,

@@ -136,6 +136,18 @@ impl Airframe {
         self.voltage.as_ref().map_or(0.0, |voltage| voltage.reference_v)
     }
 
+    /// `[k_f, k_Q]` at a voltage, V; 1 at any without `[voltage]`.
+    pub fn voltage_factors(&self, volts: f64) -> [f64; 2] {
+        self.voltage
+            .as_ref()
+            .map_or([1.0; 2], |voltage| voltage.factors(volts))
+    }
+
+    /// The vehicle's weight, N; `None` without `[vehicle]`.
+    pub fn weight_n(&self) -> Option<f64> {
+        self.vehicle.as_ref().map(|vehicle| GRAVITY * vehicle.mass_kg)
+    }
+
     /// Electrical power of all rotors at the reference voltage, W, with a throttle per channel;
     /// `None` where the file has no `[pair.power]`, or a channel has no throttle.
     pub fn power_w(&self, throttle: &[f64]) -> Option<f64> {

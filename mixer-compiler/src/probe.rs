@@ -184,10 +184,7 @@ struct At<'a> {
 
 impl<'a> At<'a> {
     fn new(probe: &'a Probe<'a>, unit: &'a UnitModel, volts: f64, health: Health) -> Self {
-        let voltage = probe.airframe.voltage.as_ref();
-        let factors = voltage.map_or([1.0; 2], |voltage| {
-            [voltage.thrust_factor(volts), voltage.torque_factor(volts)]
-        });
+        let factors = probe.airframe.voltage_factors(volts);
         let efforts = [0, 1].map(|k| factors[k] * unit.scale[k]);
         At {
             probe,

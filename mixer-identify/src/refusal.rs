@@ -29,7 +29,8 @@ pub(crate) fn cut_cell(text: String) -> String {
     cut_to(text, LONGEST_CELL)
 }
 
-fn cut_to(text: String, longest: usize) -> String {
+/// The text, of which at most `longest` characters are left.
+pub fn cut_to(text: String, longest: usize) -> String {
     match text.char_indices().nth(longest) {
         Some((end, _)) => format!("{} ..", &text[..end]),
         None => text,

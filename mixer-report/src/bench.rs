@@ -63,8 +63,9 @@ pub struct Misfit {
 }
 
 impl BenchPoints {
-    /// Adds a point of the file that is read now, the next of [`BenchPoints::files`]: throttles `[u, l]`, measured thrust (N) and torque (N m), and the voltage at
-    /// which they were measured, V, where it is known.
+    /// Adds a point of the file that is read now, the next of [`BenchPoints::files`]: throttles
+    /// `[u, l]`, measured thrust (N) and torque (N m), and the voltage at which they were measured,
+    /// V, where it is known.
     pub fn add(
         &mut self,
         compiled: &Compiled,
@@ -83,7 +84,7 @@ impl BenchPoints {
                 if within && !(lowest..=highest).contains(&volts) {
                     self.outside_voltage += 1;
                 }
-                [voltage.thrust_factor(volts), voltage.torque_factor(volts)]
+                voltage.factors(volts)
             }
             _ => [1.0, 1.0],
         };

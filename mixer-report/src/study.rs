@@ -133,10 +133,7 @@ impl<'a> Study<'a> {
         };
         let mut volts = vec![voltage.range_v[0], voltage.reference_v, voltage.range_v[1]];
         volts.dedup();
-        volts
-            .into_iter()
-            .map(|v| (Some(v), [voltage.thrust_factor(v), voltage.torque_factor(v)]))
-            .collect()
+        volts.into_iter().map(|v| (Some(v), voltage.factors(v))).collect()
     }
 
     /// All rotors at the reference voltage.

@@ -169,11 +169,7 @@ impl<'a> Draw<'a> {
 
     /// Correction `[k_f, k_Q]` at a voltage of the range.
     fn factors(&self, volts: f64) -> [f64; 2] {
-        self.compiled
-            .airframe
-            .voltage
-            .as_ref()
-            .map_or([1.0, 1.0], |v| [v.thrust_factor(volts), v.torque_factor(volts)])
+        self.compiled.airframe.voltage_factors(volts)
     }
 
     /// A wrench in shares of the size.

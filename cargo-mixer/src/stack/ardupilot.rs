@@ -3,9 +3,7 @@
 use mixer_compiler::Compiled;
 
 use super::frames;
-use super::parameter::{
-    Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, weight_n, whole,
-};
+use super::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
 
 /// ArduPilot does not arm with more (`AP_MotorsMulticopter::arming_checks`).
 const MOST_SPIN_MIN: f64 = 0.3;
@@ -13,10 +11,10 @@ const MOST_SPIN_MIN: f64 = 0.3;
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
 
-/// What ArduPilot takes for `MOT_THST_HOVER`.
+/// Range of `MOT_THST_HOVER` in ArduPilot.
 const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 
-/// What ArduPilot has to be told where this mixer puts out the throttles.
+/// ArduPilot's parameters where this mixer puts out the throttles.
 pub fn settings(compiled: &Compiled) -> Parameters {
     let airframe = &compiled.airframe;
     let mut notes = Vec::new();
@@ -34,7 +32,9 @@ pub fn settings(compiled: &Compiled) -> Parameters {
     let why = "The rotors of a pair would slew apart.";
     list.push(real("MOT_SLEW_UP_TIME", 0.0, why));
     list.push(real("MOT_SLEW_DN_TIME", 0.0, why));
-    let hover = weight_n(compiled).map(|weight| weight / f64::from(compiled.ardupilot_scale().thrust_n));
+    let hover = airframe
+        .weight_n()
+        .map(|weight| weight / f64::from(compiled.ardupilot_scale().thrust_n));
     let why = match &airframe.voltage {
         Some(voltage) => format!(
             "Weight over the thrust of all rotors at full throttle and {:?} V.",
@@ -47,7 +47,7 @@ pub fn settings(compiled: &Compiled) -> Parameters {
     Parameters { list, notes }
 }
 
-/// What ArduPilot has to be told where its own mixer puts out the throttles.
+/// ArduPilot's parameters where its own mixer puts out the throttles.
 pub fn own(compiled: &Compiled) -> Parameters {
     let mut notes = Vec::new();
     let expo = (100.0 * curve(compiled, true)).round() / 100.0;
@@ -139,7 +139,7 @@ fn hover_throttle(hover: Option<f64>, why: &str, list: &mut Vec<Parameter>, note
     list.push(real("MOT_THST_HOVER", hover, why));
 }
 
-/// What becomes of the gains of a vehicle that was tuned with ArduPilot's mixer.
+/// The note on gains of a vehicle that was tuned with ArduPilot's mixer.
 fn gains(compiled: &Compiled) -> String {
     let Some(slope) = slope_in_hover(compiled) else {
         return "ATC_RAT_RLL_*, _PIT_*, _YAW_*: which factor keeps the loop gain is known with `[vehicle] mass_kg` in the \

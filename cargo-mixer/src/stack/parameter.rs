@@ -3,7 +3,6 @@
 use std::fmt;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::GRAVITY;
 use serde::Serialize;
 
 /// A parameter of a flight stack.
@@ -62,12 +61,6 @@ pub struct Parameters {
     pub list: Vec<Parameter>,
     /// A sentence each.
     pub notes: Vec<String>,
-}
-
-/// The vehicle's weight, N; `None` without a mass.
-pub(super) fn weight_n(compiled: &Compiled) -> Option<f64> {
-    let vehicle = compiled.airframe.vehicle.as_ref()?;
-    Some(GRAVITY * vehicle.mass_kg)
 }
 
 /// Slope in hover of the share of the largest thrust over the throttle, both rotors alike: what a

@@ -3,9 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Spin, Unit};
 
-use super::parameter::{
-    Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, weight_n, whole,
-};
+use super::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
 
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
@@ -18,7 +16,7 @@ const LEAST_MANUAL_THRUST: f64 = 0.08;
 const MOST_SLOPE: f64 = 50.0;
 const MOST_OFFSET: f64 = 30.0;
 
-/// What PX4 has to be told where this mixer puts out the throttles.
+/// PX4's parameters where this mixer puts out the throttles.
 pub fn settings(compiled: &Compiled) -> Parameters {
     let airframe = &compiled.airframe;
     let mut notes = Vec::new();
@@ -35,7 +33,7 @@ pub fn settings(compiled: &Compiled) -> Parameters {
         ));
     }
     let full_n = f64::from(compiled.scale().thrust_n);
-    let hover = weight_n(compiled).map(|weight| weight / full_n);
+    let hover = airframe.weight_n().map(|weight| weight / full_n);
     match hover {
         Some(hover) => list.push(real(
             "MPC_THR_HOVER",
@@ -67,7 +65,7 @@ pub fn settings(compiled: &Compiled) -> Parameters {
     Parameters { list, notes }
 }
 
-/// What PX4 has to be told where its own allocator puts out the throttles.
+/// PX4's parameters where its own allocator puts out the throttles.
 pub fn own(compiled: &Compiled) -> Parameters {
     let mut notes = Vec::new();
     let factor = round2(curve(compiled, false));
@@ -245,7 +243,7 @@ fn current_tangent(compiled: &Compiled) -> Option<[f64; 2]> {
     Some([slope, slope * throttle - current(throttle)?])
 }
 
-/// What becomes of the gains of a vehicle that was tuned with PX4's allocator.
+/// The note on gains of a vehicle that was tuned with PX4's allocator.
 fn gains(compiled: &Compiled) -> String {
     match slope_in_hover(compiled) {
         Some(factor) => format!(

@@ -48,10 +48,7 @@ pub(crate) fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
             );
         }
     }
-    volts
-        .into_iter()
-        .map(|v| [voltage.thrust_factor(v), voltage.torque_factor(v)])
-        .collect()
+    volts.into_iter().map(|v| voltage.factors(v)).collect()
 }
 
 /// The laws of thrust and torque, tabulated; `None` without a correction.

@@ -6,7 +6,7 @@ use std::fmt;
 use mixer_rt::Wrench;
 use serde::Serialize;
 
-use crate::airframe::{Axis, GRAVITY};
+use crate::airframe::Axis;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 
@@ -99,7 +99,7 @@ impl Hover {
     /// The hover of a compiled airframe; `None` where the file has no mass.
     pub fn new(compiled: &Compiled) -> Option<Hover> {
         let mass_kg = compiled.airframe.vehicle.as_ref()?.mass_kg;
-        let weight_n = GRAVITY * mass_kg;
+        let weight_n = compiled.airframe.weight_n()?;
         let volts = match &compiled.airframe.voltage {
             None => vec![None],
             Some(voltage) => {
@@ -123,11 +123,11 @@ impl Hover {
 /// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.
 pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
     let airframe = &compiled.airframe;
-    let (Some(vehicle), Some(_)) = (&airframe.vehicle, &airframe.pair.uncertainty) else {
+    let (Some(weight_n), Some(_)) = (airframe.weight_n(), &airframe.pair.uncertainty) else {
         return Vec::new();
     };
     let lowest_v = airframe.voltage.as_ref().map(|voltage| voltage.range_v[0]);
-    let at = HoverAt::new(compiled, GRAVITY * vehicle.mass_kg, lowest_v);
+    let at = HoverAt::new(compiled, weight_n, lowest_v);
     let warning = |margin: &Margin| {
         let [least, largest] = margin.torque_nm;
         let left = largest.min(-least);
@@ -226,10 +226,9 @@ const KEPT_YAW: f64 = 0.2;
 /// where nothing is left or yaw is not served.
 pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let airframe = &compiled.airframe;
-    let weight_n = match &airframe.vehicle {
-        Some(vehicle) => GRAVITY * vehicle.mass_kg,
-        None => 0.5 * f64::from(compiled.thrust_range_n[1]),
-    };
+    let weight_n = airframe
+        .weight_n()
+        .unwrap_or(0.5 * f64::from(compiled.thrust_range_n[1]));
     let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
     let hover = HoverAt::new(compiled, weight_n, reference_v);
     let yaw = hover
@@ -254,10 +253,7 @@ fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
 pub fn band(compiled: &Compiled, axis: Axis, voltage_v: Option<f64>) -> Option<f64> {
     let airframe = &compiled.airframe;
     let uncertainty = airframe.pair.uncertainty.as_ref()?;
-    let [k_f, k_q] = match (&airframe.voltage, voltage_v) {
-        (Some(voltage), Some(volts)) => [voltage.thrust_factor(volts), voltage.torque_factor(volts)],
-        _ => [1.0, 1.0],
-    };
+    let [k_f, k_q] = voltage_v.map_or([1.0; 2], |volts| airframe.voltage_factors(volts));
     let [f, q] = compiled.pair.scale();
     let off = [
         0.01 * uncertainty.thrust_percent * k_f * f,

@@ -6,7 +6,6 @@ use std::fmt;
 use mixer_rt::Wrench;
 use serde::Serialize;
 
-use crate::airframe::GRAVITY;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::tables::MixerTables;
@@ -35,11 +34,7 @@ impl LevelPower {
     /// Of a compiled airframe; `None` where the file has no power map, or the thrust is not
     /// attainable.
     pub fn new(compiled: &Compiled) -> Option<LevelPower> {
-        let weight = compiled
-            .airframe
-            .vehicle
-            .as_ref()
-            .map(|vehicle| GRAVITY * vehicle.mass_kg);
+        let weight = compiled.airframe.weight_n();
         let thrust_n = weight.unwrap_or(LEVEL * f64::from(compiled.thrust_range_n[1]));
         let power_w = at(compiled, &compiled.tables, thrust_n)?;
         let without_bias_w = at(compiled, &compiled.tables.without_power_bias(), thrust_n)?;

@@ -38,7 +38,7 @@
 use mixer_rt::Wrench;
 use nalgebra::DMatrix;
 
-use crate::airframe::{Airframe, Axis, GRAVITY};
+use crate::airframe::{Airframe, Axis};
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::pseudo_inverse::PseudoInverse;
@@ -158,7 +158,7 @@ impl Rotors<'_> {
     /// c and d, N and N m.
     pub(crate) fn per_rotor(&self) -> [f64; 2] {
         let [min, max] = self.pair.range();
-        let [k_f, k_q] = self.factors();
+        let [k_f, k_q] = self.airframe.voltage_factors(self.voltage_v);
         let full = self.pair.efforts([max, max])[0];
         let torque = match self.hover_throttle() {
             Some(h) => {
@@ -172,8 +172,8 @@ impl Rotors<'_> {
 
     /// Throttle of all rotors that carries the weight; `None` without a mass, or where none does.
     pub(crate) fn hover_throttle(&self) -> Option<f64> {
-        let weight_n = GRAVITY * self.airframe.vehicle.as_ref()?.mass_kg;
-        let [k_f, k_q] = self.factors();
+        let weight_n = self.airframe.weight_n()?;
+        let [k_f, k_q] = self.airframe.voltage_factors(self.voltage_v);
         let matrix = &self.effectiveness.matrix;
         let (row, n) = (Axis::Thrust as usize, self.airframe.units.len());
         let sum = |first: usize| {
@@ -199,17 +199,6 @@ impl Rotors<'_> {
             }
         }
         Some(high)
-    }
-
-    /// Of thrust and torque at this voltage.
-    fn factors(&self) -> [f64; 2] {
-        match &self.airframe.voltage {
-            Some(voltage) => [
-                voltage.thrust_factor(self.voltage_v),
-                voltage.torque_factor(self.voltage_v),
-            ],
-            None => [1.0, 1.0],
-        }
     }
 }
 

@@ -5,14 +5,19 @@ use crate::airframe::{RotorAlone, Spin};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::wake::{self, Wake};
 
+/// Torque that the upper and that the lower rotor add from idle to full throttle, the other at idle,
+/// N m.
+fn torque_added(facts: &Facts<'_>) -> [f64; 2] {
+    let [low, high] = facts.map.range();
+    let torque = |u, l| facts.map.efforts([u, l])[1];
+    [torque(high, low), torque(low, high)].map(|at| at - torque(low, low))
+}
+
 /// Torque falls with the upper throttle and rises with the lower one. Where both are exchanged, det
 /// J is negative and the file is refused. The corner of the fold tells nothing: real maps fold at
 /// (full, idle), the paper's at (idle, full).
 pub(super) fn slopes(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
-    let [low, high] = facts.map.range();
-    let torque = |u, l| facts.map.efforts([u, l])[1];
-    let by_upper = torque(high, low) - torque(low, low);
-    let by_lower = torque(low, high) - torque(low, low);
+    let [by_upper, by_lower] = torque_added(facts);
     let is_refused = facts.effectiveness.is_none();
     if is_refused || (by_upper < 0.0 && by_lower > 0.0) {
         return;
@@ -36,15 +41,14 @@ pub(super) fn bench_spin(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     if facts.airframe.pair.upper_spin == Spin::Cw {
         return;
     }
-    let [low, high] = facts.map.range();
-    let torque = |u, l| facts.map.efforts([u, l])[1];
+    let [_, by_lower] = torque_added(facts);
     found.push(facts.airframe.diagnostic(
         Code::RotorsExchanged,
         "pair.upper_spin",
         format!(
             "at full throttle the lower rotor adds {} N m clockwise, but it turns clockwise itself where the upper one turned \"ccw\": yaw \
              would go to the wrong side",
-            rounded(torque(low, high) - torque(low, low))
+            rounded(by_lower)
         ),
         "expected \"cw\"",
         "write upper_spin = \"cw\" under [pair], whichever way the bench turned; those of the units are the real ones",
@@ -58,14 +62,13 @@ const WHOLE_MAP: f64 = 0.45;
 /// The rotor in the wake takes less torque: [`wake`](crate::model::wake). Wrong slopes are told
 /// already.
 pub(super) fn wake(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
-    let mean = wake::mean_torque(|at| facts.map.efforts(at)[1], facts.map.range());
     let [low, high] = facts.map.range();
     let is_told = found.iter().any(|warning| warning.code == Code::RotorsExchanged);
-    if facts.effectiveness.is_none()
-        || is_told
-        || low > WHOLE_MAP * high
-        || Wake::told_by(mean) != Wake::Above
-    {
+    if facts.effectiveness.is_none() || is_told || low > WHOLE_MAP * high {
+        return;
+    }
+    let mean = wake::mean_torque(|at| facts.map.efforts(at)[1], [low, high]);
+    if Wake::told_by(mean) != Wake::Above {
         return;
     }
     found.push(facts.airframe.diagnostic(

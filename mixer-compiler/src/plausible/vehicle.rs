@@ -1,7 +1,6 @@
 //! The rule on the vehicle's weight.
 
 use super::facts::Facts;
-use crate::airframe::GRAVITY;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 
 /// Share of the largest bare thrust above which hover leaves too little for control.
@@ -11,10 +10,11 @@ const HIGH: f64 = 0.8;
 /// with little thrust left at the reference voltage.
 pub(super) fn hover(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
     let airframe = facts.airframe;
-    let (Some(vehicle), Some([floor, ceiling])) = (&airframe.vehicle, facts.thrust_range_n) else {
+    let (Some(vehicle), Some(weight), Some([floor, ceiling])) =
+        (&airframe.vehicle, airframe.weight_n(), facts.thrust_range_n)
+    else {
         return;
     };
-    let weight = GRAVITY * vehicle.mass_kg;
     let at = |volts: Option<f64>, thrust: f64| match (&airframe.voltage, volts) {
         (Some(voltage), Some(volts)) => {
             let thrust = voltage.thrust_factor(volts) * thrust;

@@ -79,7 +79,7 @@ fn nothing_is_observed_beyond_the_bound() {
                     let volts = low + (high - low) * (0.5 + 0.5 * next() as f32);
                     let v = f64::from(volts);
                     (
-                        [voltage.thrust_factor(v), voltage.torque_factor(v)],
+                        voltage.factors(v),
                         [table.thrust.factor(volts), table.torque.factor(volts)].map(|k| 1.0 / k),
                     )
                 }

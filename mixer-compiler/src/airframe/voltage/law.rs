@@ -67,6 +67,11 @@ impl Voltage {
     pub fn torque_factor(&self, volts: f64) -> f64 {
         self.torque.factor(volts, self.reference_v)
     }
+
+    /// `[k_f, k_Q]` at `volts`.
+    pub fn factors(&self, volts: f64) -> [f64; 2] {
+        [self.thrust_factor(volts), self.torque_factor(volts)]
+    }
 }
 
 #[cfg(test)]
