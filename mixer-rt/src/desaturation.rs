@@ -66,27 +66,17 @@ pub struct Budget {
 
 impl Budget {
     /// Rounds at most in which the curves of single rotors take the place of their chords.
-    pub const ROUNDS: u8 = 5;
+    pub const ROUNDS: u8 = 3;
 
-    /// Work for a programme with rotors out of a frame of so many units.
-    pub const fn with_rotors_out(units: usize) -> Self {
-        Budget::of(units, 7, 7)
-    }
-
-    /// Programmes at most with rotors out: for the request and for level flight.
-    pub const PROGRAMMES: u8 = 2;
-
-    /// Work for each of these a second time, with the throttles of single rotors decided.
-    pub const fn with_throttles_decided(units: usize) -> Self {
-        Budget::of(units, 4, 4)
-    }
-
-    const fn of(units: usize, pivots: u8, flips_per_unit: u8) -> Self {
+    /// Work for a programme with rotors out of a frame of so many units; `is_decided` where the
+    /// throttles of single rotors stay.
+    pub const fn with_rotors_out(units: usize, is_decided: bool) -> Self {
+        let each = if is_decided { 4 } else { 7 };
         // Frames have no more units than these: 64 channels.
         let units = if units < 32 { units as u8 } else { 31 };
         Budget {
-            pivots: pivots + units,
-            flips: flips_per_unit * units,
+            pivots: each + units,
+            flips: each * units,
         }
     }
 }

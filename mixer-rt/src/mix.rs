@@ -179,14 +179,16 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
         add_power_bias(tables, factors, variables);
     }
     let mut achieved = [0.0; 4];
-    for (unit, Variable { rotors, at, .. }) in units.iter().zip(variables) {
+    for (unit, variable) in units.iter().zip(variables) {
         rolled();
         // With all rotors known to work the compiler leaves the code for single ones out.
-        let rotors = if is_whole { Rotors::Both } else { *rotors };
+        let rotors = if is_whole { Rotors::Both } else { variable.rotors };
         let throttles = match rotors {
-            Rotors::Both => tables.inverse.throttles(&tables.pair, &tables.throttle, *at),
+            Rotors::Both => tables
+                .inverse
+                .throttles(&tables.pair, &tables.throttle, variable.at),
             Rotors::None => [0.0; 2],
-            single => single.invert(&tables.singles, &tables.throttle, at[0]),
+            single => single.throttles(variable.throttle),
         };
         write(unit.channels, throttles, throttle);
         let efforts = rotors.efforts(&tables.pair, &tables.singles, throttles);

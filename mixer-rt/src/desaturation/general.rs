@@ -17,14 +17,15 @@
 //!
 //! With rotors out the curves of single rotors take the place of their chords until the efforts are
 //! on them. Where that answer is not accepted, the throttles of single rotors are decided, and the
-//! programme for the others, which is convex, is solved; then both for level flight.
+//! programme for the others, which is convex, is solved. Where that is not accepted either, the answer
+//! is level flight.
 //!
 //! # Bound
 //!
 //! [`Desaturation::budget`](crate::desaturation::Desaturation::budget) bounds the work of 2 while
-//! all rotors work. With rotors out [`Budget::with_rotors_out`], [`Budget::ROUNDS`] and
-//! [`Budget::PROGRAMMES`] do. No loop depends on anything else than these, the number of units and
-//! the corners of polygons.
+//! all rotors work. With rotors out [`Budget::with_rotors_out`] and [`Budget::ROUNDS`] do, for three
+//! programmes at most. No loop depends on anything else than these, the number of units and the
+//! corners of polygons.
 
 use core::hint::black_box;
 
@@ -48,7 +49,7 @@ use variable::{Set, between, positive};
 
 /// A single rotor is on its curve where its torque is off by no more than this share of what yaw may
 /// be missed by.
-const TOUCHING: f32 = 0.25;
+const TOUCHING: f32 = 0.5;
 
 /// A frame at one voltage.
 struct Frame<'a, 't, P, I, S> {
@@ -199,58 +200,59 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         }
     }
 
-    /// Programmes until one is accepted: for the request, then for level flight; each with the curves of
-    /// single rotors, then with their throttles decided and without a reserve.
+    /// Programmes until one is accepted: for the request; for the request without a reserve, with the
+    /// throttles of single rotors decided; for level flight.
     #[inline(never)]
     fn serve_with_rotors_out(&self, problem: &Problem<'_>, mut wanted: Wanted, variables: &mut [Variable]) {
-        let units = variables.len();
-        for _ in 0..black_box(Budget::PROGRAMMES) {
-            for variable in variables.iter_mut() {
-                rolled();
-                variable.reset();
-            }
-            if self.is_accepted(problem, &wanted, variables, Budget::with_rotors_out(units)) {
-                return;
-            }
-            let mut is_changed = wanted.reserve > 0.0;
-            wanted.reserve = 0.0;
-            for variable in variables.iter_mut() {
-                rolled();
-                is_changed |= variable.decide();
-            }
-            let budget = Budget::with_throttles_decided(units);
-            if is_changed && self.is_accepted(problem, &wanted, variables, budget) {
-                return;
-            }
-            let [.., thrust] = wanted.rows;
-            wanted = Wanted::new([0.0, 0.0, 0.0, thrust], 0.0);
+        if self.is_accepted(problem, &wanted, variables, false) {
+            return;
         }
+        let is_reserved = wanted.reserve > 0.0;
+        wanted.reserve = 0.0;
+        let has_single = variables.iter().any(|variable| variable.rotors.is_single());
+        if (is_reserved || has_single) && self.is_accepted(problem, &wanted, variables, true) {
+            return;
+        }
+        let [.., thrust] = wanted.rows;
+        let level = Wanted::new([0.0, 0.0, 0.0, thrust], 0.0);
+        self.is_accepted(problem, &level, variables, false);
     }
 
     /// Runs a programme with rotors out; true where it is solved and what the units then give neither
-    /// reverses nor exceeds a torque.
+    /// reverses nor exceeds a torque. `is_decided` leaves single rotors at the throttles that they have.
     #[inline(never)]
     fn is_accepted(
         &self,
         problem: &Problem<'_>,
         wanted: &Wanted,
         variables: &mut [Variable],
-        budget: Budget,
+        is_decided: bool,
     ) -> bool {
+        for variable in variables.iter_mut() {
+            rolled();
+            if is_decided {
+                variable.decide();
+            } else {
+                variable.reset();
+            }
+        }
+        let budget = Budget::with_rotors_out(variables.len(), is_decided);
         let is_solved = self.programme(problem, wanted, variables, budget, false);
         let missed = problem.missed(&wanted.rows, variables);
         is_solved && wanted.accepts(&missed, variables.len())
     }
 
-    /// What the single rotor of a unit gives, scaled, at the unit's thrust.
+    /// Puts a unit with a single rotor on the rotor's curve, at the throttle for the unit's thrust.
     #[inline(never)]
-    fn on_curve(&self, variable: &Variable) -> [f32; 2] {
-        let Tables { pair, singles, .. } = self.tables;
+    fn put_on_curve(&self, variable: &mut Variable) {
+        let Tables {
+            singles, throttle, ..
+        } = self.tables;
         let scale = self.tables.attainable.scale;
-        let f = scale[0] * variable.at[0];
-        let throttles = variable.rotors.invert(singles, &self.tables.throttle, f);
-        let efforts = variable.rotors.efforts(pair, singles, throttles);
-        [0, 1].map(|k| efforts[k] / scale[k])
+        let curve = variable.rotors.curve(singles);
+        variable.throttle = curve.invert(throttle, scale[0] * variable.at[0]);
+        let efforts = curve.efforts(variable.throttle);
+        variable.at = [0, 1].map(|k| efforts[k] / scale[k]);
     }
 
     /// Puts the units at the answer of the linear programme; true where it is solved. While some single
@@ -317,7 +319,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
                 continue;
             }
             let [_, on_line] = variable.at;
-            variable.at = self.on_curve(variable);
+            self.put_on_curve(variable);
             let beside = variable.at[1] - on_line;
             if beside.abs() > most {
                 most = beside.abs();

@@ -1,8 +1,7 @@
 //! Which rotors of a unit work, and what its unit then gives.
 
-use crate::arithmetic::Scalar;
-use crate::pair::{Pair, Quantity, SingleRotor, ThrottleRange};
-use crate::{Health, divisor};
+use crate::Health;
+use crate::pair::{Pair, Quantity, SingleRotor};
 
 /// Which rotors of a unit work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,14 +11,6 @@ pub(crate) enum Rotors {
     Lower,
     None,
 }
-
-/// Newton steps that invert a single rotor's thrust. The start is exact for a thrust that grows
-/// with the square of the throttle, which bench maps follow to a few percent.
-const STEPS: usize = 3;
-
-/// The least rise of a thrust that is divided by, N: a thrust that does not grow with its throttle
-/// takes the step to the end of the range.
-const LEAST_RISE: f32 = 1e-6;
 
 impl Rotors {
     /// The rotors of a unit with these channels.
@@ -41,7 +32,7 @@ impl Rotors {
 
     /// The throttles of both rotors where the one that works has `throttle`.
     #[inline]
-    fn throttles(self, throttle: f32) -> [f32; 2] {
+    pub(crate) fn throttles(self, throttle: f32) -> [f32; 2] {
         match self {
             Rotors::Lower => [0.0, throttle],
             _ => [throttle, 0.0],
@@ -50,7 +41,7 @@ impl Rotors {
 
     /// What the rotor gives that works, of a unit with a single one.
     #[inline]
-    fn curve(self, [upper, lower]: &[SingleRotor; 2]) -> &SingleRotor {
+    pub(crate) fn curve(self, [upper, lower]: &[SingleRotor; 2]) -> &SingleRotor {
         if self == Rotors::Lower { lower } else { upper }
     }
 
@@ -67,33 +58,5 @@ impl Rotors {
         } else {
             pair.efforts([u, l])
         }
-    }
-
-    /// The efforts `[f, Q]` (N, N m) of a unit whose single rotor is at the least and at the
-    /// largest throttle.
-    pub(crate) fn ends(self, singles: &[SingleRotor; 2], range: &ThrottleRange) -> [[f32; 2]; 2] {
-        [range.min, range.max].map(|throttle| self.curve(singles).efforts(throttle))
-    }
-
-    /// The throttles within the range at which a unit with a single rotor gives the thrust `f` (N):
-    /// Newton's method on the rotor's polynomial, each step limited to the range.
-    #[inline(never)]
-    pub(crate) fn invert(self, singles: &[SingleRotor; 2], range: &ThrottleRange, f: f32) -> [f32; 2] {
-        let [[least, _], [most, _]] = self.ends(singles, range);
-        let (low, high) = (range.min * range.min, range.max * range.max);
-        let span = most - least;
-        let share = if span > LEAST_RISE {
-            (f - least) / divisor(span)
-        } else {
-            0.0
-        };
-        let square = low + share * (high - low);
-        let mut throttle = range.clamp(square.root());
-        for _ in 0..STEPS {
-            let [value, slope] = self.curve(singles).thrust_and_slope(throttle);
-            let slope = if slope > LEAST_RISE { slope } else { LEAST_RISE };
-            throttle = range.clamp(throttle + (f - value) / slope);
-        }
-        self.throttles(throttle)
     }
 }

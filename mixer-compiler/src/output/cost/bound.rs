@@ -80,9 +80,6 @@ const FLIP_UNIT: u32 = 8;
 const ROUND: u32 = 860;
 const ROUND_UNIT: u32 = 320;
 
-/// The inverse of a single rotor, more than the unit's own.
-const SINGLE: u32 = 60;
-
 /// The bound for a compiled airframe while all rotors work; `None` for an evaluator that has not
 /// been counted.
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
@@ -99,14 +96,8 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let units = compiled.tables.units.len();
     let n = units as u32;
-    let programmes = usize::from(Budget::PROGRAMMES);
-    let budgets = [
-        Budget::with_rotors_out(units),
-        Budget::with_throttles_decided(units),
-    ]
-    .repeat(programmes);
-    let rounds = u32::from(Budget::ROUNDS) * programmes as u32;
-    let curves = rounds * (ROUND + n * ROUND_UNIT) + n * SINGLE;
+    let budgets = [false, true, false].map(|is_decided| Budget::with_rotors_out(units, is_decided));
+    let curves = 2 * u32::from(Budget::ROUNDS) * (ROUND + n * ROUND_UNIT);
     let starts = (budgets.len() as u32 - 1) * (PROGRAMME + n * PROGRAMME_UNIT);
     Some(general(compiled, &budgets)? + curves + starts)
 }

@@ -51,6 +51,8 @@ pub struct Variable {
     pub(super) curve: f32,
     /// By how much it has moved last.
     moved: f32,
+    /// Of a single rotor, where the unit is on its curve.
+    pub(crate) throttle: f32,
     pub(super) set: Set,
     pub(super) position: Position,
     /// Index of its corner.
@@ -70,6 +72,7 @@ impl Default for Variable {
             breakpoint: 0.0,
             curve: 0.0,
             moved: 0.0,
+            throttle: 0.0,
             set: Set::Polygon,
             position: Position::Corner,
             corner: 0,
@@ -176,14 +179,12 @@ impl Variable {
         (self.at, self.curve, self.moved) = ([0.0; 2], 0.0, 0.0);
     }
 
-    /// A single rotor stays at its throttle; true where there is one.
+    /// A single rotor stays at its throttle.
     #[inline(always)]
-    pub(super) fn decide(&mut self) -> bool {
-        let is_single = self.set == Set::Segment;
-        if is_single {
+    pub(super) fn decide(&mut self) {
+        if self.set == Set::Segment {
             self.set = Set::Point;
         }
-        is_single
     }
 
     /// By how much the line of a single rotor moves that is `beside` its curve: half as far where it
