@@ -224,3 +224,39 @@ fn yaw_keeps_its_sign_on_a_y6() {
         }
     }
 }
+
+/// A rotor alone, extrapolated, gives its least thrust well inside the range: no inverse of its thrust
+/// is exact there.
+const FLAT: &str = "[throttle]
+min = 0.2017
+max = 0.95
+
+[pair]
+basis = \"biquadratic\"
+thrust_n = [4.547544, -7.099103, 3.729132, -5.164996, 7.566039, -1.566169, 2.583195, 0.3864211]
+torque_nm = [0.00811863, -0.006860399, -0.009858123, -0.01807183, 0.02161001, -0.01600404, 0.00818081, 0.0100284]
+upper_spin = \"cw\"
+";
+
+/// The throttle of a single rotor is the one at which its efforts were judged.
+#[test]
+fn yaw_keeps_its_sign_where_the_curve_of_a_rotor_alone_is_flat() {
+    let options = Options {
+        airmode: "roll-pitch-yaw",
+        ..Options::default()
+    };
+    let frame = compile_with_pair(FLAT, &frames::regular(6, 30.0), options);
+    let mut random = Random::new(number("MIXER_SEED", 5));
+    for failed in 0..12 {
+        for _ in 0..200 {
+            let mut request = frame.draw(&mut random, 3.0, REFERENCE_V);
+            request.health = out(&[failed]);
+            let answer = request.mix(&frame).expect("finite");
+            let most = beyond(&frame, &request, &answer);
+            assert!(
+                most <= ALLOWED || !is_level_attainable(&frame, &request),
+                "{request:?} -> {answer:?}: {most}"
+            );
+        }
+    }
+}
