@@ -1,12 +1,9 @@
 //! ArduPilot's parameters.
 
-use mixer_compiler::Compiled;
+use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
 use super::frames;
 use super::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
-
-/// ArduPilot does not arm with more (`AP_MotorsMulticopter::arming_checks`).
-const MOST_SPIN_MIN: f64 = 0.3;
 
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
