@@ -1,5 +1,6 @@
 //! ArduPilot's parameters.
 
+use mixer_compiler::airframe::Airmode;
 use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
 use super::frames;
@@ -41,6 +42,13 @@ pub fn settings(compiled: &Compiled) -> Parameters {
     };
     hover_throttle(hover, &why, &mut list, &mut notes);
     notes.push(gains(compiled));
+    if airframe.allocation.airmode == Airmode::Disabled {
+        notes.push(
+            "the airmode is \"disabled\", which gives no roll and pitch at throttle 0; ArduPilot counts on them: \
+             `airmode = \"roll-pitch\"` in the airframe file"
+                .to_owned(),
+        );
+    }
     Parameters { list, notes }
 }
 

@@ -125,6 +125,15 @@ fn the_simulator_gets_a_script_and_what_runs_after_it() {
     let defaults = text.find("\n. ${R}etc/init.d/rc.mc_defaults\n").unwrap();
     assert!(defaults < text.find("param set-default CA_AIRFRAME 0").unwrap());
     assert!(text.contains("\nparam set-default PWM_MAIN_FUNC8 108\n") && !text.contains("PWM_MAIN_MIN"));
+    // PX4 reports 1 A + 15 A x output there: no healthy motor is found dead at any output.
+    let limit = |name: &str| value(&text, name).unwrap();
+    assert_eq!(limit("FD_ACT_EN"), 1.0);
+    for output in [0.0, 0.2, 0.55, 1.0] {
+        let (current, scale) = (1.0 + 15.0 * output, limit("FD_ACT_MOT_C2T"));
+        assert!(current > scale * output - limit("FD_ACT_LOW_OFF") + 1.0);
+        assert!(current < scale * output + limit("FD_ACT_HIGH_OFF") - 1.0);
+    }
+    assert_eq!((limit("SYS_FAILURE_EN"), limit("SIM_BAT_ENABLE")), (1.0, 0.0));
     let after = fs::read_to_string(folder.0.join("22000_x8.post")).unwrap();
     assert!(after.ends_with("\ncontrol_allocator stop\ncoaxial_mixer start\n"));
     // Neither is overwritten by accident.
@@ -157,6 +166,7 @@ fn what_cannot_be_known_is_said() {
     for part in [
         "MOT_THST_HOVER is missing",
         "no FRAME_CLASS",
+        "`airmode = \"roll-pitch\"` in the airframe file",
         "MOT_PWM_MIN and MOT_PWM_MAX are missing",
     ] {
         assert!(said.contains(part), "{said}");
