@@ -29,6 +29,7 @@
 
 use core::hint::black_box;
 
+mod basis;
 mod breakpoint;
 mod problem;
 mod programme;

@@ -6,8 +6,9 @@
 
 use core::hint::black_box;
 
+use super::basis::Basis;
 use super::problem::{LAST, LEVEL_TORQUE, MIDDLE, Problem, RESERVED, Wanted};
-use super::simplex::{Basis, Simplex};
+use super::simplex::Simplex;
 use super::variable::{Segment, Variable, dot, positive};
 use crate::desaturation::{Airmode, Budget};
 use crate::rolled;
