@@ -1,7 +1,6 @@
 //! `cargo mixer identify`: from bench sweeps to the `[throttle]`, `[pair]` and `[voltage]` tables
 //! of an airframe file.
 
-use std::io::{Write as _, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -13,6 +12,7 @@ use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
 use mixer_identify::header::ByHand;
 use mixer_identify::identified::Settings;
 use mixer_identify::read::Reading;
+use mixer_identify::refusal::Refusal;
 use mixer_identify::sign::{SignChoice, SignPolicy};
 use mixer_identify::wishes::Wishes;
 use mixer_identify::{date, fragment, report, verdict};
@@ -21,8 +21,9 @@ use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choi
 use crate::bench_files::{identify_with_runs, read_all};
 use crate::frame::FrameArgs;
 use crate::pack::PackArgs;
-use crate::predict::{self, Place, RotorArgs};
-use crate::{BAD_USAGE, output, print_error, print_note};
+use crate::place::Place;
+use crate::predict::{self, RotorArgs};
+use crate::{BAD_USAGE, print_error, print_note};
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
 ///
@@ -195,124 +196,63 @@ pub fn run(args: &IdentifyArgs) -> ExitCode {
 }
 
 fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
-    let to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    let file = args.output.as_deref().filter(|_| !to_stdout);
-    if let Some(message) = contradiction(args) {
-        print_error(message);
+    if args.prior.is_none() && args.rotors.is_given() {
+        print_error("what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given");
         return Err(ExitCode::from(BAD_USAGE));
     }
-    if let Some(single) = &args.prior {
-        return corrected(args, single);
-    }
-    if let Some(path) = file {
-        let runs = args.lower_out.iter().chain(&args.upper_out);
-        let inputs = args.files.iter().chain(runs).map(PathBuf::as_path);
-        crate::file::writable(path, args.force, inputs)?;
-    }
-    let runs = [args.lower_out.as_deref(), args.upper_out.as_deref()];
-    let identified = identify_with_runs(&args.files, runs, &args.settings()).map_err(|refusals| {
-        for refusal in refusals {
-            print_error(refusal);
-        }
-        ExitCode::FAILURE
-    })?;
-    let refused = || identified.files.iter().flat_map(|f| &f.refused_rows);
-    let most = MOST_TOLD[usize::from(args.verbose)];
-    for row in refused().take(most) {
-        print_note(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
-    }
-    let more = refused().count().saturating_sub(most);
-    if more > 0 {
-        print_note(format_args!("refused: {more} rows more"));
-    }
-    let fragment = match &args.frame {
-        None => fragment::text(&identified),
-        Some(frame) => frame
-            .airframe(file, &fragment::tables(&identified), identified.power_bias())
-            .map_err(|message| {
-                print_error(message);
-                ExitCode::from(BAD_USAGE)
-            })?,
-    };
-    // Headers and cells of the bench files are in it.
-    let fragment = crate::printable_lines(&fragment);
-    let report = if args.json {
-        serde_json::to_string_pretty(&identified).map_err(print_error)?
-    } else if args.verbose {
-        crate::printable_lines(report::text(&identified).trim_end())
-    } else {
-        crate::printable_lines(&verdict::text(&identified))
-    };
-    let out = if to_stdout {
-        print_note(&report);
-        fragment.trim_end()
-    } else {
-        &report
-    };
-    output(writeln!(stdout().lock(), "{out}"))?;
-    match file {
-        Some(path) if args.frame.is_some() => {
-            let status = crate::airframe_file::write(path, &fragment, None);
-            if status != ExitCode::SUCCESS {
-                return Err(status);
-            }
-            next(args, format_args!("cargo mixer check {}", path.display()));
-        }
-        Some(path) => {
-            crate::file::save(path, &fragment).map_err(print_error)?;
-            next(
-                args,
-                format_args!(
-                    "cargo mixer new --frame x8 --arm METRE --pair {} -o AIRFRAME.toml",
-                    path.display()
-                ),
-            );
-        }
-        None if !to_stdout => next(
-            args,
-            "-o PAIR.toml writes the tables; nothing is written without it",
-        ),
-        None => {}
-    }
-    Ok(())
-}
-
-/// Says what comes next, to a person.
-fn next(args: &IdentifyArgs, what: impl std::fmt::Display) {
-    if !args.json {
-        print_note(format_args!("next            {what}"));
-    }
-}
-
-/// `--prior`: the rows of the pair correct what a run of one rotor predicts.
-fn corrected(args: &IdentifyArgs, single: &Path) -> Result<(), ExitCode> {
     let place = Place {
         output: args.output.as_deref(),
         force: args.force,
         frame: args.frame.as_ref(),
         json: args.json,
     };
-    let inputs: Vec<&Path> = args.files.iter().map(PathBuf::as_path).chain([single]).collect();
+    let runs = [&args.prior, &args.lower_out, &args.upper_out];
+    let inputs = args.files.iter().chain(runs.into_iter().flatten());
+    let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     place.check(&inputs)?;
-    let refused = |refusals: Vec<_>| {
-        for refusal in refusals {
-            print_error(refusal);
-        }
-        ExitCode::FAILURE
+    if let Some(single) = &args.prior {
+        return corrected(args, single, &place);
+    }
+    let runs = [args.lower_out.as_deref(), args.upper_out.as_deref()];
+    let identified = identify_with_runs(&args.files, runs, &args.settings()).map_err(refused)?;
+    let refused_rows = || identified.files.iter().flat_map(|f| &f.refused_rows);
+    let most = MOST_TOLD[usize::from(args.verbose)];
+    for row in refused_rows().take(most) {
+        print_note(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
+    }
+    let more = refused_rows().count().saturating_sub(most);
+    if more > 0 {
+        print_note(format_args!("refused: {more} rows more"));
+    }
+    let report = if args.json {
+        serde_json::to_string_pretty(&identified).map_err(print_error)?
+    } else if args.verbose {
+        report::text(&identified)
+    } else {
+        verdict::text(&identified)
     };
+    // An airframe has the bias elsewhere, or not at all.
+    let tables = match &args.frame {
+        None => fragment::text(&identified),
+        Some(_) => fragment::tables(&identified),
+    };
+    place.write(&report, tables, identified.power_bias())
+}
+
+/// Says what is wrong with the files.
+fn refused(refusals: Vec<Refusal>) -> ExitCode {
+    for refusal in refusals {
+        print_error(refusal);
+    }
+    ExitCode::FAILURE
+}
+
+/// `--prior`: the rows of the pair correct what a run of one rotor predicts.
+fn corrected(args: &IdentifyArgs, single: &Path, place: &Place<'_>) -> Result<(), ExitCode> {
     let maps = read_all(&args.files, &args.settings()).map_err(refused)?;
     let predicted = predict::correct(&maps, single, &args.rotors, args.reference_voltage, args.throttle)
         .map_err(print_error)?;
-    place.write(&predicted)
-}
-
-/// The fault of the arguments taken together.
-fn contradiction(args: &IdentifyArgs) -> Option<&'static str> {
-    if args.prior.is_none() && args.rotors.is_given() {
-        return Some("what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given");
-    }
-    (args.json && args.output.as_deref() == Some(Path::new("-")))
-        .then_some("--json and -o - would both write to standard output")
+    predict::write(&predicted, place)
 }
 
 /// Largest exponent that is taken: a propeller has 2.5 at most.

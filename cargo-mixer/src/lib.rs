@@ -29,6 +29,7 @@ pub mod new;
 pub mod pack;
 mod pair_file;
 pub mod params;
+mod place;
 pub mod plan;
 pub mod predict;
 pub mod report;

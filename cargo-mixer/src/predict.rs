@@ -1,6 +1,5 @@
 //! `cargo mixer predict`: a pair's tables from a run of one rotor alone.
 
-use std::io::{Write as _, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -18,8 +17,9 @@ use mixer_identify::single::{Known, Single};
 use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::read_one;
 use crate::frame::FrameArgs;
+use crate::place::Place;
+use crate::print_error;
 use crate::today::today;
-use crate::{BAD_USAGE, output, print_error, print_note};
 
 /// Predict a pair's thrust and torque from a run of one rotor, or the table of its data sheet
 ///
@@ -204,7 +204,7 @@ pub fn run(args: &PredictArgs) -> ExitCode {
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let done = place.check(&inputs).and_then(|()| {
         let predicted = args.predicted().map_err(print_error)?;
-        place.write(&predicted)
+        write(&predicted, &place)
     });
     done.err().unwrap_or(ExitCode::SUCCESS)
 }
@@ -238,74 +238,15 @@ pub(crate) fn correct(
     predict::correct(upper, lower, maps, &wishes, warnings)
 }
 
-/// Where a prediction goes.
-pub(crate) struct Place<'a> {
-    pub(crate) output: Option<&'a Path>,
-    pub(crate) force: bool,
-    pub(crate) frame: Option<&'a FrameArgs>,
-    pub(crate) json: bool,
-}
-
-impl Place<'_> {
-    fn to_stdout(&self) -> bool {
-        self.output == Some(Path::new("-"))
-    }
-
-    fn file(&self) -> Option<&Path> {
-        self.output.filter(|_| !self.to_stdout())
-    }
-
-    /// Refuses a place that cannot be written, before there is anything to write.
-    pub(crate) fn check(&self, inputs: &[&Path]) -> Result<(), ExitCode> {
-        if self.json && self.to_stdout() {
-            print_error("--json and -o - would both write to standard output");
-            return Err(ExitCode::from(BAD_USAGE));
-        }
-        match self.file() {
-            Some(path) => crate::file::writable(path, self.force, inputs.iter().copied()),
-            None => Ok(()),
-        }
-    }
-
-    /// Writes report and tables.
-    pub(crate) fn write(&self, predicted: &Predicted) -> Result<(), ExitCode> {
-        let tables = predict::text(predicted);
-        let text = match self.frame {
-            None => tables,
-            Some(frame) => frame.airframe(self.file(), &tables, None).map_err(|message| {
-                print_error(message);
-                ExitCode::from(BAD_USAGE)
-            })?,
-        };
-        // Names and headers of the files are in it.
-        let text = crate::printable_lines(&text);
-        let report = if self.json {
-            serde_json::to_string_pretty(predicted).map_err(print_error)?
-        } else {
-            crate::printable_lines(predict::report(predicted).trim_end())
-        };
-        let out = if self.to_stdout() {
-            print_note(&report);
-            text.trim_end()
-        } else {
-            &report
-        };
-        output(writeln!(stdout().lock(), "{out}"))?;
-        match self.file() {
-            Some(path) if self.frame.is_some() => {
-                let status = crate::airframe_file::write(path, &text, None);
-                if status != ExitCode::SUCCESS {
-                    return Err(status);
-                }
-            }
-            Some(path) => {
-                crate::file::save(path, &text).map_err(print_error)?;
-            }
-            None if !self.to_stdout() && !self.json => {
-                print_note("\n(nothing written: -o PAIR.toml writes the tables)");
-            }
-            None => {}
-        }
-        Ok(())
-    }
+/// Writes report and tables of a prediction.
+///
+/// # Errors
+/// The exit status; what is wrong is told.
+pub(crate) fn write(predicted: &Predicted, place: &Place<'_>) -> Result<(), ExitCode> {
+    let report = if place.json {
+        serde_json::to_string_pretty(predicted).map_err(print_error)?
+    } else {
+        predict::report(predicted)
+    };
+    place.write(&report, predict::text(predicted), None)
 }

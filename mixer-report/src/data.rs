@@ -7,7 +7,7 @@ use crate::bench::BenchPoints;
 use crate::comparison::Comparison;
 use crate::level;
 use crate::maps::ERROR_SIDE;
-use crate::number::range;
+use crate::number::{cell, line, range};
 use crate::study::Study;
 use crate::table::comparison_text;
 
@@ -149,17 +149,19 @@ fn no_yaw(study: &Study<'_>) -> String {
     }
 }
 
-/// A number with nine significant digits at most, as short as it can be read back.
-fn cell(x: f64) -> String {
-    // Rounding residues of sums are zeros.
-    let x = if x.abs() < 1e-12 { 0.0 } else { x };
-    let rounded: f64 = format!("{x:.8e}").parse().unwrap_or(x);
-    format!("{}", rounded + 0.0)
-}
-
-fn line(values: impl IntoIterator<Item = f64>) -> String {
-    let cells: Vec<String> = values.into_iter().map(cell).collect();
-    cells.join(",")
+/// Some columns of a CSV of numbers.
+pub(crate) fn columns(csv: &str, names: &[&str]) -> String {
+    let header: Vec<&str> = csv.lines().next().unwrap_or_default().split(',').collect();
+    let kept = |name: &&str| header.iter().position(|column| column == name);
+    let kept: Vec<usize> = names.iter().filter_map(kept).collect();
+    let mut out = String::new();
+    for row in csv.lines() {
+        let cells: Vec<&str> = row.split(',').collect();
+        let cells = kept.iter().filter_map(|k| cells.get(*k).copied());
+        out.push_str(&cells.collect::<Vec<_>>().join(","));
+        out.push('\n');
+    }
+    out
 }
 
 fn yaw(comparison: &Comparison) -> Vec<String> {

@@ -5,6 +5,7 @@
 //! attributes tell the page's script how pixels become quantities.
 
 mod bar;
+mod curves;
 mod hover;
 mod legend;
 mod mark;
@@ -20,9 +21,6 @@ use crate::number::{Ticks, escaped, pixel};
 
 /// Room around the plot for labels, px: left, top, right, bottom.
 const MARGIN: [f64; 4] = [74.0, 14.0, 16.0, 46.0];
-
-/// Room for a colour bar at the right, px.
-const BAR_ROOM: f64 = 86.0;
 
 /// Values of iso-curves keep this distance, px.
 const LABEL_ROOM: f64 = 15.0;
@@ -55,6 +53,8 @@ pub struct Figure {
     quantities: Vec<(String, String)>,
     /// Curves with names.
     curves: Vec<legend::Entry>,
+    /// Their points.
+    series: Vec<(String, Vec<[f64; 2]>)>,
     /// Where the read-out begins; the middle where nothing is marked.
     start: Option<[f64; 2]>,
     /// Where values stand on iso-curves.
@@ -80,6 +80,7 @@ impl Figure {
             hover: Hover::Nothing,
             quantities: Vec::new(),
             curves: Vec::new(),
+            series: Vec::new(),
             start: None,
             labels: Vec::new(),
         }
@@ -142,6 +143,7 @@ impl Figure {
     pub fn unlisted_curve(&mut self, class: &str, name: &str, points: &[[f64; 2]]) {
         let data = self.path(points, false);
         self.line(class, name, &data);
+        self.keep(name, points);
     }
 
     /// A closed line without filling.
@@ -149,6 +151,13 @@ impl Figure {
         let data = self.path(points, true);
         self.line(class, name, &data);
         self.entry(class, name);
+        self.keep(name, points);
+    }
+
+    fn keep(&mut self, name: &str, points: &[[f64; 2]]) {
+        if !name.is_empty() {
+            self.series.push((name.to_owned(), points.to_vec()));
+        }
     }
 
     fn line(&mut self, class: &str, name: &str, data: &str) {
@@ -288,7 +297,7 @@ impl Figure {
     fn drawn(&self, entries: &[legend::Entry]) -> String {
         let [width, height] = self.size;
         let rows = legend::rows(entries, width + MARGIN[2] + 18.0);
-        let full_width = MARGIN[0] + width + if self.bar.is_some() { BAR_ROOM } else { MARGIN[2] };
+        let full_width = MARGIN[0] + width + self.bar.as_ref().map_or(MARGIN[2], Bar::room);
         let full_height = MARGIN[1] + height + MARGIN[3] + legend::ROW * rows.len() as f64;
         let mut svg = String::new();
         let _ = writeln!(
@@ -308,8 +317,7 @@ impl Figure {
         svg.push_str(&self.layers);
         svg.push_str(&self.above);
         if let Some(bar) = &self.bar {
-            let left = MARGIN[0] + self.size[0] + 14.0;
-            bar.draw(&mut svg, [left, MARGIN[1]], self.size[1]);
+            bar.draw(&mut svg, [MARGIN[0] + self.size[0], MARGIN[1]], self.size[1]);
         }
         legend::draw(&mut svg, [MARGIN[0], MARGIN[1] + height + MARGIN[3]], &rows);
         svg.push_str("</svg>\n");

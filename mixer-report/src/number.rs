@@ -149,6 +149,20 @@ pub fn pixel(out: &mut String, x: f64) {
     let _ = write!(out, "{rounded}");
 }
 
+/// A number with nine significant digits at most, as short as it can be read back.
+pub(crate) fn cell(x: f64) -> String {
+    // Rounding residues of sums are zeros.
+    let x = if x.abs() < 1e-12 { 0.0 } else { x };
+    let rounded: f64 = format!("{x:.8e}").parse().unwrap_or(x);
+    format!("{}", rounded + 0.0)
+}
+
+/// Numbers as a row of CSV.
+pub(crate) fn line(values: impl IntoIterator<Item = f64>) -> String {
+    let cells: Vec<String> = values.into_iter().map(cell).collect();
+    cells.join(",")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,7 @@
 //! It is written as XML that is also HTML (every element closed, every attribute quoted), so that
 //! it can be checked by machine.
 
-use std::fmt::Write as _;
+mod link;
 
 use maud::{Markup, PreEscaped, html};
 use mixer_compiler::airframe::Axis;
@@ -129,52 +129,30 @@ fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     }
 }
 
-/// A figure with its caption and a place for the values under the pointer.
-fn shown(figure: &Figure, caption: &str) -> Markup {
+/// A figure with its caption, the link to its data, and a place for the values under the pointer.
+fn shown(figure: &Figure, caption: &str, data: &Markup) -> Markup {
     html! {
         figure {
             (figure.with_readout())
-            figcaption { (caption) }
+            figcaption { (caption) " " (data) }
         }
     }
 }
 
 /// A picture without values under the pointer.
-fn still(svg: String, caption: &str) -> Markup {
-    html! { figure { (PreEscaped(svg)) figcaption { (caption) } } }
+fn still(svg: String, caption: &str, data: &Markup) -> Markup {
+    html! { figure { (PreEscaped(svg)) figcaption { (caption) " " (data) } } }
 }
 
 fn figures(figures: &[Markup]) -> Markup {
     html! { div.figures { @for figure in figures { (figure) } } }
 }
 
-/// The link under figures to their data, which the page carries itself.
-fn data(study: &Study<'_>, figure: Data) -> Markup {
-    html! { @if let Ok(sweep) = data::sweep(study, figure) { (csv_link(study, figure.word(), &sweep.csv)) } }
-}
-
-fn csv_link(study: &Study<'_>, word: &str, csv: &str) -> Markup {
-    let file = format!("{}-{word}.csv", printable(&study.compiled.airframe.name));
-    let mut address = String::from("data:text/csv;charset=utf-8,");
-    for byte in csv.bytes() {
-        match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b',' | b'.' | b'-' | b'_' => {
-                address.push(char::from(byte))
-            }
-            _ => {
-                let _ = write!(address, "%{byte:02X}");
-            }
-        }
-    }
-    html! { p.data { "Data of these figures: " a download=(file) href=(address) { (file) } } }
-}
-
 fn layout_section(study: &Study<'_>) -> Markup {
     let figure = layout::layout(&study.compiled.airframe);
     let caption = "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.";
     html! {
-        (figures(&[still(figure.svg(), caption), table::units(study)]))
-        (data(study, Data::Layout))
+        (figures(&[still(figure.svg(), caption, &link::sweep(study, Data::Layout)), table::units(study)]))
     }
 }
 
@@ -188,34 +166,31 @@ fn level_section(study: &Study<'_>) -> Markup {
         .iter()
         .find(|(volts, _)| volts.is_none_or(|volts| volts == reference_v));
     let hover = level::against_voltage(study);
-    let at = study.at_reference();
-    let upper = shown(
-        &plots::throttle(study, &levels, 0),
-        "Mean throttle of the upper rotors.",
-    );
-    let lower = shown(
-        &plots::throttle(study, &levels, 1),
-        "Mean throttle of the lower rotors.",
-    );
-    let over_voltage = plots::hover_throttle(study, &hover)
-        .map(|figure| shown(&figure, "Mean throttles in hover against voltage."));
+    let throttles = [0, 1].map(|rotor| {
+        let figure = plots::throttle(study, &levels, rotor);
+        let name = ["upper", "lower"][rotor];
+        let data = link::curves(study, &format!("throttle-{name}"), &figure);
+        shown(&figure, &format!("Mean throttle of the {name} rotors."), &data)
+    });
+    let over_voltage = plots::hover_throttle(study, &hover).map(|figure| {
+        let data = link::sweep(study, Data::Hover);
+        shown(&figure, "Mean throttles in hover against voltage.", &data)
+    });
     let power = reference.and_then(|(_, levels)| plots::power(study, levels));
     let power = power.map(|figure| {
-        shown(
-            &figure,
-            &format!("Electrical power of all rotors{at}, by the file\u{2019}s map."),
-        )
+        let at = study.at_reference();
+        let alone = if at.is_empty() {
+            ""
+        } else {
+            " The map holds at this voltage alone: power against voltage is not known."
+        };
+        let caption = format!("Electrical power of all rotors{at}, by the file\u{2019}s map.{alone}");
+        shown(&figure, &caption, &link::curves(study, "power", &figure))
     });
-    let plots: Vec<Markup> = [upper, lower]
-        .into_iter()
-        .chain(over_voltage)
-        .chain(power)
-        .collect();
+    let plots: Vec<Markup> = throttles.into_iter().chain(over_voltage).chain(power).collect();
     html! {
         p { "Level flight: thrust and no torque, as the mixer delivers it. A curve ends where the thrust is no longer delivered in full." }
         (figures(&plots))
-        (data(study, Data::Level))
-        (data(study, Data::Hover))
     }
 }
 
@@ -229,6 +204,7 @@ fn comparison_section(study: &Study<'_>) -> Markup {
             }
         };
     };
+    let curves = |figure: Figure, caption, word| shown(&figure, caption, &link::curves(study, word, &figure));
     html! {
         p {
             "A total thrust of " (shortest(comparison.thrust_n)) " N"
@@ -243,12 +219,12 @@ fn comparison_section(study: &Study<'_>) -> Markup {
             shown(
                 &plots::yaw_plane(study, &comparison),
                 "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
+                &link::sweep(study, Data::Yaw),
             ),
-            shown(&plots::yaw_thrust(&comparison), "Thrust of every unit."),
-            shown(&plots::yaw_total(&comparison), "Total thrust given."),
-            shown(&plots::yaw_error(&comparison), "Yaw given less yaw asked."),
+            curves(plots::yaw_thrust(&comparison), "Thrust of every unit.", "yaw-thrust"),
+            curves(plots::yaw_total(&comparison), "Total thrust given.", "yaw-total"),
+            curves(plots::yaw_error(&comparison), "Yaw given less yaw asked.", "yaw-error"),
         ]))
-        (data(study, Data::Yaw))
         (table::comparison(&comparison))
     }
 }
@@ -282,7 +258,8 @@ fn authority_section(study: &Study<'_>) -> Markup {
         .filter_map(|axis| plots::authority(study, &all, &cases, axis).map(|figure| (axis, figure)))
         .map(|(axis, figure)| {
             let caption = format!("{} against thrust.", ["Roll", "Pitch", "Yaw"][axis as usize]);
-            shown(&figure, &caption)
+            let data = link::curves(study, &format!("authority-{}", axis.name()), &figure);
+            shown(&figure, &caption, &data)
         })
         .collect();
     let rotor_out = if is_held {
@@ -312,7 +289,6 @@ fn authority_section(study: &Study<'_>) -> Markup {
             }
         }
         div.figures.three { @for plot in &plots { (plot) } }
-        (data(study, Data::Authority))
     }
 }
 
@@ -323,8 +299,15 @@ fn attainable_section(study: &Study<'_>) -> Markup {
         "What one unit can give. The airframe has no voltage correction."
     };
     html! {
-        (figures(&[shown(&plots::attainable(study), caption)]))
-        (data(study, Data::Attainable))
+        (figures(&[shown(&plots::attainable(study), caption, &link::sweep(study, Data::Attainable))]))
+    }
+}
+
+/// The word and the column of an effort in files.
+fn column(effort: Effort) -> (&'static str, &'static str) {
+    match effort {
+        Effort::Thrust => ("thrust", "thrust_n"),
+        Effort::Torque => ("torque", "torque_nm"),
     }
 }
 
@@ -334,15 +317,21 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     } else {
         ""
     };
+    let csv = data::sweep(study, Data::Forward).map_or_else(|_| String::new(), |sweep| sweep.csv);
     let maps = Effort::BOTH.map(|effort| {
         let quantity = effort.name();
+        let (word, column) = column(effort);
         let surface = still(
             surface::surface(study, effort, bench),
             &format!("{quantity} of one unit by the model.{points} (Fig. 3 of the paper)"),
+            &html! {},
         );
+        let columns = ["upper_throttle", "lower_throttle", column];
+        let word = format!("forward-{word}");
         let map = shown(
             &maps::forward(study, effort, bench),
             &format!("{quantity} with iso-curves. (Fig. 4)"),
+            &link::columns(study, &word, &csv, &columns, "Data of both pictures (CSV)"),
         );
         html! { (surface) (map) }
     });
@@ -350,20 +339,30 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
         let figure = maps::residuals(study, effort, bench?)?;
         let quantity = effort.name();
         let measured = quantity.to_lowercase();
+        let (word, column) = column(effort);
+        let [measured_column, model_column] = ["measured", "model"].map(|of| format!("{of}_{column}"));
+        let columns = [
+            "file_index",
+            "line",
+            "upper_throttle",
+            "lower_throttle",
+            &measured_column,
+            &model_column,
+        ];
+        let word = format!("bench-{word}");
         Some(shown(
             &figure,
             &format!(
                 "{quantity} by the model less {measured} measured, in % of the pair\u{2019}s largest; + is too much by the model."
             ),
+            &link::columns(study, &word, &data::bench(bench?), &columns, link::OF_THE_FIGURE),
         ))
     };
     let residuals: Vec<Markup> = Effort::BOTH.into_iter().filter_map(residual).collect();
     html! {
         @if let Some(bench) = bench { (bench_points(study, bench)) }
         (figures(&maps))
-        (data(study, Data::Forward))
         @if !residuals.is_empty() { (figures(&residuals)) }
-        @if let Some(bench) = bench { (csv_link(study, "bench", &data::bench(bench))) }
         (table::coefficients(study))
     }
 }
@@ -401,17 +400,23 @@ fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
 }
 
 fn inverse_section(study: &Study<'_>) -> Markup {
+    let csv = data::sweep(study, Data::Inverse).map_or_else(|_| String::new(), |sweep| sweep.csv);
     let maps = [0, 1].map(|rotor| {
+        let name = ["upper", "lower"][rotor];
+        let (word, column) = (format!("inverse-{name}"), format!("{name}_throttle"));
+        let columns = ["thrust_n", "torque_nm", &column];
         let caption = [
             "The upper rotor\u{2019}s throttle. (Fig. 5 of the paper)",
             "The lower rotor\u{2019}s throttle.",
         ][rotor];
-        shown(&maps::inverse(study, rotor), caption)
+        let data = link::columns(study, &word, &csv, &columns, link::OF_THE_FIGURE);
+        shown(&maps::inverse(study, rotor), caption, &data)
     });
-    html! { (figures(&maps)) (data(study, Data::Inverse)) }
+    html! { (figures(&maps)) }
 }
 
 fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[Alternative]) -> Markup {
+    let csv = data::sweep(study, Data::Error).map_or_else(|_| String::new(), |sweep| sweep.csv);
     let plots: Vec<Markup> = Effort::BOTH
         .into_iter()
         .zip(fields)
@@ -429,7 +434,12 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[
                 rounded_up(observed),
                 unit = effort.unit()
             );
-            shown(&maps::error(study, effort, field), &caption)
+            let word = column(effort).0;
+            let column = ["thrust_error_n", "torque_error_nm"][effort as usize];
+            let columns = ["thrust_n", "torque_nm", column];
+            let word = format!("error-{word}");
+            let data = link::columns(study, &word, &csv, &columns, link::OF_THE_FIGURE);
+            shown(&maps::error(study, effort, field), &caption, &data)
         })
         .collect();
     html! {
@@ -439,7 +449,6 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[
              proven bound."
         }
         (figures(&plots))
-        (data(study, Data::Error))
         (table::folded("All evaluators: what each is proven to miss", &table::front(study, front)))
     }
 }

@@ -70,7 +70,8 @@ pub fn summary(study: &Study<'_>, origin: &Origin) -> Markup {
                 )
             }),
     ));
-    facts.extend(airframe.pair.uncertainty.iter().map(|u| ("Pair", in_words(u))));
+    let uncertainty = airframe.pair.uncertainty.iter();
+    facts.extend(uncertainty.map(|u| ("Pair", in_words(u).replace("+-", "\u{b1}"))));
     let at_every = if airframe.voltage.is_some() {
         " at every voltage"
     } else {

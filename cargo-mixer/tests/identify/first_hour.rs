@@ -117,6 +117,36 @@ fn both_ways_give_one_airframe() {
     }
 }
 
+#[test]
+fn what_comes_next_is_said() {
+    let folder = folder("next");
+    fs::write(folder.join("map.csv"), plain(&rows(1))).expect("written");
+    let rotor = "throttle,thrust_n,torque_nm\n0.2,1,0.02\n0.4,3,0.05\n0.6,6,0.1\n0.8,10,0.17\n1,15,0.25\n";
+    fs::write(folder.join("rotor.csv"), rotor).expect("written");
+    for command in [["identify", "map.csv"], ["predict", "rotor.csv"]] {
+        for (arguments, next) in [
+            (
+                vec![],
+                "-o PAIR.toml writes the tables; nothing is written without it",
+            ),
+            (
+                vec!["-o", "pair.toml", "--force"],
+                "cargo mixer new --frame x8 --arm METRE --pair pair.toml -o AIRFRAME.toml",
+            ),
+            (
+                vec!["-o", "y6.toml", "--force", "--frame", "y6", "--arm", "0.3"],
+                "cargo mixer check y6.toml",
+            ),
+        ] {
+            let (_, err) = succeeds(&folder, &[&command[..], &arguments].concat());
+            let last = err.lines().last().expect("a line");
+            assert_eq!(last, format!("next            {next}"), "{command:?}");
+        }
+        let (_, err) = succeeds(&folder, &[&command[..], &["--json"]].concat());
+        assert!(!err.contains("next  "), "{command:?}: {err}");
+    }
+}
+
 /// The pair of another airframe, without what was chosen for its vehicle.
 #[test]
 fn a_whole_airframe_s_pair_is_taken() {

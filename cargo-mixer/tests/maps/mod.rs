@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cargo_mixer::bench_files::identify;
+use cargo_mixer::bench_files::identify_with_runs;
 use cargo_mixer::identify::IdentifyArgs;
 use clap::Parser;
 use mixer_identify::fragment;
@@ -15,23 +15,34 @@ struct Arguments {
     identify: IdentifyArgs,
 }
 
-/// The files; `None`, and a line on stderr, where the data is not there.
+/// The maps; `None`, and a line on stderr, where the data is not there.
 pub(crate) fn files(test: &str) -> Option<Vec<PathBuf>> {
+    let maps = named(test, &["map10x10"])?;
+    assert!(maps.len() >= 10, "{} maps", maps.len());
+    Some(maps)
+}
+
+/// The files with one of these words in their name, as [`files`].
+pub(crate) fn named(test: &str, words: &[&str]) -> Option<Vec<PathBuf>> {
     let Some(data) = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from) else {
         eprintln!("NOT RUN: {test} needs MIXER_BENCH_DATA");
         return None;
     };
     let folder = data.join("newdexterity");
     let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-    let mut maps: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    maps.retain(|path| path.to_string_lossy().contains("map10x10"));
-    maps.sort();
-    assert!(maps.len() >= 10, "{} maps in {}", maps.len(), folder.display());
-    Some(maps)
+    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| words.iter().any(|word| path.to_string_lossy().contains(word)));
+    files.sort();
+    Some(files)
 }
 
 /// What `cargo mixer identify MAP --basis BASIS` finds.
 pub(crate) fn identified(map: &Path, basis: &str) -> Identified {
+    with_runs(map, [None, None], basis)
+}
+
+/// [`identified`] with runs of the upper and of the lower rotor alone.
+pub(crate) fn with_runs(map: &Path, runs: [Option<&Path>; 2], basis: &str) -> Identified {
     let words = [
         "identify".into(),
         map.as_os_str().to_owned(),
@@ -41,7 +52,7 @@ pub(crate) fn identified(map: &Path, basis: &str) -> Identified {
     let arguments = Arguments::try_parse_from(words)
         .unwrap_or_else(|error| panic!("{error}"))
         .identify;
-    identify(&arguments.files, &arguments.settings())
+    identify_with_runs(&arguments.files, runs, &arguments.settings())
         .unwrap_or_else(|refusals| panic!("{}: {}", map.display(), refusals[0]))
 }
 

@@ -234,15 +234,15 @@ fn predictions_are_said_with_their_bands() {
     let document = parsed(&with);
     let rows: Vec<String> = named(document.root(), "tr").map(text_of).collect();
     let told =
-        "Pairpredicted: +- 2 % of the largest thrust, 4 % of the largest torque (one standard deviation)";
+        "Pairpredicted: \u{b1} 2 % of the largest thrust, 4 % of the largest torque (one standard deviation)";
     assert!(rows.iter().any(|row| row == told), "{rows:?}");
     assert!(with.contains("by the pair\u{2019}s uncertainty)"));
     assert!(with.contains("The pair is predicted: by one standard deviation of its uncertainty"));
     assert!(!page_of(&text).contains("predicted"));
 }
 
-/// Every section with a plot has the data of its plots, and every plot that is read is reached by
-/// the Tab key: itself or each of its curves.
+/// Every figure has the data of its own, and every plot that is read is reached by the Tab key:
+/// itself or each of its curves.
 #[test]
 fn figures_have_data_and_are_reached_by_keyboard() {
     for compiled in airframes() {
@@ -250,16 +250,30 @@ fn figures_have_data_and_are_reached_by_keyboard() {
         let study = Study::new(&compiled, None);
         let page = page(&study, None, &Origin::default());
         let document = parsed(&page);
-        for section in named(document.root(), "section") {
-            let links = named(section, "a").filter(|link| link.has_attribute("download"));
-            let has_plots = named(section, "figure").next().is_some();
-            assert_eq!(
-                links.count() > 0,
-                has_plots,
-                "{name}: {:?}",
-                section.attribute("id")
-            );
+        let (mut files, mut surfaces) = (BTreeSet::new(), 0);
+        for figure in named(document.root(), "figure") {
+            let Some(link) = named(figure, "a").find(|link| link.has_attribute("download")) else {
+                // A surface has that of the map beside it.
+                let next = figure.next_siblings().filter(Node::is_element).nth(1).unwrap();
+                assert!(text_of(next).contains("Data of both pictures (CSV)"), "{name}");
+                surfaces += 1;
+                continue;
+            };
+            let file = link.attribute("download").unwrap();
+            assert!(files.insert(file), "{name}: {file} twice");
+            let csv = link.attribute("href").unwrap().split_once(',').unwrap().1;
+            let csv = csv.replace("%0A", "\n").replace("%22", "\"").replace("%20", " ");
+            let mut reader = csv::Reader::from_reader(csv.as_bytes());
+            assert!(reader.headers().unwrap().len() >= 3, "{file}: {csv:.100}");
+            let least = if file.ends_with("-layout.csv") {
+                compiled.airframe.units.len()
+            } else {
+                41
+            };
+            let rows: Result<Vec<_>, _> = reader.records().collect();
+            assert!(rows.unwrap().len() >= least, "{file}: {csv:.100}");
         }
+        assert_eq!(surfaces, 2, "{name}");
         let read: Vec<Node> = named(document.root(), "svg")
             .filter(|svg| svg.has_attribute("data-hover"))
             .collect();
@@ -281,7 +295,7 @@ fn figures_have_data_and_are_reached_by_keyboard() {
             let outputs = named(svg.parent().unwrap(), "output").count();
             assert!(outputs >= 2, "{name}: {outputs}");
         }
-        // A link holds what the command writes.
+        // Some hold what the command writes.
         let csv = sweep(&study, Data::Attainable).unwrap().csv;
         assert!(page.contains(&csv.replace('\n', "%0A")), "{name}");
     }

@@ -50,7 +50,8 @@ pub(super) fn draw(svg: &mut String, [left, top]: [f64; 2], rows: &[Vec<(f64, &E
 
 /// A piece of a curve, or a point, 22 px wide.
 fn sample(class: &str, [x, y]: [f64; 2]) -> String {
-    if class.contains("dot") {
+    // `dotted` and `dash-dot` are lines.
+    if class.split(' ').any(|word| matches!(word, "dot" | "mark-dot")) {
         format!(
             "<circle class=\"{class}\" cx=\"{}\" cy=\"{y}\" r=\"3.5\"/>\n",
             x + 11.0

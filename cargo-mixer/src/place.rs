@@ -1,0 +1,98 @@
+//! Where the tables of a pair go that `identify` and `predict` make: a file, alone or in a whole
+//! airframe, standard output, or nowhere yet.
+
+use std::io::{Write as _, stdout};
+use std::path::Path;
+use std::process::ExitCode;
+
+use crate::frame::FrameArgs;
+use crate::{BAD_USAGE, output, print_error, print_note};
+
+/// Where the tables go, and in which form.
+pub(crate) struct Place<'a> {
+    /// The file; `-` is standard output.
+    pub(crate) output: Option<&'a Path>,
+    pub(crate) force: bool,
+    /// The frame of a whole airframe.
+    pub(crate) frame: Option<&'a FrameArgs>,
+    /// Whether the report is JSON.
+    pub(crate) json: bool,
+}
+
+impl Place<'_> {
+    fn to_stdout(&self) -> bool {
+        self.output == Some(Path::new("-"))
+    }
+
+    fn file(&self) -> Option<&Path> {
+        self.output.filter(|_| !self.to_stdout())
+    }
+
+    /// Refuses a place that cannot be written, before there is anything to write.
+    pub(crate) fn check(&self, inputs: &[&Path]) -> Result<(), ExitCode> {
+        if self.json && self.to_stdout() {
+            print_error("--json and -o - would both write to standard output");
+            return Err(ExitCode::from(BAD_USAGE));
+        }
+        match self.file() {
+            Some(path) => crate::file::writable(path, self.force, inputs.iter().copied()),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes report and tables, and says what comes next. `power_bias` is as of
+    /// [`FrameArgs::airframe`].
+    pub(crate) fn write(
+        &self,
+        report: &str,
+        tables: String,
+        power_bias: Option<f64>,
+    ) -> Result<(), ExitCode> {
+        let text = match self.frame {
+            None => tables,
+            Some(frame) => frame
+                .airframe(self.file(), &tables, power_bias)
+                .map_err(|message| {
+                    print_error(message);
+                    ExitCode::from(BAD_USAGE)
+                })?,
+        };
+        // Names, headers and cells of the bench files are in both.
+        let [report, text] = [report, &text].map(crate::printable_lines);
+        let out = if self.to_stdout() {
+            print_note(report.trim_end());
+            text.trim_end()
+        } else {
+            report.trim_end()
+        };
+        output(writeln!(stdout().lock(), "{out}"))?;
+        match self.file() {
+            Some(path) if self.frame.is_some() => {
+                let status = crate::airframe_file::write(path, &text, None);
+                if status != ExitCode::SUCCESS {
+                    return Err(status);
+                }
+                self.next(format_args!("cargo mixer check {}", path.display()));
+            }
+            Some(path) => {
+                crate::file::save(path, &text).map_err(print_error)?;
+                self.next(format_args!(
+                    "cargo mixer new --frame x8 --arm METRE --pair {} -o AIRFRAME.toml",
+                    path.display()
+                ));
+            }
+            None if !self.to_stdout() => {
+                self.next("-o PAIR.toml writes the tables; nothing is written without it");
+            }
+            None => {}
+        }
+        Ok(())
+    }
+
+    /// Says what comes next, to a person.
+    fn next(&self, what: impl std::fmt::Display) {
+        if !self.json {
+            print_note(format_args!("next            {what}"));
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! The data of figures as CSV, in links that carry them.
+
+use std::fmt::Write as _;
+
+use maud::{Markup, html};
+use mixer_compiler::diagnostic::printable;
+
+use crate::data::{self, Data};
+use crate::figure::Figure;
+use crate::study::Study;
+
+/// What such a link says.
+pub(super) const OF_THE_FIGURE: &str = "Data (CSV)";
+
+/// The curves of a figure; `word` is the end of the file's name.
+pub(super) fn curves(study: &Study<'_>, word: &str, figure: &Figure) -> Markup {
+    html! { @if let Some(csv) = figure.csv() { (link(study, word, &csv, OF_THE_FIGURE)) } }
+}
+
+/// What `cargo mixer sweep` writes.
+pub(super) fn sweep(study: &Study<'_>, of: Data) -> Markup {
+    html! {
+        @if let Ok(sweep) = data::sweep(study, of) { (link(study, of.word(), &sweep.csv, OF_THE_FIGURE)) }
+    }
+}
+
+/// Some columns of `csv`.
+pub(super) fn columns(study: &Study<'_>, word: &str, csv: &str, names: &[&str], text: &str) -> Markup {
+    link(study, word, &data::columns(csv, names), text)
+}
+
+fn link(study: &Study<'_>, word: &str, csv: &str, text: &str) -> Markup {
+    let file = format!("{}-{word}.csv", printable(&study.compiled.airframe.name));
+    let mut address = String::from("data:text/csv;charset=utf-8,");
+    for byte in csv.bytes() {
+        match byte {
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b',' | b'.' | b'-' | b'_' => {
+                address.push(char::from(byte))
+            }
+            _ => {
+                let _ = write!(address, "%{byte:02X}");
+            }
+        }
+    }
+    html! { a.data download=(file) href=(address) { (text) } }
+}
