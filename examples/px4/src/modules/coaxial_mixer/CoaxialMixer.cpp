@@ -218,9 +218,16 @@ int CoaxialMixer::task_spawn(int, char *[])
 
 int CoaxialMixer::print_status()
 {
-	PX4_INFO("%s %s, %.2f V, saturation 0x%x, rotors out 0x%x, refused %u%s", ISAE_X8_AIRFRAME, ISAE_X8_VERSION,
-		 static_cast<double>(_voltage_v), static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed), _refused,
-		 _displaced ? ", displaced by another module" : "");
+	if (_voltage_v > 0.f) {
+		PX4_INFO("%s %s, %.2f V", ISAE_X8_AIRFRAME, ISAE_X8_VERSION, static_cast<double>(_voltage_v));
+
+	} else {
+		// The airframe has no voltage law, and none was measured.
+		PX4_INFO("%s %s, no voltage", ISAE_X8_AIRFRAME, ISAE_X8_VERSION);
+	}
+
+	PX4_INFO("saturation 0x%x, rotors out 0x%x, refused %u%s", static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed),
+		 _refused, _displaced ? ", displaced by another module" : "");
 	return 0;
 }
 
