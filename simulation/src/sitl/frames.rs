@@ -38,6 +38,10 @@ impl Frames {
             if start > 0 {
                 self.skip(start);
             }
+            if self.has_unknown_flags()? {
+                self.skip(1);
+                continue;
+            }
             let length = self.length()?;
             if self.bytes.len() < length {
                 return None;
@@ -59,6 +63,12 @@ impl Frames {
         self.bytes.drain(..count);
         self.malformed += u64::from(!self.skipping);
         self.skipping = true;
+    }
+
+    /// Whether the frame at the start is one that this cannot read, or none.
+    fn has_unknown_flags(&self) -> Option<bool> {
+        let flags = *self.bytes.get(2)?;
+        Some(self.bytes[0] == V2 && flags & !SIGNED != 0)
     }
 
     /// Length of the frame at the start.
@@ -88,9 +98,6 @@ fn parse(bytes: &[u8]) -> Option<Option<(MavHeader, MavMessage)>> {
     }
     let mut raw = MAVLinkV2MessageRaw::new();
     raw.as_mut_slice()[..bytes.len()].copy_from_slice(bytes);
-    if raw.incompatibility_flags() & !SIGNED != 0 {
-        return None;
-    }
     let id = raw.message_id();
     let header = MavHeader {
         system_id: raw.system_id(),

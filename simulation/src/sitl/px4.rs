@@ -54,6 +54,8 @@ struct Px4 {
     /// Whether PX4 has ever answered.
     answers: bool,
     unanswered: u64,
+    /// Whether malformed bytes have been told of.
+    has_complained: bool,
 }
 
 /// Serves PX4 until the flight ends.
@@ -79,6 +81,7 @@ pub fn serve(
         throttles: Throttles::zeros(),
         answers: false,
         unanswered: 0,
+        has_complained: false,
     };
     let end = px4.fly(flight, sensors, rate_hz);
     flight.record.note("steps without an answer", px4.unanswered);
@@ -134,6 +137,10 @@ impl Px4 {
                     }
                 }
             }
+            if self.frames.malformed > 0 && !self.has_complained {
+                self.has_complained = true;
+                eprintln!("PX4 sends what is no MAVLink: passed over");
+            }
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
                 if self.answers {
@@ -147,13 +154,7 @@ impl Px4 {
             self.stream.set_read_timeout(Some(left)).map_err(vanished)?;
             match self.stream.read(&mut bytes) {
                 Ok(0) => return Err("PX4 has closed the connection".to_owned()),
-                Ok(count) => {
-                    let before = self.frames.malformed;
-                    self.frames.push(&bytes[..count]);
-                    if before == 0 && self.frames.malformed > 0 {
-                        eprintln!("PX4 sends what is no MAVLink: passed over");
-                    }
-                }
+                Ok(count) => self.frames.push(&bytes[..count]),
                 Err(error)
                     if matches!(
                         error.kind(),
