@@ -209,6 +209,7 @@ fn what_is_malformed_is_passed_over_and_counted() {
     }
     let end = server.end();
     assert_eq!(end.status, Some(0), "{end:?}");
+    assert!(!end.stdout.contains("without an answer"), "{end:?}");
     let counted = end
         .stdout
         .lines()
