@@ -128,7 +128,7 @@ impl Px4 {
         let deadline = Instant::now() + patience;
         let mut bytes = [0; 4096];
         loop {
-            while let Some((_, message)) = self.frames.next() {
+            for (_, message) in self.frames.by_ref() {
                 if let MavMessage::HIL_ACTUATOR_CONTROLS(controls) = message {
                     self.throttles = throttles(&controls);
                     self.answers = true;

@@ -72,7 +72,7 @@ impl Controller {
         let attitude = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
         let error = (Vector3::from(target) - position).cap_magnitude(2.0);
         let demanded = error * 2.0 - velocity * 2.4;
-        let (sin, cos) = attitude.euler_angles().2.sin_cos();
+        let (sin, cos) = libm::sincos(attitude.euler_angles().2);
         // Nose down to the front, right side down to the right.
         let [front, right] = [
             demanded.x * cos + demanded.y * sin,
@@ -108,7 +108,7 @@ impl Controller {
         while let Ok(count @ 1..) = self.stream.as_mut().unwrap().read(&mut bytes) {
             self.frames.push(&bytes[..count]);
         }
-        while let Some((_, message)) = self.frames.next() {
+        for (_, message) in self.frames.by_ref() {
             match message {
                 MavMessage::COMMAND_LONG(command) => match command.command {
                     MavCmd::MAV_CMD_DO_SET_MODE => self.mode = command.param2 as u32,
@@ -149,8 +149,8 @@ impl Controller {
             thrust: (thrust_n / full_n) as f32,
             type_mask: AttitudeTargetTypemask::empty(),
         });
-        for (message, every) in [(heartbeat, 100), (attitude, 8)] {
-            if self.steps % every == 0 {
+        for (message, every) in [(heartbeat, 100u64), (attitude, 8)] {
+            if self.steps.is_multiple_of(every) {
                 let mut raw = MAVLinkV2MessageRaw::new();
                 let header = MavHeader {
                     system_id: 1,

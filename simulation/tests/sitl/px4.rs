@@ -47,8 +47,8 @@ impl Px4 {
                 MavMessage::HIL_STATE_QUATERNION(state) => {
                     let metres = |degrees: f64| degrees.to_radians() * 6_371_000.0;
                     let north = metres(f64::from(state.lat) * 1e-7 - 47.397_742);
-                    let east =
-                        metres(f64::from(state.lon) * 1e-7 - 8.545_594) * 47.397_742f64.to_radians().cos();
+                    let east = metres(f64::from(state.lon) * 1e-7 - 8.545_594)
+                        * libm::cos(47.397_742f64.to_radians());
                     // The message has 1e-7 degrees: a centimetre.
                     let position = [north, east, 488.0 - f64::from(state.alt) * 1e-3];
                     truth = Some(Truth {
