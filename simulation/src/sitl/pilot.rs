@@ -29,6 +29,10 @@ const TARGET_S: f64 = 0.02;
 /// Setpoints that come before PX4 is asked to change to Offboard, s.
 const TARGETS_FIRST_S: f64 = 1.0;
 
+/// How ArduPilot says that its estimator has a position; it would arm before. Longest wait for it, s.
+const USES_GPS: &str = "is using GPS";
+const GPS_S: f64 = 60.0;
+
 /// Longest time until the vehicle hovers, s.
 const PATIENCE_S: f64 = 120.0;
 
@@ -74,6 +78,7 @@ pub struct Pilot {
     /// System and component of the stack, and since when they are known, s.
     peer: Option<([u8; 2], f64)>,
     armed: bool,
+    uses_gps: bool,
     mode: u32,
     heartbeat: Clock,
     command: Clock,
@@ -110,6 +115,7 @@ impl Pilot {
             phase: Phase::Arming,
             peer: None,
             armed: false,
+            uses_gps: false,
             mode: 0,
             heartbeat: Clock::default(),
             command: Clock::default(),
@@ -205,7 +211,8 @@ impl Pilot {
             }
             MavMessage::STATUSTEXT(text) => {
                 let text = text.text.to_str().unwrap_or_default().trim().to_owned();
-                if !text.is_empty() {
+                self.uses_gps |= text.ends_with(USES_GPS);
+                if !text.is_empty() && text != self.told {
                     eprintln!("{time_s:8.2} s  {text}");
                     self.told = text;
                 }
@@ -235,11 +242,15 @@ impl Pilot {
 
     fn fly(&mut self, world: &World, peer: [u8; 2], time_s: f64, since_s: f64) -> Result<(), String> {
         let height_m = -world.state.position.z;
+        let wait_s = match self.stack {
+            Stack::Ardupilot if !self.uses_gps => GPS_S,
+            _ => TARGETS_FIRST_S,
+        };
         match self.phase {
             Phase::Arming => {
                 if self.armed && self.is_guided() {
                     self.phase = Phase::Climbing(None);
-                } else if time_s > since_s + TARGETS_FIRST_S && self.command.is_due(time_s, COMMAND_S) {
+                } else if time_s > since_s + wait_s && self.command.is_due(time_s, COMMAND_S) {
                     self.arm(peer);
                 }
             }

@@ -6,7 +6,7 @@ use std::net::{TcpListener, TcpStream};
 
 use mavlink::dialects::common::{
     ATTITUDE_TARGET_DATA, AttitudeTargetTypemask, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage,
-    MavModeFlag, MavState, MavType,
+    MavModeFlag, MavSeverity, MavState, MavType, STATUSTEXT_DATA,
 };
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use mixer_compiler::{Compiled, Source};
@@ -149,7 +149,11 @@ impl Controller {
             thrust: (thrust_n / full_n) as f32,
             type_mask: AttitudeTargetTypemask::empty(),
         });
-        for (message, every) in [(heartbeat, 100u64), (attitude, 8)] {
+        let text = MavMessage::STATUSTEXT(STATUSTEXT_DATA {
+            severity: MavSeverity::MAV_SEVERITY_INFO,
+            text: "EKF3 IMU0 is using GPS".into(),
+        });
+        for (message, every) in [(heartbeat, 100u64), (attitude, 8), (text, 1000)] {
             if self.steps.is_multiple_of(every) {
                 let mut raw = MAVLinkV2MessageRaw::new();
                 let header = MavHeader {
