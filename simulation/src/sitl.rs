@@ -1,0 +1,101 @@
+//! One vehicle for the software in the loop of PX4 and ArduPilot.
+//!
+//! [`vehicle`] makes the plant of an airframe file, [`world`] has it on the ground or in the air,
+//! [`sensors`] measures it. [`px4`] and [`ardupilot`] speak the interfaces that the stacks have for outside simulators;
+//! [`pilot`] flies a [`plan`] by MAVLink; [`record`] holds the
+//! truth, [`score`] makes the table of it.
+
+pub mod ardupilot;
+pub mod arguments;
+pub mod flight;
+pub mod frames;
+pub mod link;
+pub mod pilot;
+pub mod plan;
+pub mod px4;
+pub mod record;
+pub mod score;
+pub mod sensors;
+pub mod vehicle;
+pub mod world;
+
+use std::fs::File;
+use std::net::SocketAddr;
+
+use self::arguments::Arguments;
+use self::flight::{End, Flight};
+use self::link::Link;
+use self::pilot::{Pilot, Stack};
+use self::score::Score;
+use self::sensors::Sensors;
+use self::vehicle::Vehicle;
+
+/// PX4's port of its MAVLink for an offboard computer, instance 0.
+const PX4_LINK: u16 = 14540;
+
+/// ArduPilot's first serial port, instance 0.
+const ARDUPILOT_LINK: u16 = 5760;
+
+/// Says where a stack is waited for.
+fn say(stack: Stack, address: std::io::Result<SocketAddr>) {
+    let Ok(address) = address else { return };
+    let (name, transport) = match stack {
+        Stack::Px4 => ("PX4", "TCP"),
+        Stack::Ardupilot => ("ArduPilot", "UDP"),
+    };
+    eprintln!("waiting for {name} on {transport} port {}", address.port());
+}
+
+/// Serves a stack and writes what was flown.
+///
+/// # Errors
+/// A file or a port that cannot be had, a client that vanishes, a flight that ends on the ground;
+/// what was flown until then is written.
+pub fn run(arguments: &Arguments) -> Result<(), String> {
+    let vehicle = Vehicle::new(arguments)?;
+    if let Some(failure) = arguments.fail.filter(|failure| failure.output >= vehicle.rotors) {
+        let (output, last) = (failure.output, vehicle.rotors - 1);
+        return Err(format!(
+            "--fail: there is no output {output}, the vehicle has 0 to {last}"
+        ));
+    }
+    eprintln!(
+        "{}: {} rotors, {} kg, hover at a throttle of {:.4}",
+        vehicle.name, vehicle.rotors, vehicle.mass_kg, vehicle.hover_throttle
+    );
+    let mut sensors = Sensors::new(arguments.noise, arguments.seed);
+    let (flight, end) = if arguments.px4 {
+        let link = Link::udp(arguments.link.unwrap_or(PX4_LINK))?;
+        let listener = px4::listen(arguments.port.unwrap_or(px4::PORT))?;
+        say(Stack::Px4, listener.local_addr());
+        // Without a manoeuvre, too: PX4 has its battery by this link.
+        let pilot = Pilot::new(Stack::Px4, link, arguments);
+        let mut flight = Flight::new(vehicle, Some(pilot), arguments);
+        let end = px4::serve(&listener, &mut flight, &mut sensors, arguments.rate);
+        (flight, end)
+    } else {
+        let socket = ardupilot::listen(arguments.port.unwrap_or(ardupilot::PORT))?;
+        say(Stack::Ardupilot, socket.local_addr());
+        let link = || Link::tcp(arguments.link.unwrap_or(ARDUPILOT_LINK));
+        let pilot = arguments
+            .fly
+            .map(|_| Pilot::new(Stack::Ardupilot, link(), arguments));
+        let mut flight = Flight::new(vehicle, pilot, arguments);
+        let end = ardupilot::serve(&socket, &mut flight, &mut sensors, arguments.pwm_range);
+        (flight, end)
+    };
+    if let Some(path) = &arguments.output {
+        let written = File::create(path)
+            .map_err(csv::Error::from)
+            .and_then(|file| flight.record.write(file));
+        written.map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    print!("{}", Score::new(&flight));
+    for (what, count) in &flight.record.counts {
+        println!("{what}: {count}");
+    }
+    match end? {
+        End::Done => Ok(()),
+        End::Crashed(time_s) => Err(format!("the vehicle hit the ground at {time_s:.2} s")),
+    }
+}
