@@ -190,6 +190,7 @@ fn a_client_that_vanishes_leaves_an_error_and_its_flight() {
     let end = server.end();
     assert_eq!(end.status, Some(1), "{end:?}");
     assert!(end.stderr.contains("error: PX4 has"), "{end:?}");
+    assert!(end.stderr.contains("wrote "), "{end:?}");
     // 20 ms from row to row.
     let rows = csv_rows(&end.flight).len();
     assert!((20..30).contains(&rows), "{rows}");
@@ -309,6 +310,8 @@ fn what_cannot_be_done_is_said() {
         (&["--px4", "--fail", "8@1"][..], "no output 8"),
         (&["--ardupilot", "--mass-kg", "40"], "the vehicle weighs 392.3 N"),
         (&["--px4", "--map", "nowhere.toml"], "nowhere.toml"),
+        (&["--px4", "-o", "no/such/folder.csv"], "no/such/folder.csv"),
+        (&["--px4", "-o", server::AIRFRAME], "give -o another name"),
     ] {
         let run = server::run(arguments);
         assert_eq!(run.status.code(), Some(1), "{run:?}");
