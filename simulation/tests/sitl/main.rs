@@ -306,12 +306,19 @@ fn what_cannot_be_done_is_said() {
     assert_eq!(busy.status.code(), Some(1), "{busy:?}");
     let text = String::from_utf8_lossy(&busy.stderr).into_owned();
     assert!(text.contains(&port) && text.contains("--port"), "{text}");
+    let free = ["--px4", "--port", "0", "--link", "0"];
     for (arguments, said) in [
         (&["--px4", "--fail", "8@1"][..], "no output 8"),
         (&["--ardupilot", "--mass-kg", "40"], "the vehicle weighs 392.3 N"),
         (&["--px4", "--map", "nowhere.toml"], "nowhere.toml"),
-        (&["--px4", "-o", "no/such/folder.csv"], "no/such/folder.csv"),
-        (&["--px4", "-o", server::AIRFRAME], "give -o another name"),
+        (
+            &[&free[..], &["-o", "no/such/folder.csv"]].concat(),
+            "no/such/folder.csv",
+        ),
+        (
+            &[&free[..], &["-o", server::AIRFRAME]].concat(),
+            "give -o another name",
+        ),
     ] {
         let run = server::run(arguments);
         assert_eq!(run.status.code(), Some(1), "{run:?}");
