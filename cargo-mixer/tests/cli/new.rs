@@ -196,3 +196,20 @@ fn the_stand_in_for_a_bench_has_no_row_that_stands_out() {
     let told = stdout(&output);
     assert!(told.contains("no row stands out"), "{told}");
 }
+
+/// A file that warns is written, and its warnings are of what is there.
+#[test]
+fn warnings_are_of_the_file_that_is_written() {
+    let file = path("long.toml");
+    let output = run(&["new", "--frame", "x8", "--arm", "45", "-o", &file]);
+    let told = stderr(&output);
+    assert!(output.status.success(), "{told}");
+    assert!(
+        told.contains("warning[MIX310]") && told.contains(&format!("--> {file}:26:9")),
+        "{told}"
+    );
+    assert!(
+        !told.contains("not written") && told.contains(&format!("wrote {file}")),
+        "{told}"
+    );
+}
