@@ -10,17 +10,22 @@ use crate::Refusal;
 /// Writes an airframe file that compiles; one that does not is refused with its faults, and nothing
 /// is written: they then name the file with the pair's model, if there is one.
 pub(crate) fn write(path: &Path, text: &str, model: Option<&Path>) -> ExitCode {
-    let name = match model {
-        Some(model) => format!(
-            "{} (with the pair of {}, not written)",
-            path.display(),
-            model.display()
-        ),
-        None => format!("{} (not written)", path.display()),
-    };
-    let source = Source::new(name, text);
-    match mixer_compiler::compile(&source) {
-        Err(faults) => return Refusal::Faulty(faults).report(),
+    let compile = |name: String| mixer_compiler::compile(&Source::new(name, text));
+    match compile(path.display().to_string()) {
+        Err(_) => {
+            let name = match model {
+                Some(model) => format!(
+                    "{} (with the pair of {}, not written)",
+                    path.display(),
+                    model.display()
+                ),
+                None => format!("{} (not written)", path.display()),
+            };
+            // The same faults again, of the file that there is not.
+            if let Err(faults) = compile(name) {
+                return Refusal::Faulty(faults).report();
+            }
+        }
         Ok(compiled) if !compiled.warnings.is_empty() => crate::show(&compiled.warnings),
         Ok(_) => {}
     }

@@ -10,7 +10,7 @@ use std::time::Instant;
 use mixer_compiler::Compiled;
 use mixer_compiler::checklist::Checklist;
 use mixer_compiler::cost::Cost;
-use mixer_compiler::diagnostic::{Record, Severity, printable};
+use mixer_compiler::diagnostic::{Diagnostics, Record, Severity, printable};
 use mixer_compiler::report::{Report, Summary};
 use serde::Serialize;
 
@@ -57,8 +57,11 @@ struct Failure {
 /// Runs the command.
 pub fn run(args: &CheckArgs) -> ExitCode {
     let start = Instant::now();
-    let result = crate::compile(&args.airframe);
+    let result = crate::compile_quietly(&args.airframe);
     let compile_ms = start.elapsed().as_secs_f64() * 1e3;
+    if let Ok(compiled) = &result {
+        tell(&compiled.warnings, args.verbose);
+    }
     let mut out = stdout().lock();
     match result {
         Ok(compiled) => {
@@ -107,6 +110,16 @@ pub fn run(args: &CheckArgs) -> ExitCode {
             }
             refusal.report()
         }
+    }
+}
+
+/// Warnings in full, several as a line each where the verdict is to stay on one screen.
+fn tell(warnings: &Diagnostics, in_full: bool) {
+    match warnings.faults().len() {
+        0 => {}
+        1 => crate::show(warnings),
+        _ if in_full => crate::show(warnings),
+        _ => crate::print_note(warnings.lines().join("\n")),
     }
 }
 

@@ -162,6 +162,9 @@ impl Columns {
     }
 }
 
+/// Longest line, bytes: six numbers take a hundred. A device without an end would fill the memory.
+const LONGEST_LINE: usize = 1 << 16;
+
 /// Lines that are not blank, split at commas.
 #[derive(Debug)]
 struct Lines<R> {
@@ -192,10 +195,17 @@ impl<R: Read> Lines<R> {
         const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
         loop {
             self.line.clear();
-            if self.input.read_until(b'\n', &mut self.line)? == 0 {
+            let mut input = self.input.by_ref().take(LONGEST_LINE as u64 + 1);
+            if input.read_until(b'\n', &mut self.line)? == 0 {
                 return Ok(false);
             }
             self.number += 1;
+            if self.line.len() > LONGEST_LINE {
+                return Err(io::Error::other(format!(
+                    "line {} has more than {LONGEST_LINE} bytes: setpoints are lines of numbers below {HEADER}",
+                    self.number
+                )));
+            }
             if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
                 self.line.drain(..BYTE_ORDER_MARK.len());
             }
@@ -278,6 +288,24 @@ mod tests {
         ] {
             assert_eq!(read(text), (expected.to_vec(), vec![]), "{text:?}");
         }
+    }
+
+    #[test]
+    fn a_line_without_end_is_refused() {
+        let fault = |text: String| match Setpoints::new(text.as_bytes()) {
+            Err(HeaderError::Io(error)) => error.to_string(),
+            Err(HeaderError::Bad(bad)) => panic!("{bad:?}"),
+            Ok(mut setpoints) => setpoints.read().unwrap_err().to_string(),
+        };
+        let long = "0".repeat(LONGEST_LINE + 1);
+        assert!(fault(long.clone()).starts_with("line 1 has more than 65536 bytes"));
+        assert!(fault(format!("roll_nm,pitch_nm,yaw_nm,thrust_n\n{long}")).starts_with("line 2 has"));
+        let padded = format!(
+            "{:<1$}\n1,2,3,4\n",
+            "roll_nm,pitch_nm,yaw_nm,thrust_n",
+            LONGEST_LINE - 1
+        );
+        assert_eq!(read(padded), (vec![setpoint([1.0, 2.0, 3.0, 4.0], None)], vec![]));
     }
 
     #[test]

@@ -184,6 +184,17 @@ fn require(name: &str, columns: &Columns, headers: &[String]) -> Result<(), Refu
         _ if !has_thrust => ("thrust", "thrust=HEADER"),
         _ => return Ok(()),
     };
+    let is_number = |header: &String| header.trim().parse::<f64>().is_ok();
+    if headers.iter().all(is_number) {
+        return Err(Refusal::of(
+            format!("{name}:1"),
+            format!(
+                "numbers where the names of the columns stand: {}",
+                headers.join(", ")
+            ),
+            "a first line with names and units, as upper,lower,thrust_n,torque_nm or throttle,thrust_n,torque_nm",
+        ));
+    }
     Err(Refusal::of(
         format!("{name}:1"),
         format!("no {what} column among: {}", headers.join(", ")),
@@ -358,6 +369,20 @@ mod tests {
         let text = &b"upper,lower,thrust_n,torque_nm\n1500,1700,3,4\n"[..];
         let log = read("bench.csv", text, &reading).expect("a log");
         assert_eq!(log.samples[0].throttle, [0.5, 0.75]);
+    }
+
+    #[test]
+    fn numbers_are_no_header() {
+        let refusal = read(
+            "a.csv",
+            "0.1,0.1,0.62,3e-3\n0.1,0.2,0.9,0.01\n".as_bytes(),
+            &Reading::default(),
+        );
+        let told = refusal.unwrap_err().to_string();
+        assert!(
+            told.starts_with("a.csv:1: numbers where the names of the columns stand: 0.1, 0.1, 0.62, 3e-3"),
+            "{told}"
+        );
     }
 
     #[test]

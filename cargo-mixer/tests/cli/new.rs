@@ -196,3 +196,45 @@ fn the_stand_in_for_a_bench_has_no_row_that_stands_out() {
     let told = stdout(&output);
     assert!(told.contains("no row stands out"), "{told}");
 }
+
+/// A file that warns is written, and its warnings are of what is there.
+#[test]
+fn warnings_are_of_the_file_that_is_written() {
+    let file = path("long.toml");
+    let output = run(&["new", "--frame", "x8", "--arm", "45", "-o", &file]);
+    let told = stderr(&output);
+    assert!(output.status.success(), "{told}");
+    assert!(
+        told.contains("warning[MIX310]") && told.contains(&format!("--> {file}:26:9")),
+        "{told}"
+    );
+    assert!(
+        !told.contains("not written") && told.contains(&format!("wrote {file}")),
+        "{told}"
+    );
+}
+
+/// Verdict and warnings stay on one screen; `--verbose` shows the places.
+#[test]
+fn several_warnings_are_a_line_each() {
+    let file = path("several.toml");
+    assert!(
+        run(&["new", "--frame", "x8", "--arm", "45", "-o", &file])
+            .status
+            .success()
+    );
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, text + "\n[vehicle]\nmass_kg = 300.0\n").unwrap();
+    let output = run(&["check", &file]);
+    let told = stderr(&output);
+    let is_warning = |line: &str| line.starts_with(&file) && line.contains(": warning[MIX");
+    assert!(
+        told.lines().count() >= 2 && told.lines().all(is_warning),
+        "{told}"
+    );
+    assert!(
+        stdout(&output).lines().count() + told.lines().count() <= 30,
+        "{told}"
+    );
+    assert!(stderr(&run(&["check", "--verbose", &file])).contains("   = help: "));
+}
