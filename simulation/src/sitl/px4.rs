@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 
 use super::flight::{End, Flight};
 use super::frames::{Frames, frame};
-use super::pilot::heartbeat;
+use super::messages::heartbeat;
 use super::sensors::{Sensors, place};
 use super::vehicle::Throttles;
 use super::world::World;
@@ -221,6 +221,7 @@ fn measured(world: &World, sensors: &mut Sensors, slow: bool) -> MavMessage {
         pressure_alt: air.altitude_m as f32,
         temperature: air.temperature_c as f32,
         fields_updated,
+        id: 0,
     })
 }
 
@@ -252,6 +253,9 @@ fn fix(world: &World, sensors: &mut Sensors) -> MavMessage {
         cog: (100.0 * course.rem_euclid(360.0)) as u16 % 36_000,
         fix_type: 3,
         satellites_visible: 10,
+        id: 0,
+        // Not known.
+        yaw: 0,
     })
 }
 

@@ -11,9 +11,9 @@ use rand_pcg::rand_core::SeedableRng;
 
 use super::arguments::Arguments;
 use crate::battery::Battery;
-use crate::plant::{Body, Plant};
+use crate::plant::Plant;
 use crate::state::State;
-use crate::vehicle::GRAVITY_M_S2;
+use crate::vehicle::{Body, GRAVITY_M_S2};
 
 /// Most rotors: the channels of ArduPilot's larger packet.
 pub const MOST_ROTORS: usize = 32;
