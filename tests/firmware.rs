@@ -365,7 +365,7 @@ fn random_setpoints_have_the_same_bits_as_on_the_host() {
 }
 
 /// How far a count may be from the held one where another compiler builds the firmware.
-const OTHER_COMPILER: f64 = 0.03;
+const OTHER_COMPILER: f64 = 0.05;
 
 /// The counts of `tests/counts.csv`, to the instruction and to the byte, where the same compiler
 /// builds the firmware. The requests of `tests/worst.csv` are counted, not searched for.
