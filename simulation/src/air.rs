@@ -16,8 +16,8 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
-use crate::plant::{Disturbance, UNITS};
-use crate::vehicle::{ROTORS, WEIGHT_N};
+use crate::plant::Disturbance;
+use crate::vehicle::{ROTORS, UNITS, WEIGHT_N};
 
 /// Standard deviation of a rotor's effective throttle about the commanded one.
 const MISMATCH: f64 = 0.01;
@@ -46,7 +46,7 @@ pub struct Room {
     air: Air,
     source: Pcg64Mcg,
     mismatch: SVector<f64, ROTORS>,
-    disturbance: Disturbance,
+    disturbance: Disturbance<ROTORS>,
 }
 
 impl Room {
@@ -76,13 +76,16 @@ impl Room {
     }
 
     /// The disturbance over the next `step` seconds.
-    pub fn next(&mut self, step: f64) -> Disturbance {
+    pub fn next(&mut self, step: f64) -> Disturbance<ROTORS> {
         if self.air == Air::Unsteady {
             let kept = libm::exp(-step / CORRELATION_S);
             let fresh = (1.0 - kept * kept).sqrt();
             let (source, last) = (&mut self.source, self.disturbance);
             let force = Vector3::from_fn(|_, _| FORCE_N * normal(source));
-            let flutter = SVector::<f64, UNITS>::from_fn(|_, _| FLUTTER * normal(source));
+            let mut flutter = SVector::<f64, ROTORS>::zeros();
+            flutter
+                .fixed_rows_mut::<UNITS>(0)
+                .apply(|unit| *unit = FLUTTER * normal(source));
             self.disturbance = Disturbance {
                 force_n: last.force_n * kept + force * fresh,
                 flutter: last.flutter * kept + flutter * fresh,

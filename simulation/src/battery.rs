@@ -1,33 +1,43 @@
 //! The battery: voltage falls with the charge that is drawn and, by the internal resistance, with
 //! the current.
 //!
-//! A 4S pack of 5 Ah. V = V_full - slope * charge - R I; a rotor's current goes with the cube of
-//! its throttle, as aerodynamic power goes with the cube of the speed. Hover takes some 16 A, 250
-//! W: 80 W per kilogram, which is usual for this class. None of these figures is in the paper. Both
-//! mixers measure the voltage alike and correct for it by the same law, the airframe's.
+//! V = V_full - slope * charge - R I; a rotor's current goes with the cube of its throttle, as
+//! aerodynamic power goes with the cube of the speed.
 
 use nalgebra::SVector;
 
-use crate::vehicle::ROTORS;
-
-/// Voltage of the full pack without load, V.
-const FULL_V: f64 = 16.6;
-
-/// Fall of the voltage without load per charge drawn, V/(A h): 2.6 V over 5 A h.
-const SLOPE_V_PER_AH: f64 = 0.52;
-
-/// Internal resistance with cables, ohm.
-const RESISTANCE_OHM: f64 = 0.025;
-
-/// Current of one rotor at full throttle, A.
-const FULL_THROTTLE_A: f64 = 19.0;
-
-/// Current of the pack at effective throttles in [0, 1], A.
-pub fn current_a(throttle: &SVector<f64, ROTORS>) -> f64 {
-    throttle.map(|d| FULL_THROTTLE_A * d * d * d).sum()
+/// A pack and its rotors' currents.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Battery {
+    /// Voltage of the full pack without load, V.
+    pub full_v: f64,
+    /// Fall of the voltage without load per charge drawn, V/(A h).
+    pub slope_v_per_ah: f64,
+    /// Internal resistance with cables, ohm.
+    pub resistance_ohm: f64,
+    /// Current of one rotor at full throttle, A.
+    pub full_throttle_a: f64,
 }
 
-/// Voltage under load after `charge_ah` has been drawn, V.
-pub fn voltage_v(charge_ah: f64, throttle: &SVector<f64, ROTORS>) -> f64 {
-    FULL_V - SLOPE_V_PER_AH * charge_ah - RESISTANCE_OHM * current_a(throttle)
+/// Of the paper's vehicle: a 4S pack of 5 Ah over which the voltage falls by 2.6 V. Hover takes
+/// some 16 A, 250 W: 80 W per kilogram, which is usual for this class. None of these figures is in
+/// the paper. Both mixers measure the voltage alike and correct for it by the same law, the
+/// airframe's.
+pub const PAPER: Battery = Battery {
+    full_v: 16.6,
+    slope_v_per_ah: 0.52,
+    resistance_ohm: 0.025,
+    full_throttle_a: 19.0,
+};
+
+impl Battery {
+    /// Current of the pack at effective throttles in [0, 1], A.
+    pub fn current_a<const R: usize>(&self, throttle: &SVector<f64, R>) -> f64 {
+        throttle.map(|d| self.full_throttle_a * d * d * d).sum()
+    }
+
+    /// Voltage under load after `charge_ah` has been drawn, V.
+    pub fn voltage_v<const R: usize>(&self, charge_ah: f64, throttle: &SVector<f64, R>) -> f64 {
+        self.full_v - self.slope_v_per_ah * charge_ah - self.resistance_ohm * self.current_a(throttle)
+    }
 }

@@ -9,12 +9,13 @@ use mixer_rt::SetpointError;
 use nalgebra::{SVector, Vector3, Vector4};
 
 use crate::air::{Air, Room};
+use crate::battery;
 use crate::controller::{Controller, Measurement, PERIOD_S, Tilt};
 use crate::manoeuvre::{END_S, Reference, SETTLING_S, reference};
 use crate::mixer::{Method, Mixer};
 use crate::plant::Plant;
 use crate::state::State;
-use crate::vehicle::ROTORS;
+use crate::vehicle::{BODY, ROTORS};
 
 /// Step of the plant, s.
 const STEP_S: f64 = 0.001;
@@ -78,7 +79,7 @@ pub struct Flight {
 /// # Errors
 /// A command that is not finite: see [`Lost`].
 pub fn fly(airframe: &Airframe, mixer: &Mixer, tilt: Tilt, mut room: Room) -> Result<Flight, Lost> {
-    let plant = Plant::new(airframe, room.mismatch());
+    let plant = Plant::new(airframe, BODY, battery::PAPER, room.mismatch());
     let start = reference(-SETTLING_S);
     let mut state = State::level(start.position, START_THROTTLE);
     let mut controller = Controller::new(tilt);

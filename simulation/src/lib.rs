@@ -31,6 +31,7 @@ pub mod manoeuvre;
 pub mod mixer;
 pub mod pair;
 pub mod plant;
+pub mod sitl;
 pub mod state;
 pub mod table;
 pub mod tracking;

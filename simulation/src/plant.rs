@@ -19,14 +19,11 @@
 use mixer_compiler::airframe::{Airframe, Voltage};
 use nalgebra::{Quaternion, SVector, Vector3};
 
-use crate::battery;
+use crate::battery::Battery;
 use crate::integrator::runge_kutta;
 use crate::pair::Pair;
 use crate::state::State;
-use crate::vehicle::{GRAVITY_M_S2, INERTIA_KG_M2, MASS_KG, ROTOR_LAG_S, ROTORS};
-
-/// Units of two rotors.
-pub const UNITS: usize = ROTORS / 2;
+use crate::vehicle::GRAVITY_M_S2;
 
 /// One unit as the plant sees it.
 #[derive(Clone, Debug)]
@@ -37,29 +34,51 @@ struct Unit {
     channels: [usize; 2],
 }
 
-/// What the air does beyond the bench: held over one step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Disturbance {
-    /// Force on the vehicle in the world, N.
-    pub force_n: Vector3<f64>,
-    /// Relative change of each unit's thrust.
-    pub flutter: SVector<f64, UNITS>,
+/// What of a vehicle is not in the map of its rotors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Principal moments of inertia about x, y, z, kg m2.
+    pub inertia_kg_m2: Vector3<f64>,
+    /// Time constant of a rotor's first-order lag, s.
+    pub rotor_lag_s: f64,
 }
 
-/// The vehicle.
+/// What the air does beyond the bench: held over one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disturbance<const R: usize> {
+    /// Force on the vehicle in the world, N.
+    pub force_n: Vector3<f64>,
+    /// Relative change of each unit's thrust; entries beyond the units have no effect.
+    pub flutter: SVector<f64, R>,
+}
+
+impl<const R: usize> Default for Disturbance<R> {
+    fn default() -> Self {
+        Disturbance {
+            force_n: Vector3::zeros(),
+            flutter: SVector::zeros(),
+        }
+    }
+}
+
+/// A vehicle of at most `R` rotors.
 #[derive(Clone, Debug)]
-pub struct Plant {
+pub struct Plant<const R: usize> {
     units: Vec<Unit>,
     pair: Pair,
     voltage: Option<Voltage>,
-    mismatch: SVector<f64, ROTORS>,
+    body: Body,
+    battery: Battery,
+    mismatch: SVector<f64, R>,
 }
 
-impl Plant {
-    /// The plant of `airframe`, whose channels must be 0 to 7 (those beyond stand still).
+impl<const R: usize> Plant<R> {
+    /// The plant of `airframe`, whose channels must be 0 to R - 1 (those beyond stand still).
     /// `mismatch` is each rotor's relative deviation in effective throttle, 0.01 being a rotor that
     /// turns one per cent faster than commanded.
-    pub fn new(airframe: &Airframe, mismatch: SVector<f64, ROTORS>) -> Self {
+    pub fn new(airframe: &Airframe, body: Body, battery: Battery, mismatch: SVector<f64, R>) -> Self {
         let units = airframe.units.iter().map(|unit| Unit {
             position_m: Vector3::from(unit.position_m),
             axis: Vector3::from(unit.axis),
@@ -68,19 +87,26 @@ impl Plant {
         });
         Plant {
             units: units.collect(),
-            pair: Pair::new(&airframe.pair),
+            pair: Pair::new(&airframe.pair, &airframe.throttle),
             voltage: airframe.voltage.clone(),
+            body,
+            battery,
             mismatch,
         }
     }
 
+    /// Current of the battery, A.
+    pub fn current_a(&self, state: &State<R>) -> f64 {
+        self.battery.current_a(&state.throttle)
+    }
+
     /// Voltage of the battery under the present load, V.
-    pub fn voltage_v(&self, state: &State) -> f64 {
-        battery::voltage_v(state.charge_ah, &state.throttle)
+    pub fn voltage_v(&self, state: &State<R>) -> f64 {
+        self.battery.voltage_v(state.charge_ah, &state.throttle)
     }
 
     /// Force (N) and torque (N m) of the rotors in the body.
-    pub fn rotor_wrench(&self, state: &State, flutter: &SVector<f64, UNITS>) -> (Vector3<f64>, Vector3<f64>) {
+    pub fn rotor_wrench(&self, state: &State<R>, flutter: &SVector<f64, R>) -> (Vector3<f64>, Vector3<f64>) {
         let volts = self.voltage_v(state);
         let [k_f, k_q] = match &self.voltage {
             Some(voltage) => [voltage.thrust_factor(volts), voltage.torque_factor(volts)],
@@ -100,28 +126,38 @@ impl Plant {
     /// The state `step` seconds later, `command` (throttle per channel) and `disturbance` held.
     pub fn step(
         &self,
-        state: &State,
-        command: &SVector<f64, ROTORS>,
-        disturbance: &Disturbance,
+        state: &State<R>,
+        command: &SVector<f64, R>,
+        disturbance: &Disturbance<R>,
         step: f64,
-    ) -> State {
+    ) -> State<R> {
         let target = command + command.component_mul(&self.mismatch);
         let mut next = runge_kutta(*state, step, |state| self.derivative(state, &target, disturbance));
         next.attitude = next.rotation().into_inner();
         next
     }
 
-    fn derivative(&self, state: &State, target: &SVector<f64, ROTORS>, disturbance: &Disturbance) -> State {
+    fn derivative(
+        &self,
+        state: &State<R>,
+        target: &SVector<f64, R>,
+        disturbance: &Disturbance<R>,
+    ) -> State<R> {
         let (force, torque) = self.rotor_wrench(state, &disturbance.flutter);
         let gravity = Vector3::z() * GRAVITY_M_S2;
-        let momentum = INERTIA_KG_M2.component_mul(&state.rate);
+        let Body {
+            mass_kg,
+            inertia_kg_m2,
+            rotor_lag_s,
+        } = self.body;
+        let momentum = inertia_kg_m2.component_mul(&state.rate);
         State {
             position: state.velocity,
-            velocity: gravity + (state.rotation() * force + disturbance.force_n) / MASS_KG,
+            velocity: gravity + (state.rotation() * force + disturbance.force_n) / mass_kg,
             attitude: state.attitude * Quaternion::from_imag(state.rate) * 0.5,
-            rate: (torque - state.rate.cross(&momentum)).component_div(&INERTIA_KG_M2),
-            throttle: (target - state.throttle) / ROTOR_LAG_S,
-            charge_ah: battery::current_a(&state.throttle) / 3600.0,
+            rate: (torque - state.rate.cross(&momentum)).component_div(&inertia_kg_m2),
+            throttle: (target - state.throttle) / rotor_lag_s,
+            charge_ah: self.current_a(state) / 3600.0,
         }
     }
 }

@@ -4,11 +4,9 @@ use std::ops::{Add, Mul};
 
 use nalgebra::{Quaternion, SVector, UnitQuaternion, Vector3};
 
-use crate::vehicle::ROTORS;
-
-/// State of the vehicle. World axes north, east, down; body axes forward, right, down.
+/// State of a vehicle of `R` channels. World axes north, east, down; body axes forward, right, down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
+pub struct State<const R: usize> {
     /// Position in the world, m; z is minus the altitude.
     pub position: Vector3<f64>,
     /// Velocity in the world, m/s.
@@ -18,12 +16,12 @@ pub struct State {
     /// Angular rate in the body, rad/s.
     pub rate: Vector3<f64>,
     /// Effective throttle per channel: the commanded one behind the rotor's lag.
-    pub throttle: SVector<f64, ROTORS>,
+    pub throttle: SVector<f64, R>,
     /// Charge drawn from the battery, A h.
     pub charge_ah: f64,
 }
 
-impl State {
+impl<const R: usize> State<R> {
     /// At rest and level at `position` with all rotors at `throttle` and a full battery.
     pub fn level(position: Vector3<f64>, throttle: f64) -> Self {
         State {
@@ -48,10 +46,10 @@ impl State {
     }
 }
 
-impl Add for State {
-    type Output = State;
+impl<const R: usize> Add for State<R> {
+    type Output = State<R>;
 
-    fn add(self, other: State) -> State {
+    fn add(self, other: State<R>) -> State<R> {
         State {
             position: self.position + other.position,
             velocity: self.velocity + other.velocity,
@@ -63,10 +61,10 @@ impl Add for State {
     }
 }
 
-impl Mul<f64> for State {
-    type Output = State;
+impl<const R: usize> Mul<f64> for State<R> {
+    type Output = State<R>;
 
-    fn mul(self, factor: f64) -> State {
+    fn mul(self, factor: f64) -> State<R> {
         State {
             position: self.position * factor,
             velocity: self.velocity * factor,

@@ -6,6 +6,8 @@ use mixer_compiler::airframe::Airframe;
 use mixer_compiler::diagnostic::Diagnostics;
 use nalgebra::Vector3;
 
+use crate::plant::Body;
+
 mixer_macros::airframe!("../airframes/isae-x8.toml");
 
 /// The airframe file that the mixer's tables come from.
@@ -13,6 +15,9 @@ const AIRFRAME_FILE: &str = include_str!("../../airframes/isae-x8.toml");
 
 /// Number of rotors.
 pub const ROTORS: usize = 8;
+
+/// Units of two rotors.
+pub const UNITS: usize = ROTORS / 2;
 
 /// Mass, kg (section V-B).
 pub const MASS_KG: f64 = 3.2;
@@ -29,6 +34,13 @@ pub const WEIGHT_N: f64 = MASS_KG * GRAVITY_M_S2;
 /// Time constant of a rotor's first-order lag, s. The paper gives none; 0.05 s is usual for 10 inch
 /// propellers.
 pub const ROTOR_LAG_S: f64 = 0.05;
+
+/// Mass, inertia and rotor lag of the paper's vehicle.
+pub const BODY: Body = Body {
+    mass_kg: MASS_KG,
+    inertia_kg_m2: INERTIA_KG_M2,
+    rotor_lag_s: ROTOR_LAG_S,
+};
 
 /// Reads the airframe file in f64: the plant's model of the rotors.
 ///

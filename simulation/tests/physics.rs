@@ -3,17 +3,29 @@
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::effectiveness::Effectiveness;
 use nalgebra::{DVector, SVector, Vector3, Vector4};
+use simulation::battery;
 use simulation::conventional::ConventionalMixer;
 use simulation::mixer::{Method, Mixer};
 use simulation::plant::{Disturbance, Plant};
 use simulation::state::State;
-use simulation::vehicle::{self, GRAVITY_M_S2, INERTIA_KG_M2, WEIGHT_N};
+use simulation::vehicle::{self, BODY, GRAVITY_M_S2, INERTIA_KG_M2, ROTORS, WEIGHT_N};
 
-fn nominal_plant() -> Plant {
-    Plant::new(&vehicle::airframe().unwrap(), SVector::zeros())
+fn nominal_plant() -> Plant<ROTORS> {
+    Plant::new(
+        &vehicle::airframe().unwrap(),
+        BODY,
+        battery::PAPER,
+        SVector::zeros(),
+    )
 }
 
-fn run(plant: &Plant, mut state: State, throttle: f64, step: f64, steps: usize) -> State {
+fn run(
+    plant: &Plant<ROTORS>,
+    mut state: State<ROTORS>,
+    throttle: f64,
+    step: f64,
+    steps: usize,
+) -> State<ROTORS> {
     let command = SVector::repeat(throttle);
     for _ in 0..steps {
         state = plant.step(&state, &command, &Disturbance::default(), step);
@@ -72,8 +84,8 @@ fn torque_free_rotation_conserves_angular_momentum_and_energy() {
     let mut state = State::level(Vector3::zeros(), 0.0);
     // About the middle axis, where the rotation tumbles.
     state.rate = Vector3::new(0.05, 6.0, 0.1);
-    let momentum = |state: &State| state.rotation() * INERTIA_KG_M2.component_mul(&state.rate);
-    let energy = |state: &State| 0.5 * INERTIA_KG_M2.component_mul(&state.rate).dot(&state.rate);
+    let momentum = |state: &State<ROTORS>| state.rotation() * INERTIA_KG_M2.component_mul(&state.rate);
+    let energy = |state: &State<ROTORS>| 0.5 * INERTIA_KG_M2.component_mul(&state.rate).dot(&state.rate);
     let end = run(&nominal_plant(), state, 0.0, 0.001, 10_000);
     let turned = (end.rate - state.rate).norm();
     assert!(turned > 1.0, "it must tumble for this to mean anything: {turned}");
@@ -87,7 +99,7 @@ fn torque_free_rotation_conserves_angular_momentum_and_energy() {
 fn one_millisecond_is_fine_enough() {
     // A rolling, yawing climb with unequal rotors, in steps of 1 ms and of 0.125 ms.
     let mismatch = SVector::from_fn(|k, _| 0.01 * (k as f64 - 3.0));
-    let plant = Plant::new(&vehicle::airframe().unwrap(), mismatch);
+    let plant = Plant::new(&vehicle::airframe().unwrap(), BODY, battery::PAPER, mismatch);
     let start = State::level(Vector3::zeros(), 0.4);
     let (coarse, fine) = (
         run(&plant, start, 0.6, 0.001, 1000),

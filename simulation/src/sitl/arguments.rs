@@ -1,0 +1,152 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Parser};
+
+use super::plan::Manoeuvre;
+
+/// One vehicle for the simulators of PX4 and ArduPilot
+///
+/// The plant is an airframe file: its pair's map at the battery's voltage, rotors that lag, mass and
+/// inertia. The flight stack, unpatched, connects to it by the interface that it has for outside
+/// simulators, and its outputs are the throttles of single rotors: those of the stack's own
+/// allocator and those of this project's mixer fly the same vehicle.
+#[derive(Parser, Debug)]
+#[command(name = "sitl")]
+#[command(group = ArgGroup::new("stack").required(true).args(["px4", "ardupilot"]))]
+pub struct Arguments {
+    /// The airframe file
+    pub airframe: PathBuf,
+    /// Serve PX4: MAVLink over TCP, PX4 connects
+    #[arg(long)]
+    pub px4: bool,
+    /// Serve ArduPilot: JSON over UDP, `--model JSON`
+    #[arg(long)]
+    pub ardupilot: bool,
+    /// Fly a manoeuvre by MAVLink: PX4 in Offboard, ArduPilot in Guided
+    #[arg(long, value_enum)]
+    pub fly: Option<Manoeuvre>,
+    /// Write the true flight as CSV
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Stop the rotor on an output at a time of the manoeuvre; without --fly of the simulation
+    #[arg(long, value_name = "OUTPUT@SECONDS", value_parser = failure)]
+    pub fail: Option<Failure>,
+    /// Fly the pair of another airframe file, so that the mixer's model is in error
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// Noise of the sensors as a share of the usual
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = not_negative)]
+    pub noise: f64,
+    /// Standard deviation of the rotors' throttles about the commanded ones
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = not_negative)]
+    pub spread: f64,
+    /// Seed of noise and spread
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Voltage of the battery at the start, V; without it `reference_v` of the file
+    #[arg(long, value_parser = positive)]
+    pub volts: Option<f64>,
+    /// Resistance of the battery, ohm
+    #[arg(long, value_name = "OHM", default_value_t = 0.0, value_parser = not_negative)]
+    pub resistance: f64,
+    /// Capacity of the battery, A h; without it the voltage does not fall with the charge
+    #[arg(long, value_name = "AH", value_parser = positive)]
+    pub capacity: Option<f64>,
+    /// Mass, kg, instead of the file's
+    #[arg(long, value_parser = positive)]
+    pub mass_kg: Option<f64>,
+    /// Moments of inertia, kg m2, instead of the file's
+    #[arg(long, value_name = "X,Y,Z", value_parser = inertia)]
+    pub inertia: Option<Inertia>,
+    /// Time constant of the rotors' lag, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.05, value_parser = positive)]
+    pub rotor_lag: f64,
+    /// Height to fly at, m
+    #[arg(long, value_name = "M", default_value_t = 5.0, value_parser = positive)]
+    pub height: f64,
+    /// Pulse widths of throttle 0 and 1 in ArduPilot, MOT_PWM_MIN and MOT_PWM_MAX
+    #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = pulses)]
+    pub pwm_range: Pulses,
+    /// Samples of the sensors per second for PX4; ArduPilot states its own
+    #[arg(long, value_name = "HZ", default_value_t = 250, value_parser = clap::value_parser!(u32).range(100..=1000))]
+    pub rate: u32,
+    /// Port to serve: 4560 plus PX4's instance, 9002 for ArduPilot; 0 takes a free one
+    #[arg(long)]
+    pub port: Option<u16>,
+    /// Port of the MAVLink for pilot and battery: 14540 plus PX4's instance, 5760 of ArduPilot
+    #[arg(long)]
+    pub link: Option<u16>,
+    /// Simulated over real time, at most; 0 is as fast as the stack goes
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = not_negative)]
+    pub speed: f64,
+    /// End after so much simulated time, s
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub seconds: Option<f64>,
+}
+
+/// A rotor that stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Failure {
+    /// Its output, from 0.
+    pub output: usize,
+    /// When, s.
+    pub time_s: f64,
+}
+
+/// Three moments of inertia, kg m2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertia(pub [f64; 3]);
+
+/// Pulse widths, microseconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulses(pub [f64; 2]);
+
+fn number(text: &str) -> Result<f64, String> {
+    let value: f64 = text.trim().parse().map_err(|_| "not a number".to_owned())?;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err("not a finite number".to_owned())
+    }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if value >= 0.0 => Ok(value),
+        _ => Err("must be 0 or more".to_owned()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if value > 0.0 => Ok(value),
+        _ => Err("must be above 0".to_owned()),
+    }
+}
+
+fn failure(text: &str) -> Result<Failure, String> {
+    let form = "expected OUTPUT@SECONDS, like 0@5";
+    let (output, time) = text.split_once('@').ok_or(form)?;
+    Ok(Failure {
+        output: output.trim().parse().map_err(|_| form.to_owned())?,
+        time_s: not_negative(time)?,
+    })
+}
+
+fn inertia(text: &str) -> Result<Inertia, String> {
+    let moments: Vec<f64> = text.split(',').map(positive).collect::<Result<_, _>>()?;
+    let moments = moments
+        .try_into()
+        .map_err(|_| "expected three numbers, like 0.08,0.087,0.16")?;
+    Ok(Inertia(moments))
+}
+
+fn pulses(text: &str) -> Result<Pulses, String> {
+    let widths: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    match widths[..] {
+        [low, high] if 500.0 <= low && low + 100.0 <= high && high <= 2500.0 => Ok(Pulses([low, high])),
+        _ => Err("expected two widths from 500 to 2500, like 1000,2000".to_owned()),
+    }
+}

@@ -1,0 +1,124 @@
+//! MAVLink frames out of a stream of bytes.
+
+use mavlink::dialects::common::MavMessage;
+use mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
+
+const V1: u8 = 0xfe;
+const V2: u8 = 0xfd;
+
+/// Bytes of a frame of the second version around its payload, and of the first.
+const AROUND_V2: usize = 12;
+const AROUND_V1: usize = 8;
+const SIGNATURE: usize = 13;
+
+/// Flag of a signed frame.
+const SIGNED: u8 = 1;
+
+/// Bytes that have come, and how many pieces of them were no frame.
+#[derive(Clone, Debug, Default)]
+pub struct Frames {
+    bytes: Vec<u8>,
+    /// Pieces that were skipped: no frame, or one with a wrong checksum.
+    pub malformed: u64,
+    skipping: bool,
+}
+
+impl Frames {
+    /// Takes what has come.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// The next message of the common dialect; `None` until more bytes come. Messages of other
+    /// dialects are passed over.
+    pub fn next(&mut self) -> Option<(MavHeader, MavMessage)> {
+        loop {
+            let marker = self.bytes.iter().position(|byte| matches!(*byte, V1 | V2));
+            let start = marker.unwrap_or(self.bytes.len());
+            if start > 0 {
+                self.skip(start);
+            }
+            let length = self.length()?;
+            if self.bytes.len() < length {
+                return None;
+            }
+            let Some(frame) = parse(&self.bytes[..length]) else {
+                self.skip(1);
+                continue;
+            };
+            self.bytes.drain(..length);
+            self.skipping = false;
+            if let Some(frame) = frame {
+                return Some(frame);
+            }
+        }
+    }
+
+    /// Passes over bytes; those that follow each other count once.
+    fn skip(&mut self, count: usize) {
+        self.bytes.drain(..count);
+        self.malformed += u64::from(!self.skipping);
+        self.skipping = true;
+    }
+
+    /// Length of the frame at the start.
+    fn length(&self) -> Option<usize> {
+        let payload = usize::from(*self.bytes.get(1)?);
+        if self.bytes[0] == V1 {
+            return Some(payload + AROUND_V1);
+        }
+        let is_signed = self.bytes.get(2)? & SIGNED != 0;
+        Some(payload + AROUND_V2 + if is_signed { SIGNATURE } else { 0 })
+    }
+}
+
+/// `None` of bytes that are no frame; otherwise its message, where the dialect has it.
+fn parse(bytes: &[u8]) -> Option<Option<(MavHeader, MavMessage)>> {
+    if bytes[0] == V1 {
+        let mut raw = MAVLinkV1MessageRaw::new();
+        raw.as_mut_slice()[..bytes.len()].copy_from_slice(bytes);
+        let id = u32::from(raw.message_id());
+        let header = MavHeader {
+            system_id: raw.system_id().into(),
+            component_id: raw.component_id(),
+            sequence: raw.sequence(),
+        };
+        let is_whole = raw.has_valid_crc::<MavMessage>();
+        return message(is_whole, MavlinkVersion::V1, id, header, raw.payload());
+    }
+    let mut raw = MAVLinkV2MessageRaw::new();
+    raw.as_mut_slice()[..bytes.len()].copy_from_slice(bytes);
+    if raw.incompatibility_flags() & !SIGNED != 0 {
+        return None;
+    }
+    let id = raw.message_id();
+    let header = MavHeader {
+        system_id: raw.system_id(),
+        component_id: raw.component_id(),
+        sequence: raw.sequence(),
+    };
+    let is_whole = raw.has_valid_crc::<MavMessage>();
+    message(is_whole, MavlinkVersion::V2, id, header, raw.payload())
+}
+
+fn message(
+    is_whole: bool,
+    version: MavlinkVersion,
+    id: u32,
+    header: MavHeader,
+    payload: &[u8],
+) -> Option<Option<(MavHeader, MavMessage)>> {
+    if !is_whole && MavMessage::default_message_from_id(id).is_some() {
+        return None;
+    }
+    // A value that the dialect does not have, say a command, makes a message unreadable.
+    let message = is_whole.then(|| MavMessage::parse(version, id, payload).ok());
+    Some(message.flatten().map(|message| (header, message)))
+}
+
+/// A frame of the second version.
+pub fn frame(header: MavHeader, message: &MavMessage) -> Vec<u8> {
+    let mut raw = MAVLinkV2MessageRaw::new();
+    raw.serialize_message(header, message);
+    raw.raw_bytes().to_vec()
+}

@@ -1,0 +1,414 @@
+//! The pilot: arms, takes off and flies a manoeuvre by MAVLink, as a ground station would.
+
+use mavlink::dialects::common::{
+    ATTITUDE_TARGET_DATA, BATTERY_STATUS_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA,
+    MavAutopilot, MavBatteryFunction, MavBatteryType, MavCmd, MavFrame, MavMessage, MavModeFlag, MavResult,
+    MavState, MavType, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
+
+use super::arguments::{Arguments, Failure};
+use super::link::Link;
+use super::plan::{FIRST_S, Manoeuvre, Plan, Target};
+use super::world::World;
+
+/// The flight stack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stack {
+    /// PX4
+    Px4,
+    /// ArduPilot's Copter
+    Ardupilot,
+}
+
+/// Periods, s.
+const HEARTBEAT_S: f64 = 1.0;
+const COMMAND_S: f64 = 1.0;
+const BATTERY_S: f64 = 0.05;
+const TARGET_S: f64 = 0.02;
+
+/// Setpoints that come before PX4 is asked to change to Offboard, s.
+const TARGETS_FIRST_S: f64 = 1.0;
+
+/// Longest time until the vehicle hovers, s.
+const PATIENCE_S: f64 = 120.0;
+
+/// A hover: slower than this, m/s, for so long, s.
+const STILL_M_S: f64 = 0.3;
+const STILL_S: f64 = 3.0;
+
+/// Component of a battery.
+const BATTERY: u8 = 180;
+
+/// Number of `ATTITUDE_TARGET`, and of microseconds between two.
+const ATTITUDE_TARGET: f32 = 83.0;
+const ATTITUDE_TARGET_US: f32 = 20_000.0;
+
+/// Guided mode of ArduPilot's Copter, Offboard of PX4.
+const GUIDED: u32 = 4;
+const OFFBOARD: u32 = 6;
+
+/// `FAILURE_UNIT_SYSTEM_MOTOR`, `FAILURE_TYPE_STUCK`: PX4's simulator then leaves out the motor's
+/// telemetry, which it makes up itself.
+const MOTOR: f32 = 101.0;
+const STUCK: f32 = 2.0;
+
+/// Where the flight is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    /// Until the motors are armed.
+    Arming,
+    /// Until the vehicle hovers; still since.
+    Climbing(Option<f64>),
+    /// The manoeuvre; since.
+    Flying(f64),
+}
+
+/// The pilot of a stack.
+#[derive(Debug)]
+pub struct Pilot {
+    stack: Stack,
+    link: Link,
+    plan: Option<Plan>,
+    height_m: f64,
+    failure: Option<Failure>,
+    phase: Phase,
+    /// System and component of the stack, and since when they are known, s.
+    peer: Option<([u8; 2], f64)>,
+    armed: bool,
+    mode: u32,
+    heartbeat: Clock,
+    command: Clock,
+    battery: Clock,
+    target: Clock,
+    thrust_setpoint: f64,
+    told: String,
+}
+
+/// Tells when something that is periodic is due.
+#[derive(Clone, Copy, Debug, Default)]
+struct Clock {
+    next_s: f64,
+}
+
+impl Clock {
+    fn is_due(&mut self, time_s: f64, period_s: f64) -> bool {
+        let is_due = time_s >= self.next_s;
+        if is_due {
+            self.next_s = time_s + period_s;
+        }
+        is_due
+    }
+}
+
+impl Pilot {
+    /// A pilot on a link.
+    pub fn new(stack: Stack, link: Link, arguments: &Arguments) -> Pilot {
+        let stops_by_itself = arguments.fly == Some(Manoeuvre::Failure);
+        let failure = arguments.fail.or(stops_by_itself.then_some(Failure {
+            output: 0,
+            time_s: FIRST_S,
+        }));
+        Pilot {
+            stack,
+            link,
+            plan: arguments.fly.map(Manoeuvre::plan),
+            height_m: arguments.height,
+            failure,
+            phase: Phase::Arming,
+            peer: None,
+            armed: false,
+            mode: 0,
+            heartbeat: Clock::default(),
+            command: Clock::default(),
+            battery: Clock::default(),
+            target: Clock::default(),
+            thrust_setpoint: f64::NAN,
+            told: String::new(),
+        }
+    }
+
+    /// Connects where that is to be done before the stack starts; whether it is done.
+    pub fn connect(&mut self) -> bool {
+        self.link.connect()
+    }
+
+    /// The thrust setpoint that the stack has reported last, 0 to 1; NaN before.
+    pub fn thrust_setpoint(&self) -> f64 {
+        self.thrust_setpoint
+    }
+
+    /// Time of the manoeuvre, s; `None` before.
+    pub fn manoeuvre_s(&self, time_s: f64) -> Option<f64> {
+        match self.phase {
+            Phase::Flying(since_s) => Some(time_s - since_s),
+            _ => None,
+        }
+    }
+
+    /// What is asked for at a time of the simulation.
+    pub fn wanted(&self, time_s: f64) -> Option<Target> {
+        let manoeuvre_s = self.manoeuvre_s(time_s)?;
+        self.plan.as_ref().map(|plan| plan.target(manoeuvre_s))
+    }
+
+    /// Whether the manoeuvre is over.
+    pub fn is_done(&self, time_s: f64) -> bool {
+        let end_s = self.plan.as_ref().map(|plan| plan.end_s);
+        self.manoeuvre_s(time_s)
+            .zip(end_s)
+            .is_some_and(|(now_s, end_s)| now_s >= end_s)
+    }
+
+    /// Listens, and does what is due.
+    ///
+    /// # Errors
+    /// A vehicle that does not hover in time; with what the stack has said last.
+    pub fn update(&mut self, world: &mut World) -> Result<(), String> {
+        let time_s = world.time_s();
+        self.link.connect();
+        for (header, message) in self.link.receive() {
+            self.hear(header.system_id as u8, header.component_id, message, time_s);
+        }
+        self.fail(world, time_s);
+        let Some((peer, since_s)) = self.peer else {
+            return Ok(());
+        };
+        if self.heartbeat.is_due(time_s, HEARTBEAT_S) {
+            self.link.send(&heartbeat());
+            self.command(
+                peer,
+                MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+                [ATTITUDE_TARGET, ATTITUDE_TARGET_US],
+            );
+        }
+        if self.stack == Stack::Px4 && self.battery.is_due(time_s, BATTERY_S) {
+            self.link.send_as([peer[0], BATTERY], &battery(world));
+        }
+        if self.plan.is_none() {
+            return Ok(());
+        }
+        self.fly(world, peer, time_s, since_s)
+    }
+
+    fn hear(&mut self, system: u8, component: u8, message: MavMessage, time_s: f64) {
+        match message {
+            MavMessage::HEARTBEAT(beat)
+                if beat.mavtype != MavType::MAV_TYPE_GCS
+                    && beat.autopilot != MavAutopilot::MAV_AUTOPILOT_INVALID =>
+            {
+                self.peer.get_or_insert(([system, component], time_s));
+                self.armed = beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
+                self.mode = match self.stack {
+                    Stack::Px4 => (beat.custom_mode >> 16) & 0xff,
+                    Stack::Ardupilot => beat.custom_mode,
+                };
+            }
+            MavMessage::ATTITUDE_TARGET(ATTITUDE_TARGET_DATA { thrust, .. }) => {
+                self.thrust_setpoint = thrust.into();
+            }
+            MavMessage::STATUSTEXT(text) => {
+                let text = text.text.to_str().unwrap_or_default().trim().to_owned();
+                if !text.is_empty() {
+                    eprintln!("{time_s:8.2} s  {text}");
+                    self.told = text;
+                }
+            }
+            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result })
+                if result != MavResult::MAV_RESULT_ACCEPTED
+                    && command != MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL
+                    && command != MavCmd::MAV_CMD_COMPONENT_ARM_DISARM =>
+            {
+                eprintln!("{time_s:8.2} s  {command:?}: {result:?}");
+            }
+            _ => {}
+        }
+    }
+
+    /// Stops the rotor when its time has come.
+    fn fail(&mut self, world: &mut World, time_s: f64) {
+        let clock_s = match self.plan {
+            Some(_) => self.manoeuvre_s(time_s),
+            None => Some(time_s),
+        };
+        let Some(failure) = self
+            .failure
+            .filter(|failure| clock_s.is_some_and(|now| now >= failure.time_s))
+        else {
+            return;
+        };
+        self.failure = None;
+        world.stop(failure.output);
+        eprintln!("{time_s:8.2} s  the rotor on output {} stops", failure.output);
+        if let (Stack::Px4, Some((peer, _))) = (self.stack, self.peer) {
+            let motor = failure.output as f32 + 1.0;
+            self.long(
+                peer,
+                MavCmd::MAV_CMD_INJECT_FAILURE,
+                [MOTOR, STUCK, motor, 0.0, 0.0, 0.0, 0.0],
+            );
+        }
+    }
+
+    fn fly(&mut self, world: &World, peer: [u8; 2], time_s: f64, since_s: f64) -> Result<(), String> {
+        let height_m = -world.state.position.z;
+        match self.phase {
+            Phase::Arming => {
+                if self.armed && self.is_guided() {
+                    self.phase = Phase::Climbing(None);
+                } else if time_s > since_s + TARGETS_FIRST_S && self.command.is_due(time_s, COMMAND_S) {
+                    self.arm(peer);
+                }
+            }
+            Phase::Climbing(still_since_s) => {
+                let is_still = height_m > 0.5 * self.height_m && world.state.velocity.norm() < STILL_M_S;
+                let still_since_s = is_still.then(|| still_since_s.unwrap_or(time_s));
+                self.phase = Phase::Climbing(still_since_s);
+                if still_since_s.is_some_and(|since_s| time_s - since_s > STILL_S) {
+                    eprintln!("{time_s:8.2} s  hovers at {height_m:.2} m");
+                    self.phase = Phase::Flying(time_s);
+                } else if world.on_ground && self.command.is_due(time_s, COMMAND_S) {
+                    match self.stack {
+                        Stack::Ardupilot if self.armed => {
+                            let height = self.height_m as f32;
+                            self.long(
+                                peer,
+                                MavCmd::MAV_CMD_NAV_TAKEOFF,
+                                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height],
+                            );
+                        }
+                        _ if !self.armed => self.phase = Phase::Arming,
+                        _ => {}
+                    }
+                }
+            }
+            Phase::Flying(_) => {}
+        }
+        if !matches!(self.phase, Phase::Flying(_)) && time_s - since_s > PATIENCE_S {
+            let told = match self.told.as_str() {
+                "" => String::new(),
+                told => format!(", which said last: {told}"),
+            };
+            let state = if self.armed { "armed" } else { "not armed" };
+            return Err(format!(
+                "no hover within {PATIENCE_S} s, the stack is {state}{told}"
+            ));
+        }
+        // ArduPilot's take-off ends with the first of them.
+        let takes_targets = self.stack == Stack::Px4 || matches!(self.phase, Phase::Flying(_));
+        if takes_targets && self.target.is_due(time_s, TARGET_S) {
+            let target = self.wanted(time_s).unwrap_or_default();
+            self.link.send(&position(target, self.height_m, peer, time_s));
+        }
+        Ok(())
+    }
+
+    fn is_guided(&self) -> bool {
+        self.mode
+            == match self.stack {
+                Stack::Px4 => OFFBOARD,
+                Stack::Ardupilot => GUIDED,
+            }
+    }
+
+    /// Asks for the mode, then for armed motors.
+    fn arm(&mut self, peer: [u8; 2]) {
+        if self.is_guided() {
+            self.command(peer, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0]);
+        } else {
+            let mode = match self.stack {
+                Stack::Px4 => OFFBOARD,
+                Stack::Ardupilot => GUIDED,
+            };
+            // 1: the mode is one of the stack's own.
+            self.command(peer, MavCmd::MAV_CMD_DO_SET_MODE, [1.0, mode as f32]);
+        }
+    }
+
+    fn command(&mut self, peer: [u8; 2], command: MavCmd, [a, b]: [f32; 2]) {
+        self.long(peer, command, [a, b, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    }
+
+    fn long(&mut self, [system, component]: [u8; 2], command: MavCmd, parameters: [f32; 7]) {
+        let [param1, param2, param3, param4, param5, param6, param7] = parameters;
+        self.link.send(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+            param1,
+            param2,
+            param3,
+            param4,
+            param5,
+            param6,
+            param7,
+            command,
+            target_system: system,
+            target_component: component,
+            confirmation: 0,
+        }));
+    }
+}
+
+/// Of a ground station.
+pub fn heartbeat() -> MavMessage {
+    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        custom_mode: 0,
+        mavtype: MavType::MAV_TYPE_GCS,
+        autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
+        base_mode: MavModeFlag::empty(),
+        system_status: MavState::MAV_STATE_ACTIVE,
+        mavlink_version: 3,
+    })
+}
+
+fn position(target: Target, height_m: f64, [system, component]: [u8; 2], time_s: f64) -> MavMessage {
+    use PositionTargetTypemask as Mask;
+    let velocity = Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE;
+    let acceleration = Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_AZ_IGNORE;
+    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+        time_boot_ms: (time_s * 1e3) as u32,
+        x: target.offset.x as f32,
+        y: target.offset.y as f32,
+        z: -(height_m + target.offset.z) as f32,
+        vx: 0.0,
+        vy: 0.0,
+        vz: 0.0,
+        afx: 0.0,
+        afy: 0.0,
+        afz: 0.0,
+        yaw: target.yaw_deg.to_radians() as f32,
+        yaw_rate: 0.0,
+        type_mask: velocity | acceleration | Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE,
+        target_system: system,
+        target_component: component,
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+    })
+}
+
+/// Cells of a pack by its voltage, as far as the message has place for them.
+fn cells(volts: f64) -> usize {
+    (volts / 4.25).ceil().clamp(1.0, 10.0) as usize
+}
+
+fn battery(world: &World) -> MavMessage {
+    let (volts, charge_ah) = (world.voltage_v(), world.state.charge_ah);
+    let cells = cells(world.vehicle.battery.full_v);
+    let mut voltages = [u16::MAX; 10];
+    voltages[..cells].fill((1e3 * volts / cells as f64).round() as u16);
+    let left = world
+        .vehicle
+        .capacity_ah
+        .map_or(1.0, |capacity_ah| (1.0 - charge_ah / capacity_ah).max(0.0));
+    MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
+        current_consumed: (1e3 * charge_ah) as i32,
+        energy_consumed: -1,
+        temperature: 2500,
+        voltages,
+        current_battery: (100.0 * world.current_a()) as i16,
+        id: 0,
+        battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
+        mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
+        battery_remaining: (100.0 * left) as i8,
+    })
+}

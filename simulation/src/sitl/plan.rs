@@ -1,0 +1,100 @@
+//! The manoeuvres: which position and heading are asked for, and when.
+
+use clap::ValueEnum;
+use nalgebra::Vector3;
+
+/// What is flown once the vehicle hovers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Manoeuvre {
+    /// Hover for 30 s
+    Hover,
+    /// Steps of 3 m in height and of 4 m to the north, there and back
+    Steps,
+    /// Four steps of 90 and four of 175 degrees in heading
+    Yaw,
+    /// Four sidesteps of 6 m, the first two with a step of 90 degrees in heading
+    Sidestep,
+    /// Output 0 stops, or that of --fail; then a step of 90 degrees in heading, there and back
+    Failure,
+}
+
+/// What is asked for, in the axes of the vehicle's start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Target {
+    /// North and east, and above the height of the hover, m.
+    pub offset: Vector3<f64>,
+    /// Heading, degrees.
+    pub yaw_deg: f64,
+}
+
+/// Targets from a time of the manoeuvre on, and its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// (s, target), in the order of time.
+    pub steps: Vec<(f64, Target)>,
+    /// s
+    pub end_s: f64,
+}
+
+/// Time of the first step, s: before it the hover is measured.
+pub const FIRST_S: f64 = 5.0;
+
+/// Time from one step to the next, s.
+pub const BETWEEN_S: f64 = 8.0;
+
+impl Manoeuvre {
+    /// When what is asked for.
+    pub fn plan(self) -> Plan {
+        let targets: &[[f64; 4]] = match self {
+            Manoeuvre::Hover => {
+                return Plan {
+                    steps: Vec::new(),
+                    end_s: 30.0,
+                };
+            }
+            Manoeuvre::Steps => &[
+                [0.0, 0.0, 3.0, 0.0],
+                [0.0, 0.0, 0.0, 0.0],
+                [4.0, 0.0, 0.0, 0.0],
+                [0.0, 0.0, 0.0, 0.0],
+            ],
+            Manoeuvre::Yaw => &[
+                [0.0, 0.0, 0.0, 90.0],
+                [0.0, 0.0, 0.0, 0.0],
+                [0.0, 0.0, 0.0, -90.0],
+                [0.0, 0.0, 0.0, 0.0],
+                [0.0, 0.0, 0.0, 175.0],
+                [0.0, 0.0, 0.0, 0.0],
+                [0.0, 0.0, 0.0, -175.0],
+                [0.0, 0.0, 0.0, 0.0],
+            ],
+            Manoeuvre::Sidestep => &[
+                [0.0, 6.0, 0.0, 90.0],
+                [0.0, 0.0, 0.0, 0.0],
+                [0.0, 6.0, 0.0, 0.0],
+                [0.0, 0.0, 0.0, 0.0],
+            ],
+            // The rotor stops at the first time.
+            Manoeuvre::Failure => &[[0.0; 4], [0.0, 0.0, 0.0, 90.0], [0.0; 4]],
+        };
+        let steps = targets
+            .iter()
+            .zip(0u32..)
+            .map(|(&[north, east, up, yaw_deg], k)| {
+                let offset = Vector3::new(north, east, up);
+                (FIRST_S + BETWEEN_S * f64::from(k), Target { offset, yaw_deg })
+            });
+        Plan {
+            steps: steps.collect(),
+            end_s: FIRST_S + BETWEEN_S * targets.len() as f64,
+        }
+    }
+}
+
+impl Plan {
+    /// The target at a time of the manoeuvre, s.
+    pub fn target(&self, time_s: f64) -> Target {
+        let begun = self.steps.iter().rev().find(|(start_s, _)| *start_s <= time_s);
+        begun.map(|(_, target)| *target).unwrap_or_default()
+    }
+}

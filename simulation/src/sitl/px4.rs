@@ -1,0 +1,285 @@
+//! PX4's interface for outside simulators: MAVLink's HIL messages over TCP, in lockstep.
+//!
+//! PX4 (`simulator_mavlink`) connects. Each `HIL_SENSOR` sets its clock; it answers with
+//! `HIL_ACTUATOR_CONTROLS` once all of its modules have run. The first frames go without an answer:
+//! PX4 gives none before its modules are up.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::time::{Duration, Instant};
+
+use mavlink::MavHeader;
+use mavlink::dialects::common::{
+    HIL_ACTUATOR_CONTROLS_DATA, HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA,
+    HilSensorUpdatedFlags, MavMessage, MavModeFlag,
+};
+use nalgebra::Vector3;
+
+use super::flight::{End, Flight};
+use super::frames::{Frames, frame};
+use super::pilot::heartbeat;
+use super::sensors::{Sensors, place};
+use super::vehicle::Throttles;
+use super::world::World;
+
+/// Samples per second of magnetometer and barometer, and of the satellite receiver.
+const SLOW_HZ: u32 = 50;
+const FIX_HZ: u32 = 10;
+
+/// Longest wait for an answer, in real time.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Outputs in a message.
+const OUTPUTS: usize = 16;
+
+/// PX4's port of a simulator for instance 0.
+pub const PORT: u16 = 4560;
+
+/// A port that PX4 may connect to.
+///
+/// # Errors
+/// A port that is taken.
+pub fn listen(port: u16) -> Result<TcpListener, String> {
+    TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| {
+        format!("TCP port {port} for PX4: {error}; end what uses it, or give --port another one and start PX4 as that instance")
+    })
+}
+
+/// The connection to PX4.
+struct Px4 {
+    stream: TcpStream,
+    frames: Frames,
+    sequence: u8,
+    throttles: Throttles,
+    /// Whether PX4 has ever answered.
+    answers: bool,
+    unanswered: u64,
+}
+
+/// Serves PX4 until the flight ends.
+///
+/// # Errors
+/// A client that vanishes, a pilot who gives up.
+pub fn serve(
+    listener: &TcpListener,
+    flight: &mut Flight,
+    sensors: &mut Sensors,
+    rate_hz: u32,
+) -> Result<End, String> {
+    let (stream, _) = listener
+        .accept()
+        .map_err(|error| format!("no connection from PX4: {error}"))?;
+    // Small frames, each of which the other side waits for.
+    let _ = stream.set_nodelay(true);
+    eprintln!("PX4 has connected");
+    let mut px4 = Px4 {
+        stream,
+        frames: Frames::default(),
+        sequence: 0,
+        throttles: Throttles::zeros(),
+        answers: false,
+        unanswered: 0,
+    };
+    let end = px4.fly(flight, sensors, rate_hz);
+    flight.record.note("steps without an answer", px4.unanswered);
+    flight.record.note("malformed pieces", px4.frames.malformed);
+    end
+}
+
+impl Px4 {
+    fn fly(&mut self, flight: &mut Flight, sensors: &mut Sensors, rate_hz: u32) -> Result<End, String> {
+        let period_us = 1_000_000 / u64::from(rate_hz);
+        self.send(&heartbeat())?;
+        for sample in 0u64.. {
+            if let Some(end) = flight.advance(&self.throttles, period_us)? {
+                return Ok(end);
+            }
+            let is_due = |hz: u32| sample % u64::from(rate_hz / hz) == 0;
+            let world = &flight.world;
+            if is_due(FIX_HZ) {
+                let message = fix(world, sensors);
+                self.send(&message)?;
+            }
+            self.send(&truth(world))?;
+            let message = measured(world, sensors, is_due(SLOW_HZ));
+            self.send(&message)?;
+            self.answer(world.time_us, Duration::from_micros(period_us))?;
+        }
+        Ok(End::Done)
+    }
+
+    fn send(&mut self, message: &MavMessage) -> Result<(), String> {
+        let header = MavHeader {
+            system_id: 1,
+            component_id: 51,
+            sequence: self.sequence,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        self.stream.write_all(&frame(header, message)).map_err(vanished)
+    }
+
+    /// Waits for the outputs that follow the sample of `time_us`. Before PX4 answers at all, it is
+    /// given real time to start.
+    fn answer(&mut self, time_us: u64, period: Duration) -> Result<(), String> {
+        let patience = if self.answers { PATIENCE } else { period };
+        let deadline = Instant::now() + patience;
+        let mut bytes = [0; 4096];
+        loop {
+            while let Some((_, message)) = self.frames.next() {
+                if let MavMessage::HIL_ACTUATOR_CONTROLS(controls) = message {
+                    self.throttles = throttles(&controls);
+                    self.answers = true;
+                    if controls.time_usec >= time_us {
+                        return Ok(());
+                    }
+                }
+            }
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                if self.answers {
+                    self.unanswered += 1;
+                    if self.unanswered == 1 {
+                        eprintln!("PX4 has not answered within {} s: going on", PATIENCE.as_secs());
+                    }
+                }
+                return Ok(());
+            }
+            self.stream.set_read_timeout(Some(left)).map_err(vanished)?;
+            match self.stream.read(&mut bytes) {
+                Ok(0) => return Err("PX4 has closed the connection".to_owned()),
+                Ok(count) => {
+                    let before = self.frames.malformed;
+                    self.frames.push(&bytes[..count]);
+                    if before == 0 && self.frames.malformed > 0 {
+                        eprintln!("PX4 sends what is no MAVLink: passed over");
+                    }
+                }
+                Err(error)
+                    if matches!(
+                        error.kind(),
+                        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+                    ) => {}
+                Err(error) => return Err(vanished(error)),
+            }
+        }
+    }
+}
+
+fn vanished(error: std::io::Error) -> String {
+    format!("PX4 has gone: {error}")
+}
+
+/// PX4's outputs, all at rest unless it is armed.
+fn throttles(controls: &HIL_ACTUATOR_CONTROLS_DATA) -> Throttles {
+    let armed = controls.mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
+    Throttles::from_fn(|output, _| {
+        if armed && output < OUTPUTS {
+            f64::from(controls.controls[output])
+        } else {
+            0.0
+        }
+    })
+}
+
+fn floats(vector: &Vector3<f64>) -> [f32; 3] {
+    [vector.x as f32, vector.y as f32, vector.z as f32]
+}
+
+fn measured(world: &World, sensors: &mut Sensors, slow: bool) -> MavMessage {
+    use HilSensorUpdatedFlags as Updated;
+    let inertial = sensors.inertial(world);
+    let [xacc, yacc, zacc] = floats(&inertial.acceleration);
+    let [xgyro, ygyro, zgyro] = floats(&inertial.rate);
+    let mut fields_updated = Updated::HIL_SENSOR_UPDATED_XACC
+        | Updated::HIL_SENSOR_UPDATED_YACC
+        | Updated::HIL_SENSOR_UPDATED_ZACC
+        | Updated::HIL_SENSOR_UPDATED_XGYRO
+        | Updated::HIL_SENSOR_UPDATED_YGYRO
+        | Updated::HIL_SENSOR_UPDATED_ZGYRO;
+    if slow {
+        fields_updated |= Updated::HIL_SENSOR_UPDATED_XMAG
+            | Updated::HIL_SENSOR_UPDATED_YMAG
+            | Updated::HIL_SENSOR_UPDATED_ZMAG
+            | Updated::HIL_SENSOR_UPDATED_ABS_PRESSURE
+            | Updated::HIL_SENSOR_UPDATED_PRESSURE_ALT
+            | Updated::HIL_SENSOR_UPDATED_TEMPERATURE;
+    }
+    let [xmag, ymag, zmag] = floats(&sensors.field(world));
+    let air = sensors.air(world);
+    MavMessage::HIL_SENSOR(HIL_SENSOR_DATA {
+        time_usec: world.time_us,
+        xacc,
+        yacc,
+        zacc,
+        xgyro,
+        ygyro,
+        zgyro,
+        xmag,
+        ymag,
+        zmag,
+        abs_pressure: air.pressure_hpa as f32,
+        diff_pressure: 0.0,
+        pressure_alt: air.altitude_m as f32,
+        temperature: air.temperature_c as f32,
+        fields_updated,
+    })
+}
+
+/// Degrees in units of 1e-7, and millimetres.
+fn scaled([latitude, longitude, altitude]: [f64; 3]) -> [i32; 3] {
+    [latitude * 1e7, longitude * 1e7, altitude * 1e3].map(|value| value.round() as i32)
+}
+
+fn centimetres(velocity: &Vector3<f64>) -> [i16; 3] {
+    [velocity.x, velocity.y, velocity.z].map(|speed| (100.0 * speed).round() as i16)
+}
+
+fn fix(world: &World, sensors: &mut Sensors) -> MavMessage {
+    let fix = sensors.fix(world);
+    let [lat, lon, alt] = scaled(fix.place);
+    let [vn, ve, vd] = centimetres(&fix.velocity);
+    let course = libm::atan2(fix.velocity.y, fix.velocity.x).to_degrees();
+    MavMessage::HIL_GPS(HIL_GPS_DATA {
+        time_usec: world.time_us,
+        lat,
+        lon,
+        alt,
+        eph: 30,
+        epv: 40,
+        vel: (100.0 * fix.velocity.norm()) as u16,
+        vn,
+        ve,
+        vd,
+        cog: (100.0 * course.rem_euclid(360.0)) as u16 % 36_000,
+        fix_type: 3,
+        satellites_visible: 10,
+    })
+}
+
+fn truth(world: &World) -> MavMessage {
+    let state = &world.state;
+    let q = state.attitude;
+    let [rollspeed, pitchspeed, yawspeed] = floats(&state.rate);
+    let [lat, lon, alt] = scaled(place(&state.position));
+    let [vx, vy, vz] = centimetres(&state.velocity);
+    // In thousandths of the standard gravity.
+    let [xacc, yacc, zacc] = floats(&(world.specific_force * (1e3 / 9.806_65))).map(|a| a as i16);
+    MavMessage::HIL_STATE_QUATERNION(HIL_STATE_QUATERNION_DATA {
+        time_usec: world.time_us,
+        attitude_quaternion: [q.w as f32, q.i as f32, q.j as f32, q.k as f32],
+        rollspeed,
+        pitchspeed,
+        yawspeed,
+        lat,
+        lon,
+        alt,
+        vx,
+        vy,
+        vz,
+        ind_airspeed: 0,
+        true_airspeed: 0,
+        xacc,
+        yacc,
+        zacc,
+    })
+}

@@ -1,0 +1,128 @@
+//! What the sensors of the vehicle measure, with noise.
+//!
+//! Sizes of the noise are those of PX4's jMAVSim, rounded; biases are left out.
+
+use nalgebra::Vector3;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::SeedableRng;
+
+use super::world::World;
+
+/// Standard deviations at a share of 1.
+const ACCELERATION_M_S2: f64 = 0.05;
+const RATE_RAD_S: f64 = 0.01;
+const FIELD_GAUSS: f64 = 0.005;
+const PRESSURE_HPA: f64 = 0.01;
+const POSITION_M: f64 = 0.1;
+const VELOCITY_M_S: f64 = 0.05;
+
+/// Home: latitude and longitude, degrees, and altitude over the sea, m.
+pub const HOME: [f64; 3] = [47.397_742, 8.545_594, 488.0];
+
+/// The earth's field there, gauss, north, east, down.
+const FIELD: Vector3<f64> = Vector3::new(0.214_75, 0.007_97, 0.428_17);
+
+/// Radius of the earth, m.
+const EARTH_M: f64 = 6_371_000.0;
+
+/// Of a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertial {
+    /// Specific force in the body, m/s2.
+    pub acceleration: Vector3<f64>,
+    /// Angular rate in the body, rad/s.
+    pub rate: Vector3<f64>,
+}
+
+/// Of the air.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Air {
+    /// Pressure, hPa.
+    pub pressure_hpa: f64,
+    /// Altitude over the sea that it stands for, m.
+    pub altitude_m: f64,
+    /// Temperature, degrees Celsius.
+    pub temperature_c: f64,
+}
+
+/// Of a satellite receiver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fix {
+    /// Latitude and longitude, degrees; altitude, m.
+    pub place: [f64; 3],
+    /// Velocity, m/s, north, east, down.
+    pub velocity: Vector3<f64>,
+}
+
+/// The sensors and their noise.
+#[derive(Clone, Debug)]
+pub struct Sensors {
+    share: f64,
+    source: Pcg64Mcg,
+}
+
+impl Sensors {
+    /// Sensors with a share of the usual noise; equal seeds give equal noise.
+    pub fn new(share: f64, seed: u64) -> Sensors {
+        Sensors {
+            share,
+            // Another sequence than that of the rotors' spread.
+            source: Pcg64Mcg::seed_from_u64(seed ^ 0x5e_45_05),
+        }
+    }
+
+    fn noise(&mut self, size: f64) -> Vector3<f64> {
+        let size = self.share * size;
+        Vector3::from_fn(|_, _| size * normal(&mut self.source))
+    }
+
+    /// Accelerometer and gyroscope.
+    pub fn inertial(&mut self, world: &World) -> Inertial {
+        Inertial {
+            acceleration: world.specific_force + self.noise(ACCELERATION_M_S2),
+            rate: world.state.rate + self.noise(RATE_RAD_S),
+        }
+    }
+
+    /// Magnetometer, gauss in the body.
+    pub fn field(&mut self, world: &World) -> Vector3<f64> {
+        world.state.rotation().inverse() * FIELD + self.noise(FIELD_GAUSS)
+    }
+
+    /// Barometer, by the standard atmosphere.
+    pub fn air(&mut self, world: &World) -> Air {
+        let altitude = HOME[2] - world.state.position.z;
+        let pressure_hpa = 1013.25 * libm::pow(1.0 - 2.255_77e-5 * altitude, 5.255_88)
+            + self.share * PRESSURE_HPA * normal(&mut self.source);
+        Air {
+            pressure_hpa,
+            altitude_m: (1.0 - libm::pow(pressure_hpa / 1013.25, 1.0 / 5.255_88)) / 2.255_77e-5,
+            temperature_c: 15.0 - 0.0065 * altitude,
+        }
+    }
+
+    /// Satellite receiver.
+    pub fn fix(&mut self, world: &World) -> Fix {
+        let position = world.state.position + self.noise(POSITION_M);
+        Fix {
+            place: place(&position),
+            velocity: world.state.velocity + self.noise(VELOCITY_M_S),
+        }
+    }
+}
+
+/// Latitude and longitude in degrees and altitude in m of a position north, east, down of home.
+pub fn place(position: &Vector3<f64>) -> [f64; 3] {
+    let [latitude, longitude, altitude] = HOME;
+    let east = position.y / (EARTH_M * libm::cos(latitude.to_radians()));
+    [
+        latitude + (position.x / EARTH_M).to_degrees(),
+        longitude + east.to_degrees(),
+        altitude - position.z,
+    ]
+}
+
+fn normal(source: &mut Pcg64Mcg) -> f64 {
+    StandardNormal.sample(source)
+}

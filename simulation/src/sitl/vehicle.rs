@@ -1,0 +1,188 @@
+//! The vehicle that flies: an airframe file, and what the flags say of it.
+
+use std::path::Path;
+
+use mixer_compiler::Source;
+use mixer_compiler::airframe::Airframe;
+use nalgebra::{SVector, Vector3};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::SeedableRng;
+
+use super::arguments::Arguments;
+use crate::battery::Battery;
+use crate::plant::{Body, Plant};
+use crate::state::State;
+use crate::vehicle::GRAVITY_M_S2;
+
+/// Most rotors: the channels of ArduPilot's larger packet.
+pub const MOST_ROTORS: usize = 32;
+
+/// A throttle per channel.
+pub type Throttles = SVector<f64, MOST_ROTORS>;
+
+/// Share of the mass at the units where the file has no inertia: so the paper's X8 has its own
+/// within 1 %.
+const MASS_AT_UNITS: f64 = 0.25;
+
+/// Least radius of gyration, m: what a single unit, all of it in the middle, is given.
+const LEAST_GYRATION_M: f64 = 0.05;
+
+/// Power in hover per mass where the file has no `[pair.power]`, W/kg: as the paper's vehicle.
+const HOVER_W_PER_KG: f64 = 80.0;
+
+/// Share of its voltage by which a pack falls over its capacity, without load: 4.2 V to 3.54 V per
+/// cell.
+const FALL_OVER_CAPACITY: f64 = 0.157;
+
+/// Voltage where neither the file nor a flag has one, V.
+const ANY_VOLTAGE_V: f64 = 16.0;
+
+/// The vehicle.
+#[derive(Clone, Debug)]
+pub struct Vehicle {
+    /// Its name.
+    pub name: String,
+    /// Rotors of all units: channels 0 to `rotors` - 1.
+    pub rotors: usize,
+    /// The plant.
+    pub plant: Plant<MOST_ROTORS>,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// The battery.
+    pub battery: Battery,
+    /// Charge of the full pack, A h; `None` where its voltage does not fall.
+    pub capacity_ah: Option<f64>,
+    /// Throttle of all rotors that carries the weight, by the map that is flown at the voltage of the start.
+    pub hover_throttle: f64,
+}
+
+impl Vehicle {
+    /// Reads the airframe, and that of `--map`.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is refused; a mass that nobody states or that is too much.
+    pub fn new(arguments: &Arguments) -> Result<Vehicle, String> {
+        let own = read(&arguments.airframe)?;
+        let mut flown = own.clone();
+        if let Some(path) = &arguments.map {
+            let other = read(path)?;
+            flown.pair = other.pair;
+            flown.throttle = other.throttle;
+        }
+        let rotors = own.rotors();
+        if rotors > MOST_ROTORS {
+            return Err(format!(
+                "{rotors} rotors: the stacks have outputs for {MOST_ROTORS}"
+            ));
+        }
+        let path = arguments.airframe.display();
+        let mass_kg = arguments
+            .mass_kg
+            .or(own.vehicle.as_ref().map(|vehicle| vehicle.mass_kg))
+            .ok_or_else(|| format!("{path} has no [vehicle] mass_kg: add it, or give --mass-kg"))?;
+        let stated = own.vehicle.as_ref().and_then(|vehicle| vehicle.inertia_kg_m2);
+        let inertia_kg_m2 = match (arguments.inertia, stated) {
+            (Some(inertia), _) => Vector3::from(inertia.0),
+            (None, Some(inertia)) => Vector3::from(inertia),
+            (None, None) => inertia(&own, mass_kg),
+        };
+        let body = Body {
+            mass_kg,
+            inertia_kg_m2,
+            rotor_lag_s: arguments.rotor_lag,
+        };
+        let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference_v);
+        let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
+        let mut battery = Battery {
+            full_v,
+            slope_v_per_ah: arguments
+                .capacity
+                .map_or(0.0, |capacity| FALL_OVER_CAPACITY * full_v / capacity),
+            resistance_ohm: 0.0,
+            full_throttle_a: 0.0,
+        };
+        let mismatch = spread(arguments.spread, arguments.seed, rotors);
+        // Without resistance first: the throttle in hover sets the current.
+        let rough = Plant::new(&flown, body, battery, mismatch);
+        let hover_throttle = hover(&rough, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))?;
+        let power_w = own
+            .power_w(&vec![hover_throttle; rotors])
+            .unwrap_or(HOVER_W_PER_KG * mass_kg);
+        let cube = hover_throttle * hover_throttle * hover_throttle;
+        battery.full_throttle_a = power_w / (full_v * rotors as f64 * cube);
+        battery.resistance_ohm = arguments.resistance;
+        let plant = Plant::new(&flown, body, battery, mismatch);
+        let hover_throttle = hover(&plant, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))?;
+        Ok(Vehicle {
+            name: own.name,
+            rotors,
+            plant,
+            mass_kg,
+            battery,
+            capacity_ah: arguments.capacity,
+            hover_throttle,
+        })
+    }
+
+    /// Weight, N.
+    pub fn weight_n(&self) -> f64 {
+        self.mass_kg * GRAVITY_M_S2
+    }
+}
+
+fn read(path: &Path) -> Result<Airframe, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Airframe::read(&Source::new(path.display().to_string(), text)).map_err(|faults| faults.to_string())
+}
+
+/// Moments of inertia with [`MASS_AT_UNITS`] of the mass as points at the units.
+fn inertia(airframe: &Airframe, mass_kg: f64) -> Vector3<f64> {
+    let each = MASS_AT_UNITS * mass_kg / airframe.units.len() as f64;
+    let at_units = airframe.units.iter().map(|unit| {
+        let [x, y, z] = unit.position_m;
+        Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y) * each
+    });
+    let least = mass_kg * LEAST_GYRATION_M * LEAST_GYRATION_M;
+    at_units.sum::<Vector3<f64>>().map(|moment| moment.max(least))
+}
+
+/// Each rotor's relative deviation of the effective throttle.
+fn spread(size: f64, seed: u64, rotors: usize) -> Throttles {
+    let mut source = Pcg64Mcg::seed_from_u64(seed);
+    Throttles::from_fn(|rotor, _| {
+        let deviate: f64 = StandardNormal.sample(&mut source);
+        if rotor < rotors { size * deviate } else { 0.0 }
+    })
+}
+
+/// All rotors at one throttle.
+pub fn alike(throttle: f64, rotors: usize) -> Throttles {
+    Throttles::from_fn(|rotor, _| if rotor < rotors { throttle } else { 0.0 })
+}
+
+/// Throttle of all rotors that carries the weight.
+fn hover(plant: &Plant<MOST_ROTORS>, rotors: usize, mass_kg: f64) -> Result<f64, String> {
+    let lift = |throttle: f64| {
+        let mut state = State::level(Vector3::zeros(), 0.0);
+        state.throttle = alike(throttle, rotors);
+        -plant.rotor_wrench(&state, &SVector::zeros()).0.z
+    };
+    let weight = mass_kg * GRAVITY_M_S2;
+    if lift(1.0) <= weight {
+        return Err(format!(
+            "the rotors lift {:.1} N at full throttle, the vehicle weighs {weight:.1} N: a smaller mass, or other rotors",
+            lift(1.0)
+        ));
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        (low, high) = if lift(middle) < weight {
+            (middle, high)
+        } else {
+            (low, middle)
+        };
+    }
+    Ok(0.5 * (low + high))
+}
