@@ -2,7 +2,8 @@
 //!
 //! [`vehicle`] makes the plant of an airframe file, [`world`] has it on the ground or in the air,
 //! [`sensors`] measures it. [`px4`] speaks the interface that the stack has for outside simulators;
-//! [`pilot`] flies a [`plan`] by MAVLink; [`record`] holds the truth.
+//! [`pilot`] flies a [`plan`] by MAVLink; [`record`] holds the
+//! truth, [`score`] makes the table of it.
 
 pub mod arguments;
 pub mod flight;
@@ -12,6 +13,7 @@ pub mod pilot;
 pub mod plan;
 pub mod px4;
 pub mod record;
+pub mod score;
 pub mod sensors;
 pub mod vehicle;
 pub mod world;
@@ -22,6 +24,7 @@ use self::arguments::Arguments;
 use self::flight::{End, Flight};
 use self::link::Link;
 use self::pilot::{Pilot, Stack};
+use self::score::Score;
 use self::sensors::Sensors;
 use self::vehicle::Vehicle;
 
@@ -60,6 +63,10 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
             .and_then(|file| flight.record.write(file));
         written.map_err(|error| format!("{}: {error}", path.display()))?;
     }
+    print!(
+        "{}",
+        Score::new(&flight.record, &flight.world.vehicle, flight.pilot.as_ref())
+    );
     for (what, count) in &flight.record.counts {
         println!("{what}: {count}");
     }

@@ -71,6 +71,7 @@ pub struct Pilot {
     plan: Option<Plan>,
     height_m: f64,
     failure: Option<Failure>,
+    failed_s: Option<f64>,
     phase: Phase,
     /// System and component of the stack, and since when they are known, s.
     peer: Option<([u8; 2], f64)>,
@@ -114,6 +115,7 @@ impl Pilot {
             plan: arguments.fly.map(Manoeuvre::plan),
             height_m: arguments.height,
             failure,
+            failed_s: None,
             phase: Phase::Arming,
             peer: None,
             armed: false,
@@ -143,6 +145,16 @@ impl Pilot {
             Phase::Flying(since_s) => Some(time_s - since_s),
             _ => None,
         }
+    }
+
+    /// The manoeuvre; `None` where none is flown.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.plan.as_ref()
+    }
+
+    /// Time of the manoeuvre, or without one of the simulation, at which a rotor stopped, s.
+    pub fn failed_s(&self) -> Option<f64> {
+        self.failed_s
     }
 
     /// What is asked for at a time of the simulation.
@@ -237,6 +249,7 @@ impl Pilot {
             return;
         };
         self.failure = None;
+        self.failed_s = clock_s;
         world.stop(failure.output);
         eprintln!("{time_s:8.2} s  the rotor on output {} stops", failure.output);
         if let (Stack::Px4, Some((peer, _))) = (self.stack, self.peer) {

@@ -17,6 +17,9 @@ const PRESSURE_HPA: f64 = 0.01;
 const POSITION_M: f64 = 0.1;
 const VELOCITY_M_S: f64 = 0.05;
 
+/// Least share for magnetometer and barometer: PX4 takes readings for stale that do not change.
+const LEAST_SHARE: f64 = 0.02;
+
 /// Home: latitude and longitude, degrees, and altitude over the sea, m.
 pub const HOME: [f64; 3] = [47.397_742, 8.545_594, 488.0];
 
@@ -73,28 +76,27 @@ impl Sensors {
     }
 
     fn noise(&mut self, size: f64) -> Vector3<f64> {
-        let size = self.share * size;
         Vector3::from_fn(|_, _| size * normal(&mut self.source))
     }
 
     /// Accelerometer and gyroscope.
     pub fn inertial(&mut self, world: &World) -> Inertial {
         Inertial {
-            acceleration: world.specific_force + self.noise(ACCELERATION_M_S2),
-            rate: world.state.rate + self.noise(RATE_RAD_S),
+            acceleration: world.specific_force + self.noise(self.share * ACCELERATION_M_S2),
+            rate: world.state.rate + self.noise(self.share * RATE_RAD_S),
         }
     }
 
     /// Magnetometer, gauss in the body.
     pub fn field(&mut self, world: &World) -> Vector3<f64> {
-        world.state.rotation().inverse() * FIELD + self.noise(FIELD_GAUSS)
+        world.state.rotation().inverse() * FIELD + self.noise(self.share.max(LEAST_SHARE) * FIELD_GAUSS)
     }
 
     /// Barometer, by the standard atmosphere.
     pub fn air(&mut self, world: &World) -> Air {
         let altitude = HOME[2] - world.state.position.z;
         let pressure_hpa = 1013.25 * libm::pow(1.0 - 2.255_77e-5 * altitude, 5.255_88)
-            + self.share * PRESSURE_HPA * normal(&mut self.source);
+            + self.share.max(LEAST_SHARE) * PRESSURE_HPA * normal(&mut self.source);
         Air {
             pressure_hpa,
             altitude_m: (1.0 - libm::pow(pressure_hpa / 1013.25, 1.0 / 5.255_88)) / 2.255_77e-5,
@@ -104,10 +106,10 @@ impl Sensors {
 
     /// Satellite receiver.
     pub fn fix(&mut self, world: &World) -> Fix {
-        let position = world.state.position + self.noise(POSITION_M);
+        let position = world.state.position + self.noise(self.share * POSITION_M);
         Fix {
             place: place(&position),
-            velocity: world.state.velocity + self.noise(VELOCITY_M_S),
+            velocity: world.state.velocity + self.noise(self.share * VELOCITY_M_S),
         }
     }
 }

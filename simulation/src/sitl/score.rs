@@ -1,0 +1,344 @@
+//! The table of a flight: what the steps of the manoeuvre cost, from the truth.
+//!
+//! Errors are against the mean of the second before a step, so that a bias of the stack's estimator
+//! is no error of its mixer.
+
+use std::fmt;
+
+use super::pilot::Pilot;
+use super::plan::{BETWEEN_S, FIRST_S, Plan, Target};
+use super::record::{Record, Sample};
+use super::vehicle::Vehicle;
+
+/// Time before a step over which the state is averaged, and after it for the root mean square, s.
+const BEFORE_S: f64 = 1.0;
+const RMS_S: f64 = 3.0;
+
+/// Time before the first step that counts as hover, s.
+const HOVER_S: f64 = 3.0;
+
+/// Steps of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Kind: size of the step.
+    pub name: String,
+    /// What was measured of each.
+    pub steps: Vec<Step>,
+}
+
+/// What is measured of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Step {
+    /// Time to 90 % of the step, s; of the largest part where there are more. NaN if never.
+    pub rise_s: f64,
+    /// Overshoot, percent of the step.
+    pub overshoot_percent: f64,
+    /// Height error, m: the largest, and rms over 3 s. NaN where the height is to change.
+    pub height_most_m: f64,
+    /// See `height_most_m`.
+    pub height_rms_m: f64,
+    /// Largest and least thrust over weight.
+    pub thrust_most: f64,
+    /// See `thrust_most`.
+    pub thrust_least: f64,
+    /// Largest roll or pitch, degrees.
+    pub tilt_deg: f64,
+}
+
+/// The hover before the first step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hover {
+    /// Mean thrust setpoint of the stack.
+    pub thrust_setpoint: f64,
+    /// Mean throttle of all rotors.
+    pub throttle: f64,
+    /// Standard deviation of the height, m.
+    pub height_m: f64,
+    /// Mean voltage, V.
+    pub voltage_v: f64,
+}
+
+/// After a rotor has stopped, until the next step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AfterFailure {
+    /// Largest change of roll or pitch, degrees.
+    pub tilt_deg: f64,
+    /// Largest change of heading, degrees.
+    pub yaw_deg: f64,
+    /// Largest change of height, m.
+    pub height_m: f64,
+}
+
+/// The table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Score {
+    /// Throttle in hover by the map that was flown.
+    pub model_throttle: f64,
+    /// `None` where the flight did not come to it.
+    pub hover: Option<Hover>,
+    /// One row per kind of step.
+    pub rows: Vec<Row>,
+    /// `None` where no rotor stopped, or the flight ended at once.
+    pub failure: Option<AfterFailure>,
+}
+
+impl Score {
+    /// Measures a record; only steps that were flown to their end count.
+    pub fn new(record: &Record, vehicle: &Vehicle, pilot: Option<&Pilot>) -> Score {
+        let mut score = Score {
+            model_throttle: vehicle.hover_throttle,
+            hover: None,
+            rows: Vec::new(),
+            failure: None,
+        };
+        let Some(plan) = pilot.and_then(Pilot::plan) else {
+            return score;
+        };
+        let hover_end_s = plan.steps.first().map_or(plan.end_s, |_| FIRST_S);
+        let flight = Flown(record);
+        let hover_begin_s = if plan.steps.is_empty() {
+            0.0
+        } else {
+            hover_end_s - HOVER_S
+        };
+        score.hover = flight.hover(hover_begin_s, hover_end_s);
+        for (k, (begin_s, target)) in plan.steps.iter().enumerate() {
+            let before = if k == 0 {
+                Target::default()
+            } else {
+                plan.steps[k - 1].1
+            };
+            let Some(name) = name(&before, target) else {
+                continue;
+            };
+            let Some(step) = flight.step(*begin_s, &before, target, vehicle.weight_n()) else {
+                continue;
+            };
+            match score.rows.iter_mut().find(|row| row.name == name) {
+                Some(row) => row.steps.push(step),
+                None => score.rows.push(Row {
+                    name,
+                    steps: vec![step],
+                }),
+            }
+        }
+        score.failure = pilot
+            .and_then(Pilot::failed_s)
+            .and_then(|failed_s| flight.after_failure(failed_s, plan));
+        score
+    }
+}
+
+/// Name of a step; `None` where nothing changes.
+fn name(from: &Target, to: &Target) -> Option<String> {
+    let mut parts = Vec::new();
+    let offset = to.offset - from.offset;
+    if offset.z != 0.0 {
+        parts.push(format!("{} m in height", offset.z.abs()));
+    }
+    if offset.xy().norm() > 0.0 {
+        parts.push(format!("{} m sideways", offset.xy().norm()));
+    }
+    if to.yaw_deg != from.yaw_deg {
+        parts.push(format!("{} deg in yaw", (to.yaw_deg - from.yaw_deg).abs()));
+    }
+    (!parts.is_empty()).then(|| parts.join(", "))
+}
+
+struct Flown<'a>(&'a Record);
+
+impl Flown<'_> {
+    /// Samples of the manoeuvre from `begin_s` to `end_s`.
+    fn between(&self, begin_s: f64, end_s: f64) -> impl Iterator<Item = (f64, &Sample)> + Clone {
+        let timed = self
+            .0
+            .samples
+            .iter()
+            .filter_map(|sample| Some((sample.manoeuvre_s?, sample)));
+        timed.filter(move |(time_s, _)| (begin_s..end_s).contains(time_s))
+    }
+
+    fn hover(&self, begin_s: f64, end_s: f64) -> Option<Hover> {
+        let over =
+            |of: &dyn Fn(&Sample) -> f64| mean(self.between(begin_s, end_s).map(|(_, sample)| of(sample)));
+        let height_m = over(&height)?;
+        let square = |sample: &Sample| (height(sample) - height_m) * (height(sample) - height_m);
+        Some(Hover {
+            thrust_setpoint: over(&|sample| sample.thrust_setpoint)?,
+            throttle: over(&|sample| sample.throttles.iter().sum::<f64>() / sample.throttles.len() as f64)?,
+            height_m: over(&square)?.sqrt(),
+            voltage_v: over(&|sample| sample.voltage_v)?,
+        })
+    }
+
+    fn step(&self, begin_s: f64, from: &Target, to: &Target, weight_n: f64) -> Option<Step> {
+        let end_s = begin_s + BETWEEN_S;
+        let is_flown = self.between(end_s - 0.1, end_s).next().is_some();
+        let before = self.between(begin_s - BEFORE_S, begin_s);
+        let over = |of: &dyn Fn(&Sample) -> f64| mean(before.clone().map(|(_, sample)| of(sample)));
+        if !is_flown {
+            return None;
+        }
+        let height_m = over(&height)?;
+        let window = || self.between(begin_s, end_s);
+        let error = |sample: &Sample| (height(sample) - height_m).abs();
+        let offset = to.offset - from.offset;
+        let is_level = offset.z == 0.0;
+        let soon = self
+            .between(begin_s, begin_s + RMS_S)
+            .map(|(_, sample)| error(sample) * error(sample));
+        let share = |sample: &Sample| sample.thrust_n / weight_n;
+        let mut step = Step {
+            rise_s: f64::NAN,
+            overshoot_percent: 0.0,
+            height_most_m: if is_level {
+                most(window().map(|(_, sample)| error(sample)))
+            } else {
+                f64::NAN
+            },
+            height_rms_m: if is_level { mean(soon)?.sqrt() } else { f64::NAN },
+            thrust_most: most(window().map(|(_, sample)| share(sample))),
+            thrust_least: -most(window().map(|(_, sample)| -share(sample))),
+            tilt_deg: most(window().map(|(_, sample)| tilt_deg(sample, [0.0; 2]))),
+        };
+        let turn = to.yaw_deg - from.yaw_deg;
+        let (north, east) = (
+            over(&|sample| sample.position.x)?,
+            over(&|sample| sample.position.y)?,
+        );
+        let yaw =
+            over(&|sample| wrapped(sample.euler.z - from.yaw_deg.to_radians()))? + from.yaw_deg.to_radians();
+        let progress = |sample: &Sample, last: f64| {
+            if offset.xy().norm() > 0.0 {
+                let moved = [sample.position.x - north, sample.position.y - east];
+                (moved[0] * offset.x + moved[1] * offset.y) / offset.xy().norm_squared()
+            } else if !is_level {
+                (height(sample) - height_m) / offset.z
+            } else {
+                // Continuous: a step of 175 degrees may overshoot 180.
+                let turned = wrapped(sample.euler.z - yaw).to_degrees() / turn;
+                let round = 360.0 / turn.abs();
+                turned + round * ((last - turned) / round).round()
+            }
+        };
+        let mut last = 0.0;
+        let mut furthest = 0.0f64;
+        for (time_s, sample) in window() {
+            last = progress(sample, last);
+            furthest = furthest.max(last);
+            if last >= 0.9 && step.rise_s.is_nan() {
+                step.rise_s = time_s - begin_s;
+            }
+        }
+        step.overshoot_percent = 100.0 * (furthest - 1.0).max(0.0);
+        Some(step)
+    }
+
+    fn after_failure(&self, failed_s: f64, plan: &Plan) -> Option<AfterFailure> {
+        let next = plan
+            .steps
+            .iter()
+            .map(|(begin_s, _)| *begin_s)
+            .find(|begin_s| *begin_s > failed_s + 0.1);
+        let end_s = next.unwrap_or(plan.end_s);
+        let before = self.between(failed_s - BEFORE_S, failed_s);
+        let over = |of: &dyn Fn(&Sample) -> f64| mean(before.clone().map(|(_, sample)| of(sample)));
+        let (height_m, roll, pitch) = (
+            over(&height)?,
+            over(&|sample| sample.euler.x)?,
+            over(&|sample| sample.euler.y)?,
+        );
+        let first = before.clone().next()?.1.euler.z;
+        let yaw = first + over(&|sample| wrapped(sample.euler.z - first))?;
+        let window = || self.between(failed_s, end_s).map(|(_, sample)| sample);
+        window().next()?;
+        Some(AfterFailure {
+            tilt_deg: most(window().map(|sample| tilt_deg(sample, [roll, pitch]))),
+            yaw_deg: most(window().map(|sample| wrapped(sample.euler.z - yaw).to_degrees().abs())),
+            height_m: most(window().map(|sample| (height(sample) - height_m).abs())),
+        })
+    }
+}
+
+fn height(sample: &Sample) -> f64 {
+    -sample.position.z
+}
+
+/// The larger of roll and pitch from where they were, degrees.
+fn tilt_deg(sample: &Sample, [roll, pitch]: [f64; 2]) -> f64 {
+    let [a, b] = [sample.euler.x - roll, sample.euler.y - pitch];
+    a.abs().max(b.abs()).to_degrees()
+}
+
+/// An angle in (-pi, pi], rad.
+fn wrapped(angle: f64) -> f64 {
+    libm::atan2(libm::sin(angle), libm::cos(angle))
+}
+
+/// `None` of nothing.
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
+    (count > 0.0).then(|| sum / count)
+}
+
+fn most(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::NEG_INFINITY, f64::max)
+}
+
+impl fmt::Display for Score {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(hover) = &self.hover {
+            writeln!(
+                f,
+                "hover: thrust setpoint {:.4}, throttle {:.4} (model {:.4}), height {:.3} m rms, {:.2} V",
+                hover.thrust_setpoint, hover.throttle, self.model_throttle, hover.height_m, hover.voltage_v
+            )?;
+        }
+        if let Some(failure) = &self.failure {
+            writeln!(
+                f,
+                "after the rotor has stopped: roll or pitch {:.2} deg, yaw {:.2} deg, height {:.3} m at most",
+                failure.tilt_deg, failure.yaw_deg, failure.height_m
+            )?;
+        }
+        if self.rows.is_empty() {
+            return Ok(());
+        }
+        writeln!(f)?;
+        writeln!(
+            f,
+            "| step, mean of n | n | time to 90 %, s | overshoot, % | height error, most, m | rms over 3 s, m \
+             | thrust over weight, most | least | roll or pitch, most, deg |"
+        )?;
+        writeln!(f, "|---|---:|---:|---:|---:|---:|---:|---:|---:|")?;
+        for Row { name, steps } in &self.rows {
+            let over = |of: fn(&Step) -> f64| mean(steps.iter().map(of)).unwrap_or(f64::NAN);
+            writeln!(
+                f,
+                "| {name} | {} | {} | {} | {} | {} | {} | {} | {} |",
+                steps.len(),
+                Cell(over(|step| step.rise_s), 3),
+                Cell(over(|step| step.overshoot_percent), 1),
+                Cell(over(|step| step.height_most_m), 3),
+                Cell(over(|step| step.height_rms_m), 3),
+                Cell(over(|step| step.thrust_most), 3),
+                Cell(over(|step| step.thrust_least), 3),
+                Cell(over(|step| step.tilt_deg), 2),
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// A number with so many decimals, or nothing.
+struct Cell(f64, usize);
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_nan() {
+            f.write_str("-")
+        } else {
+            write!(f, "{:.*}", self.1, self.0)
+        }
+    }
+}
