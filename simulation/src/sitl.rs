@@ -1,10 +1,11 @@
 //! One vehicle for the software in the loop of PX4 and ArduPilot.
 //!
 //! [`vehicle`] makes the plant of an airframe file, [`world`] has it on the ground or in the air,
-//! [`sensors`] measures it. [`px4`] speaks the interface that the stack has for outside simulators;
+//! [`sensors`] measures it. [`px4`] and [`ardupilot`] speak the interfaces that the stacks have for outside simulators;
 //! [`pilot`] flies a [`plan`] by MAVLink; [`record`] holds the
 //! truth, [`score`] makes the table of it.
 
+pub mod ardupilot;
 pub mod arguments;
 pub mod flight;
 pub mod frames;
@@ -19,6 +20,7 @@ pub mod vehicle;
 pub mod world;
 
 use std::fs::File;
+use std::net::SocketAddr;
 
 use self::arguments::Arguments;
 use self::flight::{End, Flight};
@@ -30,6 +32,19 @@ use self::vehicle::Vehicle;
 
 /// PX4's port of its MAVLink for an offboard computer, instance 0.
 const PX4_LINK: u16 = 14540;
+
+/// ArduPilot's first serial port, instance 0.
+const ARDUPILOT_LINK: u16 = 5760;
+
+/// Says where a stack is waited for.
+fn say(stack: Stack, address: std::io::Result<SocketAddr>) {
+    let Ok(address) = address else { return };
+    let (name, transport) = match stack {
+        Stack::Px4 => ("PX4", "TCP"),
+        Stack::Ardupilot => ("ArduPilot", "UDP"),
+    };
+    eprintln!("waiting for {name} on {transport} port {}", address.port());
+}
 
 /// Serves a stack and writes what was flown.
 ///
@@ -49,14 +64,26 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         vehicle.name, vehicle.rotors, vehicle.mass_kg, vehicle.hover_throttle
     );
     let mut sensors = Sensors::new(arguments.noise, arguments.seed);
-    let link = Link::udp(arguments.link.unwrap_or(PX4_LINK))?;
-    let listener = px4::listen(arguments.port.unwrap_or(px4::PORT))?;
-    let pilot = Pilot::new(Stack::Px4, link, arguments);
-    let mut flight = Flight::new(vehicle, Some(pilot), arguments);
-    if let Ok(address) = listener.local_addr() {
-        eprintln!("waiting for PX4 on TCP port {}", address.port());
-    }
-    let end = px4::serve(&listener, &mut flight, &mut sensors, arguments.rate);
+    let (flight, end) = if arguments.px4 {
+        let link = Link::udp(arguments.link.unwrap_or(PX4_LINK))?;
+        let listener = px4::listen(arguments.port.unwrap_or(px4::PORT))?;
+        say(Stack::Px4, listener.local_addr());
+        // Without a manoeuvre, too: PX4 has its battery by this link.
+        let pilot = Pilot::new(Stack::Px4, link, arguments);
+        let mut flight = Flight::new(vehicle, Some(pilot), arguments);
+        let end = px4::serve(&listener, &mut flight, &mut sensors, arguments.rate);
+        (flight, end)
+    } else {
+        let socket = ardupilot::listen(arguments.port.unwrap_or(ardupilot::PORT))?;
+        say(Stack::Ardupilot, socket.local_addr());
+        let link = || Link::tcp(arguments.link.unwrap_or(ARDUPILOT_LINK));
+        let pilot = arguments
+            .fly
+            .map(|_| Pilot::new(Stack::Ardupilot, link(), arguments));
+        let mut flight = Flight::new(vehicle, pilot, arguments);
+        let end = ardupilot::serve(&socket, &mut flight, &mut sensors, arguments.pwm_range);
+        (flight, end)
+    };
     if let Some(path) = &arguments.output {
         let written = File::create(path)
             .map_err(csv::Error::from)

@@ -64,6 +64,20 @@ impl Flight {
         Ok((is_over || is_flown).then_some(End::Done))
     }
 
+    /// Puts the vehicle back to its start, for a stack that has started anew. Time goes on.
+    ///
+    /// # Errors
+    /// A manoeuvre: its pilot's stack has gone.
+    pub fn restart(&mut self) -> Result<(), String> {
+        if self.pilot.is_some() {
+            return Err("the stack has started anew, its flight is over".to_owned());
+        }
+        let time_us = self.world.time_us;
+        self.world = World::new(self.world.vehicle.clone());
+        self.world.time_us = time_us;
+        Ok(())
+    }
+
     /// Lets real time catch up.
     fn wait(&mut self, time_s: f64) {
         if self.speed <= 0.0 {
