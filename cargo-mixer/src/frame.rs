@@ -192,7 +192,7 @@ impl FrameArgs {
             Some(Stack::Ardupilot) => {
                 "airmode = \"roll-pitch\"                 # ArduPilot asks for roll and pitch at any throttle\n"
             }
-            _ => "airmode = \"disabled\"                   # or \"roll-pitch\", \"roll-pitch-yaw\", with PX4's meaning\n",
+            _ => "airmode = \"disabled\"                   # or \"roll-pitch\": the thrust may rise for roll and pitch; PX4's words\n",
         });
         if let Some(axes) = axes {
             let _ = writeln!(text, "{axes}");

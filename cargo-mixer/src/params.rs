@@ -9,7 +9,8 @@ use mixer_compiler::Compiled;
 use mixer_identify::wording::wrapped;
 
 use crate::bench_args::{PulseRange, pwm_range};
-use crate::stack::{Parameter, Parameters, Stack, Value, ardupilot, px4};
+use crate::stack::px4::{self, Currents};
+use crate::stack::{Parameter, Parameters, Stack, Value, ardupilot};
 
 /// Writes an airframe's parameters for a flight stack, each with its reason
 ///
@@ -147,11 +148,15 @@ fn parameters(args: &ParamsArgs, compiled: &Compiled) -> Result<Parameters, Stri
     };
     match (args.stack, args.own) {
         (Stack::Px4, own) => {
+            let currents = match args.format {
+                Format::Parameters => Currents::Measured,
+                Format::Airframe => Currents::Simulated,
+            };
             add(only(px4::geometry(compiled, args.slopes)?));
             add(if own {
-                px4::own(compiled)
+                px4::own(compiled, currents)
             } else {
-                px4::settings(compiled)
+                px4::settings(compiled, currents)
             });
         }
         (Stack::Ardupilot, own) => {
@@ -165,7 +170,10 @@ fn parameters(args: &ParamsArgs, compiled: &Compiled) -> Result<Parameters, Stri
     }
     match (args.format, args.pwm_range, args.stack) {
         // The simulator's outputs have no pulse widths.
-        (Format::Airframe, ..) => add(only(px4::simulated_outputs(compiled))),
+        (Format::Airframe, ..) => {
+            add(only(px4::simulated_outputs(compiled)));
+            add(only(px4::simulated_surroundings()));
+        }
         (_, Some(PulseRange(pulses)), Stack::Px4) => add(only(px4::pulses(compiled, pulses))),
         (_, Some(PulseRange(pulses)), Stack::Ardupilot) => add(only(ardupilot::pulses(pulses))),
         (_, None, stack) => add(Parameters {

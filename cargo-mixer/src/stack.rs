@@ -85,7 +85,7 @@ impl Stacks {
         Stacks {
             normalised: Normalised::new(compiled.scale(), compiled.airframe.reference_v()),
             normalised_ardupilot: Normalised::new(compiled.ardupilot_scale(), compiled.highest_v()),
-            px4: px4::settings(compiled).list,
+            px4: px4::settings(compiled, px4::Currents::Measured).list,
             ardupilot: ardupilot::settings(compiled).list,
         }
     }

@@ -1,8 +1,39 @@
 #include "AP_MotorsCoaxialMixer.h"
 
 #include <AP_BattMonitor/AP_BattMonitor.h>
+#include <AP_HAL/AP_HAL.h>
+
+#if CONFIG_HAL_BOARD == HAL_BOARD_SITL
+#include <fenv.h>
+#endif
+
+extern const AP_HAL::HAL &hal;
 
 static_assert(ISAE_X8_CHANNELS <= AP_MOTORS_MAX_NUM_MOTORS, "more rotors than ArduPilot has motors");
+
+namespace {
+
+// ArduPilot's simulator traps floating-point exceptions; boards do not. The library raises none that it traps: this guard keeps
+// an older library from ending the simulation.
+class NoTraps {
+public:
+#if CONFIG_HAL_BOARD == HAL_BOARD_SITL
+    NoTraps() { feholdexcept(&_before); }
+    ~NoTraps() { fesetenv(&_before); }
+
+private:
+    fenv_t _before;
+#endif
+};
+
+int mix_without_traps(const mixer_wrench_t &setpoint, float voltage_v, isae_x8_mix_t &mix)
+{
+    const NoTraps guard {};
+    (void)guard;
+    return isae_x8_mix(&setpoint, voltage_v, &mix);
+}
+
+} // namespace
 
 void AP_MotorsCoaxialMixer::output_armed_stabilizing()
 {
@@ -10,7 +41,7 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
 
     // Stopped motors give nothing, whatever is asked.
     if (_spool_state == SpoolState::SHUT_DOWN) {
-        _throttle_out = 0.0f;
+        stopped();
         return;
     }
 
@@ -33,8 +64,8 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
         throttle * ISAE_X8_ARDUPILOT_THRUST_N,
     };
     isae_x8_mix_t mix;
-    if (isae_x8_mix(&setpoint, _voltage_v, &mix) == MIXER_OK) {
-        mixed(mix);
+    if (mix_without_traps(setpoint, _voltage_v, mix) == MIXER_OK) {
+        mixed(mix, throttle);
     } else {
         refused();
     }
@@ -50,7 +81,7 @@ void AP_MotorsCoaxialMixer::update_voltage()
     }
 }
 
-void AP_MotorsCoaxialMixer::mixed(const isae_x8_mix_t &mix)
+void AP_MotorsCoaxialMixer::mixed(const isae_x8_mix_t &mix, float throttle)
 {
     _refused_s = 0.0f;
     for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
@@ -58,7 +89,8 @@ void AP_MotorsCoaxialMixer::mixed(const isae_x8_mix_t &mix)
         // What logs, notch filter and the check for a failed motor read.
         _thrust_rpyt_out[i] = mix.throttle[i];
     }
-    _throttle_out = mix.achieved.thrust_n / ISAE_X8_ARDUPILOT_THRUST_N;
+    // Idle gives thrust where none is asked for: landed, ArduPilot expects 0.
+    _throttle_out = MIN(throttle, mix.achieved.thrust_n / ISAE_X8_ARDUPILOT_THRUST_N);
 
     // The spool logic has cleared or set the limits; the mixer adds its own.
     const uint32_t flags = mix.saturation;
@@ -77,10 +109,17 @@ void AP_MotorsCoaxialMixer::refused()
     limit.roll = limit.pitch = limit.yaw = limit.throttle_lower = limit.throttle_upper = true;
     _refused_s += _dt_s;
     if (_refused_s > PATIENCE_S) {
-        for (float &throttle : _throttle) {
-            throttle = 0.0f;
-        }
+        stopped();
     }
+}
+
+void AP_MotorsCoaxialMixer::stopped()
+{
+    for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
+        _throttle[i] = 0.0f;
+        _thrust_rpyt_out[i] = 0.0f;
+    }
+    _throttle_out = 0.0f;
 }
 
 void AP_MotorsCoaxialMixer::output_to_motors()
@@ -96,4 +135,63 @@ void AP_MotorsCoaxialMixer::output_to_motors()
             rc_write(i, output_to_pwm(_actuator[i]));
         }
     }
+}
+
+bool AP_MotorsCoaxialMixer::arming_checks(size_t buflen, char *buffer) const
+{
+    return AP_MotorsMatrix::arming_checks(buflen, buffer) && check_frame(buflen, buffer) && check_parameters(buflen, buffer);
+}
+
+// Whether ArduPilot's motors are the airframe's rotors, by what each does to an axis.
+bool AP_MotorsCoaxialMixer::check_frame(size_t buflen, char *buffer) const
+{
+    static const float factors[ISAE_X8_CHANNELS][3] = ISAE_X8_ARDUPILOT_FACTORS;
+    for (uint8_t i = 0; i < AP_MOTORS_MAX_NUM_MOTORS; i++) {
+        if (motor_enabled[i] != (i < ISAE_X8_CHANNELS)) {
+            hal.util->snprintf(buffer, buflen, "%s has %u rotors: Motor%u differs, set FRAME_CLASS", ISAE_X8_AIRFRAME,
+                               unsigned(ISAE_X8_CHANNELS), unsigned(i + 1));
+            return false;
+        }
+    }
+    for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
+        const float own[3] {_roll_factor[i], _pitch_factor[i], _yaw_factor[i]};
+        const char *const axes[3] {"roll", "pitch", "yaw"};
+        for (uint8_t axis = 0; axis < 3; axis++) {
+            // Of yaw the sign counts: V frames weight it by the arm.
+            const bool same = axis == 2 ? own[axis] * factors[i][axis] > 0.0f || fabsf(factors[i][axis]) < SAME_FACTOR
+                                        : fabsf(own[axis] - factors[i][axis]) < SAME_FACTOR;
+            if (!same) {
+                hal.util->snprintf(buffer, buflen, "Motor%u %s %.2f, %s %.2f: set FRAME_TYPE or channels", unsigned(i + 1),
+                                   axes[axis], double(own[axis]), ISAE_X8_AIRFRAME, double(factors[i][axis]));
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// Whether the parameters are those that the airframe file was measured with.
+bool AP_MotorsCoaxialMixer::check_parameters(size_t buflen, char *buffer) const
+{
+    const struct {
+        const char *name;
+        float value;
+        float expected;
+        float tolerance;
+    } parameters[] {
+        {"SPIN_MIN", thr_lin.get_spin_min(), MIN(ISAE_X8_THROTTLE_MIN, MOST_SPIN_MIN), SAME_THROTTLE},
+        {"SPIN_MAX", thr_lin.get_spin_max(), ISAE_X8_THROTTLE_MAX, SAME_THROTTLE},
+        {"PWM_MIN", float(get_pwm_output_min()), float(COAXIAL_MIXER_PWM_MIN), 0.5f},
+        {"PWM_MAX", float(get_pwm_output_max()), float(COAXIAL_MIXER_PWM_MAX), 0.5f},
+        {"SLEW_UP_TIME", _slew_up_time.get(), 0.0f, SAME_THROTTLE},
+        {"SLEW_DN_TIME", _slew_dn_time.get(), 0.0f, SAME_THROTTLE},
+    };
+    for (const auto &parameter : parameters) {
+        if (fabsf(parameter.value - parameter.expected) >= parameter.tolerance) {
+            hal.util->snprintf(buffer, buflen, "MOT_%s is %.5g, %s has %.5g: set it", parameter.name, double(parameter.value),
+                               ISAE_X8_AIRFRAME, double(parameter.expected));
+            return false;
+        }
+    }
+    return true;
 }

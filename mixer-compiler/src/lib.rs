@@ -39,6 +39,7 @@ pub use desaturation::attainable::AreaLoss;
 pub use diagnostic::source::Source;
 pub use inverse::evaluator;
 pub use output::{alternatives, checklist, cost, hover, power, report};
+pub use plausible::ARDUPILOT_MOST_SPIN_MIN;
 pub use proof::Certificate;
 pub use proof::residual::Residual;
 

@@ -11,10 +11,13 @@ mod limits;
 mod pair;
 mod power_bias;
 mod rotors;
+mod stacks;
 mod supply;
 mod vehicle;
 
 use facts::Facts;
+
+pub use pair::ARDUPILOT_MOST_SPIN_MIN;
 
 use crate::airframe::Airframe;
 use crate::diagnostic::Diagnostic;
@@ -33,6 +36,7 @@ const RULES: &[Rule] = &[
     rotors::lopsided,
     rotors::alone,
     pair::idle,
+    stacks::spin_min,
     pair::power,
     geometry::arms,
     geometry::short_arms,
@@ -46,6 +50,7 @@ const RULES: &[Rule] = &[
     supply::factors,
     limits::tolerances,
     limits::yaw_reserve,
+    stacks::yaw_before_thrust,
     power_bias::beyond,
     power_bias::idle,
     vehicle::hover,

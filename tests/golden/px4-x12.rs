@@ -348,7 +348,7 @@ pub mod px4_x12 {
         centre: [[0.0, 0.0, 0.0, 3.109108], [0.0, 0.0, 0.0, 0.0]],
         is_vertical: true,
         desaturation: tables::Desaturation {
-            airmode: tables::Airmode::RollPitchYaw,
+            airmode: tables::Airmode::RollPitch,
             yaw_reserve_nm: 0.0,
             budget: tables::Budget {
                 pivots: 10,

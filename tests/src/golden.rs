@@ -20,8 +20,16 @@ pub fn folder() -> PathBuf {
 /// The file cannot be read or is refused.
 pub fn compile(name: &str) -> Result<Compiled, String> {
     let path = format!("airframes/{name}.toml");
-    let text = std::fs::read_to_string(root().join(&path)).map_err(|error| format!("{path}: {error}"))?;
-    mixer_compiler::compile(&Source::new(path, text)).map_err(|faults| faults.to_string())
+    mixer_compiler::compile(&Source::new(path, text(name)?)).map_err(|faults| faults.to_string())
+}
+
+/// The text of `airframes/<name>.toml`.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn text(name: &str) -> Result<String, String> {
+    let path = format!("airframes/{name}.toml");
+    std::fs::read_to_string(root().join(&path)).map_err(|error| format!("{path}: {error}"))
 }
 
 /// The golden outputs of all airframes: file name and content.

@@ -1,12 +1,10 @@
 //! ArduPilot's parameters.
 
-use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Airmode;
+use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
 use super::frames;
 use super::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
-
-/// ArduPilot does not arm with more (`AP_MotorsMulticopter::arming_checks`).
-const MOST_SPIN_MIN: f64 = 0.3;
 
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
@@ -44,6 +42,13 @@ pub fn settings(compiled: &Compiled) -> Parameters {
     };
     hover_throttle(hover, &why, &mut list, &mut notes);
     notes.push(gains(compiled));
+    if airframe.allocation.airmode == Airmode::Disabled {
+        notes.push(
+            "the airmode is \"disabled\", which gives no roll and pitch at throttle 0; ArduPilot counts on them: \
+             `airmode = \"roll-pitch\"` in the airframe file"
+                .to_owned(),
+        );
+    }
     Parameters { list, notes }
 }
 

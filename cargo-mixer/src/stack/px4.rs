@@ -16,8 +16,17 @@ const LEAST_MANUAL_THRUST: f64 = 0.08;
 const MOST_SLOPE: f64 = 50.0;
 const MOST_OFFSET: f64 = 30.0;
 
+/// Where the currents come from that PX4's failure detector compares with the outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Currents {
+    /// From the ESCs.
+    Measured,
+    /// From PX4's simulator, which makes them up of the outputs.
+    Simulated,
+}
+
 /// PX4's parameters where this mixer puts out the throttles.
-pub fn settings(compiled: &Compiled) -> Parameters {
+pub fn settings(compiled: &Compiled, currents: Currents) -> Parameters {
     let airframe = &compiled.airframe;
     let mut notes = Vec::new();
     let mut list = vec![real(
@@ -60,13 +69,13 @@ pub fn settings(compiled: &Compiled) -> Parameters {
     if hover.is_some_and(|hover| idle >= hover) {
         notes.push("all rotors at idle lift the vehicle: MPC_THR_MIN is above MPC_THR_HOVER".to_owned());
     }
-    failure_detection(compiled, &mut list, &mut notes);
+    failure_detection(compiled, currents, &mut list, &mut notes);
     notes.push(gains(compiled));
     Parameters { list, notes }
 }
 
 /// PX4's parameters where its own allocator puts out the throttles.
-pub fn own(compiled: &Compiled) -> Parameters {
+pub fn own(compiled: &Compiled, currents: Currents) -> Parameters {
     let mut notes = Vec::new();
     let factor = round2(curve(compiled, false));
     let mut list = vec![real(
@@ -87,7 +96,7 @@ pub fn own(compiled: &Compiled) -> Parameters {
         0,
         "Throttle stick in the middle is hover thrust.",
     ));
-    failure_detection(compiled, &mut list, &mut notes);
+    failure_detection(compiled, currents, &mut list, &mut notes);
     Parameters { list, notes }
 }
 
@@ -173,6 +182,22 @@ pub fn simulated_outputs(compiled: &Compiled) -> Vec<Parameter> {
         .collect()
 }
 
+/// What PX4 does in a simulator that sends the battery, too.
+pub fn simulated_surroundings() -> Vec<Parameter> {
+    vec![
+        whole(
+            "SYS_FAILURE_EN",
+            1,
+            "Failures can be injected: `failure motor stuck -i 1` takes away motor 1's telemetry, and the detector finds it dead.",
+        ),
+        whole(
+            "SIM_BAT_ENABLE",
+            0,
+            "The simulator sends the battery's state; 1 where it does not.",
+        ),
+    ]
+}
+
 /// Pulse widths of throttle 0 and 1, microseconds.
 pub fn pulses(compiled: &Compiled, [low, high]: [f64; 2]) -> Vec<Parameter> {
     let why = "Pulse widths of throttle 0 and 1 on the bench; a board whose motors are on AUX has PWM_AUX_..";
@@ -187,12 +212,25 @@ pub fn pulses(compiled: &Compiled, [low, high]: [f64; 2]) -> Vec<Parameter> {
 /// A motor is found out where it draws too little current for its throttle: below `FD_ACT_MOT_C2T`
 /// times throttle less `FD_ACT_LOW_OFF`. Half of the tangent to the current in hover lies below the
 /// current everywhere, as that is convex in the throttle, and above zero around hover.
-fn failure_detection(compiled: &Compiled, list: &mut Vec<Parameter>, notes: &mut Vec<String>) {
+fn failure_detection(
+    compiled: &Compiled,
+    currents: Currents,
+    list: &mut Vec<Parameter>,
+    notes: &mut Vec<String>,
+) {
     list.push(whole(
         "CA_FAILURE_MODE",
         1,
         "Motors that the failure detector finds out are left out of the mix.",
     ));
+    if currents == Currents::Simulated {
+        let why = "PX4's simulator reports 1 A + 15 A x output of every motor, failed or not.";
+        list.push(whole("FD_ACT_EN", 1, why));
+        list.push(real("FD_ACT_MOT_C2T", 15.0, why));
+        list.push(real("FD_ACT_LOW_OFF", 3.0, why));
+        list.push(real("FD_ACT_HIGH_OFF", MOST_OFFSET, why));
+        return;
+    }
     let Some([slope, offset]) = current_tangent(compiled) else {
         list.push(whole(
             "FD_ACT_EN",

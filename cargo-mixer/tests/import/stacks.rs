@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value as Json;
 
 use crate::bench_data::{folder_of_data, is_pair, numbers};
-use crate::{Folder, cargo_mixer, import, outline};
+use crate::{Folder, Unit, cargo_mixer, import, outline};
 
 /// What a command prints; it succeeds.
 #[track_caller]
@@ -125,6 +125,15 @@ fn the_simulator_gets_a_script_and_what_runs_after_it() {
     let defaults = text.find("\n. ${R}etc/init.d/rc.mc_defaults\n").unwrap();
     assert!(defaults < text.find("param set-default CA_AIRFRAME 0").unwrap());
     assert!(text.contains("\nparam set-default PWM_MAIN_FUNC8 108\n") && !text.contains("PWM_MAIN_MIN"));
+    // PX4 reports 1 A + 15 A x output there: no healthy motor is found dead at any output.
+    let limit = |name: &str| value(&text, name).unwrap();
+    assert_eq!(limit("FD_ACT_EN"), 1.0);
+    for output in [0.0, 0.2, 0.55, 1.0] {
+        let (current, scale) = (1.0 + 15.0 * output, limit("FD_ACT_MOT_C2T"));
+        assert!(current > scale * output - limit("FD_ACT_LOW_OFF") + 1.0);
+        assert!(current < scale * output + limit("FD_ACT_HIGH_OFF") - 1.0);
+    }
+    assert_eq!((limit("SYS_FAILURE_EN"), limit("SIM_BAT_ENABLE")), (1.0, 0.0));
     let after = fs::read_to_string(folder.0.join("22000_x8.post")).unwrap();
     assert!(after.ends_with("\ncontrol_allocator stop\ncoaxial_mixer start\n"));
     // Neither is overwritten by accident.
@@ -157,6 +166,7 @@ fn what_cannot_be_known_is_said() {
     for part in [
         "MOT_THST_HOVER is missing",
         "no FRAME_CLASS",
+        "`airmode = \"roll-pitch\"` in the airframe file",
         "MOT_PWM_MIN and MOT_PWM_MAX are missing",
     ] {
         assert!(said.contains(part), "{said}");
@@ -261,14 +271,48 @@ fn new_frames_are_those_of_the_stacks_tables() {
     }
 }
 
-/// One unit of PX4's setpoints on its own geometries: where the rows of the effectiveness B are
-/// orthogonal, B+ is b / sum b^2 by axis, and PX4's scale of it is sqrt(sum / (non-zero / 2)).
+/// One unit of PX4's setpoints: where the rows of the effectiveness B are orthogonal, B+ is
+/// b / sum b^2 by axis, PX4's scale of roll and pitch is sqrt(sum / (non-zero / 2)), and that of yaw
+/// the largest entry.
+fn assert_units_of_px4(name: &str, units: &[Unit], airframe: &str) {
+    let checked = printed(&["check", "--json", airframe]);
+    let summary: Json = serde_json::from_str(&checked).unwrap();
+    let unit = |key: &str| summary["normalised"][key].as_f64().unwrap();
+    let rotors = 2 * units.len();
+    let thrust_n = unit("thrust_n") / rotors as f64;
+    let of_axis = |axis: usize| {
+        let rows = units.iter().map(|unit| thrust_n * unit.position_m[axis]);
+        let rows: Vec<f64> = rows.filter(|b| b.abs() > 1e-9).collect();
+        let squares = 2.0 * rows.iter().map(|b| b * b).sum::<f64>();
+        // Two rotors a unit, half of them.
+        (squares * rows.len() as f64).sqrt()
+    };
+    let roll_pitch = of_axis(0).min(of_axis(1));
+    let own = printed(&["params", airframe, "--stack", "px4", "--own"]);
+    let moment = |channel: usize| value(&own, &format!("CA_ROTOR{channel}_KM")).unwrap().abs();
+    let yaw = thrust_n * (0..rotors).map(moment).sum::<f64>();
+    // The parameters have four digits.
+    for (key, expected, tolerance) in [
+        ("roll_nm", roll_pitch, 1e-4),
+        ("pitch_nm", roll_pitch, 1e-4),
+        ("yaw_nm", yaw, 2e-3),
+    ] {
+        let ratio = unit(key) / expected;
+        assert!(
+            (ratio - 1.0).abs() < tolerance,
+            "{name} {key}: {} {expected}",
+            unit(key)
+        );
+    }
+}
+
 #[test]
 fn px4_units_are_those_of_its_geometries() {
     let Some(data) = folder_of_data("px4_units_are_those_of_its_geometries") else {
         return;
     };
     let folder = Folder::new("px4-units");
+    let airframe = folder.0.join("airframe.toml");
     for names in [
         &["octa_cox.toml"][..],
         &["dodeca_top_cox.toml", "dodeca_bottom_cox.toml"],
@@ -276,26 +320,7 @@ fn px4_units_are_those_of_its_geometries() {
         let files: Vec<PathBuf> = names.iter().map(|name| data.join("px4").join(name)).collect();
         let files: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
         let (units, _) = import(&folder, &files, &[]);
-        let airframe = folder.0.join("airframe.toml");
-        let checked = printed(&["check", "--json", airframe.to_str().unwrap()]);
-        let summary: Json = serde_json::from_str(&checked).unwrap();
-        let unit = |key: &str| summary["normalised"][key].as_f64().unwrap();
-        let thrust_n = unit("thrust_n") / (2 * units.len()) as f64;
-        let of_axis = |axis: usize| {
-            let rows = units.iter().map(|unit| thrust_n * unit.position_m[axis]);
-            let rows: Vec<f64> = rows.filter(|b| b.abs() > 1e-9).collect();
-            let squares = 2.0 * rows.iter().map(|b| b * b).sum::<f64>();
-            // Two rotors a unit, half of them.
-            (squares * rows.len() as f64).sqrt()
-        };
-        let expected = of_axis(0).min(of_axis(1));
-        for key in ["roll_nm", "pitch_nm"] {
-            assert!(
-                (unit(key) / expected - 1.0).abs() < 1e-4,
-                "{names:?} {key} {} {expected}",
-                unit(key)
-            );
-        }
+        assert_units_of_px4(names[0], &units, airframe.to_str().unwrap());
     }
 }
 
@@ -335,17 +360,21 @@ fn ardupilot_units_are_those_of_its_tables() {
     let folder = Folder::new("ardupilot-units");
     let text = fs::read_to_string(data.join("ardupilot/coax_frames.json")).unwrap();
     let table: Json = serde_json::from_str(&text).unwrap();
+    let mut seen = Vec::new();
     for frame in table["frames"].as_array().unwrap() {
         let (class, kind) = numbers(frame);
         // Both rotors of an arm turn the same way.
         if kind == 20 || kind == 21 {
             continue;
         }
+        seen.push((class, kind));
         let name = format!("{} {}", frame["frame_class"], frame["frame_type"]);
         let file = folder.write("a.param", &format!("FRAME_CLASS,{class}\nFRAME_TYPE,{kind}\n"));
-        import(&folder, &[&file], &["--arm", "0.45"]);
+        let (units, _) = import(&folder, &[&file], &["--arm", "0.45"]);
         let airframe = folder.0.join("airframe.toml");
         let airframe = airframe.to_str().unwrap();
+        // PX4 has no files of +, H and Y6 frames in the data: its formulas on the same places.
+        assert_units_of_px4(&name, &units, airframe);
         let summary: Json = serde_json::from_str(&printed(&["check", "--json", airframe])).unwrap();
         let unit = |key: &str| summary["normalised_ardupilot"][key].as_f64().unwrap();
         let motors = frame["motors"].as_array().unwrap();
@@ -386,6 +415,10 @@ fn ardupilot_units_are_those_of_its_tables() {
         let found = ["FRAME_CLASS", "FRAME_TYPE"].map(|name| value(&params, name));
         let kind = if (class, kind) == (4, 2) { 1 } else { kind };
         assert_eq!(found, [Some(f64::from(class)), Some(f64::from(kind))], "{name}");
+    }
+    // X8 in + and X and H, Y6 A and B, X12 in + and X.
+    for frame in [(4, 0), (4, 1), (4, 3), (5, 1), (5, 10), (12, 0), (12, 1)] {
+        assert!(seen.contains(&frame), "{frame:?} is not in the tables");
     }
 }
 

@@ -53,7 +53,11 @@ const PX4: Stack = Stack {
 
 const ARDUPILOT: Stack = Stack {
     name: "ardupilot",
-    headers: &["AP_Motors/AP_MotorsMatrix.h", "AP_BattMonitor/AP_BattMonitor.h"],
+    headers: &[
+        "AP_BattMonitor/AP_BattMonitor.h",
+        "AP_HAL/AP_HAL.h",
+        "AP_Motors/AP_MotorsMatrix.h",
+    ],
     declarations: "ardupilot.h",
     folder: "examples/ardupilot",
     source: "AP_MotorsCoaxialMixer.cpp",

@@ -136,6 +136,8 @@ catalogue! {
     LopsidedPair = 305,
     /// A rotor alone that gives several times more or less than in its pair.
     RotorAloneScale = 306,
+    /// An idle above the largest with which ArduPilot arms.
+    SpinMin = 307,
     /// An arm far longer than the thrust makes plausible.
     LongArm = 310,
     /// An angle that looks like radians.
@@ -164,6 +166,8 @@ catalogue! {
     PowerBiasIdle = 333,
     /// A power bias that costs power at the vehicle's weight.
     PowerBiasCosts = 335,
+    /// Yaw that comes before thrust: the thrust changes while the vehicle yaws.
+    YawBeforeThrust = 336,
     /// A vehicle that is too heavy to hover.
     TooHeavy = 340,
     /// A vehicle that rises at idle.

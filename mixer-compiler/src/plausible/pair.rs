@@ -110,16 +110,37 @@ pub(super) fn sum_of_rotors(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
 
 /// Largest share of a unit's thrust that is on at idle. Idles at which real maps begin to be
 /// invertible have up to 0.09; maps that were measured from a throttle of 0.4 on have 0.2 to 0.26.
-const IDLE_SHARE: f64 = 0.15;
+pub(super) const IDLE_SHARE: f64 = 0.15;
+
+/// ArduPilot does not arm with a larger `MOT_SPIN_MIN` (`AP_MotorsMulticopter::arming_checks`).
+pub const ARDUPILOT_MOST_SPIN_MIN: f64 = 0.3;
+
+/// Thrust of one unit with both rotors at idle, N.
+fn idle_thrust(facts: &Facts<'_>) -> f64 {
+    let [low, _] = facts.map.range();
+    facts.map.efforts([low, low])[0]
+}
+
+/// The same over the largest thrust.
+pub(super) fn idle_share(facts: &Facts<'_>) -> f64 {
+    idle_thrust(facts) / facts.scale[0]
+}
 
 /// A high idle leaves little thrust to control with.
 pub(super) fn idle(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
-    let [low, _] = facts.map.range();
-    let floor = facts.map.efforts([low, low])[0];
-    let share = floor / facts.scale[0];
+    let (floor, share) = (idle_thrust(facts), idle_share(facts));
     if share <= IDLE_SHARE {
         return;
     }
+    let most = ARDUPILOT_MOST_SPIN_MIN;
+    let ardupilot = if facts.airframe.throttle.min > most {
+        format!(
+            "; ArduPilot does not arm with a MOT_SPIN_MIN above {}",
+            number(most)
+        )
+    } else {
+        String::new()
+    };
     found.push(facts.airframe.diagnostic(
         Code::HighIdle,
         "throttle.min",
@@ -129,7 +150,9 @@ pub(super) fn idle(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
             100.0 * share
         ),
         "always on",
-        "an idle is typically 0.05 to 0.15; where the bench only began here, measure the pair further down",
+        format!(
+            "an idle is typically 0.05 to 0.15; where the bench only began here, measure the pair further down{ardupilot}"
+        ),
     ));
 }
 

@@ -1,7 +1,15 @@
 // Drives examples/ardupilot once: what it writes is what the library mixes.
 #include "AP_MotorsCoaxialMixer.h"
 
+#include <cfenv>
+#include <cfloat>
 #include <cstdio>
+#include <cstring>
+
+static AP_HAL::Util util;
+static const AP_HAL::HAL here {&util};
+extern const AP_HAL::HAL &hal;
+const AP_HAL::HAL &hal = here;
 
 static unsigned faults;
 
@@ -18,13 +26,36 @@ static const float ROLL_NM = ISAE_X8_ARDUPILOT_ROLL_NM;
 static const float PITCH_NM = ISAE_X8_ARDUPILOT_PITCH_NM;
 static const float YAW_NM = ISAE_X8_ARDUPILOT_YAW_NM;
 
+static const float FACTORS[ISAE_X8_CHANNELS][3] = ISAE_X8_ARDUPILOT_FACTORS;
+
 class Bench : public AP_MotorsCoaxialMixer {
 public:
+    // The frame and the parameters of the airframe file.
     Bench() : AP_MotorsCoaxialMixer(400)
     {
         for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
             motor_enabled[i] = true;
+            _roll_factor[i] = FACTORS[i][0];
+            _pitch_factor[i] = FACTORS[i][1];
+            _yaw_factor[i] = FACTORS[i][2];
         }
+        thr_lin.spin_min = ISAE_X8_THROTTLE_MIN;
+        thr_lin.spin_max = ISAE_X8_THROTTLE_MAX;
+    }
+
+    // Whether arming is refused in words that have this part.
+    bool refuses(const char *part) const
+    {
+        char said[100] {};
+        const bool armed = arming_checks(sizeof(said), said);
+        printf("%s\n", armed ? "arms" : said);
+        return !armed && strstr(said, part) != nullptr && strlen(said) < sizeof(said) - 1;
+    }
+
+    bool arms() const
+    {
+        char said[100] {};
+        return arming_checks(sizeof(said), said);
     }
 
     void cycle(SpoolState state, float roll, float pitch, float yaw, float throttle)
@@ -42,6 +73,17 @@ public:
         output_armed_stabilizing();
         output_to_motors();
     }
+
+    // A yaw that is a normal number in N m, and none any more as a share of each unit.
+    void ask_least_yaw()
+    {
+        _roll_in = _roll_in_ff = _pitch_in = _pitch_in_ff = _yaw_in_ff = 0.0f;
+        _yaw_in = 1.5f * FLT_MIN / YAW_NM;
+        _spool_state = SpoolState::THROTTLE_UNLIMITED;
+        _throttle_in = 0.3f;
+    }
+
+    void mix() { output_armed_stabilizing(); }
 
     bool all_written(float throttle) const
     {
@@ -67,23 +109,74 @@ public:
                 return false;
             }
         }
-        return std::fabs(_throttle_out - mix.achieved.thrust_n / ISAE_X8_ARDUPILOT_THRUST_N) < 1e-5f;
+        const float achieved = mix.achieved.thrust_n / ISAE_X8_ARDUPILOT_THRUST_N;
+        return std::fabs(_throttle_out - (achieved < throttle ? achieved : throttle)) < 1e-5f;
     }
+
+    float throttle_out() const { return _throttle_out; }
+
+    // Frames and parameters that are not the airframe's.
+    friend void arming();
 
     void spool_limit(float throttle) { _throttle_thrust_max = throttle; }
 
     float checked() const { return _checked_throttle; }
 
     float actuator(uint8_t motor) const { return _actuator[motor]; }
+
+    float output(uint8_t motor) const { return _thrust_rpyt_out[motor]; }
 };
+
+// What differs from the airframe is named, and where it is set.
+void arming()
+{
+    CHECK(Bench().arms());
+    Bench motors;
+    motors._ready = false;
+    CHECK(motors.refuses("Check frame class and type"));
+    motors = Bench();
+    motors.motor_enabled[7] = false;
+    CHECK(motors.refuses("8 rotors: Motor8 differs, set FRAME_CLASS"));
+    motors = Bench();
+    motors.motor_enabled[8] = true;
+    CHECK(motors.refuses("Motor9"));
+    motors = Bench();
+    motors._roll_factor[2] = -motors._roll_factor[2];
+    CHECK(motors.refuses("Motor3 roll") && motors.refuses("FRAME_TYPE"));
+    motors = Bench();
+    motors._pitch_factor[0] = 0.4f * motors._pitch_factor[0];
+    CHECK(motors.refuses("Motor1 pitch"));
+    motors = Bench();
+    motors._yaw_factor[5] = -motors._yaw_factor[5];
+    CHECK(motors.refuses("Motor6 yaw"));
+    motors = Bench();
+    motors.thr_lin.spin_min = 0.15f;
+    CHECK(motors.refuses("MOT_SPIN_MIN is 0.15, isae-x8 has 0.1"));
+    motors = Bench();
+    motors.thr_lin.spin_max = 0.95f;
+    CHECK(motors.refuses("MOT_SPIN_MAX"));
+    motors = Bench();
+    motors._pwm_min = 1100;
+    CHECK(motors.refuses("MOT_PWM_MIN is 1100, isae-x8 has 1000"));
+    motors = Bench();
+    motors._pwm_max = 1900;
+    CHECK(motors.refuses("MOT_PWM_MAX"));
+    motors = Bench();
+    motors._slew_up_time.value = 0.05f;
+    CHECK(motors.refuses("MOT_SLEW_UP_TIME"));
+    motors = Bench();
+    motors._slew_dn_time.value = 0.05f;
+    CHECK(motors.refuses("MOT_SLEW_DN_TIME"));
+}
 
 int main()
 {
     using State = AP_MotorsMatrix::SpoolState;
+    arming();
     Bench motors;
 
     motors.cycle(State::SHUT_DOWN, 0.0f, 0.0f, 0.0f, 0.0f);
-    CHECK(motors.all_written(0.0f));
+    CHECK(motors.all_written(0.0f) && motors.throttle_out() <= 0.0f);
     motors.cycle(State::GROUND_IDLE, 0.0f, 0.0f, 0.0f, 0.0f);
     CHECK(motors.all_written(0.05f));
 
@@ -108,6 +201,8 @@ int main()
     CHECK(motors.limit.throttle_upper && !motors.limit.throttle_lower);
     motors.cycle(State::THROTTLE_UNLIMITED, 0.0f, 0.0f, 0.0f, 0.0f);
     CHECK(motors.limit.throttle_lower && !motors.limit.throttle_upper && motors.all_written(ISAE_X8_THROTTLE_MIN));
+    // Landed, the idle's thrust is not asked for.
+    CHECK(motors.throttle_out() <= 0.0f);
     motors.spool_limit(0.2f);
     motors.cycle(State::SPOOLING_UP, 0.0f, 0.0f, 0.0f, 0.3f);
     CHECK(motors.same(0.0f, 0.0f, 0.0f, 0.2f, 15.5f) && motors.limit.throttle_upper);
@@ -122,6 +217,21 @@ int main()
         motors.cycle(State::THROTTLE_UNLIMITED, NAN, 0.0f, 0.0f, 0.3f);
     }
     CHECK(motors.all_written(0.0f));
+
+    // Stopped in flight, as by the emergency stop: nothing of the last mix is left.
+    motors.cycle(State::THROTTLE_UNLIMITED, 0.0f, 0.0f, 0.0f, 0.3f);
+    CHECK(motors.throttle_out() > 0.25f);
+    motors.cycle(State::SHUT_DOWN, 0.5f, 0.0f, 0.0f, 0.3f);
+    CHECK(motors.all_written(0.0f) && motors.throttle_out() <= 0.0f && motors.output(0) <= 0.0f);
+
+    // What the simulator traps, and underflow, which the library may raise: nothing is trapped in the mix, and the traps are
+    // there again after it.
+    constexpr int TRAPS = FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW | FE_UNDERFLOW;
+    motors.ask_least_yaw();
+    feenableexcept(TRAPS);
+    motors.mix();
+    CHECK(fegetexcept() == TRAPS);
+    fedisableexcept(FE_ALL_EXCEPT);
 
     printf("%u faults\n", faults);
     return faults != 0;

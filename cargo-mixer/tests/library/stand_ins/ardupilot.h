@@ -3,12 +3,55 @@
 #pragma once
 
 #include <cmath>
+#include <cstdarg>
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
 
 using std::isfinite;
 
+#define HAL_BOARD_SITL 3
+#define CONFIG_HAL_BOARD HAL_BOARD_SITL
 #define AP_MOTORS_MAX_NUM_MOTORS 32
 #define AP_BATT_PRIMARY_INSTANCE 0
+#define MIN(a, b) ((a) < (b) ? (a) : (b))
+
+namespace AP_HAL {
+class Util {
+public:
+    int snprintf(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 4, 5)))
+    {
+        va_list arguments;
+        va_start(arguments, format);
+        const int length = vsnprintf(text, size, format, arguments);
+        va_end(arguments);
+        return length;
+    }
+};
+
+class HAL {
+public:
+    Util *util;
+};
+}
+
+// A parameter.
+class AP_Float {
+public:
+    float get() const { return value; }
+
+    float value = 0.0f;
+};
+
+class Thrust_Linearization {
+public:
+    float get_spin_min() const { return spin_min; }
+    float get_spin_max() const { return spin_max; }
+
+    // Protected there, with the class above for a friend.
+    float spin_min = 0.15f;
+    float spin_max = 0.95f;
+};
 
 class AP_BattMonitor {
 public:
@@ -28,10 +71,24 @@ inline AP_BattMonitor &battery()
 }
 }
 
+// AP_Motors, AP_MotorsMulticopter and AP_MotorsMatrix in one.
 class AP_MotorsMatrix {
 public:
     explicit AP_MotorsMatrix(uint16_t speed_hz = 490) : _speed_hz(speed_hz) {}
     virtual ~AP_MotorsMatrix() = default;
+
+    virtual bool arming_checks(size_t buflen, char *buffer) const
+    {
+        if (!_ready) {
+            snprintf(buffer, buflen, "Check frame class and type");
+        }
+        return _ready;
+    }
+
+    int16_t get_pwm_output_min() const { return _pwm_min; }
+    int16_t get_pwm_output_max() const { return _pwm_max; }
+
+    Thrust_Linearization thr_lin {};
 
     enum class SpoolState : uint8_t {
         SHUT_DOWN = 0,
@@ -85,10 +142,18 @@ protected:
     float _throttle_thrust_max = 1.0f;
     SpoolState _spool_state = SpoolState::SHUT_DOWN;
     bool motor_enabled[AP_MOTORS_MAX_NUM_MOTORS] {};
+    float _roll_factor[AP_MOTORS_MAX_NUM_MOTORS] {};
+    float _pitch_factor[AP_MOTORS_MAX_NUM_MOTORS] {};
+    float _yaw_factor[AP_MOTORS_MAX_NUM_MOTORS] {};
+    AP_Float _slew_up_time {};
+    AP_Float _slew_dn_time {};
+    int16_t _pwm_min = 1000;
+    int16_t _pwm_max = 2000;
     float _thrust_rpyt_out[AP_MOTORS_MAX_NUM_MOTORS] {};
     float _actuator[AP_MOTORS_MAX_NUM_MOTORS] {};
 
     // Of the stand-in: what was written and checked last.
     uint16_t _written[AP_MOTORS_MAX_NUM_MOTORS] {};
     float _checked_throttle = -1.0f;
+    bool _ready = true;
 };

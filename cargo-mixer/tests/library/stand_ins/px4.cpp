@@ -146,10 +146,21 @@ int main()
 	publish(failure_detector_status_s{0, true, 1u << 5});
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f, 1u << 2 | 1u << 5));
+
+	// A third rotor, and motors that the airframe has not, are not believed.
+	publish(failure_detector_status_s{0, true, 1u << 6 | 1u << 9});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f, 1u << 2 | 1u << 5));
 	publish(vehicle_control_mode_s{0, false, true});
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
+
+	// The telemetry of all motors is lost at once: all are mixed for.
 	publish(vehicle_control_mode_s{0, true, true});
+	publish(failure_detector_status_s{0, true, 0xff});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
+	CHECK(last<control_allocator_status_s>().handled_motor_failure_mask == 0);
 
 	CHECK(command("status") == PX4_OK);
 	CHECK(command("nonsense") == 0);

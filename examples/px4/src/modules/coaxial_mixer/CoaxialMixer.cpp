@@ -84,18 +84,21 @@ bool CoaxialMixer::is_displaced()
 	return _displaced;
 }
 
-// Rotors that the failure detector finds out stay out until the vehicle is disarmed.
+// Rotors that the failure detector finds dead stay out until the vehicle is disarmed.
 void CoaxialMixer::update_failed(const mixer_wrench_t &setpoint)
 {
-	failure_detector_status_s detected;
+	failure_detector_status_s detected{};
 	const bool is_new = _failure_sub.update(&detected);
 
 	if (!_mode.flag_armed) {
 		_failed = 0;
+		_doubted = 0;
 		return;
 	}
 
-	if (!is_new || !detected.fd_motor || !(detected.motor_failure_mask & ~_failed)) {
+	const uint16_t found = detected.motor_failure_mask & ALL_ROTORS;
+
+	if (!is_new || !detected.fd_motor || !(found & ~_failed)) {
 		return;
 	}
 
@@ -106,7 +109,20 @@ void CoaxialMixer::update_failed(const mixer_wrench_t &setpoint)
 		return;
 	}
 
-	_failed |= detected.motor_failure_mask;
+	const uint16_t out = _failed | found;
+
+	if (__builtin_popcount(out) > MOST_OUT) {
+		// The telemetry of healthy rotors is lost, or the vehicle is. Stopping more would end every flight of the former kind.
+		if (out != _doubted) {
+			_doubted = out;
+			PX4_ERR("failure detector: rotors 0x%x, more than %d: still mixing without 0x%x", static_cast<unsigned>(out),
+				MOST_OUT, static_cast<unsigned>(_failed));
+		}
+
+		return;
+	}
+
+	_failed = out;
 	PX4_WARN("mixing without the rotors 0x%x", static_cast<unsigned>(_failed));
 
 	// Whether the present thrust is held level without them.
@@ -202,9 +218,16 @@ int CoaxialMixer::task_spawn(int, char *[])
 
 int CoaxialMixer::print_status()
 {
-	PX4_INFO("%s %s, %.2f V, saturation 0x%x, rotors out 0x%x, refused %u%s", ISAE_X8_AIRFRAME, ISAE_X8_VERSION,
-		 static_cast<double>(_voltage_v), static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed), _refused,
-		 _displaced ? ", displaced by another module" : "");
+	if (_voltage_v > 0.f) {
+		PX4_INFO("%s %s, %.2f V", ISAE_X8_AIRFRAME, ISAE_X8_VERSION, static_cast<double>(_voltage_v));
+
+	} else {
+		// The airframe has no voltage law, and none was measured.
+		PX4_INFO("%s %s, no voltage", ISAE_X8_AIRFRAME, ISAE_X8_VERSION);
+	}
+
+	PX4_INFO("saturation 0x%x, rotors out 0x%x, refused %u%s", static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed),
+		 _refused, _displaced ? ", displaced by another module" : "");
 	return 0;
 }
 

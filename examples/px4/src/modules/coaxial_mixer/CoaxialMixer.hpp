@@ -53,6 +53,9 @@ private:
 
 	// Without a usable setpoint for so long, the motors stop.
 	static constexpr hrt_abstime PATIENCE_US = 100000;
+	// More rotors than these are not believed to be dead: the mixer is tested with up to two out.
+	static constexpr int MOST_OUT = 2;
+	static constexpr uint16_t ALL_ROTORS = (1u << ISAE_X8_CHANNELS) - 1;
 
 	uORB::SubscriptionCallbackWorkItem _torque_sub{this, ORB_ID(vehicle_torque_setpoint)};
 	uORB::Subscription _thrust_sub{ORB_ID(vehicle_thrust_setpoint)};
@@ -71,6 +74,8 @@ private:
 	float _voltage_v{ISAE_X8_REFERENCE_V};
 	// Bit k: the rotor on channel k is out, until the vehicle is disarmed.
 	uint16_t _failed{0};
+	// What the failure detector reported last and was not believed.
+	uint16_t _doubted{0};
 	bool _displaced{false};
 	unsigned _refused{0};
 	uint32_t _saturation{0};
