@@ -90,10 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
             .and_then(|file| flight.record.write(file));
         written.map_err(|error| format!("{}: {error}", path.display()))?;
     }
-    print!(
-        "{}",
-        Score::new(&flight.record, &flight.world.vehicle, flight.pilot.as_ref())
-    );
+    print!("{}", Score::new(&flight));
     for (what, count) in &flight.record.counts {
         println!("{what}: {count}");
     }

@@ -107,6 +107,7 @@ fn fly(
             continue;
         };
         heard = Instant::now();
+        let mut end = None;
         let answer = match last {
             Some((before, answer)) if before == packet.count => answer,
             before => {
@@ -119,14 +120,15 @@ fn fly(
                     Some(_) => {}
                 }
                 let duration_us = 1_000_000 / u64::from(packet.rate_hz);
-                if let Some(end) = flight.advance(&packet.throttles, duration_us)? {
-                    return Ok(end);
-                }
+                end = flight.advance(&packet.throttles, duration_us)?;
                 answer(&flight.world, sensors)
             }
         };
         // A loss is made good by ArduPilot's repetition.
         let _ = socket.send_to(answer.as_bytes(), from);
+        if let Some(end) = end {
+            return Ok(end);
+        }
         last = Some((packet.count, answer));
     }
 }

@@ -2,8 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use super::arguments::Arguments;
+use super::arguments::{Arguments, Failure};
 use super::pilot::Pilot;
+use super::plan::{FIRST_S, Manoeuvre};
 use super::record::Record;
 use super::vehicle::{Throttles, Vehicle};
 use super::world::World;
@@ -26,6 +27,9 @@ pub struct Flight {
     pub pilot: Option<Pilot>,
     /// The record.
     pub record: Record,
+    /// Time of the manoeuvre, or without one of the simulation, at which a rotor stopped, s.
+    pub failed_s: Option<f64>,
+    failure: Option<Failure>,
     end_s: Option<f64>,
     speed: f64,
     begun: Option<Instant>,
@@ -34,10 +38,17 @@ pub struct Flight {
 impl Flight {
     /// A flight that begins on the ground.
     pub fn new(vehicle: Vehicle, pilot: Option<Pilot>, arguments: &Arguments) -> Flight {
+        let stops_by_itself = arguments.fly == Some(Manoeuvre::Failure);
+        let failure = arguments.fail.or(stops_by_itself.then_some(Failure {
+            output: 0,
+            time_s: FIRST_S,
+        }));
         Flight {
             world: World::new(vehicle),
             pilot,
             record: Record::default(),
+            failed_s: None,
+            failure,
             end_s: arguments.seconds,
             speed: arguments.speed,
             begun: None,
@@ -53,8 +64,9 @@ impl Flight {
         let time_s = self.world.time_s();
         self.wait(time_s);
         if let Some(pilot) = &mut self.pilot {
-            pilot.update(&mut self.world)?;
+            pilot.update(&self.world)?;
         }
+        self.fail(time_s);
         self.record.take(&self.world, self.pilot.as_ref(), throttles);
         if let Some(crashed_s) = self.world.crashed_s {
             return Ok(Some(End::Crashed(crashed_s)));
@@ -62,6 +74,25 @@ impl Flight {
         let is_over = self.end_s.is_some_and(|end_s| time_s >= end_s);
         let is_flown = self.pilot.as_ref().is_some_and(|pilot| pilot.is_done(time_s));
         Ok((is_over || is_flown).then_some(End::Done))
+    }
+
+    /// Stops the rotor when its time has come.
+    fn fail(&mut self, time_s: f64) {
+        let pilot = self.pilot.as_ref().filter(|pilot| pilot.plan().is_some());
+        let clock_s = pilot.map_or(Some(time_s), |pilot| pilot.manoeuvre_s(time_s));
+        let (Some(failure), Some(clock_s)) = (self.failure, clock_s) else {
+            return;
+        };
+        if clock_s < failure.time_s {
+            return;
+        }
+        self.failure = None;
+        self.failed_s = Some(clock_s);
+        self.world.stop(failure.output);
+        eprintln!("{time_s:8.2} s  the rotor on output {} stops", failure.output);
+        if let Some(pilot) = &mut self.pilot {
+            pilot.inject(failure.output);
+        }
     }
 
     /// Puts the vehicle back to its start, for a stack that has started anew. Time goes on.

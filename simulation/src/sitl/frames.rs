@@ -29,14 +29,45 @@ impl Frames {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next message of the common dialect; `None` until more bytes come. Messages of other
-    /// dialects are passed over.
-    pub fn next(&mut self) -> Option<(MavHeader, MavMessage)> {
+    /// Passes over bytes; those that follow each other count once.
+    fn skip(&mut self, count: usize) {
+        self.bytes.drain(..count);
+        self.malformed += u64::from(!self.skipping);
+        self.skipping = true;
+    }
+
+    /// Whether the frame at the start is one that this cannot read, or none.
+    fn has_unknown_flags(&self) -> Option<bool> {
+        let flags = *self.bytes.get(2)?;
+        Some(self.bytes[0] == V2 && flags & !SIGNED != 0)
+    }
+
+    /// Length of the frame at the start.
+    fn length(&self) -> Option<usize> {
+        let payload = usize::from(*self.bytes.get(1)?);
+        if self.bytes[0] == V1 {
+            return Some(payload + AROUND_V1);
+        }
+        let is_signed = self.bytes.get(2)? & SIGNED != 0;
+        Some(payload + AROUND_V2 + if is_signed { SIGNATURE } else { 0 })
+    }
+}
+
+/// The messages of the common dialect in what has come, `None` until more comes. Those of other
+/// dialects are passed over.
+impl Iterator for Frames {
+    type Item = (MavHeader, MavMessage);
+
+    fn next(&mut self) -> Option<Self::Item> {
         loop {
             let marker = self.bytes.iter().position(|byte| matches!(*byte, V1 | V2));
             let start = marker.unwrap_or(self.bytes.len());
             if start > 0 {
                 self.skip(start);
+            }
+            if self.has_unknown_flags()? {
+                self.skip(1);
+                continue;
             }
             let length = self.length()?;
             if self.bytes.len() < length {
@@ -52,23 +83,6 @@ impl Frames {
                 return Some(frame);
             }
         }
-    }
-
-    /// Passes over bytes; those that follow each other count once.
-    fn skip(&mut self, count: usize) {
-        self.bytes.drain(..count);
-        self.malformed += u64::from(!self.skipping);
-        self.skipping = true;
-    }
-
-    /// Length of the frame at the start.
-    fn length(&self) -> Option<usize> {
-        let payload = usize::from(*self.bytes.get(1)?);
-        if self.bytes[0] == V1 {
-            return Some(payload + AROUND_V1);
-        }
-        let is_signed = self.bytes.get(2)? & SIGNED != 0;
-        Some(payload + AROUND_V2 + if is_signed { SIGNATURE } else { 0 })
     }
 }
 
@@ -88,9 +102,6 @@ fn parse(bytes: &[u8]) -> Option<Option<(MavHeader, MavMessage)>> {
     }
     let mut raw = MAVLinkV2MessageRaw::new();
     raw.as_mut_slice()[..bytes.len()].copy_from_slice(bytes);
-    if raw.incompatibility_flags() & !SIGNED != 0 {
-        return None;
-    }
     let id = raw.message_id();
     let header = MavHeader {
         system_id: raw.system_id(),

@@ -98,7 +98,7 @@ impl Link {
                 _ => break,
             }
         }
-        std::iter::from_fn(|| self.frames.next()).collect()
+        self.frames.by_ref().collect()
     }
 
     /// Sends as a ground station.

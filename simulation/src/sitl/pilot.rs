@@ -6,9 +6,9 @@ use mavlink::dialects::common::{
     MavState, MavType, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 
-use super::arguments::{Arguments, Failure};
+use super::arguments::Arguments;
 use super::link::Link;
-use super::plan::{FIRST_S, Manoeuvre, Plan, Target};
+use super::plan::{Manoeuvre, Plan, Target};
 use super::world::World;
 
 /// The flight stack.
@@ -28,6 +28,10 @@ const TARGET_S: f64 = 0.02;
 
 /// Setpoints that come before PX4 is asked to change to Offboard, s.
 const TARGETS_FIRST_S: f64 = 1.0;
+
+/// How ArduPilot says that its estimator has a position; it would arm before. Longest wait for it, s.
+const USES_GPS: &str = "is using GPS";
+const GPS_S: f64 = 60.0;
 
 /// Longest time until the vehicle hovers, s.
 const PATIENCE_S: f64 = 120.0;
@@ -70,12 +74,11 @@ pub struct Pilot {
     link: Link,
     plan: Option<Plan>,
     height_m: f64,
-    failure: Option<Failure>,
-    failed_s: Option<f64>,
     phase: Phase,
     /// System and component of the stack, and since when they are known, s.
     peer: Option<([u8; 2], f64)>,
     armed: bool,
+    uses_gps: bool,
     mode: u32,
     heartbeat: Clock,
     command: Clock,
@@ -104,21 +107,15 @@ impl Clock {
 impl Pilot {
     /// A pilot on a link.
     pub fn new(stack: Stack, link: Link, arguments: &Arguments) -> Pilot {
-        let stops_by_itself = arguments.fly == Some(Manoeuvre::Failure);
-        let failure = arguments.fail.or(stops_by_itself.then_some(Failure {
-            output: 0,
-            time_s: FIRST_S,
-        }));
         Pilot {
             stack,
             link,
             plan: arguments.fly.map(Manoeuvre::plan),
             height_m: arguments.height,
-            failure,
-            failed_s: None,
             phase: Phase::Arming,
             peer: None,
             armed: false,
+            uses_gps: false,
             mode: 0,
             heartbeat: Clock::default(),
             command: Clock::default(),
@@ -152,11 +149,6 @@ impl Pilot {
         self.plan.as_ref()
     }
 
-    /// Time of the manoeuvre, or without one of the simulation, at which a rotor stopped, s.
-    pub fn failed_s(&self) -> Option<f64> {
-        self.failed_s
-    }
-
     /// What is asked for at a time of the simulation.
     pub fn wanted(&self, time_s: f64) -> Option<Target> {
         let manoeuvre_s = self.manoeuvre_s(time_s)?;
@@ -175,13 +167,12 @@ impl Pilot {
     ///
     /// # Errors
     /// A vehicle that does not hover in time; with what the stack has said last.
-    pub fn update(&mut self, world: &mut World) -> Result<(), String> {
+    pub fn update(&mut self, world: &World) -> Result<(), String> {
         let time_s = world.time_s();
         self.link.connect();
         for (header, message) in self.link.receive() {
             self.hear(header.system_id as u8, header.component_id, message, time_s);
         }
-        self.fail(world, time_s);
         let Some((peer, since_s)) = self.peer else {
             return Ok(());
         };
@@ -220,7 +211,8 @@ impl Pilot {
             }
             MavMessage::STATUSTEXT(text) => {
                 let text = text.text.to_str().unwrap_or_default().trim().to_owned();
-                if !text.is_empty() {
+                self.uses_gps |= text.ends_with(USES_GPS);
+                if !text.is_empty() && text != self.told {
                     eprintln!("{time_s:8.2} s  {text}");
                     self.told = text;
                 }
@@ -236,24 +228,10 @@ impl Pilot {
         }
     }
 
-    /// Stops the rotor when its time has come.
-    fn fail(&mut self, world: &mut World, time_s: f64) {
-        let clock_s = match self.plan {
-            Some(_) => self.manoeuvre_s(time_s),
-            None => Some(time_s),
-        };
-        let Some(failure) = self
-            .failure
-            .filter(|failure| clock_s.is_some_and(|now| now >= failure.time_s))
-        else {
-            return;
-        };
-        self.failure = None;
-        self.failed_s = clock_s;
-        world.stop(failure.output);
-        eprintln!("{time_s:8.2} s  the rotor on output {} stops", failure.output);
+    /// Tells PX4's simulated telemetry that a rotor has stopped: it makes up the motors' currents.
+    pub fn inject(&mut self, output: usize) {
         if let (Stack::Px4, Some((peer, _))) = (self.stack, self.peer) {
-            let motor = failure.output as f32 + 1.0;
+            let motor = output as f32 + 1.0;
             self.long(
                 peer,
                 MavCmd::MAV_CMD_INJECT_FAILURE,
@@ -264,11 +242,15 @@ impl Pilot {
 
     fn fly(&mut self, world: &World, peer: [u8; 2], time_s: f64, since_s: f64) -> Result<(), String> {
         let height_m = -world.state.position.z;
+        let wait_s = match self.stack {
+            Stack::Ardupilot if !self.uses_gps => GPS_S,
+            _ => TARGETS_FIRST_S,
+        };
         match self.phase {
             Phase::Arming => {
                 if self.armed && self.is_guided() {
                     self.phase = Phase::Climbing(None);
-                } else if time_s > since_s + TARGETS_FIRST_S && self.command.is_due(time_s, COMMAND_S) {
+                } else if time_s > since_s + wait_s && self.command.is_due(time_s, COMMAND_S) {
                     self.arm(peer);
                 }
             }

@@ -54,6 +54,8 @@ struct Px4 {
     /// Whether PX4 has ever answered.
     answers: bool,
     unanswered: u64,
+    /// Whether malformed bytes have been told of.
+    has_complained: bool,
 }
 
 /// Serves PX4 until the flight ends.
@@ -79,6 +81,7 @@ pub fn serve(
         throttles: Throttles::zeros(),
         answers: false,
         unanswered: 0,
+        has_complained: false,
     };
     let end = px4.fly(flight, sensors, rate_hz);
     flight.record.note("steps without an answer", px4.unanswered);
@@ -125,7 +128,7 @@ impl Px4 {
         let deadline = Instant::now() + patience;
         let mut bytes = [0; 4096];
         loop {
-            while let Some((_, message)) = self.frames.next() {
+            for (_, message) in self.frames.by_ref() {
                 if let MavMessage::HIL_ACTUATOR_CONTROLS(controls) = message {
                     self.throttles = throttles(&controls);
                     self.answers = true;
@@ -133,6 +136,10 @@ impl Px4 {
                         return Ok(());
                     }
                 }
+            }
+            if self.frames.malformed > 0 && !self.has_complained {
+                self.has_complained = true;
+                eprintln!("PX4 sends what is no MAVLink: passed over");
             }
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
@@ -147,13 +154,7 @@ impl Px4 {
             self.stream.set_read_timeout(Some(left)).map_err(vanished)?;
             match self.stream.read(&mut bytes) {
                 Ok(0) => return Err("PX4 has closed the connection".to_owned()),
-                Ok(count) => {
-                    let before = self.frames.malformed;
-                    self.frames.push(&bytes[..count]);
-                    if before == 0 && self.frames.malformed > 0 {
-                        eprintln!("PX4 sends what is no MAVLink: passed over");
-                    }
-                }
+                Ok(count) => self.frames.push(&bytes[..count]),
                 Err(error)
                     if matches!(
                         error.kind(),

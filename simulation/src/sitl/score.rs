@@ -5,10 +5,10 @@
 
 use std::fmt;
 
+use super::flight::Flight;
 use super::pilot::Pilot;
 use super::plan::{BETWEEN_S, FIRST_S, Plan, Target};
 use super::record::{Record, Sample};
-use super::vehicle::Vehicle;
 
 /// Time before a step over which the state is averaged, and after it for the root mean square, s.
 const BEFORE_S: f64 = 1.0;
@@ -84,24 +84,25 @@ pub struct Score {
 
 impl Score {
     /// Measures a record; only steps that were flown to their end count.
-    pub fn new(record: &Record, vehicle: &Vehicle, pilot: Option<&Pilot>) -> Score {
+    pub fn new(flight: &Flight) -> Score {
+        let vehicle = &flight.world.vehicle;
         let mut score = Score {
             model_throttle: vehicle.hover_throttle,
             hover: None,
             rows: Vec::new(),
             failure: None,
         };
-        let Some(plan) = pilot.and_then(Pilot::plan) else {
+        let Some(plan) = flight.pilot.as_ref().and_then(Pilot::plan) else {
             return score;
         };
         let hover_end_s = plan.steps.first().map_or(plan.end_s, |_| FIRST_S);
-        let flight = Flown(record);
+        let flown = Flown(&flight.record);
         let hover_begin_s = if plan.steps.is_empty() {
             0.0
         } else {
             hover_end_s - HOVER_S
         };
-        score.hover = flight.hover(hover_begin_s, hover_end_s);
+        score.hover = flown.hover(hover_begin_s, hover_end_s);
         for (k, (begin_s, target)) in plan.steps.iter().enumerate() {
             let before = if k == 0 {
                 Target::default()
@@ -111,7 +112,7 @@ impl Score {
             let Some(name) = name(&before, target) else {
                 continue;
             };
-            let Some(step) = flight.step(*begin_s, &before, target, vehicle.weight_n()) else {
+            let Some(step) = flown.step(*begin_s, &before, target, vehicle.weight_n()) else {
                 continue;
             };
             match score.rows.iter_mut().find(|row| row.name == name) {
@@ -122,9 +123,9 @@ impl Score {
                 }),
             }
         }
-        score.failure = pilot
-            .and_then(Pilot::failed_s)
-            .and_then(|failed_s| flight.after_failure(failed_s, plan));
+        score.failure = flight
+            .failed_s
+            .and_then(|failed_s| flown.after_failure(failed_s, plan));
         score
     }
 }

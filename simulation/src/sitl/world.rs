@@ -94,11 +94,11 @@ impl World {
         let duration_s = duration_us as f64 * 1e-6;
         let steps = (duration_s / LONGEST_STEP_S).ceil().max(1.0);
         let rotors = self.vehicle.rotors;
-        let turning = |rotor: usize| rotor < rotors && !self.stopped[rotor];
         let command = Throttles::from_fn(|rotor, _| {
+            let turns = rotor < rotors && !self.stopped[rotor];
             // NaN, and what is below 0, is a rotor at rest.
-            if turning(rotor) {
-                command[rotor].max(0.0).min(1.0)
+            if turns && command[rotor] > 0.0 {
+                command[rotor].min(1.0)
             } else {
                 0.0
             }
