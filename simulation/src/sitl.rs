@@ -46,6 +46,24 @@ fn say(stack: Stack, address: std::io::Result<SocketAddr>) {
     eprintln!("waiting for {name} on {transport} port {}", address.port());
 }
 
+/// The file of `--output`, made before the flight, so that nothing flown is lost, and after
+/// the ports are had, so that an earlier flight is not lost to a busy one.
+fn file(arguments: &Arguments) -> Result<Option<File>, String> {
+    let Some(path) = &arguments.output else {
+        return Ok(None);
+    };
+    let inputs = std::iter::once(&arguments.airframe).chain(&arguments.map);
+    let place = path.canonicalize().ok();
+    if place.is_some() && inputs.into_iter().any(|input| input.canonicalize().ok() == place) {
+        return Err(format!(
+            "{} is an airframe file that is flown: give -o another name",
+            path.display()
+        ));
+    }
+    let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(Some(file))
+}
+
 /// Serves a stack and writes what was flown.
 ///
 /// # Errors
@@ -64,17 +82,20 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         vehicle.name, vehicle.rotors, vehicle.mass_kg, vehicle.hover_throttle
     );
     let mut sensors = Sensors::new(arguments.noise, arguments.seed);
+    let output;
     let (flight, end) = if arguments.px4 {
         let link = Link::udp(arguments.link.unwrap_or(PX4_LINK))?;
         let listener = px4::listen(arguments.port.unwrap_or(px4::PORT))?;
+        output = file(arguments)?;
         say(Stack::Px4, listener.local_addr());
         // Without a manoeuvre, too: PX4 has its battery by this link.
         let pilot = Pilot::new(Stack::Px4, link, arguments);
         let mut flight = Flight::new(vehicle, Some(pilot), arguments);
-        let end = px4::serve(&listener, &mut flight, &mut sensors, arguments.rate);
+        let end = px4::serve(&listener, &mut flight, &mut sensors);
         (flight, end)
     } else {
         let socket = ardupilot::listen(arguments.port.unwrap_or(ardupilot::PORT))?;
+        output = file(arguments)?;
         say(Stack::Ardupilot, socket.local_addr());
         let link = || Link::tcp(arguments.link.unwrap_or(ARDUPILOT_LINK));
         let pilot = arguments
@@ -84,11 +105,10 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         let end = ardupilot::serve(&socket, &mut flight, &mut sensors, arguments.pwm_range);
         (flight, end)
     };
-    if let Some(path) = &arguments.output {
-        let written = File::create(path)
-            .map_err(csv::Error::from)
-            .and_then(|file| flight.record.write(file));
+    if let (Some(path), Some(file)) = (&arguments.output, output) {
+        let written = flight.record.write(file);
         written.map_err(|error| format!("{}: {error}", path.display()))?;
+        eprintln!("wrote {}", path.display());
     }
     print!("{}", Score::new(&flight));
     for (what, count) in &flight.record.counts {

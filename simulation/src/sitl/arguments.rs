@@ -69,9 +69,6 @@ pub struct Arguments {
     /// Pulse widths of throttle 0 and 1 in ArduPilot, MOT_PWM_MIN and MOT_PWM_MAX
     #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = pulses)]
     pub pwm_range: Pulses,
-    /// Samples of the sensors per second for PX4; ArduPilot states its own
-    #[arg(long, value_name = "HZ", default_value_t = 250, value_parser = clap::value_parser!(u32).range(100..=1000))]
-    pub rate: u32,
     /// Port to serve: 4560 plus PX4's instance, 9002 for ArduPilot; 0 takes a free one
     #[arg(long)]
     pub port: Option<u16>,

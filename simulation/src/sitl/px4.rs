@@ -22,12 +22,17 @@ use super::sensors::{Sensors, place};
 use super::vehicle::Throttles;
 use super::world::World;
 
-/// Samples per second of magnetometer and barometer, and of the satellite receiver.
-const SLOW_HZ: u32 = 50;
-const FIX_HZ: u32 = 10;
+/// Time between samples, microseconds: PX4's start scripts count on 250 per second, and with more it
+/// does not answer each.
+const PERIOD_US: u64 = 4000;
 
-/// Longest wait for an answer, in real time.
+/// Samples between two of magnetometer and barometer, 50 Hz, and of the satellite receiver, 10 Hz.
+const SLOW: u64 = 5;
+const FIX: u64 = 25;
+
+/// Longest wait for an answer in real time, and before PX4 has answered at all.
 const PATIENCE: Duration = Duration::from_secs(2);
+const PERIOD: Duration = Duration::from_micros(PERIOD_US);
 
 /// Outputs in a message.
 const OUTPUTS: usize = 16;
@@ -62,12 +67,7 @@ struct Px4 {
 ///
 /// # Errors
 /// A client that vanishes, a pilot who gives up.
-pub fn serve(
-    listener: &TcpListener,
-    flight: &mut Flight,
-    sensors: &mut Sensors,
-    rate_hz: u32,
-) -> Result<End, String> {
+pub fn serve(listener: &TcpListener, flight: &mut Flight, sensors: &mut Sensors) -> Result<End, String> {
     let (stream, _) = listener
         .accept()
         .map_err(|error| format!("no connection from PX4: {error}"))?;
@@ -83,30 +83,28 @@ pub fn serve(
         unanswered: 0,
         has_complained: false,
     };
-    let end = px4.fly(flight, sensors, rate_hz);
+    let end = px4.fly(flight, sensors);
     flight.record.note("steps without an answer", px4.unanswered);
     flight.record.note("malformed pieces", px4.frames.malformed);
     end
 }
 
 impl Px4 {
-    fn fly(&mut self, flight: &mut Flight, sensors: &mut Sensors, rate_hz: u32) -> Result<End, String> {
-        let period_us = 1_000_000 / u64::from(rate_hz);
+    fn fly(&mut self, flight: &mut Flight, sensors: &mut Sensors) -> Result<End, String> {
         self.send(&heartbeat())?;
         for sample in 0u64.. {
-            if let Some(end) = flight.advance(&self.throttles, period_us)? {
+            if let Some(end) = flight.advance(&self.throttles, PERIOD_US)? {
                 return Ok(end);
             }
-            let is_due = |hz: u32| sample % u64::from(rate_hz / hz) == 0;
             let world = &flight.world;
-            if is_due(FIX_HZ) {
+            if sample.is_multiple_of(FIX) {
                 let message = fix(world, sensors);
                 self.send(&message)?;
             }
             self.send(&truth(world))?;
-            let message = measured(world, sensors, is_due(SLOW_HZ));
+            let message = measured(world, sensors, sample.is_multiple_of(SLOW));
             self.send(&message)?;
-            self.answer(world.time_us, Duration::from_micros(period_us))?;
+            self.answer(world.time_us)?;
         }
         Ok(End::Done)
     }
@@ -123,8 +121,8 @@ impl Px4 {
 
     /// Waits for the outputs that follow the sample of `time_us`. Before PX4 answers at all, it is
     /// given real time to start.
-    fn answer(&mut self, time_us: u64, period: Duration) -> Result<(), String> {
-        let patience = if self.answers { PATIENCE } else { period };
+    fn answer(&mut self, time_us: u64) -> Result<(), String> {
+        let patience = if self.answers { PATIENCE } else { PERIOD };
         let deadline = Instant::now() + patience;
         let mut bytes = [0; 4096];
         loop {

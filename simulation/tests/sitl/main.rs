@@ -190,6 +190,7 @@ fn a_client_that_vanishes_leaves_an_error_and_its_flight() {
     let end = server.end();
     assert_eq!(end.status, Some(1), "{end:?}");
     assert!(end.stderr.contains("error: PX4 has"), "{end:?}");
+    assert!(end.stderr.contains("wrote "), "{end:?}");
     // 20 ms from row to row.
     let rows = csv_rows(&end.flight).len();
     assert!((20..30).contains(&rows), "{rows}");
@@ -305,10 +306,19 @@ fn what_cannot_be_done_is_said() {
     assert_eq!(busy.status.code(), Some(1), "{busy:?}");
     let text = String::from_utf8_lossy(&busy.stderr).into_owned();
     assert!(text.contains(&port) && text.contains("--port"), "{text}");
+    let free = ["--px4", "--port", "0", "--link", "0"];
     for (arguments, said) in [
         (&["--px4", "--fail", "8@1"][..], "no output 8"),
         (&["--ardupilot", "--mass-kg", "40"], "the vehicle weighs 392.3 N"),
         (&["--px4", "--map", "nowhere.toml"], "nowhere.toml"),
+        (
+            &[&free[..], &["-o", "no/such/folder.csv"]].concat(),
+            "no/such/folder.csv",
+        ),
+        (
+            &[&free[..], &["-o", server::AIRFRAME]].concat(),
+            "give -o another name",
+        ),
     ] {
         let run = server::run(arguments);
         assert_eq!(run.status.code(), Some(1), "{run:?}");

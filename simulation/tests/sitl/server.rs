@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Output, Stdio};
 
-const AIRFRAME: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/simulator/x8.toml");
+pub(crate) const AIRFRAME: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/simulator/x8.toml");
 
 /// A simulator that serves a free port as fast as it can.
 pub(crate) struct Server {
