@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::ValueEnum;
 use mixer_compiler::Compiled;
+use mixer_identify::wording::wrapped;
 
 use crate::bench_args::{PulseRange, pwm_range};
 use crate::stack::px4::{self, Currents};
@@ -189,6 +190,10 @@ fn parameters(args: &ParamsArgs, compiled: &Compiled) -> Result<Parameters, Stri
     Ok(all)
 }
 
+/// Characters of a comment: ArduPilot reads a file of defaults in pieces of 98 bytes
+/// (`AP_Param::read_param_defaults_file`), and takes the rest of a longer comment for a parameter.
+const COMMENT: usize = 90;
+
 /// Comments at the top of the file.
 fn header(args: &ParamsArgs, compiled: &Compiled, notes: &[String]) -> String {
     let mut head = format!(
@@ -206,8 +211,10 @@ fn header(args: &ParamsArgs, compiled: &Compiled, notes: &[String]) -> String {
             .map_or_else(String::new, |name| Path::new(name).display().to_string()),
     );
     for note in notes {
-        // Writing to a String cannot fail.
-        let _ = writeln!(head, "# * {note}.");
+        for (k, line) in wrapped(&format!("{note}."), COMMENT).iter().enumerate() {
+            // Writing to a String cannot fail.
+            let _ = writeln!(head, "# {} {line}", if k == 0 { "*" } else { " " });
+        }
     }
     crate::printable_lines(&head)
 }
@@ -219,7 +226,9 @@ fn lines(list: &[Parameter], line: impl Fn(&Parameter) -> String) -> String {
     for parameter in list {
         if parameter.why != why {
             why = &parameter.why;
-            text += &format!("# {why}\n");
+            for line in wrapped(why, COMMENT) {
+                text += &format!("# {line}\n");
+            }
         }
         text += &line(parameter);
         text.push('\n');

@@ -71,12 +71,18 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
     }
 }
 
-void AP_MotorsCoaxialMixer::update_voltage()
+// Voltage of the first battery monitor, 0 where it has none; `healthy()` would speak for all of them.
+static float measured_voltage()
 {
     const AP_BattMonitor &battery = AP::battery();
-    // Of the first monitor; `healthy()` would speak for all of them.
     const float voltage_v = battery.voltage(AP_BATT_PRIMARY_INSTANCE);
-    if (battery.healthy(AP_BATT_PRIMARY_INSTANCE) && isfinite(voltage_v) && voltage_v > 0.0f) {
+    return battery.healthy(AP_BATT_PRIMARY_INSTANCE) && isfinite(voltage_v) ? voltage_v : 0.0f;
+}
+
+void AP_MotorsCoaxialMixer::update_voltage()
+{
+    const float voltage_v = measured_voltage();
+    if (voltage_v > 0.0f) {
         _voltage_v = voltage_v;
     }
 }
@@ -139,7 +145,8 @@ void AP_MotorsCoaxialMixer::output_to_motors()
 
 bool AP_MotorsCoaxialMixer::arming_checks(size_t buflen, char *buffer) const
 {
-    return AP_MotorsMatrix::arming_checks(buflen, buffer) && check_frame(buflen, buffer) && check_parameters(buflen, buffer);
+    return AP_MotorsMatrix::arming_checks(buflen, buffer) && check_frame(buflen, buffer) && check_parameters(buflen, buffer)
+           && check_battery(buflen, buffer);
 }
 
 // Whether ArduPilot's motors are the airframe's rotors, by what each does to an axis.
@@ -192,6 +199,18 @@ bool AP_MotorsCoaxialMixer::check_parameters(size_t buflen, char *buffer) const
                                ISAE_X8_AIRFRAME, double(parameter.expected));
             return false;
         }
+    }
+    return true;
+}
+
+// Whether the voltage is measured: without it the mixer would keep that of the bench, whatever the pack has.
+bool AP_MotorsCoaxialMixer::check_battery(size_t buflen, char *buffer) const
+{
+    // 0 in an airframe without a voltage law.
+    const bool needs_voltage = ISAE_X8_REFERENCE_V > 0.0f;
+    if (needs_voltage && measured_voltage() <= 0.0f) {
+        hal.util->snprintf(buffer, buflen, "battery 1 has no voltage: set BATT_MONITOR");
+        return false;
     }
     return true;
 }

@@ -19,7 +19,7 @@ public:
 
     void output_to_motors() override;
 
-    // Refuses a frame, numbering or parameters that are not those of the airframe file.
+    // Refuses a frame, numbering or parameters that are not those of the airframe file, and a battery without a voltage.
     bool arming_checks(size_t buflen, char *buffer) const override;
 
 protected:
@@ -32,6 +32,7 @@ private:
     void stopped();
     bool check_frame(size_t buflen, char *buffer) const;
     bool check_parameters(size_t buflen, char *buffer) const;
+    bool check_battery(size_t buflen, char *buffer) const;
 
     // Without a usable setpoint for so long, the motors stop.
     static constexpr float PATIENCE_S = 0.1f;

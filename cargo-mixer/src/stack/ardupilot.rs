@@ -12,6 +12,9 @@ const SPIN_ARM: f64 = 0.1;
 /// Range of `MOT_THST_HOVER` in ArduPilot.
 const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 
+/// ArduPilot has no monitor by default, and no voltage without one.
+const MONITOR: &str = "BATT_MONITOR is your board's; 0 measures no voltage, the simulator has 4";
+
 /// ArduPilot's parameters where this mixer puts out the throttles.
 pub fn settings(compiled: &Compiled) -> Parameters {
     let airframe = &compiled.airframe;
@@ -26,6 +29,7 @@ pub fn settings(compiled: &Compiled) -> Parameters {
         let why = "The mixer follows the battery's voltage.";
         list.push(real("MOT_BAT_VOLT_MAX", 0.0, why));
         list.push(real("MOT_BAT_VOLT_MIN", 0.0, why));
+        notes.push(MONITOR.to_owned());
     }
     let why = "The rotors of a pair would slew apart.";
     list.push(real("MOT_SLEW_UP_TIME", 0.0, why));
@@ -66,6 +70,7 @@ pub fn own(compiled: &Compiled) -> Parameters {
         let why = "Range of the battery.";
         list.push(real("MOT_BAT_VOLT_MAX", voltage.range_v[1], why));
         list.push(real("MOT_BAT_VOLT_MIN", voltage.range_v[0], why));
+        notes.push(MONITOR.to_owned());
     }
     let [min, max] = compiled.pair.range();
     let throttle = compiled.equal_hover_throttle();

@@ -2,7 +2,7 @@
 
 use crate::arithmetic::Scalar;
 use crate::divisor;
-use crate::pair::ThrottleRange;
+use crate::pair::inverse::ThrottleRange;
 
 /// Newton steps that invert a single rotor's thrust. The start is exact for a thrust that grows
 /// with the square of the throttle, which bench maps follow to a few percent.

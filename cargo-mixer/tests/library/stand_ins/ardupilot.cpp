@@ -130,6 +130,10 @@ public:
 // What differs from the airframe is named, and where it is set.
 void arming()
 {
+    CHECK(Bench().refuses("battery 1 has no voltage: set BATT_MONITOR"));
+    AP::battery().volts = 15.5f;
+    CHECK(Bench().refuses("BATT_MONITOR"));
+    AP::battery().good = true;
     CHECK(Bench().arms());
     Bench motors;
     motors._ready = false;
@@ -167,6 +171,7 @@ void arming()
     motors = Bench();
     motors._slew_dn_time.value = 0.05f;
     CHECK(motors.refuses("MOT_SLEW_DN_TIME"));
+    AP::battery() = AP_BattMonitor();
 }
 
 int main()
