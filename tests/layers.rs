@@ -31,8 +31,8 @@ const PACKAGES: [(&str, usize); 8] = [
 fn sources(package: &str) -> BTreeMap<Module, syn::File> {
     let mut found = BTreeMap::new();
     files(&root().join(package).join("src"), &Vec::new(), &mut found);
-    // A program's root, and text that is compiled for other targets.
-    let others = ["main", "library::support::memory"];
+    // Roots of programs, and text that is compiled for other targets.
+    let others = ["main", "bin::sitl", "library::support::memory"];
     found.retain(|module, _| !others.contains(&module.join("::").as_str()));
     found
 }

@@ -5,6 +5,8 @@
 //! cascade for both mixers, [`manoeuvre`] the hover with steps in z and a yaw profile, [`tracking`]
 //! Table II.
 //!
+//! [`sitl`] is another simulation: the vehicle of any airframe file for PX4 and ArduPilot.
+//!
 //! # What this can show, and what it cannot
 //!
 //! The plant *is* the coaxial map that the coaxial mixer inverts. Given that map, the simulation

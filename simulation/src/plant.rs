@@ -23,7 +23,7 @@ use crate::battery::Battery;
 use crate::integrator::runge_kutta;
 use crate::pair::Pair;
 use crate::state::State;
-use crate::vehicle::GRAVITY_M_S2;
+use crate::vehicle::{Body, GRAVITY_M_S2};
 
 /// One unit as the plant sees it.
 #[derive(Clone, Debug)]
@@ -32,17 +32,6 @@ struct Unit {
     axis: Vector3<f64>,
     spin_sign: f64,
     channels: [usize; 2],
-}
-
-/// What of a vehicle is not in the map of its rotors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
-    /// Mass, kg.
-    pub mass_kg: f64,
-    /// Principal moments of inertia about x, y, z, kg m2.
-    pub inertia_kg_m2: Vector3<f64>,
-    /// Time constant of a rotor's first-order lag, s.
-    pub rotor_lag_s: f64,
 }
 
 /// What the air does beyond the bench: held over one step.

@@ -10,6 +10,7 @@ pub mod arguments;
 pub mod flight;
 pub mod frames;
 pub mod link;
+pub mod messages;
 pub mod pilot;
 pub mod plan;
 pub mod px4;

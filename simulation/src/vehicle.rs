@@ -6,8 +6,6 @@ use mixer_compiler::airframe::Airframe;
 use mixer_compiler::diagnostic::Diagnostics;
 use nalgebra::Vector3;
 
-use crate::plant::Body;
-
 mixer_macros::airframe!("../airframes/isae-x8.toml");
 
 /// The airframe file that the mixer's tables come from.
@@ -34,6 +32,17 @@ pub const WEIGHT_N: f64 = MASS_KG * GRAVITY_M_S2;
 /// Time constant of a rotor's first-order lag, s. The paper gives none; 0.05 s is usual for 10 inch
 /// propellers.
 pub const ROTOR_LAG_S: f64 = 0.05;
+
+/// What of a vehicle is not in the map of its rotors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Principal moments of inertia about x, y, z, kg m2.
+    pub inertia_kg_m2: Vector3<f64>,
+    /// Time constant of a rotor's first-order lag, s.
+    pub rotor_lag_s: f64,
+}
 
 /// Mass, inertia and rotor lag of the paper's vehicle.
 pub const BODY: Body = Body {

@@ -133,3 +133,49 @@ pub fn frame(header: MavHeader, message: &MavMessage) -> Vec<u8> {
     raw.serialize_message(header, message);
     raw.raw_bytes().to_vec()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sitl::messages::heartbeat;
+
+    #[test]
+    fn frames_come_in_any_pieces_and_versions() {
+        let header = MavHeader {
+            system_id: 7,
+            component_id: 1,
+            sequence: 3,
+        };
+        let mut bytes = frame(header, &heartbeat());
+        let mut old = MAVLinkV1MessageRaw::new();
+        old.serialize_message(header, &heartbeat());
+        bytes.extend(old.raw_bytes());
+        let mut frames = Frames::default();
+        let mut found = 0;
+        for byte in bytes {
+            frames.push(&[byte]);
+            for (from, message) in frames.by_ref() {
+                assert_eq!((from, message), (header, heartbeat()));
+                found += 1;
+            }
+        }
+        assert_eq!((found, frames.malformed), (2, 0));
+    }
+
+    #[test]
+    fn messages_of_other_dialects_are_passed_over_and_junk_is_counted() {
+        let mut frames = Frames::default();
+        // Number 9999 is in no dialect that this reads: its checksum cannot be told.
+        frames.push(&[0xfd, 1, 0, 0, 0, 1, 1, 0x0f, 0x27, 0, 42, 0, 0]);
+        frames.push(&frame(MavHeader::default(), &heartbeat()));
+        assert_eq!(frames.by_ref().count(), 1);
+        assert_eq!(frames.malformed, 0);
+        let mut corrupt = frame(MavHeader::default(), &heartbeat());
+        corrupt[12] ^= 1;
+        frames.push(&corrupt);
+        frames.push(b"and more");
+        frames.push(&frame(MavHeader::default(), &heartbeat()));
+        assert_eq!(frames.by_ref().count(), 1);
+        assert_eq!(frames.malformed, 1);
+    }
+}

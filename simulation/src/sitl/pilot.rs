@@ -1,13 +1,13 @@
 //! The pilot: arms, takes off and flies a manoeuvre by MAVLink, as a ground station would.
 
 use mavlink::dialects::common::{
-    ATTITUDE_TARGET_DATA, BATTERY_STATUS_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA,
-    MavAutopilot, MavBatteryFunction, MavBatteryType, MavCmd, MavFrame, MavMessage, MavModeFlag, MavResult,
-    MavState, MavType, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    ATTITUDE_TARGET_DATA, COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavAutopilot, MavCmd, MavMessage, MavModeFlag,
+    MavResult, MavType,
 };
 
 use super::arguments::Arguments;
 use super::link::Link;
+use super::messages::{BATTERY, Texts, battery, heartbeat, position};
 use super::plan::{Manoeuvre, Plan, Target};
 use super::world::World;
 
@@ -39,9 +39,6 @@ const PATIENCE_S: f64 = 120.0;
 /// A hover: slower than this, m/s, for so long, s.
 const STILL_M_S: f64 = 0.3;
 const STILL_S: f64 = 3.0;
-
-/// Component of a battery.
-const BATTERY: u8 = 180;
 
 /// Number of `ATTITUDE_TARGET`, and of microseconds between two.
 const ATTITUDE_TARGET: f32 = 83.0;
@@ -85,6 +82,7 @@ pub struct Pilot {
     battery: Clock,
     target: Clock,
     thrust_setpoint: f64,
+    texts: Texts,
     told: String,
 }
 
@@ -122,6 +120,7 @@ impl Pilot {
             battery: Clock::default(),
             target: Clock::default(),
             thrust_setpoint: f64::NAN,
+            texts: Texts::default(),
             told: String::new(),
         }
     }
@@ -210,14 +209,16 @@ impl Pilot {
                 self.thrust_setpoint = thrust.into();
             }
             MavMessage::STATUSTEXT(text) => {
-                let text = text.text.to_str().unwrap_or_default().trim().to_owned();
+                let Some(text) = self.texts.join(&text) else {
+                    return;
+                };
                 self.uses_gps |= text.ends_with(USES_GPS);
                 if !text.is_empty() && text != self.told {
                     eprintln!("{time_s:8.2} s  {text}");
                     self.told = text;
                 }
             }
-            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result })
+            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result, .. })
                 if result != MavResult::MAV_RESULT_ACCEPTED
                     && command != MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL
                     && command != MavCmd::MAV_CMD_COMPONENT_ARM_DISARM =>
@@ -339,71 +340,4 @@ impl Pilot {
             confirmation: 0,
         }));
     }
-}
-
-/// Of a ground station.
-pub fn heartbeat() -> MavMessage {
-    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-        custom_mode: 0,
-        mavtype: MavType::MAV_TYPE_GCS,
-        autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
-        base_mode: MavModeFlag::empty(),
-        system_status: MavState::MAV_STATE_ACTIVE,
-        mavlink_version: 3,
-    })
-}
-
-fn position(target: Target, height_m: f64, [system, component]: [u8; 2], time_s: f64) -> MavMessage {
-    use PositionTargetTypemask as Mask;
-    let velocity = Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE
-        | Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE
-        | Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE;
-    let acceleration = Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE
-        | Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE
-        | Mask::POSITION_TARGET_TYPEMASK_AZ_IGNORE;
-    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        time_boot_ms: (time_s * 1e3) as u32,
-        x: target.offset.x as f32,
-        y: target.offset.y as f32,
-        z: -(height_m + target.offset.z) as f32,
-        vx: 0.0,
-        vy: 0.0,
-        vz: 0.0,
-        afx: 0.0,
-        afy: 0.0,
-        afz: 0.0,
-        yaw: target.yaw_deg.to_radians() as f32,
-        yaw_rate: 0.0,
-        type_mask: velocity | acceleration | Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE,
-        target_system: system,
-        target_component: component,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-    })
-}
-
-/// Cells of a pack by its voltage, as far as the message has place for them.
-fn cells(volts: f64) -> usize {
-    (volts / 4.25).ceil().clamp(1.0, 10.0) as usize
-}
-
-fn battery(world: &World) -> MavMessage {
-    let (volts, charge_ah) = (world.voltage_v(), world.state.charge_ah);
-    let cells = cells(world.vehicle.battery.full_v);
-    let mut voltages = [u16::MAX; 10];
-    voltages[..cells].fill((1e3 * volts / cells as f64).round() as u16);
-    let left = world
-        .vehicle
-        .capacity_ah
-        .map_or(1.0, |capacity_ah| (1.0 - charge_ah / capacity_ah).max(0.0));
-    MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
-        current_consumed: (1e3 * charge_ah) as i32,
-        energy_consumed: -1,
-        temperature: 2500,
-        voltages,
-        current_battery: (100.0 * world.current_a()) as i16,
-        id: 0,
-        battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
-        mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
-        battery_remaining: (100.0 * left) as i8,
-    })
 }

@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 
 use super::flight::{End, Flight};
 use super::frames::{Frames, frame};
-use super::pilot::heartbeat;
+use super::messages::heartbeat;
 use super::sensors::{Sensors, place};
 use super::vehicle::Throttles;
 use super::world::World;
@@ -30,8 +30,10 @@ const PERIOD_US: u64 = 4000;
 const SLOW: u64 = 5;
 const FIX: u64 = 25;
 
-/// Longest wait for an answer in real time, and before PX4 has answered at all.
+/// Longest wait for an answer in real time: in flight, while PX4 is disarmed and may exchange its
+/// modules, and before it has answered at all.
 const PATIENCE: Duration = Duration::from_secs(2);
+const DISARMED: Duration = Duration::from_millis(100);
 const PERIOD: Duration = Duration::from_micros(PERIOD_US);
 
 /// Outputs in a message.
@@ -58,6 +60,7 @@ struct Px4 {
     throttles: Throttles,
     /// Whether PX4 has ever answered.
     answers: bool,
+    armed: bool,
     unanswered: u64,
     /// Whether malformed bytes have been told of.
     has_complained: bool,
@@ -80,11 +83,14 @@ pub fn serve(listener: &TcpListener, flight: &mut Flight, sensors: &mut Sensors)
         sequence: 0,
         throttles: Throttles::zeros(),
         answers: false,
+        armed: false,
         unanswered: 0,
         has_complained: false,
     };
     let end = px4.fly(flight, sensors);
-    flight.record.note("steps without an answer", px4.unanswered);
+    flight
+        .record
+        .note("armed steps without an answer", px4.unanswered);
     flight.record.note("malformed pieces", px4.frames.malformed);
     end
 }
@@ -122,12 +128,17 @@ impl Px4 {
     /// Waits for the outputs that follow the sample of `time_us`. Before PX4 answers at all, it is
     /// given real time to start.
     fn answer(&mut self, time_us: u64) -> Result<(), String> {
-        let patience = if self.answers { PATIENCE } else { PERIOD };
+        let patience = match (self.answers, self.armed) {
+            (false, _) => PERIOD,
+            (true, false) => DISARMED,
+            (true, true) => PATIENCE,
+        };
         let deadline = Instant::now() + patience;
         let mut bytes = [0; 4096];
         loop {
             for (_, message) in self.frames.by_ref() {
                 if let MavMessage::HIL_ACTUATOR_CONTROLS(controls) = message {
+                    self.armed = is_armed(&controls);
                     self.throttles = throttles(&controls);
                     self.answers = true;
                     if controls.time_usec >= time_us {
@@ -141,7 +152,7 @@ impl Px4 {
             }
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                if self.answers {
+                if self.armed {
                     self.unanswered += 1;
                     if self.unanswered == 1 {
                         eprintln!("PX4 has not answered within {} s: going on", PATIENCE.as_secs());
@@ -168,11 +179,14 @@ fn vanished(error: std::io::Error) -> String {
     format!("PX4 has gone: {error}")
 }
 
+fn is_armed(controls: &HIL_ACTUATOR_CONTROLS_DATA) -> bool {
+    controls.mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED)
+}
+
 /// PX4's outputs, all at rest unless it is armed.
 fn throttles(controls: &HIL_ACTUATOR_CONTROLS_DATA) -> Throttles {
-    let armed = controls.mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
     Throttles::from_fn(|output, _| {
-        if armed && output < OUTPUTS {
+        if is_armed(controls) && output < OUTPUTS {
             f64::from(controls.controls[output])
         } else {
             0.0
@@ -221,6 +235,7 @@ fn measured(world: &World, sensors: &mut Sensors, slow: bool) -> MavMessage {
         pressure_alt: air.altitude_m as f32,
         temperature: air.temperature_c as f32,
         fields_updated,
+        id: 0,
     })
 }
 
@@ -252,6 +267,9 @@ fn fix(world: &World, sensors: &mut Sensors) -> MavMessage {
         cog: (100.0 * course.rem_euclid(360.0)) as u16 % 36_000,
         fix_type: 3,
         satellites_visible: 10,
+        id: 0,
+        // Not known.
+        yaw: 0,
     })
 }
 

@@ -343,3 +343,105 @@ impl fmt::Display for Cell {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::sitl::plan::Manoeuvre;
+
+    /// A flight of heading (degrees), height (m) and roll (degrees) over the time of the manoeuvre.
+    fn flown(of: impl Fn(f64) -> [f64; 3]) -> Record {
+        let sample = |k: u32| {
+            let time_s = f64::from(k) * 0.004;
+            let [yaw_deg, height_m, roll_deg] = of(time_s);
+            Sample {
+                time_s,
+                manoeuvre_s: Some(time_s),
+                target: None,
+                position: Vector3::new(0.0, 0.0, -height_m),
+                velocity: Vector3::zeros(),
+                // As the truth has it: from -180 to 180 degrees.
+                euler: Vector3::new(roll_deg.to_radians(), 0.0, wrapped(yaw_deg.to_radians())),
+                rate: Vector3::zeros(),
+                thrust_n: 10.0 + roll_deg,
+                voltage_v: 15.0,
+                current_a: 1.0,
+                thrust_setpoint: 0.4,
+                throttles: vec![0.5; 8],
+            }
+        };
+        let mut record = Record::default();
+        record.samples.extend((0..4000).map(sample));
+        record
+    }
+
+    fn turn(to: f64) -> Target {
+        Target {
+            yaw_deg: to,
+            ..Target::default()
+        }
+    }
+
+    #[test]
+    fn a_step_of_175_degrees_may_overshoot_180() {
+        // A second to 175 degrees, then 10.5 too far; the height sags by 0.2 m meanwhile.
+        let record = flown(|t| {
+            let t = t - FIRST_S;
+            let yaw = if t < 1.0 { 175.0 * t.max(0.0) } else { 185.5 };
+            [2.0 + yaw, if (0.0..1.0).contains(&t) { 4.8 } else { 5.0 }, 0.0]
+        });
+        let step = Flown(&record)
+            .step(FIRST_S, &turn(0.0), &turn(175.0), 10.0)
+            .unwrap();
+        assert!((step.rise_s - 0.9).abs() < 0.005, "{step:?}");
+        assert!((step.overshoot_percent - 6.0).abs() < 0.01, "{step:?}");
+        assert!((step.height_most_m - 0.2).abs() < 1e-9, "{step:?}");
+        // One of three seconds.
+        assert!((step.height_rms_m - 0.2 / 3f64.sqrt()).abs() < 1e-3, "{step:?}");
+        assert_eq!((step.thrust_most, step.thrust_least), (1.0, 1.0));
+    }
+
+    #[test]
+    fn steps_that_do_not_arrive_or_end_have_no_time() {
+        let record = flown(|_| [0.0, 5.0, 0.0]);
+        let step = Flown(&record)
+            .step(FIRST_S, &turn(0.0), &turn(90.0), 10.0)
+            .unwrap();
+        assert!(step.rise_s.is_nan() && step.overshoot_percent == 0.0, "{step:?}");
+        assert_eq!(
+            Flown(&record).step(FIRST_S + BETWEEN_S, &turn(0.0), &turn(90.0), 10.0),
+            None
+        );
+    }
+
+    #[test]
+    fn after_a_failure_the_changes_count() {
+        let record = flown(|t| {
+            let after = if t < FIRST_S { 0.0 } else { 1.0 };
+            [170.0 + 20.0 * after, 5.0 - 0.3 * after, 1.0 + 2.5 * after]
+        });
+        let plan = Manoeuvre::Failure.plan();
+        let after = Flown(&record).after_failure(FIRST_S, &plan).unwrap();
+        assert!((after.tilt_deg - 2.5).abs() < 1e-9, "{after:?}");
+        assert!(
+            (after.yaw_deg - 20.0).abs() < 1e-9 && (after.height_m - 0.3).abs() < 1e-9,
+            "{after:?}"
+        );
+    }
+
+    #[test]
+    fn steps_are_named_by_what_changes() {
+        let names: Vec<Option<String>> = Manoeuvre::Sidestep
+            .plan()
+            .steps
+            .windows(2)
+            .map(|pair| name(&pair[0].1, &pair[1].1))
+            .collect();
+        let both = Some("6 m sideways, 90 deg in yaw".to_owned());
+        let plain = Some("6 m sideways".to_owned());
+        assert_eq!(names, [both, plain.clone(), plain]);
+        assert_eq!(name(&turn(0.0), &turn(0.0)), None);
+    }
+}

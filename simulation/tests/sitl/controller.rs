@@ -152,6 +152,8 @@ impl Controller {
         let text = MavMessage::STATUSTEXT(STATUSTEXT_DATA {
             severity: MavSeverity::MAV_SEVERITY_INFO,
             text: "EKF3 IMU0 is using GPS".into(),
+            id: 0,
+            chunk_seq: 0,
         });
         for (message, every) in [(heartbeat, 100u64), (attitude, 8), (text, 1000)] {
             if self.steps.is_multiple_of(every) {

@@ -5,13 +5,16 @@ mod ardupilot;
 mod controller;
 mod px4;
 mod server;
+mod station;
 
 use std::time::{Duration, Instant};
 
 use ardupilot::Ardupilot;
 use controller::Controller;
+use mavlink::dialects::common::{MavCmd, MavMessage};
 use px4::Px4;
 use server::{Server, csv_rows};
+use station::Station;
 
 /// Rotors of `examples/simulator/x8.toml`.
 const ROTORS: usize = 8;
@@ -127,6 +130,52 @@ fn a_rotor_stops_when_it_is_told_to() {
     a_rotor_out(&mut Px4::connect(&server), server.hover);
     let server = Server::start("ardupilot-fail", &[&["--ardupilot"][..], &fail].concat());
     a_rotor_out(&mut Ardupilot::connect(&server), server.hover);
+}
+
+#[test]
+fn px4_hears_of_its_battery_and_of_a_rotor_that_stops() {
+    let station = Station::new();
+    let link = station.port.to_string();
+    let server = Server::start(
+        "px4-battery",
+        &[
+            "--px4",
+            "--link",
+            &link,
+            "--fail",
+            "2@0.3",
+            "--resistance",
+            "0.05",
+        ],
+    );
+    let mut px4 = Px4::connect(&server);
+    let (mut volts, mut motors) = (Vec::new(), Vec::new());
+    for step in 0..200 {
+        if step % 50 == 0 {
+            station.send_heartbeat();
+        }
+        px4.step(&alike(if step < 100 { 0.0 } else { 0.5 }));
+        for (from, message) in station.receive() {
+            match message {
+                MavMessage::BATTERY_STATUS(battery) => {
+                    // The system of the heartbeat, another component than the autopilot.
+                    assert_eq!(from, [3, 180]);
+                    let cells = battery.voltages.iter().take_while(|cell| **cell != u16::MAX);
+                    volts.push(cells.map(|cell| f64::from(*cell) * 1e-3).sum::<f64>());
+                }
+                MavMessage::COMMAND_LONG(command) if command.command == MavCmd::MAV_CMD_INJECT_FAILURE => {
+                    assert_eq!([command.param1, command.param2], [101.0, 2.0]);
+                    motors.push(command.param3);
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!((volts[0] - 21.87).abs() < 0.01, "{volts:?}");
+    let loaded = volts.last().unwrap();
+    assert!((20.0..21.8).contains(loaded), "{volts:?}");
+    // Motors count from 1.
+    assert_eq!(motors, [3.0]);
 }
 
 #[test]

@@ -1,0 +1,145 @@
+//! Messages of the pilot's link.
+
+use mavlink::dialects::common::{
+    BATTERY_STATUS_DATA, HEARTBEAT_DATA, MavAutopilot, MavBatteryFunction, MavBatteryType, MavFrame,
+    MavMessage, MavModeFlag, MavState, MavType, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    STATUSTEXT_DATA,
+};
+
+use super::plan::Target;
+use super::world::World;
+
+/// A text that comes in pieces.
+#[derive(Clone, Debug, Default)]
+pub struct Texts {
+    id: u16,
+    begun: String,
+}
+
+impl Texts {
+    /// The text with its last piece: those of one number, but for 0, belong together, and only the
+    /// last is not full.
+    pub fn join(&mut self, piece: &STATUSTEXT_DATA) -> Option<String> {
+        let is_full = !piece.text.contains(&0);
+        let text = piece.text.to_str().unwrap_or_default();
+        if piece.id != self.id || piece.id == 0 {
+            self.begun.clear();
+        }
+        self.id = piece.id;
+        self.begun += text;
+        if piece.id != 0 && is_full {
+            return None;
+        }
+        Some(std::mem::take(&mut self.begun).trim().to_owned())
+    }
+}
+
+/// Of a ground station.
+pub fn heartbeat() -> MavMessage {
+    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        custom_mode: 0,
+        mavtype: MavType::MAV_TYPE_GCS,
+        autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
+        base_mode: MavModeFlag::empty(),
+        system_status: MavState::MAV_STATE_ACTIVE,
+        mavlink_version: 3,
+    })
+}
+
+/// Asks for a position and a heading.
+pub fn position(target: Target, height_m: f64, [system, component]: [u8; 2], time_s: f64) -> MavMessage {
+    use PositionTargetTypemask as Mask;
+    let velocity = Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE;
+    let acceleration = Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_AZ_IGNORE;
+    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+        time_boot_ms: (time_s * 1e3) as u32,
+        x: target.offset.x as f32,
+        y: target.offset.y as f32,
+        z: -(height_m + target.offset.z) as f32,
+        vx: 0.0,
+        vy: 0.0,
+        vz: 0.0,
+        afx: 0.0,
+        afy: 0.0,
+        afz: 0.0,
+        yaw: target.yaw_deg.to_radians() as f32,
+        yaw_rate: 0.0,
+        type_mask: velocity | acceleration | Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE,
+        target_system: system,
+        target_component: component,
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+    })
+}
+
+/// Number of a battery's component.
+pub const BATTERY: u8 = 180;
+
+/// Cells of a pack by its voltage, as far as the message has place for them.
+fn cells(volts: f64) -> usize {
+    (volts / 4.25).ceil().clamp(1.0, 10.0) as usize
+}
+
+/// The battery's state.
+pub fn battery(world: &World) -> MavMessage {
+    let (volts, charge_ah) = (world.voltage_v(), world.state.charge_ah);
+    let cells = cells(world.vehicle.battery.full_v);
+    let mut voltages = [u16::MAX; 10];
+    voltages[..cells].fill((1e3 * volts / cells as f64).round() as u16);
+    let left = world
+        .vehicle
+        .capacity_ah
+        .map_or(1.0, |capacity_ah| (1.0 - charge_ah / capacity_ah).max(0.0));
+    MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
+        current_consumed: (1e3 * charge_ah) as i32,
+        energy_consumed: -1,
+        temperature: 2500,
+        voltages,
+        current_battery: (100.0 * world.current_a()) as i16,
+        id: 0,
+        battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
+        mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
+        battery_remaining: (100.0 * left) as i8,
+        ..BATTERY_STATUS_DATA::DEFAULT
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use mavlink::dialects::common::MavSeverity;
+
+    use super::*;
+
+    #[test]
+    fn texts_are_joined() {
+        let piece = |id, chunk_seq, text: &str| STATUSTEXT_DATA {
+            severity: MavSeverity::MAV_SEVERITY_INFO,
+            text: text.into(),
+            id,
+            chunk_seq,
+        };
+        let mut texts = Texts::default();
+        let long = "Arm: Motors: check frame class and type, channels and outputs";
+        assert_eq!(texts.join(&piece(7, 0, &long[..50])), None);
+        assert_eq!(texts.join(&piece(7, 1, &long[50..])).as_deref(), Some(long));
+        // One that stays without its end gives way to the next.
+        assert_eq!(texts.join(&piece(8, 0, &long[..50])), None);
+        assert_eq!(texts.join(&piece(0, 0, "short ")).as_deref(), Some("short"));
+        // A single piece may be full.
+        assert_eq!(
+            texts.join(&piece(0, 0, &long[..50])).as_deref(),
+            Some(long[..50].trim())
+        );
+    }
+
+    #[test]
+    fn a_pack_has_as_many_cells_as_its_voltage_tells() {
+        let packs = [(4.2, 1), (14.8, 4), (16.8, 4), (21.87, 6), (25.2, 6), (50.4, 10)];
+        for (volts, count) in packs {
+            assert_eq!(cells(volts), count, "{volts} V");
+        }
+    }
+}
