@@ -318,6 +318,8 @@ impl Toolchain {
         command
             .stdin(Stdio::null())
             .env("CARGO_TARGET_DIR", &self.target_dir)
+            // Incremental builds divide code in another way: other counts.
+            .env("CARGO_INCREMENTAL", "0")
             .envs(self.environment.iter().map(|(name, value)| (name, value)));
         command
     }
