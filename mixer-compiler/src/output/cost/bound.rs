@@ -39,7 +39,7 @@ const NULL_RANGE: u32 = 40;
 const REACH: u32 = 35;
 const REACH_UNIT: u32 = 45;
 const CLIMB: u32 = 3;
-const RETREAT: u32 = 5;
+const RETREAT: u32 = 6;
 
 /// The outlines' top: one unit's knots, one knot passed, and one unit in that.
 const KNOTS: u32 = 75;
