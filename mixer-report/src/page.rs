@@ -317,7 +317,7 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     } else {
         ""
     };
-    let csv = data::sweep(study, Data::Forward).map_or_else(|_| String::new(), |sweep| sweep.csv);
+    let csv = link::csv(study, Data::Forward);
     let maps = Effort::BOTH.map(|effort| {
         let quantity = effort.name();
         let (word, column) = column(effort);
@@ -400,7 +400,7 @@ fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
 }
 
 fn inverse_section(study: &Study<'_>) -> Markup {
-    let csv = data::sweep(study, Data::Inverse).map_or_else(|_| String::new(), |sweep| sweep.csv);
+    let csv = link::csv(study, Data::Inverse);
     let maps = [0, 1].map(|rotor| {
         let name = ["upper", "lower"][rotor];
         let (word, column) = (format!("inverse-{name}"), format!("{name}_throttle"));
@@ -416,7 +416,7 @@ fn inverse_section(study: &Study<'_>) -> Markup {
 }
 
 fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[Alternative]) -> Markup {
-    let csv = data::sweep(study, Data::Error).map_or_else(|_| String::new(), |sweep| sweep.csv);
+    let csv = link::csv(study, Data::Error);
     let plots: Vec<Markup> = Effort::BOTH
         .into_iter()
         .zip(fields)

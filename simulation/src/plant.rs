@@ -97,10 +97,10 @@ impl<const R: usize> Plant<R> {
     /// Force (N) and torque (N m) of the rotors in the body.
     pub fn rotor_wrench(&self, state: &State<R>, flutter: &SVector<f64, R>) -> (Vector3<f64>, Vector3<f64>) {
         let volts = self.voltage_v(state);
-        let [k_f, k_q] = match &self.voltage {
-            Some(voltage) => [voltage.thrust_factor(volts), voltage.torque_factor(volts)],
-            None => [1.0, 1.0],
-        };
+        let [k_f, k_q] = self
+            .voltage
+            .as_ref()
+            .map_or([1.0; 2], |voltage| voltage.factors(volts));
         let effective = |channel: usize| state.throttle.get(channel).copied().unwrap_or(0.0);
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         for (unit, flutter) in self.units.iter().zip(flutter) {

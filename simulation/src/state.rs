@@ -75,3 +75,8 @@ impl<const R: usize> Mul<f64> for State<R> {
         }
     }
 }
+
+/// An angle in (-pi, pi], rad.
+pub fn wrapped(angle: f64) -> f64 {
+    libm::atan2(libm::sin(angle), libm::cos(angle))
+}

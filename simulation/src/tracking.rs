@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::flight::{Flight, FlightPair, Sample};
 use crate::manoeuvre::{HIGH_PHASE_S, HOVER_S};
 use crate::mixer::Method;
+use crate::state::wrapped;
 use crate::vehicle::WEIGHT_N;
 
 /// Errors over the columns x, y, z: x and y over the whole manoeuvre, z over the 1.5 m phase
@@ -66,7 +67,7 @@ impl Flight {
     pub fn yaw_error(&self) -> f64 {
         mean(self.samples.iter().map(|sample| {
             let error = sample.reference.yaw - sample.yaw;
-            libm::atan2(libm::sin(error), libm::cos(error)).abs()
+            wrapped(error).abs()
         }))
     }
 

@@ -85,7 +85,7 @@ impl Physics {
         self.voltage.as_ref().map_or([1.0, 1.0], |voltage| {
             let [low, high] = voltage.range_v;
             let volts = f64::from(volts).clamp(low, high);
-            [voltage.thrust_factor(volts), voltage.torque_factor(volts)]
+            voltage.factors(volts)
         })
     }
 

@@ -182,7 +182,7 @@ pub fn simulated_outputs(compiled: &Compiled) -> Vec<Parameter> {
         .collect()
 }
 
-/// What PX4 does in a simulator that sends the battery, too.
+/// PX4's parameters for a simulator that sends the battery, too.
 pub fn simulated_surroundings() -> Vec<Parameter> {
     vec![
         whole(

@@ -9,7 +9,7 @@ use crate::data::{self, Data};
 use crate::figure::Figure;
 use crate::study::Study;
 
-/// What such a link says.
+/// Text of a link to the data of one figure.
 pub(super) const OF_THE_FIGURE: &str = "Data (CSV)";
 
 /// The curves of a figure; `word` is the end of the file's name.
@@ -17,11 +17,16 @@ pub(super) fn curves(study: &Study<'_>, word: &str, figure: &Figure) -> Markup {
     html! { @if let Some(csv) = figure.csv() { (link(study, word, &csv, OF_THE_FIGURE)) } }
 }
 
-/// What `cargo mixer sweep` writes.
+/// The file that `cargo mixer sweep` writes.
 pub(super) fn sweep(study: &Study<'_>, of: Data) -> Markup {
     html! {
         @if let Ok(sweep) = data::sweep(study, of) { (link(study, of.word(), &sweep.csv, OF_THE_FIGURE)) }
     }
+}
+
+/// That file as text, of which figures take columns; empty where `sweep` refuses.
+pub(super) fn csv(study: &Study<'_>, of: Data) -> String {
+    data::sweep(study, of).map(|sweep| sweep.csv).unwrap_or_default()
 }
 
 /// Some columns of `csv`.

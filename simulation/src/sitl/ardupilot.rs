@@ -50,7 +50,7 @@ pub fn listen(port: u16) -> Result<UdpSocket, String> {
     })
 }
 
-/// What ArduPilot sends.
+/// A packet of ArduPilot: steps per second, its number, a throttle per channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Packet {
     rate_hz: u16,

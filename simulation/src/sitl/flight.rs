@@ -18,7 +18,7 @@ pub enum End {
     Crashed(f64),
 }
 
-/// What both stacks fly.
+/// A flight under way, the same for both stacks.
 #[derive(Debug)]
 pub struct Flight {
     /// The vehicle in its place.

@@ -62,10 +62,10 @@ impl Link {
         }
     }
 
-    /// Tries to connect where that is still to do; whether it is done.
-    pub fn connect(&mut self) -> bool {
+    /// Tries to connect where that is still to do.
+    pub fn connect(&mut self) {
         let Way::Tcp(port, stream, _) = &mut self.way else {
-            return true;
+            return;
         };
         if stream.is_none() {
             let address = SocketAddr::from((Ipv4Addr::LOCALHOST, *port));
@@ -77,7 +77,6 @@ impl Link {
                 })
                 .ok();
         }
-        stream.is_some()
     }
 
     /// The messages that have come.

@@ -125,9 +125,9 @@ impl Pilot {
         }
     }
 
-    /// Connects where that is to be done before the stack starts; whether it is done.
-    pub fn connect(&mut self) -> bool {
-        self.link.connect()
+    /// Connects where that is to be done before the stack starts.
+    pub fn connect(&mut self) {
+        self.link.connect();
     }
 
     /// The thrust setpoint that the stack has reported last, 0 to 1; NaN before.
@@ -148,7 +148,7 @@ impl Pilot {
         self.plan.as_ref()
     }
 
-    /// What is asked for at a time of the simulation.
+    /// The target at a time of the simulation.
     pub fn wanted(&self, time_s: f64) -> Option<Target> {
         let manoeuvre_s = self.manoeuvre_s(time_s)?;
         self.plan.as_ref().map(|plan| plan.target(manoeuvre_s))

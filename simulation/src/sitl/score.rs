@@ -9,6 +9,7 @@ use super::flight::Flight;
 use super::pilot::Pilot;
 use super::plan::{BETWEEN_S, FIRST_S, Plan, Target};
 use super::record::{Record, Sample};
+use crate::state::wrapped;
 
 /// Time before a step over which the state is averaged, and after it for the root mean square, s.
 const BEFORE_S: f64 = 1.0;
@@ -269,11 +270,6 @@ fn height(sample: &Sample) -> f64 {
 fn tilt_deg(sample: &Sample, [roll, pitch]: [f64; 2]) -> f64 {
     let [a, b] = [sample.euler.x - roll, sample.euler.y - pitch];
     a.abs().max(b.abs()).to_degrees()
-}
-
-/// An angle in (-pi, pi], rad.
-fn wrapped(angle: f64) -> f64 {
-    libm::atan2(libm::sin(angle), libm::cos(angle))
 }
 
 /// `None` of nothing.

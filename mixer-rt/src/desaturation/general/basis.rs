@@ -20,10 +20,10 @@ const IDENTITY: [[f32; 4]; 4] = [
     [0.0, 0.0, 0.0, 1.0],
 ];
 
-/// What a slot of the basis holds.
+/// The kinds of unknowns that a slot of the basis holds.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Holds {
-    /// What a row is missed by.
+    /// The amount by which a row is missed.
     Row,
     /// The share of the edge on which a unit is.
     Edge,
@@ -56,7 +56,7 @@ impl Slot {
         }
     }
 
-    /// What a row is missed by, however much.
+    /// The amount by which a row is missed, without a bound.
     #[inline(always)]
     pub(super) const fn missed(row: u8) -> Self {
         Slot::new(FAR, Holds::Row, row)
