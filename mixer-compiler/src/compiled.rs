@@ -1,7 +1,6 @@
 //! The result of a compilation.
 
 use crate::airframe::Airframe;
-use crate::desaturation::attainable::AreaLoss;
 use crate::diagnostic::Diagnostics;
 use crate::inverse::evaluator::Evaluator;
 use crate::model::PairMap;
@@ -34,9 +33,8 @@ pub struct Compiled {
     pub thrust_range_n: [f32; 2],
     /// Proven bounds of the evaluator's errors.
     pub certificate: Certificate,
-    /// Share of the attainable set's area that the polygon of the general path loses.
-    pub lost_area: AreaLoss,
-    /// Share of that area that the sides of the closed form lose; `None` without a closed form.
+    /// Share of the attainable set's area that the sides of the closed form lose; `None` without a
+    /// closed form.
     pub lost_between_sides: Option<f64>,
     /// What is emitted.
     pub tables: MixerTables,

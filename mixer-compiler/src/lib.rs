@@ -5,11 +5,11 @@
 //! pipeline.
 
 pub mod airframe;
+mod allocation;
 pub mod bounds;
 #[cfg(feature = "format")]
 pub mod build_script;
 mod compiled;
-mod desaturation;
 pub mod diagnostic;
 mod inverse;
 pub mod model;
@@ -22,8 +22,7 @@ pub mod spec;
 pub mod tables;
 
 use airframe::Airframe;
-use desaturation::attainable::Polygon;
-use desaturation::{closed_form, thrust_range};
+use allocation::{closed_form, thrust_range};
 use diagnostic::{Diagnostic, Diagnostics};
 use model::PairMap;
 use model::effectiveness::Effectiveness;
@@ -32,10 +31,9 @@ use model::voltage;
 use output::{emit, scale};
 use probe::Probe;
 use proc_macro2::TokenStream;
-use tables::{LevelFlightTable, MixerTables, Parts, VoltageTable};
+use tables::{MixerTables, Parts, VoltageTable};
 
 pub use compiled::Compiled;
-pub use desaturation::attainable::AreaLoss;
 pub use diagnostic::source::Source;
 pub use inverse::evaluator;
 pub use output::{alternatives, checklist, cost, hover, power, report};
@@ -44,7 +42,7 @@ pub use proof::Certificate;
 pub use proof::residual::Residual;
 
 /// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> voltage ->
-/// proven inverse -> level flight -> closed form -> tables -> probes -> warnings.
+/// proven inverse -> closed form -> tables -> range of thrust -> probes -> warnings.
 ///
 /// # Errors
 /// All faults that were found, and with faults of later stages the warnings, one of which may be
@@ -76,32 +74,24 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
     let voltage = VoltageTable::new(&airframe, voltage.as_ref());
     let voltage = voltage.as_ref();
     let selected = selection::select(&airframe, &pair, voltage)?;
-    let polygon = Polygon::new(&pair);
     let parts = Parts {
         airframe: &airframe,
         effectiveness: &effectiveness,
         pair: &pair,
-        attainable: &polygon.table(),
         voltage,
         map: &selected.map,
         tolerance: selection::tolerance(&airframe, &effectiveness, &pair, voltage, &selected),
     };
-    let (in_polygon, level) = thrust_range::thrust_range(&parts)?;
     let (closed_form, lost_between_sides) = closed_form::table(&airframe, &effectiveness, &pair).unzip();
-    let level = match closed_form {
-        Some(_) => LevelFlightTable::default(),
-        None => level,
-    };
-    let tables = MixerTables::new(&parts, level, closed_form);
-    let thrust_range_n = thrust_range::delivered_range(&airframe, &tables, in_polygon);
-    let lost_area = polygon.lost;
+    let mut tables = MixerTables::new(&parts, closed_form);
+    tables.level_n = thrust_range::level(&airframe, &tables);
+    let thrust_range_n = thrust_range::thrust_range(&airframe, &tables)?;
     let probe = Probe {
         airframe: &airframe,
         effectiveness: &effectiveness,
         pair: &pair,
         tables: &tables,
-        thrust_range_n: in_polygon,
-        lost_area,
+        thrust_range_n,
         lost_between_sides,
     };
     probe.run()?;
@@ -118,7 +108,6 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         residual: selected.residual,
         thrust_range_n,
         certificate: selected.certificate,
-        lost_area,
         lost_between_sides,
         tables,
     };

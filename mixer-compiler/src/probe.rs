@@ -1,12 +1,12 @@
 //! Probes of what is emitted: the tables are run through `mixer-rt` and compared with the physics of
 //! the airframe file in f64.
 //!
-//! The proof holds for the inverse map of one unit. M+, the polygon, the sides of the closed form,
-//! channels and signs come after it. A fault of the compiler in any of these gives an airframe that
+//! The proof holds for the inverse map of one unit. M+, the sides of the closed form, channels and
+//! signs come after it. A fault of the compiler in any of these gives an airframe that
 //! compiles and flies wrong, so the whole mixer is tried before the compiler says yes:
 //!
 //! ```text
-//! sets        corners of the polygon and points on the sides are attainable; no more area is lost than stated
+//! sides       points on the sides of the closed form are attainable; no more area is lost than stated
 //! wrenches    each axis both ways and mixtures, small and large, at three thrusts, and at the ends of
 //!             the voltage range
 //! rotors out  every rotor alone, and pairs of rotors: level flight and torques from there
@@ -14,17 +14,16 @@
 //!
 //! A wrench is delivered, or flagged and sound: no torque reversed or exceeded, the direction of
 //! (roll, pitch) kept, and with airmode disabled and all rotors no more thrust than asked. It has to be delivered
-//! where the efforts of least norm are well inside every unit's polygon. The physics ([`physics`])
+//! where the throttles of least norm are well inside their range. The physics ([`physics`])
 //! know nothing of M: they add forces and torques unit by unit.
 
 mod physics;
-mod sets;
+mod sides;
 
 use mixer_rt::tables::Airmode;
 use mixer_rt::{Axis, Direction, Health, Wrench};
 
 use crate::airframe::Airframe;
-use crate::desaturation::attainable::AreaLoss;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
@@ -61,8 +60,9 @@ const DIRECTIONS: [[f64; 3]; 14] = [
     [-1.0, -1.0, -1.0],
 ];
 
-/// Share of the way from its centre to its border within which efforts are well inside a polygon.
-const INSIDE: f64 = 0.85;
+/// Distance from idle and from the ceiling, as a share of the range, from which a throttle is well
+/// inside.
+const INSIDE: f32 = 0.05;
 
 /// Most pairs of rotors out that are probed, taken evenly from all.
 const MOST_PAIRS: usize = 28;
@@ -79,9 +79,7 @@ pub(crate) struct Probe<'a> {
     pub(crate) tables: &'a MixerTables,
     /// Least and largest thrust of level flight at the reference voltage, N.
     pub(crate) thrust_range_n: [f32; 2],
-    /// Share of the attainable set's area that the polygon loses.
-    pub(crate) lost_area: AreaLoss,
-    /// Share of that area that the sides of the closed form lose.
+    /// Share of the attainable set's area that the sides of the closed form lose.
     pub(crate) lost_between_sides: Option<f64>,
 }
 
@@ -102,7 +100,7 @@ impl Probe<'_> {
             map: self.pair,
             scale: self.pair.scale(),
         };
-        self.sets(unit)
+        self.sides(unit)
             .and_then(|()| self.whole(unit))
             .and_then(|()| self.rotors_out(unit))
             .map_err(|message| {
@@ -250,7 +248,7 @@ impl<'a> At<'a> {
                 .into_iter()
                 .filter(|axis| airframe.allocation.controls(*axis))
         };
-        let is_inside = self.health.is_good() && self.is_inside(&asked);
+        let is_inside = self.health.is_good() && self.is_inside(setpoint);
         let mut is_level = true;
         for axis in served() {
             let k = axis as usize;
@@ -289,33 +287,14 @@ impl<'a> At<'a> {
         Ok(is_level)
     }
 
-    /// True where the efforts of least norm are well inside every unit's polygon: such a wrench is
-    /// delivered.
-    fn is_inside(&self, asked: &[f64; 4]) -> bool {
-        let Probe {
-            effectiveness,
-            tables,
-            ..
-        } = self.probe;
-        let (set, n) = (&tables.attainable, self.probe.airframe.units.len());
-        let scaled = |row: usize, k: usize| {
-            let least_norm = effectiveness.pseudo_inverse.row(row);
-            let effort: f64 = least_norm
-                .iter()
-                .zip(asked)
-                .map(|(share, asked)| share * asked)
-                .sum();
-            effort / (self.factors[k] * f64::from(set.scale[k]))
-        };
-        (0..n).all(|unit| {
-            let efforts = [scaled(unit, 0), scaled(n + unit, 1)];
-            let centre = set.centre.map(f64::from);
-            let [f, q] = [0, 1].map(|k| centre[k] + (efforts[k] - centre[k]) / INSIDE);
-            set.polygon().iter().all(|corner| {
-                let [along_f, along_q] = corner.ways[0].map(f64::from);
-                along_q * f - along_f * q <= f64::from(corner.bound)
-            })
-        })
+    /// True where the throttles of least norm are well inside their range: such a wrench is delivered.
+    fn is_inside(&self, setpoint: Wrench) -> bool {
+        let tables = self.probe.tables;
+        let range = &tables.throttle;
+        let margin = INSIDE * (range.max - range.min);
+        let inside = range.min + margin..=range.max - margin;
+        let throttles = tables.least_norm(setpoint.to_array(), self.factors);
+        throttles.is_some_and(|units| units.as_flattened().iter().all(|throttle| inside.contains(throttle)))
     }
 
     /// An axis on which a wrench is not within what was asked.
@@ -329,9 +308,8 @@ impl<'a> At<'a> {
         let is_beyond = |axis: &Axis| {
             let (asked, given) = (asked[*axis as usize], given[*axis as usize]);
             if *axis == Axis::Thrust {
-                // Level flight with rotors out, or a reserve of yaw, may need more thrust than is asked.
-                let may_rise =
-                    allocation.airmode != Airmode::Disabled || !is_whole || allocation.yaw_reserve_nm > 0.0;
+                // Level flight with rotors out may need more thrust than is asked.
+                let may_rise = allocation.airmode != Airmode::Disabled || !is_whole;
                 return !may_rise && given > asked + room(*axis);
             }
             given > asked.max(0.0) + room(*axis) || given < asked.min(0.0) - room(*axis)

@@ -1,14 +1,12 @@
 //! The emitted tables, as values. All numbers become f32 here but those of the closed form:
-//! `desaturation` rounds as it goes, since facets follow from thrusts that are rounded inwards, and
+//! `allocation` rounds as it goes, since facets follow from thrusts that are rounded inwards, and
 //! the range of level thrust is found by `mixer-rt`'s look-up in the rounded table.
 //!
 //! [`MixerTables`] holds the numbers of one airframe whatever its basis, evaluator and size; the
 //! generated Rust holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs
 //! `mixer-rt` itself on them.
 
-mod attainable;
 mod border;
-mod budget;
 mod inverse;
 mod part;
 mod quantity;
@@ -18,8 +16,8 @@ mod single;
 use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
-        ClosedForm, ClosedFormUnit, Desaturation, Facets, Inverse, Pair, SingleRotor, Tables, ThrottleRange,
-        Tolerance, Unit, Variable, Voltage, VoltageLaw,
+        ClosedForm, ClosedFormUnit, Facets, Inverse, Pair, Priorities, SingleRotor, Tables, ThrottleRange,
+        Tolerance, Unit, UnitState, Voltage, VoltageLaw,
     },
 };
 
@@ -28,9 +26,7 @@ use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage::TabulatedLaw;
 
-pub use attainable::{AttainableTable, LevelFlightTable};
 pub use border::BorderTable;
-use budget::budget;
 pub use inverse::{InverseTable, PolynomialTable, SeedTable};
 pub(crate) use part::{Part, identifier};
 pub use quantity::QuantityTable;
@@ -52,21 +48,19 @@ pub struct MixerTables {
     pub throttle: ThrottleRange,
     /// The voltage correction.
     pub voltage: Option<VoltageTable>,
-    /// A polygon inside the attainable set.
-    pub attainable: AttainableTable,
-    /// Level flight.
-    pub level: LevelFlightTable,
-    /// Rows of the general path per N m and N: [`mixer_rt::tables::Tables::rows`].
+    /// Rows per N m and N: [`mixer_rt::tables::Tables::rows`].
     pub rows: [f32; 4],
-    /// [`mixer_rt::tables::Tables::centre`].
-    pub centre: [[f32; 4]; 2],
+    /// [`mixer_rt::tables::Tables::spread`].
+    pub spread: [f32; 2],
+    /// [`mixer_rt::tables::Tables::level_n`].
+    pub level_n: [f32; 2],
     /// [`mixer_rt::tables::Tables::is_vertical`].
     pub is_vertical: bool,
-    /// Priorities of desaturation.
-    pub desaturation: Desaturation,
+    /// Priorities of allocation.
+    pub priorities: Priorities,
     /// Least power: [`mixer_rt::tables::Tables::power_bias_nm_per_n`].
     pub power_bias_nm_per_n: f32,
-    /// The closed form of desaturation, where the layout allows one.
+    /// The closed form of allocation, where the layout allows one.
     pub closed_form: Option<ClosedFormTable>,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
@@ -99,7 +93,7 @@ impl UnitMap {
     }
 }
 
-/// What the tables are made of, but for desaturation.
+/// What the tables are made of, but for the closed form.
 pub(crate) struct Parts<'a> {
     /// The airframe.
     pub(crate) airframe: &'a Airframe,
@@ -107,8 +101,6 @@ pub(crate) struct Parts<'a> {
     pub(crate) effectiveness: &'a Effectiveness,
     /// The forward map in f64.
     pub(crate) pair: &'a PairMap,
-    /// A polygon inside the attainable set.
-    pub(crate) attainable: &'a AttainableTable,
     /// The voltage correction.
     pub(crate) voltage: Option<&'a VoltageTable>,
     /// The map of a unit and its inverse.
@@ -190,12 +182,9 @@ pub enum LawTable {
 pub type AnyMix = (Vec<f32>, Wrench, Saturation);
 
 impl MixerTables {
-    /// The tables of an airframe with its level flight, or with a closed form, which needs none.
-    pub(crate) fn new(
-        parts: &Parts<'_>,
-        level: LevelFlightTable,
-        closed_form: Option<ClosedFormTable>,
-    ) -> Self {
+    /// The tables of an airframe, with a closed form where it has one. The range of level thrust is
+    /// found by them and still missing.
+    pub(crate) fn new(parts: &Parts<'_>, closed_form: Option<ClosedFormTable>) -> Self {
         let &Parts {
             airframe,
             effectiveness,
@@ -203,29 +192,20 @@ impl MixerTables {
             ..
         } = parts;
         let allocation = &airframe.allocation;
-        let singles = single_tables(airframe);
-        let rows = rows(airframe, effectiveness, parts.pair);
-        let attainable = parts.attainable.with_singles(&singles, &map.throttle);
-        let units = unit_tables(airframe, effectiveness, rows, attainable.scale);
         MixerTables {
-            centre: std::array::from_fn(|k| {
-                let sum = |axis: usize| units.iter().map(|unit| unit.columns[k][axis]).sum::<f32>();
-                std::array::from_fn(|axis| sum(axis) * attainable.centre[k])
-            }),
             is_vertical: effectiveness.is_vertical(),
-            units,
+            units: unit_tables(airframe, effectiveness),
             pair: map.pair,
-            attainable,
-            singles,
+            singles: single_tables(airframe),
             inverse: map.inverse.clone(),
             throttle: map.throttle,
             voltage: parts.voltage.cloned(),
-            level,
-            rows,
-            desaturation: Desaturation {
+            rows: rows(airframe, effectiveness, parts.pair),
+            spread: parts.pair.spread().map(|spread| spread as f32),
+            level_n: [0.0; 2],
+            priorities: Priorities {
                 airmode: allocation.airmode,
                 yaw_reserve_nm: allocation.yaw_reserve_nm as f32,
-                budget: budget(airframe.units.len(), effectiveness.is_vertical()),
             },
             power_bias_nm_per_n: allocation.power_bias_nm_per_n as f32,
             closed_form,
@@ -252,12 +232,11 @@ impl MixerTables {
             inverse: &self.inverse,
             throttle: self.throttle,
             voltage: self.voltage.as_ref().map(VoltageTable::view),
-            attainable: self.attainable.view(),
-            level: self.level.view(),
             rows: self.rows,
-            centre: self.centre,
+            spread: self.spread,
+            level_n: self.level_n,
             is_vertical: self.is_vertical,
-            desaturation: self.desaturation,
+            priorities: self.priorities,
             power_bias_nm_per_n: self.power_bias_nm_per_n,
             closed_form: self.closed_form.as_ref().map(ClosedFormTable::view),
             tolerance: self.tolerance,
@@ -290,34 +269,50 @@ impl MixerTables {
         voltage_v: f32,
         health: Health,
     ) -> Result<AnyMix, SetpointError> {
-        let mut variables = vec![Variable::default(); self.units.len()];
+        let mut states = vec![UnitState::default(); self.units.len()];
         let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
         let (achieved, saturation) = mixer_rt::tables::mix_into(
             &self.view(),
             setpoint,
             voltage_v,
             health,
-            &mut variables,
+            &mut states,
             &mut throttle,
         )?;
         Ok((throttle, achieved, saturation))
     }
 
+    /// Throttles `[u, l]` of the units for the efforts of least norm at `[k_f, k_Q]`; `None` where some
+    /// unit cannot give them.
+    pub(crate) fn least_norm(&self, wrench: [f32; 4], factors: [f64; 2]) -> Option<Vec<[f32; 2]>> {
+        let one = |unit: &Unit| {
+            let effort = |k: usize| -> f32 {
+                let parts = unit.allocation[k].iter().zip(wrench);
+                parts.map(|(share, asked)| share * asked).sum::<f32>() / factors[k] as f32
+            };
+            let wanted = [effort(0), effort(1)];
+            let throttles = (&self.inverse).throttles(&self.pair, &self.throttle, wanted);
+            let given = self.pair.efforts(throttles);
+            let gives = |k: usize| (given[k] - wanted[k]).abs() <= self.tolerance.efforts[k];
+            (gives(0) && gives(1)).then_some(throttles)
+        };
+        self.units.iter().map(one).collect()
+    }
+
     /// Bytes of the tables in flash.
     pub(crate) fn bytes(&self) -> usize {
         let view = self.view();
-        let parts: [&dyn Part; 14] = [
+        let parts: [&dyn Part; 13] = [
             &view.units,
             &view.pair,
             &view.singles,
             &view.inverse,
             &view.throttle,
             &view.voltage,
-            &view.attainable,
-            &view.level,
             &view.rows,
-            &view.centre,
-            &view.desaturation,
+            &view.spread,
+            &view.level_n,
+            &view.priorities,
             &view.power_bias_nm_per_n,
             &view.closed_form,
             &view.tolerance,
@@ -400,13 +395,8 @@ pub fn throttle_table(airframe: &Airframe) -> ThrottleRange {
     }
 }
 
-/// Rounds M and M+, unit by unit, and M from scaled efforts to rows.
-fn unit_tables(
-    airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    rows: [f32; 4],
-    scale: [f32; 2],
-) -> Vec<Unit> {
+/// Rounds M and M+, unit by unit.
+fn unit_tables(airframe: &Airframe, effectiveness: &Effectiveness) -> Vec<Unit> {
     let n = airframe.units.len();
     let row = |index: usize| -> [f32; 4] {
         std::array::from_fn(|axis| effectiveness.pseudo_inverse[(index, axis)] as f32)
@@ -418,10 +408,6 @@ fn unit_tables(
         .map(|(i, unit)| Unit {
             allocation: [row(i), row(n + i)],
             effectiveness: [column(i), column(n + i)],
-            columns: std::array::from_fn(|k| {
-                let column = column(i + k * n);
-                std::array::from_fn(|axis| column[axis] * scale[k] * rows[axis])
-            }),
             channels: [unit.upper_channel as u8, unit.lower_channel as u8],
         })
         .collect()

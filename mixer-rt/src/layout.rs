@@ -1,8 +1,7 @@
 //! The tables of one airframe as a whole.
 
-use crate::desaturation::Desaturation;
-use crate::desaturation::attainable::{AttainableSet, LevelFlight};
-use crate::desaturation::closed_form::NoClosedForm;
+use crate::allocate::Priorities;
+use crate::allocate::closed_form::NoClosedForm;
 use crate::pair::{Pair, SingleRotor, ThrottleRange};
 use crate::voltage::Voltage;
 
@@ -15,9 +14,6 @@ pub struct Unit {
     /// Columns of the effectiveness M (4 x 2n, eq. (5)): `[roll, pitch, yaw, thrust]` per N of this
     /// unit's thrust and per N m of its torque.
     pub effectiveness: [[f32; 4]; 2],
-    /// Rows of the general path ([`Tables::rows`]) per scaled thrust and torque of this unit at the
-    /// reference voltage.
-    pub columns: [[f32; 4]; 2],
     /// Channels of the upper and of the lower rotor.
     pub channels: [u8; 2],
 }
@@ -55,8 +51,7 @@ pub struct Tolerance {
 }
 
 /// All that the mixer of one airframe needs. `P` is the basis of the pair model, `I` the evaluator
-/// of its inverse, `S` the desaturation method: `&ClosedForm`, or [`NoClosedForm`] for the general
-/// path.
+/// of its inverse, `S` says whether there is a closed form: `&ClosedForm`, or [`NoClosedForm`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tables<'a, P, I, S = NoClosedForm> {
     /// The units, in the order of the airframe file.
@@ -71,25 +66,22 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub throttle: ThrottleRange,
     /// The voltage correction; without one k = 1.
     pub voltage: Option<Voltage<'a>>,
-    /// A polygon inside the attainable set.
-    pub attainable: AttainableSet<'a>,
-    /// Efforts of level flight inside these polygons.
-    pub level: LevelFlight<'a>,
-    /// Factors from roll, pitch, yaw (N m) and thrust (N) to the rows of the general path: number
-    /// of units over the vehicle's authority on the axis at the reference voltage; 0 on axes that the
-    /// airframe does not serve.
+    /// Factors from roll, pitch, yaw (N m) and thrust (N) to the rows of the interior point method:
+    /// number of units over the vehicle's authority on the axis at the reference voltage; 0 on axes
+    /// that the airframe does not serve.
     pub rows: [f32; 4],
-    /// Rows that all units' thrusts and all units' torques give at the centres of their polygons, at
-    /// the reference voltage.
-    pub centre: [[f32; 4]; 2],
+    /// Means over the throttles of f_u^2 + f_l^2 (N^2) and of Q_u^2 + Q_l^2 (N^2 m^2).
+    pub spread: [f32; 2],
+    /// Least and largest thrust (N) that least norm delivers without torques, at the reference voltage.
+    pub level_n: [f32; 2],
     /// True where thrusts give no yaw, and torques nothing else.
     pub is_vertical: bool,
-    /// Priorities where a unit cannot follow.
-    pub desaturation: Desaturation,
+    /// Priorities where a request is not attainable.
+    pub priorities: Priorities,
     /// Least power: every unit's torque per thrust (N m per N at the reference voltage) while no
     /// unit is near its limits.
     pub power_bias_nm_per_n: f32,
-    /// The closed form of desaturation, used while all rotors work.
+    /// The closed form of allocation, used while all rotors turn.
     pub closed_form: S,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,

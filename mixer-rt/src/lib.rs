@@ -9,14 +9,11 @@
 //! [`tables`]:
 //!
 //! ```text
-//! setpoint u = [roll, pitch, yaw, thrust]                                     wrench.rs
-//!   -> efforts eta = M+ u            eq. (8), least norm                      tables.rs
-//!   -> divided by k_f(V), k_Q(V)     to the reference voltage                 voltage.rs
-//!   -> throttles of every unit       inverse of (f, Q)(u, l)                  pair/inverse.rs, pair/forward.rs
-//!   -> if a unit cannot: desaturate  within the attainable set, by priority
-//!        up to four vertical units     in closed form                         desaturation/closed_form.rs
-//!        any frame, rotors out         a bounded dual simplex method          desaturation/general.rs
-//!   -> achieved wrench               M (k_f f(u, l), k_Q Q(u, l))             mix.rs
+//! setpoint u = [roll, pitch, yaw, thrust]                                           wrench.rs
+//!   -> factors k_f(V), k_Q(V)                                                            voltage.rs
+//!   -> throttles                   of least norm, else of the request cut by priority   allocate.rs
+//!        of every unit                 inverse of (f, Q)(u, l)                              pair/inverse.rs
+//!   -> achieved wrench             M (k_f f(u, l), k_Q Q(u, l))                          mix.rs
 //! ```
 //!
 //! No heap, no dependencies, no panic path, no `unsafe` but for the hardware square root. All
@@ -27,8 +24,8 @@
 //! above positive, thrust positive upwards; throttles inside `[min, max]` within `[0, 1]`.
 #![no_std]
 
+mod allocate;
 mod arithmetic;
-mod desaturation;
 mod health;
 mod layout;
 mod mix;

@@ -1,9 +1,8 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
-use crate::desaturation::closed_form::{Attained, ClosedForm, DesaturationMethod, Efforts, Request};
-use crate::desaturation::general::{Variable, allocate};
-use crate::desaturation::power_bias::add_power_bias;
-use crate::desaturation::{REQUEST_LIMIT, is_bounded, limited};
+use crate::allocate::closed_form::{AllocationMethod, Attained, ClosedForm, Efforts, Request};
+use crate::allocate::unit::UnitState;
+use crate::allocate::{REQUEST_LIMIT, allocate, is_bounded, limited};
 use crate::layout::Tables;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Inverse, Quantity};
@@ -72,7 +71,7 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
     }
 }
 
-/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `VARIABLES` = n.
+/// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `UNITS` = n.
 /// `voltage_v` is the battery's present voltage, V: outside the airframe's range it is taken as the
 /// nearest within and flagged, zero as well; an airframe without `[voltage]` ignores it. Any finite
 /// setpoint is mixed.
@@ -81,32 +80,32 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
 #[inline(always)]
 pub fn mix<
-    const VARIABLES: usize,
+    const UNITS: usize,
     const CHANNELS: usize,
     P: Quantity,
     I: Inverse<P>,
-    S: DesaturationMethod,
+    S: AllocationMethod,
 >(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
-    mix_with_health::<VARIABLES, CHANNELS, P, I, S>(tables, setpoint, voltage_v, Health::GOOD)
+    mix_with_health::<UNITS, CHANNELS, P, I, S>(tables, setpoint, voltage_v, Health::GOOD)
 }
 
 /// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells
-/// how much. `VARIABLES` is not inferred; the generated module has this function without it. Links
+/// how much. `UNITS` is not inferred; the generated module has this function without it. Links
 /// the general path of desaturation for every frame.
 ///
 /// # Errors
 /// As [`mix`].
 #[inline(always)]
 pub fn mix_with_health<
-    const VARIABLES: usize,
+    const UNITS: usize,
     const CHANNELS: usize,
     P: Quantity,
     I: Inverse<P>,
-    S: DesaturationMethod,
+    S: AllocationMethod,
 >(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
@@ -118,8 +117,8 @@ pub fn mix_with_health<
         Some(mixed) => mixed,
         None => {
             // Not before: the closed form needs no workspace.
-            let mut variables = [Variable::default(); VARIABLES];
-            mix_in_general(tables, setpoint, voltage_v, health, &mut variables, &mut throttle)
+            let mut states = [UnitState::default(); UNITS];
+            mix_in_general(tables, setpoint, voltage_v, health, &mut states, &mut throttle)
         }
     };
     let (achieved, saturation) = mixed?;
@@ -130,24 +129,24 @@ pub fn mix_with_health<
     })
 }
 
-/// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `variables`
+/// [`mix_with_health`] into buffers, for layouts whose size is known only at run time: `states`
 /// takes one element per unit, `throttle` one value per channel. Units or channels beyond a buffer's
 /// end are left out.
 ///
 /// # Errors
 /// As [`mix`]; the buffers are then as they were.
 #[inline(always)]
-pub fn mix_into<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
+pub fn mix_into<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
     health: Health,
-    variables: &mut [Variable],
+    states: &mut [UnitState],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
     match mix_in_closed_form(tables, setpoint, voltage_v, health, throttle) {
         Some(mixed) => mixed,
-        None => mix_in_general(tables, setpoint, voltage_v, health, variables, throttle),
+        None => mix_in_general(tables, setpoint, voltage_v, health, states, throttle),
     }
 }
 
@@ -156,42 +155,32 @@ type Mixed = Result<(Wrench, Saturation), SetpointError>;
 
 /// [`mix_into`] on the general path.
 #[inline(always)]
-fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
+fn mix_in_general<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
     health: Health,
-    variables: &mut [Variable],
+    states: &mut [UnitState],
     throttle: &mut [f32],
 ) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
-    let units = tables.units.get(..variables.len()).unwrap_or(tables.units);
-    let variables = variables.get_mut(..units.len()).unwrap_or_default();
+    let units = tables.units.get(..states.len()).unwrap_or(tables.units);
+    let states = states.get_mut(..units.len()).unwrap_or_default();
     // With a closed form, rotors are out. So the compiler leaves out what only whole frames need.
     let mut is_whole = tables.closed_form.closed_form().is_none();
-    for (unit, variable) in units.iter().zip(variables.iter_mut()) {
-        variable.rotors = Rotors::of(unit.channels, health);
-        is_whole &= variable.rotors == Rotors::Both;
+    for (unit, state) in units.iter().zip(states.iter_mut()) {
+        state.rotors = Rotors::of(unit.channels, health);
+        is_whole &= state.rotors.are_both();
     }
-    let is_least_norm = allocate(tables, &bounded, factors, variables, is_whole);
-    if is_least_norm && tables.power_bias_nm_per_n != 0.0 {
-        add_power_bias(tables, factors, variables);
-    }
+    allocate(tables, &bounded, factors, states, is_whole);
     let mut achieved = [0.0; 4];
-    for (unit, variable) in units.iter().zip(variables) {
+    for (unit, state) in units.iter().zip(states) {
         rolled();
-        // With all rotors known to work the compiler leaves the code for single ones out.
-        let rotors = if is_whole { Rotors::Both } else { variable.rotors };
-        let throttles = match rotors {
-            Rotors::Both => tables
-                .inverse
-                .throttles(&tables.pair, &tables.throttle, variable.at),
-            Rotors::None => [0.0; 2],
-            single => single.throttles(variable.throttle),
-        };
-        write(unit.channels, throttles, throttle);
-        let efforts = rotors.efforts(&tables.pair, &tables.singles, throttles);
+        // With all rotors known to turn the compiler leaves the code for single ones out.
+        let rotors = if is_whole { Rotors::BOTH } else { state.rotors };
+        write(unit.channels, state.throttles, throttle);
+        let efforts = rotors.efforts(&tables.pair, &tables.singles, state.throttles);
         unit.add_wrench(efforts, factors, &mut achieved);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
@@ -203,7 +192,7 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
 
 /// [`mix_into`] in closed form; `None` where there is none, or a rotor is out.
 #[inline(always)]
-fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S: DesaturationMethod>(
+fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -232,8 +221,8 @@ fn mix_by<P: Quantity, I: Inverse<P>, S>(
     // Factors are positive, which the compiler has proven for every voltage within the range.
     let per_factor = factors.map(|factor| 1.0 / factor);
     let at_reference = at_reference(bounded, per_factor);
-    let airmode = tables.desaturation.airmode;
-    let reserve = tables.desaturation.yaw_reserve_nm;
+    let airmode = tables.priorities.airmode;
+    let reserve = tables.priorities.yaw_reserve_nm;
     let desaturate = |efforts: &mut Efforts| {
         if reserve > 0.0 {
             closed_form.desaturate::<true>(airmode, &at_reference, reserve * per_factor[1], efforts);

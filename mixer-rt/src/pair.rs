@@ -6,6 +6,7 @@ mod inverse;
 pub(crate) mod rotors;
 mod single;
 
+pub(crate) use forward::Expansion;
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
 pub use inverse::{
     BilinearSeed, CubicSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed, Seeded,

@@ -3,12 +3,12 @@
 //! this.
 
 pub use crate::arithmetic::{Scalar, sqrt};
-pub use crate::desaturation::attainable::{AttainableSet, CORNERS, Corner, LevelFlight};
-pub use crate::desaturation::closed_form::{
-    Border, Cell, ClosedForm, ClosedFormUnit, DesaturationMethod, Facets, Grid, Knot, NoClosedForm, Outline,
+pub use crate::allocate::closed_form::{
+    AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, NoClosedForm, Outline,
 };
-pub use crate::desaturation::general::Variable;
-pub use crate::desaturation::{Airmode, Budget, Desaturation, REQUEST_LIMIT};
+pub use crate::allocate::interior::ITERATIONS;
+pub use crate::allocate::unit::UnitState;
+pub use crate::allocate::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::layout::{Tables, Tolerance, Unit};
 pub use crate::mix::{mix, mix_into, mix_with_health};
 pub use crate::pair::{

@@ -2,7 +2,7 @@
 //! for all of them.
 
 use mixer_compiler::Compiled;
-use mixer_rt::{Wrench, tables::Variable};
+use mixer_rt::{Wrench, tables::UnitState};
 use mixer_setpoints::{Digest, Mixture, RotorsOut};
 
 /// Digest after each tenth of `count` setpoints with `rotors_out`, as the `digest` image prints
@@ -16,7 +16,7 @@ pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
     for _ in 0..10 {
         for (setpoint, health) in setpoints.by_ref().take(count / 10) {
             let wrench = Wrench::from_array(setpoint.wrench);
-            let mut variables = vec![Variable::default(); tables.units.len()];
+            let mut variables = vec![UnitState::default(); tables.units.len()];
             let mut throttle = vec![tables.throttle.min; 2 * tables.units.len()];
             let mixed = mixer_rt::tables::mix_into(
                 &tables,

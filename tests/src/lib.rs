@@ -14,8 +14,6 @@ pub mod frames;
 pub mod golden;
 pub mod image;
 pub mod interaction;
-pub mod interior_point;
-pub mod motion;
 pub mod optimum;
 pub mod physics;
 pub mod request;

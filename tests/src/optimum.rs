@@ -11,14 +11,10 @@
 //!   has, the paper's pair.
 //! * One rotor: a curve is left, which is anything but convex, as short arcs.
 //!
-//! In place of what is attainable the mixer's own polygons can be put, or their hulls: polygons.rs.
-//!
 //! The optimum over all choices of one piece per unit is found by branch and bound: a run of pieces
 //! is relaxed to the convex hull of all of them; the choice of runs that promises most is halved
 //! until single pieces are left.
 
-pub mod change;
-mod polygons;
 mod programme;
 
 use microlp::Error;
@@ -44,11 +40,8 @@ const FEW: usize = 2;
 /// dependent the next priority gains a million times as much by it.
 const SLACK: f64 = 1e-9;
 
-/// Share of the yaw of level flight, at a thrust that is allowed, that a reserve takes at most.
-const RESERVABLE: f64 = 0.5;
-
-/// Units up to which vertical frames have a closed form.
-const CLOSED_FORM_UNITS: usize = 4;
+/// Share of its authority by which a thrust may be off that counts as attained.
+const LEVEL: f64 = 1e-6;
 
 /// More torque (N m) or thrust (N) than any frame has.
 const FREE: (f64, f64) = (-1e4, 1e4);
@@ -76,9 +69,6 @@ pub struct Oracle {
     size: [f64; 4],
     airmode: Airmode,
     reserve: f64,
-    /// The reserve is limited to [`RESERVABLE`] of level flight, as in the mixer's closed form; on
-    /// its general path all of it comes first, whatever that takes.
-    is_limited: bool,
 }
 
 /// A run of pieces `[from, to)` per unit, with its relaxed optimum.
@@ -141,10 +131,6 @@ impl Oracle {
                 .map(|authority| if authority > 0.0 { authority } else { 1.0 }),
             airmode: allocation.airmode,
             reserve: allocation.yaw_reserve_nm,
-            is_limited: physics.is_vertical()
-                && physics.units() <= CLOSED_FORM_UNITS
-                && allocation.airmode != Airmode::RollPitchYaw
-                && physics.channels.iter().flatten().all(|&channel| !failed(channel)),
         }
     }
 
@@ -187,28 +173,34 @@ impl Oracle {
         }
     }
 
-    /// Yaw from its reserve to the request, roll = pitch = 0, any thrust. A limited reserve is none
-    /// here.
+    /// Yaw from zero to the request, roll = pitch = 0, any thrust.
     fn level(&self, yaw: f64) -> Ranges {
-        let reserve = if self.is_limited { 0.0 } else { self.reserve };
-        let reserved = yaw.clamp(-reserve, reserve);
         Ranges {
             share: (0.0, 0.0),
-            yaw: (yaw.min(reserved), yaw.max(reserved)),
+            yaw: (yaw.min(0.0), yaw.max(0.0)),
             thrust: FREE,
         }
     }
 
-    /// The least thrust (N) at which roll = pitch = 0 is attainable with a yaw between its reserve
-    /// and the one asked, or between zero and that one where the reserve is limited; `None` where
-    /// there is none. Airmode "disabled" never gives more than this
-    /// or the thrust asked.
+    /// The least thrust (N) at which roll = pitch = 0 is attainable with a yaw between zero and the
+    /// one asked; `None` where there is none. Airmode "disabled" never gives more than this or the
+    /// thrust asked.
     ///
     /// # Errors
     /// The solver gave up.
     pub fn thrust_floor(&self, yaw: f64) -> Result<Option<f64>, Error> {
         let least = self.best(Goal::Lowest(Quantity::Thrust), [0.0; 2], self.level(yaw))?;
         Ok(least.map(|point| point.thrust))
+    }
+
+    /// True where roll = pitch = 0 is attainable at this thrust (N) with a yaw between zero and the one
+    /// asked.
+    ///
+    /// # Errors
+    /// The solver gave up.
+    pub fn has_level(&self, yaw: f64, thrust: f64) -> Result<bool, Error> {
+        let nearest = self.best(Goal::Nearest(Quantity::Thrust, thrust), [0.0; 2], self.level(yaw))?;
+        Ok(nearest.is_some_and(|point| (point.thrust - thrust).abs() <= LEVEL * self.size[3]))
     }
 
     /// Where yaw and thrust may be whatever becomes of roll and pitch; `None` where no thrust
@@ -220,15 +212,6 @@ impl Oracle {
         };
         if self.airmode == Airmode::Disabled {
             ranges.thrust.1 = thrust.max(floor + SLACK);
-        }
-        if self.is_limited && self.reserve > 0.0 && yaw != 0.0 {
-            let any = Ranges { yaw: FREE, ..ranges };
-            let far = yaw.signum() * FREE.1;
-            let furthest = self.best(Goal::Nearest(Quantity::Yaw, far), [0.0; 2], any)?;
-            let reach = furthest.map_or(0.0, |point| (yaw.signum() * point.yaw).max(0.0));
-            let kept = self.reserve.min(RESERVABLE * reach);
-            let reserved = yaw.clamp(-kept, kept);
-            ranges.yaw = (yaw.min(reserved), yaw.max(reserved));
         }
         Ok(Some(ranges))
     }
@@ -276,8 +259,8 @@ impl Oracle {
         }
     }
 
-    /// The optimum of a request; `None` where not even roll = pitch = 0 is attainable within the
-    /// yaw asked and its reserve.
+    /// The optimum of a request; `None` where not even roll = pitch = 0 is attainable within
+    /// the yaw asked.
     ///
     /// # Errors
     /// The solver gave up.
@@ -301,7 +284,7 @@ impl Oracle {
         }
     }
 
-    /// [`Oracle::optimum_given`] with yaw and thrust in these ranges.
+    /// [`Oracle::optimum_given`] with yaw and thrust in these ranges: yaw up to the reserve first.
     fn optimum_within(
         &self,
         request: [f64; 4],
@@ -314,6 +297,15 @@ impl Oracle {
         };
         let share = given.map_or(highest, |(share, _)| share.clamp(0.0, highest));
         ranges.share = ((share - SLACK).max(0.0), share);
+        if self.reserve > 0.0 {
+            let yaw = request[2];
+            let reserved = (Quantity::Yaw, yaw.clamp(-self.reserve, self.reserve));
+            let Some((kept, _)) = self.nearest(reserved, direction, ranges)? else {
+                return Ok(None);
+            };
+            let kept = if yaw < 0.0 { kept + SLACK } else { kept - SLACK };
+            ranges.yaw = (yaw.min(kept), yaw.max(kept));
+        }
         let [mut second, third] = self.rest(request);
         if let Some((_, Some(value))) = given {
             second.1 = value;

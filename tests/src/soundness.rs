@@ -181,9 +181,7 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
 
 /// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode
 /// "disabled" does not raise the thrust beyond the request or the floor: all where roll = pitch = 0
-/// is attainable at all within the yaw asked and its reserve. With rotors out it has to be within the
-/// mixer's polygons: a bicopter with a rotor out may have level flight at one end of its throttles only,
-/// by less than the polygons leave out.
+/// is attainable at all within the yaw asked, with rotors out at the thrust asked.
 fn overstepping(
     frame: &Frame,
     request: &Request,
@@ -234,27 +232,23 @@ fn overstepping(
     if faults.is_empty() && !raised {
         return Ok(faults);
     }
-    let oracle = if request.health == Health::GOOD {
-        let factors = frame.physics.factors(request.volts);
-        Oracle::new(&frame.physics, frame.allocation(), factors, request.health)
-    } else {
-        Oracle::of_polygons(frame, request.volts, request.health)
-    };
+    let factors = frame.physics.factors(request.volts);
+    let oracle = Oracle::new(&frame.physics, frame.allocation(), factors, request.health);
     let Some(mut floor) = oracle.thrust_floor(asked[2])? else {
         return Ok(Vec::new());
     };
-    // The mixer's own floor is that of what it has of the attainable set.
+    let exact = || Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
+    if request.health != Health::GOOD
+        && !(oracle.has_level(asked[2], asked[3])? && exact().has_level(asked[2], asked[3])?)
+    {
+        return Ok(Vec::new());
+    }
     let given = answer.achieved[3];
     let is_above = |floor: f64| given > floor.max(least_thrust_n) + ALLOWED * frame.authority[3];
     if raised && is_above(floor) {
         // Convex hulls reach below the least thrust. The mixer's is that of level flight without
         // yaw, which less thrust may come with where units at idle have a torque.
-        let exact = Oracle::exact(
-            &frame.physics,
-            frame.allocation(),
-            frame.physics.factors(request.volts),
-            request.health,
-        );
+        let exact = exact();
         for yaw in [asked[2], 0.0] {
             floor = floor.max(exact.thrust_floor(yaw)?.unwrap_or(floor));
         }

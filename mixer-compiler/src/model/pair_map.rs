@@ -187,6 +187,20 @@ impl PairMap {
         (0..=steps).map(move |k| self.efforts([low + (high - low) * k as f64 / steps as f64; 2]))
     }
 
+    /// Means over the box of f_u^2 + f_l^2 (N^2) and of Q_u^2 + Q_l^2 (N^2 m^2): what a throttle changes.
+    pub(crate) fn spread(&self) -> [f64; 2] {
+        const POINTS: usize = 16;
+        let [low, high] = self.range;
+        let at = |k: usize| low + (high - low) * (k as f64 + 0.5) / POINTS as f64;
+        let mut spread = [0.0; 2];
+        for (i, j) in (0..POINTS).flat_map(|i| (0..POINTS).map(move |j| (i, j))) {
+            for (spread, [by_u, by_l]) in spread.iter_mut().zip(self.jacobian([at(i), at(j)])) {
+                *spread += (by_u * by_u + by_l * by_l) / (POINTS * POINTS) as f64;
+            }
+        }
+        spread
+    }
+
     /// Largest thrust (N) and largest absolute torque (N m) over the box: the sizes of the efforts.
     pub fn scale(&self) -> [f64; 2] {
         let mut scale = [0.0f64; 2];

@@ -168,10 +168,9 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let view = tables.view();
     let units = (*view.units).tokens();
     let (pair, singles, inverse) = (view.pair.tokens(), view.singles.tokens(), view.inverse.tokens());
-    let (attainable, level) = (view.attainable.tokens(), view.level.tokens());
     let (throttle, voltage, rows) = (view.throttle.tokens(), view.voltage.tokens(), view.rows.tokens());
-    let (centre, is_vertical) = (view.centre.tokens(), view.is_vertical);
-    let desaturation = view.desaturation.tokens();
+    let (spread, level) = (view.spread.tokens(), view.level_n.tokens());
+    let (priorities, is_vertical) = (view.priorities.tokens(), view.is_vertical);
     let (power_bias, tolerance) = (view.power_bias_nm_per_n.tokens(), view.tolerance.tokens());
     let (closed_form, closed_form_type) = match &view.closed_form {
         Some(table) => (Part::tokens(&table), quote!(&tables::ClosedForm<'static>)),
@@ -189,11 +188,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
         const INVERSE: #inverse_type = #inverse;
         /// The voltage correction.
         const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = #voltage;
-        /// A polygon inside a unit's attainable set.
-        const ATTAINABLE: tables::AttainableSet<'static> = #attainable;
-        /// Level flight, which the general path retreats to.
-        const LEVEL: tables::LevelFlight<'static> = #level;
-        /// The closed form of desaturation, where there is one.
+        /// The closed form of allocation, where there is one.
         const CLOSED_FORM: #closed_form_type = #closed_form;
 
         /// All tables; see `mixer_rt::tables` for their meaning and units.
@@ -205,12 +200,11 @@ fn tables(tables: &MixerTables) -> TokenStream {
             inverse: INVERSE,
             throttle: #throttle,
             voltage: VOLTAGE,
-            attainable: ATTAINABLE,
-            level: LEVEL,
             rows: #rows,
-            centre: #centre,
+            spread: #spread,
+            level_n: #level,
             is_vertical: #is_vertical,
-            desaturation: #desaturation,
+            priorities: #priorities,
             power_bias_nm_per_n: #power_bias,
             closed_form: CLOSED_FORM,
             tolerance: #tolerance,

@@ -11,6 +11,9 @@ use crate::output::cost::Cost;
 use crate::output::hover::Hover;
 use crate::output::power::LevelPower;
 
+/// Border points per edge of the throttle box at which the largest efforts are looked for.
+const SAMPLES: usize = 64;
+
 /// `cargo mixer check --json`, but for the time taken.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
@@ -48,12 +51,8 @@ pub struct Summary {
     pub condition: f64,
     /// Served axes.
     pub axes: Vec<&'static str>,
-    /// Share of the attainable set's area that the polygon of the general path loses, its inward
-    /// bends included.
-    pub attainable_area_lost: f64,
-    /// Share that any convex polygon loses to the inward bends.
-    pub attainable_area_lost_to_convexity: f64,
-    /// Share of that area that the sides of the closed form lose; `None` without a closed form.
+    /// Share of the attainable set's area that the sides of the closed form lose; `None` without a
+    /// closed form.
     pub attainable_area_lost_in_closed_form: Option<f64>,
     /// Bare thrust `[least, largest]` that is attainable at the reference voltage with no torque,
     /// N.
@@ -194,8 +193,6 @@ impl Summary {
             rank: compiled.effectiveness.rank,
             condition: compiled.effectiveness.condition,
             axes: airframe.allocation.axes.iter().map(|axis| axis.name()).collect(),
-            attainable_area_lost: compiled.lost_area.total,
-            attainable_area_lost_to_convexity: compiled.lost_area.convexity,
             attainable_area_lost_in_closed_form: compiled.lost_between_sides,
             thrust_range_n: compiled.thrust_range_n,
             uncertainty: compiled
@@ -332,12 +329,13 @@ impl Report<'_> {
     fn domain(&self, f: &mut fmt::Formatter<'_>, summary: &Summary) -> fmt::Result {
         let airframe = &self.0.airframe;
         let tables = &self.0.tables;
-        let corners = tables.attainable.corners();
+        let border = self.0.pair.border(SAMPLES);
+        let efforts: Vec<[f64; 2]> = border.into_iter().map(|at| self.0.pair.efforts(at)).collect();
         let extent = |index: usize| {
-            let values = corners.iter().map(|corner| corner[index]);
+            let values = efforts.iter().map(|efforts| efforts[index]);
             (
-                values.clone().fold(f32::INFINITY, f32::min),
-                values.fold(f32::NEG_INFINITY, f32::max),
+                values.clone().fold(f64::INFINITY, f64::min),
+                values.fold(f64::NEG_INFINITY, f64::max),
             )
         };
         let ((f_low, f_high), (q_low, q_high)) = (extent(0), extent(1));
@@ -355,26 +353,21 @@ impl Report<'_> {
             f,
             "attainable set  f {f_low:.3} to {f_high:.3} N, Q {q_low:.4} to {q_high:.4} N m per unit",
         )?;
-        let mut polygon = "desaturation";
-        if let Some(lost) = summary.attainable_area_lost_in_closed_form {
-            let cells = tables
-                .closed_form
-                .as_ref()
-                .map_or(0, |table| table.border.cells.len() - 1);
-            writeln!(
-                f,
-                "desaturation    in closed form between sides of {cells} cells, which leave out {:.3} % of its area",
-                100.0 * lost
-            )?;
-            polygon = "  rotors out";
+        match summary.attainable_area_lost_in_closed_form {
+            Some(lost) => {
+                let cells = tables
+                    .closed_form
+                    .as_ref()
+                    .map_or(0, |table| table.border.cells.len() - 1);
+                writeln!(
+                    f,
+                    "desaturation    in closed form between sides of {cells} cells, which leave out {:.3} % of its area; \
+                     rotors out on the throttles",
+                    100.0 * lost
+                )?;
+            }
+            None => writeln!(f, "desaturation    on the throttles, over the whole set")?,
         }
-        writeln!(
-            f,
-            "{polygon:<16}in a polygon of {} corners inside it that leaves out {:.3} % of its area (convex: {:.3} %)",
-            corners.len(),
-            100.0 * summary.attainable_area_lost,
-            100.0 * summary.attainable_area_lost_to_convexity
-        )?;
         let [floor, ceiling] = summary.thrust_range_n;
         writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;
         if let Some(uncertainty) = &self.0.airframe.pair.uncertainty {

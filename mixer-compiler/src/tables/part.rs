@@ -2,9 +2,8 @@
 //! The fields of each type are named once, below.
 
 use mixer_rt::tables::{
-    Airmode, AttainableSet, BilinearSeed, Border, Budget, Cell, ClosedForm, ClosedFormUnit, Corner,
-    CubicSeed, Desaturation, Facets, Grid, Knot, LevelFlight, Outline, Pair, PolynomialInverse,
-    QuadraticSeed, RootCoordinates, SingleRotor, ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw,
+    Airmode, BilinearSeed, Border, Cell, ClosedForm, ClosedFormUnit, CubicSeed, Facets, Grid, Knot, Outline,
+    Pair, PolynomialInverse, Priorities, QuadraticSeed, RootCoordinates, SingleRotor, ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -102,7 +101,7 @@ macro_rules! parts {
 }
 
 parts! {
-    Unit { allocation, effectiveness, columns, channels };
+    Unit { allocation, effectiveness, channels };
     Pair<QuantityTable> { thrust, torque };
     SingleRotor { thrust, torque };
     PolynomialInverse<'_> { thrust, torque, degree, upper, lower };
@@ -112,11 +111,7 @@ parts! {
     CubicSeed { upper, lower };
     ThrottleRange { min, max };
     Voltage<'_> { range_v, thrust, torque };
-    Corner { at, ways, bound, links } + 2;
-    AttainableSet<'_> { scale, centre, corners, count } + 3;
-    LevelFlight<'_> { thrust_n, efforts };
-    Budget { pivots, flips } + 2;
-    Desaturation { airmode, yaw_reserve_nm, budget };
+    Priorities { airmode, yaw_reserve_nm };
     ClosedForm<'_> {
         units, complete, thrust_n, border, slopes, walls, torque_share, thrust_floor_n, thrust_middle_n,
         yaw_rounding_nm

@@ -47,11 +47,11 @@ impl Quantity for QuantityTable {
         }
     }
 
-    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
+    fn expansion<S: Scalar>(&self, u: S, l: S) -> [S; 5] {
         match self {
-            QuantityTable::Biquadratic(quantity) => quantity.value_and_gradient(u, l),
-            QuantityTable::Cubic(quantity) => quantity.value_and_gradient(u, l),
-            QuantityTable::Quartic(quantity) => quantity.value_and_gradient(u, l),
+            QuantityTable::Biquadratic(quantity) => quantity.expansion(u, l),
+            QuantityTable::Cubic(quantity) => quantity.expansion(u, l),
+            QuantityTable::Quartic(quantity) => quantity.expansion(u, l),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Factors that put the axes of the general path on one scale.
+//! Factors that put the axes on one scale.
 
 use crate::airframe::{Airframe, Axis};
 use crate::model::PairMap;

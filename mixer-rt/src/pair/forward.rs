@@ -12,9 +12,9 @@ pub trait Quantity {
     /// The value at `(u, l)`.
     fn value<S: Scalar>(&self, u: S, l: S) -> S;
 
-    /// The value at `(u, l)` and its derivatives by `u` and by `l`. The value has the bits of
-    /// [`Quantity::value`].
-    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3];
+    /// The value at `(u, l)`, its derivatives by `u` and by `l`, and half its second derivatives by
+    /// each. The value has the bits of [`Quantity::value`].
+    fn expansion<S: Scalar>(&self, u: S, l: S) -> [S; 5];
 }
 
 /// Terms u2l2, u2l, u2, ul2, ul, u, l2, l: eq. (1) of the paper.
@@ -48,31 +48,55 @@ impl<P: Quantity> Pair<P> {
     /// The efforts `[f, Q]` at `(u, l)` and their Jacobian `[[f_u, f_l], [Q_u, Q_l]]`.
     #[inline(always)]
     pub fn efforts_and_jacobian<S: Scalar>(&self, [u, l]: [S; 2]) -> ([S; 2], [[S; 2]; 2]) {
-        let [f, f_u, f_l] = self.thrust.value_and_gradient(u, l);
-        let [q, q_u, q_l] = self.torque.value_and_gradient(u, l);
+        let [f, f_u, f_l, ..] = self.thrust.expansion(u, l);
+        let [q, q_u, q_l, ..] = self.torque.expansion(u, l);
         ([f, q], [[f_u, f_l], [q_u, q_l]])
+    }
+
+    /// What both rotors give at `[u, l]`.
+    #[inline(always)]
+    pub(crate) fn expansion(&self, [u, l]: [f32; 2]) -> Expansion {
+        let [f, f_u, f_l, f_uu, f_ll] = self.thrust.expansion(u, l);
+        let [q, q_u, q_l, q_uu, q_ll] = self.torque.expansion(u, l);
+        Expansion {
+            value: [f, q],
+            slopes: [[f_u, q_u], [f_l, q_l]],
+            bends: [[f_uu, q_uu], [f_ll, q_ll]],
+        }
     }
 }
 
-/// Value and slope of `a x + b`.
-#[inline(always)]
-fn line<S: Scalar>([a, b]: [f32; 2], x: S) -> (S, f32) {
-    (x * a + b, a)
+/// What a unit gives about its throttles: `[f, Q]`, and by each throttle its slope and half its second
+/// derivative.
+#[derive(Clone, Copy)]
+pub(crate) struct Expansion {
+    pub(crate) value: [f32; 2],
+    pub(crate) slopes: [[f32; 2]; 2],
+    pub(crate) bends: [[f32; 2]; 2],
 }
 
-/// Value and slope of `a x2 + b x + c` by Horner's rule.
+impl Expansion {
+    /// Of a unit whose rotors are out.
+    pub(crate) const NOTHING: Expansion = Expansion {
+        value: [0.0; 2],
+        slopes: [[0.0; 2]; 2],
+        bends: [[0.0; 2]; 2],
+    };
+}
+
+/// Value, slope and half the second derivative of `a x2 + b x + c` by Horner's rule.
 #[inline(always)]
-fn parabola<S: Scalar>([a, b, c]: [f32; 3], x: S) -> (S, S) {
+fn parabola<S: Scalar>([a, b, c]: [f32; 3], x: S) -> (S, S, f32) {
     let leading = x * a;
     let value = leading + b;
-    (value * x + c, leading + value)
+    (value * x + c, leading + value, a)
 }
 
-/// Value and slope of `a x3 + b x2 + c x + d` by Horner's rule.
+/// The same of `a x3 + b x2 + c x + d`.
 #[inline(always)]
-fn cubic<S: Scalar>([a, b, c, d]: [f32; 4], x: S) -> (S, S) {
-    let (value, slope) = parabola([a, b, c], x);
-    (value * x + d, slope * x + value)
+fn cubic<S: Scalar>([a, b, c, d]: [f32; 4], x: S) -> (S, S, S) {
+    let (value, slope, _) = parabola([a, b, c], x);
+    (value * x + d, slope * x + value, x * a + slope)
 }
 
 impl Quantity for Biquadratic {
@@ -86,15 +110,21 @@ impl Quantity for Biquadratic {
     }
 
     #[inline(always)]
-    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
+    fn expansion<S: Scalar>(&self, u: S, l: S) -> [S; 5] {
         let [c0, c1, c2, c3, c4, c5, c6, c7] = self.0;
-        let (p2, p2_l) = parabola([c0, c1, c2], l);
-        let (p1, p1_l) = parabola([c3, c4, c5], l);
-        let (q0, q0_l) = line([c6, c7], l);
-        let (p0, p0_l) = (q0 * l, l * q0_l + q0);
+        let (p2, p2_l, _) = parabola([c0, c1, c2], l);
+        let (p1, p1_l, _) = parabola([c3, c4, c5], l);
+        let q0 = l * c6 + c7;
+        let (p0, p0_l) = (q0 * l, l * c6 + q0);
         let leading = p2 * u;
         let value = leading + p1;
-        [value * u + p0, leading + value, (p2_l * u + p1_l) * u + p0_l]
+        [
+            value * u + p0,
+            leading + value,
+            (p2_l * u + p1_l) * u + p0_l,
+            p2,
+            (u * c0 + c3) * u + c6,
+        ]
     }
 }
 
@@ -109,16 +139,22 @@ impl Quantity for Cubic {
     }
 
     #[inline(always)]
-    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
+    fn expansion<S: Scalar>(&self, u: S, l: S) -> [S; 5] {
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = self.0;
-        let (p2, p2_l) = line([c1, c4], l);
-        let (p1, p1_l) = parabola([c2, c5, c7], l);
-        let (q0, q0_l) = parabola([c3, c6, c8], l);
+        let p2 = l * c1 + c4;
+        let (p1, p1_l, _) = parabola([c2, c5, c7], l);
+        let (q0, q0_l, _) = parabola([c3, c6, c8], l);
         let (p0, p0_l) = (q0 * l, q0_l * l + q0);
         let leading = u * c0;
         let inner = leading + p2;
         let (value, slope) = (inner * u + p1, leading + inner);
-        [value * u + p0, slope * u + value, (u * p2_l + p1_l) * u + p0_l]
+        [
+            value * u + p0,
+            slope * u + value,
+            (u * c1 + p1_l) * u + p0_l,
+            leading + slope,
+            u * c2 + (l * c3 + q0_l),
+        ]
     }
 }
 
@@ -134,12 +170,12 @@ impl Quantity for Quartic {
     }
 
     #[inline(always)]
-    fn value_and_gradient<S: Scalar>(&self, u: S, l: S) -> [S; 3] {
+    fn expansion<S: Scalar>(&self, u: S, l: S) -> [S; 5] {
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11, c12, c13] = self.0;
-        let (p3, p3_l) = line([c1, c5], l);
-        let (p2, p2_l) = parabola([c2, c6, c9], l);
-        let (p1, p1_l) = cubic([c3, c7, c10, c12], l);
-        let (q0, q0_l) = cubic([c4, c8, c11, c13], l);
+        let p3 = l * c1 + c5;
+        let (p2, p2_l, _) = parabola([c2, c6, c9], l);
+        let (p1, p1_l, p1_ll) = cubic([c3, c7, c10, c12], l);
+        let (q0, q0_l, q0_ll) = cubic([c4, c8, c11, c13], l);
         let (p0, p0_l) = (q0 * l, q0_l * l + q0);
         let leading = u * c0;
         let inner = leading + p3;
@@ -148,7 +184,9 @@ impl Quantity for Quartic {
         [
             value * u + p0,
             slope * u + value,
-            ((u * p3_l + p2_l) * u + p1_l) * u + p0_l,
+            ((u * c1 + p2_l) * u + p1_l) * u + p0_l,
+            (leading + outer_u) * u + slope,
+            (u * c2 + p1_ll) * u + (q0_ll * l + q0_l),
         ]
     }
 }

@@ -1,48 +1,39 @@
-//! Which rotors of a unit work, and what its unit then gives.
+//! Which rotors of a unit turn, and what the unit then gives.
 
 use crate::Health;
-use crate::pair::{Pair, Quantity, SingleRotor};
+use crate::pair::{Expansion, Pair, Quantity, SingleRotor};
 
-/// Which rotors of a unit work.
+/// Which rotors of a unit turn: the upper one, the lower one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Rotors {
-    Both,
-    Upper,
-    Lower,
-    None,
-}
+pub(crate) struct Rotors([bool; 2]);
 
 impl Rotors {
+    /// Both.
+    pub(crate) const BOTH: Rotors = Rotors([true; 2]);
+
     /// The rotors of a unit with these channels.
     #[inline]
-    pub(crate) fn of([upper, lower]: [u8; 2], health: Health) -> Rotors {
-        match (health.has_failed(upper), health.has_failed(lower)) {
-            (false, false) => Rotors::Both,
-            (false, true) => Rotors::Upper,
-            (true, false) => Rotors::Lower,
-            (true, true) => Rotors::None,
-        }
+    pub(crate) fn of(channels: [u8; 2], health: Health) -> Rotors {
+        Rotors(channels.map(|channel| !health.has_failed(channel)))
     }
 
-    /// True where one of them works.
-    #[inline]
-    pub(crate) fn is_single(self) -> bool {
-        matches!(self, Rotors::Upper | Rotors::Lower)
+    /// Whether one of them turns: 0 the upper, 1 the lower.
+    #[inline(always)]
+    pub(crate) fn turns(self, side: usize) -> bool {
+        self.0[side & 1]
     }
 
-    /// The throttles of both rotors where the one that works has `throttle`.
-    #[inline]
-    pub(crate) fn throttles(self, throttle: f32) -> [f32; 2] {
-        match self {
-            Rotors::Lower => [0.0, throttle],
-            _ => [throttle, 0.0],
-        }
+    /// Whether both turn.
+    #[inline(always)]
+    pub(crate) fn are_both(self) -> bool {
+        self == Rotors::BOTH
     }
 
-    /// What the rotor gives that works, of a unit with a single one.
-    #[inline]
-    pub(crate) fn curve(self, [upper, lower]: &[SingleRotor; 2]) -> &SingleRotor {
-        if self == Rotors::Lower { lower } else { upper }
+    /// The one that turns, where the other does not.
+    #[inline(always)]
+    pub(crate) fn single(self) -> Option<usize> {
+        let [upper, lower] = self.0;
+        (upper != lower).then_some(usize::from(lower))
     }
 
     /// The efforts `[f, Q]` (N, N m) of a unit with these rotors at `[u, l]`.
@@ -50,13 +41,37 @@ impl Rotors {
     pub(crate) fn efforts<P: Quantity>(
         self,
         pair: &Pair<P>,
-        singles: &[SingleRotor; 2],
+        [upper, lower]: &[SingleRotor; 2],
         [u, l]: [f32; 2],
     ) -> [f32; 2] {
-        if self.is_single() {
-            self.curve(singles).efforts(u + l)
-        } else {
-            pair.efforts([u, l])
+        match self.0 {
+            [true, true] => pair.efforts([u, l]),
+            [true, false] => upper.efforts(u),
+            [false, true] => lower.efforts(l),
+            [false, false] => [0.0; 2],
         }
+    }
+
+    /// The same with the derivatives by the throttles of those that turn.
+    #[inline(always)]
+    pub(crate) fn expansion<P: Quantity>(
+        self,
+        pair: &Pair<P>,
+        [upper, lower]: &[SingleRotor; 2],
+        [u, l]: [f32; 2],
+    ) -> Expansion {
+        let (curve, throttle, side) = match self.0 {
+            [true, true] => return pair.expansion([u, l]),
+            [true, false] => (upper, u, 0),
+            [false, true] => (lower, l, 1),
+            [false, false] => return Expansion::NOTHING,
+        };
+        let (value, slope, bend) = curve.expansion(throttle);
+        let mut expansion = Expansion {
+            value,
+            ..Expansion::NOTHING
+        };
+        (expansion.slopes[side], expansion.bends[side]) = (slope, bend);
+        expansion
     }
 }

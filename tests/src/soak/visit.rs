@@ -9,7 +9,6 @@ use super::draw::Draw;
 use super::failure::Failure;
 use super::limits::Check;
 use crate::frames::zoo::Specimen;
-use crate::motion::{JUMP, Motion};
 use crate::optimum::Oracle;
 use crate::request::{Answer, Frame, Request};
 use crate::shortfall::Shortfall;
@@ -22,12 +21,8 @@ const JUDGED_FRAMES: u64 = 4;
 /// Units beyond which they are not: a programme takes seconds.
 const MOST_JUDGED_UNITS: usize = 8;
 
-/// Pairs of neighbours per frame and health that linear programmes judge, of those that move
-/// throttles: the frame's further ones are left out.
-const MOST_MOVED: usize = 3;
-
-/// Answers per frame and health that raise the thrust, likewise: the least thrust of sets that bend
-/// inwards takes many programmes.
+/// Answers per frame and health that raise the thrust, that linear programmes judge: the least thrust
+/// of sets that bend inwards takes many.
 const MOST_RAISED: usize = 3;
 
 /// How often something was looked at and missed.
@@ -156,14 +151,11 @@ impl<'a> Visit<'a> {
                 });
             }
         }
-        let mut moved = 0;
         for _ in 0..neighbours {
             let [request, next] = draw.neighbours();
             let answers = (self.sound(frame, &request)?, self.answer(frame, &next));
-            if let (Some(answer), Some(after)) = answers
-                && moved < MOST_MOVED
-            {
-                moved += usize::from(self.follow(frame, [&request, &next], [&answer, &after])?);
+            if let (Some(answer), Some(after)) = answers {
+                self.follow(frame, [&request, &next], [&answer, &after]);
             }
         }
         if self.index.is_multiple_of(JUDGED_FRAMES) && frame.physics.units() <= MOST_JUDGED_UNITS {
@@ -175,13 +167,8 @@ impl<'a> Visit<'a> {
         Ok(())
     }
 
-    /// From a request to the next one; true where throttles move far.
-    fn follow(
-        &mut self,
-        frame: &Frame,
-        requests: [&Request; 2],
-        answers: [&Answer; 2],
-    ) -> Result<bool, Error> {
+    /// From a request to the next one.
+    fn follow(&mut self, frame: &Frame, requests: [&Request; 2], answers: [&Answer; 2]) {
         let pair = requests.map(|request| *request);
         let step = (0..4)
             .filter(|&axis| frame.served()[axis])
@@ -191,18 +178,9 @@ impl<'a> Visit<'a> {
             format!("from {:?} to {:?}", answers[0].achieved, answers[1].achieved)
         });
         let change = answers[0].change(answers[1]);
-        let is_far = change > JUMP;
-        // No oracle says which jumps are forced with rotors out.
-        let is_free = is_far
-            && (self.rotors_out > 0
-                || matches!(Motion::between(frame, requests[0], requests[1])?, Motion::Jump(_)));
-        self.look(
-            Check::Jump,
-            if is_free { f64::from(change) } else { 0.0 },
-            &pair,
-            || format!("throttles move by {change}"),
-        );
-        Ok(is_far)
+        self.look(Check::Jump, f64::from(change), &pair, || {
+            format!("throttles move by {change}")
+        });
     }
 
     /// Holds an answer to the linear programme.

@@ -1,14 +1,12 @@
-//! The most instructions that a mix takes, whatever is asked: the sum of what the code does at
-//! most.
+//! The most instructions that a mix takes, whatever is asked: the sum of what the code does at most.
 //!
 //! In closed form that is least norm, an attempt at it next to the border, and one of two ways: the
 //! facets in several steps where they change the request, or the climb along the null space where
-//! they do not; after either the retreat, or what a reserve of yaw asks for. The general path is its pivots, its moves to other corners,
-//! and what stands around them. The instructions of each part are the most that were counted of that
-//! part over thousands of saturated requests, rounded up; the tests hold the sum to the counts of
-//! whole mixers.
+//! they do not; after either the retreat, and what a reserve of yaw asks for. Else it is least norm and
+//! the iterations of the interior point method, which are a constant: a product of their number and the
+//! cost of one (`cargo xtask counts`). The tests hold the sum to the counts of whole mixers.
 
-use mixer_rt::tables::{Budget, Facets, Outline};
+use mixer_rt::tables::{Facets, ITERATIONS, Outline};
 
 use crate::airframe::Basis;
 use crate::compiled::Compiled;
@@ -46,72 +44,67 @@ const KNOTS: u32 = 75;
 const KNOT: u32 = 30;
 const KNOT_UNIT: u32 = 7;
 
-/// What a reserve of yaw calls more often: how far yaw reaches at level flight, at the roomy thrusts and
-/// on the lines to and from them; the outlines' top, and the range of a direction in one unit.
-const RESERVE_REACHES: u32 = 27;
-const RESERVE_TOPS: u32 = 4;
-const DIRECTION_UNIT: u32 = 110;
+/// What a reserve of yaw calls more often.
+const RESERVE_REACHES: u32 = 5;
 
 /// The torques, one unit.
 const TORQUES: u32 = 40;
 
-/// The general path beside its pivots, and one unit in it.
-const GENERAL: u32 = 2400;
-const GENERAL_UNIT: u32 = 530;
+/// Beside the iterations: the request in rows and the targets; one unit of both.
+const CUT: u32 = 400;
+const CUT_UNIT: u32 = 150;
 
-/// The moves by least norm while all rotors work, or the choice among optima that tie, which takes
-/// more: three Newton steps, and one unit in them.
-const TIES: u32 = 1500;
-const TIES_UNIT: u32 = 900;
+/// An iteration, and one unit in it by the terms of its basis: with vertical axes, and tilted.
+const ITERATION: u32 = 560;
+const ITERATION_UNIT: [u32; 2] = [330, 400];
 
-/// Another programme with rotors out, and one unit in it.
-const PROGRAMME: u32 = 1500;
-const PROGRAMME_UNIT: u32 = 300;
+/// A correction after a stage of iterations with the rows judged, and one unit in it.
+const CORRECTION: u32 = 400;
+const CORRECTION_UNIT: u32 = 250;
 
-/// A pivot of the simplex method, and one unit in it.
-const PIVOT: u32 = 900;
-const PIVOT_UNIT: u32 = 100;
+/// Least norm with rotors out beside the inverse map, and one unit in it.
+const ROTORS_OUT: u32 = 900;
+const ROTORS_OUT_UNIT: u32 = 300;
 
-/// A move to another corner, and one unit in the search for the next.
-const FLIP: u32 = 120;
-const FLIP_UNIT: u32 = 8;
-
-/// A round in which the curves of single rotors take the place of their chords, and one unit in it.
-const ROUND: u32 = 860;
-const ROUND_UNIT: u32 = 320;
-
-/// The bound for a compiled airframe while all rotors work; `None` for an evaluator that has not
-/// been counted.
+/// The bound for a compiled airframe while all rotors turn; `None` for an evaluator that has not been
+/// counted.
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
-        None => {
-            let ties = TIES + compiled.tables.units.len() as u32 * TIES_UNIT;
-            Some(general(compiled, &[compiled.tables.desaturation.budget])? + ties)
-        }
+        // Least norm, and the guard's three.
+        None => Some(4 * least_norm(compiled)? + per_mix(compiled) + interior(compiled, &ITERATIONS)),
     }
 }
 
-/// The bound with any number of rotors out: the general path of every frame, up to level flight.
+/// The bound with any number of rotors out, of every frame.
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
-    let units = compiled.tables.units.len();
-    let n = units as u32;
-    let budgets = [false, true, false].map(|is_decided| Budget::with_rotors_out(units, is_decided));
-    let curves = 2 * u32::from(Budget::ROUNDS) * (ROUND + n * ROUND_UNIT);
-    let starts = (budgets.len() as u32 - 1) * (PROGRAMME + n * PROGRAMME_UNIT);
-    Some(general(compiled, &budgets)? + curves + starts)
+    let n = compiled.tables.units.len() as u32;
+    let least_norm = 2 * least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT;
+    // A run with yaw last has the first stage again.
+    let last = interior(compiled, &ITERATIONS[..1]);
+    Some(least_norm + per_mix(compiled) + interior(compiled, &ITERATIONS) + last)
 }
 
-/// The general path: the pivots and moves that are allowed, and what is before and after them.
-fn general(compiled: &Compiled, budgets: &[Budget]) -> Option<u32> {
+/// Least norm of all units.
+fn least_norm(compiled: &Compiled) -> Option<u32> {
     let basis = compiled.airframe.pair.basis;
     let n = compiled.tables.units.len() as u32;
-    let unit = compiled.evaluator.instructions(basis)? + forward(basis) + GENERAL_UNIT;
-    let voltage = compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
-    let work = budgets.iter().map(|budget| {
-        u32::from(budget.pivots) * (PIVOT + n * PIVOT_UNIT) + u32::from(budget.flips) * (FLIP + n * FLIP_UNIT)
-    });
-    Some(GENERAL + voltage + n * unit + work.sum::<u32>())
+    Some(n * (compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT))
+}
+
+/// A run of the interior point method with stages of so many iterations.
+fn interior(compiled: &Compiled, stages: &[u32]) -> u32 {
+    let n = compiled.tables.units.len() as u32;
+    let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
+    let unit = unit + 2 * (forward(compiled.airframe.pair.basis) - forward(Basis::Biquadratic));
+    let iterations: u32 = stages.iter().sum();
+    let corrections = stages.len() as u32 * (CORRECTION + n * CORRECTION_UNIT);
+    CUT + n * CUT_UNIT + iterations * (ITERATION + n * unit) + corrections
+}
+
+/// Checks, and voltage where there is a correction.
+fn per_mix(compiled: &Compiled) -> u32 {
+    PER_MIX + LIMITED + compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE)
 }
 
 /// The forward map of one unit.
@@ -133,13 +126,12 @@ fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     let moved = table.units.iter().filter(|unit| unit.null != 0.0).count() as u32;
     let top = |moved: u32| n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT);
     let climb = if moved == 0 { 0 } else { CLIMB * reach + top(moved) };
-    let reserve = if compiled.tables.desaturation.yaw_reserve_nm > 0.0 {
-        RESERVE_REACHES * reach + RESERVE_TOPS * (top(n) + n * DIRECTION_UNIT)
+    let reserve = if compiled.tables.priorities.yaw_reserve_nm > 0.0 {
+        RESERVE_REACHES * reach + top(n) + n * NULL_RANGE
     } else {
         0
     };
-    let voltage = compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
     let ways = (Facets::STEPS * step).max(step + climb);
     let found = walls + ways + n * NULL_RANGE + (1 + RETREAT) * reach + reserve + n * TORQUES;
-    Some(PER_MIX + LIMITED + voltage + n * (PER_UNIT + ATTEMPT_UNIT) + 2 * inverses + found)
+    Some(per_mix(compiled) + n * (PER_UNIT + ATTEMPT_UNIT) + 2 * inverses + found)
 }

@@ -10,7 +10,7 @@ use crate::compiled::Compiled;
 pub enum DesaturationKind {
     /// Vertical axes and up to four units: a few cases, each solved at once.
     ClosedForm,
-    /// Any other layout: a dual simplex method of bounded work.
+    /// Any other layout: an interior point method of a fixed number of iterations.
     General,
 }
 
@@ -27,7 +27,7 @@ impl DesaturationKind {
     pub fn description(self) -> &'static str {
         match self {
             DesaturationKind::ClosedForm => "in closed form",
-            DesaturationKind::General => "by a bounded simplex method",
+            DesaturationKind::General => "by a fixed number of iterations",
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Allocation and desaturation in closed form where all thrust axes are vertical and there are at
+//! Allocation in closed form where all thrust axes are vertical and there are at
 //! most four units.
 //!
 //! Roll, pitch and thrust then depend on the units' thrusts alone, w = C f with w = (roll, pitch,
@@ -9,7 +9,7 @@
 //! 1. w within the zonotope of the thrusts in [a, b]^n                       closed_form/facets.rs
 //! 2. f = C+ w + z N, N the null space of C, with z as near zero as can be   closed_form/thrusts.rs
 //! 3. z towards where yaw reaches furthest, if it does not reach the request closed_form/climb.rs
-//!    thrust, then roll and pitch, given up for zero yaw or the reserve      closed_form/retreat.rs
+//!    thrust given up for the reserve, all three for zero yaw                closed_form/retreat.rs
 //! 4. the torques within [Q_min(f), Q_max(f)]                                closed_form/torques.rs
 //! ```
 //!
@@ -18,11 +18,11 @@
 //!
 //! Near a corner of the zonotope even zero yaw may be out of range: with all rotors at full
 //! throttle every unit has the torque Q(1, 1). There the thrusts are drawn towards the middle of
-//! the set until zero yaw is in range, which cuts thrust, roll and pitch together. A reserve of yaw
-//! asks for more than zero in the same way, and thrust is then given up before roll and pitch.
+//! the set until zero yaw is in range, which cuts thrust, roll and pitch together. For a reserve of
+//! yaw they are drawn to a thrust with more room for it, which keeps roll and pitch.
 //!
 //! Every loop is over units, facets, or knots, or has a fixed number of steps. Where all of yaw
-//! comes before thrust the problems cannot be separated, and the general path serves the airframe.
+//! comes before thrust the problems cannot be separated, and the interior point method serves the airframe.
 
 mod border;
 mod climb;
@@ -36,7 +36,7 @@ pub use border::{Border, Cell, Grid, Knot, Outline};
 use core::hint::black_box;
 
 use crate::Wrench;
-use crate::desaturation::Airmode;
+use crate::allocate::Airmode;
 
 /// The largest number of units.
 const MOST_CLOSED_FORM_UNITS: usize = 4;
@@ -97,9 +97,9 @@ pub struct ClosedForm<'a> {
     pub yaw_rounding_nm: f32,
 }
 
-/// Whether an airframe's tables have a closed form of desaturation, or the general path serves
-/// every request.
-pub trait DesaturationMethod {
+/// Whether an airframe's tables have a closed form of allocation, or the interior point method serves
+/// what least norm cannot.
+pub trait AllocationMethod {
     /// The closed form, where there is one.
     fn closed_form(&self) -> Option<&ClosedForm<'_>>;
 }
@@ -108,7 +108,7 @@ pub trait DesaturationMethod {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoClosedForm;
 
-impl DesaturationMethod for NoClosedForm {
+impl AllocationMethod for NoClosedForm {
     #[inline(always)]
     fn closed_form(&self) -> Option<&ClosedForm<'_>> {
         None
@@ -116,7 +116,7 @@ impl DesaturationMethod for NoClosedForm {
 }
 
 /// By reference, so that an image whose rotors never fail holds this table and not the rest.
-impl DesaturationMethod for &ClosedForm<'_> {
+impl AllocationMethod for &ClosedForm<'_> {
     #[inline(always)]
     fn closed_form(&self) -> Option<&ClosedForm<'_>> {
         Some(self)
@@ -124,7 +124,7 @@ impl DesaturationMethod for &ClosedForm<'_> {
 }
 
 /// Any of these, where it is known at run time only.
-impl DesaturationMethod for Option<ClosedForm<'_>> {
+impl AllocationMethod for Option<ClosedForm<'_>> {
     #[inline(always)]
     fn closed_form(&self) -> Option<&ClosedForm<'_>> {
         self.as_ref()
@@ -227,8 +227,7 @@ impl ClosedForm<'_> {
     }
 
     /// Writes attainable efforts that serve `request` in the order of priority. With `KEEPS_YAW`
-    /// the `reserve` of yaw, N m, is kept before the others: what that takes is left out of images
-    /// without it.
+    /// the `reserve` of yaw, N m, comes before thrust: what that takes is left out of images without it.
     #[inline(never)]
     pub(crate) fn desaturate<const KEEPS_YAW: bool>(
         &self,

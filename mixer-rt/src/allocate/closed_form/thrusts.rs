@@ -17,7 +17,7 @@ const CLIMBS: u32 = 2;
 /// Gain of yaw, in units of `yaw_rounding_nm`, from which z moves to the top in full. For a smaller
 /// gain it moves a part of the way, so that z does not jump where the gain vanishes. That costs at
 /// most a quarter of this gain, 0.025 % of the authority in yaw.
-pub(super) const GAIN: f32 = 100.0;
+const GAIN: f32 = 100.0;
 
 impl ClosedFormUnit {
     /// The least-norm thrust, N, for `[roll, pitch, thrust]`.
@@ -36,8 +36,8 @@ pub(super) fn furthest([least, most]: [f32; 2], sign: f32) -> f32 {
 
 impl ClosedForm<'_> {
     /// Finds attainable thrusts, at most `ceiling` in sum, that bring the requested yaw into range
-    /// if any do. Where yaw would be reversed or exceeded, or be short of `reserve`, they are drawn
-    /// towards those of the total thrust `middle`. Returns their z on the lines of thrusts and the
+    /// if any do. Where yaw would be short of `reserve`, reversed or exceeded, they are drawn towards
+    /// those of the total thrust `middle`. Returns their z on the lines of thrusts and the
     /// least and most yaw there; writes the lines with each unit's yaw.
     #[inline(always)]
     pub(super) fn attainable_thrusts<const KEEPS_YAW: bool>(
@@ -67,18 +67,16 @@ impl ClosedForm<'_> {
         if has_room && high > low {
             (z, reach) = self.climb(lines, sign, (z, reach), [low, high], wanted);
         }
-        // Beyond zero yaw is reversed, beyond the request it is exceeded, up to the reserve it is
-        // kept.
-        let needed = if wanted < reserve { wanted } else { reserve };
+        // Up to the reserve yaw comes before thrust.
+        let kept = if wanted < reserve { wanted } else { reserve };
+        if KEEPS_YAW && kept > furthest(reach, sign) {
+            wrench[2] = clamp(middle, range[0], range[1]);
+            (z, reach) = self.keep(lines, sign, (z, reach), kept, &wrench);
+        }
+        // Beyond zero yaw is reversed, beyond the request it is exceeded.
+        let needed = if wanted < 0.0 { wanted } else { 0.0 };
         if needed - furthest(reach, sign) > self.yaw_rounding_nm {
-            let found = (z, reach);
-            (z, reach) = if KEEPS_YAW {
-                wrench[2] = clamp(middle, range[0], range[1]);
-                let roomy = if share == 1.0 { Some(wrench) } else { None };
-                self.keep(lines, sign, found, needed, roomy, [ceiling, middle])
-            } else {
-                self.retreat(lines, sign, found, needed, middle)
-            };
+            (z, reach) = self.retreat(lines, sign, (z, reach), needed, middle);
         }
         (z, reach)
     }

@@ -1,0 +1,254 @@
+//! What least norm cannot serve: an interior point method on the throttles.
+//!
+//! ```text
+//! least   sum_j c_j s_j  +  rho/2 sum_i (t_i - t_i*)^2
+//! over    t_i in (min, max) for every rotor that turns, s_j in (0, 1) for every shortage
+//! with    sum_i B_i y_i(t) + sum_j a_j s_j = w
+//! ```
+//!
+//! t are throttles and t* those of least norm, y_i = (f, Q) what a unit gives by the forward map, and
+//! a_j s_j what is given up of a row at the cost c_j ([`priorities`](super::priorities)). So the answer
+//! is the throttles nearest those of least norm among those that cut the request least, by priority,
+//! over the true attainable sets, whatever their shape.
+//!
+//! An iteration is one step of Newton's method on the conditions of this with a barrier of weight mu on
+//! every bound. All unknowns but the multipliers lambda of the four rows are eliminated in closed form,
+//! each by itself ([`unknown`](super::unknown)):
+//!
+//! ```text
+//! gain_i = (dy/dt_i)^T B^T lambda - rho (t_i - t_i*)        curvature_i = rho + max(-(d2y/dt_i2)^T B^T lambda, 0)
+//! (sum B J R J^T B^T + sum a R a^T) change = w - sum B (y + J step) - sum a (s + step)
+//! ```
+//!
+//! R are the responses. Mixed second derivatives are left out, and curvature counts only where it makes
+//! the problem convex. All steps are cut to the same share, so that no unknown comes to its bound.
+//!
+//! The number of iterations is fixed, so the work is a product: [`STAGES`] times the cost of an
+//! iteration, which `cargo xtask counts` states. `cargo xtask soak` and the tests of `tests/allocation`
+//! show what the constants trade. TinyMPC and Clarabel are built alike: one function per step.
+
+use super::priorities::Request;
+use super::system::{Factors, Matrix};
+use super::unit::UnitState;
+use super::unknown::Unknown;
+use super::{Frame, larger};
+use crate::arithmetic::divided;
+use crate::pair::{Expansion, Quantity};
+use crate::rolled;
+
+/// Iterations, and the share of the authority up to which a row then counts as met.
+pub(super) struct Stage {
+    iterations: u32,
+    met: f32,
+    /// The barrier's weight in the first of them.
+    mu: f32,
+}
+
+/// A second stage where the first misses a row, about one request in a hundred. Fewer iterations leave
+/// more requests short and make throttles step at the border of least norm; more are calmer. The
+/// stricter threshold of the first stage keeps flags, which have 0.1 % of an axis, from flickering.
+pub(super) const STAGES: [Stage; 2] = [
+    Stage {
+        iterations: 10,
+        met: 1e-3,
+        mu: 90.0,
+    },
+    Stage {
+        iterations: 10,
+        met: 2e-3,
+        mu: 0.01,
+    },
+];
+
+/// Iterations of the two stages: the second where the first misses a row.
+pub const ITERATIONS: [u32; 2] = [STAGES[0].iterations, STAGES[1].iterations];
+
+/// The fall of the barrier's weight from one iteration to the next, and its least. A smaller least
+/// weight is not converged after ten iterations, and flags flicker; a larger one is short of the optimum.
+const FALL: f32 = 0.201_83;
+const LEAST_MU: f32 = 5e-5;
+
+/// Attraction of the throttles of least norm, per square of the throttle range. More gives up the last
+/// priority to stay near them; less makes throttles step where yaw saturates.
+const RHO: f32 = 0.15;
+
+/// Share of the way to the nearest bound.
+const SHARE: f32 = 0.97;
+
+/// Throttles of least norm nearer to a bound count as so near, as a share of the range.
+const CLOSE: f32 = 1e-3;
+
+impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
+    /// Puts the unknowns in the middle, and the targets at the units' throttles, moved outwards by the
+    /// barrier's pull: so the barrier at its least weight does not draw the answer away from them.
+    #[inline(never)]
+    pub(super) fn aim(&self, units: &mut [UnitState]) {
+        let (least, span) = (self.tables.throttle.min, self.span());
+        let close = CLOSE * span;
+        for unit in units {
+            rolled();
+            for side in 0..2 {
+                let (low, turns) = (unit.throttles[side] - least, unit.rotors.turns(side));
+                let low = if turns { low } else { 0.5 * span };
+                let (near, far) = (larger(low, close), larger(span - low, close));
+                let pull = divided(near - far, near * far);
+                unit.targets[side] = low + LEAST_MU / RHO * span * span * pull;
+            }
+        }
+    }
+
+    /// Runs the stages; true where the rows are met.
+    #[inline(never)]
+    pub(super) fn meet(&self, request: &mut Request, units: &mut [UnitState], stages: &[Stage]) -> bool {
+        let span = self.span();
+        let rho = RHO / (span * span);
+        for (unit, table) in units.iter_mut().zip(self.tables.units) {
+            rolled();
+            unit.columns = request.turned(&self.columns(table));
+            unit.unknowns = [Unknown::central(span); 2];
+        }
+        let mut lambda = [0.0; 4];
+        for stage in stages {
+            let (mut mu, mut system) = (stage.mu, Factors::NONE);
+            for _ in 0..stage.iterations {
+                rolled();
+                let (matrix, missed) = self.linearise(request, units, &lambda, (mu, rho));
+                system = Factors::of(&matrix);
+                let change = system.solve(missed);
+                for (lambda, change) in lambda.iter_mut().zip(change) {
+                    *lambda += change;
+                }
+                self.advance(request, units, &change);
+                mu = larger(mu * FALL, LEAST_MU);
+            }
+            self.correct(request, units, &system);
+            let met = stage.met * units.len() as f32;
+            if self.missed(request, units).iter().all(|row| row.abs() <= met) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Eliminates all unknowns: the system of the multipliers, and what the rows miss after the steps.
+    #[inline(always)]
+    fn linearise(
+        &self,
+        request: &mut Request,
+        units: &mut [UnitState],
+        lambda: &[f32; 4],
+        (mu, rho): (f32, f32),
+    ) -> (Matrix, [f32; 4]) {
+        let products = self.products();
+        let mut matrix = [0.0; 10];
+        let mut missed = request.eliminate(lambda, mu, &mut matrix);
+        for unit in units {
+            rolled();
+            let Expansion {
+                mut value,
+                slopes,
+                bends,
+            } = self.expansion(unit);
+            let gain = products.gains(&unit.columns, lambda);
+            let mut response = [0.0; 3];
+            for side in 0..2 {
+                let ([f, q], [f2, q2]) = (slopes[side], bends[side]);
+                let unknown = &mut unit.unknowns[side];
+                let more = gain[0] * f + gain[1] * q + rho * (unit.targets[side] - unknown.low);
+                let bent = -2.0 * (gain[0] * f2 + gain[1] * q2);
+                unknown.eliminate(more, rho + larger(bent, 0.0), mu);
+                value[0] += f * unknown.step;
+                value[1] += q * unknown.step;
+                let (by_f, by_q) = (unknown.response * f, unknown.response * q);
+                response[0] += by_f * f;
+                response[1] += by_f * q;
+                response[2] += by_q * q;
+            }
+            unit.slopes = slopes;
+            products.subtract(&unit.columns, value, &mut missed);
+            products.add(&unit.columns, response, &mut matrix);
+        }
+        (matrix, missed)
+    }
+
+    /// Completes all steps with the change of the multipliers, and goes the same share of each.
+    #[inline(always)]
+    fn advance(&self, request: &mut Request, units: &mut [UnitState], change: &[f32; 4]) {
+        let mut most = SHARE;
+        self.respond(units, change, &mut most);
+        request.respond(change, &mut most);
+        let share = SHARE / most;
+        request.advance(share);
+        advance(units, share);
+    }
+
+    /// Moves the throttles alone to meet the rows by the forward map, the shortages staying.
+    #[inline(never)]
+    fn correct(&self, request: &mut Request, units: &mut [UnitState], system: &Factors) {
+        let change = system.solve(self.missed(request, units));
+        for unknown in units.iter_mut().flat_map(|unit| &mut unit.unknowns) {
+            rolled();
+            unknown.step = 0.0;
+        }
+        let mut most = SHARE;
+        self.respond(units, &change, &mut most);
+        advance(units, SHARE / most);
+    }
+
+    /// Adds the rotors' responses to a change of the multipliers to their steps; raises `most` to the
+    /// largest step over its room.
+    #[inline(always)]
+    fn respond(&self, units: &mut [UnitState], change: &[f32; 4], most: &mut f32) {
+        for unit in units {
+            rolled();
+            let gain = self.products().gains(&unit.columns, change);
+            for (unknown, [f, q]) in unit.unknowns.iter_mut().zip(&unit.slopes) {
+                unknown.respond(f * gain[0] + q * gain[1], most);
+            }
+        }
+    }
+
+    /// What the rows miss, by the forward map.
+    #[inline(never)]
+    fn missed(&self, request: &mut Request, units: &mut [UnitState]) -> [f32; 4] {
+        let mut missed = request.left();
+        for unit in units {
+            rolled();
+            self.place(unit);
+            let efforts = unit
+                .rotors
+                .efforts(&self.tables.pair, &self.tables.singles, unit.throttles);
+            self.products().subtract(&unit.columns, efforts, &mut missed);
+        }
+        missed
+    }
+
+    /// The forward map at the unit's unknowns.
+    #[inline(always)]
+    fn expansion(&self, unit: &mut UnitState) -> Expansion {
+        self.place(unit);
+        unit.rotors
+            .expansion(&self.tables.pair, &self.tables.singles, unit.throttles)
+    }
+
+    /// Writes a unit's throttles at its unknowns.
+    #[inline(always)]
+    fn place(&self, unit: &mut UnitState) {
+        let range = &self.tables.throttle;
+        for side in 0..2 {
+            let throttle = range.clamp(range.min + unit.unknowns[side].low);
+            unit.throttles[side] = if unit.rotors.turns(side) { throttle } else { 0.0 };
+        }
+    }
+}
+
+/// Goes a share of the rotors' steps.
+#[inline(always)]
+fn advance(units: &mut [UnitState], share: f32) {
+    for unit in units {
+        rolled();
+        for unknown in &mut unit.unknowns {
+            unknown.advance(share);
+        }
+    }
+}

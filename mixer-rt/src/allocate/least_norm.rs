@@ -1,0 +1,64 @@
+//! Least norm with all rotors: the efforts M+ u of eq. (8), inverted unit by unit.
+
+use super::{Frame, UnitState};
+use crate::clamp;
+use crate::layout::Unit;
+use crate::pair::{Inverse, Quantity};
+use crate::rolled;
+
+/// Shares of the torques asked that the guard tries at a level thrust.
+const RETREATS: [f32; 3] = [0.25, 0.0625, 0.0];
+
+impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
+    /// Efforts of least norm of a unit for a wrench (N m, N), at the reference voltage.
+    #[inline(always)]
+    pub(super) fn least_norm(&self, unit: &Unit, wrench: &[f32; 4]) -> [f32; 2] {
+        let [f, q] = unit.efforts(wrench);
+        [f * self.per_factor[0], q * self.per_factor[1]]
+    }
+
+    /// Writes the throttles of least norm, or near by where a unit cannot give its efforts. True where
+    /// all can.
+    #[inline(never)]
+    pub(super) fn serve_by_least_norm(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
+        let mut is_served = true;
+        for (state, unit) in units.iter_mut().zip(self.tables.units) {
+            rolled();
+            state.efforts = self.least_norm(unit, wrench);
+            is_served &= self.invert(state);
+        }
+        is_served
+    }
+
+    /// Writes a unit's throttles for its efforts; true where it gives them within the inverse map's
+    /// tolerance.
+    #[inline(always)]
+    pub(super) fn invert(&self, state: &mut UnitState) -> bool {
+        let tables = self.tables;
+        state.throttles = tables
+            .inverse
+            .throttles(&tables.pair, &tables.throttle, state.efforts);
+        self.gives(tables.pair.efforts(state.throttles), state.efforts)
+    }
+
+    /// True where efforts are those wanted, within the tolerance of a unit.
+    #[inline(always)]
+    pub(super) fn gives(&self, given: [f32; 2], wanted: [f32; 2]) -> bool {
+        let [thrust, torque] = self.tables.tolerance.efforts;
+        (given[0] - wanted[0]).abs() <= thrust && (given[1] - wanted[1]).abs() <= torque
+    }
+
+    /// The guard for whole frames, where the interior point method has not met the rows: least norm for
+    /// a part of the torques at a level thrust. It is sound whatever the sets, for it is delivered.
+    #[inline(never)]
+    pub(super) fn retreat(&self, [roll, pitch, yaw, thrust]: &[f32; 4], units: &mut [UnitState]) {
+        let [least, most] = self.tables.level_n.map(|end| end * self.factors[0]);
+        let level = clamp(*thrust, least, most);
+        for share in RETREATS {
+            rolled();
+            if self.serve_by_least_norm(&[roll * share, pitch * share, yaw * share, level], units) {
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Least power: where the efforts of least norm are attainable, the torques start from Q = c f
+//! instead of 0.
+//!
+//! c is the airframe's `power_bias_nm_per_n`. M+ takes off the part of the torques c f that
+//! would change the wrench, so the efforts move along
+//!
+//! ```text
+//! shift = eta - M+ M eta     with eta = [0 .. 0, c f_1 .. c f_n]
+//! ```
+//!
+//! which leaves the wrench on all served axes as it is, whatever the axes of thrust. With vertical
+//! ones it is Q_i = c f_i - s_i sum (s_j c f_j) / n, and no thrust moves. c holds at the reference
+//! voltage.
+//!
+//! They move by b shift, b at most 1 and so small that no throttle comes to its bound. Room and change
+//! are those of the throttles' squares, over which efforts are nearly linear:
+//!
+//! ```text
+//! b = min over rotors of ROOM room / |change|        change = 2 t (J^-1 shift)
+//! ```
+//!
+//! So b reaches 0 with the room of the first rotor: desaturation begins there, and nothing jumps. In
+//! closed form the room is that of a unit's torque between the sides of its attainable set, which are
+//! throttles at their bounds.
+//!
+//! With c = 0 the mixer leaves this out, and so does the compiler, as the tables are constants.
+
+use super::closed_form::{ClosedForm, Efforts};
+use super::unit::UnitState;
+use super::{Frame, larger};
+use crate::arithmetic::divided;
+use crate::pair::{Inverse, Quantity, solve};
+use crate::{divisor, rolled};
+
+/// Share of the room that is used: the efforts are not quite linear over squares.
+const ROOM: f32 = 0.8;
+
+impl ClosedForm<'_> {
+    /// Moves least-norm `efforts` towards Q = `c` f. `room` is the least distance of a unit's
+    /// torque from its sides, N m, not negative.
+    #[inline(always)]
+    pub(crate) fn add_power_bias(&self, c: f32, room: f32, efforts: &mut Efforts) {
+        let mut yaw = 0.0;
+        for (unit, effort) in self.units.iter().zip(efforts.iter()) {
+            yaw += unit.spin * effort.thrust;
+        }
+        let mean = self.torque_share * yaw;
+        let mut largest = 0.0;
+        for (unit, effort) in self.units.iter().zip(efforts.iter()) {
+            let shift = (c * (effort.thrust - unit.spin * mean)).abs();
+            if shift > largest {
+                largest = shift;
+            }
+        }
+        let b = if room < largest {
+            room / divisor(largest)
+        } else {
+            1.0
+        };
+        let along = b * c;
+        for (unit, effort) in self.units.iter().zip(efforts) {
+            effort.torque += along * (effort.thrust - unit.spin * mean);
+        }
+    }
+}
+
+impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
+    /// [`ClosedForm::add_power_bias`] for any frame with all rotors, whose units are at the efforts and
+    /// the throttles of least norm for `wrench`.
+    #[inline(never)]
+    pub(super) fn add_power_bias(&self, wrench: &[f32; 4], units: &mut [UnitState]) {
+        let (tables, c) = (self.tables, self.tables.power_bias_nm_per_n);
+        // What Q = c f would add to the wrench.
+        let mut added = [0.0; 4];
+        for (unit, table) in units.iter().zip(tables.units) {
+            rolled();
+            table.add_wrench([0.0, c * unit.efforts[0]], self.factors, &mut added);
+        }
+        let [least, most] = [tables.throttle.min, tables.throttle.max].map(|end| end * end);
+        let mut b = 1.0;
+        for (unit, table) in units.iter_mut().zip(tables.units) {
+            rolled();
+            let [f, q] = self.least_norm(table, &added);
+            let shift = [-f, c * unit.efforts[0] - q];
+            unit.slopes[0] = shift;
+            let (_, jacobian) = tables.pair.efforts_and_jacobian(unit.throttles);
+            for (throttle, step) in unit.throttles.iter().zip(solve(jacobian, shift)) {
+                let square = throttle * throttle;
+                let change = 2.0 * throttle * step;
+                let room = if change > 0.0 { most - square } else { square - least };
+                let room = larger(ROOM * room, 0.0);
+                if b * change.abs() > room {
+                    b = divided(room, divisor(change.abs()));
+                }
+            }
+        }
+        let mut is_served = true;
+        for unit in units.iter_mut() {
+            rolled();
+            let [f, q] = unit.slopes[0];
+            unit.efforts = [unit.efforts[0] + b * f, unit.efforts[1] + b * q];
+            is_served &= self.invert(unit);
+        }
+        if !is_served {
+            self.serve_by_least_norm(wrench, units);
+        }
+    }
+}

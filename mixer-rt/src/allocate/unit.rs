@@ -1,0 +1,57 @@
+//! The workspace of one unit.
+
+use core::hint::black_box;
+
+use super::unknown::Unknown;
+use crate::pair::rotors::Rotors;
+
+/// What is known of one unit while a wrench is allocated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnitState {
+    /// Which of its rotors turn.
+    pub(crate) rotors: Rotors,
+    /// The answer: throttles `[u, l]`, 0 of a rotor that is out.
+    pub(crate) throttles: [f32; 2],
+    /// Efforts `[f, Q]` of least norm, N and N m at the reference voltage.
+    pub(super) efforts: [f32; 2],
+    /// Rows per N of thrust and per N m of torque at this voltage.
+    pub(super) columns: [[f32; 4]; 2],
+    /// The rotors' throttles as unknowns.
+    pub(super) unknowns: [Unknown; 2],
+    /// `[f, Q]` per throttle of each rotor.
+    pub(super) slopes: [[f32; 2]; 2],
+    /// Throttles that the answer is drawn to.
+    pub(super) targets: [f32; 2],
+    /// Of a single rotor: twice the relative change of its thrust's slope per throttle.
+    pub(super) bend: f32,
+}
+
+impl UnitState {
+    /// Stops the rotors that are out.
+    #[inline(always)]
+    pub(super) fn stop_failed(&mut self) {
+        for side in 0..2 {
+            if !self.rotors.turns(side) {
+                self.throttles[side] = 0.0;
+            }
+        }
+    }
+}
+
+impl Default for UnitState {
+    #[inline(always)]
+    fn default() -> Self {
+        static START: UnitState = UnitState {
+            rotors: Rotors::BOTH,
+            throttles: [0.0; 2],
+            efforts: [0.0; 2],
+            columns: [[0.0; 4]; 2],
+            unknowns: [Unknown::NONE; 2],
+            slopes: [[0.0; 2]; 2],
+            targets: [0.0; 2],
+            bend: 0.0,
+        };
+        // Known zeros would be written by a call of memset, which a bare-metal target may not have.
+        *black_box(&START)
+    }
+}
