@@ -26,7 +26,7 @@
 pub(crate) mod closed_form;
 pub(crate) mod interior;
 mod least_norm;
-mod power_bias;
+pub(crate) mod power_bias;
 mod priorities;
 mod rotors_out;
 mod system;
@@ -40,7 +40,7 @@ use crate::pair::{Inverse, Quantity};
 use crate::{clamp, divisor};
 use interior::STAGES;
 use priorities::{Request, Yaw};
-use system::{Columns, Products};
+use system::Columns;
 use unit::UnitState;
 
 /// What allocation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).
@@ -112,8 +112,8 @@ fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// A frame at one voltage.
-struct Frame<'a, 't, P, I, S> {
+/// A frame at one voltage, `VERTICAL` where all axes are.
+struct Frame<'a, 't, P, I, S, const VERTICAL: bool> {
     tables: &'a Tables<'t, P, I, S>,
     /// `[k_f, k_Q]`.
     factors: [f32; 2],
@@ -124,39 +124,33 @@ struct Frame<'a, 't, P, I, S> {
 }
 
 /// Writes throttles that serve `wrench` (`[roll, pitch, yaw, thrust]`, bounded) into the units' states,
-/// which hold the rotors that turn. `factors` is `[k_f, k_Q]`. `is_whole` tells that all rotors turn.
+/// which hold the rotors that turn. `factors` is `[k_f, k_Q]`. `is_whole` tells that all rotors turn. True
+/// where these are the throttles of least norm, with all rotors.
 #[inline(never)]
-pub(crate) fn allocate<P: Quantity, I: Inverse<P>, S>(
+pub(crate) fn allocate<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool>(
     tables: &Tables<'_, P, I, S>,
     wrench: &[f32; 4],
     factors: [f32; 2],
     units: &mut [UnitState],
     is_whole: bool,
-) {
+) -> bool {
     // With the tables or the number of units known the compiler would write every loop over them out.
     let (tables, units) = black_box((tables, units));
-    let per_product = 1.0 / (factors[0] * factors[1]);
-    let per_factor = [factors[1] * per_product, factors[0] * per_product];
-    let frame = Frame {
-        tables,
-        factors,
-        per_factor,
-        ratio: factors[1] * per_factor[0],
-    };
+    let frame = Frame::<_, _, _, VERTICAL>::new(tables, factors);
     if is_whole {
         if frame.serve_by_least_norm(wrench, units) {
-            if tables.power_bias_nm_per_n != 0.0 {
-                frame.add_power_bias(wrench, units);
-            }
-        } else if !frame.cut(wrench, units, Yaw::Within) {
+            return true;
+        }
+        if !frame.cut(wrench, units, Yaw::Within) {
             frame.retreat(wrench, units);
         }
     } else if !frame.serve_with_rotors_out(wrench, units) && !frame.cut(wrench, units, Yaw::Within) {
         frame.cut(wrench, units, Yaw::Last);
     }
+    false
 }
 
-impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
+impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Cuts the request by priority; true where the rows are met. The units' throttles are those that
     /// the answer is drawn to, or of an attempt before.
     #[inline(always)]
@@ -172,7 +166,19 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     }
 }
 
-impl<P, I, S> Frame<'_, '_, P, I, S> {
+impl<'a, 't, P, I, S, const VERTICAL: bool> Frame<'a, 't, P, I, S, VERTICAL> {
+    #[inline(always)]
+    fn new(tables: &'a Tables<'t, P, I, S>, factors: [f32; 2]) -> Self {
+        let per_product = 1.0 / (factors[0] * factors[1]);
+        let per_factor = [factors[1] * per_product, factors[0] * per_product];
+        Frame {
+            tables,
+            factors,
+            per_factor,
+            ratio: factors[1] * per_factor[0],
+        }
+    }
+
     /// From idle to the ceiling.
     #[inline(always)]
     fn span(&self) -> f32 {
@@ -188,12 +194,5 @@ impl<P, I, S> Frame<'_, '_, P, I, S> {
             [0, 1, 2, 3].map(|axis| by_thrust[axis] * rows[axis]),
             [0, 1, 2, 3].map(|axis| self.ratio * by_torque[axis] * rows[axis]),
         ]
-    }
-
-    #[inline(always)]
-    fn products(&self) -> Products {
-        Products {
-            is_vertical: self.tables.is_vertical,
-        }
     }
 }

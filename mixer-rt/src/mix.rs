@@ -1,6 +1,7 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
 use crate::allocate::closed_form::{AllocationMethod, Attained, ClosedForm, Efforts, Request};
+use crate::allocate::power_bias::add_power_bias;
 use crate::allocate::unit::UnitState;
 use crate::allocate::{REQUEST_LIMIT, allocate, is_bounded, limited};
 use crate::layout::Tables;
@@ -79,13 +80,7 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
 #[inline(always)]
-pub fn mix<
-    const UNITS: usize,
-    const CHANNELS: usize,
-    P: Quantity,
-    I: Inverse<P>,
-    S: AllocationMethod,
->(
+pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -173,15 +168,19 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
         state.rotors = Rotors::of(unit.channels, health);
         is_whole &= state.rotors.are_both();
     }
-    allocate(tables, &bounded, factors, states, is_whole);
+    let is_least_norm = if tables.is_vertical {
+        allocate::<_, _, _, true>(tables, &bounded, factors, states, is_whole)
+    } else {
+        allocate::<_, _, _, false>(tables, &bounded, factors, states, is_whole)
+    };
+    if is_least_norm && tables.power_bias_nm_per_n != 0.0 {
+        add_power_bias(tables, &bounded, factors, states);
+    }
     let mut achieved = [0.0; 4];
     for (unit, state) in units.iter().zip(states) {
         rolled();
-        // With all rotors known to turn the compiler leaves the code for single ones out.
-        let rotors = if is_whole { Rotors::BOTH } else { state.rotors };
         write(unit.channels, state.throttles, throttle);
-        let efforts = rotors.efforts(&tables.pair, &tables.singles, state.throttles);
-        unit.add_wrench(efforts, factors, &mut achieved);
+        unit.add_wrench(state.efforts, factors, &mut achieved);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
     Ok((

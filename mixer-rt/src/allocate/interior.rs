@@ -28,7 +28,7 @@
 //! show what the constants trade. TinyMPC and Clarabel are built alike: one function per step.
 
 use super::priorities::Request;
-use super::system::{Factors, Matrix};
+use super::system::{Factors, Matrix, Products};
 use super::unit::UnitState;
 use super::unknown::Unknown;
 use super::{Frame, larger};
@@ -78,7 +78,7 @@ const SHARE: f32 = 0.97;
 /// Throttles of least norm nearer to a bound count as so near, as a share of the range.
 const CLOSE: f32 = 1e-3;
 
-impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
+impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Puts the unknowns in the middle, and the targets at the units' throttles, moved outwards by the
     /// barrier's pull: so the barrier at its least weight does not draw the answer away from them.
     #[inline(never)]
@@ -139,7 +139,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         lambda: &[f32; 4],
         (mu, rho): (f32, f32),
     ) -> (Matrix, [f32; 4]) {
-        let products = self.products();
+        let (tables, least) = (self.tables, self.tables.throttle.min);
         let mut matrix = [0.0; 10];
         let mut missed = request.eliminate(lambda, mu, &mut matrix);
         for unit in units {
@@ -148,8 +148,12 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
                 mut value,
                 slopes,
                 bends,
-            } = self.expansion(unit);
-            let gain = products.gains(&unit.columns, lambda);
+            } = unit.rotors.expansion(
+                &tables.pair,
+                &tables.singles,
+                unit.unknowns.map(|at| least + at.low),
+            );
+            let gain = Products::<VERTICAL>::gains(&unit.columns, lambda);
             let mut response = [0.0; 3];
             for side in 0..2 {
                 let ([f, q], [f2, q2]) = (slopes[side], bends[side]);
@@ -165,8 +169,8 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
                 response[2] += by_q * q;
             }
             unit.slopes = slopes;
-            products.subtract(&unit.columns, value, &mut missed);
-            products.add(&unit.columns, response, &mut matrix);
+            Products::<VERTICAL>::subtract(&unit.columns, value, &mut missed);
+            Products::<VERTICAL>::add(&unit.columns, response, &mut matrix);
         }
         (matrix, missed)
     }
@@ -201,7 +205,7 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
     fn respond(&self, units: &mut [UnitState], change: &[f32; 4], most: &mut f32) {
         for unit in units {
             rolled();
-            let gain = self.products().gains(&unit.columns, change);
+            let gain = Products::<VERTICAL>::gains(&unit.columns, change);
             for (unknown, [f, q]) in unit.unknowns.iter_mut().zip(&unit.slopes) {
                 unknown.respond(f * gain[0] + q * gain[1], most);
             }
@@ -215,20 +219,12 @@ impl<P: Quantity, I, S> Frame<'_, '_, P, I, S> {
         for unit in units {
             rolled();
             self.place(unit);
-            let efforts = unit
+            unit.efforts = unit
                 .rotors
                 .efforts(&self.tables.pair, &self.tables.singles, unit.throttles);
-            self.products().subtract(&unit.columns, efforts, &mut missed);
+            Products::<VERTICAL>::subtract(&unit.columns, unit.efforts, &mut missed);
         }
         missed
-    }
-
-    /// The forward map at the unit's unknowns.
-    #[inline(always)]
-    fn expansion(&self, unit: &mut UnitState) -> Expansion {
-        self.place(unit);
-        unit.rotors
-            .expansion(&self.tables.pair, &self.tables.singles, unit.throttles)
     }
 
     /// Writes a unit's throttles at its unknowns.

@@ -1,5 +1,7 @@
 //! Least norm with all rotors: the efforts M+ u of eq. (8), inverted unit by unit.
 
+use core::mem::replace;
+
 use super::{Frame, UnitState};
 use crate::clamp;
 use crate::layout::Unit;
@@ -9,7 +11,7 @@ use crate::rolled;
 /// Shares of the torques asked that the guard tries at a level thrust.
 const RETREATS: [f32; 3] = [0.25, 0.0625, 0.0];
 
-impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
+impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Efforts of least norm of a unit for a wrench (N m, N), at the reference voltage.
     #[inline(always)]
     pub(super) fn least_norm(&self, unit: &Unit, wrench: &[f32; 4]) -> [f32; 2] {
@@ -30,22 +32,22 @@ impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
         is_served
     }
 
-    /// Writes a unit's throttles for its efforts; true where it gives them within the inverse map's
-    /// tolerance.
+    /// Writes a unit's throttles for the efforts asked; true where it gives them.
     #[inline(always)]
     pub(super) fn invert(&self, state: &mut UnitState) -> bool {
         let tables = self.tables;
         state.throttles = tables
             .inverse
             .throttles(&tables.pair, &tables.throttle, state.efforts);
-        self.gives(tables.pair.efforts(state.throttles), state.efforts)
+        self.gives(tables.pair.efforts(state.throttles), state)
     }
 
-    /// True where efforts are those wanted, within the tolerance of a unit.
+    /// Notes what a unit gives; true where it is what was asked, within the inverse map's tolerance.
     #[inline(always)]
-    pub(super) fn gives(&self, given: [f32; 2], wanted: [f32; 2]) -> bool {
+    pub(super) fn gives(&self, given: [f32; 2], state: &mut UnitState) -> bool {
         let [thrust, torque] = self.tables.tolerance.efforts;
-        (given[0] - wanted[0]).abs() <= thrust && (given[1] - wanted[1]).abs() <= torque
+        let asked = replace(&mut state.efforts, given);
+        (given[0] - asked[0]).abs() <= thrust && (given[1] - asked[1]).abs() <= torque
     }
 
     /// The guard for whole frames, where the interior point method has not met the rows: least norm for

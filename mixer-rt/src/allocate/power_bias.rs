@@ -25,10 +25,13 @@
 //!
 //! With c = 0 the mixer leaves this out, and so does the compiler, as the tables are constants.
 
+use core::hint::black_box;
+
 use super::closed_form::{ClosedForm, Efforts};
 use super::unit::UnitState;
 use super::{Frame, larger};
 use crate::arithmetic::divided;
+use crate::layout::Tables;
 use crate::pair::{Inverse, Quantity, solve};
 use crate::{divisor, rolled};
 
@@ -64,16 +67,26 @@ impl ClosedForm<'_> {
     }
 }
 
-impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
-    /// [`ClosedForm::add_power_bias`] for any frame with all rotors, whose units are at the efforts and
-    /// the throttles of least norm for `wrench`.
-    #[inline(never)]
-    pub(super) fn add_power_bias(&self, wrench: &[f32; 4], units: &mut [UnitState]) {
+/// [`ClosedForm::add_power_bias`] for any frame with all rotors, whose units are at the throttles of least
+/// norm for `wrench`. `factors` is `[k_f, k_Q]`.
+#[inline(never)]
+pub(crate) fn add_power_bias<P: Quantity, I: Inverse<P>, S>(
+    tables: &Tables<'_, P, I, S>,
+    wrench: &[f32; 4],
+    factors: [f32; 2],
+    units: &mut [UnitState],
+) {
+    Frame::<_, _, _, true>::new(black_box(tables), factors).add_power_bias(wrench, units);
+}
+
+impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+    fn add_power_bias(&self, wrench: &[f32; 4], units: &mut [UnitState]) {
         let (tables, c) = (self.tables, self.tables.power_bias_nm_per_n);
         // What Q = c f would add to the wrench.
         let mut added = [0.0; 4];
-        for (unit, table) in units.iter().zip(tables.units) {
+        for (unit, table) in units.iter_mut().zip(tables.units) {
             rolled();
+            unit.efforts = self.least_norm(table, wrench);
             table.add_wrench([0.0, c * unit.efforts[0]], self.factors, &mut added);
         }
         let [least, most] = [tables.throttle.min, tables.throttle.max].map(|end| end * end);
@@ -87,7 +100,11 @@ impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
             for (throttle, step) in unit.throttles.iter().zip(solve(jacobian, shift)) {
                 let square = throttle * throttle;
                 let change = 2.0 * throttle * step;
-                let room = if change > 0.0 { most - square } else { square - least };
+                let room = if change > 0.0 {
+                    most - square
+                } else {
+                    square - least
+                };
                 let room = larger(ROOM * room, 0.0);
                 if b * change.abs() > room {
                     b = divided(room, divisor(change.abs()));

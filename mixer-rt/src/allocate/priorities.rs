@@ -156,7 +156,10 @@ impl Request {
         let [beyond, within] = if is_last {
             [anything, anything.opposite()]
         } else {
-            [Shortage::new(turn - kept, yaw_cost), Shortage::new(kept, RESERVED)]
+            [
+                Shortage::new(turn - kept, yaw_cost),
+                Shortage::new(kept, RESERVED),
+            ]
         };
         Request {
             wanted: [along, 0.0, turn, thrust],
@@ -187,47 +190,45 @@ impl Request {
         })
     }
 
-    /// The shortages that take part, with their rows.
+    /// Calls `f` with each shortage that takes part and its row.
     #[inline(always)]
-    fn parts(&mut self) -> impl Iterator<Item = (&mut Shortage, usize)> {
-        let count = if self.has_fifth { 5 } else { 4 };
-        self.shortages.iter_mut().zip(ROWS).take(count)
+    fn each(&mut self, mut f: impl FnMut(&mut Shortage, usize)) {
+        let [first @ .., fifth] = &mut self.shortages;
+        for (shortage, row) in first.iter_mut().zip(ROWS) {
+            f(shortage, row);
+        }
+        if self.has_fifth {
+            f(fifth, ROWS[4]);
+        }
     }
 
     /// Eliminates the shortages: takes them from the rows wanted, and adds to the system.
     #[inline(always)]
     pub(super) fn eliminate(&mut self, lambda: &[f32; 4], mu: f32, matrix: &mut Matrix) -> [f32; 4] {
         let mut missed = self.wanted;
-        for (shortage, row) in self.parts() {
+        self.each(|shortage, row| {
             shortage.eliminate(lambda[row], mu, &mut missed[row], &mut matrix[DIAGONAL[row]]);
-        }
+        });
         missed
     }
 
     /// Steps with a change of the multipliers; raises `most` to the largest step over its room.
     #[inline(always)]
     pub(super) fn respond(&mut self, change: &[f32; 4], most: &mut f32) {
-        for (shortage, row) in self.parts() {
-            shortage.unknown.respond(shortage.width * change[row], most);
-        }
+        self.each(|shortage, row| shortage.unknown.respond(shortage.width * change[row], most));
     }
 
     /// Goes a share of the steps.
     #[inline(always)]
     pub(super) fn advance(&mut self, share: f32) {
-        for (shortage, _) in self.parts() {
-            shortage.unknown.advance(share);
-        }
+        self.each(|shortage, _| shortage.unknown.advance(share));
     }
 
     /// The rows wanted less the shortages.
     #[inline(always)]
     pub(super) fn left(&mut self) -> [f32; 4] {
         let mut left = self.wanted;
-        for (shortage, row) in self.parts() {
-            left[row] -= shortage.unknown.low * shortage.width;
-        }
+        self.each(|shortage, row| left[row] -= shortage.unknown.low * shortage.width);
         left
     }
 }
-

@@ -12,11 +12,11 @@
 //! y'^T B^T lambda: one system of four rows per tangent. The inverse map turns the efforts into
 //! throttles. Whether all units then give them is checked, so no convexity is needed.
 
-use super::system::Factors;
+use super::system::{Factors, Products};
 use super::unit::UnitState;
 use super::{Frame, larger};
 use crate::arithmetic::divided;
-use crate::pair::{Expansion, Inverse, Quantity};
+use crate::pair::{Inverse, Quantity};
 use crate::{rolled, sqrt};
 
 /// Tangents along the curves of single rotors. Two serve 3 % fewer requests of an X8 with a rotor out, and
@@ -32,11 +32,10 @@ const LEAST_RISE: f32 = 1e-6;
 /// Least square of the root that extends a tangent to a parabola: a step back to a fifth of the slope.
 const LEAST_SQUARE: f32 = 0.04;
 
-impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
+impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Writes throttles that are nearest those of the whole frame; true where they give the wrench.
     #[inline(never)]
     pub(super) fn serve_with_rotors_out(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {
-        let products = self.products();
         let [by_thrust, by_torque] = self.tables.spread;
         let (mut matrix, mut lost) = ([0.0; 10], [0.0; 4]);
         for (unit, table) in units.iter_mut().zip(self.tables.units) {
@@ -44,11 +43,11 @@ impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
             unit.efforts = self.least_norm(table, wrench);
             unit.columns = self.columns(table);
             if unit.rotors.are_both() {
-                products.add(&unit.columns, [by_thrust, 0.0, by_torque], &mut matrix);
+                Products::<VERTICAL>::add(&unit.columns, [by_thrust, 0.0, by_torque], &mut matrix);
                 continue;
             }
-            products.subtract(&unit.columns, unit.efforts.map(|effort| -effort), &mut lost);
-            self.invert(unit);
+            Products::<VERTICAL>::subtract(&unit.columns, unit.efforts.map(|effort| -effort), &mut lost);
+            self.invert_apart(unit);
             unit.targets = unit.throttles;
             unit.stop_failed();
         }
@@ -58,17 +57,19 @@ impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
             let (mut system, mut missed) = (matrix, lost);
             for unit in units.iter_mut() {
                 rolled();
-                let Some(side) = unit.rotors.single() else { continue };
-                let Expansion { value, slopes, bends } =
-                    unit.rotors
-                        .expansion(&self.tables.pair, &self.tables.singles, unit.throttles);
-                let ([f, q], back) = (slopes[side], unit.targets[side] - unit.throttles[side]);
-                unit.slopes[side] = [f, q];
-                unit.bend = divided(4.0 * bends[side][0], larger(f, LEAST_RISE));
+                let Some(side) = unit.rotors.single() else {
+                    continue;
+                };
+                let throttle = unit.throttles[side];
+                let [value, slope, half] = self.tables.singles[side].expansion(throttle);
+                let back = unit.targets[side] - throttle;
+                unit.slopes[side] = slope;
+                unit.bend = divided(4.0 * half[0], larger(slope[0], LEAST_RISE));
                 // The efforts of the tangent at the target.
-                unit.efforts = [value[0] + f * back, value[1] + q * back];
-                products.subtract(&unit.columns, unit.efforts, &mut missed);
-                products.add(&unit.columns, [f * f, f * q, q * q], &mut system);
+                unit.efforts = [value[0] + slope[0] * back, value[1] + slope[1] * back];
+                let [f, q] = slope;
+                Products::<VERTICAL>::subtract(&unit.columns, unit.efforts, &mut missed);
+                Products::<VERTICAL>::add(&unit.columns, [f * f, f * q, q * q], &mut system);
             }
             lambda = Factors::of(&system).solve(missed);
             if !lambda.iter().all(|row| row.abs() <= UNSERVED) {
@@ -76,8 +77,13 @@ impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
             }
             for unit in units.iter_mut() {
                 rolled();
-                let Some(side) = unit.rotors.single() else { continue };
-                let (gain, [f, q]) = (products.gains(&unit.columns, &lambda), unit.slopes[side]);
+                let Some(side) = unit.rotors.single() else {
+                    continue;
+                };
+                let (gain, [f, q]) = (
+                    Products::<VERTICAL>::gains(&unit.columns, &lambda),
+                    unit.slopes[side],
+                );
                 let moved = f * gain[0] + q * gain[1];
                 unit.efforts = [unit.efforts[0] + f * moved, unit.efforts[1] + q * moved];
                 // The throttle of that thrust: exact for a parabola.
@@ -95,18 +101,24 @@ impl<P: Quantity, I: Inverse<P>, S> Frame<'_, '_, P, I, S> {
             rolled();
             if unit.rotors.are_both() {
                 if is_regular {
-                    let gain = products.gains(&unit.columns, &lambda);
+                    let gain = Products::<VERTICAL>::gains(&unit.columns, &lambda);
                     unit.efforts[0] += by_thrust * gain[0];
                     unit.efforts[1] += by_torque * gain[1];
                 }
-                is_served &= self.invert(unit);
-            } else if unit.rotors.single().is_some() {
-                let given = unit
-                    .rotors
-                    .efforts(&self.tables.pair, &self.tables.singles, unit.throttles);
-                is_served &= self.gives(given, unit.efforts);
+                is_served &= self.invert_apart(unit);
+            } else if let Some(side) = unit.rotors.single() {
+                let [given, ..] = self.tables.singles[side].expansion(unit.throttles[side]);
+                is_served &= self.gives(given, unit);
+            } else {
+                unit.efforts = [0.0; 2];
             }
         }
         is_served
+    }
+
+    /// [`Frame::invert`], once in the code for both places.
+    #[inline(never)]
+    fn invert_apart(&self, unit: &mut UnitState) -> bool {
+        self.invert(unit)
     }
 }

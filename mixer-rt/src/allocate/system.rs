@@ -15,17 +15,13 @@ pub(super) type Matrix = [f32; 10];
 
 /// Products with a unit's columns B. With vertical axes thrusts give no yaw and torques nothing else,
 /// which halves them.
-#[derive(Clone, Copy)]
-pub(super) struct Products {
-    /// True where all axes are vertical.
-    pub(super) is_vertical: bool,
-}
+pub(super) struct Products<const VERTICAL: bool>;
 
-impl Products {
+impl<const VERTICAL: bool> Products<VERTICAL> {
     /// B^T r: what more of `[f, Q]` is worth.
     #[inline(always)]
-    pub(super) fn gains(self, [thrust, torque]: &Columns, r: &[f32; 4]) -> [f32; 2] {
-        if self.is_vertical {
+    pub(super) fn gains([thrust, torque]: &Columns, r: &[f32; 4]) -> [f32; 2] {
+        if VERTICAL {
             return [
                 thrust[0] * r[0] + thrust[1] * r[1] + thrust[3] * r[3],
                 torque[2] * r[2],
@@ -37,8 +33,8 @@ impl Products {
 
     /// Takes B y from rows.
     #[inline(always)]
-    pub(super) fn subtract(self, [thrust, torque]: &Columns, [f, q]: [f32; 2], rows: &mut [f32; 4]) {
-        if self.is_vertical {
+    pub(super) fn subtract([thrust, torque]: &Columns, [f, q]: [f32; 2], rows: &mut [f32; 4]) {
+        if VERTICAL {
             rows[0] -= thrust[0] * f;
             rows[1] -= thrust[1] * f;
             rows[2] -= torque[2] * q;
@@ -52,10 +48,10 @@ impl Products {
 
     /// Adds B G B^T for the symmetric G = [[a, b], [b, c]].
     #[inline(always)]
-    pub(super) fn add(self, [thrust, torque]: &Columns, [a, b, c]: [f32; 3], matrix: &mut Matrix) {
+    pub(super) fn add([thrust, torque]: &Columns, [a, b, c]: [f32; 3], matrix: &mut Matrix) {
         let [t0, t1, t2, t3] = *thrust;
         let [r0, r1, r2, r3] = *torque;
-        if self.is_vertical {
+        if VERTICAL {
             let (a0, a1, a3, b2) = (a * t0, a * t1, a * t3, b * r2);
             matrix[0] += a0 * t0;
             matrix[1] += a0 * t1;

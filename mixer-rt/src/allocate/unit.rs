@@ -12,8 +12,9 @@ pub struct UnitState {
     pub(crate) rotors: Rotors,
     /// The answer: throttles `[u, l]`, 0 of a rotor that is out.
     pub(crate) throttles: [f32; 2],
-    /// Efforts `[f, Q]` of least norm, N and N m at the reference voltage.
-    pub(super) efforts: [f32; 2],
+    /// Efforts `[f, Q]`, N and N m at the reference voltage: those asked of the unit, then those that it
+    /// gives at the throttles.
+    pub(crate) efforts: [f32; 2],
     /// Rows per N of thrust and per N m of torque at this voltage.
     pub(super) columns: [[f32; 4]; 2],
     /// The rotors' throttles as unknowns.

@@ -63,7 +63,10 @@ impl Unknown {
     #[inline(always)]
     pub(super) fn respond(&mut self, change: f32, most: &mut f32) {
         self.step += self.response * change;
-        let (size, room) = (self.step.abs(), if self.step > 0.0 { self.high } else { self.low });
+        let (size, room) = (
+            self.step.abs(),
+            if self.step > 0.0 { self.high } else { self.low },
+        );
         if size > *most * room {
             *most = divided(size, room);
         }

@@ -66,7 +66,7 @@ impl Rotors {
             [false, true] => (lower, l, 1),
             [false, false] => return Expansion::NOTHING,
         };
-        let (value, slope, bend) = curve.expansion(throttle);
+        let [value, slope, bend] = curve.expansion(throttle);
         let mut expansion = Expansion {
             value,
             ..Expansion::NOTHING

@@ -15,12 +15,13 @@ impl SingleRotor {
     /// The efforts `[f, Q]` at a throttle, by Horner's rule.
     #[inline]
     pub fn efforts(&self, throttle: f32) -> [f32; 2] {
-        self.expansion(throttle).0
+        let [value, ..] = self.expansion(throttle);
+        value
     }
 
     /// The efforts `[f, Q]` at a throttle, their slopes, and half their second derivatives.
-    #[inline]
-    pub(crate) fn expansion(&self, x: f32) -> ([f32; 2], [f32; 2], [f32; 2]) {
+    #[inline(never)]
+    pub(crate) fn expansion(&self, x: f32) -> [[f32; 2]; 3] {
         let [f, q] = [self.thrust, self.torque].map(|[a4, a3, a2, a1]| {
             let leading = x * a4;
             let (inner, inner_slope) = (leading + a3, a4);
@@ -29,6 +30,6 @@ impl SingleRotor {
             let (outer, outer_slope) = (middle * x + a1, slope * x + middle);
             [outer * x, outer_slope * x + outer, half * x + outer_slope]
         });
-        ([f[0], q[0]], [f[1], q[1]], [f[2], q[2]])
+        [0, 1, 2].map(|order| [f[order], q[order]])
     }
 }

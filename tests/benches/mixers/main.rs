@@ -88,7 +88,7 @@ macro_rules! airframe {
             bench(&mut group, MIXERS[0], &asked, |setpoint, voltage_v| {
                 let _ = black_box($module::mix(setpoint, voltage_v));
             });
-            let airmode = $module::TABLES.desaturation.airmode;
+            let airmode = $module::TABLES.priorities.airmode;
             baselines::<ROTORS>(&mut group, &asked, &isolated.view(), airmode);
             let voltage = $module::TABLES.voltage.as_ref();
             let mut wls = WeightedLeastSquares::<ControlAllocator<ROTORS, 4, { ROTORS + 4 }>, ROTORS>::new(

@@ -49,8 +49,8 @@ fn check<Q: Quantity, const TERMS: usize>(exponents: [(i32, i32); TERMS], quanti
                 (n, 2) if n >= 2 => 0.5 * f64::from(n * (n - 1)) * power(x, n - 2),
                 _ => 0.0,
             };
-            let expected =
-                [(0, 0), (1, 0), (0, 1), (2, 0), (0, 2)].map(|(by_u, by_l)| part(x, m, by_u) * part(y, n, by_l));
+            let expected = [(0, 0), (1, 0), (0, 1), (2, 0), (0, 2)]
+                .map(|(by_u, by_l)| part(x, m, by_u) * part(y, n, by_l));
             let got = quantity.expansion(u, l);
             for (got, expected) in got.into_iter().zip(expected) {
                 assert!(

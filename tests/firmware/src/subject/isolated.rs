@@ -17,7 +17,7 @@ pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32, _: Health) -> Mixed {
     let within = ISOLATED.conventional(setpoint, voltage_v, &mut throttle)?;
     #[cfg(baseline = "sequential")]
     let within = ISOLATED.sequential(
-        airframe::TABLES.desaturation.airmode,
+        airframe::TABLES.priorities.airmode,
         setpoint,
         voltage_v,
         &mut throttle,
