@@ -203,8 +203,7 @@ impl<'a> At<'a> {
         self.factors[0] * (least + share * (most - least))
     }
 
-    /// Mixes a wrench `[roll, pitch, yaw, thrust]`, N m and N. True where roll, pitch and yaw are
-    /// delivered.
+    /// Mixes a wrench `[roll, pitch, yaw, thrust]`, N m and N. True where it is delivered.
     ///
     /// # Errors
     /// What is wrong with the answer.
@@ -263,7 +262,7 @@ impl<'a> At<'a> {
             let is_flagged = [Direction::Positive, Direction::Negative]
                 .into_iter()
                 .any(|direction| saturation.is_saturated(axis, direction));
-            is_level &= !is_flagged || axis == Axis::Thrust;
+            is_level &= !is_flagged;
             if !is_flagged && (given[k] - asked[k]).abs() > 2.0 * tolerance[k] {
                 return Err(fault(format!("given {} without a flag on {axis}", words(&given))));
             }
@@ -274,7 +273,7 @@ impl<'a> At<'a> {
                 )));
             }
         }
-        // With rotors out there is a level to return to only where level flight is attainable; the
+        // With rotors out torques are sound where level flight at the thrust asked is attainable; the
         // caller goes on from there.
         if (self.health.is_good() || is_level || asked[..3] != [0.0; 3])
             && let Some(axis) = self.unsound(&asked, &given)
@@ -294,7 +293,12 @@ impl<'a> At<'a> {
         let margin = INSIDE * (range.max - range.min);
         let inside = range.min + margin..=range.max - margin;
         let throttles = tables.least_norm(setpoint.to_array(), self.factors);
-        throttles.is_some_and(|units| units.as_flattened().iter().all(|throttle| inside.contains(throttle)))
+        throttles.is_some_and(|units| {
+            units
+                .as_flattened()
+                .iter()
+                .all(|throttle| inside.contains(throttle))
+        })
     }
 
     /// An axis on which a wrench is not within what was asked.

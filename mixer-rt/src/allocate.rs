@@ -38,8 +38,6 @@ use core::hint::black_box;
 use crate::layout::{Tables, Unit};
 use crate::pair::{Inverse, Quantity};
 use crate::{clamp, divisor};
-use interior::STAGES;
-use priorities::{Request, Yaw};
 use system::Columns;
 use unit::UnitState;
 
@@ -141,29 +139,13 @@ pub(crate) fn allocate<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool>(
         if frame.serve_by_least_norm(wrench, units) {
             return true;
         }
-        if !frame.cut(wrench, units, Yaw::Within) {
+        if !frame.cut(wrench, units, is_whole) {
             frame.retreat(wrench, units);
         }
-    } else if !frame.serve_with_rotors_out(wrench, units) && !frame.cut(wrench, units, Yaw::Within) {
-        frame.cut(wrench, units, Yaw::Last);
+    } else if !frame.serve_with_rotors_out(wrench, units) {
+        frame.cut(wrench, units, is_whole);
     }
     false
-}
-
-impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
-    /// Cuts the request by priority; true where the rows are met. The units' throttles are those that
-    /// the answer is drawn to, or of an attempt before.
-    #[inline(always)]
-    fn cut(&self, wrench: &[f32; 4], units: &mut [UnitState], yaw: Yaw) -> bool {
-        let scale = [self.per_factor[0], self.ratio];
-        let mut request = Request::new(self.tables, wrench, units.len(), scale, yaw);
-        if yaw == Yaw::Within {
-            self.aim(units);
-            self.meet(&mut request, units, &STAGES)
-        } else {
-            self.meet(&mut request, units, &STAGES[..1])
-        }
-    }
 }
 
 impl<'a, 't, P, I, S, const VERTICAL: bool> Frame<'a, 't, P, I, S, VERTICAL> {

@@ -4,6 +4,7 @@ use crate::allocate::closed_form::{AllocationMethod, Attained, ClosedForm, Effor
 use crate::allocate::power_bias::add_power_bias;
 use crate::allocate::unit::UnitState;
 use crate::allocate::{REQUEST_LIMIT, allocate, is_bounded, limited};
+use crate::arithmetic::divided;
 use crate::layout::Tables;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Inverse, Quantity};
@@ -218,7 +219,7 @@ fn mix_by<P: Quantity, I: Inverse<P>, S>(
     let (request, bounded) = bounded(setpoint)?;
     let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
     // Factors are positive, which the compiler has proven for every voltage within the range.
-    let per_factor = factors.map(|factor| 1.0 / factor);
+    let per_factor = factors.map(|factor| divided(1.0, factor));
     let at_reference = at_reference(bounded, per_factor);
     let airmode = tables.priorities.airmode;
     let reserve = tables.priorities.yaw_reserve_nm;

@@ -50,19 +50,11 @@ fn attainable(airframe: &Airframe, tables: &MixerTables) -> Option<[f32; 2]> {
 
 /// The range within these ends, or a little beyond, whose thrusts are delivered.
 fn delivered(airframe: &Airframe, tables: &MixerTables, [floor, ceiling]: [f32; 2]) -> [f32; 2] {
-    let end = |mut inside: f32, mut outside: f32| {
-        let mut reached = inside;
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (inside + outside);
-            match mix_bare(airframe, tables, middle) {
-                Some((_, achieved, saturation)) if !saturation.any_axis() => {
-                    (inside, reached) = (middle, achieved.thrust_n);
-                }
-                _ => outside = middle,
-            }
-        }
-        reached
+    let is_delivered = |thrust_n: f32| {
+        let mixed = mix_bare(airframe, tables, thrust_n);
+        mixed.is_some_and(|(_, _, saturation)| !saturation.any_axis())
     };
+    let end = |inside: f32, outside: f32| halved(inside, outside, &is_delivered);
     let (middle, margin) = (0.5 * (floor + ceiling), 0.1 * (ceiling - floor));
     [end(middle, floor - margin), end(middle, ceiling + margin)]
 }
@@ -70,30 +62,51 @@ fn delivered(airframe: &Airframe, tables: &MixerTables, [floor, ceiling]: [f32; 
 /// Least and largest thrust without torques, N at the reference voltage, that least norm delivers at
 /// every voltage: the longest run of such thrusts. Both are 0 where there is none.
 pub(crate) fn level(airframe: &Airframe, tables: &MixerTables) -> [f32; 2] {
-    let volts = airframe.voltage.as_ref().map_or(vec![0.0], |voltage| {
-        vec![voltage.range_v[0], voltage.reference_v, voltage.range_v[1]]
+    let factors: Vec<[f64; 2]> = airframe.voltage.as_ref().map_or(vec![[1.0; 2]], |voltage| {
+        let [low, high] = voltage.range_v;
+        let volts = [low, voltage.reference_v, high];
+        volts.map(|volts| airframe.voltage_factors(volts)).to_vec()
     });
-    let factors: Vec<[f64; 2]> = volts.into_iter().map(|volts| airframe.voltage_factors(volts)).collect();
-    let most: f32 = tables.units.iter().map(|unit| unit.effectiveness[0][3]).sum();
-    let most = most * tables.pair.efforts([tables.throttle.max; 2])[0];
-    let mut best = [0.0f32; 2];
-    let mut from = None;
-    for step in 0..=STEPS {
-        let thrust_n = most * step as f32 / STEPS as f32;
-        let delivers = |factors: &[f64; 2]| {
+    let delivers = |thrust_n: f32| {
+        factors.iter().all(|factors| {
             let wrench = [0.0, 0.0, 0.0, factors[0] as f32 * thrust_n];
             tables.least_norm(wrench, *factors).is_some()
-        };
-        if !factors.iter().all(delivers) {
-            from = None;
-            continue;
-        }
-        let first = *from.get_or_insert(thrust_n);
-        if thrust_n - first > best[1] - best[0] {
-            best = [first, thrust_n];
+        })
+    };
+    let lift: f32 = tables.units.iter().map(|unit| unit.effectiveness[0][3]).sum();
+    let most = lift * tables.pair.efforts([tables.throttle.max; 2])[0];
+    let at = |step: usize| most * step as f32 / STEPS as f32;
+    let delivered: Vec<bool> = (0..=STEPS).map(|step| delivers(at(step))).collect();
+    let mut best = 0..0;
+    let mut first = 0;
+    for (step, is_delivered) in delivered.into_iter().enumerate() {
+        if !is_delivered {
+            first = step + 1;
+        } else if step + 1 - first > best.len() {
+            best = first..step + 1;
         }
     }
-    best
+    if best.is_empty() {
+        return [0.0; 2];
+    }
+    let end = |inside: usize, outside: f32| halved(at(inside), outside, &delivers);
+    [
+        end(best.start, at(best.start) - at(1)),
+        end(best.end - 1, at(best.end)),
+    ]
+}
+
+/// The thrust (N) nearest `outside` that still counts as inside, by halving.
+fn halved(mut inside: f32, mut outside: f32, is_inside: &dyn Fn(f32) -> bool) -> f32 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (inside + outside);
+        if is_inside(middle) {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    inside
 }
 
 /// Throttles, achieved wrench and saturation of a request for thrust alone at the reference voltage.

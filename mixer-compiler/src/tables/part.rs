@@ -3,7 +3,8 @@
 
 use mixer_rt::tables::{
     Airmode, BilinearSeed, Border, Cell, ClosedForm, ClosedFormUnit, CubicSeed, Facets, Grid, Knot, Outline,
-    Pair, PolynomialInverse, Priorities, QuadraticSeed, RootCoordinates, SingleRotor, ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw,
+    Pair, PolynomialInverse, Priorities, QuadraticSeed, RootCoordinates, SingleRotor, ThrottleRange,
+    Tolerance, Unit, Voltage, VoltageLaw,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};

@@ -23,45 +23,40 @@
 //! R are the responses. Mixed second derivatives are left out, and curvature counts only where it makes
 //! the problem convex. All steps are cut to the same share, so that no unknown comes to its bound.
 //!
-//! The number of iterations is fixed, so the work is a product: [`STAGES`] times the cost of an
-//! iteration, which `cargo xtask counts` states. `cargo xtask soak` and the tests of `tests/allocation`
-//! show what the constants trade. TinyMPC and Clarabel are built alike: one function per step.
+//! The number of iterations is fixed: [`ITERATIONS`], and as many more where a row is still missed,
+//! about one request in a hundred. So the work is a product, which `cargo xtask counts` states. With
+//! rotors out the further iterations serve yaw last where the first ones show that no level flight has
+//! the yaw asked: by weak duality lambda . missed is a lower bound of what any answer gives up, and it
+//! exceeds the cost of all of roll and pitch.
+//!
+//! Constants were chosen on 20,000 drawn requests per state of health, and on 50,000 pairs of requests
+//! 1e-4 apart; `cargo xtask soak --rotors-out` and the tests of `tests/allocation` show what they trade.
+//! TinyMPC and Clarabel are built alike: one function per step.
 
-use super::priorities::Request;
+use core::hint::black_box;
+
+use super::priorities::{Request, TORQUE, Yaw};
 use super::system::{Factors, Matrix, Products};
 use super::unit::UnitState;
 use super::unknown::Unknown;
 use super::{Frame, larger};
 use crate::arithmetic::divided;
+use crate::layout::Tables;
 use crate::pair::{Expansion, Quantity};
 use crate::rolled;
 
-/// Iterations, and the share of the authority up to which a row then counts as met.
-pub(super) struct Stage {
-    iterations: u32,
-    met: f32,
-    /// The barrier's weight in the first of them.
-    mu: f32,
-}
+/// Iterations in a run. Fewer leave more requests short, and make throttles step at the border of least
+/// norm.
+pub const ITERATIONS: u32 = 10;
 
-/// A second stage where the first misses a row, about one request in a hundred. Fewer iterations leave
-/// more requests short and make throttles step at the border of least norm; more are calmer. The
-/// stricter threshold of the first stage keeps flags, which have 0.1 % of an axis, from flickering.
-pub(super) const STAGES: [Stage; 2] = [
-    Stage {
-        iterations: 10,
-        met: 1e-3,
-        mu: 90.0,
-    },
-    Stage {
-        iterations: 10,
-        met: 2e-3,
-        mu: 0.01,
-    },
-];
+/// The barrier's weight in the first iteration, and where iterations go on.
+const FIRST_MU: f32 = 90.0;
+const NEXT_MU: f32 = 0.01;
 
-/// Iterations of the two stages: the second where the first misses a row.
-pub const ITERATIONS: [u32; 2] = [STAGES[0].iterations, STAGES[1].iterations];
+/// Share of the authority up to which a row counts as met after the first iterations, and after the
+/// further ones. Flags have 0.1 % of an axis, and would flicker with a wider one.
+const MET: f32 = 1e-3;
+const MET_AT_LAST: f32 = 2e-3;
 
 /// The fall of the barrier's weight from one iteration to the next, and its least. A smaller least
 /// weight is not converged after ten iterations, and flags flicker; a larger one is short of the optimum.
@@ -79,10 +74,35 @@ const SHARE: f32 = 0.97;
 const CLOSE: f32 = 1e-3;
 
 impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
-    /// Puts the unknowns in the middle, and the targets at the units' throttles, moved outwards by the
-    /// barrier's pull: so the barrier at its least weight does not draw the answer away from them.
+    /// Cuts the request by priority; true where no torque is reversed or exceeded. The units' throttles
+    /// are those that the answer is drawn to.
     #[inline(never)]
-    pub(super) fn aim(&self, units: &mut [UnitState]) {
+    pub(super) fn cut(&self, wrench: &[f32; 4], units: &mut [UnitState], is_whole: bool) -> bool {
+        let n = units.len() as f32;
+        let scale = [self.per_factor[0], self.ratio];
+        let mut request = Request::new(self.tables, wrench, n, scale, Yaw::Within);
+        self.aim(units);
+        let mut lambda = self.begin(&request, units);
+        let missed = self.iterate(&mut request, units, &mut lambda, FIRST_MU);
+        if is_met(&missed, MET * n) {
+            return true;
+        }
+        let given_up =
+            (lambda[0] * missed[0] + lambda[1] * missed[1]) + (lambda[2] * missed[2] + lambda[3] * missed[3]);
+        let mut mu = NEXT_MU;
+        if !is_whole && given_up > TORQUE * n {
+            request = Request::new(self.tables, wrench, n, scale, Yaw::Last);
+            lambda = self.begin(&request, units);
+            mu = FIRST_MU;
+        }
+        let [along, across, yaw, _] = self.iterate(&mut request, units, &mut lambda, mu);
+        is_met(&[along, across, yaw], MET_AT_LAST * n)
+    }
+
+    /// Puts the targets at the units' throttles, moved outwards by the barrier's pull: so the barrier at
+    /// its least weight does not draw the answer away from them.
+    #[inline(always)]
+    fn aim(&self, units: &mut [UnitState]) {
         let (least, span) = (self.tables.throttle.min, self.span());
         let close = CLOSE * span;
         for unit in units {
@@ -97,37 +117,41 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
         }
     }
 
-    /// Runs the stages; true where the rows are met.
+    /// Turns the columns into the request's rows and puts the unknowns in the middle; the multipliers
+    /// are 0.
     #[inline(never)]
-    pub(super) fn meet(&self, request: &mut Request, units: &mut [UnitState], stages: &[Stage]) -> bool {
-        let span = self.span();
-        let rho = RHO / (span * span);
+    fn begin(&self, request: &Request, units: &mut [UnitState]) -> [f32; 4] {
         for (unit, table) in units.iter_mut().zip(self.tables.units) {
             rolled();
             unit.columns = request.turned(&self.columns(table));
-            unit.unknowns = [Unknown::central(span); 2];
+            unit.unknowns = [Unknown::central(self.span()); 2];
         }
-        let mut lambda = [0.0; 4];
-        for stage in stages {
-            let (mut mu, mut system) = (stage.mu, Factors::NONE);
-            for _ in 0..stage.iterations {
-                rolled();
-                let (matrix, missed) = self.linearise(request, units, &lambda, (mu, rho));
-                system = Factors::of(&matrix);
-                let change = system.solve(missed);
-                for (lambda, change) in lambda.iter_mut().zip(change) {
-                    *lambda += change;
-                }
-                self.advance(request, units, &change);
-                mu = larger(mu * FALL, LEAST_MU);
+        [0.0; 4]
+    }
+
+    /// Runs the iterations from the barrier's weight `mu` on, and corrects the throttles. Returns what the
+    /// rows miss.
+    #[inline(never)]
+    fn iterate(
+        &self,
+        request: &mut Request,
+        units: &mut [UnitState],
+        lambda: &mut [f32; 4],
+        mut mu: f32,
+    ) -> [f32; 4] {
+        let mut system = Factors::NONE;
+        for _ in 0..black_box(ITERATIONS) {
+            let (matrix, missed) = self.linearise(request, units, lambda, mu);
+            system = Factors::of(&matrix);
+            let change = system.solve(missed);
+            for (lambda, change) in lambda.iter_mut().zip(change) {
+                *lambda += change;
             }
-            self.correct(request, units, &system);
-            let met = stage.met * units.len() as f32;
-            if self.missed(request, units).iter().all(|row| row.abs() <= met) {
-                return true;
-            }
+            self.advance(request, units, &change);
+            mu = larger(mu * FALL, LEAST_MU);
         }
-        false
+        self.correct(request, units, &system);
+        self.missed(request, units)
     }
 
     /// Eliminates all unknowns: the system of the multipliers, and what the rows miss after the steps.
@@ -137,9 +161,10 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
         request: &mut Request,
         units: &mut [UnitState],
         lambda: &[f32; 4],
-        (mu, rho): (f32, f32),
+        mu: f32,
     ) -> (Matrix, [f32; 4]) {
         let (tables, least) = (self.tables, self.tables.throttle.min);
+        let rho = RHO / (self.span() * self.span());
         let mut matrix = [0.0; 10];
         let mut missed = request.eliminate(lambda, mu, &mut matrix);
         for unit in units {
@@ -219,23 +244,32 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
         for unit in units {
             rolled();
             self.place(unit);
-            unit.efforts = unit
-                .rotors
-                .efforts(&self.tables.pair, &self.tables.singles, unit.throttles);
             Products::<VERTICAL>::subtract(&unit.columns, unit.efforts, &mut missed);
         }
         missed
     }
 
-    /// Writes a unit's throttles at its unknowns.
+    /// Writes a unit's throttles at its unknowns and what it gives there.
     #[inline(always)]
-    fn place(&self, unit: &mut UnitState) {
-        let range = &self.tables.throttle;
+    pub(super) fn place(&self, unit: &mut UnitState) {
+        let Tables {
+            pair,
+            singles,
+            throttle: range,
+            ..
+        } = self.tables;
         for side in 0..2 {
             let throttle = range.clamp(range.min + unit.unknowns[side].low);
             unit.throttles[side] = if unit.rotors.turns(side) { throttle } else { 0.0 };
         }
+        unit.efforts = unit.rotors.efforts(pair, singles, unit.throttles);
     }
+}
+
+/// True where no row is missed by more than `most`.
+#[inline(always)]
+fn is_met(missed: &[f32], most: f32) -> bool {
+    missed.iter().all(|row| row.abs() <= most)
 }
 
 /// Goes a share of the rotors' steps.

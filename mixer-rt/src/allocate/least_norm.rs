@@ -51,7 +51,8 @@ impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S,
     }
 
     /// The guard for whole frames, where the interior point method has not met the rows: least norm for
-    /// a part of the torques at a level thrust. It is sound whatever the sets, for it is delivered.
+    /// a part of the torques at a level thrust. It is sound whatever the sets, for it is delivered. Where
+    /// a frame has no level flight by least norm, the method's answer stays.
     #[inline(never)]
     pub(super) fn retreat(&self, [roll, pitch, yaw, thrust]: &[f32; 4], units: &mut [UnitState]) {
         let [least, most] = self.tables.level_n.map(|end| end * self.factors[0]);
@@ -61,6 +62,10 @@ impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S,
             if self.serve_by_least_norm(&[roll * share, pitch * share, yaw * share, level], units) {
                 return;
             }
+        }
+        for state in units {
+            rolled();
+            self.place(state);
         }
     }
 }

@@ -33,7 +33,7 @@ use crate::{divisor, sqrt};
 const LAST: f32 = 1.0;
 const MIDDLE: f32 = 20.0;
 const RESERVED: f32 = 90.0;
-const TORQUE: f32 = 400.0;
+pub(super) const TORQUE: f32 = 400.0;
 const FORBIDDEN: f32 = 2000.0;
 
 /// Largest roll, pitch and yaw asked, in rows per unit: beyond all that units give.
@@ -114,16 +114,16 @@ const ROWS: [usize; 5] = [0, 3, 3, 2, 2];
 const DIAGONAL: [usize; 4] = [0, 4, 7, 9];
 
 impl Request {
-    /// The request `[roll, pitch, yaw, thrust]` (N m, N; bounded) for `units` units. `per_thrust` is
-    /// 1 / k_f, `ratio` k_Q / k_f.
+    /// The request `[roll, pitch, yaw, thrust]` (N m, N; bounded) for n units. `per_thrust` is 1 / k_f,
+    /// `ratio` k_Q / k_f.
+    #[inline(never)]
     pub(super) fn new<P, I, S>(
         tables: &Tables<'_, P, I, S>,
         wrench: &[f32; 4],
-        units: usize,
+        n: f32,
         [per_thrust, ratio]: [f32; 2],
         yaw: Yaw,
     ) -> Self {
-        let n = units as f32;
         let rows = tables.rows.map(|row| row * per_thrust);
         let limit = TORQUE_LIMIT * n;
         let yaw_limit = if ratio > 1.0 { limit * ratio } else { limit };

@@ -72,7 +72,7 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
         // Least norm, and the guard's three.
-        None => Some(4 * least_norm(compiled)? + per_mix(compiled) + interior(compiled, &ITERATIONS)),
+        None => Some(4 * least_norm(compiled)? + per_mix(compiled) + interior(compiled)),
     }
 }
 
@@ -80,9 +80,7 @@ pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let n = compiled.tables.units.len() as u32;
     let least_norm = 2 * least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT;
-    // A run with yaw last has the first stage again.
-    let last = interior(compiled, &ITERATIONS[..1]);
-    Some(least_norm + per_mix(compiled) + interior(compiled, &ITERATIONS) + last)
+    Some(least_norm + per_mix(compiled) + interior(compiled))
 }
 
 /// Least norm of all units.
@@ -92,14 +90,13 @@ fn least_norm(compiled: &Compiled) -> Option<u32> {
     Some(n * (compiled.evaluator.instructions(basis)? + forward(basis) + PER_UNIT))
 }
 
-/// A run of the interior point method with stages of so many iterations.
-fn interior(compiled: &Compiled, stages: &[u32]) -> u32 {
+/// The interior point method: its iterations, and as many more.
+fn interior(compiled: &Compiled) -> u32 {
     let n = compiled.tables.units.len() as u32;
     let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
     let unit = unit + 2 * (forward(compiled.airframe.pair.basis) - forward(Basis::Biquadratic));
-    let iterations: u32 = stages.iter().sum();
-    let corrections = stages.len() as u32 * (CORRECTION + n * CORRECTION_UNIT);
-    CUT + n * CUT_UNIT + iterations * (ITERATION + n * unit) + corrections
+    let run = ITERATIONS * (ITERATION + n * unit) + CORRECTION + n * CORRECTION_UNIT;
+    2 * run + CUT + n * CUT_UNIT
 }
 
 /// Checks, and voltage where there is a correction.

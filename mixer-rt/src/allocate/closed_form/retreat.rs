@@ -25,6 +25,10 @@ const CROSSINGS: u32 = 3;
 /// where it vanishes. That costs at most a quarter of this gain.
 const GAIN_BY_THRUST: f32 = 1000.0;
 
+/// Times that thrust is given up for the reserve: the second time from the thrust that the first one
+/// leaves, where yaw reaches further along the null space.
+const ROUNDS: u32 = 2;
+
 impl ClosedForm<'_> {
     /// Draws the thrusts, now at `z` where yaw reaches less than `needed`, straight towards level
     /// flight of the thrust `middle`, N, until it reaches it. Returns their z on the new lines and
@@ -70,19 +74,24 @@ impl ClosedForm<'_> {
             rolled();
             *given = line.thrust(z);
         }
-        let [low, high] = self.null_range(lines, roomy);
-        let high = if high > low { high } else { low };
-        let top = self.top(lines, sign, clamp(z, low, high), [low, high]);
-        let most = furthest(self.reach(lines, top), sign);
-        for (line, given) in lines.iter_mut().zip(given) {
-            rolled();
-            line.from = line.thrust(top);
-            line.along = given - line.from;
-        }
         let here = furthest(reach, sign);
-        let (at, _) = self.crossing(lines, sign, needed, [most - needed, here - needed]);
-        let part = clamp((most - here) / (GAIN_BY_THRUST * self.yaw_rounding_nm), 0.0, 1.0);
-        let at = 1.0 - part * (1.0 - at);
+        let mut roomy = *roomy;
+        let mut at = 1.0;
+        for _ in 0..black_box(ROUNDS) {
+            let [low, high] = self.null_range(lines, &roomy);
+            let high = if high > low { high } else { low };
+            let top = self.top(lines, sign, clamp(z, low, high), [low, high]);
+            let most = furthest(self.reach(lines, top), sign);
+            for (line, given) in lines.iter_mut().zip(given) {
+                rolled();
+                line.from = line.thrust(top);
+                line.along = given - line.from;
+            }
+            let (crossing, _) = self.crossing(lines, sign, needed, [most - needed, here - needed]);
+            let part = clamp((most - here) / (GAIN_BY_THRUST * self.yaw_rounding_nm), 0.0, 1.0);
+            at = 1.0 - part * (1.0 - crossing);
+            roomy[2] = lines.iter().map(|line| line.thrust(at)).sum();
+        }
         (at, self.reach(lines, at))
     }
 
