@@ -79,8 +79,8 @@ fn golden_vectors_cover_what_they_should() {
                     let expected = if compiled.airframe.units.len() > 1 { 20 } else { 0 };
                     assert!(helped >= expected, "{name} {kind:?}: {helped}");
                 }
-                // Those outside are a third; of two steps inside, the lesser may be within what a
-                // polygon loses.
+                // Those outside are a third; of two steps inside, the lesser may be within the error of
+                // the sides.
                 Kind::Border => assert!(
                     (list.len() / 3..=2 * list.len() / 3).contains(&saturated),
                     "{name} {kind:?}: {saturated}"

@@ -15,9 +15,7 @@ pub(crate) const PAIRS: [&str; 5] = [
 ];
 
 /// Wrenches of throttles every second of which is at an end of its range: the border of what is
-/// attainable, on frames of the zoo of three to eight units. Misses are what the convex polygons
-/// lose of sets that bend inwards, nearly all on frames of three units, which have no other efforts
-/// for the same wrench.
+/// attainable, on frames of the zoo of three to eight units.
 #[test]
 fn wrenches_of_throttles_at_their_limits_are_delivered_to_a_percent() {
     const FRAMES: usize = 60;

@@ -11,7 +11,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use mixer_compiler::tables::{InverseTable, MixerTables};
 use mixer_rt::{
     Health, Wrench,
-    tables::{Inverse, Pair, Quantity, Scalar, Tables, ThrottleRange, Variable},
+    tables::{Inverse, Pair, Quantity, Scalar, Tables, ThrottleRange, UnitState},
 };
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Options};
@@ -111,18 +111,17 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         inverse: &watched,
         throttle: view.throttle,
         voltage: view.voltage,
-        attainable: view.attainable,
-        level: view.level,
         rows: view.rows,
-        centre: view.centre,
+        spread: view.spread,
+        level_n: view.level_n,
         is_vertical: view.is_vertical,
-        desaturation: view.desaturation,
+        priorities: view.priorities,
         power_bias_nm_per_n: view.power_bias_nm_per_n,
         closed_form: view.closed_form,
         tolerance: view.tolerance,
     };
     let units = tables.units.len();
-    let (mut variables, mut throttle) = (vec![Variable::default(); units], vec![0.0; 2 * units]);
+    let (mut states, mut throttle) = (vec![UnitState::default(); units], vec![0.0; 2 * units]);
     let [roll_nm, pitch_nm, yaw_nm, thrust_n] = setpoint;
     let wrench = Wrench {
         roll_nm,
@@ -130,7 +129,7 @@ fn largest_effort(tables: &MixerTables, setpoint: [f32; 4], volts: f32, health: 
         yaw_nm,
         thrust_n,
     };
-    let mixed = mixer_rt::tables::mix_into(&view, &wrench, volts, health, &mut variables, &mut throttle);
+    let mixed = mixer_rt::tables::mix_into(&view, &wrench, volts, health, &mut states, &mut throttle);
     let (achieved, _) = mixed.expect("finite");
     assert!(
         achieved.to_array().iter().all(|x| x.is_finite()),

@@ -46,10 +46,8 @@ impl Judged {
             if shortfall.misses() {
                 self.missed += 1;
                 if std::env::var_os("MIXER_MISSES").is_some() {
-                    let own = Oracle::of_exact_polygons(frame, volts, health);
-                    let of_own = Shortfall::of(&answer, &request, frame, &own);
                     println!(
-                        "{} units, {:?}: {request:?} -> {:?}\n    {shortfall:?} of {:?}, over the polygons {of_own:?}",
+                        "{} units, {:?}: {request:?} -> {:?}\n    {shortfall:?} of {:?}",
                         frame.compiled.airframe.units.len(),
                         frame.allocation(),
                         answer.achieved,
@@ -65,6 +63,16 @@ impl Judged {
         self.void += other.void;
         self.missed += other.missed;
         self.worst = self.worst.max(other.worst);
+    }
+
+    /// At most one request in so many misses the optimum.
+    pub(crate) fn hold(&self, one_in: usize) {
+        assert!(
+            self.missed * one_in <= self.requests,
+            "{} of {}",
+            self.missed,
+            self.requests
+        );
     }
 
     pub(crate) fn print(&self, name: &str) {
@@ -146,13 +154,8 @@ fn any_frame_reaches_the_optimum() {
     }
     all.print("all");
     assert!(all.requests >= 1200);
-    assert!(
-        all.missed * 100 <= all.requests,
-        "{} of {}",
-        all.missed,
-        all.requests
-    );
-    // Roll and pitch come first, but for the reserve of yaw.
+    all.hold(200);
+    // Roll and pitch come first.
     assert!(all.worst.torque <= 0.02, "{:?}", all.worst);
 }
 
@@ -188,11 +191,6 @@ fn frames_with_rotors_out_reach_the_optimum() {
         all.print(&format!("{out} out"));
         assert!(all.requests >= 100);
         // Against convex hulls about the curves of single rotors, which nobody reaches.
-        assert!(
-            all.missed * one_in <= all.requests,
-            "{} of {}",
-            all.missed,
-            all.requests
-        );
+        all.hold(one_in);
     }
 }

@@ -7,11 +7,10 @@ use mixer_tests::frames::{self, AIRMODES, BENT, Options, Place};
 use mixer_tests::golden;
 use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Frame, Request};
-use mixer_tests::shortfall::Shortfall;
+use mixer_tests::shortfall::{ALLOWED, Shortfall};
 use mixer_tests::soundness;
 use toml::{Table, Value};
 
-use crate::polygons::{assert_is_optimal, little_is_missed};
 use crate::{compile, compile_with_pair, out, place};
 
 const CASES: &str = include_str!("regressions.toml");
@@ -152,27 +151,21 @@ fn assert_is_sound(frame: &Frame, request: &Request) {
 }
 
 /// The answer is sound and as good as the optimum.
-fn assert_is_served(frame: &Frame, request: &Request) {
+fn assert_is_optimal(frame: &Frame, request: &Request) {
     assert_is_sound(frame, request);
     let answer = request.mix(frame).expect("finite");
     let factors = frame.physics.factors(request.volts);
-    let oracle = Oracle::new(&frame.physics, frame.allocation(), factors, request.health);
-    let shortfall = Shortfall::of(&answer, request, frame, &oracle).expect("solved");
+    let oracle = |build: fn(&_, &_, _, _) -> Oracle| {
+        build(&frame.physics, frame.allocation(), factors, request.health)
+    };
+    let shortfall = Shortfall::beyond_hulls(&answer, request, frame, ALLOWED, &oracle(Oracle::new), || {
+        oracle(Oracle::exact)
+    });
+    let shortfall = shortfall.expect("solved");
     assert!(
         shortfall.is_some_and(|shortfall| !shortfall.misses()),
         "{shortfall:?}: {request:?} -> {answer:?}"
     );
-}
-
-/// The optimum over what is physically attainable.
-fn over_sets(frame: &Frame, volts: f32, health: Health) -> Oracle {
-    let factors = frame.physics.factors(volts);
-    Oracle::exact(&frame.physics, frame.allocation(), factors, health)
-}
-
-fn assert_little_is_missed(frame: &Frame, request: &Request) {
-    let answer = request.mix(frame).expect("finite");
-    little_is_missed(frame, request, &answer).unwrap_or_else(|fault| panic!("{fault}"));
 }
 
 /// Yaw is at least the reserve, but for the tolerance.
@@ -214,24 +207,12 @@ fn what_was_answered_badly_once_is_answered_well() {
             "sound" => requests
                 .iter()
                 .for_each(|request| assert_is_sound(&frame, request)),
-            "served" => requests
-                .iter()
-                .for_each(|request| assert_is_served(&frame, request)),
             "reserve" => requests
                 .iter()
                 .for_each(|request| assert_reserve_is_kept(&frame, request, reserve)),
             "optimal" => requests
                 .iter()
-                .for_each(|request| assert_is_optimal(&frame, request, Oracle::of_exact_polygons)),
-            "optimal-over-hulls" => requests
-                .iter()
-                .for_each(|request| assert_is_optimal(&frame, request, Oracle::of_polygons)),
-            "optimal-over-sets" => requests
-                .iter()
-                .for_each(|request| assert_is_optimal(&frame, request, over_sets)),
-            "little-missed" => requests
-                .iter()
-                .for_each(|request| assert_little_is_missed(&frame, request)),
+                .for_each(|request| assert_is_optimal(&frame, request)),
             other => panic!("nothing is {other}"),
         }
         count += 1;

@@ -5,15 +5,14 @@
 #[path = "../../cargo-mixer/tests/maps/mod.rs"]
 mod maps;
 
+use mixer_compiler::Source;
 use mixer_compiler::airframe::{Airframe, Spin};
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
-use mixer_compiler::{Compiled, Source};
 use mixer_identify::fragment;
 use mixer_rt::Health;
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, BENT, Options};
-use mixer_tests::motion::Motion;
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
 
@@ -26,13 +25,10 @@ const MARGIN: f64 = 0.01;
 const CHANGE: f32 = 1e-4;
 const MOST_MOVED: f32 = 0.02;
 
-/// Share of the attainable set's area that may be lost.
+/// Share of the attainable set's area that may be lost between the sides of the closed form.
 const LOST: f64 = 0.002;
 
-/// Share of the area that is outside the convex polygons of the general path.
-const LOST_TO_POLYGONS: f64 = 0.06;
-
-/// Share of the authority by which yaw may be short of the best along the null space.
+/// Share of the authority by which an axis may be short, and yaw of the best along the null space.
 const SHORT: f64 = 0.01;
 
 /// What came of many requests.
@@ -80,7 +76,16 @@ fn deliver(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) 
             health: Health::GOOD,
         };
         let answer = request.mix(frame).expect("finite");
-        let delivered = !answer.saturation.any_axis();
+        // Without a closed form misses of a millionth may be flagged.
+        let most = if frame.compiled.tables.closed_form.is_some() {
+            0.0
+        } else {
+            SHORT
+        };
+        let is_near = |axis: usize| {
+            (request.asked()[axis] - answer.achieved[axis]).abs() <= most * frame.authority[axis]
+        };
+        let delivered = !answer.saturation.any_axis() || (0..4).all(is_near);
         tally.delivered += usize::from(delivered);
         if !delivered && std::env::var_os("MIXER_MISSES").is_some() {
             println!("  {request:?} -> {:?}", answer.achieved);
@@ -159,9 +164,8 @@ fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally)
         tally.jumps += usize::from(change > MOST_MOVED);
         tally.jump = tally.jump.max(change);
         if change > MOST_MOVED && std::env::var_os("MIXER_MISSES").is_some() {
-            let motion = Motion::between(frame, &request, &near);
             println!(
-                "  jump {change}: {request:?} moved {moved} -> {:?}: {motion:?}",
+                "  jump {change}: {request:?} moved {moved} -> {:?}",
                 answer.achieved
             );
         }
@@ -211,9 +215,6 @@ fn judge(name: &str, pair: &str, count: usize) -> Tally {
             let text = frames::toml_with_pair(pair, &places, &channels, options);
             let compiled = frames::compile_text(&text).unwrap_or_else(|faults| panic!("{name}: {faults}"));
             let frame = Frame::new(compiled);
-            if frame_name == "X8" && airmode == "disabled" {
-                println!("{name}: {}", losses(&frame.compiled));
-            }
             let lost = frame.compiled.lost_between_sides;
             let lost = lost.unwrap_or_else(|| panic!("{name}, {frame_name}: no closed form"));
             assert!(lost <= LOST, "{name}, {frame_name}: {lost}");
@@ -230,17 +231,8 @@ fn judge(name: &str, pair: &str, count: usize) -> Tally {
             saturate(&frame, &mut random, count, &mut tally);
         }
     }
-    println!("    {tally:?}");
+    println!("{name}: {tally:?}");
     tally
-}
-
-fn losses(compiled: &Compiled) -> String {
-    let [polygon, convexity] =
-        [compiled.lost_area.total, compiled.lost_area.convexity].map(|share| 100.0 * share);
-    let sides = compiled
-        .lost_between_sides
-        .map_or("none".to_owned(), |share| format!("{:.3} %", 100.0 * share));
-    format!("polygon loses {polygon:.3} % (a convex one {convexity:.3} %), sides {sides}")
 }
 
 fn hold(tally: &Tally) {
@@ -256,6 +248,10 @@ fn sets_that_bend_inwards_are_used() {
     for (name, pair) in BENT {
         hold(&judge(name, pair, 2000));
     }
+    hold(&on_x12(
+        BENT.into_iter().map(|(_, pair)| pair).cycle().take(6),
+        1000,
+    ));
 }
 
 /// The real pairs in three bases, with their names; `None` without bench data.
@@ -302,20 +298,17 @@ fn sets_of_real_pairs_are_used() {
     hold(&sum);
 }
 
-/// `count` requests of either kind, or `MIXER_COUNT`, to an X12 of each pair: it desaturates on the
-/// general path.
-fn on_x12<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>, count: u64) -> Tally {
+/// `count` requests of either kind, or `MIXER_COUNT`, to an X12 of each pair, which has no closed form.
+fn on_x12<'a>(pairs: impl Iterator<Item = &'a str>, count: u64) -> Tally {
     let count = number("MIXER_COUNT", count) as usize;
     let mut random = Random::new(22);
     let mut sum = Tally::default();
-    for ((name, pair), airmode) in pairs.zip(AIRMODES.into_iter().cycle()) {
+    for (pair, airmode) in pairs.zip(AIRMODES.into_iter().cycle()) {
         let options = Options {
             airmode,
             ..Options::default()
         };
         let frame = compile_with_pair(pair, &frames::regular(6, 30.0), options);
-        let lost = frame.compiled.lost_area.total;
-        assert!(lost <= LOST_TO_POLYGONS, "{name}: {lost} of the area lost");
         deliver(&frame, &mut random, count, &mut sum);
         saturate(&frame, &mut random, count, &mut sum);
     }
@@ -324,10 +317,9 @@ fn on_x12<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>, count: u64) -> Ta
 }
 
 #[test]
-fn polygons_of_real_pairs_are_used() {
-    let Some(pairs) = real_pairs("polygons_of_real_pairs_are_used") else {
+fn sets_of_real_pairs_are_used_on_an_x12() {
+    let Some(pairs) = real_pairs("sets_of_real_pairs_are_used_on_an_x12") else {
         return;
     };
-    let pairs = pairs.iter().map(|(name, pair)| (name.as_str(), pair.as_str()));
-    hold(&on_x12(pairs, 100));
+    hold(&on_x12(pairs.iter().map(|(_, pair)| pair.as_str()), 100));
 }

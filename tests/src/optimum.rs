@@ -1,4 +1,4 @@
-//! An independent oracle of desaturation: the same lexicographic problem as linear programmes, in
+//! An independent oracle of allocation: the same lexicographic problem as linear programmes, in
 //! f64.
 //!
 //! A unit's attainable set is cut into pieces, each stood for by the convex hull of points of it:

@@ -170,17 +170,32 @@ impl Soak {
         failures
     }
 
-    /// Examples of the checks that are missed too often, with `rotors_out` rotors out: of all checks
-    /// where rotors are out, else of those that allow some misses, as [`Soak::frame`] has returned
-    /// the others.
-    pub fn misses(&self, rotors_out: usize) -> impl Iterator<Item = &Failure> {
+    /// Examples of the checks that are missed too often: with rotors out of all, else of those that
+    /// allow some misses, as [`Soak::frame`] has returned the others.
+    pub fn misses(&self) -> impl Iterator<Item = &Failure> {
+        let is_beyond = |out: usize, check: Check| {
+            let rate = check.limit().rate(out);
+            (out > 0 || rate > 0.0) && self.count(out, check).is_beyond(rate)
+        };
         self.counts
             .iter()
-            .filter(move |((out, check, _), count)| {
-                let rate = check.limit().rate(rotors_out);
-                *out == rotors_out && (rotors_out > 0 || rate > 0.0) && count.is_beyond(rate)
-            })
+            .filter(move |((out, check, _), _)| is_beyond(*out, *check))
             .flat_map(|(_, count)| &count.kept)
+    }
+
+    /// Of all classes together, with none of the misses kept.
+    fn count(&self, out: usize, check: Check) -> Count {
+        let mut all = Count::default();
+        for ((_, _, _), count) in self
+            .counts
+            .iter()
+            .filter(|((o, c, _), _)| (*o, *c) == (out, check))
+        {
+            all.looked += count.looked;
+            all.missed += count.missed;
+            all.worst = all.worst.max(count.worst);
+        }
+        all
     }
 }
 
@@ -197,25 +212,21 @@ impl fmt::Display for Soak {
                 "looked at", "missed", "worst", "allowed"
             )?;
             for limit in &LIMITS {
-                let of_check = |((o, check, _), _): &(&(usize, Check, Class), &Count)| {
-                    *o == out && *check == limit.check
-                };
-                let counts: Vec<_> = self.counts.iter().filter(of_check).collect();
-                let looked: usize = counts.iter().map(|(_, count)| count.looked).sum();
-                if looked == 0 {
+                let all = self.count(out, limit.check);
+                if all.looked == 0 {
                     continue;
                 }
-                let missed: usize = counts.iter().map(|(_, count)| count.missed).sum();
-                let worst = counts.iter().map(|(_, count)| count.worst).fold(0.0, f64::max);
                 let rate = limit.rate(out);
+                let mark = if all.is_beyond(rate) { "!" } else { " " };
                 write!(
                     f,
-                    "  {:<14} {looked:>10} {missed:>8} {worst:>10.2e} {rate:>8}",
-                    limit.name
+                    "  {:<14} {:>10} {:>7}{mark} {:>10.2e} {rate:>8}",
+                    limit.name, all.looked, all.missed, all.worst
                 )?;
-                for ((_, _, class), count) in counts.iter().filter(|(_, count)| count.missed > 0) {
-                    let mark = if count.is_beyond(rate) { "!" } else { "" };
-                    write!(f, "  {class} {} of {}{mark}", count.missed, count.looked)?;
+                for ((o, check, class), count) in &self.counts {
+                    if (*o, *check) == (out, limit.check) && count.missed > 0 {
+                        write!(f, "  {class} {} of {}", count.missed, count.looked)?;
+                    }
                 }
                 writeln!(f)?;
             }

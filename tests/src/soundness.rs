@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-5;
 
 /// Share of the authority by which an axis may be reversed or exceeded, beside what the inverse map
 /// may miss.
-const SLACK: f64 = 1e-3;
+pub const SLACK: f64 = 3e-3;
 
 /// What is wrong with an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,46 +49,21 @@ impl fmt::Display for Fault {
     }
 }
 
-/// What an answer may overstep before it is at fault.
-#[derive(Clone, Copy, Debug)]
-pub struct Allowed {
-    /// Share of the authority by which an axis may be reversed or exceeded, beside what the inverse
-    /// map may miss.
-    pub slack: f64,
-    /// The thrust that it may be raised to, N.
-    pub least_thrust_n: f64,
-}
-
-impl Default for Allowed {
-    fn default() -> Self {
-        Allowed {
-            slack: SLACK,
-            least_thrust_n: 0.0,
-        }
-    }
-}
-
 /// The first fault of an answer; `None` where it is sound.
 ///
 /// # Errors
 /// The solver of the oracle gave up.
 pub fn fault(frame: &Frame, request: &Request, answer: &Answer) -> Result<Option<Fault>, microlp::Error> {
-    let faults = faults(frame, request, answer, Allowed::default())?;
-    Ok(faults.into_iter().next())
+    Ok(faults(frame, request, answer)?.into_iter().next())
 }
 
 /// All faults of an answer, one of each axis and kind at most.
 ///
 /// # Errors
 /// The solver of the oracle gave up.
-pub fn faults(
-    frame: &Frame,
-    request: &Request,
-    answer: &Answer,
-    allowed: Allowed,
-) -> Result<Vec<Fault>, microlp::Error> {
+pub fn faults(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec<Fault>, microlp::Error> {
     let mut faults: Vec<Fault> = faults_of_form(frame, request, answer).collect();
-    faults.extend(overstepping(frame, request, answer, allowed)?);
+    faults.extend(overstepping(frame, request, answer)?);
     Ok(faults)
 }
 
@@ -182,22 +157,14 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
 /// No controlled axis is reversed or exceeded, (roll, pitch) keeps its direction, and airmode
 /// "disabled" does not raise the thrust beyond the request or the floor: all where roll = pitch = 0
 /// is attainable at all within the yaw asked, with rotors out at the thrust asked.
-fn overstepping(
-    frame: &Frame,
-    request: &Request,
-    answer: &Answer,
-    Allowed {
-        slack,
-        least_thrust_n,
-    }: Allowed,
-) -> Result<Vec<Fault>, microlp::Error> {
+fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec<Fault>, microlp::Error> {
     let served = frame.served();
     let mut asked = request.asked();
     for (asked, _) in asked.iter_mut().zip(served).filter(|(_, served)| !served) {
         *asked = 0.0;
     }
     let tolerance = frame.compiled.tables.tolerance.wrench.map(f64::from);
-    let slack: [f64; 4] = std::array::from_fn(|axis| tolerance[axis] + slack * frame.authority[axis]);
+    let slack: [f64; 4] = std::array::from_fn(|axis| tolerance[axis] + SLACK * frame.authority[axis]);
     let mut faults = Vec::new();
     for (index, axis) in Axis::ALL
         .into_iter()
@@ -244,7 +211,7 @@ fn overstepping(
         return Ok(Vec::new());
     }
     let given = answer.achieved[3];
-    let is_above = |floor: f64| given > floor.max(least_thrust_n) + ALLOWED * frame.authority[3];
+    let is_above = |floor: f64| given > floor + ALLOWED * frame.authority[3];
     if raised && is_above(floor) {
         // Convex hulls reach below the least thrust. The mixer's is that of level flight without
         // yaw, which less thrust may come with where units at idle have a torque.

@@ -27,9 +27,6 @@ struct Arguments {
     /// One frame and no more
     #[arg(long)]
     only: bool,
-    /// What fails with rotors out is a failure, too; else it is counted
-    #[arg(long)]
-    rotors_out: bool,
     /// Where the airframes of failures are written
     #[arg(short, long, value_name = "FOLDER", default_value = "target/soak")]
     output: PathBuf,
@@ -77,14 +74,8 @@ fn run(arguments: &Arguments) -> Result<usize, String> {
         soak.frames(),
         soak.mixes()
     );
-    // With rotors out they are in the table, too.
-    let headings = if arguments.rotors_out { 0..=2 } else { 0..=0 };
-    for misses in headings.map(|rotors_out| soak.misses(rotors_out)) {
-        let misses: Vec<&Failure> = misses.collect();
-        failures += misses.len();
-        print(misses.into_iter(), &arguments.output)?;
-    }
-    Ok(failures)
+    print(soak.misses(), &arguments.output)?;
+    Ok(failures + soak.misses().count())
 }
 
 fn print<'a>(failures: impl Iterator<Item = &'a Failure>, folder: &Path) -> Result<(), String> {

@@ -9,6 +9,10 @@ const PRICE: f64 = 1e3;
 /// How much of a row, as a share of its size, may have been let go: rounding.
 const LET_GO: f64 = 1e-6;
 
+/// What counts as none of an axis, as a share of its size: sines of half a turn, which the solver would
+/// divide by.
+const ROUNDING: f64 = 1e-12;
+
 /// A variable of a programme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -133,7 +137,10 @@ impl Programme {
                 let weight = problem.add_var(0.0, (0.0, f64::INFINITY));
                 ones.push((weight, 1.0));
                 for ((row, entry), size) in rows.iter_mut().zip(point).zip(self.size) {
-                    row.push((weight, entry / size));
+                    let entry = entry / size;
+                    if entry.abs() > ROUNDING {
+                        row.push((weight, entry));
+                    }
                 }
             }
             problem.add_constraint(ones, ComparisonOp::Eq, 1.0);

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+use crate::shortfall::ALLOWED;
+use crate::soundness::SLACK;
+
 /// What is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Check {
@@ -46,7 +49,8 @@ pub struct Limit {
     pub name: &'static str,
     /// What counts as a miss: a size above this, mostly as a share of an axis' authority.
     pub size: f64,
-    /// Share of misses that is allowed per class of frames, all rotors turning; 0 allows none.
+    /// Share of misses that is allowed, all rotors turning; 0 allows none. It is of the looks at all
+    /// classes of frames together: a class alone has too few for rates of one in ten thousand.
     pub rate: f64,
     /// The same with one rotor out and with two.
     pub rate_out: [f64; 2],
@@ -75,13 +79,13 @@ pub const LIMITS: [Limit; 15] = [
     limit(Check::Throttle, "throttle", 0.0, 0.0, NONE),
     limit(Check::Truth, "truth", 0.0, 0.0, NONE),
     limit(Check::Flag, "flag", 0.0, 0.0, NONE),
-    limit(Check::Overstepped, "overstepped", 3e-3, 0.0, NONE),
-    limit(Check::Turned, "turned", 3e-3, 0.0, NONE),
+    limit(Check::Overstepped, "overstepped", SLACK, 0.0, [0.0, 1e-4]),
+    limit(Check::Turned, "turned", SLACK, 0.0, [0.0, 1e-4]),
     limit(Check::Raised, "raised", 0.0, 0.0, NONE),
     limit(Check::Delivered, "delivered", 0.01, 1e-3, [1e-3; 2]),
     limit(Check::Jump, "jump", 0.02, 1e-4, [1e-4; 2]),
-    limit(Check::Step, "step", 0.01, 0.0, NONE),
-    limit(Check::Optimal, "optimal", 0.01, 0.01, [0.04, 0.2]),
+    limit(Check::Step, "step", 0.01, 1e-4, [1e-4; 2]),
+    limit(Check::Optimal, "optimal", ALLOWED, 1.0 / 200.0, [0.04, 0.2]),
 ];
 
 impl Check {

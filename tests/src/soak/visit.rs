@@ -12,7 +12,7 @@ use crate::frames::zoo::Specimen;
 use crate::optimum::Oracle;
 use crate::request::{Answer, Frame, Request};
 use crate::shortfall::Shortfall;
-use crate::soundness::{self, Allowed};
+use crate::soundness;
 
 /// Requests per state of health that are judged by linear programmes, and of how many frames one is.
 const JUDGED: usize = 2;
@@ -20,10 +20,6 @@ const JUDGED_FRAMES: u64 = 4;
 
 /// Units beyond which they are not: a programme takes seconds.
 const MOST_JUDGED_UNITS: usize = 8;
-
-/// Answers per frame and health that raise the thrust, that linear programmes judge: the least thrust
-/// of sets that bend inwards takes many.
-const MOST_RAISED: usize = 3;
 
 /// How often something was looked at and missed.
 #[derive(Clone, Debug, Default)]
@@ -110,12 +106,7 @@ impl<'a> Visit<'a> {
         let Some(answer) = self.answer(frame, request) else {
             return Ok(None);
         };
-        let raised = self.counts.get(&Check::Raised).map_or(0, |count| count.missed);
-        let allowed = Allowed {
-            slack: Check::Overstepped.limit().size,
-            least_thrust_n: if raised < MOST_RAISED { 0.0 } else { f64::INFINITY },
-        };
-        let faults = soundness::faults(frame, request, &answer, allowed)?;
+        let faults = soundness::faults(frame, request, &answer)?;
         for (kind, check) in [
             (soundness::Kind::Throttle, Check::Throttle),
             (soundness::Kind::Truth, Check::Truth),
