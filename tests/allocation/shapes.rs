@@ -250,7 +250,7 @@ fn sets_that_bend_inwards_are_used() {
     }
     hold(&on_x12(
         BENT.into_iter().map(|(_, pair)| pair).cycle().take(6),
-        1000,
+        10_000,
     ));
 }
 

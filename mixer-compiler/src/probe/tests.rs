@@ -82,7 +82,7 @@ fn planted_sides_are_refused() {
         }
     };
     refused(&compiled, "side is not attainable", sides(1.03));
-    refused(&compiled, "loses", sides(0.7));
+    refused(&compiled, "lose 1.84 %", sides(0.7));
     refused(&compiled, "fails a probe", |tables| {
         let closed_form = tables.closed_form.as_mut().unwrap();
         closed_form.slopes[0].bounds = closed_form.slopes[0].bounds.map(|bound| 3.0 * bound);
