@@ -88,9 +88,7 @@ class Airframe:
             self.channels.append(unit["channels"])
         self.units = len(self.channels)
         is_vertical = all(column[2] == 0.0 for column in columns_f)
-        self.has_reserve = allocation.get("yaw_reserve_nm", 0.0) > 0.0
-        yaw_first = self.airmode == "roll-pitch-yaw" or self.has_reserve
-        self.is_general = self.units > 4 or not is_vertical or yaw_first
+        self.is_general = self.units > 4 or not is_vertical or self.airmode == "roll-pitch-yaw"
         columns = columns_f + columns_q
         self.m = [[column[row] for column in columns] for row in range(4)]
         self.size = self.largest()
@@ -249,13 +247,11 @@ def rounding(airframe, k):
 
 
 def has_room(airframe, wanted, shift, k):
-    """Whether every unit could move by twice the largest shift of all either way, and by a little for what mixers' polygons
-    leave out."""
+    """Whether every unit could move by twice the largest shift of all either way, and by a little more of torque."""
     n = airframe.units
     torque = max(abs(airframe.efforts(airframe.low, airframe.high)[1]), abs(airframe.efforts(airframe.high, airframe.low)[1]))
-    thrust = airframe.efforts(airframe.high, airframe.high)[0]
     by_q = 2.0 * max(map(abs, shift[n:])) / k[1] + 0.05 * torque
-    by_f = 2.0 * max(map(abs, shift[:n])) / k[0] + (0.05 * thrust if airframe.is_general else 0.0)
+    by_f = 2.0 * max(map(abs, shift[:n])) / k[0]
     at = [[wanted[i] / k[0], wanted[n + i] / k[1]] for i in range(n)]
     return all(airframe.attains([f + a * by_f, q + b * by_q]) for f, q in at for a in (-1, 1) for b in (-1, 1))
 
@@ -278,9 +274,6 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation, failed)
 
     wanted = [sum(m * r for m, r in zip(row, request)) for row in airframe.m_plus]
     attainable = not failed and all(airframe.attains([wanted[i] / k[0], wanted[n + i] / k[1]]) for i in range(n))
-    if attainable and airframe.is_general:
-        # The general path knows a polygon inside the attainable set: next to the border its efforts are others.
-        attainable = has_room(airframe, wanted, [0.0] * (2 * n), k)
     budget = [
         sum(abs(row[i]) * airframe.tolerance[0] + abs(row[n + i]) * airframe.tolerance[1] for i in range(n)) + 4 * allowed
         for row, allowed in zip(airframe.m, noise)
@@ -327,10 +320,8 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation, failed)
                 if turned > room[0] + room[1]:
                     faults.append(f"(roll, pitch) turns by {turned!r} N m: {request[:2]} asked, {truth[:2]} given")
         floor = n * k[0] * airframe.efforts(airframe.low, airframe.low)[0]
-        # Room for the torque at idle, which must be balanced before the thrust counts as least. A reserve of yaw takes
-        # more.
-        is_held = airframe.airmode == "disabled" and not airframe.has_reserve
-        if is_held and truth[3] > max(request[3], 1.25 * floor) + room[3]:
+        # Room for the torque at idle, which must be balanced before the thrust counts as least.
+        if airframe.airmode == "disabled" and truth[3] > max(request[3], 1.25 * floor) + room[3]:
             faults.append(f"thrust is raised from {request[3]!r} to {truth[3]!r}")
     for axis in range(4):
         missing = request[axis] - truth[axis]
