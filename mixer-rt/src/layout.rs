@@ -1,7 +1,7 @@
 //! The tables of one airframe as a whole.
 
-use crate::allocate::Priorities;
 use crate::allocate::closed_form::NoClosedForm;
+use crate::allocate::priorities::Priorities;
 use crate::pair::{Pair, SingleRotor, ThrottleRange};
 use crate::voltage::Voltage;
 

@@ -1,16 +1,16 @@
 //! From setpoint and voltage to throttles and the achieved wrench.
 
+use crate::allocate::allocate;
 use crate::allocate::closed_form::{AllocationMethod, Attained, ClosedForm, Efforts, Request};
 use crate::allocate::power_bias::add_power_bias;
+use crate::allocate::priorities::{REQUEST_LIMIT, is_bounded, limited};
 use crate::allocate::unit::UnitState;
-use crate::allocate::{REQUEST_LIMIT, allocate, is_bounded, limited};
-use crate::arithmetic::divided;
 use crate::layout::Tables;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Inverse, Quantity};
-use crate::rolled;
 use crate::voltage::Correction;
 use crate::{Axis, Health, Saturation, SetpointError, Wrench};
+use crate::{divided, rolled};
 
 /// What a mix gives.
 ///

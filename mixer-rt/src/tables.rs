@@ -6,8 +6,8 @@ pub use crate::allocate::closed_form::{
     AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, NoClosedForm, Outline,
 };
 pub use crate::allocate::interior::ITERATIONS;
+pub use crate::allocate::priorities::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::allocate::unit::UnitState;
-pub use crate::allocate::{Airmode, Priorities, REQUEST_LIMIT};
 pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::layout::{Tables, Tolerance, Unit};
 pub use crate::mix::{mix, mix_into, mix_with_health};

@@ -36,7 +36,7 @@ pub use border::{Border, Cell, Grid, Knot, Outline};
 use core::hint::black_box;
 
 use crate::Wrench;
-use crate::allocate::Airmode;
+use crate::allocate::priorities::Airmode;
 
 /// The largest number of units.
 const MOST_CLOSED_FORM_UNITS: usize = 4;

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! t are throttles and t* those of least norm, y_i = (f, Q) what a unit gives by the forward map, and
-//! a_j s_j what is given up of a row at the cost c_j ([`priorities`](super::priorities)). So the answer
+//! a_j s_j what is given up of a row at the cost c_j ([`request`](super::request)). So the answer
 //! is the throttles nearest those of least norm among those that cut the request least, by priority,
 //! over the true attainable sets, whatever their shape.
 //!
@@ -35,15 +35,15 @@
 
 use core::hint::black_box;
 
-use super::priorities::{Request, TORQUE, Yaw};
+use super::frame::Frame;
+use super::priorities::TORQUE;
+use super::request::{Request, Yaw};
 use super::system::{Factors, Matrix, Products};
 use super::unit::UnitState;
 use super::unknown::Unknown;
-use super::{Frame, larger};
-use crate::arithmetic::divided;
 use crate::layout::Tables;
 use crate::pair::{Expansion, Quantity};
-use crate::rolled;
+use crate::{divided, larger, rolled};
 
 /// Iterations in a run. Fewer leave more requests short, and make throttles step at the border of least
 /// norm.

@@ -2,7 +2,8 @@
 
 use core::mem::replace;
 
-use super::{Frame, UnitState};
+use super::frame::Frame;
+use super::unit::UnitState;
 use crate::clamp;
 use crate::layout::Unit;
 use crate::pair::{Inverse, Quantity};

@@ -19,8 +19,8 @@
 //! b = min over rotors of ROOM room / |change|        change = 2 t (J^-1 shift)
 //! ```
 //!
-//! So b reaches 0 with the room of the first rotor: desaturation begins there, and nothing jumps. In
-//! closed form the room is that of a unit's torque between the sides of its attainable set, which are
+//! Room is that to the nearer bound, whichever way the rotor moves. So b reaches 0 where the first rotor
+//! comes to a bound: desaturation begins there, and nothing jumps. In closed form the room is that of a unit's torque between the sides of its attainable set, which are
 //! throttles at their bounds.
 //!
 //! With c = 0 the mixer leaves this out, and so does the compiler, as the tables are constants.
@@ -28,12 +28,11 @@
 use core::hint::black_box;
 
 use super::closed_form::{ClosedForm, Efforts};
+use super::frame::Frame;
 use super::unit::UnitState;
-use super::{Frame, larger};
-use crate::arithmetic::divided;
 use crate::layout::Tables;
 use crate::pair::{Inverse, Quantity, solve};
-use crate::{divisor, rolled};
+use crate::{divided, divisor, rolled};
 
 /// Share of the room that is used: the efforts are not quite linear over squares.
 const ROOM: f32 = 0.8;
@@ -99,15 +98,10 @@ impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S,
             let (_, jacobian) = tables.pair.efforts_and_jacobian(unit.throttles);
             for (throttle, step) in unit.throttles.iter().zip(solve(jacobian, shift)) {
                 let square = throttle * throttle;
-                let change = 2.0 * throttle * step;
-                let room = if change > 0.0 {
-                    most - square
-                } else {
-                    square - least
-                };
-                let room = larger(ROOM * room, 0.0);
-                if b * change.abs() > room {
-                    b = divided(room, divisor(change.abs()));
+                let change = (2.0 * throttle * step).abs();
+                let room = ROOM * smaller(most - square, square - least);
+                if b * change > room {
+                    b = divided(room, divisor(change));
                 }
             }
         }
@@ -122,4 +116,9 @@ impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S,
             self.serve_by_least_norm(wrench, units);
         }
     }
+}
+
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }

@@ -1,234 +1,88 @@
-//! The request in rows, and what may be short of it at what cost.
+//! What comes before what where a request is not attainable.
 //!
-//! Rows are those of the request: roll and pitch along it, across it, yaw in its sense, thrust. So a
-//! shortage is part of one row and adds to one element of the system's diagonal only; in the axes' own
-//! rows that of roll and pitch fills a block whose determinant cancels in single precision. A row is
-//! scaled so that n units have the authority n.
+//! Each part of the request that may be given up has a cost per row; a row is scaled so that n units
+//! have the authority n.
 //!
-//! | shortage | row | from 0 to | cost |
-//! |---|---|---|---|
-//! | roll and pitch | along | what is asked | [`TORQUE`] |
-//! | yaw up to the reserve | yaw | the smaller of the reserve and what is asked | [`RESERVED`] |
-//! | thrust too little | thrust | what is asked | [`MIDDLE`]; `roll-pitch-yaw`: [`LAST`] |
-//! | thrust too much | thrust | more than all rotors give | as too little; `disabled`: [`FORBIDDEN`] |
-//! | yaw beyond the reserve | yaw | the rest of what is asked | [`LAST`]; `roll-pitch-yaw`: [`MIDDLE`] |
+//! | given up | from 0 to | cost |
+//! |---|---|---|
+//! | roll and pitch, jointly | what is asked | [`TORQUE`] |
+//! | yaw up to the reserve | the smaller of the reserve and what is asked | [`RESERVED`] |
+//! | thrust: too little | what is asked | [`MIDDLE`]; `roll-pitch-yaw`: [`LAST`] |
+//! | thrust: too much | more than all rotors give | as too little; `disabled`: [`FORBIDDEN`] |
+//! | yaw beyond the reserve | the rest of what is asked | [`LAST`]; `roll-pitch-yaw`: [`MIDDLE`] |
 //!
-//! Nothing may be short across (roll, pitch): their direction stays. Every shortage ends at what is
-//! asked: nothing is reversed or exceeded while the rows are met.
-//!
-//! Costs act as priorities. Their ratios bound how steep the answer is in the request: a share of a
-//! higher priority is given up where that frees more of a lower one than their ratio. Ratios of 20
-//! give up half a percent at most.
-//!
-//! Where rotors are out there may be no level flight with the yaw asked. Then yaw comes last
-//! ([`Yaw::Last`]): short or exceeded without limit.
+//! Ratios of costs act as priorities, and bound how steep the answer is in the request: a share of a
+//! higher priority is given up where that frees more of a lower one than their ratio.
 
-use super::Airmode;
-use super::system::{Columns, Matrix};
-use super::unknown::Unknown;
-use crate::layout::Tables;
-use crate::{divisor, sqrt};
+use crate::{clamp, divisor, larger};
 
 /// Costs per row.
-const LAST: f32 = 1.0;
-const MIDDLE: f32 = 20.0;
-const RESERVED: f32 = 90.0;
+pub(super) const LAST: f32 = 1.0;
+pub(super) const MIDDLE: f32 = 20.0;
+pub(super) const RESERVED: f32 = 90.0;
 pub(super) const TORQUE: f32 = 400.0;
-const FORBIDDEN: f32 = 2000.0;
+pub(super) const FORBIDDEN: f32 = 2000.0;
 
-/// Largest roll, pitch and yaw asked, in rows per unit: beyond all that units give.
-const TORQUE_LIMIT: f32 = 1.2;
-/// The range of thrust asked, likewise; an excess may reach beyond.
-const THRUST_LIMITS: [f32; 2] = [-0.05, 1.05];
-const EXCESS_LIMIT: f32 = 1.1;
-
-/// Least width of a shortage, rows.
-const LEAST_WIDTH: f32 = 1e-3;
-
-/// Roll and pitch below this count as none, rows; their direction is then that of roll.
-const LEVEL: f32 = 1e-12;
-
-/// What may be given up of a row.
-#[derive(Clone, Copy)]
-pub(super) struct Shortage {
-    /// The share of the width that is given up.
-    unknown: Unknown,
-    /// Rows, signed.
-    width: f32,
-    /// Of the whole width.
-    cost: f32,
+/// What allocation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Airmode {
+    /// Roll and pitch may lower the thrust, nothing may raise it.
+    Disabled,
+    /// Roll and pitch may lower or raise the thrust; yaw may not.
+    RollPitch,
+    /// Roll, pitch and yaw may lower or raise the thrust.
+    RollPitchYaw,
 }
 
-impl Shortage {
-    fn new(width: f32, cost: f32) -> Self {
-        let width = if width > LEAST_WIDTH { width } else { LEAST_WIDTH };
-        Shortage {
-            unknown: Unknown::central(1.0),
-            width,
-            cost: cost * width,
-        }
-    }
-
-    /// An excess in place of a shortage.
-    fn opposite(self) -> Self {
-        Shortage {
-            width: -self.width,
-            ..self
-        }
-    }
-
-    #[inline(always)]
-    fn eliminate(&mut self, lambda: f32, mu: f32, missed: &mut f32, diagonal: &mut f32) {
-        self.unknown.eliminate(lambda * self.width - self.cost, 0.0, mu);
-        *missed -= (self.unknown.low + self.unknown.step) * self.width;
-        *diagonal += self.unknown.response * self.width * self.width;
+impl Airmode {
+    /// True where yaw comes before thrust.
+    #[inline]
+    pub const fn is_yaw_first(self) -> bool {
+        matches!(self, Airmode::RollPitchYaw)
     }
 }
 
-/// How yaw is served.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Yaw {
-    /// Never reversed or exceeded.
-    Within,
-    /// As it comes, as near to what is asked as the rest allows.
-    Last,
+/// Priorities where a request is not attainable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Priorities {
+    /// What may happen to the thrust.
+    pub airmode: Airmode,
+    /// The yaw torque that comes before thrust, N m, >= 0.
+    pub yaw_reserve_nm: f32,
 }
 
-/// A request in its rows.
-pub(super) struct Request {
-    /// Rows asked; no torque is negative.
-    wanted: [f32; 4],
-    /// The direction of (roll, pitch).
-    direction: [f32; 2],
-    /// The sense of yaw, 1 or -1.
-    sense: f32,
-    /// Of roll and pitch, of thrust, of thrust in excess, of yaw, of yaw within the reserve.
-    shortages: [Shortage; 5],
-    /// Whether the last shortage takes part.
-    has_fifth: bool,
+/// Requests are limited to this torque (N m) and thrust (N), small enough that no product overflows.
+/// The compiler refuses airframes that give more, so a request beyond is never attainable and always
+/// flagged.
+pub const REQUEST_LIMIT: f32 = 1e5;
+
+/// True where `request` is finite and within [`REQUEST_LIMIT`].
+#[inline(always)]
+pub(crate) fn is_bounded(request: &[f32; 4]) -> bool {
+    // The sign shifted out, numbers are ordered as their bits are.
+    let limit = REQUEST_LIMIT.to_bits() << 1;
+    request.iter().all(|value| value.to_bits() << 1 <= limit)
 }
 
-/// The row of each shortage.
-const ROWS: [usize; 5] = [0, 3, 3, 2, 2];
-/// The index of each row's diagonal element.
-const DIAGONAL: [usize; 4] = [0, 4, 7, 9];
-
-impl Request {
-    /// The request `[roll, pitch, yaw, thrust]` (N m, N; bounded) for n units. `per_thrust` is 1 / k_f,
-    /// `ratio` k_Q / k_f.
-    #[inline(never)]
-    pub(super) fn new<P, I, S>(
-        tables: &Tables<'_, P, I, S>,
-        wrench: &[f32; 4],
-        n: f32,
-        [per_thrust, ratio]: [f32; 2],
-        yaw: Yaw,
-    ) -> Self {
-        let rows = tables.rows.map(|row| row * per_thrust);
-        let limit = TORQUE_LIMIT * n;
-        let yaw_limit = if ratio > 1.0 { limit * ratio } else { limit };
-        let [roll, pitch, turn, thrust] = super::limited(
-            [0, 1, 2, 3].map(|axis| wrench[axis] * rows[axis]),
-            limit,
-            yaw_limit,
-            THRUST_LIMITS.map(|end| end * n),
-        );
-        let is_level = roll.abs() < LEVEL && pitch.abs() < LEVEL;
-        let [roll, pitch] = if is_level { [LEVEL, 0.0] } else { [roll, pitch] };
-        let along = sqrt(roll * roll + pitch * pitch);
-        let per_along = 1.0 / divisor(along);
-        let (sense, turn) = if turn < 0.0 { (-1.0, -turn) } else { (1.0, turn) };
-        let reserve = tables.priorities.yaw_reserve_nm * rows[2];
-        let kept = if reserve < turn { reserve } else { turn };
-        let airmode = tables.priorities.airmode;
-        let is_last = yaw == Yaw::Last;
-        let [thrust_cost, yaw_cost] = if airmode.is_yaw_first() && !is_last {
-            [LAST, MIDDLE]
-        } else {
-            [MIDDLE, LAST]
-        };
-        let excess_cost = if airmode == Airmode::Disabled {
-            FORBIDDEN
-        } else {
-            thrust_cost
-        };
-        let anything = Shortage::new(yaw_limit + turn, LAST);
-        let [beyond, within] = if is_last {
-            [anything, anything.opposite()]
-        } else {
-            [
-                Shortage::new(turn - kept, yaw_cost),
-                Shortage::new(kept, RESERVED),
-            ]
-        };
-        Request {
-            wanted: [along, 0.0, turn, thrust],
-            direction: [roll * per_along, pitch * per_along],
-            sense,
-            shortages: [
-                Shortage::new(along, TORQUE),
-                Shortage::new(thrust, thrust_cost),
-                Shortage::new(EXCESS_LIMIT * n - thrust, excess_cost).opposite(),
-                beyond,
-                within,
-            ],
-            has_fifth: is_last || reserve > 0.0,
-        }
-    }
-
-    /// Columns of the axes' rows as those of the request's.
-    #[inline(always)]
-    pub(super) fn turned(&self, columns: &Columns) -> Columns {
-        let [along, across] = self.direction;
-        columns.map(|[roll, pitch, yaw, thrust]| {
-            [
-                along * roll + across * pitch,
-                along * pitch - across * roll,
-                self.sense * yaw,
-                thrust,
-            ]
-        })
-    }
-
-    /// Calls `f` with each shortage that takes part and its row.
-    #[inline(always)]
-    fn each(&mut self, mut f: impl FnMut(&mut Shortage, usize)) {
-        let [first @ .., fifth] = &mut self.shortages;
-        for (shortage, row) in first.iter_mut().zip(ROWS) {
-            f(shortage, row);
-        }
-        if self.has_fifth {
-            f(fifth, ROWS[4]);
-        }
-    }
-
-    /// Eliminates the shortages: takes them from the rows wanted, and adds to the system.
-    #[inline(always)]
-    pub(super) fn eliminate(&mut self, lambda: &[f32; 4], mu: f32, matrix: &mut Matrix) -> [f32; 4] {
-        let mut missed = self.wanted;
-        self.each(|shortage, row| {
-            shortage.eliminate(lambda[row], mu, &mut missed[row], &mut matrix[DIAGONAL[row]]);
-        });
-        missed
-    }
-
-    /// Steps with a change of the multipliers; raises `most` to the largest step over its room.
-    #[inline(always)]
-    pub(super) fn respond(&mut self, change: &[f32; 4], most: &mut f32) {
-        self.each(|shortage, row| shortage.unknown.respond(shortage.width * change[row], most));
-    }
-
-    /// Goes a share of the steps.
-    #[inline(always)]
-    pub(super) fn advance(&mut self, share: f32) {
-        self.each(|shortage, _| shortage.unknown.advance(share));
-    }
-
-    /// The rows wanted less the shortages.
-    #[inline(always)]
-    pub(super) fn left(&mut self) -> [f32; 4] {
-        let mut left = self.wanted;
-        self.each(|shortage, row| left[row] -= shortage.unknown.low * shortage.width);
-        left
-    }
+/// A request within a limit of roll and pitch, whose direction is kept, one of yaw, and a range of
+/// thrust.
+#[inline(never)]
+pub(crate) fn limited(
+    [roll, pitch, yaw, thrust]: [f32; 4],
+    limit: f32,
+    most_yaw: f32,
+    [least, most]: [f32; 2],
+) -> [f32; 4] {
+    let largest = larger(roll.abs(), pitch.abs());
+    let share = if largest > limit {
+        limit / divisor(largest)
+    } else {
+        1.0
+    };
+    [
+        roll * share,
+        pitch * share,
+        clamp(yaw, -most_yaw, most_yaw),
+        clamp(thrust, least, most),
+    ]
 }

@@ -12,12 +12,11 @@
 //! y'^T B^T lambda: one system of four rows per tangent. The inverse map turns the efforts into
 //! throttles. Whether all units then give them is checked, so no convexity is needed.
 
+use super::frame::Frame;
 use super::system::{Factors, Products};
 use super::unit::UnitState;
-use super::{Frame, larger};
-use crate::arithmetic::divided;
 use crate::pair::{Inverse, Quantity};
-use crate::{rolled, sqrt};
+use crate::{divided, larger, rolled, sqrt};
 
 /// Tangents along the curves of single rotors. Two serve 3 % fewer requests of an X8 with a rotor out, and
 /// 15 % fewer where torque over thrust bends most; four serve no more.

@@ -42,17 +42,17 @@ impl UnitState {
 impl Default for UnitState {
     #[inline(always)]
     fn default() -> Self {
-        static START: UnitState = UnitState {
-            rotors: Rotors::BOTH,
-            throttles: [0.0; 2],
-            efforts: [0.0; 2],
-            columns: [[0.0; 4]; 2],
-            unknowns: [Unknown::NONE; 2],
-            slopes: [[0.0; 2]; 2],
-            targets: [0.0; 2],
-            bend: 0.0,
-        };
         // Known zeros would be written by a call of memset, which a bare-metal target may not have.
-        *black_box(&START)
+        let zero = black_box(0.0);
+        UnitState {
+            rotors: Rotors::BOTH,
+            throttles: [zero; 2],
+            efforts: [zero; 2],
+            columns: [[zero; 4]; 2],
+            unknowns: [Unknown::central(zero); 2],
+            slopes: [[zero; 2]; 2],
+            targets: [zero; 2],
+            bend: zero,
+        }
     }
 }

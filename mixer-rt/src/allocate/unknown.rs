@@ -11,7 +11,7 @@
 //! multiplier that is left of the gain there; the other one has none but the barrier's. So the step
 //! and the response to a change of the gain are closed forms with one division.
 
-use crate::arithmetic::divided;
+use crate::divided;
 
 /// An unknown between two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
