@@ -273,9 +273,11 @@ impl<'a> At<'a> {
                 )));
             }
         }
-        // With rotors out torques are sound where level flight at the thrust asked is attainable; the
-        // caller goes on from there.
-        if (self.health.is_good() || is_level || asked[..3] != [0.0; 3])
+        // With one rotor out torques are sound where level flight at the thrust asked is attainable; the
+        // caller goes on from there. With two they are all but always, which is no proof of a fault.
+        let is_promised = self.health.is_good() || is_level || asked[..3] != [0.0; 3];
+        if is_promised
+            && self.rotors_out() <= 1
             && let Some(axis) = self.unsound(&asked, &given)
         {
             return Err(fault(format!(
@@ -284,6 +286,11 @@ impl<'a> At<'a> {
             )));
         }
         Ok(is_level)
+    }
+
+    fn rotors_out(&self) -> usize {
+        let rotors = 0..self.probe.airframe.rotors() as u8;
+        rotors.filter(|&channel| self.health.has_failed(channel)).count()
     }
 
     /// True where the throttles of least norm are well inside their range: such a wrench is delivered.

@@ -74,8 +74,8 @@ const SHARE: f32 = 0.97;
 const CLOSE: f32 = 1e-3;
 
 impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
-    /// Cuts the request by priority; true where no torque is reversed or exceeded. The units' throttles
-    /// are those that the answer is drawn to.
+    /// Cuts the request by priority; true where its rows are met. The units' throttles are those that
+    /// the answer is drawn to.
     #[inline(never)]
     pub(super) fn cut(&self, wrench: &[f32; 4], units: &mut [UnitState], is_whole: bool) -> bool {
         let n = units.len() as f32;
@@ -95,8 +95,8 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
             lambda = self.begin(&request, units);
             mu = FIRST_MU;
         }
-        let [along, across, yaw, _] = self.iterate(&mut request, units, &mut lambda, mu);
-        is_met(&[along, across, yaw], MET_AT_LAST * n)
+        let missed = self.iterate(&mut request, units, &mut lambda, mu);
+        is_met(&missed, MET_AT_LAST * n)
     }
 
     /// Puts the targets at the units' throttles, moved outwards by the barrier's pull: so the barrier at
@@ -268,7 +268,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
 
 /// True where no row is missed by more than `most`.
 #[inline(always)]
-fn is_met(missed: &[f32], most: f32) -> bool {
+fn is_met(missed: &[f32; 4], most: f32) -> bool {
     missed.iter().all(|row| row.abs() <= most)
 }
 
