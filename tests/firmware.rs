@@ -16,7 +16,7 @@ use mixer_tests::{airframes, cost, digest, evaluators, golden};
 
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 704;
-/// Below the caller's frame, any airframe: the general path, with rotors out.
+/// Below the caller's frame, any airframe: the interior point method, with rotors out.
 const ANY_STACK_LIMIT_BYTES: u64 = 1792;
 /// Code and tables of [`REFERENCE`].
 const SIZE_LIMIT_BYTES: u64 = 9 * 1024 + 512;
@@ -307,7 +307,7 @@ fn executors_pace_the_loop_and_stop_the_integral() {
 }
 
 /// The airframes whose bits are compared on many setpoints: a closed form of three and of four
-/// units, and the general path. Others that are alike differ by their pair, as frames of the zoo do.
+/// units, and without a closed form. Others that are alike differ by their pair, as frames of the zoo do.
 const AIRFRAMES: [&str; 3] = ["isae-x8", "px4-x12", "px4-y6"];
 
 /// [`AIRFRAMES`] and frames of the zoo, with their names.

@@ -37,7 +37,7 @@ fn answers_of_the_zoo_are_those_of_the_physics() {
     assert!(soak.mixes() > 20_000, "{} mixes", soak.mixes());
 }
 
-/// A regular frame on the general path.
+/// A regular frame without a closed form.
 fn specimen() -> (Specimen, Compiled) {
     let zoo = frames::zoo(SEED).expect("airframes/");
     let specimens = (0..).map(|index| zoo.specimen(12 * index));

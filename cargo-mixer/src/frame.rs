@@ -124,7 +124,7 @@ impl Frame {
 }
 
 /// The lines of the yaw reserve at the end of `[allocation]`, where the airframe so far compiles
-/// and has yaw to keep; commented out where it would cost more than the closed form.
+/// and has yaw to keep.
 fn yaw_reserve(text: &str) -> String {
     let Ok(compiled) = mixer_compiler::compile(&Source::new("new.toml", text)) else {
         return String::new();
@@ -134,17 +134,10 @@ fn yaw_reserve(text: &str) -> String {
     };
     let line = format!("yaw_reserve_nm = {}", rounded(reserve));
     let indent = " ".repeat(38);
-    if compiled.tables.closed_form.is_some() {
-        format!(
-            "{line:<38} # a fifth of the yaw at half of full thrust, kept up to full thrust:\n\
-             {indent} # when yaw is asked there, thrust yields first, then roll and pitch\n"
-        )
-    } else {
-        format!(
-            "# {line:<36} # keeps a fifth of the yaw at half of full thrust up to full thrust;\n\
-             {indent} # `check` says what that costs on more than four units\n"
-        )
-    }
+    format!(
+        "{line:<38} # a fifth of the yaw at half of full thrust, kept up to full thrust:\n\
+         {indent} # when yaw is asked there, thrust yields for it; roll and pitch do not\n"
+    )
 }
 
 /// With two digits.

@@ -61,7 +61,7 @@ pub(crate) fn allocate<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool>(
             return true;
         }
         if !frame.cut(wrench, units, is_whole) {
-            frame.retreat(wrench, units);
+            frame.level(wrench[3], units);
         }
     } else if !frame.serve_with_rotors_out(wrench, units) {
         frame.cut(wrench, units, is_whole);

@@ -91,7 +91,7 @@ pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>
 
 /// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells
 /// how much. `UNITS` is not inferred; the generated module has this function without it. Links
-/// the general path of desaturation for every frame.
+/// the interior point method for every frame.
 ///
 /// # Errors
 /// As [`mix`].
@@ -149,7 +149,7 @@ pub fn mix_into<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
 /// An achieved wrench and what was not delivered.
 type Mixed = Result<(Wrench, Saturation), SetpointError>;
 
-/// [`mix_into`] on the general path.
+/// [`mix_into`] without a closed form, or with rotors out.
 #[inline(always)]
 fn mix_in_general<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,

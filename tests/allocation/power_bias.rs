@@ -68,7 +68,7 @@ proptest! {
     }
 }
 
-/// Level at half thrust every unit has Q = c f, in closed form and on the general path, and the
+/// Level at half thrust every unit has Q = c f, in closed form and without one, and the
 /// wrench is that without.
 #[test]
 fn level_torques_are_the_bias_times_the_thrust() {

@@ -48,7 +48,7 @@ const TASKS: &[Task] = &[
     Task {
         name: "counts",
         program: tests!(=> "counts"),
-        does: "counts instructions in QEMU; `counts --bless` searches for the worst and writes tests/counts.csv, tests/worst.csv and docs/costs.md, `counts --page` docs/costs.md alone",
+        does: "counts instructions in QEMU; `counts --search` looks for requests that cost more, `counts --bless` writes tests/counts.csv, tests/worst.csv and docs/costs.md, `counts --page` docs/costs.md alone",
     },
     Task {
         name: "evaluators",

@@ -19,7 +19,7 @@ keys! { TABLE = "[allocation]":
     AXES "axes" = "[\"roll\", \"pitch\", \"yaw\", \"thrust\"]", Kind::Words(&["roll", "pitch", "yaw", "thrust"]),
         "The served axes, all four without it; fewer for one or two units, which cannot produce all.";
     YAW_RESERVE_NM "yaw_reserve_nm" = "0.05", Kind::Number(Range::Within([0.0, LARGEST_EFFORT])),
-        "Yaw torque that is kept available before roll and pitch, N m.".default(0.0)
+        "Yaw torque that comes before thrust, N m.".default(0.0)
         .refusing("must be 0 or more newton metres", "the reserve holds either way about zero yaw; write its size");
     POWER_BIAS_NM_PER_N "power_bias_nm_per_n" = "0.005", Kind::Number(Range::Within([-LARGEST_POWER_BIAS, LARGEST_POWER_BIAS])),
         "Least power: torque per thrust of every unit while none is near its limits, N m per N.".default(0.0);
@@ -33,7 +33,7 @@ pub struct Allocation {
     pub airmode: Airmode,
     /// The controlled axes in the order of the wrench, each once, the thrust among them.
     pub axes: Vec<Axis>,
-    /// Yaw torque kept available in both directions, N m, 0 to 1e6, and 0 where yaw is not
+    /// Yaw torque that comes before thrust, N m, 0 to 1e6, and 0 where yaw is not
     /// controlled.
     pub yaw_reserve_nm: f64,
     /// Torque per thrust of every unit for the least power, N m per N at the reference voltage, -1

@@ -153,7 +153,7 @@ pub(super) fn yaw_reserve(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
         ),
         "never available",
         format!(
-            "roll and pitch have to wait for it; a tenth of the authority is {} N m",
+            "all of yaw then comes before thrust; a tenth of the authority is {} N m",
             rounded(0.1 * authority.max(0.0))
         ),
     ));

@@ -27,7 +27,7 @@ fn refused(compiled: &Compiled, words: &str, plant: impl Fn(&mut MixerTables)) {
     assert!(message.contains(words), "{message}");
 }
 
-/// An X8 in closed form and an X12 on the general path: as they are, and with a fault of each kind.
+/// An X8 in closed form and an X12, which has none: as they are, and with a fault of each kind.
 #[test]
 fn planted_faults_are_refused() {
     for name in ["isae-x8", "px4-x12"] {

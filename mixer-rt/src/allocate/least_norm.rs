@@ -9,9 +9,6 @@ use crate::layout::Unit;
 use crate::pair::{Inverse, Quantity};
 use crate::rolled;
 
-/// Shares of the torques asked that the guard tries at a level thrust.
-const RETREATS: [f32; 3] = [0.25, 0.0625, 0.0];
-
 impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Efforts of least norm of a unit for a wrench (N m, N), at the reference voltage.
     #[inline(always)]
@@ -52,17 +49,13 @@ impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S,
     }
 
     /// The guard for whole frames, where the interior point method has not met the rows: least norm for
-    /// a part of the torques at a level thrust. It is sound whatever the sets, for it is delivered. Where
-    /// a frame has no level flight by least norm, the method's answer stays.
+    /// level flight at the thrust asked, as far as there is one. It is sound whatever the sets, for it is
+    /// delivered. Where a frame has no level flight by least norm, the method's answer stays.
     #[inline(never)]
-    pub(super) fn retreat(&self, [roll, pitch, yaw, thrust]: &[f32; 4], units: &mut [UnitState]) {
+    pub(super) fn level(&self, thrust: f32, units: &mut [UnitState]) {
         let [least, most] = self.tables.level_n.map(|end| end * self.factors[0]);
-        let level = clamp(*thrust, least, most);
-        for share in RETREATS {
-            rolled();
-            if self.serve_by_least_norm(&[roll * share, pitch * share, yaw * share, level], units) {
-                return;
-            }
+        if self.serve_by_least_norm(&[0.0, 0.0, 0.0, clamp(thrust, least, most)], units) {
+            return;
         }
         for state in units {
             rolled();

@@ -33,7 +33,7 @@ const MARGIN: f64 = 1e-5;
 /// the torque.
 const STEEPEST: f64 = 16.0;
 
-/// Largest loss of the cells, as a share of the largest torque. Beyond it the general path serves
+/// Largest loss of the cells, as a share of the largest torque. Beyond it the interior point method serves
 /// the airframe better.
 const MOST_LOST: f64 = 0.05;
 

@@ -44,42 +44,39 @@ const KNOTS: u32 = 75;
 const KNOT: u32 = 30;
 const KNOT_UNIT: u32 = 7;
 
-/// What a reserve of yaw calls more often.
-const RESERVE_REACHES: u32 = 5;
+/// What a reserve of yaw calls more often: rounds, and how far yaw reaches in one of them.
+const RESERVE_ROUNDS: u32 = 2;
+const RESERVE_REACHES: u32 = 6;
 
 /// The torques, one unit.
 const TORQUES: u32 = 40;
 
 /// Beside the iterations: the request in rows and the targets; one unit of both.
-const CUT: u32 = 400;
-const CUT_UNIT: u32 = 150;
+const CUT: u32 = 300;
+const CUT_UNIT: u32 = 115;
 
-/// An iteration, and one unit in it by the terms of its basis: with vertical axes, and tilted.
-const ITERATION: u32 = 560;
-const ITERATION_UNIT: [u32; 2] = [330, 400];
+/// An iteration with its share of the correction, and one unit in it: with vertical axes, and tilted.
+const ITERATION: u32 = 480;
+const ITERATION_UNIT: [u32; 2] = [355, 420];
 
-/// A correction after a stage of iterations with the rows judged, and one unit in it.
-const CORRECTION: u32 = 400;
-const CORRECTION_UNIT: u32 = 250;
-
-/// Least norm with rotors out beside the inverse map, and one unit in it.
-const ROTORS_OUT: u32 = 900;
-const ROTORS_OUT_UNIT: u32 = 300;
+/// Least norm with rotors out beside that of whole units, and one unit in it that has a single rotor.
+const ROTORS_OUT: u32 = 1000;
+const ROTORS_OUT_UNIT: u32 = 800;
 
 /// The bound for a compiled airframe while all rotors turn; `None` for an evaluator that has not been
 /// counted.
 pub(super) fn bound(compiled: &Compiled) -> Option<u32> {
     match &compiled.tables.closed_form {
         Some(table) => closed_form(compiled, table),
-        // Least norm, and the guard's three.
-        None => Some(4 * least_norm(compiled)? + per_mix(compiled) + interior(compiled)),
+        // Least norm of the request, and of level flight.
+        None => Some(2 * least_norm(compiled)? + per_mix(compiled) + interior(compiled)),
     }
 }
 
 /// The bound with any number of rotors out, of every frame.
 pub(super) fn with_rotors_out(compiled: &Compiled) -> Option<u32> {
     let n = compiled.tables.units.len() as u32;
-    let least_norm = 2 * least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT;
+    let least_norm = least_norm(compiled)? + ROTORS_OUT + n * ROTORS_OUT_UNIT;
     Some(least_norm + per_mix(compiled) + interior(compiled))
 }
 
@@ -94,9 +91,13 @@ fn least_norm(compiled: &Compiled) -> Option<u32> {
 fn interior(compiled: &Compiled) -> u32 {
     let n = compiled.tables.units.len() as u32;
     let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
-    let unit = unit + 2 * (forward(compiled.airframe.pair.basis) - forward(Basis::Biquadratic));
-    let run = ITERATIONS * (ITERATION + n * unit) + CORRECTION + n * CORRECTION_UNIT;
-    2 * run + CUT + n * CUT_UNIT
+    // What the derivatives of the basis take more.
+    let more = match compiled.airframe.pair.basis {
+        Basis::Biquadratic => 0,
+        Basis::Cubic => 10,
+        Basis::Quartic => 45,
+    };
+    2 * ITERATIONS * (ITERATION + n * (unit + more)) + CUT + n * CUT_UNIT
 }
 
 /// Checks, and voltage where there is a correction.
@@ -124,7 +125,7 @@ fn closed_form(compiled: &Compiled, table: &ClosedFormTable) -> Option<u32> {
     let top = |moved: u32| n * KNOTS + moved * Outline::KNOTS as u32 * (KNOT + n * KNOT_UNIT);
     let climb = if moved == 0 { 0 } else { CLIMB * reach + top(moved) };
     let reserve = if compiled.tables.priorities.yaw_reserve_nm > 0.0 {
-        RESERVE_REACHES * reach + top(n) + n * NULL_RANGE
+        RESERVE_ROUNDS * (RESERVE_REACHES * reach + top(n) + n * NULL_RANGE)
     } else {
         0
     };

@@ -31,8 +31,8 @@ const CLOSED_FORM: Overhead = Overhead {
     error: 0.12,
 };
 const GENERAL: Overhead = Overhead {
-    per_mix: 200,
-    per_unit: 190,
+    per_mix: 130,
+    per_unit: 122,
     error: 0.05,
 };
 
