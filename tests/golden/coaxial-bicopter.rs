@@ -94,13 +94,11 @@ pub mod coaxial_bicopter {
         tables::Unit {
             allocation: [[-1.1111112, 0.0, 0.0, 0.5], [0.0, 0.0, 0.5, 0.0]],
             effectiveness: [[-0.45, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[-1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.99999994, 0.0]],
             channels: [0, 1],
         },
         tables::Unit {
             allocation: [[1.1111112, 0.0, 0.0, 0.5], [0.0, 0.0, -0.5, 0.0]],
             effectiveness: [[0.45, 0.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, -0.99999994, 0.0]],
             channels: [2, 3],
         },
     ];
@@ -161,116 +159,7 @@ pub mod coaxial_bicopter {
             coefficients: &[0.000005731108, -0.00013539205, 0.011984104, 0.2364866, 1.0],
         },
     });
-    /// A polygon inside a unit's attainable set.
-    const ATTAINABLE: tables::AttainableSet<'static> = tables::AttainableSet {
-        scale: [24.7877, 0.217609],
-        centre: [0.51818466, 0.0],
-        corners: &[
-            tables::Corner {
-                at: [0.023332702, -0.006199268],
-                ways: [[0.15166897, -0.28272334], [0.11313295, 0.2928262]],
-                bound: -0.0056564626,
-                links: [1, 7],
-            },
-            tables::Corner {
-                at: [0.17500167, -0.2889226],
-                ways: [[0.18686609, -0.30172378], [-0.15166897, 0.28272334]],
-                bound: 0.0011876747,
-                links: [2, 0],
-            },
-            tables::Corner {
-                at: [0.36186776, -0.5906464],
-                ways: [[0.2612271, -0.39918786], [-0.18686609, 0.30172378]],
-                bound: 0.009839624,
-                links: [3, 1],
-            },
-            tables::Corner {
-                at: [0.62309486, -0.98983425],
-                ways: [[0.37464994, 0.9746759], [-0.2612271, 0.39918786]],
-                bound: 0.9781569,
-                links: [4, 2],
-            },
-            tables::Corner {
-                at: [0.9977448, -0.015158382],
-                ways: [[-0.50440663, 1.0100808], [-0.37464994, -0.9746759]],
-                bound: 1.0001569,
-                links: [5, 3],
-            },
-            tables::Corner {
-                at: [0.49333817, 0.9949224],
-                ways: [[-0.19448999, -0.37326205], [0.50440663, -1.0100808]],
-                bound: 0.009358034,
-                links: [6, 4],
-            },
-            tables::Corner {
-                at: [0.29884818, 0.62166035],
-                ways: [[-0.16238253, -0.33503342], [0.19448999, 0.37326205]],
-                bound: 0.0008226484,
-                links: [7, 5],
-            },
-            tables::Corner {
-                at: [0.13646565, 0.28662694],
-                ways: [[-0.11313295, -0.2928262], [0.16238253, 0.33503342]],
-                bound: -0.0075337663,
-                links: [0, 6],
-            },
-            tables::Corner {
-                at: [0.016137196, -0.047709424],
-                ways: [[0.59402025, -0.9720095], [0.59402025, -0.9720095]],
-                bound: 0.012654856,
-                links: [9, 9],
-            },
-            tables::Corner {
-                at: [0.61015743, -1.0197189],
-                ways: [[-0.59402025, 0.9720095], [-0.59402025, 0.9720095]],
-                bound: -0.012654901,
-                links: [8, 8],
-            },
-            tables::Corner {
-                at: [0.005878803, 0.039708834],
-                ways: [[0.4962049, 0.9533566], [0.4962049, 0.9533566]],
-                bound: -0.014099123,
-                links: [11, 11],
-            },
-            tables::Corner {
-                at: [0.5020837, 0.9930655],
-                ways: [[-0.4962049, -0.9533566], [-0.4962049, -0.9533566]],
-                bound: 0.014099121,
-                links: [10, 10],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-        ],
-        count: 8,
-    };
-    /// Level flight, which the general path retreats to.
-    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
-        thrust_n: [0.0, 0.0],
-        efforts: &[],
-    };
-    /// The closed form of desaturation, where there is one.
+    /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
             tables::ClosedFormUnit {
@@ -555,18 +444,13 @@ pub mod coaxial_bicopter {
             max: 1.0,
         },
         voltage: VOLTAGE,
-        attainable: ATTAINABLE,
-        level: LEVEL,
         rows: [0.0896502, 0.0, 4.595398, 0.040342588],
-        centre: [[0.0, 0.0, 0.0, 1.0363693], [0.0, 0.0, 0.0, 0.0]],
+        spread: [443.2581, 0.14420184],
+        level_n: [1.2264531, 49.34858],
         is_vertical: true,
-        desaturation: tables::Desaturation {
+        priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
-            budget: tables::Budget {
-                pivots: 9,
-                flips: 48,
-            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

@@ -96,25 +96,21 @@ pub mod x8_11in_cubic {
         tables::Unit {
             allocation: [[-1.1785113, 1.1785113, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.21213204, 0.21213204, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[-1.0000001, 1.0000001, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
         },
         tables::Unit {
             allocation: [[-1.1785113, -1.1785113, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.21213204, -0.21213204, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[-1.0000001, -1.0000001, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
         },
         tables::Unit {
             allocation: [[1.1785113, -1.1785113, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.21213204, -0.21213204, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[1.0000001, -1.0000001, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
         },
         tables::Unit {
             allocation: [[1.1785113, 1.1785113, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.21213204, 0.21213204, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[1.0000001, 1.0000001, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
         },
     ];
@@ -167,116 +163,7 @@ pub mod x8_11in_cubic {
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
-    /// A polygon inside a unit's attainable set.
-    const ATTAINABLE: tables::AttainableSet<'static> = tables::AttainableSet {
-        scale: [18.019485, 0.21000858],
-        centre: [0.5280045, 0.0],
-        corners: &[
-            tables::Corner {
-                at: [0.53553474, -0.9629241],
-                ways: [[0.44949555, 0.8928039], [-0.5050385, 0.9533479]],
-                bound: 0.91095763,
-                links: [1, 6],
-            },
-            tables::Corner {
-                at: [0.9850303, -0.07012021],
-                ways: [[-0.119432986, 0.30930725], [-0.44949555, -0.8928039]],
-                bound: 0.29630235,
-                links: [2, 0],
-            },
-            tables::Corner {
-                at: [0.8655973, 0.23918705],
-                ways: [[-0.12575793, 0.28621048], [0.119432986, -0.30930725]],
-                bound: 0.2778227,
-                links: [3, 1],
-            },
-            tables::Corner {
-                at: [0.7398394, 0.52539754],
-                ways: [[-0.102145255, 0.19301623], [0.12575793, -0.28621048]],
-                bound: 0.19646786,
-                links: [4, 2],
-            },
-            tables::Corner {
-                at: [0.6376941, 0.7184138],
-                ways: [[-0.07236856, 0.096444786], [0.102145255, -0.19301623]],
-                bound: 0.11349285,
-                links: [5, 3],
-            },
-            tables::Corner {
-                at: [0.56532556, 0.81485856],
-                ways: [[-0.5348293, -0.82443476], [0.07236856, -0.096444786]],
-                bound: -0.030263811,
-                links: [6, 4],
-            },
-            tables::Corner {
-                at: [0.030496227, -0.0095762275],
-                ways: [[0.5050385, -0.9533479], [0.5348293, 0.82443476]],
-                bound: -0.02423715,
-                links: [0, 5],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.010989338, -0.02432794],
-                ways: [[0.5455092, -0.9895012], [0.5455092, -0.9895012]],
-                bound: 0.0023971517,
-                links: [9, 9],
-            },
-            tables::Corner {
-                at: [0.5564986, -1.0138291],
-                ways: [[-0.5455092, 0.9895012], [-0.5455092, 0.9895012]],
-                bound: -0.00239712,
-                links: [8, 8],
-            },
-            tables::Corner {
-                at: [0.01751147, 0.01988969],
-                ways: [[0.52825844, 0.8065784], [0.52825844, 0.8065784]],
-                bound: 0.0036174776,
-                links: [11, 11],
-            },
-            tables::Corner {
-                at: [0.54576993, 0.8264681],
-                ways: [[-0.52825844, -0.8065784], [-0.52825844, -0.8065784]],
-                bound: -0.0036174655,
-                links: [10, 10],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-        ],
-        count: 7,
-    };
-    /// Level flight, which the general path retreats to.
-    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
-        thrust_n: [0.0, 0.0],
-        efforts: &[],
-    };
-    /// The closed form of desaturation, where there is one.
+    /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
             tables::ClosedFormUnit {
@@ -676,18 +563,13 @@ pub mod x8_11in_cubic {
             max: 0.95,
         },
         voltage: VOLTAGE,
-        attainable: ATTAINABLE,
-        level: LEVEL,
         rows: [0.2616082, 0.2616082, 4.76171, 0.055495482],
-        centre: [[0.0, 0.0, 0.0, 2.112018], [0.0, 0.0, 0.0, 0.0]],
+        spread: [227.60522, 0.11379245],
+        level_n: [2.1986294, 69.14089],
         is_vertical: true,
-        desaturation: tables::Desaturation {
+        priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
-            budget: tables::Budget {
-                pivots: 9,
-                flips: 48,
-            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

@@ -96,25 +96,21 @@ pub mod x8_11in_least_power {
         tables::Unit {
             allocation: [[-1.1785113, 1.1785113, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.21213204, 0.21213204, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[-1.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.99999994, 0.0]],
             channels: [0, 4],
         },
         tables::Unit {
             allocation: [[-1.1785113, -1.1785113, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.21213204, -0.21213204, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[-1.0, -1.0, 0.0, 1.0], [0.0, 0.0, -0.99999994, 0.0]],
             channels: [1, 5],
         },
         tables::Unit {
             allocation: [[1.1785113, -1.1785113, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.21213204, -0.21213204, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[1.0, -1.0, 0.0, 1.0], [0.0, 0.0, 0.99999994, 0.0]],
             channels: [2, 6],
         },
         tables::Unit {
             allocation: [[1.1785113, 1.1785113, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.21213204, 0.21213204, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[1.0, 1.0, 0.0, 1.0], [0.0, 0.0, -0.99999994, 0.0]],
             channels: [3, 7],
         },
     ];
@@ -189,116 +185,7 @@ pub mod x8_11in_least_power {
             ],
         },
     });
-    /// A polygon inside a unit's attainable set.
-    const ATTAINABLE: tables::AttainableSet<'static> = tables::AttainableSet {
-        scale: [20.042135, 0.22704339],
-        centre: [0.51363546, 0.0],
-        corners: &[
-            tables::Corner {
-                at: [0.02550351, -0.0067323013],
-                ways: [[0.09314938, -0.18836589], [0.47533512, 0.7198074]],
-                bound: -0.0041768816,
-                links: [1, 7],
-            },
-            tables::Corner {
-                at: [0.11865289, -0.19509819],
-                ways: [[0.4088691, -0.7829224], [-0.09314938, 0.18836589]],
-                bound: -0.013126381,
-                links: [2, 0],
-            },
-            tables::Corner {
-                at: [0.52752197, -0.97802055],
-                ways: [[0.4614085, 0.8605219], [-0.4088691, 0.7829224]],
-                bound: 0.9052112,
-                links: [3, 1],
-            },
-            tables::Corner {
-                at: [0.98893046, -0.11749864],
-                ways: [[-0.18294209, 0.3550599], [-0.4614085, -0.8605219]],
-                bound: 0.32963407,
-                links: [4, 2],
-            },
-            tables::Corner {
-                at: [0.8059884, 0.23756126],
-                ways: [[-0.14039868, 0.25088283], [0.18294209, -0.3550599]],
-                bound: 0.23556194,
-                links: [5, 3],
-            },
-            tables::Corner {
-                at: [0.6655897, 0.4884441],
-                ways: [[-0.09818232, 0.15020001], [0.14039868, -0.25088283]],
-                bound: 0.14792815,
-                links: [6, 4],
-            },
-            tables::Corner {
-                at: [0.56740737, 0.6386441],
-                ways: [[-0.06656873, 0.074431], [0.09818232, -0.15020001]],
-                bound: 0.08474643,
-                links: [7, 5],
-            },
-            tables::Corner {
-                at: [0.50083864, 0.7130751],
-                ways: [[-0.47533512, -0.7198074], [0.06656873, -0.074431]],
-                bound: -0.021557689,
-                links: [0, 6],
-            },
-            tables::Corner {
-                at: [0.009582271, -0.021864189],
-                ways: [[0.5710097, -0.901242], [0.5710097, -0.901242]],
-                bound: 0.0038487194,
-                links: [9, 9],
-            },
-            tables::Corner {
-                at: [0.580592, -0.9231062],
-                ways: [[-0.5710097, 0.901242], [-0.5710097, 0.901242]],
-                bound: -0.0038487315,
-                links: [8, 8],
-            },
-            tables::Corner {
-                at: [0.010061337, 0.016698193],
-                ways: [[0.4827617, 0.7313602], [0.4827617, 0.7313602]],
-                bound: -0.0007027867,
-                links: [11, 11],
-            },
-            tables::Corner {
-                at: [0.49282303, 0.7480584],
-                ways: [[-0.4827617, -0.7313602], [-0.4827617, -0.7313602]],
-                bound: 0.00070276856,
-                links: [10, 10],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-        ],
-        count: 8,
-    };
-    /// Level flight, which the general path retreats to.
-    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
-        thrust_n: [0.0, 0.0],
-        efforts: &[],
-    };
-    /// The closed form of desaturation, where there is one.
+    /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
             tables::ClosedFormUnit {
@@ -614,18 +501,13 @@ pub mod x8_11in_least_power {
             max: 0.95,
         },
         voltage: VOLTAGE,
-        attainable: ATTAINABLE,
-        level: LEVEL,
         rows: [0.23520674, 0.23520674, 4.404444, 0.049894884],
-        centre: [[0.0, 0.0, 0.0, 2.0545418], [0.0, 0.0, 0.0, 0.0]],
+        spread: [287.4635, 0.12583156],
+        level_n: [2.3466544, 74.53513],
         is_vertical: true,
-        desaturation: tables::Desaturation {
+        priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
-            budget: tables::Budget {
-                pivots: 9,
-                flips: 48,
-            },
         },
         power_bias_nm_per_n: 0.00695,
         closed_form: CLOSED_FORM,

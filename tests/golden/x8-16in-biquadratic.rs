@@ -96,25 +96,21 @@ pub mod x8_16in_biquadratic {
         tables::Unit {
             allocation: [[-0.7856742, 0.7856742, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.31819806, 0.31819806, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[-1.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
         },
         tables::Unit {
             allocation: [[-0.7856742, -0.7856742, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.31819806, -0.31819806, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[-1.0, -1.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
         },
         tables::Unit {
             allocation: [[0.7856742, -0.7856742, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.31819806, -0.31819806, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[1.0, -1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
         },
         tables::Unit {
             allocation: [[0.7856742, 0.7856742, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.31819806, 0.31819806, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[1.0, 1.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
         },
     ];
@@ -187,116 +183,7 @@ pub mod x8_16in_biquadratic {
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
-    /// A polygon inside a unit's attainable set.
-    const ATTAINABLE: tables::AttainableSet<'static> = tables::AttainableSet {
-        scale: [42.02099, 0.55428284],
-        centre: [0.49320883, 0.0],
-        corners: &[
-            tables::Corner {
-                at: [0.01522831, -0.0031238154],
-                ways: [[0.10642117, -0.28980985], [0.09566798, 0.20373107]],
-                bound: -0.004080874,
-                links: [1, 7],
-            },
-            tables::Corner {
-                at: [0.12164948, -0.29293367],
-                ways: [[0.11883829, -0.22659305], [-0.10642117, 0.28980985]],
-                bound: 0.007246809,
-                links: [2, 0],
-            },
-            tables::Corner {
-                at: [0.24048777, -0.5195267],
-                ways: [[0.26482803, -0.4326585], [-0.11883829, 0.22659305]],
-                bound: 0.03353616,
-                links: [3, 1],
-            },
-            tables::Corner {
-                at: [0.5053158, -0.9521852],
-                ways: [[0.4607486, 0.9325738], [-0.26482803, 0.4326585]],
-                bound: 0.9099623,
-                links: [4, 2],
-            },
-            tables::Corner {
-                at: [0.9660644, -0.019611405],
-                ways: [[-0.3833003, 0.9094033], [-0.4607486, -0.9325738]],
-                bound: 0.87102515,
-                links: [5, 3],
-            },
-            tables::Corner {
-                at: [0.5827641, 0.8897919],
-                ways: [[-0.17101806, -0.23048031], [0.3833003, -0.9094033]],
-                bound: 0.01785484,
-                links: [6, 4],
-            },
-            tables::Corner {
-                at: [0.41174603, 0.6593116],
-                ways: [[-0.30084974, -0.45870435], [0.17101806, 0.23048031]],
-                bound: 0.009484023,
-                links: [7, 5],
-            },
-            tables::Corner {
-                at: [0.11089629, 0.20060726],
-                ways: [[-0.09566798, -0.20373107], [0.30084974, 0.45870435]],
-                bound: -0.0034013279,
-                links: [0, 6],
-            },
-            tables::Corner {
-                at: [0.003197866, -0.043435875],
-                ways: [[0.54412895, -0.97292894], [0.54412895, -0.97292894]],
-                bound: 0.020523421,
-                links: [9, 9],
-            },
-            tables::Corner {
-                at: [0.5473268, -1.0163648],
-                ways: [[-0.54412895, 0.97292894], [-0.54412895, 0.97292894]],
-                bound: -0.020523429,
-                links: [8, 8],
-            },
-            tables::Corner {
-                at: [0.008828196, 0.040244874],
-                ways: [[0.5758014, 0.8963529], [0.5758014, 0.8963529]],
-                bound: -0.015259874,
-                links: [11, 11],
-            },
-            tables::Corner {
-                at: [0.5846296, 0.93659776],
-                ways: [[-0.5758014, -0.8963529], [-0.5758014, -0.8963529]],
-                bound: 0.015259862,
-                links: [10, 10],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-        ],
-        count: 8,
-    };
-    /// Level flight, which the general path retreats to.
-    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
-        thrust_n: [0.0, 0.0],
-        efforts: &[],
-    };
-    /// The closed form of desaturation, where there is one.
+    /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
             tables::ClosedFormUnit {
@@ -664,18 +551,13 @@ pub mod x8_16in_biquadratic {
             max: 0.95,
         },
         voltage: VOLTAGE,
-        attainable: ATTAINABLE,
-        level: LEVEL,
         rows: [0.07478874, 0.07478874, 1.804133, 0.023797631],
-        centre: [[0.0, 0.0, 0.0, 1.9728353], [0.0, 0.0, 0.0, 0.0]],
+        spread: [1275.6128, 0.83707935],
+        level_n: [2.7144423, 163.26555],
         is_vertical: true,
-        desaturation: tables::Desaturation {
+        priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
-            budget: tables::Budget {
-                pivots: 9,
-                flips: 48,
-            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

@@ -96,25 +96,21 @@ pub mod x8_16in_quartic {
         tables::Unit {
             allocation: [[-0.7856742, 0.7856742, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.31819806, 0.31819806, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[-1.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
         },
         tables::Unit {
             allocation: [[-0.7856742, -0.7856742, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.31819806, -0.31819806, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[-1.0, -1.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
         },
         tables::Unit {
             allocation: [[0.7856742, -0.7856742, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.31819806, -0.31819806, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[1.0, -1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
         },
         tables::Unit {
             allocation: [[0.7856742, 0.7856742, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.31819806, 0.31819806, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[1.0, 1.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
         },
     ];
@@ -191,116 +187,7 @@ pub mod x8_16in_quartic {
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
-    /// A polygon inside a unit's attainable set.
-    const ATTAINABLE: tables::AttainableSet<'static> = tables::AttainableSet {
-        scale: [40.275543, 0.4986623],
-        centre: [0.53993905, 0.0],
-        corners: &[
-            tables::Corner {
-                at: [0.054397132, -0.027455827],
-                ways: [[0.12365253, -0.27386785], [0.32076293, 0.5283772]],
-                bound: -0.011502642,
-                links: [1, 7],
-            },
-            tables::Corner {
-                at: [0.17804967, -0.30132368],
-                ways: [[0.34986895, -0.6854485], [-0.12365253, 0.27386785]],
-                bound: -0.016620085,
-                links: [2, 0],
-            },
-            tables::Corner {
-                at: [0.52791864, -0.9867722],
-                ways: [[0.46604705, 0.92113614], [-0.34986895, 0.6854485]],
-                bound: 0.94616723,
-                links: [3, 1],
-            },
-            tables::Corner {
-                at: [0.9939657, -0.06563607],
-                ways: [[-0.18976867, 0.523633], [-0.46604705, -0.92113614]],
-                bound: 0.5080176,
-                links: [4, 2],
-            },
-            tables::Corner {
-                at: [0.804197, 0.45799696],
-                ways: [[-0.09173477, 0.2373851], [0.18976867, -0.523633]],
-                bound: 0.23291862,
-                links: [5, 3],
-            },
-            tables::Corner {
-                at: [0.71246225, 0.69538206],
-                ways: [[-0.08952564, 0.18846554], [0.09173477, -0.2373851]],
-                bound: 0.19652909,
-                links: [6, 4],
-            },
-            tables::Corner {
-                at: [0.6229366, 0.8838476],
-                ways: [[-0.24777654, -0.38292623], [0.08952564, -0.18846554]],
-                bound: -0.019542053,
-                links: [7, 5],
-            },
-            tables::Corner {
-                at: [0.37516007, 0.50092137],
-                ways: [[-0.32076293, -0.5283772], [0.24777654, 0.38292623]],
-                bound: -0.03754902,
-                links: [0, 6],
-            },
-            tables::Corner {
-                at: [0.019793248, -0.074168354],
-                ways: [[0.5469495, -0.8784976], [0.5469495, -0.8784976]],
-                bound: 0.023178022,
-                links: [9, 9],
-            },
-            tables::Corner {
-                at: [0.5667428, -0.9526659],
-                ways: [[-0.5469495, 0.8784976], [-0.5469495, 0.8784976]],
-                bound: -0.023178011,
-                links: [8, 8],
-            },
-            tables::Corner {
-                at: [0.040960204, 0.044424005],
-                ways: [[0.54837936, 0.8562399], [0.54837936, 0.8562399]],
-                bound: 0.010710552,
-                links: [11, 11],
-            },
-            tables::Corner {
-                at: [0.58933955, 0.9006639],
-                ways: [[-0.54837936, -0.8562399], [-0.54837936, -0.8562399]],
-                bound: -0.010710508,
-                links: [10, 10],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-        ],
-        count: 8,
-    };
-    /// Level flight, which the general path retreats to.
-    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
-        thrust_n: [0.0, 0.0],
-        efforts: &[],
-    };
-    /// The closed form of desaturation, where there is one.
+    /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
             tables::ClosedFormUnit {
@@ -676,18 +563,13 @@ pub mod x8_16in_quartic {
             max: 0.95,
         },
         voltage: VOLTAGE,
-        attainable: ATTAINABLE,
-        level: LEVEL,
         rows: [0.07802991, 0.07802991, 2.0053651, 0.024828965],
-        centre: [[0.0, 0.0, 0.0, 2.1597562], [0.0, 0.0, 0.0, 0.0]],
+        spread: [1383.7974, 0.9121876],
+        level_n: [11.306555, 156.33595],
         is_vertical: true,
-        desaturation: tables::Desaturation {
+        priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
-            budget: tables::Budget {
-                pivots: 9,
-                flips: 48,
-            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,

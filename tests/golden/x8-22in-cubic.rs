@@ -96,25 +96,21 @@ pub mod x8_22in_cubic {
         tables::Unit {
             allocation: [[-0.58925563, 0.58925563, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[-0.42426407, 0.42426407, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[-1.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [0, 4],
         },
         tables::Unit {
             allocation: [[-0.58925563, -0.58925563, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[-0.42426407, -0.42426407, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[-1.0, -1.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [1, 5],
         },
         tables::Unit {
             allocation: [[0.58925563, -0.58925563, 0.0, 0.25], [0.0, 0.0, 0.25, 0.0]],
             effectiveness: [[0.42426407, -0.42426407, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
-            columns: [[1.0, -1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]],
             channels: [2, 6],
         },
         tables::Unit {
             allocation: [[0.58925563, 0.58925563, 0.0, 0.25], [0.0, 0.0, -0.25, 0.0]],
             effectiveness: [[0.42426407, 0.42426407, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
-            columns: [[1.0, 1.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0]],
             channels: [3, 7],
         },
     ];
@@ -189,116 +185,7 @@ pub mod x8_22in_cubic {
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
-    /// A polygon inside a unit's attainable set.
-    const ATTAINABLE: tables::AttainableSet<'static> = tables::AttainableSet {
-        scale: [58.68496, 1.1274953],
-        centre: [0.5400911, 0.0],
-        corners: &[
-            tables::Corner {
-                at: [0.06925457, -0.038268264],
-                ways: [[0.18836555, -0.41861817], [0.29928058, 0.43305784]],
-                bound: -0.021782797,
-                links: [1, 6],
-            },
-            tables::Corner {
-                at: [0.25762013, -0.45688644],
-                ways: [[0.25155517, -0.5032828], [-0.18836555, 0.41861817]],
-                bound: -0.014723629,
-                links: [2, 0],
-            },
-            tables::Corner {
-                at: [0.5091753, -0.96016926],
-                ways: [[0.47345233, 0.8347262], [-0.25155517, 0.5032828]],
-                bound: 0.8796164,
-                links: [3, 1],
-            },
-            tables::Corner {
-                at: [0.98262763, -0.12544304],
-                ways: [[-0.20233619, 0.54469925], [-0.47345233, -0.8347262]],
-                bound: 0.50985485,
-                links: [4, 2],
-            },
-            tables::Corner {
-                at: [0.78029144, 0.4192562],
-                ways: [[-0.14188188, 0.34396368], [0.20233619, -0.54469925]],
-                bound: 0.32787678,
-                links: [5, 3],
-            },
-            tables::Corner {
-                at: [0.63840955, 0.7632199],
-                ways: [[-0.2698744, -0.36843032], [0.14188188, -0.34396368]],
-                bound: -0.02923593,
-                links: [6, 4],
-            },
-            tables::Corner {
-                at: [0.36853516, 0.39478958],
-                ways: [[-0.29928058, -0.43305784], [0.2698744, 0.36843032]],
-                bound: -0.041444182,
-                links: [0, 5],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.059156787, -0.047941405],
-                ways: [[0.59399456, -0.8836194], [0.59399456, -0.8836194]],
-                bound: -0.023795152,
-                links: [9, 9],
-            },
-            tables::Corner {
-                at: [0.65315133, -0.9315608],
-                ways: [[-0.59399456, 0.8836194], [-0.59399456, 0.8836194]],
-                bound: 0.023795187,
-                links: [8, 8],
-            },
-            tables::Corner {
-                at: [0.0417104, 0.022829898],
-                ways: [[0.56929165, 0.75691426], [0.56929165, 0.75691426]],
-                bound: 0.018574324,
-                links: [11, 11],
-            },
-            tables::Corner {
-                at: [0.611002, 0.77974415],
-                ways: [[-0.56929165, -0.75691426], [-0.56929165, -0.75691426]],
-                bound: -0.018574297,
-                links: [10, 10],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-            tables::Corner {
-                at: [0.0, 0.0],
-                ways: [[0.0, 0.0], [0.0, 0.0]],
-                bound: 0.0,
-                links: [0, 0],
-            },
-        ],
-        count: 7,
-    };
-    /// Level flight, which the general path retreats to.
-    const LEVEL: tables::LevelFlight<'static> = tables::LevelFlight {
-        thrust_n: [0.0, 0.0],
-        efforts: &[],
-    };
-    /// The closed form of desaturation, where there is one.
+    /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
             tables::ClosedFormUnit {
@@ -674,18 +561,13 @@ pub mod x8_22in_cubic {
             max: 0.95,
         },
         voltage: VOLTAGE,
-        attainable: ATTAINABLE,
-        level: LEVEL,
         rows: [0.040163998, 0.040163998, 0.8869217, 0.01704014],
-        centre: [[0.0, 0.0, 0.0, 2.1603644], [0.0, 0.0, 0.0, 0.0]],
+        spread: [3038.3923, 4.218725],
+        level_n: [22.410816, 219.96385],
         is_vertical: true,
-        desaturation: tables::Desaturation {
+        priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
             yaw_reserve_nm: 0.0,
-            budget: tables::Budget {
-                pivots: 9,
-                flips: 48,
-            },
         },
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
