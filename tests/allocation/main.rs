@@ -2,6 +2,7 @@
 //!
 //! | file | holds the mixer to |
 //! |---|---|
+//! | `authority.rs` | an X12 against an X8 of the same real pair: as much yaw and thrust per unit |
 //! | `delivery.rs` | wrenches of throttles at their limits, on frames of the zoo: delivered |
 //! | `optimum.rs` | linear programmes: few requests short by 1 % of any axis' authority |
 //! | `regressions.rs`, `.toml` | requests that an earlier mixer answered badly, as data |
@@ -18,6 +19,7 @@
 //! | `finite.rs` | no NaN on the way to the throttles, whose sign would depend on the processor |
 #![allow(missing_docs)]
 
+mod authority;
 mod degenerate;
 mod delivery;
 mod failure;

@@ -12,7 +12,7 @@ mod places;
 mod real;
 pub mod zoo;
 
-pub use real::{frames, zoo, zoo_with_bench_data};
+pub use real::{frames, real_pairs, zoo, zoo_with_bench_data};
 
 /// The voltage of `airframes/isae-x8.toml` with exponents that differ, so that a test sees which
 /// factor is applied.
@@ -147,6 +147,13 @@ pub fn irregular(random: &mut Random, units: usize, tilt: f64) -> Vec<Place> {
 /// `channels[2 k + 1]`.
 pub fn toml(places: &[Place], channels: &[usize], options: Options) -> String {
     toml_with_pair(&[counted::PAPER, VOLTAGE].concat(), places, channels, options)
+}
+
+/// `[throttle]` and `[pair]` of an airframe file.
+pub fn text_of_pair(pair: &pairs::Pair) -> String {
+    let mut text = String::new();
+    zoo::write_pair(&mut text, pair);
+    text
 }
 
 /// As [`toml()`], with these `[throttle]`, `[pair]` and, if any, `[voltage]`.

@@ -28,9 +28,19 @@ pub fn zoo(seed: u64) -> Result<Zoo, String> {
 /// # Errors
 /// A file that cannot be read, or a map that `identify` refuses.
 pub fn zoo_with_bench_data(seed: u64, data: &Path) -> Result<Zoo, String> {
+    Ok(Zoo::new(seed, real_pairs(Some(data))?))
+}
+
+/// The pairs of `airframes/` and, where there is a folder of bench files, those of its maps.
+///
+/// # Errors
+/// A file that cannot be read, or a map that `identify` refuses.
+pub fn real_pairs(data: Option<&Path>) -> Result<Vec<Pair>, String> {
     let mut pairs = shipped()?;
-    pairs.extend(identified(data)?);
-    Ok(Zoo::new(seed, pairs))
+    if let Some(data) = data {
+        pairs.extend(identified(data)?);
+    }
+    Ok(pairs)
 }
 
 /// The frames of a zoo from the first on that the compiler takes.

@@ -80,7 +80,7 @@ fn three_digits(number: f64) -> f64 {
 
 // Writing to a String cannot fail; the results are dropped.
 
-fn write_pair(text: &mut String, pair: &Pair) {
+pub(super) fn write_pair(text: &mut String, pair: &Pair) {
     let [min, max] = pair.throttle;
     let [thrust, torque] = pair.coefficients.each_ref().map(|numbers| list(numbers));
     let basis = pair.basis.name();
