@@ -36,11 +36,11 @@ impl<'a, 't, P, I, S, const VERTICAL: bool> Frame<'a, 't, P, I, S, VERTICAL> {
     /// A unit's columns in the rows of the axes.
     #[inline(always)]
     pub(super) fn columns(&self, unit: &Unit) -> Columns {
-        let [by_thrust, by_torque] = unit.effectiveness;
-        let rows = self.tables.rows;
-        [
-            [0, 1, 2, 3].map(|axis| by_thrust[axis] * rows[axis]),
-            [0, 1, 2, 3].map(|axis| self.ratio * by_torque[axis] * rows[axis]),
-        ]
+        let [mut by_thrust, mut by_torque] = unit.effectiveness;
+        for ((thrust, torque), row) in by_thrust.iter_mut().zip(&mut by_torque).zip(self.tables.rows) {
+            *thrust *= row;
+            *torque *= self.ratio * row;
+        }
+        [by_thrust, by_torque]
     }
 }

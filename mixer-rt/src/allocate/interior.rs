@@ -213,7 +213,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
 
     /// Moves the throttles alone to meet the rows by the forward map, the shortages staying.
     #[inline(never)]
-    fn correct(&self, request: &mut Request, units: &mut [UnitState], system: &Factors) {
+    fn correct(&self, request: &Request, units: &mut [UnitState], system: &Factors) {
         let change = system.solve(self.missed(request, units));
         for unknown in units.iter_mut().flat_map(|unit| &mut unit.unknowns) {
             rolled();
@@ -239,7 +239,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
 
     /// What the rows miss, by the forward map.
     #[inline(never)]
-    fn missed(&self, request: &mut Request, units: &mut [UnitState]) -> [f32; 4] {
+    fn missed(&self, request: &Request, units: &mut [UnitState]) -> [f32; 4] {
         let mut missed = request.left();
         for unit in units {
             rolled();

@@ -69,6 +69,19 @@ impl Shortage {
         *missed -= (self.unknown.low + self.unknown.step) * self.width;
         *diagonal += self.unknown.response * self.width * self.width;
     }
+
+    /// The step with a change of its row's multiplier.
+    #[inline(always)]
+    fn respond(&mut self, change: f32, most: &mut f32) {
+        self.unknown.respond(self.width * change, most);
+    }
+
+    /// Rows given up. What the barrier leaves counts as none.
+    #[inline(always)]
+    fn amount(&self) -> f32 {
+        let amount = self.unknown.low * self.width;
+        if amount.abs() > NEGLIGIBLE { amount } else { 0.0 }
+    }
 }
 
 /// How yaw is served.
@@ -94,9 +107,6 @@ pub(super) struct Request {
     has_fifth: bool,
 }
 
-/// The index of each row's diagonal element in the system.
-const DIAGONAL: [usize; 4] = [0, 4, 7, 9];
-
 impl Request {
     /// The request `[roll, pitch, yaw, thrust]` (N m, N; bounded) for n units. `per_thrust` is 1 / k_f,
     /// `ratio` k_Q / k_f.
@@ -109,14 +119,14 @@ impl Request {
         yaw: Yaw,
     ) -> Self {
         let rows = tables.rows.map(|row| row * per_thrust);
+        let mut asked = *wrench;
+        for (asked, row) in asked.iter_mut().zip(rows) {
+            *asked *= row;
+        }
         let limit = TORQUE_LIMIT * n;
         let yaw_limit = if ratio > 1.0 { limit * ratio } else { limit };
-        let [roll, pitch, turn, thrust] = limited(
-            [0, 1, 2, 3].map(|axis| wrench[axis] * rows[axis]),
-            limit,
-            yaw_limit,
-            THRUST_LIMITS.map(|end| end * n),
-        );
+        let thrusts = THRUST_LIMITS.map(|end| end * n);
+        let [roll, pitch, turn, thrust] = limited(asked, limit, yaw_limit, thrusts);
         let is_level = roll.abs() < LEVEL && pitch.abs() < LEVEL;
         let [roll, pitch] = if is_level { [LEVEL, 0.0] } else { [roll, pitch] };
         let along = sqrt(roll * roll + pitch * pitch);
@@ -174,51 +184,48 @@ impl Request {
         })
     }
 
-    /// Calls `f` with each shortage that takes part and its row.
-    #[inline(always)]
-    fn each(&mut self, mut f: impl FnMut(&mut Shortage, usize)) {
-        let [torque, little, much, yaw, kept] = &mut self.shortages;
-        f(torque, 0);
-        f(little, 3);
-        f(much, 3);
-        f(yaw, 2);
-        if self.has_fifth {
-            f(kept, 2);
-        }
-    }
-
-    /// Eliminates the shortages: takes them from the rows wanted, and adds to the system.
+    /// Eliminates the shortages: takes them from the rows wanted, and adds to the system's diagonal.
     #[inline(always)]
     pub(super) fn eliminate(&mut self, lambda: &[f32; 4], mu: f32, matrix: &mut Matrix) -> [f32; 4] {
         let mut missed = self.wanted;
-        self.each(|shortage, row| {
-            shortage.eliminate(lambda[row], mu, &mut missed[row], &mut matrix[DIAGONAL[row]]);
-        });
+        let [torque, little, much, yaw, kept] = &mut self.shortages;
+        torque.eliminate(lambda[0], mu, &mut missed[0], &mut matrix[0]);
+        yaw.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
+        little.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
+        much.eliminate(lambda[3], mu, &mut missed[3], &mut matrix[9]);
+        if self.has_fifth {
+            kept.eliminate(lambda[2], mu, &mut missed[2], &mut matrix[7]);
+        }
         missed
     }
 
     /// Steps with a change of the multipliers; raises `most` to the largest step over its room.
     #[inline(always)]
     pub(super) fn respond(&mut self, change: &[f32; 4], most: &mut f32) {
-        self.each(|shortage, row| shortage.unknown.respond(shortage.width * change[row], most));
+        let [torque, little, much, yaw, kept] = &mut self.shortages;
+        torque.respond(change[0], most);
+        yaw.respond(change[2], most);
+        little.respond(change[3], most);
+        much.respond(change[3], most);
+        if self.has_fifth {
+            kept.respond(change[2], most);
+        }
     }
 
     /// Goes a share of the steps.
     #[inline(always)]
     pub(super) fn advance(&mut self, share: f32) {
-        self.each(|shortage, _| shortage.unknown.advance(share));
+        for shortage in &mut self.shortages {
+            shortage.unknown.advance(share);
+        }
     }
 
-    /// The rows wanted less the shortages, of which those that the barrier leaves count as none.
+    /// The rows wanted less the shortages.
     #[inline(always)]
-    pub(super) fn left(&mut self) -> [f32; 4] {
-        let mut left = self.wanted;
-        self.each(|shortage, row| {
-            let amount = shortage.unknown.low * shortage.width;
-            if amount.abs() > NEGLIGIBLE {
-                left[row] -= amount;
-            }
-        });
-        left
+    pub(super) fn left(&self) -> [f32; 4] {
+        let [along, across, turn, thrust] = self.wanted;
+        let [torque, little, much, yaw, kept] = self.shortages.each_ref().map(Shortage::amount);
+        let yaw = if self.has_fifth { yaw + kept } else { yaw };
+        [along - torque, across, turn - yaw, thrust - (little + much)]
     }
 }

@@ -30,6 +30,6 @@ impl SingleRotor {
             let (outer, outer_slope) = (middle * x + a1, slope * x + middle);
             [outer * x, outer_slope * x + outer, half * x + outer_slope]
         });
-        [0, 1, 2].map(|order| [f[order], q[order]])
+        [[f[0], q[0]], [f[1], q[1]], [f[2], q[2]]]
     }
 }
