@@ -39,8 +39,9 @@ fn an_x12_gives_as_much_per_unit_as_an_x8() {
     let mut ratios: [Vec<f64>; 4] = Default::default();
     for pair in &pairs {
         let text = frames::text_of_pair(pair);
-        let [four, six] = [(4, 45.0), (6, 30.0)]
-            .map(|(units, first)| compile_with_pair(&text, &frames::regular(units, first), Options::default()));
+        let [four, six] = [(4, 45.0), (6, 30.0)].map(|(units, first)| {
+            compile_with_pair(&text, &frames::regular(units, first), Options::default())
+        });
         let thrust = |frame: &Frame| {
             let most = 2.0 * frame.authority[3] as f32;
             given(frame, [0.0, 0.0, 0.0, most])[3]
@@ -60,7 +61,10 @@ fn an_x12_gives_as_much_per_unit_as_an_x8() {
     for (name, ratios) in names.into_iter().zip(&mut ratios) {
         ratios.sort_by(f64::total_cmp);
         let (least, median) = (ratios[0], ratios[ratios.len() / 2]);
-        println!("{name}: {} pairs, median {median:.4}, least {least:.4}", ratios.len());
+        println!(
+            "{name}: {} pairs, median {median:.4}, least {least:.4}",
+            ratios.len()
+        );
         if name == "largest thrust" {
             assert!(least >= LEAST_THRUST, "{name}: {least}");
         } else {

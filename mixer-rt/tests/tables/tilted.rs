@@ -245,7 +245,7 @@ pub mod tilted {
         voltage: VOLTAGE,
         rows: [0.16757365, 0.19349739, 0.68405133, 0.05604087],
         spread: [227.60522, 0.11379245],
-        level_n: [3.3457727, 102.04607],
+        level_n: [3.2667565, 102.700134],
         is_vertical: false,
         priorities: tables::Priorities {
             airmode: tables::Airmode::RollPitch,

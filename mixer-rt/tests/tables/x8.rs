@@ -493,7 +493,7 @@ pub mod isae_x8 {
         voltage: VOLTAGE,
         rows: [0.12678374, 0.12678374, 4.595398, 0.040342588],
         spread: [443.2581, 0.14420184],
-        level_n: [3.0984626, 97.60157],
+        level_n: [2.4529061, 98.69716],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
