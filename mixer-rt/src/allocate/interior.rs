@@ -30,7 +30,7 @@
 //! exceeds the cost of all of roll and pitch.
 //!
 //! Constants were chosen on 20,000 drawn requests per state of health, and on 50,000 pairs of requests
-//! 1e-4 apart; `cargo xtask soak --rotors-out` and the tests of `tests/allocation` show what they trade.
+//! 1e-4 apart; `cargo xtask soak` and the tests of `tests/allocation` show what they trade.
 //! TinyMPC and Clarabel are built alike: one function per step.
 
 use core::hint::black_box;

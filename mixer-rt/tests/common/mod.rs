@@ -1,5 +1,6 @@
 //! Two frames of constant tables, drawn requests, and what throttles give in double precision.
-//! `tests/tables/tilted.toml` says how the tables are made again where their types or numbers change.
+//! The X8 is the golden output of `airframes/isae-x8.toml`; `tests/tables/tilted.toml` says how the tables
+//! of the other are made again.
 #![allow(clippy::module_inception, dead_code, missing_docs, unreachable_pub)]
 
 use std::fmt::Debug;
@@ -11,7 +12,7 @@ use mixer_rt::{Health, Saturation, SetpointError, Wrench};
 #[path = "../tables/tilted.rs"]
 mod tilted;
 #[rustfmt::skip]
-#[path = "../tables/x8.rs"]
+#[path = "../../../tests/golden/isae-x8.rs"]
 mod x8;
 
 pub const AIRMODES: [Airmode; 3] = [Airmode::Disabled, Airmode::RollPitch, Airmode::RollPitchYaw];
