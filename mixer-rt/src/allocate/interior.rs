@@ -54,7 +54,7 @@ const FIRST_MU: f32 = 90.0;
 const NEXT_MU: f32 = 0.01;
 
 /// Share of the authority up to which a row counts as met after the first iterations, and after the
-/// further ones. Flags have 0.1 % of an axis, and would flicker with a wider one.
+/// further ones. The first is the stricter one, so that requests along a ramp do not go to and fro.
 const MET: f32 = 1e-3;
 const MET_AT_LAST: f32 = 2e-3;
 
