@@ -81,7 +81,7 @@ pub const LIMITS: [Limit; 15] = [
     limit(Check::Flag, "flag", 0.0, 0.0, NONE),
     limit(Check::Overstepped, "overstepped", SLACK, 0.0, [0.0, 1e-4]),
     limit(Check::Turned, "turned", SLACK, 0.0, [0.0, 1e-4]),
-    limit(Check::Raised, "raised", 0.0, 0.0, NONE),
+    limit(Check::Raised, "raised", 0.0, 2e-5, [2e-5; 2]),
     limit(Check::Delivered, "delivered", 0.01, 1e-3, [1e-3; 2]),
     limit(Check::Jump, "jump", 0.02, 1e-4, [1e-4; 2]),
     limit(Check::Step, "step", 0.01, 1e-4, [1e-4; 2]),
