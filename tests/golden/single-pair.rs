@@ -417,7 +417,7 @@ pub mod single_pair {
         voltage: VOLTAGE,
         rows: [0.0, 0.0, 4.595398, 0.040342588],
         spread: [443.2581, 0.14420184],
-        level_n: [0.61321723, 24.674278],
+        level_n: [0.61321706, 24.674278],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,

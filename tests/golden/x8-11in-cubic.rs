@@ -565,7 +565,7 @@ pub mod x8_11in_cubic {
         voltage: VOLTAGE,
         rows: [0.2616082, 0.2616082, 4.76171, 0.055495482],
         spread: [227.60522, 0.11379245],
-        level_n: [2.1986294, 69.14089],
+        level_n: [2.198629, 69.14089],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,

@@ -503,7 +503,7 @@ pub mod x8_11in_least_power {
         voltage: VOLTAGE,
         rows: [0.23520674, 0.23520674, 4.404444, 0.049894884],
         spread: [287.4635, 0.12583156],
-        level_n: [2.3466544, 74.53513],
+        level_n: [2.346654, 74.53513],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,

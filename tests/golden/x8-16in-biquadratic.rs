@@ -553,7 +553,7 @@ pub mod x8_16in_biquadratic {
         voltage: VOLTAGE,
         rows: [0.07478874, 0.07478874, 1.804133, 0.023797631],
         spread: [1275.6128, 0.83707935],
-        level_n: [2.7144423, 163.26555],
+        level_n: [2.7144427, 163.26555],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
