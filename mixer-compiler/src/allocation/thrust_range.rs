@@ -1,6 +1,6 @@
 //! The range of thrust without torques, by the mixer itself: a frame that cannot hover is refused.
 
-use mixer_rt::Wrench;
+use mixer_rt::{Direction, Wrench};
 
 use crate::airframe::Airframe;
 use crate::diagnostic::{Code, Diagnostic};
@@ -24,8 +24,13 @@ pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<
             thrust_n,
             ..Wrench::default()
         };
-        let mixed = tables.mix(&setpoint, volts);
-        mixed.is_ok_and(|(_, _, saturation)| !saturation.any_axis())
+        tables.mix(&setpoint, volts).is_ok_and(|(_, _, saturation)| {
+            let mut axes = airframe.allocation.axes.iter();
+            axes.all(|&axis| {
+                let sides = [Direction::Positive, Direction::Negative];
+                sides.into_iter().all(|side| !saturation.is_saturated(axis, side))
+            })
+        })
     };
     longest_run(tables, &is_delivered).ok_or_else(|| {
         vec![airframe.diagnostic(
