@@ -79,13 +79,14 @@ pub const LIMITS: [Limit; 15] = [
     limit(Check::Throttle, "throttle", 0.0, 0.0, NONE),
     limit(Check::Truth, "truth", 0.0, 0.0, NONE),
     limit(Check::Flag, "flag", 0.0, 0.0, NONE),
-    limit(Check::Overstepped, "overstepped", SLACK, 0.0, [0.0, 1e-4]),
-    limit(Check::Turned, "turned", SLACK, 0.0, [0.0, 1e-4]),
+    // With all rotors: of frames that have no level flight by least norm, and so no guard.
+    limit(Check::Overstepped, "overstepped", SLACK, 1e-5, [0.0, 1e-4]),
+    limit(Check::Turned, "turned", SLACK, 1e-5, [0.0, 1e-4]),
     limit(Check::Raised, "raised", 0.0, 2e-5, [2e-5; 2]),
     limit(Check::Delivered, "delivered", 0.01, 1e-3, [1e-3; 2]),
-    limit(Check::Jump, "jump", 0.02, 1e-4, [1e-4; 2]),
+    limit(Check::Jump, "jump", 0.02, 2e-4, [1e-4; 2]),
     limit(Check::Step, "step", 0.01, 1e-4, [1e-4; 2]),
-    limit(Check::Optimal, "optimal", ALLOWED, 1.0 / 200.0, [0.04, 0.2]),
+    limit(Check::Optimal, "optimal", ALLOWED, 0.01, [0.04, 0.2]),
 ];
 
 impl Check {
