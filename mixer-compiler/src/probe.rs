@@ -12,7 +12,7 @@
 //! rotors out  every rotor alone, and pairs of rotors: level flight and torques from there
 //! ```
 //!
-//! A wrench is delivered, or flagged and sound: no torque reversed or exceeded, the direction of
+//! A wrench is delivered, or flagged and, with one rotor out at most, sound: no torque reversed or exceeded, the direction of
 //! (roll, pitch) kept, and with airmode disabled and all rotors no more thrust than asked. It has to be delivered
 //! where the throttles of least norm are well inside their range. The physics ([`physics`])
 //! know nothing of M: they add forces and torques unit by unit.
@@ -21,7 +21,7 @@ mod physics;
 mod sides;
 
 use mixer_rt::tables::Airmode;
-use mixer_rt::{Axis, Direction, Health, Wrench};
+use mixer_rt::{Axis, Health, Wrench};
 
 use crate::airframe::Airframe;
 use crate::diagnostic::{Code, Diagnostic};
@@ -213,7 +213,7 @@ impl<'a> At<'a> {
         let setpoint = Wrench::from_array(asked);
         let fault = |what: String| {
             let mut out = String::new();
-            for channel in (0..airframe.rotors()).filter(|channel| self.health.has_failed(*channel as u8)) {
+            for channel in self.failed() {
                 out += &format!(", rotor {channel} out");
             }
             let volts = if airframe.voltage.is_some() {
@@ -259,9 +259,7 @@ impl<'a> At<'a> {
                     words(&given)
                 )));
             }
-            let is_flagged = [Direction::Positive, Direction::Negative]
-                .into_iter()
-                .any(|direction| saturation.is_saturated(axis, direction));
+            let is_flagged = saturation.is_flagged(axis);
             is_level &= !is_flagged;
             if !is_flagged && (given[k] - asked[k]).abs() > 2.0 * tolerance[k] {
                 return Err(fault(format!("given {} without a flag on {axis}", words(&given))));
@@ -277,7 +275,7 @@ impl<'a> At<'a> {
         // caller goes on from there. With two they are all but always, which is no proof of a fault.
         let is_promised = self.health.is_good() || is_level || asked[..3] != [0.0; 3];
         if is_promised
-            && self.rotors_out() <= 1
+            && self.failed().count() <= 1
             && let Some(axis) = self.unsound(&asked, &given)
         {
             return Err(fault(format!(
@@ -288,9 +286,10 @@ impl<'a> At<'a> {
         Ok(is_level)
     }
 
-    fn rotors_out(&self) -> usize {
+    /// Outputs of the rotors that are out.
+    fn failed(&self) -> impl Iterator<Item = u8> {
         let rotors = 0..self.probe.airframe.rotors() as u8;
-        rotors.filter(|&channel| self.health.has_failed(channel)).count()
+        rotors.filter(|&channel| self.health.has_failed(channel))
     }
 
     /// True where the throttles of least norm are well inside their range: such a wrench is delivered.

@@ -93,7 +93,7 @@ impl UnitMap {
     }
 }
 
-/// What the tables are made of, but for the closed form.
+/// Sources of the tables, but for the closed form.
 pub(crate) struct Parts<'a> {
     /// The airframe.
     pub(crate) airframe: &'a Airframe,

@@ -4,7 +4,7 @@ mod scalar;
 mod sqrt;
 
 pub use scalar::Scalar;
-pub(crate) use scalar::{clamp, divided, divisor, larger, quotient};
+pub(crate) use scalar::{clamp, divided, divisor, larger, quotient, smaller};
 pub use sqrt::sqrt;
 
 /// In a loop's body: keeps the compiler from unrolling it. Unrolled, the loops of desaturation take

@@ -35,7 +35,7 @@ pub mod tables;
 mod voltage;
 mod wrench;
 
-pub(crate) use arithmetic::{clamp, divided, divisor, larger, quotient, rolled, sqrt};
+pub(crate) use arithmetic::{clamp, divided, divisor, larger, quotient, rolled, smaller, sqrt};
 pub use health::Health;
 pub use mix::{Airframe, Mix, Outputs};
 pub use saturation::{Direction, Saturation};

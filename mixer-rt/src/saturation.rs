@@ -72,9 +72,9 @@ impl Saturation {
         self.0 & Self::VOLTAGE != 0
     }
 
-    /// True where anything was given up on this axis.
+    /// True where anything was given up on this axis, in either direction.
     #[inline]
-    pub(crate) const fn is_flagged(self, axis: Axis) -> bool {
+    pub const fn is_flagged(self, axis: Axis) -> bool {
         self.0 & (3 << (2 * axis as u32)) != 0
     }
 

@@ -10,6 +10,9 @@ use mixer_tests::shortfall::{ALLOWED, Shortfall};
 
 use crate::{REFERENCE_V, number};
 
+/// Share of the authority by which few answers may be short of roll and pitch.
+const FAR: f64 = 0.02;
+
 #[derive(Default)]
 pub(crate) struct Judged {
     pub(crate) requests: usize,
@@ -17,6 +20,8 @@ pub(crate) struct Judged {
     void: usize,
     /// Requests on which the optimum is missed.
     pub(crate) missed: usize,
+    /// Requests that are short of roll and pitch by more than [`FAR`].
+    far: usize,
     worst: Shortfall,
 }
 
@@ -42,6 +47,7 @@ impl Judged {
                 continue;
             };
             self.requests += 1;
+            self.far += usize::from(shortfall.torque > FAR);
             self.worst = self.worst.max(shortfall);
             if shortfall.misses() {
                 self.missed += 1;
@@ -62,6 +68,7 @@ impl Judged {
         self.requests += other.requests;
         self.void += other.void;
         self.missed += other.missed;
+        self.far += other.far;
         self.worst = self.worst.max(other.worst);
     }
 
@@ -155,6 +162,8 @@ fn any_frame_reaches_the_optimum() {
     all.print("all");
     assert!(all.requests >= 1200);
     all.hold(200);
+    // Roll and pitch come first; sets that are not convex have other local optima.
+    assert!(all.far * 1000 <= all.requests, "{} of {}", all.far, all.requests);
 }
 
 /// One or two rotors out, of different units or of the same.

@@ -186,11 +186,8 @@ impl Soak {
     /// Of all classes together, with none of the misses kept.
     fn count(&self, out: usize, check: Check) -> Count {
         let mut all = Count::default();
-        for ((_, _, _), count) in self
-            .counts
-            .iter()
-            .filter(|((o, c, _), _)| (*o, *c) == (out, check))
-        {
+        let is_of = |(o, c, _): &(usize, Check, Class)| (*o, *c) == (out, check);
+        for (_, count) in self.counts.iter().filter(|(key, _)| is_of(key)) {
             all.looked += count.looked;
             all.missed += count.missed;
             all.worst = all.worst.max(count.worst);

@@ -1,6 +1,6 @@
 //! The range of thrust without torques, by the mixer itself: a frame that cannot hover is refused.
 
-use mixer_rt::{Direction, Wrench};
+use mixer_rt::Wrench;
 
 use crate::airframe::Airframe;
 use crate::diagnostic::{Code, Diagnostic};
@@ -26,10 +26,7 @@ pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<
         };
         tables.mix(&setpoint, volts).is_ok_and(|(_, _, saturation)| {
             let mut axes = airframe.allocation.axes.iter();
-            axes.all(|&axis| {
-                let sides = [Direction::Positive, Direction::Negative];
-                sides.into_iter().all(|side| !saturation.is_saturated(axis, side))
-            })
+            axes.all(|axis| !saturation.is_flagged(*axis))
         })
     };
     longest_run(tables, &is_delivered).ok_or_else(|| {

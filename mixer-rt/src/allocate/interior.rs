@@ -1,4 +1,4 @@
-//! What least norm cannot serve: an interior point method on the throttles.
+//! An interior point method on the throttles, for requests that least norm cannot serve.
 //!
 //! ```text
 //! least   sum_j c_j s_j  +  rho/2 sum_i (t_i - t_i*)^2
@@ -129,8 +129,8 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
         [0.0; 4]
     }
 
-    /// Runs the iterations from the barrier's weight `mu` on, and corrects the throttles. Returns what the
-    /// rows miss.
+    /// Runs the iterations from the barrier's weight `mu` on, and corrects the throttles. Returns the
+    /// residual of the rows.
     #[inline(never)]
     fn iterate(
         &self,
@@ -237,7 +237,7 @@ impl<P: Quantity, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
         }
     }
 
-    /// What the rows miss, by the forward map.
+    /// Residual of the rows by the forward map.
     #[inline(never)]
     fn missed(&self, request: &Request, units: &mut [UnitState]) -> [f32; 4] {
         let mut missed = request.left();

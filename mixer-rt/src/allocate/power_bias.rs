@@ -32,7 +32,7 @@ use super::frame::Frame;
 use super::unit::UnitState;
 use crate::layout::Tables;
 use crate::pair::{Inverse, Quantity, solve};
-use crate::{divided, divisor, rolled};
+use crate::{divided, divisor, rolled, smaller};
 
 /// Share of the room that is used: the efforts are not quite linear over squares.
 const ROOM: f32 = 0.8;
@@ -75,6 +75,7 @@ pub(crate) fn add_power_bias<P: Quantity, I: Inverse<P>, S>(
     factors: [f32; 2],
     units: &mut [UnitState],
 ) {
+    // No columns are used here, so the kind of axes makes no difference.
     Frame::<_, _, _, true>::new(black_box(tables), factors).add_power_bias(wrench, units);
 }
 
@@ -116,9 +117,4 @@ impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S,
             self.serve_by_least_norm(wrench, units);
         }
     }
-}
-
-#[inline(always)]
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }

@@ -1,4 +1,4 @@
-//! What comes before what where a request is not attainable.
+//! Priorities of a request that is not attainable.
 //!
 //! Each part of the request that may be given up has a cost per row; a row is scaled so that n units
 //! have the authority n.
@@ -23,7 +23,7 @@ pub(super) const RESERVED: f32 = 90.0;
 pub(super) const TORQUE: f32 = 400.0;
 pub(super) const FORBIDDEN: f32 = 2000.0;
 
-/// What allocation may do to the thrust, with PX4's meaning of the word (`MC_AIRMODE`).
+/// Freedom of allocation to change the thrust, with PX4's meaning of the word (`MC_AIRMODE`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Airmode {
     /// Roll and pitch may lower the thrust, nothing may raise it.
@@ -45,7 +45,7 @@ impl Airmode {
 /// Priorities where a request is not attainable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Priorities {
-    /// What may happen to the thrust.
+    /// Freedom to change the thrust.
     pub airmode: Airmode,
     /// The yaw torque that comes before thrust, N m, >= 0.
     pub yaw_reserve_nm: f32,

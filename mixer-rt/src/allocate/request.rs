@@ -16,7 +16,7 @@ use super::priorities::{Airmode, FORBIDDEN, LAST, MIDDLE, RESERVED, TORQUE, limi
 use super::system::{Columns, Matrix};
 use super::unknown::Unknown;
 use crate::layout::Tables;
-use crate::{divisor, sqrt};
+use crate::{divisor, larger, smaller, sqrt};
 
 /// Largest roll, pitch and yaw asked, in rows per unit: beyond all that units give.
 const TORQUE_LIMIT: f32 = 1.2;
@@ -34,7 +34,7 @@ const NEGLIGIBLE: f32 = 2e-4;
 /// Roll and pitch below this count as none, rows; their direction is then that of roll.
 const LEVEL: f32 = 1e-12;
 
-/// What may be given up of a row.
+/// Part of a row that may be given up.
 #[derive(Clone, Copy)]
 pub(super) struct Shortage {
     /// The share of the width that is given up.
@@ -47,7 +47,7 @@ pub(super) struct Shortage {
 
 impl Shortage {
     fn new(width: f32, cost: f32) -> Self {
-        let width = if width > LEAST_WIDTH { width } else { LEAST_WIDTH };
+        let width = larger(width, LEAST_WIDTH);
         Shortage {
             unknown: Unknown::central(1.0),
             width,
@@ -133,7 +133,7 @@ impl Request {
         let per_along = 1.0 / divisor(along);
         let (sense, turn) = if turn < 0.0 { (-1.0, -turn) } else { (1.0, turn) };
         let reserve = tables.priorities.yaw_reserve_nm * rows[2];
-        let kept = if reserve < turn { reserve } else { turn };
+        let kept = smaller(reserve, turn);
         let airmode = tables.priorities.airmode;
         let is_last = yaw == Yaw::Last;
         let [thrust_cost, yaw_cost] = if airmode.is_yaw_first() && !is_last {

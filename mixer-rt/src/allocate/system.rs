@@ -1,6 +1,8 @@
 //! The four rows roll and pitch along the request, across it, yaw, thrust: their columns and the
 //! symmetric system of their multipliers.
 
+use crate::larger;
+
 /// Added to the diagonal: keeps the system regular where a row is not served.
 const REGULAR: f32 = 1e-6;
 
@@ -98,10 +100,7 @@ impl Factors {
     #[inline(always)]
     pub(super) fn of(matrix: &Matrix) -> Self {
         let [m00, m01, m02, m03, m11, m12, m13, m22, m23, m33] = *matrix;
-        let per_pivot = |left: f32, whole: f32| {
-            let (left, least) = (left + REGULAR, ROUNDING * whole + REGULAR);
-            1.0 / if left > least { left } else { least }
-        };
+        let per_pivot = |left: f32, whole: f32| 1.0 / larger(left + REGULAR, ROUNDING * whole + REGULAR);
         let p0 = per_pivot(m00, m00);
         let (l01, l02, l03) = (m01 * p0, m02 * p0, m03 * p0);
         let (e11, e12, e13) = (m11 - l01 * m01, m12 - l01 * m02, m13 - l01 * m03);

@@ -5,7 +5,7 @@ use core::hint::black_box;
 use super::unknown::Unknown;
 use crate::pair::rotors::Rotors;
 
-/// What is known of one unit while a wrench is allocated.
+/// State of one unit while a wrench is allocated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitState {
     /// Which of its rotors turn.

@@ -11,7 +11,7 @@
 //! multiplier that is left of the gain there; the other one has none but the barrier's. So the step
 //! and the response to a change of the gain are closed forms with one division.
 
-use crate::divided;
+use crate::{divided, larger};
 
 /// An unknown between two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,8 +52,7 @@ impl Unknown {
         // The distance from the bound that the gain leads away from, and the one ahead.
         let (behind, ahead) = if gain > 0.0 { (low, high) } else { (high, low) };
         let bent = curvature * ahead * ahead;
-        let left = ahead * gain.abs() - bent;
-        let left = if left > mu { left } else { mu };
+        let left = larger(ahead * gain.abs() - bent, mu);
         let scale = divided(product, behind * behind * (left + bent) + mu * ahead * ahead);
         self.response = product * scale;
         self.step = (gain * product + mu * (high - low)) * scale;

@@ -85,6 +85,12 @@ pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
+/// The smaller of two; `b` where either is NaN.
+#[inline(always)]
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 /// Below every divisor but zero, and so large that no numerator of the runtime overflows by it.
 const LEAST_DIVISOR: f32 = 1e-24;
 

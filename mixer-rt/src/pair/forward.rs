@@ -53,7 +53,7 @@ impl<P: Quantity> Pair<P> {
         ([f, q], [[f_u, f_l], [q_u, q_l]])
     }
 
-    /// What both rotors give at `[u, l]`.
+    /// Efforts of both rotors at `[u, l]` with their derivatives.
     #[inline(always)]
     pub(crate) fn expansion(&self, [u, l]: [f32; 2]) -> Expansion {
         let [f, f_u, f_l, f_uu, f_ll] = self.thrust.expansion(u, l);
@@ -66,8 +66,7 @@ impl<P: Quantity> Pair<P> {
     }
 }
 
-/// What a unit gives about its throttles: `[f, Q]`, and by each throttle its slope and half its second
-/// derivative.
+/// Efforts `[f, Q]` of a unit, and by each throttle their slopes and half their second derivatives.
 #[derive(Clone, Copy)]
 pub(crate) struct Expansion {
     pub(crate) value: [f32; 2],

@@ -33,7 +33,7 @@ impl Rotors {
     #[inline(always)]
     pub(crate) fn single(self) -> Option<usize> {
         let [upper, lower] = self.0;
-        (upper != lower).then_some(usize::from(lower) & 1)
+        (upper != lower).then_some(usize::from(lower))
     }
 
     /// The efforts `[f, Q]` (N, N m) of a unit with these rotors at `[u, l]`.

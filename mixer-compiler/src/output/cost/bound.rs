@@ -44,7 +44,7 @@ const KNOTS: u32 = 75;
 const KNOT: u32 = 30;
 const KNOT_UNIT: u32 = 7;
 
-/// What a reserve of yaw calls more often: rounds, and how far yaw reaches in one of them.
+/// Additional work for a reserve of yaw: rounds, and calls in one of them for how far yaw reaches.
 const RESERVE_ROUNDS: u32 = 2;
 const RESERVE_REACHES: u32 = 6;
 
@@ -91,7 +91,7 @@ fn least_norm(compiled: &Compiled) -> Option<u32> {
 fn interior(compiled: &Compiled) -> u32 {
     let n = compiled.tables.units.len() as u32;
     let unit = ITERATION_UNIT[usize::from(!compiled.tables.is_vertical)];
-    // What the derivatives of the basis take more.
+    // Additional instructions for the derivatives of the basis.
     let more = match compiled.airframe.pair.basis {
         Basis::Biquadratic => 0,
         Basis::Cubic => 10,
