@@ -45,7 +45,6 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/allocation.md", "logged-saving", tables::logged_saving()?),
         of("docs/allocation.md", "yaw-reserve", tables::yaw_reserve()?),
         of("docs/evidence.md", "logged-hover", tables::logged_hover()?),
-        of("docs/help.md", "help", tables::help()),
         of("docs/flight.md", "hover", tables::hover()?),
         of("docs/flight.md", "tracking", tables::tracking()?),
         of("docs/flight.md", "energy", tables::energy()?),

@@ -633,18 +633,3 @@ pub(super) fn tracking() -> Result<String, String> {
         .collect();
     Ok(markdown(&header, &rows))
 }
-
-/// What every command prints for `--help`.
-pub(super) fn help() -> String {
-    let mut program = cargo_mixer::arguments::command();
-    program.build();
-    let mut text = String::new();
-    let own = |command: &&mut clap::Command| command.get_name() != "help";
-    for command in program.get_subcommands_mut().filter(own) {
-        let name = command.get_name().to_owned();
-        let help = command.render_long_help().to_string();
-        let lines = help.lines().map(|line| format!("{}\n", line.trim_end()));
-        text += &format!("## {name}\n\n```text\n{}```\n\n", lines.collect::<String>());
-    }
-    text.trim_end().to_owned() + "\n"
-}
