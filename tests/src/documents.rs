@@ -40,14 +40,14 @@ pub fn tables() -> Result<Vec<Table>, String> {
             "interaction-constants",
             tables::interaction_constants()?,
         ),
-        of("docs/bench-run.md", "levels", tables::levels()?),
-        of("docs/bench-run.md", "spacings", tables::spacings()?),
+        of("docs/bench.md", "levels", tables::levels()?),
+        of("docs/bench.md", "spacings", tables::spacings()?),
         of("docs/allocation.md", "logged-saving", tables::logged_saving()?),
         of("docs/allocation.md", "yaw-reserve", tables::yaw_reserve()?),
-        of("docs/evidence.md", "logged-hover", tables::logged_hover()?),
-        of("docs/flight.md", "hover", tables::hover()?),
-        of("docs/flight.md", "tracking", tables::tracking()?),
-        of("docs/flight.md", "energy", tables::energy()?),
+        of("docs/flights.md", "logged-hover", tables::logged_hover()?),
+        of("docs/flights.md", "hover", tables::hover()?),
+        of("docs/flights.md", "tracking", tables::tracking()?),
+        of("docs/flights.md", "energy", tables::energy()?),
     ]);
     Ok(tables)
 }

@@ -85,7 +85,7 @@ const TASKS: &[Task] = &[
              five_levels two_spacings logged_flights in_hover report_of_the_documents",
         ],
         does: "measures on MIXER_BENCH_DATA and writes levels.csv, spacings.csv, logged-saving.csv, logged-hover.csv and \
-               docs/identify-report.md",
+               docs/bench.md",
     },
     Task {
         name: "flights",

@@ -260,7 +260,7 @@ fn the_pack_s_voltages_are_its_cells() {
     }
 }
 
-/// The run that docs/identify-report.md explains. `cargo xtask bench-data` writes it.
+/// The run that docs/bench.md explains. `cargo xtask bench-data` writes it.
 #[test]
 fn the_report_of_the_documents_is_that_of_the_bench() {
     const FILE: &str =
@@ -274,7 +274,7 @@ fn the_report_of_the_documents_is_that_of_the_bench() {
         &Path::new(&data).join("newdexterity"),
         &[&["identify", FILE][..], &arguments].concat(),
     );
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/identify-report.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/bench.md");
     let text = fs::read_to_string(&page).expect("the page");
     let (before, rest) = text.split_once("<!-- identify -->").expect("a place");
     let (_, after) = rest.split_once("<!-- end -->").expect("an end");

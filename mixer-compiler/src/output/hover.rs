@@ -143,7 +143,7 @@ pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
             "vehicle.mass_kg",
             message,
             "perhaps nothing is left",
-            "measure the pair (docs/bench-run.md), or fly with less mass",
+            "measure the pair (docs/bench.md), or fly with less mass",
         ))
     };
     at.margins.iter().filter_map(warning).collect()
