@@ -1,8 +1,8 @@
 //! Every airframe compiles to its golden outputs, byte for byte.
 #![allow(missing_docs)]
 
-use cargo_mixer::golden::compare;
-use cargo_mixer::golden::vectors::{self, Kind, Vector};
+use cargo_mixer::commands::golden::compare;
+use cargo_mixer::commands::golden::vectors::{self, Kind, Vector};
 use mixer_tests::physics::Physics;
 use mixer_tests::{airframes, golden};
 
@@ -22,8 +22,9 @@ fn airframes_compile_to_their_golden_outputs() {
 /// The same text gives the same bytes, also in one process and whatever was compiled before.
 #[test]
 fn compilation_is_deterministic() {
-    let outputs =
-        |name| cargo_mixer::golden::outputs(&golden::compile(name).unwrap_or_else(|e| panic!("{e}")));
+    let outputs = |name| {
+        cargo_mixer::commands::golden::outputs(&golden::compile(name).unwrap_or_else(|e| panic!("{e}")))
+    };
     let once = outputs("isae-x8");
     let _ = outputs("px4-y6");
     assert_eq!(once, outputs("isae-x8"));

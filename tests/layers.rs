@@ -32,7 +32,7 @@ fn sources(package: &str) -> BTreeMap<Module, syn::File> {
     let mut found = BTreeMap::new();
     files(&root().join(package).join("src"), &Vec::new(), &mut found);
     // Roots of programs, and text that is compiled for other targets.
-    let others = ["main", "bin::sitl", "library::support::memory"];
+    let others = ["main", "bin::sitl", "commands::library::support::memory"];
     found.retain(|module, _| !others.contains(&module.join("::").as_str()));
     found
 }

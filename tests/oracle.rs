@@ -71,7 +71,7 @@ fn compiled(path: &str) -> Compiled {
 fn mix_with(path: &str, health: Health, setpoints: &str) -> String {
     let compiled = compiled(path);
     let mut mixed = Vec::new();
-    let bad = cargo_mixer::mix::mix(&compiled, health, setpoints.as_bytes(), &mut mixed, |bad| {
+    let bad = cargo_mixer::commands::mix::mix(&compiled, health, setpoints.as_bytes(), &mut mixed, |bad| {
         eprintln!("{bad:?}")
     });
     assert!(matches!(bad, Ok(0)), "{bad:?}");

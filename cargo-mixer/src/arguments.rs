@@ -4,10 +4,11 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::{
-    check, compare, expand, finish, golden, identify, import, library, mix, new, params, plan, predict,
-    report, schema, shell, sweep,
+use crate::commands::{
+    check, compare, expand, golden, identify, import, library, mix, new, params, plan, predict, report,
+    schema, shell, sweep,
 };
+use crate::finish;
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
 #[derive(Parser)]

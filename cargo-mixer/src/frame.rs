@@ -9,7 +9,7 @@ use mixer_compiler::airframe::Spin;
 use mixer_compiler::{Source, hover};
 
 use crate::bench_args::quantity;
-use crate::schema::DIRECTIVE;
+use crate::commands::schema::DIRECTIVE;
 use crate::stack::Stack;
 
 /// A frame of coaxial pairs.

@@ -4,7 +4,7 @@
 mod maps;
 
 use cargo_mixer::bench_files::read_one;
-use cargo_mixer::predict::PredictArgs;
+use cargo_mixer::commands::predict::PredictArgs;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use cargo_mixer::bench_files::identify;
-use cargo_mixer::identify::IdentifyArgs;
+use cargo_mixer::commands::identify::IdentifyArgs;
 use clap::Parser;
 
 use crate::root;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use cargo_mixer::bench_files::identify_with_runs;
-use cargo_mixer::identify::IdentifyArgs;
+use cargo_mixer::commands::identify::IdentifyArgs;
 use clap::Parser;
 use mixer_identify::fragment;
 use mixer_identify::identified::Identified;

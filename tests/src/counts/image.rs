@@ -5,7 +5,7 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use cargo_mixer::library::LibraryArgs;
+use cargo_mixer::commands::library::LibraryArgs;
 
 use super::Row;
 use super::subject::{C_INTERFACE, Subject};
@@ -145,7 +145,7 @@ fn library(toolchain: &Toolchain, airframe: &str) -> Result<(PathBuf, String), S
     let module = airframe.replace('-', "_");
     let made = toolchain.scratch("c-interface")?;
     let args = LibraryArgs::for_target(path, TARGET, made.clone());
-    if cargo_mixer::library::run(&args) != ExitCode::SUCCESS {
+    if cargo_mixer::commands::library::run(&args) != ExitCode::SUCCESS {
         return Err(format!("no library of {airframe} for {TARGET}: see above"));
     }
     // Cargo does not see that a library has changed, but that it has another path.

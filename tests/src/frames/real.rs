@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use cargo_mixer::bench_files::identify;
-use cargo_mixer::identify::IdentifyArgs;
+use cargo_mixer::commands::identify::IdentifyArgs;
 use clap::Parser;
 use mixer_compiler::Source;
 use mixer_identify::fragment;

@@ -19,10 +19,10 @@ use mixer_identify::{date, fragment, report, verdict};
 
 use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::{identify_with_runs, read_all};
+use crate::commands::predict::{self, RotorArgs};
 use crate::frame::FrameArgs;
 use crate::pack::PackArgs;
 use crate::place::Place;
-use crate::predict::{self, RotorArgs};
 use crate::{BAD_USAGE, print_error, print_note};
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.

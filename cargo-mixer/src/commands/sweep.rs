@@ -8,8 +8,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_report::data::{Data, Sweep, sweep};
 use mixer_report::study::Study;
 
+use crate::commands::report::thrust;
 use crate::file;
-use crate::report::thrust;
 
 /// Writes the data of a figure as CSV, with units in the header
 ///
