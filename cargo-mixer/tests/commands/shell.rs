@@ -1,21 +1,11 @@
 //! Completions, and output that is lost.
+#![cfg(target_os = "linux")]
 
-use super::*;
+use std::process::Command;
 
-#[test]
-fn shells_complete_every_command() {
-    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        let output = run(&["completions", shell]);
-        assert_status(&output, 0);
-        for word in ["identify", "golden", "deny-warnings", "cargo-mixer"] {
-            assert!(stdout(&output).contains(word), "{shell}: no {word}");
-        }
-    }
-    assert_status(&run(&["completions", "tcsh"]), 2);
-}
+use crate::{X8, folder, root, stderr, stdout};
 
 /// As a subcommand of cargo, too, whose own completion still serves the other commands.
-#[cfg(target_os = "linux")]
 #[test]
 fn bash_completes_cargo_mixer() {
     let script = format!(
@@ -33,10 +23,9 @@ try cargo bu"#,
 }
 
 /// What cannot be written is no success; a reader that has seen enough is no fault.
-#[cfg(target_os = "linux")]
 #[test]
 fn lost_output_is_an_error() {
-    let setpoints = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lost.setpoints.csv");
+    let setpoints = folder("lost").join("setpoints.csv");
     std::fs::write(&setpoints, "roll_nm,pitch_nm,yaw_nm,thrust_n\n0,0,0,30\n").unwrap();
     let mix = format!("mix {X8} {}", setpoints.display());
     let expand = format!("expand {X8}");

@@ -1,12 +1,11 @@
 //! `cargo mixer mix`: rows in, rows out.
 
 use std::io::{BufRead, BufReader, Read, Write};
-use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use crate::{HEADER, X8, assert_status, cargo_mixer, root, run_with, stderr, stdout};
+use crate::{HEADER, X8, cargo_mixer, folder, printed, root};
 
 /// One row of `mix`: throttles, achieved wrench, saturation.
 fn row(line: &str) -> (Vec<f32>, [f32; 4], u16) {
@@ -19,20 +18,6 @@ fn row(line: &str) -> (Vec<f32>, [f32; 4], u16) {
         achieved.try_into().unwrap(),
         saturation.parse().unwrap(),
     )
-}
-
-#[test]
-fn a_rotor_that_is_out_stands_still_and_thrust_is_kept() {
-    let input = format!("{HEADER}\n0,0,0,40\n");
-    let output = run_with(&["mix", X8, "--failed", "4"], input.as_bytes());
-    assert_status(&output, 0);
-    let (throttles, achieved, _) = row(stdout(&output).lines().nth(1).unwrap());
-    let stopped: Vec<usize> = (0..8).filter(|&channel| throttles[channel] == 0.0).collect();
-    assert_eq!(stopped, [4]);
-    assert!((achieved[3] - 40.0).abs() < 0.05, "{achieved:?}");
-    let output = run_with(&["mix", X8, "--failed", "0", "--failed", "8"], input.as_bytes());
-    assert_status(&output, 2);
-    assert!(stderr(&output).contains("0 to 7"), "{}", stderr(&output));
 }
 
 #[test]
@@ -52,9 +37,8 @@ fn mix_prints_the_bits_of_the_tables() {
         "voltage_v,thrust_n,roll_nm,pitch_nm,yaw_nm\n{}",
         rows.collect::<String>()
     );
-    let output = run_with(&["mix", X8], input.as_bytes());
-    assert_status(&output, 0);
-    let mut lines = stdout(&output).lines();
+    let output = printed(&["mix", X8], input.as_bytes());
+    let mut lines = output.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
     assert_eq!(header.len(), 8 + 4 + 1);
     assert_eq!((header[0], header[7]), ("throttle_0", "throttle_7"));
@@ -89,19 +73,6 @@ fn mix_prints_the_bits_of_the_tables() {
 }
 
 #[test]
-fn mix_takes_the_reference_voltage_without_a_column() {
-    let without = run_with(&["mix", X8], format!("{HEADER}\n0.5,0,0.1,40\n").as_bytes());
-    let with = run_with(
-        &["mix", X8],
-        format!("{HEADER},voltage_v\n0.5,0,0.1,40,14.8\n").as_bytes(),
-    );
-    assert_status(&without, 0);
-    assert_status(&with, 0);
-    assert_eq!(stdout(&without), stdout(&with));
-    assert_eq!(stdout(&without).lines().count(), 2);
-}
-
-#[test]
 fn mix_answers_each_row_before_the_next() {
     let mut child = cargo_mixer(&["mix", X8]).spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
@@ -128,63 +99,6 @@ fn mix_answers_each_row_before_the_next() {
 }
 
 #[test]
-fn mix_names_the_line_of_a_bad_row_and_goes_on() {
-    let input = format!(
-        "{HEADER},voltage_v\r\n0,0,0,31,15\r\n\r\nnan,0,0,31,15\r\n0,0,0,inf,15\r\n0,0,0,31,nan\r\n0,0,0,31\r\nx,0,0,31,15\r\n\"0,0,0,31,15\r\n0,0,0,31,15"
-    );
-    let output = run_with(&["mix", X8], input.as_bytes());
-    assert_status(&output, 1);
-    let answers: Vec<&str> = stdout(&output).lines().skip(1).collect();
-    assert_eq!(answers.len(), 2);
-    assert_eq!(answers[0], answers[1]);
-    let expected = "\
-error: stdin:4: the roll setpoint is not finite
-error: stdin:5: the thrust setpoint is not finite
-error: stdin:6: the voltage is not finite
-error: stdin:7: 4 columns where the header has 5
-error: stdin:8: roll_nm `x` is not a number
-error: stdin:9: a quote is not closed on its line
-error: 6 bad rows are left out
-";
-    assert_eq!(stderr(&output), expected);
-}
-
-#[test]
-fn mix_refuses_a_header_that_is_none() {
-    for (input, message) in [
-        (
-            "",
-            "error: stdin:1: the input is empty; its first line is the header ",
-        ),
-        (
-            "0,0,0,31\n0,0,0,31\n",
-            "error: stdin:1: no column roll_nm, pitch_nm, yaw_nm, thrust_n; ",
-        ),
-        (
-            "roll_nm,pitch_nm,yaw_nm\n0,0,0\n",
-            "error: stdin:1: no column thrust_n; ",
-        ),
-        (
-            "roll_nm,pitch_nm,yaw_nm,thrust_n,yaw_nm\n",
-            "error: stdin:1: column `yaw_nm` stands twice",
-        ),
-        (
-            "roll_nm,pitch_nm,yaw_nm,thrust_n,v\n",
-            "error: stdin:1: unknown column `v`; ",
-        ),
-    ] {
-        let output = run_with(&["mix", X8], input.as_bytes());
-        assert_status(&output, 1);
-        assert_eq!(stdout(&output), "");
-        assert!(stderr(&output).starts_with(message), "{}", stderr(&output));
-    }
-    // A header alone is a sequence of no setpoints.
-    let output = run_with(&["mix", X8], HEADER.as_bytes());
-    assert_status(&output, 0);
-    assert_eq!(stdout(&output).lines().count(), 1);
-}
-
-#[test]
 fn a_reader_that_has_seen_enough_is_no_fault() {
     // More rows than any pipe holds.
     let input = format!("{HEADER}\n{}", "0,0,0,31\n".repeat(10_000));
@@ -199,43 +113,8 @@ fn a_reader_that_has_seen_enough_is_no_fault() {
     drop(reader);
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
-    assert_status(&output, 0);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
     assert_eq!(&first, b"throttle");
-}
-
-#[test]
-fn mix_takes_files() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mix-files");
-    std::fs::create_dir_all(&folder).unwrap();
-    let [setpoints, throttles] = ["setpoints.csv", "throttles.csv"].map(|name| folder.join(name));
-    let _ = std::fs::remove_file(&throttles);
-    let input = format!("{HEADER}\n0,0,0,40\n0.5,0,0.1,31.4\n");
-    std::fs::write(&setpoints, &input).unwrap();
-    let [setpoints, throttles] = [&setpoints, &throttles].map(|path| path.to_str().unwrap());
-    let streamed = run_with(&["mix", X8, "--failed", "0,4"], input.as_bytes());
-    assert_status(&streamed, 0);
-    let output = run_with(&["mix", X8, setpoints, "--failed", "0,4", "-o", throttles], b"");
-    assert_eq!(output.status.code(), Some(0));
-    assert!(stderr(&output).starts_with("wrote "), "{}", stderr(&output));
-    assert_eq!(std::fs::read(throttles).unwrap(), streamed.stdout);
-    // Not over its input, nor over a file that is there, and nothing of a bad header.
-    assert_status(
-        &run_with(&["mix", X8, setpoints, "-o", setpoints, "--force"], b""),
-        2,
-    );
-    assert_status(&run_with(&["mix", X8, setpoints, "-o", throttles], b""), 1);
-    std::fs::write(setpoints, "roll\n0\n").unwrap();
-    let output = run_with(&["mix", X8, setpoints, "-o", throttles, "--force"], b"");
-    assert_status(&output, 1);
-    assert!(
-        stderr(&output).contains("setpoints.csv:1: no column"),
-        "{}",
-        stderr(&output)
-    );
-    assert_eq!(std::fs::read(throttles).unwrap(), streamed.stdout);
-    let output = run_with(&["mix", X8, "none.csv"], b"");
-    assert_status(&output, 1);
-    assert!(stderr(&output).contains("none.csv"), "{}", stderr(&output));
 }
 
 /// With all rotors `[pair.lower_out]` and `[pair.upper_out]` change no bit; with one out they do. A
@@ -252,8 +131,7 @@ fn rotors_alone_and_a_bias_of_zero_leave_the_bits() {
         ("zero", bias("power_bias_nm_per_n = 0.0")),
         ("none", bias("")),
     ];
-    let folder = std::env::temp_dir().join(format!("cargo-mixer-bits-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = folder("bits");
     let mut input = format!("{HEADER},voltage_v\n");
     for k in 0..500u16 {
         let x = f32::from(k) / 500.0;
@@ -264,13 +142,9 @@ fn rotors_alone_and_a_bias_of_zero_leave_the_bits() {
         let path = folder.join(format!("{name}.toml"));
         std::fs::write(&path, text).unwrap();
         let path = path.display().to_string();
-        [&["mix", path.as_str()][..], &["mix", &path, "--failed", "0"]].map(|arguments| {
-            let output = run_with(arguments, input.as_bytes());
-            assert_status(&output, 0);
-            stdout(&output).to_owned()
-        })
+        [&["mix", path.as_str()][..], &["mix", &path, "--failed", "0"]]
+            .map(|arguments| printed(arguments, input.as_bytes()))
     });
-    std::fs::remove_dir_all(folder).unwrap();
     assert_eq!(declared[0], polynomials[0]);
     assert_ne!(declared[1], polynomials[1]);
     assert_eq!(zero, none);
