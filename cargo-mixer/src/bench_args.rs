@@ -1,8 +1,8 @@
 //! Values of arguments that the commands about benches share.
 
-use mixer_identify::basis::ThrottleBox;
-use mixer_identify::header::{ROLES, unknown_role};
-use mixer_identify::sign::SignChoice;
+use mixer_identify::bench::header::{ROLES, unknown_role};
+use mixer_identify::bench::sign::SignChoice;
+use mixer_identify::fit::basis::ThrottleBox;
 
 /// `--pwm-range`, microseconds.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use mixer_compiler::diagnostic::printable;
+use mixer_identify::bench::read::{self, Log, Reading};
 use mixer_identify::bench::{self, Bench};
 use mixer_identify::identified::{Identified, Settings, with_runs};
-use mixer_identify::read::{self, Log, Reading};
 use mixer_identify::refusal::Refusal;
 
 /// Reads the files and identifies what they hold. All refusals are collected.

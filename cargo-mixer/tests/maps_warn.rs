@@ -14,10 +14,10 @@ use mixer_compiler::airframe::Basis;
 use mixer_compiler::diagnostic::Code;
 use mixer_compiler::model::wake::mean_torque;
 use mixer_identify::bench::Bench;
+use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, Settings, from_benches};
-use mixer_identify::polynomial::Polynomial;
-use mixer_identify::predict;
+use mixer_identify::rotor::predict;
 
 const BASES: [&str; 3] = ["biquadratic", "cubic", "quartic"];
 

@@ -9,10 +9,10 @@ use cargo_mixer::bench_files::{identify, read_one};
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::{Source, compile};
 use mixer_identify::bench::Preparation;
+use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::identified::Settings;
-use mixer_identify::polynomial::Polynomial;
-use mixer_identify::predict::{Predicted, Wishes, predict, text};
-use mixer_identify::single::{Known, Single};
+use mixer_identify::rotor::predict::{Predicted, Wishes, predict, text};
+use mixer_identify::rotor::single::{Known, Single};
 use mixer_rt::Wrench;
 
 fn folder(test: &str) -> PathBuf {

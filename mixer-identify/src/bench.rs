@@ -6,13 +6,20 @@
 
 use serde::Serialize;
 
-use super::date::date_in;
-use super::header::Columns;
-use super::plateau;
-use super::read::{Log, RefusedRow, Sample};
-use super::refusal::Refusal;
-use super::rotor::Turning;
-use super::sign::{self, SignChoice, SignPolicy, Signs};
+use self::date::date_in;
+use self::header::Columns;
+use self::read::{Log, RefusedRow, Sample};
+use self::sign::{SignChoice, SignPolicy, Signs};
+use crate::refusal::Refusal;
+use crate::rotor::Turning;
+
+pub mod date;
+pub mod header;
+pub mod plateau;
+pub mod read;
+pub mod sign;
+pub mod text;
+pub mod units;
 
 /// What a file can be used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

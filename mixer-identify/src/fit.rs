@@ -12,7 +12,21 @@ use mixer_compiler::airframe::Basis;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::basis::{Centred, ThrottleBox, monomials};
+use self::basis::{Centred, ThrottleBox, monomials};
+
+pub mod basis;
+pub mod bernstein;
+pub mod cross;
+pub mod fold;
+pub mod monotone;
+pub(crate) mod normal;
+pub mod pair;
+pub mod polynomial;
+pub mod power;
+pub mod robust;
+pub mod uncertainty;
+pub mod voltage;
+pub mod wishes;
 
 /// A design: where the points lie, in one basis. Both channels share it.
 pub struct Design {

@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::fit::Fit;
-use super::identified::Identified;
-use super::pair::Pair;
-use super::power::Power;
-use super::voltage::{Exponent, Voltage};
-use super::wording::{alone_lines, exponent_line, least_power_lines, provenance, runs, wrapped};
+use crate::fit::Fit;
+use crate::fit::pair::Pair;
+use crate::fit::power::Power;
+use crate::fit::voltage::{Exponent, Voltage};
+use crate::identified::Identified;
+use crate::wording::{alone_lines, exponent_line, least_power_lines, provenance, runs, wrapped};
 
 /// The fragment: `[throttle]` and `[pair]` where a pair was identified, `[voltage]` where its
 /// exponents are sound.

@@ -2,16 +2,16 @@
 
 use serde::Serialize;
 
-use super::alone;
-use super::bench::{Bench, Kind, Preparation};
-use super::fit::hundredths;
-use super::pair::{self, Pair};
-use super::power::{self, Power};
-use super::read::Reading;
-use super::refusal::Refusal;
-use super::rotor::Turning;
-use super::voltage::{self, Exponent, PLAUSIBLE, Voltage};
-use super::wishes::Wishes;
+use crate::bench::read::Reading;
+use crate::bench::{Bench, Kind, Preparation};
+use crate::fit::hundredths;
+use crate::fit::pair::{self, Pair};
+use crate::fit::power::{self, Power};
+use crate::fit::voltage::{self, Exponent, PLAUSIBLE, Voltage};
+use crate::fit::wishes::Wishes;
+use crate::refusal::Refusal;
+use crate::rotor::Turning;
+use crate::rotor::alone;
 
 /// Everything that decides an identification, besides the files.
 #[derive(Debug, Clone, Default)]

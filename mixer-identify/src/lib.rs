@@ -1,17 +1,19 @@
 //! From bench files of a coaxial pair to the `[throttle]`, `[pair]` and `[voltage]` tables of an
 //! airframe file.
 //!
-//! text -> [`read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) -> [`voltage`]
-//! exponents -> [`pair`]: outliers ([`robust`]), choice of the basis ([`cross`]), least squares
-//! ([`fit`]), [`fold`], [`monotone`] -> [`fragment`], [`report`].
+//! text -> [`bench::read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) ->
+//! [`fit::voltage`] exponents -> [`fit::pair`]: outliers ([`fit::robust`]), choice of the basis
+//! ([`fit::cross`]), least squares ([`mod@fit`]), [`fit::fold`], [`fit::monotone`] -> [`fragment`],
+//! [`report`]. Of one rotor: [`rotor::single`] -> [`rotor::predict`].
 //!
 //! The crate opens no file and prints nothing. A [`Refusal`](refusal::Refusal) names the file, the
 //! line where there is one, and what would serve. A caller that wants to show progress counts the
-//! bytes that [`read::read`] takes from the source that it is given.
+//! bytes that [`bench::read::read`] takes from the source that it is given.
 //!
 //! ```
 //! use mixer_identify::identified::{Settings, from_benches};
-//! use mixer_identify::{bench, fragment, read};
+//! use mixer_identify::bench::{self, read};
+//! use mixer_identify::fragment;
 //!
 //! // A sweep of both throttles in five levels. (A bench would have measured it.)
 //! let mut csv = String::from("upper,lower,thrust_n,torque_nm\n");
@@ -32,40 +34,14 @@
 //! # Ok::<(), mixer_identify::refusal::Refusal>(())
 //! ```
 
-pub mod alone;
-pub mod basis;
 pub mod bench;
-pub mod bernstein;
-pub mod cross;
-pub mod curve;
-pub mod date;
 pub mod fit;
-pub mod fold;
 pub mod fragment;
-pub mod header;
 pub mod identified;
-pub mod interaction;
-pub mod monotone;
-mod normal;
-pub mod pair;
 pub mod paper;
 pub mod plan;
-pub mod plateau;
-pub mod polynomial;
-pub mod posterior;
-pub mod power;
-pub mod predict;
-pub mod read;
 pub mod refusal;
 pub mod report;
-pub mod robust;
 pub mod rotor;
-pub mod sign;
-pub mod single;
-pub mod text;
-pub mod uncertainty;
-pub mod units;
 pub mod verdict;
-pub mod voltage;
-pub mod wishes;
 pub mod wording;

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 
 use mixer_compiler::airframe::Basis;
 
-use super::basis::monomials;
+use crate::fit::basis::monomials;
 
 /// The throttles `[u, l]` that correct a prediction (`identify --prior`): both rotors at half and at
 /// full thrust, and either one far above the other.

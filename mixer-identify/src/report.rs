@@ -2,15 +2,15 @@
 
 use std::fmt::Write as _;
 
-use super::bench::Bench;
-use super::cross::Candidate;
-use super::fit::Fit;
-use super::fold::Fold;
-use super::identified::Identified;
-use super::pair::Pair;
-use super::power::Power;
-use super::voltage::{Exponent, Voltage};
-use super::wording::{alone_lines, exponent_line, least_power_lines, provenance, runs, wrapped};
+use crate::bench::Bench;
+use crate::fit::Fit;
+use crate::fit::cross::Candidate;
+use crate::fit::fold::Fold;
+use crate::fit::pair::Pair;
+use crate::fit::power::Power;
+use crate::fit::voltage::{Exponent, Voltage};
+use crate::identified::Identified;
+use crate::wording::{alone_lines, exponent_line, least_power_lines, provenance, runs, wrapped};
 
 /// The whole report.
 pub fn text(identified: &Identified) -> String {

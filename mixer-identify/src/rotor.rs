@@ -2,6 +2,13 @@
 
 use serde::Serialize;
 
+pub mod alone;
+pub mod curve;
+pub mod interaction;
+pub mod posterior;
+pub mod predict;
+pub mod single;
+
 /// Which rotor turns, and the names of the run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

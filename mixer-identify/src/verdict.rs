@@ -1,13 +1,13 @@
 //! The verdict on what was identified: at most [`MOST_LINES`] lines of 100 columns, for a reader
-//! who wants to know whether the map serves. [`report`](super::report) has every number.
+//! who wants to know whether the map serves. [`report`](crate::report) has every number.
 
-use super::fit::Fit;
-use super::identified::Identified;
-use super::pair::Pair;
-use super::polynomial::Polynomial;
-use super::power::Power;
-use super::voltage::{Exponent, Voltage};
-use super::wording::{provenance, runs, wrapped};
+use crate::fit::Fit;
+use crate::fit::pair::Pair;
+use crate::fit::polynomial::Polynomial;
+use crate::fit::power::Power;
+use crate::fit::voltage::{Exponent, Voltage};
+use crate::identified::Identified;
+use crate::wording::{provenance, runs, wrapped};
 
 /// Lines of a verdict, at most; the command adds what it wrote and what comes next.
 pub const MOST_LINES: usize = 27;

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::bench::{Bench, Kind};
-use super::pair::Pair;
-use super::power::LeastPower;
-use super::rotor::{Alone, AloneFit, Turning};
-use super::voltage::Estimate;
+use crate::bench::{Bench, Kind};
+use crate::fit::pair::Pair;
+use crate::fit::power::LeastPower;
+use crate::fit::voltage::Estimate;
+use crate::rotor::{Alone, AloneFit, Turning};
 
 /// One line on a file: format, date, rows.
 pub fn provenance(file: &Bench) -> String {

@@ -103,7 +103,7 @@ fn compare(map: &str, file: &Path) -> Result<Vec<Row>, String> {
     let found = identify(&arguments.files, &arguments.settings())
         .map_err(|refusals| fault(refusals.iter().map(|refusal| refusal.to_string()).collect()))?;
     let pair = found.pair.ok_or_else(|| fault("no map of a pair".into()))?;
-    let row = |candidate: &mixer_identify::cross::Candidate| {
+    let row = |candidate: &mixer_identify::fit::cross::Candidate| {
         let errors = candidate.errors?;
         Some(Row {
             map: map.to_owned(),

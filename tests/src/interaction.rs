@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 use cargo_mixer::bench_files::read_one;
 use mixer_identify::bench::{Bench, Point, Preparation};
 use mixer_identify::identified::Settings;
-use mixer_identify::interaction::{Interaction, OPEN_LOOP};
 use mixer_identify::plan::CORRECTING;
-use mixer_identify::posterior::{self, BETWEEN_SYSTEMS, Case, Deviations, scaled};
-use mixer_identify::single::{Known, Single};
+use mixer_identify::rotor::interaction::{Interaction, OPEN_LOOP};
+use mixer_identify::rotor::posterior::{self, BETWEEN_SYSTEMS, Case, Deviations, scaled};
+use mixer_identify::rotor::single::{Known, Single};
 
 use crate::root;
 

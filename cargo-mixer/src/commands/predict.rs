@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use mixer_identify::basis::ThrottleBox;
+use mixer_identify::bench::header::ByHand;
+use mixer_identify::bench::read::Reading;
+use mixer_identify::bench::sign::{SignChoice, SignPolicy};
 use mixer_identify::bench::{Bench, Preparation};
-use mixer_identify::header::ByHand;
+use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
-use mixer_identify::predict::{self, Predicted, Wishes};
-use mixer_identify::read::Reading;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::sign::{SignChoice, SignPolicy};
-use mixer_identify::single::{Known, Single};
+use mixer_identify::rotor::predict::{self, Predicted, Wishes};
+use mixer_identify::rotor::single::{Known, Single};
 
 use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::read_one;

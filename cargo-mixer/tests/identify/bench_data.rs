@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
-use mixer_identify::basis::ThrottleBox;
 use mixer_identify::bench::{self, Point};
 use mixer_identify::fit::Fit;
-use mixer_identify::power::Power;
+use mixer_identify::fit::basis::ThrottleBox;
+use mixer_identify::fit::power::Power;
 
 use cargo_mixer::bench_files::{identify, identify_with_runs, read_file};
+use mixer_identify::fit::pair::Pair;
+use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, from_benches};
-use mixer_identify::pair::Pair;
-use mixer_identify::polynomial::Polynomial;
 
 use crate::measured;
 use crate::sweep::settings;

@@ -2,13 +2,13 @@
 
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
-use mixer_identify::basis::ThrottleBox;
 use mixer_identify::bench::Bench;
+use mixer_identify::fit::basis::ThrottleBox;
 
+use mixer_identify::fit::pair::Pair;
+use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fit::{Design, fit, student_t_975};
 use mixer_identify::identified::{Settings, from_benches};
-use mixer_identify::pair::Pair;
-use mixer_identify::polynomial::Polynomial;
 
 use crate::sweep::{FORMATS, Normal, bench, plain, rows, settings};
 use mixer_identify::paper::{THRUST, TORQUE};

@@ -3,7 +3,7 @@
 use std::fs;
 
 use mixer_compiler::airframe::Basis;
-use mixer_identify::polynomial::Polynomial;
+use mixer_identify::fit::polynomial::Polynomial;
 
 use crate::command::{folder, text};
 use mixer_identify::paper::{THRUST, TORQUE};

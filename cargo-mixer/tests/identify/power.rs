@@ -7,9 +7,9 @@ use std::fmt::Write as _;
 
 use cargo_mixer::frame::{Frame, FrameArgs};
 use mixer_compiler::airframe::Basis;
+use mixer_identify::fit::power::Power;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, from_benches};
-use mixer_identify::power::Power;
 
 use crate::sweep::{Normal, bench, settings};
 

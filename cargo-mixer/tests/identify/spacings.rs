@@ -7,7 +7,7 @@ use cargo_mixer::bench_files::identify;
 use cargo_mixer::bench_files::read_file;
 use mixer_compiler::airframe::Basis;
 use mixer_identify::bench;
-use mixer_identify::polynomial::Polynomial;
+use mixer_identify::fit::polynomial::Polynomial;
 
 use crate::bench_data::{coaxial, data};
 use crate::measured;

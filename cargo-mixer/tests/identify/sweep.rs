@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 
 use mixer_compiler::airframe::Basis;
+use mixer_identify::bench::header::ByHand;
+use mixer_identify::bench::read::{self, Reading};
+use mixer_identify::bench::sign::{SignChoice, SignPolicy};
 use mixer_identify::bench::{self, Bench, Preparation};
-use mixer_identify::header::ByHand;
+use mixer_identify::fit::polynomial::Polynomial;
+use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
-use mixer_identify::polynomial::Polynomial;
-use mixer_identify::read::{self, Reading};
 use mixer_identify::refusal::Refusal;
-use mixer_identify::sign::{SignChoice, SignPolicy};
-use mixer_identify::wishes::Wishes;
 use mixer_setpoints::Random;
 
 use mixer_identify::paper::{THRUST, TORQUE};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::polynomial::Polynomial;
+use crate::fit::polynomial::Polynomial;
 
 #[test]
 fn student_t_agrees_with_the_table() {

@@ -7,10 +7,10 @@ use std::io::{BufRead, BufReader, Read};
 
 use serde::Serialize;
 
-use super::header::{ByHand, Column, Columns};
-use super::refusal::{Refusal, cut, cut_cell};
-use super::text::{self, Normalised};
-use super::units::Scale;
+use crate::bench::header::{ByHand, Column, Columns};
+use crate::bench::text::{self, Normalised};
+use crate::bench::units::Scale;
+use crate::refusal::{Refusal, cut, cut_cell};
 
 /// Most columns of a log; loggers of whole vehicles have some hundred.
 const MOST_COLUMNS: usize = 2000;

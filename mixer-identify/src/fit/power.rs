@@ -13,12 +13,12 @@ use faer::linalg::solvers::SolveLstsq;
 use mixer_compiler::airframe::{self, Basis};
 use serde::Serialize;
 
-use super::basis::{ThrottleBox, monomials};
-use super::bench::{Bench, Kind, Point};
-use super::fit::{distinct_pairs, ten_digits};
-use super::pair::Pair;
-use super::polynomial::Polynomial;
-use super::voltage::Voltage;
+use crate::bench::{Bench, Kind, Point};
+use crate::fit::basis::{ThrottleBox, monomials};
+use crate::fit::pair::Pair;
+use crate::fit::polynomial::Polynomial;
+use crate::fit::voltage::Voltage;
+use crate::fit::{distinct_pairs, ten_digits};
 
 /// Shares of full thrust at which vehicles hover.
 const SHARES: [f64; 9] = [0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70];

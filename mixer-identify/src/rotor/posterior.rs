@@ -11,9 +11,9 @@
 //!
 //! by Gauss and Newton with a damping after Levenberg.
 
-use super::curve::Rotor;
-use super::interaction::Interaction;
-use super::normal::solve;
+use crate::fit::normal::solve;
+use crate::rotor::curve::Rotor;
+use crate::rotor::interaction::Interaction;
 
 /// One pair: rotors alone, spacing, and rows of the pair `[u, l, thrust, torque]`; NaN for a torque
 /// that was not measured.
@@ -133,8 +133,8 @@ pub fn scaled(rotors: &[Rotor; 2], [thrust, upper, lower]: [f64; 3]) -> [Rotor; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::Curve;
-    use crate::interaction::OPEN_LOOP;
+    use crate::rotor::curve::Curve;
+    use crate::rotor::interaction::OPEN_LOOP;
 
     /// Rows of other constants and scales are found again, from thrust and torque as from thrust
     /// alone.

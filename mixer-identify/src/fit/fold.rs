@@ -9,8 +9,8 @@ use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::{self, EnclosedPairMap};
 use serde::Serialize;
 
-use super::basis::ThrottleBox;
-use super::polynomial::Polynomial;
+use crate::fit::basis::ThrottleBox;
+use crate::fit::polynomial::Polynomial;
 
 /// The report on a map's fold.
 #[derive(Debug, Clone, Serialize)]

@@ -2,13 +2,13 @@
 
 use mixer_compiler::airframe::Basis;
 
-use crate::basis::ThrottleBox;
 use crate::bench::{Bench, Point};
+use crate::fit::basis::ThrottleBox;
+use crate::fit::robust::{self, Outlier};
+use crate::fit::voltage::Voltage;
+use crate::fit::wishes::Wishes;
 use crate::fit::{Design, hundredths};
 use crate::refusal::Refusal;
-use crate::robust::{self, Outlier};
-use crate::voltage::Voltage;
-use crate::wishes::Wishes;
 
 /// A point and the file it comes from.
 #[derive(Clone, Copy)]

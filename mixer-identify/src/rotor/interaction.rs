@@ -20,7 +20,7 @@
 //!
 //! Neither size, speed nor air density enters.
 
-use super::curve::Rotor;
+use crate::rotor::curve::Rotor;
 
 /// The six constants of the interaction, each without a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +80,7 @@ impl Interaction {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::Curve;
+    use crate::rotor::curve::Curve;
 
     fn rotor() -> Rotor {
         Rotor {

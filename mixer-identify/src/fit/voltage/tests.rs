@@ -1,5 +1,5 @@
 use super::*;
-use crate::sign::Signs;
+use crate::bench::sign::Signs;
 
 fn bench(kind: Kind, points: Vec<Point>) -> Bench {
     Bench {

@@ -12,10 +12,10 @@ use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 
-use super::basis::ThrottleBox;
-use super::fit::{Deficient, Design, leave_one_out};
-use super::fold;
-use super::polynomial::Polynomial;
+use crate::fit::basis::ThrottleBox;
+use crate::fit::fold;
+use crate::fit::polynomial::Polynomial;
+use crate::fit::{Deficient, Design, leave_one_out};
 
 /// One line of the table.
 #[derive(Debug, Clone, Serialize)]

@@ -8,7 +8,7 @@
 
 use mixer_compiler::bounds::bernstein::coefficients as one_variable;
 
-use super::polynomial::Polynomial;
+use crate::fit::polynomial::Polynomial;
 
 /// A rectangle of throttles: [least, greatest] of u and of l.
 pub type Cell = [[f64; 2]; 2];

@@ -17,9 +17,9 @@
 
 use serde::Serialize;
 
-use super::header::Columns;
-use super::read::Sample;
-use super::refusal::Refusal;
+use crate::bench::header::Columns;
+use crate::bench::read::Sample;
+use crate::refusal::Refusal;
 
 /// How to find a sign.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use mixer_compiler::airframe::Basis;
 
-use super::basis::ThrottleBox;
+use crate::fit::basis::ThrottleBox;
 
 /// What the user decides about the fit.
 #[derive(Debug, Clone, Default)]

@@ -17,11 +17,11 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, S
 use mixer_compiler::airframe::Basis;
 use serde::Serialize;
 
-use super::basis::ThrottleBox;
-use super::bernstein::{Cell, coefficients};
-use super::fit::{Design, Fit};
-use super::fold::determinant;
-use super::polynomial::Polynomial;
+use crate::fit::basis::ThrottleBox;
+use crate::fit::bernstein::{Cell, coefficients};
+use crate::fit::fold::determinant;
+use crate::fit::polynomial::Polynomial;
+use crate::fit::{Design, Fit};
 
 /// Cells per side.
 const CELLS: usize = 8;

@@ -8,7 +8,7 @@
 
 use serde::Serialize;
 
-use super::normal::solve;
+use crate::fit::normal::solve;
 
 /// c1, c2, c3.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

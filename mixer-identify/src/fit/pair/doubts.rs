@@ -5,10 +5,10 @@ use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::wake::{Wake, mean_torque};
 
 use super::placed::Placed;
-use crate::basis::ThrottleBox;
 use crate::fit::Fit;
-use crate::monotone::MonotoneCost;
-use crate::polynomial::Polynomial;
+use crate::fit::basis::ThrottleBox;
+use crate::fit::monotone::MonotoneCost;
+use crate::fit::polynomial::Polynomial;
 use crate::refusal::Refusal;
 
 /// Full throttle, but for what pulse widths are rounded to.

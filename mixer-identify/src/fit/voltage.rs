@@ -19,9 +19,9 @@ use serde::Serialize;
 use self::exponent::Row;
 pub use self::exponent::{Estimate, Exponent};
 use self::profile::{Regressors, off_span, profile};
-use super::basis::Centred;
-use super::bench::{Bench, Kind, Point};
-use super::fit::range;
+use crate::bench::{Bench, Kind, Point};
+use crate::fit::basis::Centred;
+use crate::fit::range;
 
 mod exponent;
 mod profile;

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::bench::{Bench, Kind, Point};
-use super::curve::{Curve, Rotor};
-use super::refusal::Refusal;
+use crate::bench::{Bench, Kind, Point};
+use crate::refusal::Refusal;
+use crate::rotor::curve::{Curve, Rotor};
 
 /// Distinct throttles that a curve of three terms takes, to be judged as well.
 const FEWEST: usize = 5;

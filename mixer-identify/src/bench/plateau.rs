@@ -6,7 +6,7 @@
 //! mean of its rows after a settling time; rows of ramps between plateaus are dropped. Each
 //! channel's mean is over the rows where it is not blank.
 
-use super::read::Sample;
+use crate::bench::read::Sample;
 
 /// Fewer rows than this make no plateau.
 const PLATEAU_ROWS: usize = 5;

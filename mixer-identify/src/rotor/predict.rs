@@ -1,6 +1,6 @@
 //! The map of a pair, predicted from runs of its rotors alone, with or without rows of the pair.
 //!
-//! runs -> [`Single`] -> [`interaction`](mod@super::interaction), its constants moved by rows of the
+//! runs -> [`Single`] -> [`interaction`](mod@crate::rotor::interaction), its constants moved by rows of the
 //! pair where there are some ([`posterior`]) -> cubic basis over the box -> the
 //! idle raised until the compiler takes it -> `[throttle]`, `[pair]`, `[pair.uncertainty]`,
 //! `[pair.lower_out]`, `[pair.upper_out]`.
@@ -12,16 +12,16 @@ use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 
-use super::basis::ThrottleBox;
-use super::bench::{Bench, Kind};
-use super::curve::Rotor;
-use super::fit::{Design, ten_digits};
-use super::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
-use super::posterior::{self, BETWEEN_SYSTEMS, Case, scaled};
-use super::refusal::Refusal;
-use super::single::{EXPONENT, Single};
-use super::uncertainty::Uncertainty;
-use super::wording::wrapped;
+use crate::bench::{Bench, Kind};
+use crate::fit::basis::ThrottleBox;
+use crate::fit::uncertainty::Uncertainty;
+use crate::fit::{Design, ten_digits};
+use crate::refusal::Refusal;
+use crate::rotor::curve::Rotor;
+use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
+use crate::rotor::posterior::{self, BETWEEN_SYSTEMS, Case, scaled};
+use crate::rotor::single::{EXPONENT, Single};
+use crate::wording::wrapped;
 
 /// z/D where the user does not say: spacing matters little (docs/no-bench.md).
 pub const SPACING_RATIO: f64 = 0.25;

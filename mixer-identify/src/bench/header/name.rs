@@ -1,6 +1,6 @@
 //! Header names taken apart: prefix, text, unit; what they measure and on which rotor.
 
-use crate::units::{self, Quantity};
+use crate::bench::units::{self, Quantity};
 
 /// A header name taken apart.
 pub(super) struct Name {

@@ -8,14 +8,14 @@
 
 use faer::Mat;
 
-use super::basis::ThrottleBox;
-use super::bench::{Bench, Kind, Point};
-use super::fit::{distinct_pairs, ten_digits};
-use super::pair::Pair;
-use super::polynomial::Polynomial;
-use super::refusal::Refusal;
-use super::rotor::{Alone, AloneFit, Turning};
-use super::voltage::Voltage;
+use crate::bench::{Bench, Kind, Point};
+use crate::fit::basis::ThrottleBox;
+use crate::fit::pair::Pair;
+use crate::fit::polynomial::Polynomial;
+use crate::fit::voltage::Voltage;
+use crate::fit::{distinct_pairs, ten_digits};
+use crate::refusal::Refusal;
+use crate::rotor::{Alone, AloneFit, Turning};
 
 /// Distinct throttles that three terms take, to judge themselves as well.
 const FEWEST: usize = 6;

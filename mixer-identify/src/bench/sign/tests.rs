@@ -1,5 +1,5 @@
 use super::*;
-use crate::header::{ByHand, Columns};
+use crate::bench::header::{ByHand, Columns};
 
 fn columns(line: &str) -> Columns {
     let headers: Vec<String> = line.split(',').map(str::to_string).collect();

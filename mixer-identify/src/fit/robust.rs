@@ -16,8 +16,8 @@
 use mixer_compiler::airframe::Basis;
 use serde::Serialize;
 
-use super::fit::Design;
-use super::polynomial::Polynomial;
+use crate::fit::Design;
+use crate::fit::polynomial::Polynomial;
 
 /// Rows stand out from this many robust standard deviations on. A polynomial's lack of fit alone
 /// reaches five on clean bench maps; rows of a faulty run have ten to fifty.
@@ -166,7 +166,7 @@ pub const JUDGING: Basis = Basis::Cubic;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basis::ThrottleBox;
+    use crate::fit::basis::ThrottleBox;
 
     #[test]
     fn a_tenth_of_wrong_rows_is_found_and_no_right_one() {

@@ -7,8 +7,8 @@
 //! first rotor). The first rotor is taken as the upper one unless names say otherwise.
 
 use self::name::{Name, distinct_prefixes};
-use super::refusal::Refusal;
-use super::units::{self, Quantity, Scale};
+use crate::bench::units::{self, Quantity, Scale};
+use crate::refusal::Refusal;
 
 mod name;
 
