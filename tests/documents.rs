@@ -216,7 +216,8 @@ fn blocks_of_toml_are_read() {
                 airframes += 1;
                 let compiled = mixer_compiler::compile(&Source::new("block.toml", text.clone()))
                     .unwrap_or_else(|faults| panic!("{place}{faults}"));
-                assert!(compiled.warnings.is_empty(), "{place}{}", compiled.warnings);
+                let warnings = mixer_compiler::lint(&compiled);
+                assert!(warnings.is_empty(), "{place}{warnings}");
             }
         }
     }

@@ -26,8 +26,7 @@ pub(crate) fn write(path: &Path, text: &str, model: Option<&Path>) -> ExitCode {
                 return Refusal::Faulty(faults).report();
             }
         }
-        Ok(compiled) if !compiled.warnings.is_empty() => crate::show(&compiled.warnings),
-        Ok(_) => {}
+        Ok(compiled) => crate::show_warnings(&compiled),
     }
     match crate::file::save(path, text) {
         Ok(()) => {

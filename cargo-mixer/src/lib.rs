@@ -96,10 +96,16 @@ fn show(diagnostics: &Diagnostics) {
 /// Reads and compiles an airframe file; its warnings go to stderr.
 fn compile(path: &Path) -> Result<Compiled, Refusal> {
     let compiled = compile_quietly(path)?;
-    if !compiled.warnings.is_empty() {
-        show(&compiled.warnings);
-    }
+    show_warnings(&compiled);
     Ok(compiled)
+}
+
+/// Shows the warnings of a compiled airframe, if there are any.
+fn show_warnings(compiled: &Compiled) {
+    let warnings = mixer_compiler::lint(compiled);
+    if !warnings.is_empty() {
+        show(&warnings);
+    }
 }
 
 /// Reads and compiles an airframe file.

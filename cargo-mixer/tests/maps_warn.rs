@@ -68,11 +68,11 @@ impl Told {
     fn check(&mut self, tables: &str, file: &Path) {
         match mixer_compiler::compile(&source(tables)) {
             Ok(compiled) => {
-                for warning in compiled.warnings.faults() {
+                let warnings = mixer_compiler::lint(&compiled);
+                for warning in warnings.faults() {
                     *self.counts.entry(format!("{:?}", warning.code)).or_default() += 1;
                     if !TRUE.contains(&warning.code) {
-                        self.alarms
-                            .push(format!("{}: {}", file.display(), compiled.warnings));
+                        self.alarms.push(format!("{}: {warnings}", file.display()));
                     }
                 }
             }
@@ -195,7 +195,7 @@ fn tables(identified: &Identified, basis: Basis, [thrust, torque]: [&[f64]; 2]) 
 /// What the compiler says of these tables: the codes of faults and warnings.
 fn codes(tables: &str) -> Vec<Code> {
     let told = match mixer_compiler::compile(&source(tables)) {
-        Ok(compiled) => compiled.warnings,
+        Ok(compiled) => mixer_compiler::lint(&compiled),
         Err(faults) => faults,
     };
     told.faults().iter().map(|fault| fault.code).collect()

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::{env, fs, io, process};
 
-use crate::{Source, compile as compile_source};
+use crate::{Source, compile as compile_source, lint};
 
 /// Why no mixer was written.
 #[derive(Debug)]
@@ -114,7 +114,7 @@ fn compile_into(
     let bytes = fs::read(path).map_err(|error| file(path, error))?;
     let source = Source::from_bytes(path.display().to_string(), bytes).map_err(Error::Airframe)?;
     let compiled = compile_source(&source).map_err(Error::Airframe)?;
-    for line in compiled.warnings.lines() {
+    for line in lint(&compiled).lines() {
         told(writeln!(cargo, "cargo::warning={line}"))?;
     }
     fs::write(&output, compiled.rust()).map_err(|error| file(&output, error))?;

@@ -1,7 +1,7 @@
 //! The result of a compilation.
 
 use crate::airframe::Airframe;
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::source::Source;
 use crate::inverse::evaluator::Evaluator;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
@@ -13,8 +13,8 @@ use crate::tables::MixerTables;
 /// A compiled airframe: what emission and reports read.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    /// Name of the airframe file without its folder: what is emitted depends on no place.
-    pub source_name: String,
+    /// The airframe file.
+    pub source: Source,
     /// The checked model.
     pub airframe: Airframe,
     /// M and M+.
@@ -38,6 +38,4 @@ pub struct Compiled {
     pub lost_between_sides: Option<f64>,
     /// What is emitted.
     pub tables: MixerTables,
-    /// Values that compile and are probably mistakes.
-    pub warnings: Diagnostics,
 }

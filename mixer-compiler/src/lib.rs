@@ -26,11 +26,11 @@ use allocation::{closed_form, thrust_range};
 use diagnostic::{Diagnostic, Diagnostics};
 use model::PairMap;
 use model::effectiveness::Effectiveness;
-use model::injectivity;
+use model::injectivity::{self, Injectivity};
 use model::voltage;
 use output::{emit, scale};
-use probe::Probe;
 use proc_macro2::TokenStream;
+use selection::Selected;
 use tables::{MixerTables, Parts, VoltageTable};
 
 pub use compiled::Compiled;
@@ -41,13 +41,12 @@ pub use plausible::ARDUPILOT_MOST_SPIN_MIN;
 pub use proof::Certificate;
 pub use proof::residual::Residual;
 
-/// Compiles an airframe file: source -> airframe -> effectiveness -> injectivity -> voltage ->
-/// proven inverse -> closed form -> tables -> range of thrust -> probes -> warnings.
+/// Compiles an airframe file: source -> airframe -> model (effectiveness, injectivity, voltage) ->
+/// proven inverse -> tables with the closed form -> range of thrust -> probes.
 ///
 /// # Errors
 /// All faults that were found, and with faults of later stages the warnings, one of which may be
-/// why. Faults of the file itself end the compilation; later stages report together. Warnings are
-/// no faults: they are in [`Compiled::warnings`].
+/// why. Faults of the file itself end the compilation, and so do those of each later stage.
 pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
     let airframe = Airframe::read(source)?;
     compile_airframe(source, airframe.clone()).map_err(|mut faults| {
@@ -57,53 +56,17 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 }
 
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
-    let mut faults = Vec::new();
-    let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-    let effectiveness = keep(Effectiveness::new(&airframe), &mut faults);
-    let authority = effectiveness
-        .as_ref()
-        .and_then(|effectiveness| keep(plausible::authority(&airframe, effectiveness, &pair), &mut faults));
-    let invertible = keep(injectivity::prove(&airframe), &mut faults);
-    let voltage = keep(voltage::tabulate(&airframe), &mut faults);
-    let tolerances = keep(plausible::tolerances(&airframe, &pair), &mut faults);
-    let (Some(effectiveness), Some(()), Some((injectivity, least_idle)), Some(voltage), Some(())) =
-        (effectiveness, authority, invertible, voltage, tolerances)
-    else {
-        return Err(faults);
-    };
-    let voltage = VoltageTable::new(&airframe, voltage.as_ref());
-    let voltage = voltage.as_ref();
-    let selected = selection::select(&airframe, &pair, voltage)?;
-    let parts = Parts {
-        airframe: &airframe,
-        effectiveness: &effectiveness,
-        pair: &pair,
-        voltage,
-        map: &selected.map,
-        tolerance: selection::tolerance(&airframe, &effectiveness, &pair, voltage, &selected),
-    };
-    let (closed_form, lost_between_sides) = closed_form::table(&airframe, &effectiveness, &pair).unzip();
-    let mut tables = MixerTables::new(&parts, closed_form);
-    tables.level_n = thrust_range::level(&airframe, &tables);
-    let thrust_range_n = thrust_range::thrust_range(&airframe, &tables)?;
-    let probe = Probe {
-        airframe: &airframe,
-        effectiveness: &effectiveness,
-        pair: &pair,
-        tables: &tables,
-        thrust_range_n,
-        lost_between_sides,
-    };
-    probe.run()?;
-    let mut warnings = plausible::warnings(&airframe, &effectiveness, &pair, thrust_range_n);
-    let mut compiled = Compiled {
-        source_name: source.file_name(),
-        warnings: Diagnostics::new(source.clone(), Vec::new()),
-        airframe,
-        effectiveness,
-        pair,
-        injectivity,
-        least_idle,
+    let model = Model::new(airframe)?;
+    let selected = selection::select(&model.airframe, &model.pair, model.voltage.as_ref())?;
+    let (tables, lost_between_sides) = model.tables(&selected);
+    let thrust_range_n = thrust_range::thrust_range(&model.airframe, &tables)?;
+    let compiled = Compiled {
+        source: source.clone(),
+        airframe: model.airframe,
+        effectiveness: model.effectiveness,
+        pair: model.pair,
+        injectivity: model.injectivity,
+        least_idle: model.least_idle,
         evaluator: selected.evaluator,
         residual: selected.residual,
         thrust_range_n,
@@ -111,15 +74,89 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         lost_between_sides,
         tables,
     };
-    warnings.extend(hover::warnings(&compiled));
-    warnings.extend(power::warnings(&compiled));
-    compiled.warnings = Diagnostics::new(source.clone(), warnings);
+    probe::run(&compiled)?;
     Ok(compiled)
 }
 
-/// The value, or its faults added to the others.
-fn keep<T>(result: Result<T, Vec<Diagnostic>>, faults: &mut Vec<Diagnostic>) -> Option<T> {
-    result.map_err(|found| faults.extend(found)).ok()
+/// Warnings of a compiled airframe: values that compile and are probably mistakes.
+pub fn lint(compiled: &Compiled) -> Diagnostics {
+    let mut warnings = plausible::warnings(compiled);
+    warnings.extend(hover::warnings(compiled));
+    warnings.extend(power::warnings(compiled));
+    Diagnostics::new(compiled.source.clone(), warnings)
+}
+
+/// The mathematics of an airframe: what is known before an inverse is fitted.
+struct Model {
+    airframe: Airframe,
+    pair: PairMap,
+    effectiveness: Effectiveness,
+    injectivity: Injectivity,
+    least_idle: f64,
+    voltage: Option<VoltageTable>,
+}
+
+impl Model {
+    fn new(airframe: Airframe) -> Result<Model, Vec<Diagnostic>> {
+        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+        let effectiveness = Effectiveness::new(&airframe).and_then(|effectiveness| {
+            plausible::check_authority(&airframe, &effectiveness, &pair)?;
+            Ok(effectiveness)
+        });
+        let invertible = injectivity::prove(&airframe);
+        let laws = voltage::tabulate(&airframe);
+        let tolerances = plausible::check_tolerances(&airframe, &pair);
+        let (effectiveness, (injectivity, least_idle), laws, ()) =
+            gather(effectiveness, invertible, laws, tolerances)?;
+        let voltage = VoltageTable::new(&airframe, laws.as_ref());
+        Ok(Model {
+            airframe,
+            pair,
+            effectiveness,
+            injectivity,
+            least_idle,
+            voltage,
+        })
+    }
+
+    /// The tables, and the share of the attainable set's area that the sides of the closed form lose.
+    fn tables(&self, selected: &Selected) -> (MixerTables, Option<f64>) {
+        let Model {
+            airframe,
+            pair,
+            effectiveness,
+            ..
+        } = self;
+        let voltage = self.voltage.as_ref();
+        let parts = Parts {
+            airframe,
+            effectiveness,
+            pair,
+            voltage,
+            map: &selected.map,
+            tolerance: selection::tolerance(airframe, effectiveness, pair, voltage, selected),
+        };
+        let (closed_form, lost_between_sides) = closed_form::table(airframe, effectiveness, pair).unzip();
+        let mut tables = MixerTables::new(&parts, closed_form);
+        tables.level_n = thrust_range::level(airframe, &tables);
+        (tables, lost_between_sides)
+    }
+}
+
+/// All four values, or the faults of all.
+fn gather<A, B, C, D>(
+    a: Result<A, Vec<Diagnostic>>,
+    b: Result<B, Vec<Diagnostic>>,
+    c: Result<C, Vec<Diagnostic>>,
+    d: Result<D, Vec<Diagnostic>>,
+) -> Result<(A, B, C, D), Vec<Diagnostic>> {
+    match (a, b, c, d) {
+        (Ok(a), Ok(b), Ok(c), Ok(d)) => Ok((a, b, c, d)),
+        (a, b, c, d) => {
+            let faults = [a.err(), b.err(), c.err(), d.err()];
+            Err(faults.into_iter().flatten().flatten().collect())
+        }
+    }
 }
 
 /// The first line of generated Rust: reviews and linters leave out files that have it.

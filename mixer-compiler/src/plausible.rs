@@ -20,6 +20,7 @@ use facts::Facts;
 pub use pair::ARDUPILOT_MOST_SPIN_MIN;
 
 use crate::airframe::Airframe;
+use crate::compiled::Compiled;
 use crate::diagnostic::Diagnostic;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
@@ -57,14 +58,14 @@ const RULES: &[Rule] = &[
 ];
 
 /// Warnings of an airframe that compiles.
-pub(crate) fn warnings(
-    airframe: &Airframe,
-    effectiveness: &Effectiveness,
-    pair: &PairMap,
-    thrust_range_n: [f32; 2],
-) -> Vec<Diagnostic> {
-    let thrust_range_n = thrust_range_n.map(f64::from);
-    apply(airframe, pair, Some(effectiveness), Some(thrust_range_n))
+pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
+    let thrust_range_n = compiled.thrust_range_n.map(f64::from);
+    apply(
+        &compiled.airframe,
+        &compiled.pair,
+        Some(&compiled.effectiveness),
+        Some(thrust_range_n),
+    )
 }
 
 /// Warnings of an airframe that is refused: one of them may be the reason.
@@ -101,7 +102,7 @@ fn apply(
 ///
 /// # Errors
 /// A tolerance above a tenth of a unit's largest effort.
-pub(crate) fn tolerances(airframe: &Airframe, pair: &PairMap) -> Result<(), Vec<Diagnostic>> {
+pub(crate) fn check_tolerances(airframe: &Airframe, pair: &PairMap) -> Result<(), Vec<Diagnostic>> {
     let faults = limits::absurd_tolerances(airframe, pair);
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
@@ -111,7 +112,7 @@ pub(crate) fn tolerances(airframe: &Airframe, pair: &PairMap) -> Result<(), Vec<
 ///
 /// # Errors
 /// The first such axis.
-pub(crate) fn authority(
+pub(crate) fn check_authority(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,

@@ -21,13 +21,10 @@ mod physics;
 mod sides;
 
 use mixer_rt::tables::Airmode;
-use mixer_rt::{Axis, Health, Wrench};
+use mixer_rt::{Axis, Health, Saturation, Wrench};
 
-use crate::airframe::Airframe;
+use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::model::PairMap;
-use crate::model::effectiveness::Effectiveness;
-use crate::tables::MixerTables;
 use physics::Physics;
 
 /// Share of an axis' authority by which a flagged wrench may be exceeded, reversed or off its
@@ -67,111 +64,77 @@ const INSIDE: f32 = 0.05;
 /// Most pairs of rotors out that are probed, taken evenly from all.
 const MOST_PAIRS: usize = 28;
 
-/// The emitted tables with what they are judged by.
-pub(crate) struct Probe<'a> {
-    /// The airframe.
-    pub(crate) airframe: &'a Airframe,
-    /// M and M+.
-    pub(crate) effectiveness: &'a Effectiveness,
-    /// The map of every unit in f64.
-    pub(crate) pair: &'a PairMap,
-    /// What is emitted.
-    pub(crate) tables: &'a MixerTables,
-    /// Least and largest thrust of level flight at the reference voltage, N.
-    pub(crate) thrust_range_n: [f32; 2],
-    /// Share of the attainable set's area that the sides of the closed form lose.
-    pub(crate) lost_between_sides: Option<f64>,
-}
-
-/// The map of every unit in f64.
-struct UnitModel<'a> {
-    map: &'a PairMap,
-    /// Its largest thrust, N, and torque, N m: [`PairMap::scale`], which looks along the whole border.
-    scale: [f64; 2],
-}
-
-impl Probe<'_> {
-    /// Runs the probes.
-    ///
-    /// # Errors
-    /// The first one that fails: a fault of the compiler.
-    pub(crate) fn run(&self) -> Result<(), Vec<Diagnostic>> {
-        let unit = &UnitModel {
-            map: self.pair,
-            scale: self.pair.scale(),
-        };
-        self.sides(unit)
-            .and_then(|()| self.whole(unit))
-            .and_then(|()| self.rotors_out(unit))
-            .map_err(|message| {
-                vec![self.airframe.diagnostic(
-                    Code::Probe,
-                    "name",
-                    message,
-                    "",
-                    "this is a fault of the compiler, not of the file: please report it with the file",
-                )]
-            })
-    }
-
-    /// Wrenches with all rotors.
-    fn whole(&self, unit: &UnitModel<'_>) -> Result<(), String> {
-        for (volts, thrusts) in self.points() {
-            let at = At::new(self, unit, volts, Health::GOOD);
-            for &share in thrusts {
-                let thrust = at.thrust(share);
-                at.probe([0.0, 0.0, 0.0, thrust])?;
-                for (size, direction) in SIZES.iter().flat_map(|size| DIRECTIONS.map(|d| (size, d))) {
-                    let [roll, pitch, yaw] =
-                        [0, 1, 2].map(|axis| size * direction[axis] * at.authority[axis]);
-                    at.probe([roll, pitch, yaw, thrust])?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Wrenches with one and with two rotors out, where the others keep the frame level.
-    fn rotors_out(&self, unit: &UnitModel<'_>) -> Result<(), String> {
-        let rotors = self.airframe.rotors() as u8;
-        let singles = (0..rotors).map(|rotor| Health::GOOD.with_failed(rotor));
-        let pairs: Vec<Health> = (0..rotors)
-            .flat_map(|first| (first + 1..rotors).map(move |second| (first, second)))
-            .map(|(first, second)| Health::GOOD.with_failed(first).with_failed(second))
-            .collect();
-        let step = pairs.len().div_ceil(MOST_PAIRS).max(1);
-        for health in singles.chain(pairs.into_iter().step_by(step)) {
-            let at = At::new(self, unit, self.airframe.reference_v(), health);
-            let level = [0.0, 0.0, 0.0, at.thrust(0.4)];
-            if !at.probe(level)? {
-                continue;
-            }
-            for [roll, pitch, yaw] in [[1.0, -1.0, 1.0], [0.0, 0.0, -1.0]] {
-                let [p, q, r, _] = at.authority;
-                at.probe([0.2 * roll * p, 0.2 * pitch * q, 0.2 * yaw * r, level[3]])?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Voltages (V) with the thrusts that are probed there: all in the middle of the range, one at its
-    /// ends.
-    fn points(&self) -> Vec<(f64, &'static [f64])> {
-        let range = self.airframe.voltage.as_ref().map(|voltage| voltage.range_v);
-        range.map_or(vec![(0.0, &THRUSTS[..])], |[low, high]| {
-            vec![
-                (low, &THRUSTS[1..2]),
-                (0.5 * (low + high), &THRUSTS),
-                (high, &THRUSTS[1..2]),
-            ]
+/// Runs the probes.
+///
+/// # Errors
+/// The first one that fails: a fault of the compiler.
+pub(crate) fn run(compiled: &Compiled) -> Result<(), Vec<Diagnostic>> {
+    let scale = compiled.pair.scale();
+    sides::check(compiled, scale)
+        .and_then(|()| probe_whole(compiled, scale))
+        .and_then(|()| probe_rotors_out(compiled, scale))
+        .map_err(|message| {
+            vec![compiled.airframe.diagnostic(
+                Code::Probe,
+                "name",
+                message,
+                "",
+                "this is a fault of the compiler, not of the file: please report it with the file",
+            )]
         })
+}
+
+/// Wrenches with all rotors of units of this scale (largest thrust and torque, N and N m).
+fn probe_whole(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
+    // All thrusts in the middle of the voltage range, one at its ends.
+    let points = match &compiled.airframe.voltage {
+        None => vec![(0.0, &THRUSTS[..])],
+        Some(voltage) => {
+            let [low, high] = voltage.range_v;
+            let middle = &THRUSTS[1..2];
+            vec![(low, middle), (0.5 * (low + high), &THRUSTS), (high, middle)]
+        }
+    };
+    for (volts, thrusts) in points {
+        let at = At::new(compiled, scale, volts, Health::GOOD);
+        for &share in thrusts {
+            let thrust = at.thrust(share);
+            at.probe([0.0, 0.0, 0.0, thrust])?;
+            for (size, direction) in SIZES.iter().flat_map(|size| DIRECTIONS.map(|d| (size, d))) {
+                let [roll, pitch, yaw] = [0, 1, 2].map(|axis| size * direction[axis] * at.authority[axis]);
+                at.probe([roll, pitch, yaw, thrust])?;
+            }
+        }
     }
+    Ok(())
+}
+
+/// Wrenches with one and with two rotors out, where the others keep the frame level.
+fn probe_rotors_out(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
+    let rotors = compiled.airframe.rotors() as u8;
+    let singles = (0..rotors).map(|rotor| Health::GOOD.with_failed(rotor));
+    let pairs: Vec<Health> = (0..rotors)
+        .flat_map(|first| (first + 1..rotors).map(move |second| (first, second)))
+        .map(|(first, second)| Health::GOOD.with_failed(first).with_failed(second))
+        .collect();
+    let step = pairs.len().div_ceil(MOST_PAIRS).max(1);
+    for health in singles.chain(pairs.into_iter().step_by(step)) {
+        let at = At::new(compiled, scale, compiled.airframe.reference_v(), health);
+        let level = [0.0, 0.0, 0.0, at.thrust(0.4)];
+        if !at.probe(level)? {
+            continue;
+        }
+        for [roll, pitch, yaw] in [[1.0, -1.0, 1.0], [0.0, 0.0, -1.0]] {
+            let [p, q, r, _] = at.authority;
+            at.probe([0.2 * roll * p, 0.2 * pitch * q, 0.2 * yaw * r, level[3]])?;
+        }
+    }
+    Ok(())
 }
 
 /// The mixer at one voltage with some rotors out.
 struct At<'a> {
-    probe: &'a Probe<'a>,
-    physics: Physics<'a>,
+    compiled: &'a Compiled,
     volts: f64,
     health: Health,
     /// `[k_f, k_Q]`.
@@ -180,26 +143,46 @@ struct At<'a> {
     authority: [f64; 4],
 }
 
+/// What the mixer answers to a wrench; wrenches are `[roll, pitch, yaw, thrust]`, N m and N.
+struct Answer<'a> {
+    at: &'a At<'a>,
+    asked: [f64; 4],
+    /// A throttle per channel.
+    throttle: Vec<f32>,
+    /// The wrench that the mixer reports.
+    achieved: [f64; 4],
+    /// The wrench that the throttles give by the physics.
+    given: [f64; 4],
+    saturation: Saturation,
+}
+
+/// What a judge has against an answer, in words.
+type Judge = fn(&Answer<'_>) -> Option<String>;
+
+const JUDGES: [Judge; 5] = [
+    judge_throttles,
+    judge_report,
+    judge_flags,
+    judge_service,
+    judge_soundness,
+];
+
 impl<'a> At<'a> {
-    fn new(probe: &'a Probe<'a>, unit: &'a UnitModel, volts: f64, health: Health) -> Self {
-        let factors = probe.airframe.voltage_factors(volts);
-        let efforts = [0, 1].map(|k| factors[k] * unit.scale[k]);
+    fn new(compiled: &'a Compiled, scale: [f64; 2], volts: f64, health: Health) -> Self {
+        let factors = compiled.airframe.voltage_factors(volts);
+        let efforts = [0, 1].map(|k| factors[k] * scale[k]);
         At {
-            probe,
-            physics: Physics {
-                airframe: probe.airframe,
-                map: unit.map,
-            },
+            compiled,
             volts,
             health,
             factors,
-            authority: [0, 1, 2, 3].map(|axis| probe.effectiveness.largest(axis, efforts)),
+            authority: [0, 1, 2, 3].map(|axis| compiled.effectiveness.largest(axis, efforts)),
         }
     }
 
     /// The thrust at a share of the range of level flight, N.
     fn thrust(&self, share: f64) -> f64 {
-        let [least, most] = self.probe.thrust_range_n.map(f64::from);
+        let [least, most] = self.compiled.thrust_range_n.map(f64::from);
         self.factors[0] * (least + share * (most - least))
     }
 
@@ -208,132 +191,156 @@ impl<'a> At<'a> {
     /// # Errors
     /// What is wrong with the answer.
     fn probe(&self, asked: [f64; 4]) -> Result<bool, String> {
-        let Probe { airframe, tables, .. } = self.probe;
-        let asked = asked.map(|x| x as f32);
-        let setpoint = Wrench::from_array(asked);
-        let fault = |what: String| {
-            let mut out = String::new();
-            for channel in self.failed() {
-                out += &format!(", rotor {channel} out");
-            }
-            let volts = if airframe.voltage.is_some() {
-                format!(" at {:.2} V", self.volts)
-            } else {
-                String::new()
-            };
-            format!(
-                "the emitted mixer fails a probe: asked {}{volts}{out}, {what}",
-                words(&asked.map(f64::from))
-            )
+        let answer = self.answer(asked.map(|x| x as f32));
+        let fault = match &answer {
+            Ok(answer) => JUDGES.iter().find_map(|judge| judge(answer)),
+            Err(refused) => Some(refused.clone()),
         };
+        let Some(fault) = fault else {
+            return Ok(answer.is_ok_and(|answer| answer.is_delivered()));
+        };
+        let out: String = self
+            .failed()
+            .map(|channel| format!(", rotor {channel} out"))
+            .collect();
+        let volts = match &self.compiled.airframe.voltage {
+            Some(_) => format!(" at {:.2} V", self.volts),
+            None => String::new(),
+        };
+        Err(format!(
+            "the emitted mixer fails a probe: asked {}{volts}{out}, {fault}",
+            words(&asked)
+        ))
+    }
+
+    fn answer(&self, asked: [f32; 4]) -> Result<Answer<'_>, String> {
+        let Compiled {
+            airframe,
+            pair: map,
+            tables,
+            ..
+        } = self.compiled;
         let (throttle, achieved, saturation) = tables
-            .mix_with_health(&setpoint, self.volts as f32, self.health)
-            .map_err(|error| fault(error.to_string()))?;
-        for (channel, &throttle) in throttle.iter().enumerate() {
-            let allowed = if self.health.has_failed(channel as u8) {
-                throttle == 0.0
-            } else {
-                (tables.throttle.min..=tables.throttle.max).contains(&throttle)
-            };
-            if !allowed {
-                return Err(fault(format!("output {channel} gets {throttle}")));
-            }
-        }
-        let given = self.physics.wrench(&throttle, self.factors, self.health);
-        let (asked, achieved) = (asked.map(f64::from), achieved.to_array().map(f64::from));
-        let tolerance = tables.tolerance.wrench.map(f64::from);
-        let served = || {
-            Axis::ALL
-                .into_iter()
-                .filter(|axis| airframe.allocation.controls(*axis))
-        };
-        let is_inside = self.health.is_good() && self.is_inside(setpoint);
-        let mut is_level = true;
-        for axis in served() {
-            let k = axis as usize;
-            let is_true = (given[k] - achieved[k]).abs() <= tolerance[k];
-            if !is_true {
-                return Err(fault(format!(
-                    "reported {}, given {}",
-                    words(&achieved),
-                    words(&given)
-                )));
-            }
-            let is_flagged = saturation.is_flagged(axis);
-            is_level &= !is_flagged;
-            if !is_flagged && (given[k] - asked[k]).abs() > 2.0 * tolerance[k] {
-                return Err(fault(format!("given {} without a flag on {axis}", words(&given))));
-            }
-            if is_flagged && is_inside {
-                return Err(fault(format!(
-                    "given {}, although all units could",
-                    words(&given)
-                )));
-            }
-        }
-        // With one rotor out torques are sound where level flight at the thrust asked is attainable; the
-        // caller goes on from there. With two they are all but always, which is no proof of a fault.
-        let is_promised = self.health.is_good() || is_level || asked[..3] != [0.0; 3];
-        if is_promised
-            && self.failed().count() <= 1
-            && let Some(axis) = self.unsound(&asked, &given)
-        {
-            return Err(fault(format!(
-                "given {}: {axis} is exceeded, reversed or off its direction",
-                words(&given)
-            )));
-        }
-        Ok(is_level)
+            .mix_with_health(&Wrench::from_array(asked), self.volts as f32, self.health)
+            .map_err(|error| error.to_string())?;
+        Ok(Answer {
+            at: self,
+            asked: asked.map(f64::from),
+            given: Physics { airframe, map }.wrench(&throttle, self.factors, self.health),
+            throttle,
+            achieved: achieved.to_array().map(f64::from),
+            saturation,
+        })
     }
 
     /// Outputs of the rotors that are out.
     fn failed(&self) -> impl Iterator<Item = u8> {
-        let rotors = 0..self.probe.airframe.rotors() as u8;
+        let rotors = 0..self.compiled.airframe.rotors() as u8;
         rotors.filter(|&channel| self.health.has_failed(channel))
     }
 
-    /// True where the throttles of least norm are well inside their range: such a wrench is delivered.
-    fn is_inside(&self, setpoint: Wrench) -> bool {
-        let tables = self.probe.tables;
-        let range = &tables.throttle;
-        let margin = INSIDE * (range.max - range.min);
-        let inside = range.min + margin..=range.max - margin;
-        let throttles = tables.least_norm(setpoint.to_array(), self.factors);
-        throttles.is_some_and(|units| {
-            units
-                .as_flattened()
-                .iter()
-                .all(|throttle| inside.contains(throttle))
-        })
+    fn serves(&self, axis: Axis) -> bool {
+        self.compiled.airframe.allocation.controls(axis)
     }
 
-    /// An axis on which a wrench is not within what was asked.
-    fn unsound(&self, asked: &[f64; 4], given: &[f64; 4]) -> Option<Axis> {
-        let allocation = &self.probe.airframe.allocation;
-        let is_whole = self.health.is_good();
-        let room = |axis: Axis| {
-            let tolerance = self.probe.tables.tolerance.wrench[axis as usize];
-            f64::from(tolerance) + SOUND * self.authority[axis as usize]
-        };
-        let is_beyond = |axis: &Axis| {
-            let (asked, given) = (asked[*axis as usize], given[*axis as usize]);
-            if *axis == Axis::Thrust {
-                // Level flight with rotors out may need more thrust than is asked.
-                let may_rise = allocation.airmode != Airmode::Disabled || !is_whole;
-                return !may_rise && given > asked + room(*axis);
-            }
-            given > asked.max(0.0) + room(*axis) || given < asked.min(0.0) - room(*axis)
-        };
-        let served = |axis: &Axis| allocation.controls(*axis);
-        if let Some(axis) = Axis::ALL.into_iter().filter(served).find(is_beyond) {
-            return Some(axis);
+    /// The error of an axis that is allowed, N m or N.
+    fn tolerance(&self, axis: Axis) -> f64 {
+        f64::from(self.compiled.tables.tolerance.wrench[axis as usize])
+    }
+}
+
+impl Answer<'_> {
+    /// The first served axis that is at fault.
+    fn find(&self, is_at_fault: impl Fn(Axis, usize) -> bool) -> Option<Axis> {
+        let mut served = Axis::ALL.into_iter().filter(|&axis| self.at.serves(axis));
+        served.find(|&axis| is_at_fault(axis, axis as usize))
+    }
+
+    fn is_delivered(&self) -> bool {
+        self.find(|axis, _| self.saturation.is_flagged(axis)).is_none()
+    }
+}
+
+/// Throttles are within the range, those of rotors that are out zero.
+fn judge_throttles(answer: &Answer<'_>) -> Option<String> {
+    let range = &answer.at.compiled.tables.throttle;
+    let is_allowed = |channel: usize, throttle: f32| match answer.at.health.has_failed(channel as u8) {
+        true => throttle == 0.0,
+        false => (range.min..=range.max).contains(&throttle),
+    };
+    let mut throttles = answer.throttle.iter().enumerate();
+    let (channel, throttle) = throttles.find(|(channel, throttle)| !is_allowed(*channel, **throttle))?;
+    Some(format!("output {channel} gets {throttle}"))
+}
+
+/// What is reported is given.
+fn judge_report(answer: &Answer<'_>) -> Option<String> {
+    let (achieved, given) = (&answer.achieved, &answer.given);
+    answer.find(|axis, k| {
+        let is_true = (given[k] - achieved[k]).abs() <= answer.at.tolerance(axis);
+        !is_true
+    })?;
+    Some(format!("reported {}, given {}", words(achieved), words(given)))
+}
+
+/// What is not flagged is delivered.
+fn judge_flags(answer: &Answer<'_>) -> Option<String> {
+    let axis = answer.find(|axis, k| {
+        let missed = (answer.given[k] - answer.asked[k]).abs();
+        !answer.saturation.is_flagged(axis) && missed > 2.0 * answer.at.tolerance(axis)
+    })?;
+    Some(format!("given {} without a flag on {axis}", words(&answer.given)))
+}
+
+/// A wrench is delivered where the throttles of least norm are well inside their range.
+fn judge_service(answer: &Answer<'_>) -> Option<String> {
+    let (at, tables) = (answer.at, &answer.at.compiled.tables);
+    if !at.health.is_good() || answer.is_delivered() {
+        return None;
+    }
+    let range = &tables.throttle;
+    let margin = INSIDE * (range.max - range.min);
+    let inside = range.min + margin..=range.max - margin;
+    let units = tables.least_norm(answer.asked.map(|x| x as f32), at.factors)?;
+    let is_inside = units
+        .as_flattened()
+        .iter()
+        .all(|throttle| inside.contains(throttle));
+    is_inside.then(|| format!("given {}, although all units could", words(&answer.given)))
+}
+
+/// No axis is exceeded, reversed or off its direction.
+///
+/// With one rotor out torques are sound where level flight at the thrust asked is attainable; the
+/// caller goes on from there. With two they are all but always, which is no proof of a fault.
+fn judge_soundness(answer: &Answer<'_>) -> Option<String> {
+    let Answer { at, asked, given, .. } = answer;
+    let is_whole = at.health.is_good();
+    let is_promised = is_whole || answer.is_delivered() || asked[..3] != [0.0; 3];
+    if !is_promised || at.failed().count() > 1 {
+        return None;
+    }
+    let room = |axis: Axis| at.tolerance(axis) + SOUND * at.authority[axis as usize];
+    let is_beyond = |axis: Axis, k: usize| {
+        if axis == Axis::Thrust {
+            // Level flight with rotors out may need more thrust than is asked.
+            let may_rise = at.compiled.airframe.allocation.airmode != Airmode::Disabled || !is_whole;
+            return !may_rise && given[k] > asked[k] + room(axis);
         }
+        given[k] > asked[k].max(0.0) + room(axis) || given[k] < asked[k].min(0.0) - room(axis)
+    };
+    let off_direction = || {
         let [roll, pitch] = [Axis::Roll, Axis::Pitch];
         let size = libm::hypot(asked[0], asked[1]);
         let across = (asked[0] * given[1] - asked[1] * given[0]).abs();
-        let is_off = served(&roll) && served(&pitch) && across > size * room(roll).max(room(pitch));
+        let is_off = at.serves(roll) && at.serves(pitch) && across > size * room(roll).max(room(pitch));
         is_off.then_some(roll)
-    }
+    };
+    let axis = answer.find(is_beyond).or_else(off_direction)?;
+    Some(format!(
+        "given {}: {axis} is exceeded, reversed or off its direction",
+        words(given)
+    ))
 }
 
 /// A wrench in words.

@@ -14,7 +14,8 @@ fn x8(vehicle: &str) -> Compiled {
 #[test]
 fn hover_is_that_of_the_pair() {
     let compiled = x8("[vehicle]\nmass_kg = 3.2\n");
-    assert!(compiled.warnings.is_empty(), "{}", compiled.warnings);
+    let warnings = mixer_compiler::lint(&compiled);
+    assert!(warnings.is_empty(), "{warnings}");
     let hover = Hover::new(&compiled).unwrap();
     assert_eq!(hover.weight_n, GRAVITY * 3.2);
     assert!((hover.thrust_over_weight - 3.159).abs() < 0.01, "{hover:?}");

@@ -30,7 +30,7 @@ fn names(folder: &Path, extension: &str) -> BTreeSet<String> {
 fn warnings(folder: &Path, name: &str) -> Diagnostics {
     let text = fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
     match mixer_compiler::compile(&Source::new(format!("{name}.toml"), text)) {
-        Ok(compiled) => compiled.warnings,
+        Ok(compiled) => mixer_compiler::lint(&compiled),
         Err(faults) => panic!("{name} is refused\n{faults}"),
     }
 }

@@ -88,7 +88,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
         }
         footer {
             "Made by " code { "cargo mixer report" } " " (env!("CARGO_PKG_VERSION")) " from "
-            code { (printable(&compiled.source_name)) }
+            code { (printable(&compiled.source.file_name())) }
             ". Body frame FRD, SI units; clockwise yaw seen from above is positive, thrust is positive upwards; the torque \
              of a unit is positive where its lower rotor outweighs the upper one."
         }
@@ -108,7 +108,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
 
 /// What is plausibly a mistake; nothing where there is none.
 fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
-    let records = study.compiled.warnings.records();
+    let records = mixer_compiler::lint(study.compiled).records();
     let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(study.compiled));
     html! {
         @if !records.is_empty() || !doubts.is_empty() {

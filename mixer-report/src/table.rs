@@ -115,7 +115,7 @@ pub fn summary(study: &Study<'_>, origin: &Origin) -> Markup {
         .collect();
     facts.push((
         "Airframe file",
-        html! { code { (printable(&compiled.source_name)) } },
+        html! { code { (printable(&compiled.source.file_name())) } },
     ));
     facts.extend(origin.date.iter().map(|date| ("Date", html! { (date) })));
     let hash = origin.sha256.iter();

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use mixer_compiler::Compiled;
 use mixer_compiler::checklist::Checklist;
 use mixer_compiler::cost::Cost;
 use mixer_compiler::diagnostic::{Diagnostics, Record, Severity, printable};
@@ -59,17 +58,16 @@ pub fn run(args: &CheckArgs) -> ExitCode {
     let start = Instant::now();
     let result = crate::compile_quietly(&args.airframe);
     let compile_ms = start.elapsed().as_secs_f64() * 1e3;
-    if let Ok(compiled) = &result {
-        tell(&compiled.warnings, args.verbose);
-    }
     let mut out = stdout().lock();
     match result {
         Ok(compiled) => {
+            let warnings = mixer_compiler::lint(&compiled);
+            tell(&warnings, args.verbose);
             let written = if args.json {
                 let success = Success {
                     summary: Summary::new(&compiled),
                     stacks: Stacks::new(&compiled),
-                    warnings: compiled.warnings.records(),
+                    warnings: warnings.records(),
                     compile_ms,
                 };
                 json(&mut out, &success)
@@ -77,6 +75,7 @@ pub fn run(args: &CheckArgs) -> ExitCode {
                 let verdict = Verdict {
                     compiled: &compiled,
                     summary: &Summary::new(&compiled),
+                    warnings: &warnings,
                     file: &args.airframe,
                 };
                 write!(out, "{verdict}")
@@ -90,7 +89,7 @@ pub fn run(args: &CheckArgs) -> ExitCode {
             };
             match crate::output(written.and_then(|()| out.flush())) {
                 Err(status) => status,
-                Ok(()) if args.deny_warnings && !compiled.warnings.is_empty() => denied(&compiled),
+                Ok(()) if args.deny_warnings && !warnings.is_empty() => denied(&warnings),
                 Ok(()) => ExitCode::SUCCESS,
             }
         }
@@ -124,11 +123,11 @@ fn tell(warnings: &Diagnostics, in_full: bool) {
 }
 
 /// Refuses a good file for its warnings.
-fn denied(compiled: &Compiled) -> ExitCode {
-    let count = compiled.warnings.faults().len();
+fn denied(warnings: &Diagnostics) -> ExitCode {
+    let count = warnings.faults().len();
     crate::print_error(format_args!(
         "{}: {count} {}, and --deny-warnings is given",
-        compiled.warnings.source().name,
+        warnings.source().name,
         if count == 1 { "warning" } else { "warnings" }
     ))
 }

@@ -130,6 +130,9 @@ fn column(compiled: &Compiled) -> Vec<(&'static str, String)> {
             "  mix delivered by least norm",
             count(cost.delivered_instructions),
         ),
-        ("warnings", compiled.warnings.faults().len().to_string()),
+        (
+            "warnings",
+            mixer_compiler::lint(compiled).faults().len().to_string(),
+        ),
     ]
 }

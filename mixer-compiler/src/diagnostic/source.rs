@@ -31,8 +31,8 @@ impl Source {
         }
     }
 
-    /// The name of the file without its folder.
-    pub(crate) fn file_name(&self) -> String {
+    /// The name of the file without its folder: what is emitted depends on no place.
+    pub fn file_name(&self) -> String {
         let path = Path::new(&self.name);
         let name = path.file_name().unwrap_or(path.as_os_str());
         name.to_string_lossy().into_owned()

@@ -275,11 +275,7 @@ impl fmt::Display for Report<'_> {
             Some(_) => "; without `mix_with_health` only what the closed form reads is linked",
             None => "",
         };
-        writeln!(f, "tables          {} bytes{linked}", summary.table_bytes)?;
-        for line in compiled.warnings.lines() {
-            writeln!(f, "{line}")?;
-        }
-        Ok(())
+        writeln!(f, "tables          {} bytes{linked}", summary.table_bytes)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use mixer_rt::tables::{Border, Inverse};
 
-use super::{Probe, UnitModel};
+use crate::compiled::Compiled;
 
 /// Border points per edge of the throttle box.
 const SAMPLES: usize = 256;
@@ -17,57 +17,55 @@ const BORDER: f64 = 2e-3;
 /// Share of the attainable set's area by which a description may be smaller than stated.
 const AREA: f64 = 5e-3;
 
-impl Probe<'_> {
-    /// The efforts are attained by the emitted inverse; else the words for what they are of.
-    fn attained(&self, unit: &UnitModel, efforts: [f32; 2], of: &str) -> Result<(), String> {
-        let tables = self.tables;
-        let throttles = (&tables.inverse).throttles(&tables.view().pair, &tables.throttle, efforts);
-        let (given, scale) = (unit.map.efforts(throttles.map(f64::from)), unit.scale);
-        for k in 0..2 {
-            let missed = (given[k] - f64::from(efforts[k])).abs();
-            let is_near = missed <= 2.0 * f64::from(tables.tolerance.efforts[k]) + BORDER * scale[k];
-            if !is_near {
-                return Err(format!(
-                    "the emitted {of} is not attainable: f {:.4} N, Q {:.5} N m gives f {:.4} N, Q {:.5} N m",
-                    efforts[0], efforts[1], given[0], given[1]
-                ));
-            }
+/// Points on the sides are attainable, and between them is the area that is stated, of units of this
+/// scale (largest thrust and torque, N and N m).
+pub(super) fn check(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
+    let (Some(table), Some(lost)) = (&compiled.tables.closed_form, compiled.lost_between_sides) else {
+        return Ok(());
+    };
+    let area = twice_area(&compiled.pair.scaled_border(SAMPLES));
+    let border: Border<'_> = table.border.view();
+    let [least, most] = table.thrust_n;
+    let step = (most - least) / SECTIONS as f32;
+    let mut between = 0.0;
+    for k in 0..SECTIONS {
+        let f = least + (k as f32 + 0.5) * step;
+        let [middle, half] = border.torques(f);
+        // Where the set is a point but for rounding, there is nothing to give.
+        if half > 0.0 {
+            check_attained(compiled, scale, [f, middle + half], "upper side")?;
+            check_attained(compiled, scale, [f, middle - half], "lower side")?;
+            between += 2.0 * f64::from(half) * f64::from(step);
         }
-        Ok(())
     }
+    // `area` is twice that of the set, in shares of the scales.
+    let covered = 2.0 * between / (scale[0] * scale[1] * area);
+    if covered >= 1.0 - lost - AREA {
+        return Ok(());
+    }
+    Err(format!(
+        "the emitted sides lose {:.2} % of the attainable set's area, {:.2} % is stated",
+        100.0 * (1.0 - covered),
+        100.0 * lost
+    ))
+}
 
-    /// Points on the sides are attainable, and between them is the area that is stated.
-    pub(super) fn sides(&self, unit: &UnitModel) -> Result<(), String> {
-        let (Some(table), Some(lost)) = (&self.tables.closed_form, self.lost_between_sides) else {
-            return Ok(());
-        };
-        let area = twice_area(&unit.map.scaled_border(SAMPLES));
-        let border: Border<'_> = table.border.view();
-        let [least, most] = table.thrust_n;
-        let step = (most - least) / SECTIONS as f32;
-        let mut between = 0.0;
-        for k in 0..SECTIONS {
-            let f = least + (k as f32 + 0.5) * step;
-            let [middle, half] = border.torques(f);
-            // Where the set is a point but for rounding, there is nothing to give.
-            if half > 0.0 {
-                self.attained(unit, [f, middle + half], "upper side")?;
-                self.attained(unit, [f, middle - half], "lower side")?;
-                between += 2.0 * f64::from(half) * f64::from(step);
-            }
+/// The efforts are attained by the emitted inverse; else the words for what they are of.
+fn check_attained(compiled: &Compiled, scale: [f64; 2], efforts: [f32; 2], of: &str) -> Result<(), String> {
+    let tables = &compiled.tables;
+    let throttles = (&tables.inverse).throttles(&tables.view().pair, &tables.throttle, efforts);
+    let given = compiled.pair.efforts(throttles.map(f64::from));
+    for k in 0..2 {
+        let missed = (given[k] - f64::from(efforts[k])).abs();
+        let is_near = missed <= 2.0 * f64::from(tables.tolerance.efforts[k]) + BORDER * scale[k];
+        if !is_near {
+            return Err(format!(
+                "the emitted {of} is not attainable: f {:.4} N, Q {:.5} N m gives f {:.4} N, Q {:.5} N m",
+                efforts[0], efforts[1], given[0], given[1]
+            ));
         }
-        // `area` is twice that of the set, in shares of the scales.
-        let [thrust, torque] = unit.scale;
-        let covered = 2.0 * between / (thrust * torque * area);
-        if covered >= 1.0 - lost - AREA {
-            return Ok(());
-        }
-        Err(format!(
-            "the emitted sides lose {:.2} % of the attainable set's area, {:.2} % is stated",
-            100.0 * (1.0 - covered),
-            100.0 * lost
-        ))
     }
+    Ok(())
 }
 
 /// Twice the area within a closed border of an even number of points per edge. Chords of a smooth

@@ -1,5 +1,6 @@
 use super::*;
-use crate::{Compiled, Source, compile};
+use crate::tables::MixerTables;
+use crate::{Source, compile};
 
 fn compiled(name: &str) -> Compiled {
     let path = format!("{}/airframes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -8,17 +9,9 @@ fn compiled(name: &str) -> Compiled {
 
 /// What the probes say of an airframe with a fault planted in its tables.
 fn judged(compiled: &Compiled, plant: impl Fn(&mut MixerTables)) -> Result<(), String> {
-    let mut tables = compiled.tables.clone();
-    plant(&mut tables);
-    let probe = Probe {
-        airframe: &compiled.airframe,
-        effectiveness: &compiled.effectiveness,
-        pair: &compiled.pair,
-        tables: &tables,
-        thrust_range_n: compiled.thrust_range_n,
-        lost_between_sides: compiled.lost_between_sides,
-    };
-    probe.run().map_err(|faults| faults[0].message.clone())
+    let mut planted = compiled.clone();
+    plant(&mut planted.tables);
+    run(&planted).map_err(|faults| faults[0].message.clone())
 }
 
 #[track_caller]

@@ -6,13 +6,14 @@ use std::path::Path;
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::checklist::Checklist;
-use mixer_compiler::diagnostic::{printable, rounded_up};
+use mixer_compiler::diagnostic::{Diagnostics, printable, rounded_up};
 use mixer_compiler::report::{Summary, in_words};
 
 /// The verdict; its `Display` is the text.
 pub(super) struct Verdict<'a> {
     pub(super) compiled: &'a Compiled,
     pub(super) summary: &'a Summary,
+    pub(super) warnings: &'a Diagnostics,
     /// The airframe file, for the commands that come next.
     pub(super) file: &'a Path,
 }
@@ -86,7 +87,7 @@ impl fmt::Display for Verdict<'_> {
             )?;
         }
         self.outputs(f)?;
-        match compiled.warnings.faults().len() {
+        match self.warnings.faults().len() {
             0 => writeln!(f, "warnings        none")?,
             count => writeln!(f, "warnings        {count}, told on stderr")?,
         }
