@@ -146,8 +146,6 @@ class Airframe:
         ratio = volts / self.voltage["reference_v"]
         if quantity + "_exponent" in self.voltage:
             return ratio ** self.voltage[quantity + "_exponent"]
-        if quantity + "_polynomial" in self.voltage:
-            return sum(c * ratio**k for k, c in enumerate(self.voltage[quantity + "_polynomial"]))
         points = self.voltage[quantity + "_points"]
         for (v0, k0), (v1, k1) in zip(points, points[1:]):
             if volts <= v1:

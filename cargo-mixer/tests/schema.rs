@@ -127,8 +127,8 @@ fn airframes_are_valid() {
 fn the_parser_agrees_key_by_key() {
     const UNIT: &str = "[[unit]]\nposition_m = [0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\naxis = [0.0, 0.0, -1.0]\n";
     let pair = fs::read_to_string(root().join("cargo-mixer/src/commands/new/stand-in.toml")).expect("pair");
-    let other = "torque_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\nthrust_polynomial = [0.0, 1.0]\n";
-    let points = "thrust_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\ntorque_polynomial = [0.0, 1.0]\n";
+    let other = "torque_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\nthrust_exponent = 1.8\n";
+    let points = "thrust_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\ntorque_exponent = 1.8\n";
     let layout = "[layout]\narm_m = 0.45\nunits = 4\nfirst_angle_deg = 45.0\nspins = [\"cw\", \"ccw\", \"cw\", \"ccw\"]\n\
                   channels = [[0, 4], [1, 5], [2, 6], [3, 7]]\n[vehicle]\nmass_kg = 3.0\ninertia_kg_m2 = [0.1, 0.1, 0.2]\n[inverse]\nmethod = \"auto\"\n";
     let alone = "[pair.lower_out]\nthrust_n = [1.0, 10.0, 0.0]\ntorque_nm = [-0.01, -0.2, 0.0]\n\

@@ -144,7 +144,6 @@ fn with_voltage() -> impl Strategy<Value = String> {
         ]
     };
     let laws = prop_oneof![
-        prop::collection::vec(number(), 0..10).prop_map(|c| format!("thrust_polynomial = {c:?}")),
         prop::collection::vec((number(), number()), 0..5).prop_map(|points| {
             format!(
                 "thrust_points = {:?}",
@@ -152,11 +151,6 @@ fn with_voltage() -> impl Strategy<Value = String> {
             )
         }),
         number().prop_map(|e| format!("thrust_exponent = {e:?}")),
-        // One at the reference, so that it is the range that decides.
-        prop::collection::vec(-3.0..3.0_f64, 1..8).prop_map(|mut c| {
-            c[0] += 1.0 - c.iter().sum::<f64>();
-            format!("thrust_polynomial = {c:?}")
-        }),
     ];
     (laws, 0.1..1.0_f64, 1.0..3.0_f64).prop_map(|(law, low, high)| {
         let airframe = include_str!("../airframes/isae-x8.toml");

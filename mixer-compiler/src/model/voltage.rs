@@ -1,7 +1,7 @@
 //! The voltage correction as the runtime evaluates it.
 //!
-//! Polynomials and points are taken over; an exponent law k = (V / Vref)^e is fitted over the range
-//! by Chebyshev interpolation, since there is no power function in a mixer.
+//! Points are taken over; an exponent law k = (V / Vref)^e is fitted over the range by Chebyshev
+//! interpolation, since there is no power function in a mixer.
 
 use crate::airframe::{Airframe, Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic};
@@ -54,7 +54,7 @@ pub(crate) fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
 /// The laws of thrust and torque, tabulated; `None` without a correction.
 ///
 /// # Errors
-/// A range over which a law is no polynomial of moderate degree.
+/// A range over which no polynomial of moderate degree follows a law.
 pub fn tabulate(airframe: &Airframe) -> Result<Option<[TabulatedLaw; 2]>, Vec<Diagnostic>> {
     let Some(voltage) = &airframe.voltage else {
         return Ok(None);

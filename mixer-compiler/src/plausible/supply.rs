@@ -123,7 +123,6 @@ fn laws(voltage: &Voltage) -> [(&'static str, &VoltageLaw); 2] {
 fn key(name: &str, law: &VoltageLaw) -> String {
     let form = match law {
         VoltageLaw::Exponent(_) => "exponent",
-        VoltageLaw::Polynomial(_) => "polynomial",
         VoltageLaw::Points(_) => "points",
     };
     format!("voltage.{name}_{form}")

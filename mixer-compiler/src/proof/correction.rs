@@ -50,7 +50,7 @@ impl CorrectionBounds {
                 variable,
                 coefficients,
             } => over(range, |volts, span| Piece {
-                truth: truth(laws[k], voltage.reference_v, volts, span),
+                truth: truth(laws[k], voltage.reference_v, span),
                 table: Law::polynomial(*variable, coefficients, volts),
             }),
             LawTable::Points(points) => between_points(laws[k], points, range),
@@ -128,15 +128,9 @@ fn over([low, high]: [f64; 2], piece: impl Fn(Taylor, [f64; 2]) -> Piece) -> Bou
 }
 
 /// The file's law over a piece. Points are handled by [`between_points`].
-fn truth(law: &VoltageLaw, reference_v: f64, volts: Taylor, [centre, half]: [f64; 2]) -> Taylor {
+fn truth(law: &VoltageLaw, reference_v: f64, [centre, half]: [f64; 2]) -> Taylor {
     match law {
         VoltageLaw::Exponent(exponent) => power(*exponent, reference_v, centre, half),
-        VoltageLaw::Polynomial(coefficients) => {
-            let x = volts.times(1.0 / reference_v, f64::EPSILON / reference_v);
-            coefficients.iter().rev().fold(Taylor::exact(0.0), |sum, &c| {
-                sum.product(&x).plus(&Taylor::exact(c))
-            })
-        }
         VoltageLaw::Points(_) => Taylor::ball(f64::INFINITY),
     }
 }

@@ -116,12 +116,7 @@ fn write_voltage(text: &mut String, random: &mut Random) {
         let linear = rounded(slope);
         let constant = rounded(1.0 - linear - bend);
         let _ = match random.below(3) {
-            0 => writeln!(text, "{quantity}_exponent = {:?}", rounded(slope + bend)),
-            1 => writeln!(
-                text,
-                "{quantity}_polynomial = {}",
-                list(&[constant, linear, bend])
-            ),
+            0 | 1 => writeln!(text, "{quantity}_exponent = {:?}", rounded(slope + bend)),
             _ => {
                 let inner = [rounded(0.5 * (low + reference)), reference];
                 let points = [low, inner[0], inner[1], high].map(|volts| {

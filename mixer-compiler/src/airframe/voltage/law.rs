@@ -6,8 +6,6 @@
 pub enum VoltageLaw {
     /// k = (V / Vref)^e.
     Exponent(f64),
-    /// k = c0 + c1 x + c2 x^2 + .. with x = V / Vref.
-    Polynomial(Vec<f64>),
     /// (V, k) by ascending V, joined by straight lines.
     Points(Vec<[f64; 2]>),
 }
@@ -17,27 +15,19 @@ impl VoltageLaw {
     pub(crate) fn factor(&self, volts: f64, reference_v: f64) -> f64 {
         match self {
             VoltageLaw::Exponent(exponent) => libm::pow(volts / reference_v, *exponent),
-            VoltageLaw::Polynomial(coefficients) => horner(coefficients, volts / reference_v),
             VoltageLaw::Points(points) => between_points(points, volts),
         }
     }
 }
 
-pub(super) fn horner(coefficients: &[f64], x: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
-}
-
 fn between_points(points: &[[f64; 2]], volts: f64) -> f64 {
-    let after = points
-        .iter()
-        .position(|point| point[0] > volts)
-        .unwrap_or(points.len());
+    let after = points.partition_point(|point| point[0] <= volts);
     match (
-        after.checked_sub(1).and_then(|before| points.get(before)),
+        after.checked_sub(1).map(|before| points[before]),
         points.get(after),
     ) {
         (Some([v0, k0]), Some([v1, k1])) => k0 + (k1 - k0) * ((volts - v0) / (v1 - v0)),
-        (Some([_, k]), None) | (None, Some([_, k])) => *k,
+        (Some([_, k]), None) | (None, Some(&[_, k])) => k,
         (None, None) => 1.0,
     }
 }
@@ -82,10 +72,6 @@ mod tests {
     fn laws_give_their_factors() {
         let reference = 14.8;
         assert_eq!(VoltageLaw::Exponent(2.0).factor(29.6, reference), 4.0);
-        assert_eq!(
-            VoltageLaw::Polynomial(vec![-0.5, 1.5]).factor(29.6, reference),
-            2.5
-        );
         let points = VoltageLaw::Points(vec![[10.0, 0.5], [14.0, 1.0], [15.0, 2.0]]);
         assert_eq!(
             [9.0, 10.0, 12.0, 14.0, 14.5, 15.0, 16.0].map(|v| points.factor(v, reference)),
