@@ -1,31 +1,43 @@
-//! Rules on what the mixer is asked to keep: tolerances and the reserve of yaw.
+//! What is refused because its size is absurd: tolerances, and the authority of the rotors.
 
 use mixer_rt::tables::REQUEST_LIMIT;
 
-use super::facts::Facts;
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::effectiveness::Effectiveness;
 use crate::model::{PairMap, voltage};
 
-/// Share of a unit's largest effort above which a tolerance is a mistake.
-const WIDE: f64 = 0.01;
-
-/// Share above which it is refused. The evaluators are fitted to the tolerance; nothing is left to
-/// fit to here.
+/// Share of a unit's largest effort above which a tolerance is refused. The evaluators are fitted to
+/// the tolerance; nothing is left to fit to here.
 const ABSURD: f64 = 0.1;
 
-/// The tolerances as `[key, unit, tolerance, largest effort]`.
-fn each(airframe: &Airframe, scale: [f64; 2]) -> [(&'static str, &'static str, f64, f64); 2] {
+/// A tolerance beside what it is of.
+#[derive(Clone, Copy)]
+pub(super) struct Tolerance {
+    pub(super) key: &'static str,
+    unit: &'static str,
+    pub(super) stated: f64,
+    /// A unit's largest effort.
+    pub(super) largest: f64,
+}
+
+/// Those of thrust and torque, of units of this scale.
+pub(super) fn tolerances(airframe: &Airframe, scale: [f64; 2]) -> [Tolerance; 2] {
     let inverse = &airframe.inverse;
+    let of = |key, unit, stated, largest| Tolerance {
+        key,
+        unit,
+        stated,
+        largest,
+    };
     [
-        (
+        of(
             "inverse.thrust_tolerance_n",
             "N",
             inverse.thrust_tolerance_n,
             scale[0],
         ),
-        (
+        of(
             "inverse.torque_tolerance_nm",
             "N m",
             inverse.torque_tolerance_nm,
@@ -34,64 +46,74 @@ fn each(airframe: &Airframe, scale: [f64; 2]) -> [(&'static str, &'static str, f
     ]
 }
 
-fn diagnostic(
-    airframe: &Airframe,
-    code: Code,
-    (key, unit, tolerance, largest): (&str, &str, f64, f64),
-    most: f64,
-) -> Diagnostic {
-    // A percentage beyond the largest float is written as a bound.
-    let percent = match 100.0 * (tolerance / largest) {
-        percent if percent.is_finite() => format!("{} %", rounded(percent)),
-        _ => "more than 1e308 %".to_owned(),
-    };
-    airframe.diagnostic(
-        code,
-        key,
-        format!(
-            "a tolerance of {} {unit} is {percent} of a unit's largest effort, {} {unit}",
-            number(tolerance),
-            rounded(largest)
-        ),
-        format!("expected at most {} %", number(100.0 * most)),
-        "the defaults are 0.01 N and 0.0001 N m",
-    )
+impl Tolerance {
+    /// Whether the file states a tolerance above a tenth of the largest effort.
+    pub(super) fn is_absurd(&self, airframe: &Airframe) -> bool {
+        self.largest > 0.0 && self.stated > ABSURD * self.largest && airframe.states(self.key)
+    }
+
+    /// Message, label and help where it is above this share of the largest effort.
+    pub(super) fn words(&self, most: f64) -> [String; 3] {
+        let unit = self.unit;
+        // A percentage beyond the largest float is written as a bound.
+        let percent = match 100.0 * (self.stated / self.largest) {
+            percent if percent.is_finite() => format!("{} %", rounded(percent)),
+            _ => "more than 1e308 %".to_owned(),
+        };
+        [
+            format!(
+                "a tolerance of {} {unit} is {percent} of a unit's largest effort, {} {unit}",
+                number(self.stated),
+                rounded(self.largest)
+            ),
+            format!("expected at most {} %", number(100.0 * most)),
+            "the defaults are 0.01 N and 0.0001 N m".to_owned(),
+        ]
+    }
 }
 
-/// Whether the file states a tolerance above a tenth of the largest effort.
-fn is_absurd(airframe: &Airframe, (key, _, tolerance, largest): (&str, &str, f64, f64)) -> bool {
-    largest > 0.0 && tolerance > ABSURD * largest && airframe.states(key)
-}
-
-/// Tolerances above a tenth of the largest effort.
-pub(super) fn absurd_tolerances(airframe: &Airframe, pair: &PairMap) -> Vec<Diagnostic> {
-    each(airframe, pair.scale())
+/// Refuses tolerances that are too wide to mean anything.
+///
+/// # Errors
+/// A tolerance above a tenth of a unit's largest effort.
+pub(crate) fn check_tolerances(airframe: &Airframe, pair: &PairMap) -> Result<(), Vec<Diagnostic>> {
+    let faults: Vec<Diagnostic> = tolerances(airframe, pair.scale())
         .into_iter()
-        .filter(|tolerance| is_absurd(airframe, *tolerance))
-        .map(|tolerance| diagnostic(airframe, Code::ToleranceAbsurd, tolerance, ABSURD))
-        .collect()
+        .filter(|tolerance| tolerance.is_absurd(airframe))
+        .map(|tolerance| {
+            let [message, label, help] = tolerance.words(ABSURD);
+            airframe.diagnostic(Code::ToleranceAbsurd, tolerance.key, message, label, help)
+        })
+        .collect();
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
-/// An axis of which the rotors give more, at the voltage where they give most, than requests are
-/// limited to.
-pub(super) fn authority(
+/// Refuses rotors that give more of an axis, at the voltage where they give most, than requests are
+/// limited to: what is beyond would be attainable and never be given.
+///
+/// # Errors
+/// The first such axis.
+pub(crate) fn check_authority(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,
-) -> Option<Diagnostic> {
+) -> Result<(), Vec<Diagnostic>> {
     let limit = f64::from(REQUEST_LIMIT);
     let (scale, factors) = (pair.scale(), voltage::largest_factors(airframe));
     let efforts = [0, 1].map(|k| factors[k] * scale[k]);
     let most = |axis: Axis| effectiveness.largest(axis as usize, efforts);
-    let axis = Axis::ALL.into_iter().rev().find(|axis| most(*axis) > limit)?;
+    let Some(axis) = Axis::ALL.into_iter().rev().find(|axis| most(*axis) > limit) else {
+        return Ok(());
+    };
     let unit = if axis == Axis::Thrust { "N" } else { "N m" };
-    Some(airframe.diagnostic(
+    let key = if axis == Axis::Yaw {
+        "pair.torque_nm"
+    } else {
+        "pair.thrust_n"
+    };
+    Err(vec![airframe.diagnostic(
         Code::Authority,
-        if axis == Axis::Yaw {
-            "pair.torque_nm"
-        } else {
-            "pair.thrust_n"
-        },
+        key,
         format!(
             "the rotors give {} {unit} of {axis}; requests are limited to {} {unit}",
             rounded(most(axis)),
@@ -99,62 +121,5 @@ pub(super) fn authority(
         ),
         "",
         "expected thrusts in newtons, torques in newton metres and positions in metres",
-    ))
-}
-
-/// Tolerances above a hundredth of the largest effort that are no errors.
-pub(super) fn tolerances(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
-    let wide = each(facts.airframe, facts.scale)
-        .into_iter()
-        .filter(|(_, _, tolerance, largest)| *tolerance > WIDE * largest)
-        .filter(|tolerance| !is_absurd(facts.airframe, *tolerance));
-    found.extend(wide.map(|tolerance| diagnostic(facts.airframe, Code::WideTolerance, tolerance, WIDE)));
-}
-
-/// A reserve of yaw that no throttles give, whatever the thrust.
-pub(super) fn yaw_reserve(facts: &Facts<'_>, found: &mut Vec<Diagnostic>) {
-    let reserve = facts.airframe.allocation.yaw_reserve_nm;
-    if reserve == 0.0 {
-        return;
-    }
-    let Some(effectiveness) = facts.effectiveness else {
-        return;
-    };
-    let row = effectiveness.matrix.row(Axis::Yaw as usize);
-    let units = facts.airframe.units.len();
-    let efforts: Vec<[f64; 2]> = facts
-        .map
-        .border(32)
-        .into_iter()
-        .map(|at| facts.map.efforts(at))
-        .collect();
-    // The furthest that each unit takes yaw to either side, all units together.
-    let furthest = |sign: f64| -> f64 {
-        (0..units)
-            .map(|i| {
-                let yaw = efforts
-                    .iter()
-                    .map(|[f, q]| sign * (row[i] * f + row[units + i] * q));
-                yaw.fold(f64::NEG_INFINITY, f64::max)
-            })
-            .sum()
-    };
-    let authority = furthest(1.0).min(furthest(-1.0));
-    if reserve <= authority {
-        return;
-    }
-    found.push(facts.airframe.diagnostic(
-        Code::YawReserveBeyond,
-        "allocation.yaw_reserve_nm",
-        format!(
-            "a yaw reserve of {} N m is beyond the authority of {} N m, at whatever thrust",
-            number(reserve),
-            rounded(authority.max(0.0))
-        ),
-        "never available",
-        format!(
-            "all of yaw then comes before thrust; a tenth of the authority is {} N m",
-            rounded(0.1 * authority.max(0.0))
-        ),
-    ));
+    )])
 }
