@@ -9,13 +9,14 @@ use std::process::Command;
 use mixer_tests::root;
 
 /// In the order of publication: each uses only those before it.
-const PUBLISHED: [&str; 7] = [
+const PUBLISHED: [&str; 8] = [
     "mixer-rt",
     "mixer-compiler",
     "mixer-macros",
     "isolated-rotors",
     "mixer-identify",
     "mixer-report",
+    "mixer-c",
     "cargo-mixer",
 ];
 
@@ -109,6 +110,7 @@ fn firmware_builds_nothing_of_the_command_line() {
         for absent in [
             "mixer-identify",
             "mixer-report",
+            "mixer-c",
             "cargo-mixer",
             "faer",
             "clarabel",

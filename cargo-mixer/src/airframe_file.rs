@@ -26,7 +26,7 @@ pub(crate) fn write(path: &Path, text: &str, model: Option<&Path>) -> ExitCode {
                 return Refusal::Faulty(faults).report();
             }
         }
-        Ok(compiled) => crate::show_warnings(&compiled),
+        Ok(compiled) => crate::warn(&mixer_compiler::lint(&compiled)),
     }
     match crate::file::save(path, text) {
         Ok(()) => {

@@ -1,87 +1,11 @@
-//! Writing files.
+//! Files: read whole, and written whole or not at all.
 
-use std::fmt::Display;
-use std::fs::{self, File, Metadata};
+use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use sha2::{Digest as _, Sha256};
-
-/// Most links that are followed to a file, as by the kernel.
-const MOST_LINKS: usize = 40;
-
-/// Writes the whole file or none of it: a temporary file beside it, flushed to the disk, takes its
-/// name and its permissions. A link stays a link, one to no file yet gets its file. A file with
-/// several names keeps them: it is written to in place, once the temporary file has shown that
-/// there is room. What is no regular file, as a device or a pipe, is written to and stays what it
-/// is.
-///
-/// # Errors
-/// What cannot be written, by its path, and why.
-pub fn write(path: &Path, text: &str) -> Result<(), String> {
-    let fault = |reason: &dyn Display| format!("{}: {reason}", path.display());
-    // By the path as given: `/dev/stdout` leads to a pipe that has no path of its own.
-    let found = fs::metadata(path).ok();
-    match &found {
-        Some(found) if found.is_dir() => return Err(fault(&"is a folder; name a file in it")),
-        Some(found) if !found.is_file() => {
-            let written = File::options().write(true).open(path);
-            return written
-                .and_then(|mut file| file.write_all(text.as_bytes()))
-                .map_err(|error| fault(&error));
-        }
-        _ => {}
-    }
-    let replaced = target(path).map_err(|error| fault(&error))?;
-    let (Some(folder), Some(_)) = (replaced.parent(), replaced.file_name()) else {
-        return Err(fault(&"names no file"));
-    };
-    if !folder.as_os_str().is_empty() && !folder.is_dir() {
-        return Err(fault(&format_args!("there is no folder {}", folder.display())));
-    }
-    place(folder, &replaced, text, found.as_ref()).map_err(|error| fault(&error))
-}
-
-/// [`write`], and says so: what every command does with its output.
-///
-/// # Errors
-/// As [`write`].
-pub(crate) fn save(path: &Path, text: &str) -> Result<(), String> {
-    write(path, text)?;
-    crate::print_note(format_args!("wrote {}", path.display()));
-    Ok(())
-}
-
-/// Refuses an output that is one of the inputs, which is bad usage, or that is there already:
-/// before anything is computed.
-///
-/// # Errors
-/// The exit status; what is wrong is told.
-pub(crate) fn writable<'a>(
-    output: &Path,
-    force: bool,
-    inputs: impl IntoIterator<Item = &'a Path>,
-) -> Result<(), ExitCode> {
-    let same = |input: &Path| match (input.canonicalize(), output.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => input == output,
-    };
-    if inputs.into_iter().any(same) {
-        crate::print_error(format_args!(
-            "{} is an input and would be overwritten",
-            output.display()
-        ));
-        return Err(ExitCode::from(crate::BAD_USAGE));
-    }
-    not_there(output, force).map_err(crate::print_error)
-}
-
-/// The digest of a file's bytes in hexadecimal, as `sha256sum` prints it.
-pub(crate) fn sha256(bytes: &[u8]) -> String {
-    let digest = Sha256::digest(bytes);
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
-}
+use tempfile::NamedTempFile;
 
 /// Largest bench file that is read, MB. A device without an end would fill the memory.
 const LARGEST_MB: u64 = 64;
@@ -141,29 +65,143 @@ pub fn not_there(path: &Path, force: bool) -> Result<(), String> {
     }
 }
 
-fn place(folder: &Path, replaced: &Path, text: &str, found: Option<&Metadata>) -> io::Result<()> {
-    let here = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
+/// Refuses an output that is one of the inputs, which is bad usage, or that is there already:
+/// before anything is computed.
+///
+/// # Errors
+/// The exit status; what is wrong is told.
+pub(crate) fn writable<'a>(
+    output: &Path,
+    force: bool,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), ExitCode> {
+    let same = |input: &Path| match (input.canonicalize(), output.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => input == output,
     };
-    let mut temporary = tempfile::Builder::new();
-    // A new file's permissions are those that the user's mask leaves, as without this detour.
-    let permissions = found.map_or_else(new_file, |found| Some(found.permissions()));
-    if let Some(permissions) = permissions {
-        temporary.permissions(permissions);
+    if inputs.into_iter().any(same) {
+        crate::print_error(format_args!(
+            "{} is an input and would be overwritten",
+            output.display()
+        ));
+        return Err(ExitCode::from(crate::BAD_USAGE));
     }
-    // A name of its own: with the file's in it, it could be longer than names may be.
-    let mut temporary = temporary.prefix(".cargo-mixer.").tempfile_in(here)?;
-    temporary.write_all(text.as_bytes())?;
-    temporary.as_file().sync_all()?;
-    if !found.is_some_and(has_other_names) {
-        temporary.persist(replaced)?;
-        return Ok(());
+    not_there(output, force).map_err(crate::print_error)
+}
+
+/// Refuses a path that can be no folder to write into: before anything is computed.
+pub(crate) fn check_folder(folder: &Path) -> Result<(), String> {
+    let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty());
+    match parent {
+        _ if folder.is_dir() => Ok(()),
+        _ if folder.exists() => Err(format!("{}: is a file; name a folder", folder.display())),
+        Some(parent) if !parent.is_dir() => Err(no_folder(folder, parent)),
+        _ => Ok(()),
     }
-    let mut file = File::options().write(true).truncate(true).open(replaced)?;
-    file.write_all(text.as_bytes())?;
-    file.sync_all()
+}
+
+fn no_folder(path: &Path, folder: &Path) -> String {
+    format!("{}: there is no folder {}", path.display(), folder.display())
+}
+
+/// Writes a file and says so: what every command does with its output.
+///
+/// # Errors
+/// What cannot be written, by its path, and why.
+pub(crate) fn save(path: &Path, text: &str) -> Result<(), String> {
+    stage(path, text.as_bytes())?.publish()
+}
+
+/// Writes files by their names into a folder, which is made where there is none: all of them, or
+/// none. Those that hold the same already are left alone.
+///
+/// # Errors
+/// A file that is there with other contents, unless `force` is given; what cannot be written.
+pub(crate) fn save_all<'a>(
+    folder: &Path,
+    files: impl Iterator<Item = (&'a str, &'a [u8])>,
+    force: bool,
+) -> Result<(), String> {
+    let places = files.map(|(name, bytes)| (folder.join(name), bytes));
+    let changed = places.filter(|(path, bytes)| fs::read(path).ok().as_deref() != Some(*bytes));
+    let changed: Vec<(PathBuf, &[u8])> = changed.collect();
+    if changed.is_empty() {
+        crate::print_note(format_args!("{}: nothing has changed", folder.display()));
+    }
+    for (path, _) in &changed {
+        not_there(path, force)?;
+    }
+    fs::create_dir_all(folder).map_err(|error| format!("{}: cannot be made: {error}", folder.display()))?;
+    let staged = changed.iter().map(|(path, bytes)| stage(path, bytes));
+    for file in staged.collect::<Result<Vec<_>, _>>()? {
+        file.publish()?;
+    }
+    Ok(())
+}
+
+/// A file whose bytes are on the disk beside its place.
+#[derive(Debug)]
+struct Staged {
+    /// `None` for what is no regular file, as a device or a pipe: it has been written to.
+    temporary: Option<NamedTempFile>,
+    /// Behind a link, if the path as given is one.
+    place: PathBuf,
+    path: PathBuf,
+}
+
+fn stage(path: &Path, bytes: &[u8]) -> Result<Staged, String> {
+    let fault = |error: io::Error| format!("{}: {error}", path.display());
+    let found = fs::metadata(path).ok();
+    if found.as_ref().is_some_and(fs::Metadata::is_dir) {
+        return Err(format!("{}: is a folder; name a file in it", path.display()));
+    }
+    let place = path.canonicalize().unwrap_or(path.to_owned());
+    let (Some(folder), Some(_)) = (place.parent(), place.file_name()) else {
+        return Err(format!("{}: names no file", path.display()));
+    };
+    let mut staged = Staged {
+        temporary: None,
+        place: place.clone(),
+        path: path.to_owned(),
+    };
+    if found.as_ref().is_some_and(|found| !found.is_file()) {
+        fs::write(path, bytes).map_err(fault)?;
+        return Ok(staged);
+    }
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    if !folder.is_dir() {
+        return Err(no_folder(path, folder));
+    }
+    // A file's permissions stay; a new one's are those that the user's mask leaves.
+    let mut builder = tempfile::Builder::new();
+    if let Some(permissions) = found.map_or_else(new_file, |found| Some(found.permissions())) {
+        builder.permissions(permissions);
+    }
+    let mut temporary = builder
+        .prefix(".cargo-mixer.")
+        .tempfile_in(folder)
+        .map_err(|error| format!("{}: nothing can be written there: {error}", folder.display()))?;
+    temporary.write_all(bytes).map_err(fault)?;
+    temporary.as_file().sync_all().map_err(fault)?;
+    staged.temporary = Some(temporary);
+    Ok(staged)
+}
+
+impl Staged {
+    /// Gives it its name, and says so.
+    fn publish(self) -> Result<(), String> {
+        let path = self.path.display();
+        if let Some(temporary) = self.temporary {
+            temporary
+                .persist(&self.place)
+                .map_err(|error| format!("{path}: {}", error.error))?;
+        }
+        crate::print_note(format_args!("wrote {path}"));
+        Ok(())
+    }
 }
 
 #[cfg(unix)]
@@ -174,32 +212,6 @@ fn new_file() -> Option<fs::Permissions> {
 #[cfg(not(unix))]
 fn new_file() -> Option<fs::Permissions> {
     None
-}
-
-#[cfg(unix)]
-fn has_other_names(found: &Metadata) -> bool {
-    std::os::unix::fs::MetadataExt::nlink(found) > 1
-}
-
-#[cfg(not(unix))]
-fn has_other_names(_: &Metadata) -> bool {
-    false
-}
-
-/// The file behind links, whether it is there or not.
-fn target(path: &Path) -> io::Result<PathBuf> {
-    if let Ok(file) = path.canonicalize() {
-        return Ok(file);
-    }
-    let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
-        match fs::read_link(&path) {
-            // Relative to the link's folder; an absolute one replaces it.
-            Ok(next) => path = path.parent().unwrap_or(Path::new("")).join(next),
-            Err(_) => return Ok(path),
-        }
-    }
-    Err(io::Error::other("a circle of links"))
 }
 
 #[cfg(test)]
@@ -221,7 +233,7 @@ mod tests {
         let folder = folder("replaces");
         let file = folder.join("a.csv");
         for text in ["first", "second"] {
-            write(&file, text).unwrap();
+            save(&file, text).unwrap();
             assert_eq!(fs::read_to_string(&file).unwrap(), text);
         }
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
@@ -232,17 +244,17 @@ mod tests {
     fn folders_are_named() {
         let folder = folder("folders");
         assert!(
-            write(&folder, "")
+            save(&folder, "")
                 .unwrap_err()
                 .ends_with("is a folder; name a file in it")
         );
         let missing = folder.join("none");
-        let refused = write(&missing.join("a.csv"), "").unwrap_err();
+        let refused = save(&missing.join("a.csv"), "").unwrap_err();
         assert!(
             refused.ends_with(&format!("there is no folder {}", missing.display())),
             "{refused}"
         );
-        assert!(write(Path::new(""), "").is_err());
+        assert!(save(Path::new(""), "").is_err());
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
         fs::remove_dir_all(folder).unwrap();
     }
@@ -250,34 +262,19 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn what_a_file_is_stays() {
-        use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, symlink};
+        use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
 
         let folder = folder("stays");
-        let [secret, other, dangling, circle] =
-            ["secret.csv", "other.csv", "dangling.csv", "circle.csv"].map(|name| folder.join(name));
+        let secret = folder.join("secret.csv");
         fs::write(&secret, "before").unwrap();
         fs::set_permissions(&secret, fs::Permissions::from_mode(0o600)).unwrap();
-        write(&secret, "after").unwrap();
+        save(&secret, "after").unwrap();
         assert_eq!(fs::metadata(&secret).unwrap().mode() & 0o777, 0o600);
 
-        fs::hard_link(&secret, &other).unwrap();
-        write(&secret, "again").unwrap();
-        assert_eq!(fs::read_to_string(&other).unwrap(), "again");
-        assert_eq!(fs::metadata(&other).unwrap().nlink(), 2);
-
-        symlink("made.csv", &dangling).unwrap();
-        write(&dangling, "made").unwrap();
-        assert!(fs::symlink_metadata(&dangling).unwrap().is_symlink());
-        assert_eq!(fs::read_to_string(folder.join("made.csv")).unwrap(), "made");
-
-        symlink("circle.csv", &circle).unwrap();
-        let refused = write(&circle, "").unwrap_err();
-        assert!(refused.ends_with("a circle of links"), "{refused}");
-
         let long = folder.join("a".repeat(255));
-        write(&long, "long").unwrap();
+        save(&long, "long").unwrap();
         assert_eq!(fs::read_to_string(&long).unwrap(), "long");
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 6);
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
         fs::remove_dir_all(folder).unwrap();
     }
 
@@ -291,7 +288,7 @@ mod tests {
         let [file, link, pipe] = ["a.csv", "link.csv", "pipe"].map(|name| folder.join(name));
         fs::write(&file, "before").unwrap();
         symlink("a.csv", &link).unwrap();
-        write(&link, "after").unwrap();
+        save(&link, "after").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read_to_string(&file).unwrap(), "after");
 
@@ -299,11 +296,33 @@ mod tests {
         assert!(made.success());
         // Open at both ends, so that no one waits.
         let mut ends = File::options().read(true).write(true).open(&pipe).unwrap();
-        write(&pipe, "after").unwrap();
+        save(&pipe, "after").unwrap();
         assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
         let mut read = [0; 5];
         ends.read_exact(&mut read).unwrap();
         assert_eq!(&read, b"after");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn all_files_or_none() {
+        let folder = folder("all");
+        let all = |text: &'static str, force| {
+            let files = [("a.h", text), ("b.h", "b")].map(|(name, text)| (name, text.as_bytes()));
+            save_all(&folder, files.into_iter(), force)
+        };
+        all("a", false).unwrap();
+        fs::remove_file(folder.join("b.h")).unwrap();
+        fs::create_dir(folder.join("b.h")).unwrap();
+        let refused = all("other", false).unwrap_err();
+        assert!(refused.ends_with("--force overwrites it"), "{refused}");
+        let refused = all("other", true).unwrap_err();
+        assert!(refused.ends_with("is a folder; name a file in it"), "{refused}");
+        assert_eq!(fs::read_to_string(folder.join("a.h")).unwrap(), "a");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+
+        assert!(check_folder(&folder.join("a.h")).is_err());
+        assert!(check_folder(&folder.join("none/none")).is_err());
         fs::remove_dir_all(folder).unwrap();
     }
 }

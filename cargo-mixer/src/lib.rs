@@ -93,27 +93,25 @@ fn show(diagnostics: &Diagnostics) {
     }
 }
 
-/// Reads and compiles an airframe file; its warnings go to stderr.
-fn compile(path: &Path) -> Result<Compiled, Refusal> {
-    let compiled = compile_quietly(path)?;
-    show_warnings(&compiled);
-    Ok(compiled)
-}
-
-/// Shows the warnings of a compiled airframe, if there are any.
-fn show_warnings(compiled: &Compiled) {
-    let warnings = mixer_compiler::lint(compiled);
+/// Shows what the compiler warns of on stderr.
+fn warn(warnings: &Diagnostics) {
     if !warnings.is_empty() {
-        show(&warnings);
+        show(warnings);
     }
 }
 
-/// Reads and compiles an airframe file.
-fn compile_quietly(path: &Path) -> Result<Compiled, Refusal> {
+/// Reads and compiles an airframe file; its warnings go to stderr.
+fn compile(path: &Path) -> Result<Compiled, Refusal> {
+    let compiled = mixer_compiler::compile(&read(path)?).map_err(Refusal::Faulty)?;
+    warn(&mixer_compiler::lint(&compiled));
+    Ok(compiled)
+}
+
+/// Reads an airframe file.
+fn read(path: &Path) -> Result<Source, Refusal> {
     let name = path.display().to_string();
     let bytes = file::read_small(path).map_err(Refusal::Unreadable)?;
-    let source = Source::from_bytes(name, bytes).map_err(Refusal::Faulty)?;
-    mixer_compiler::compile(&source).map_err(Refusal::Faulty)
+    Source::from_bytes(name, bytes).map_err(Refusal::Faulty)
 }
 
 /// Prints the only output of a command; its exit status.

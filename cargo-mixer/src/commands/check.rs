@@ -56,7 +56,8 @@ struct Failure {
 /// Runs the command.
 pub fn run(args: &CheckArgs) -> ExitCode {
     let start = Instant::now();
-    let result = crate::compile_quietly(&args.airframe);
+    let source = crate::read(&args.airframe);
+    let result = source.and_then(|source| mixer_compiler::compile(&source).map_err(Refusal::Faulty));
     let compile_ms = start.elapsed().as_secs_f64() * 1e3;
     let mut out = stdout().lock();
     match result {

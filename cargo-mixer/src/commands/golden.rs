@@ -5,7 +5,6 @@
 //! same with rotors out; `NAME.vectors.rs`, both as constants for a test on the target.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -96,21 +95,10 @@ pub fn outputs(compiled: &Compiled) -> [(String, String); 5] {
 }
 
 fn write(folder: &Path, outputs: &BTreeMap<String, String>, force: bool) -> Result<ExitCode, String> {
-    fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let places = outputs.iter().map(|(file, content)| (folder.join(file), content));
-    let changed: Vec<(PathBuf, &String)> = places
-        .filter(|(path, content)| fs::read_to_string(path).ok().as_ref() != Some(*content))
-        .collect();
-    // All of them, or none.
-    for (path, _) in &changed {
-        crate::file::not_there(path, force)?;
-    }
-    for (path, content) in &changed {
-        crate::file::save(path, content)?;
-    }
-    if changed.is_empty() {
-        crate::print_note(format_args!("{}: nothing has changed", folder.display()));
-    }
+    let files = outputs
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_bytes()));
+    crate::file::save_all(folder, files, force)?;
     for orphan in compare::orphans(folder, outputs)? {
         crate::print_note(format_args!(
             "{} belongs to none of these airframes: remove it",

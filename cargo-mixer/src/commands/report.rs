@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use mixer_report::origin::Origin;
 use mixer_report::page;
 use mixer_report::study::Study;
+use sha2::{Digest as _, Sha256};
 
 use crate::bench_args::quantity;
 use crate::file;
@@ -67,9 +68,15 @@ pub fn run(args: &ReportArgs) -> ExitCode {
 /// The origin of a page that is made now of this file.
 fn origin(airframe: &Path) -> Origin {
     Origin {
-        sha256: file::bytes(airframe).ok().map(|bytes| file::sha256(&bytes)),
+        sha256: file::read_small(airframe).ok().map(|bytes| sha256(&bytes)),
         date: today(),
     }
+}
+
+/// The digest of a file's bytes in hexadecimal, as `sha256sum` prints it.
+fn sha256(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A thrust on the command line, N.

@@ -3,9 +3,9 @@
 use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
-use cargo_mixer::commands::library::LibraryArgs;
+use mixer_c::{Airframe, Options};
+use mixer_compiler::Source;
 
 use super::Row;
 use super::subject::{C_INTERFACE, Subject};
@@ -143,15 +143,19 @@ impl Count {
 fn library(toolchain: &Toolchain, airframe: &str) -> Result<(PathBuf, String), String> {
     let path = root().join("airframes").join(format!("{airframe}.toml"));
     let module = airframe.replace('-', "_");
-    let made = toolchain.scratch("c-interface")?;
-    let args = LibraryArgs::for_target(path, TARGET, made.clone());
-    if cargo_mixer::commands::library::run(&args) != ExitCode::SUCCESS {
-        return Err(format!("no library of {airframe} for {TARGET}: see above"));
-    }
-    // Cargo does not see that a library has changed, but that it has another path.
+    let fault = |error: std::io::Error| format!("{airframe}: {error}");
+    let text = fs::read_to_string(&path).map_err(fault)?;
+    let compiled = Airframe::new(&Source::new(airframe, text)).map_err(|faults| faults.to_string())?;
+    let options = Options {
+        target: Some(TARGET),
+        health: false,
+    };
+    let files = mixer_c::library(&[compiled], &options, |note| eprintln!("{note}"))
+        .map_err(|error| error.to_string())?;
     let name = format!("lib{module}.a");
-    let fault = |error: std::io::Error| format!("{name}: {error}");
-    let bytes = std::fs::read(made.join(&name)).map_err(fault)?;
+    let archive = files.into_iter().find(|file| file.name == name);
+    let bytes = archive.map(|file| file.bytes).unwrap_or_default();
+    // Cargo does not see that a library has changed, but that it has another path.
     let mut hasher = DefaultHasher::new();
     bytes.hash(&mut hasher);
     let folder = toolchain.scratch(&format!("c-interface-{:016x}", hasher.finish()))?;

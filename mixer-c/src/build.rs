@@ -2,11 +2,13 @@
 //! their own.
 
 use std::fs;
-use std::io::{self, IsTerminal as _};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::toolchain::{Core, Toolchain};
+use tempfile::TempDir;
+
+use crate::toolchain::{Core, Toolchain};
 
 /// As the firmware's profile has it, but without vectors. The bits of a mix depend on none of these.
 ///
@@ -28,55 +30,55 @@ const CODE: &[&str] = &[
 const BUILTINS: &str = "#![feature(compiler_builtins)]\n#![compiler_builtins]\n#![no_std]\n";
 
 /// A folder with the runtime compiled for the target; it is removed when dropped.
-pub(super) struct Build<'a> {
+pub(crate) struct Build<'a> {
     toolchain: &'a Toolchain,
-    folder: PathBuf,
+    folder: TempDir,
 }
 
 impl<'a> Build<'a> {
-    /// Compiles the runtime, and `core` where it has to be.
-    pub(super) fn new(toolchain: &'a Toolchain) -> Result<Self, String> {
-        let build = Build {
-            toolchain,
-            folder: temporary_folder()?,
-        };
+    /// Compiles the runtime, and `core` where it has to be, which takes long and is told.
+    pub(crate) fn new(toolchain: &'a Toolchain, note: impl Fn(&str)) -> Result<Self, String> {
+        let folder = tempfile::tempdir().map_err(|error| fault(&std::env::temp_dir(), &error))?;
+        let build = Build { toolchain, folder };
         if let Core::Sources(core) = &toolchain.core {
+            let target = build.target();
+            note(&format!(
+                "compiling core for {target} from its sources, half a minute or so"
+            ));
             build.core(core)?;
         }
         build.extract(&mixer_rt::SOURCES)?;
         build.compile(
             "mixer_rt",
-            &build.folder.join("mixer-rt/lib.rs"),
+            &build.path().join("mixer-rt/lib.rs"),
             "rlib",
             &["link"],
         )?;
         Ok(build)
     }
 
-    pub(super) fn target(&self) -> &str {
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    pub(crate) fn target(&self) -> &str {
         &self.toolchain.target
     }
 
     /// The object of a crate that exports C functions.
-    pub(super) fn object(&self, name: &str, rust: &str) -> Result<Vec<u8>, String> {
-        let source = self.folder.join(format!("{name}.rs"));
+    pub(crate) fn object(&self, name: &str, rust: &str) -> Result<Vec<u8>, String> {
+        let source = self.path().join(format!("{name}.rs"));
         fs::write(&source, rust).map_err(|error| fault(&source, &error))?;
         // Link-time optimisation leaves one object, in which only the interface is global. It is
         // run only where something is linked, here an archive with the compiler's own helpers, of
         // which nothing is used.
         self.compile(name, &source, "staticlib", &["obj", "link"])?;
-        let object = self.folder.join(format!("{name}.o"));
+        let object = self.path().join(format!("{name}.o"));
         fs::read(&object).map_err(|error| fault(&object, &error))
     }
 
     /// `core` from its sources.
     fn core(&self, core: &Path) -> Result<(), String> {
-        if io::stderr().is_terminal() {
-            crate::print_note(format_args!(
-                "compiling core for {} from its sources, half a minute or so",
-                self.target()
-            ));
-        }
         let manifest = core.join("Cargo.toml");
         let manifest = fs::read_to_string(&manifest).map_err(|error| fault(&manifest, &error))?;
         let edition = manifest
@@ -86,14 +88,14 @@ impl<'a> Build<'a> {
         let mut command = self.rustc("core", &core.join("src/lib.rs"), "rlib", &["link"]);
         command.args(["--edition", edition]);
         run(command)?;
-        let builtins = self.folder.join("compiler_builtins.rs");
+        let builtins = self.path().join("compiler_builtins.rs");
         fs::write(&builtins, BUILTINS).map_err(|error| fault(&builtins, &error))?;
         self.compile("compiler_builtins", &builtins, "rlib", &["link"])
     }
 
     /// Writes the runtime's sources.
     fn extract(&self, sources: &mixer_rt::Sources) -> Result<(), String> {
-        let folder = self.folder.join("mixer-rt");
+        let folder = self.path().join("mixer-rt");
         fs::create_dir(&folder).map_err(|error| fault(&folder, &error))?;
         sources.extract(&folder).map_err(|error| fault(&folder, &error))
     }
@@ -119,11 +121,11 @@ impl<'a> Build<'a> {
         command.arg("--target").arg(self.target());
         command
             .arg("-L")
-            .arg(&self.folder)
+            .arg(self.path())
             .arg("--out-dir")
-            .arg(&self.folder);
+            .arg(self.path());
         // Wherever it was compiled, the same bytes.
-        let mut remapped = self.folder.clone().into_os_string();
+        let mut remapped = self.path().as_os_str().to_owned();
         remapped.push("=.");
         command.arg("--remap-path-prefix").arg(remapped);
         command.args(CODE).arg(source);
@@ -137,28 +139,8 @@ impl<'a> Build<'a> {
     /// `name=path` of a library that this build made.
     fn library(&self, name: &str) -> std::ffi::OsString {
         let mut library = std::ffi::OsString::from(format!("{name}="));
-        library.push(self.folder.join(format!("lib{name}.rlib")));
+        library.push(self.path().join(format!("lib{name}.rlib")));
         library
-    }
-}
-
-impl Drop for Build<'_> {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.folder);
-    }
-}
-
-/// A folder that was not there before.
-fn temporary_folder() -> Result<PathBuf, String> {
-    let name = format!("cargo-mixer-library-{}", std::process::id());
-    let mut attempt = 0;
-    loop {
-        let folder = std::env::temp_dir().join(format!("{name}-{attempt}"));
-        match fs::create_dir(&folder) {
-            Ok(()) => return Ok(folder),
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < 100 => attempt += 1,
-            Err(error) => return Err(fault(&folder, &error)),
-        }
     }
 }
 

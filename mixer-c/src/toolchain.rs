@@ -13,7 +13,7 @@ const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// Where `core` for the target comes from.
 #[derive(Debug)]
-pub(super) enum Core {
+pub(crate) enum Core {
     /// The compiler has it.
     Installed,
     /// Its sources: the folder with `src/lib.rs`.
@@ -22,19 +22,19 @@ pub(super) enum Core {
 
 /// A compiler for the target.
 #[derive(Debug)]
-pub(super) struct Toolchain {
+pub(crate) struct Toolchain {
     /// `rustc`.
-    pub(super) rustc: PathBuf,
+    pub(crate) rustc: PathBuf,
     /// The target, as rustc names it.
-    pub(super) target: String,
+    pub(crate) target: String,
     /// Its `core`.
-    pub(super) core: Core,
+    pub(crate) core: Core,
 }
 
 impl Toolchain {
     /// The first compiler that has `core` for the target, else the first that has its sources.
     /// `RUSTC` names the only one to ask, otherwise they are those on the path.
-    pub(super) fn find(target: Option<&str>) -> Result<Self, String> {
+    pub(crate) fn find(target: Option<&str>) -> Result<Self, String> {
         let all: Vec<PathBuf> = match env::var_os("RUSTC") {
             Some(rustc) => vec![rustc.into()],
             None => on_path(),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use mixer_compiler::Compiled;
 use mixer_rt::{Health, SetpointError, Wrench};
 
-use super::airframe::Airframe;
+use crate::airframe::Airframe;
 
 /// Rows of random setpoints.
 const RANDOM: usize = 96;
@@ -16,7 +16,7 @@ const THRUSTS: [f32; 6] = [0.0, 0.1, 0.3, 0.45, 0.7, 1.2];
 const TORQUES: [f32; 4] = [-1.5, -0.1, 0.1, 1.5];
 
 /// `M_selftest.c`.
-pub(super) fn text(airframe: &Airframe, health: bool) -> String {
+pub(crate) fn text(airframe: &Airframe, health: bool) -> String {
     let Airframe { compiled, module, .. } = airframe;
     let rows = setpoints(compiled);
     let mut table = String::new();

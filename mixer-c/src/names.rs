@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::airframe::Airframe;
+use crate::airframe::Airframe;
 
 /// Headers that a program includes by these names, where `M.h` would be found in their stead: those
 /// of C and of POSIX, then what glibc, newlib with libstdc++, and compilers have beside them. (Other
@@ -52,7 +52,7 @@ const TARGETS: &str = "
 const SHARED: &str = "coaxial_mixer mixer";
 
 /// Whether every airframe can have a library, and one of its own.
-pub(super) fn check(airframes: &[Airframe]) -> Result<(), String> {
+pub(crate) fn check(airframes: &[Airframe]) -> Result<(), String> {
     let mut files = BTreeMap::new();
     for Airframe { module, file, .. } in airframes {
         let taken = [

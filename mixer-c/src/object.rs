@@ -4,14 +4,14 @@ use object::{BinaryFormat, Object, ObjectSymbol};
 
 /// Symbols of an object that others see or must have.
 #[derive(Debug, Default)]
-pub(super) struct Symbols {
-    pub(super) undefined: Vec<String>,
+pub(crate) struct Symbols {
+    pub(crate) undefined: Vec<String>,
     global: Vec<String>,
 }
 
 impl Symbols {
     /// Of an ELF file.
-    pub(super) fn of(bytes: &[u8]) -> Result<Self, String> {
+    pub(crate) fn of(bytes: &[u8]) -> Result<Self, String> {
         let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
         if file.format() != BinaryFormat::Elf {
             return Err("is no ELF file; libraries are made for bare metal and Linux".to_owned());
@@ -30,7 +30,7 @@ impl Symbols {
 
     /// Whether the object has `function` as its only global symbol and needs nothing but what
     /// `is_linked` with it.
-    pub(super) fn check(&self, function: &str, is_linked: impl Fn(&str) -> bool) -> Result<(), String> {
+    pub(crate) fn check(&self, function: &str, is_linked: impl Fn(&str) -> bool) -> Result<(), String> {
         let needed = self.undefined.iter().map(String::as_str);
         let needed: Vec<&str> = needed.filter(|name| !is_linked(name)).collect();
         if !needed.is_empty() {
@@ -48,7 +48,7 @@ impl Symbols {
 
 /// A static library as GNU's and LLVM's linkers read it, its index of `functions` (one per member)
 /// included. Without times, owners or folders: the same objects give the same bytes.
-pub(super) fn archive(members: &[(String, Vec<u8>)], functions: &[String]) -> Result<Vec<u8>, String> {
+pub(crate) fn archive(members: &[(String, Vec<u8>)], functions: &[String]) -> Result<Vec<u8>, String> {
     let too_large = |_| "the library is over 4 GB".to_owned();
     // Names that do not fit a member's header stand in a member of their own, by their places in
     // it.

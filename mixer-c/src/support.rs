@@ -31,18 +31,18 @@ const MEMORY: [Alias; 11] = [
 const ARITHMETIC: [&str; 2] = ["__clzsi2", "__ctzsi2"];
 
 /// Whether [`rust`] has a function of this name.
-pub(super) fn has(name: &str) -> bool {
+pub(crate) fn has(name: &str) -> bool {
     MEMORY.iter().any(|(alias, _)| *alias == name)
 }
 
 /// Whether an object for `target` may leave this name to the C compiler's run-time library.
-pub(super) fn is_linked(target: &str, name: &str) -> bool {
+pub(crate) fn is_linked(target: &str, name: &str) -> bool {
     let is_soft = target.starts_with("thumb") && target.ends_with("eabi");
     is_soft && (name.starts_with("__aeabi_") || ARITHMETIC.contains(&name))
 }
 
 /// Rust that gives an object for `target` the functions whose names are in `calls`.
-pub(super) fn rust(target: &str, calls: &[String]) -> String {
+pub(crate) fn rust(target: &str, calls: &[String]) -> String {
     if calls.is_empty() {
         return String::new();
     }

@@ -1,9 +1,9 @@
 //! The Rust of the C interface: one function around the generated module.
 
-use super::airframe::Airframe;
+use crate::airframe::Airframe;
 
 /// Name of the C function.
-pub(super) fn function(module: &str, health: bool) -> String {
+pub(crate) fn function(module: &str, health: bool) -> String {
     if health {
         format!("{module}_mix_with_health")
     } else {
@@ -12,13 +12,13 @@ pub(super) fn function(module: &str, health: bool) -> String {
 }
 
 /// Names of the functions in the order of the archive's objects.
-pub(super) fn functions(module: &str, health: bool) -> Vec<String> {
+pub(crate) fn functions(module: &str, health: bool) -> Vec<String> {
     let all = [false, true].into_iter().take(if health { 2 } else { 1 });
     all.map(|health| function(module, health)).collect()
 }
 
 /// A crate that exports this function alone.
-pub(super) fn rust(airframe: &Airframe, health: bool) -> String {
+pub(crate) fn rust(airframe: &Airframe, health: bool) -> String {
     let Airframe { compiled, module, .. } = airframe;
     let function = function(module, health);
     let (parameter, call) = if health {
