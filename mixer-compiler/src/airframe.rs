@@ -176,16 +176,7 @@ impl Airframe {
     /// Place of a key like `unit[3].channels` in the file, or of the nearest table or array around
     /// it that the file has; else of the name.
     pub fn place(&self, key: &str) -> Option<Range<usize>> {
-        let mut key = key;
-        loop {
-            if let Some(place) = self.places.get(key) {
-                return Some(place.clone());
-            }
-            match key.rfind(['.', '[']) {
-                Some(parent) => key = &key[..parent],
-                None => return self.places.get("name").cloned(),
-            }
-        }
+        spec::place_in(&self.places, key)
     }
 
     /// A fault that a later stage found in `key`, at its place.
@@ -249,18 +240,20 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
             let units = layout.units?;
             // Later stages know units alone; what they find in one is to be pointed at in the
             // layout.
-            let of_units = (0..units.len()).map(|k| format!("unit[{k}]"));
-            places.extend(
-                of_units
-                    .chain(["unit".to_owned()])
-                    .map(|key| (key, layout.place.clone())),
-            );
+            places.insert("unit".to_owned(), layout.place.clone());
+            for k in 0..units.len() {
+                places.insert(format!("unit[{k}]"), layout.place.clone());
+                for index in 0..2 {
+                    let written = places.get(&format!("layout.channels[{k}][{index}]")).cloned();
+                    places.extend(written.map(|place| (format!("unit[{k}].channels[{index}]"), place)));
+                }
+            }
             units
         }
     };
     // A table that was refused left its faults, so that no default takes its place.
     Some(Airframe {
-        units: unit::check(&units, file.faults)?,
+        units: unit::check(&units, &places, file.faults)?,
         name: name?,
         description: description.map(Spanned::into_inner).unwrap_or_default(),
         throttle: throttle?,

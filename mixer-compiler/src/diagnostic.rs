@@ -156,14 +156,16 @@ impl Diagnostics {
         // Stable: faults of one place stay in the order in which the stages found them.
         faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
         faults.dedup();
-        for fault in &mut faults {
-            // Words of the file may be among them.
-            for text in [
-                &mut fault.key,
-                &mut fault.message,
-                &mut fault.label,
-                &mut fault.help,
-            ] {
+        // Words of the file may be among them.
+        for Diagnostic {
+            key,
+            message,
+            label,
+            help,
+            ..
+        } in &mut faults
+        {
+            for text in [key, message, label, help] {
                 *text = printable(text);
             }
         }
@@ -186,10 +188,6 @@ impl Diagnostics {
     /// The faults, sorted by place.
     pub fn faults(&self) -> &[Diagnostic] {
         &self.faults
-    }
-
-    fn place(&self, fault: &Diagnostic) -> Option<Place> {
-        fault.span.as_ref().map(|span| self.source.place(span.start))
     }
 
     /// The faults with their places.
@@ -231,41 +229,42 @@ impl Diagnostics {
 
     /// The faults for machines, in the same order.
     pub fn records(&self) -> Vec<Record> {
-        self.records_where(|_| true)
+        self.placed()
+            .map(|(fault, place)| self.record(fault, place))
+            .collect()
     }
 
     /// Those of one severity for machines, in the same order.
     pub fn records_of(&self, severity: Severity) -> Vec<Record> {
-        self.records_where(|fault| fault.code.severity() == severity)
+        self.placed()
+            .filter(|(fault, _)| fault.code.severity() == severity)
+            .map(|(fault, place)| self.record(fault, place))
+            .collect()
     }
 
-    fn records_where(&self, is_wanted: impl Fn(&Diagnostic) -> bool) -> Vec<Record> {
-        self.placed()
-            .filter(|(fault, _)| is_wanted(fault))
-            .map(|(fault, place)| Record {
-                code: fault.code.to_string(),
-                file: self.source.name.clone(),
-                line: place.map(|place| place.line),
-                column: place.map(|place| place.column),
-                key: fault.key.clone(),
-                message: fault.message.clone(),
-                label: fault.label.clone(),
-                help: fault.help.clone(),
-            })
-            .collect()
+    fn record(&self, fault: &Diagnostic, place: Option<Place>) -> Record {
+        Record {
+            code: fault.code.to_string(),
+            file: self.source.name.clone(),
+            line: place.map(|place| place.line),
+            column: place.map(|place| place.column),
+            key: fault.key.clone(),
+            message: fault.message.clone(),
+            label: fault.label.clone(),
+            help: fault.help.clone(),
+        }
     }
 
     /// The text for `compile_error!`. Editors show its first line alone, so that line says where
     /// and what; all faults follow as in `Display`.
     pub fn compile_error(&self) -> String {
         let mut errors = self
-            .faults
-            .iter()
-            .filter(|fault| fault.code.severity() == Severity::Error);
-        let Some(first) = errors.next() else {
+            .placed()
+            .filter(|(fault, _)| fault.code.severity() == Severity::Error);
+        let Some((first, place)) = errors.next() else {
             return format!("{}: refused", self.source.name);
         };
-        let place = self.written(self.place(first));
+        let place = self.written(place);
         let others = match errors.count() {
             0 => String::new(),
             others => format!(" (first of {} faults)", others + 1),

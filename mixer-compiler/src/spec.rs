@@ -9,16 +9,10 @@ mod value;
 pub(crate) use toml::Spanned;
 
 pub(crate) use self::fields::Fields;
-pub(crate) use self::syntax::{Places, parse, places};
-
-/// Three numbers, each with its place.
-pub(crate) type Triple = [Spanned<f64>; 3];
+pub(crate) use self::syntax::{Places, parse, place_in, places};
 
 /// A list of numbers, each with its place.
 pub(crate) type Numbers = Vec<Spanned<f64>>;
 
 /// A voltage and its factor.
 pub(crate) type Point = Spanned<[Spanned<f64>; 2]>;
-
-/// The output channels of the upper and of the lower rotor.
-pub(crate) type Channels = [Spanned<usize>; 2];

@@ -119,17 +119,18 @@ fn axes(table: &mut Fields<'_, '_>, field: &Spanned<Vec<Spanned<String>>>) -> Op
 
 fn yaw_reserve(table: &mut Fields<'_, '_>, axes: Option<&[Axis]>) -> Option<f64> {
     let reserve = table.number(&YAW_RESERVE_NM)?;
-    if reserve > 0.0 && axes.is_some_and(|axes| !axes.contains(&Axis::Yaw)) {
+    if reserve > 0.0 && !serves_yaw(axes) {
         let message = format!(
             "a yaw reserve of {} N m without yaw in `allocation.axes`",
             number(reserve)
         );
+        let help = "remove the reserve, or add `yaw` to `axes`";
         return table.refuse(
             &YAW_RESERVE_NM,
             Code::YawReserve,
             message,
             "yaw is not controlled",
-            "remove the reserve, or add `yaw` to `axes`",
+            help,
         );
     }
     Some(reserve)
@@ -156,18 +157,24 @@ fn power_bias(table: &mut Fields<'_, '_>, axes: Option<&[Axis]>) -> Option<f64> 
             help,
         );
     }
-    if bias != 0.0 && axes.is_some_and(|axes| !axes.contains(&Axis::Yaw)) {
+    if bias != 0.0 && !serves_yaw(axes) {
         let message = format!(
             "a power bias of {} N m per N without yaw in `allocation.axes`",
             number(bias)
         );
+        let help = "remove the bias, or add `yaw` to `axes`";
         return table.refuse(
             key,
             Code::PowerBias,
             message,
             "nothing would cancel these torques",
-            "remove the bias, or add `yaw` to `axes`",
+            help,
         );
     }
     Some(bias)
+}
+
+/// Whether yaw is among the axes, or may be where they were refused.
+fn serves_yaw(axes: Option<&[Axis]>) -> bool {
+    axes.is_none_or(|axes| axes.contains(&Axis::Yaw))
 }

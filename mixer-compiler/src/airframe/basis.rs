@@ -15,24 +15,7 @@ pub enum Basis {
 }
 
 /// Powers of one throttle in the terms of any basis, the power 0 included.
-pub(crate) const POWERS: usize = {
-    let mut powers = 0;
-    let mut index = 0;
-    while index < Basis::ALL.len() {
-        let terms = Basis::ALL[index].exponents();
-        let mut term = 0;
-        while term < terms.len() {
-            let (i, j) = terms[term];
-            let most = if i > j { i } else { j } as usize;
-            if most + 1 > powers {
-                powers = most + 1;
-            }
-            term += 1;
-        }
-        index += 1;
-    }
-    powers
-};
+pub(crate) const POWERS: usize = 5;
 
 impl Basis {
     /// All bases, by ascending number of terms.
@@ -48,38 +31,21 @@ impl Basis {
 
     /// Exponents (of u, of l) of each term, in the order of the file's coefficients. No term is
     /// constant: rotors that stand still give nothing.
+    #[rustfmt::skip]
     pub const fn exponents(self) -> &'static [(u8, u8)] {
         match self {
             // u2l2, u2l, u2, ul2, ul, u, l2, l
             Basis::Biquadratic => &[(2, 2), (2, 1), (2, 0), (1, 2), (1, 1), (1, 0), (0, 2), (0, 1)],
-            // u3, u2l, ul2, l3, u2, ul, l2, u, l
             Basis::Cubic => &[
-                (3, 0),
-                (2, 1),
-                (1, 2),
-                (0, 3),
-                (2, 0),
-                (1, 1),
-                (0, 2),
-                (1, 0),
-                (0, 1),
+                (3, 0), (2, 1), (1, 2), (0, 3), // u3, u2l, ul2, l3
+                (2, 0), (1, 1), (0, 2), // u2, ul, l2
+                (1, 0), (0, 1), // u, l
             ],
-            // u4, u3l, u2l2, ul3, l4, then as the cubic
             Basis::Quartic => &[
-                (4, 0),
-                (3, 1),
-                (2, 2),
-                (1, 3),
-                (0, 4),
-                (3, 0),
-                (2, 1),
-                (1, 2),
-                (0, 3),
-                (2, 0),
-                (1, 1),
-                (0, 2),
-                (1, 0),
-                (0, 1),
+                (4, 0), (3, 1), (2, 2), (1, 3), (0, 4), // u4, u3l, u2l2, ul3, l4
+                (3, 0), (2, 1), (1, 2), (0, 3), // then as the cubic
+                (2, 0), (1, 1), (0, 2),
+                (1, 0), (0, 1),
             ],
         }
     }

@@ -14,7 +14,7 @@ use super::pair::Spin;
 use super::unit::{self, FARTHEST_M, MOST_UNITS};
 use crate::diagnostic::{Code, number, rounded};
 use crate::spec::keys::{Key, Kind, Range, keys};
-use crate::spec::{Channels, Fields, Spanned};
+use crate::spec::{Fields, Spanned};
 
 const ARM: &str = "the distance of every unit from the centre of gravity, in metres";
 
@@ -57,23 +57,16 @@ pub(super) fn read(table: &mut Fields<'_, '_>, bench_spin: Option<Spin>) -> Layo
     let first_angle_deg = angle(table);
     let spins = spins(table, units, bench_spin);
     let channels = channels(table, units);
-    let place = table.place();
-    let arm_place = table.value_place(&ARM_M);
     let expanded = || {
         let (count, arm_m, first_deg) = (units?, arm_m?, first_angle_deg?);
         let units = (0..count).zip(spins?).zip(channels?);
         let units = units.map(|((k, spin), channels)| {
             let [x, y] = on_circle(arm_m, first_deg + 360.0 * k as f64 / count as f64);
             unit::Written {
-                path: format!("unit[{k}]"),
-                position_m: Some(Spanned::new(
-                    arm_place.clone(),
-                    [x, y, 0.0].map(|x| Spanned::new(place.clone(), x)),
-                )),
+                position_m: Some([x, y, 0.0]),
+                axis: Some(unit::UPWARD),
                 upper_spin: Some(spin),
                 channels: Some(channels),
-                axis: None,
-                place: place.clone(),
             }
         });
         Some(units.collect())
@@ -81,7 +74,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, bench_spin: Option<Spin>) -> Layo
     Layout {
         units: expanded(),
         first_angle_deg,
-        place,
+        place: table.place(),
     }
 }
 
@@ -177,15 +170,18 @@ fn spins(table: &mut Fields<'_, '_>, units: Option<usize>, bench_spin: Option<Sp
     spins.into_iter().collect()
 }
 
-fn channels(table: &mut Fields<'_, '_>, units: Option<usize>) -> Option<Vec<Spanned<Channels>>> {
-    let Some(field) = table.read::<Vec<Spanned<Channels>>>(&CHANNELS) else {
-        let (units, place) = (units?, table.place());
-        let channel = |output| Spanned::new(place.clone(), output);
-        let pair = |k| Spanned::new(place.clone(), [channel(k), channel(units + k)]);
-        return Some((0..units).map(pair).collect());
+fn channels(table: &mut Fields<'_, '_>, units: Option<usize>) -> Option<Vec<[usize; 2]>> {
+    let Some(field) = table.read::<Vec<Spanned<[Spanned<usize>; 2]>>>(&CHANNELS) else {
+        let units = units?;
+        return Some((0..units).map(|k| [k, units + k]).collect());
     };
     same_count(table, &CHANNELS, field.get_ref().len(), units)?;
-    Some(field.into_inner())
+    let written = field.into_inner().into_iter();
+    Some(
+        written
+            .map(|pair| pair.into_inner().map(Spanned::into_inner))
+            .collect(),
+    )
 }
 
 fn same_count(

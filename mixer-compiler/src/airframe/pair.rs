@@ -1,12 +1,11 @@
 //! `[pair]`: the model of one pair, total thrust and torque as polynomials of the two throttles.
 
 use super::basis::Basis;
-use super::limits::LARGEST_EFFORT;
+use super::limits;
 use super::power::{self, Power};
 use super::rotor_alone::{self, RotorAlone};
 use super::throttle::Throttle;
 use super::uncertainty::{self, Uncertainty};
-use crate::diagnostic::{Code, Diagnostic, number};
 use crate::spec::keys::{Key, Kind, keys};
 use crate::spec::{Fields, Numbers};
 
@@ -118,55 +117,23 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
 }
 
 fn coefficients(table: &mut Fields<'_, '_>, key: &'static Key, basis: Option<Basis>) -> Option<Vec<f64>> {
-    let (field, basis) = (table.read::<Numbers>(key)?, basis?);
-    let (key, faults) = (&table.key_path(key.name), &mut *table.faults);
-    let (found, terms) = (field.get_ref().len(), basis.exponents().len());
-    if found != terms {
-        let fits = Basis::ALL
-            .into_iter()
-            .find(|other| other.exponents().len() == found);
-        let help = match fits {
+    // Faults of its shape are told whatever the basis.
+    let Some(basis) = basis else {
+        table.read::<Numbers>(key);
+        return None;
+    };
+    let what = format!("basis \"{}\"", basis.name());
+    let terms = basis.exponents().len();
+    limits::coefficients(table, key, (&what, terms), |found| {
+        let mut others = Basis::ALL.into_iter();
+        match others.find(|other| other.exponents().len() == found) {
             Some(other) => format!("{found} coefficients are those of basis = \"{}\"", other.name()),
             None => format!(
                 "the terms are {}, in this order; a term that is not needed is 0",
                 basis.terms()
             ),
-        };
-        faults.push(
-            Diagnostic::new(
-                Code::WrongLength,
-                key,
-                field.span(),
-                format!(
-                    "`{key}` has {found} coefficients, basis \"{}\" takes {terms}",
-                    basis.name()
-                ),
-            )
-            .label(format!("expected {terms} numbers"))
-            .help(help),
-        );
-        return None;
-    }
-    let mut coefficients = Vec::with_capacity(terms);
-    for written in field.get_ref() {
-        let coefficient = *written.get_ref();
-        if coefficient.abs() <= LARGEST_EFFORT {
-            coefficients.push(coefficient);
-            continue;
         }
-        let (coefficient, largest) = (number(coefficient), number(LARGEST_EFFORT));
-        faults.push(
-            Diagnostic::new(
-                Code::OutOfRange,
-                key,
-                written.span(),
-                format!("a coefficient of {coefficient} in `{key}` is beyond {largest}"),
-            )
-            .label("no rotor gives that")
-            .help("the throttles of the polynomial run from 0 to 1, not in microseconds"),
-        );
-    }
-    (coefficients.len() == terms).then_some(coefficients)
+    })
 }
 
 #[cfg(test)]
@@ -175,6 +142,9 @@ mod tests {
 
     #[test]
     fn terms_follow_the_contract() {
+        let exponents = Basis::ALL.iter().flat_map(|basis| basis.exponents());
+        let highest = exponents.map(|&(i, j)| i.max(j)).max().unwrap();
+        assert_eq!(usize::from(highest) + 1, crate::airframe::POWERS);
         assert_eq!(Basis::Biquadratic.terms(), "u2l2, u2l, u2, ul2, ul, u, l2, l");
         assert_eq!(Basis::Cubic.terms(), "u3, u2l, ul2, l3, u2, ul, l2, u, l");
         assert_eq!(

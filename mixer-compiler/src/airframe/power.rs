@@ -1,11 +1,11 @@
 //! `[pair.power]`: the electrical power of one pair over its throttles.
 
 use super::basis::Basis;
-use super::limits::LARGEST_EFFORT;
+use super::limits;
 use super::throttle::Throttle;
-use crate::diagnostic::{Code, number};
+use crate::diagnostic::Code;
+use crate::spec::Fields;
 use crate::spec::keys::{Kind, keys};
-use crate::spec::{Fields, Numbers};
 
 /// Coefficients of a power map: the quartic's and a constant.
 const POWER_TERMS: usize = 15;
@@ -60,21 +60,9 @@ const STEPS: u32 = 64;
 
 pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> Option<Power> {
     let key = "pair.power.power_w";
-    let field = table.read::<Numbers>(&POWER_W)?;
-    let power_w: Vec<f64> = field.get_ref().iter().map(|c| *c.get_ref()).collect();
     let terms = format!("the terms are {}, 1, in this order", Basis::Quartic.terms());
-    if power_w.len() != POWER_TERMS {
-        let found = power_w.len();
-        let message = format!("`{key}` has {found} coefficients, a power map takes {POWER_TERMS}");
-        let label = format!("expected {POWER_TERMS} numbers");
-        return table.refuse(&POWER_W, Code::WrongLength, message, label, terms);
-    }
-    if let Some(beyond) = power_w.iter().find(|c| c.abs() > LARGEST_EFFORT) {
-        let [beyond, largest] = [*beyond, LARGEST_EFFORT].map(number);
-        let message = format!("a coefficient of {beyond} in `{key}` is beyond {largest}");
-        let help = "the throttles of the polynomial run from 0 to 1, not in microseconds";
-        return table.refuse(&POWER_W, Code::OutOfRange, message, "no rotor takes that", help);
-    }
+    let what = ("a power map", POWER_TERMS);
+    let power_w = limits::coefficients(table, &POWER_W, what, |_| terms.clone())?;
     let Throttle { min, max } = throttle?;
     Power::over(power_w, [*min, *max]).map(Some).unwrap_or_else(|reason| {
         let message = format!("the power of `{key}` {reason}");

@@ -1,11 +1,11 @@
 //! `[pair.lower_out]`, `[pair.upper_out]`: what one rotor of a unit gives alone, the other one at
 //! rest.
 
-use super::limits::LARGEST_EFFORT;
+use super::limits;
 use super::throttle::Throttle;
 use crate::diagnostic::{Code, number};
-use crate::spec::keys::{Key, Kind, keys};
-use crate::spec::{Fields, Triple};
+use crate::spec::Fields;
+use crate::spec::keys::{Kind, keys};
 
 keys! { LOWER_OUT = "[pair.lower_out]":
     UPPER_THRUST_N "thrust_n" = "[0.2, 14.1, -1.7]", Kind::Numbers([3, 3]),
@@ -47,7 +47,11 @@ pub(super) fn read(table: &mut Fields<'_, '_>, sign: f64, throttle: Option<&Thro
     } else {
         ([&LOWER_THRUST_N, &LOWER_TORQUE_NM], "lower", "above")
     };
-    let [thrust, torque] = keys.map(|key| coefficients(table, key));
+    let terms = "a1, a2, a3 of a1 x + a2 x^2 + a3 x^3 in the throttle x of the rotor";
+    let [thrust, torque] = keys.map(|key| {
+        let found = limits::coefficients(table, key, ("a rotor alone", 3), |_| terms.to_owned())?;
+        <[f64; 3]>::try_from(found).ok()
+    });
     let (thrust_n, torque_nm) = (thrust?, torque?);
     let throttle = throttle?;
     let [thrust_path, torque_path] = keys.map(|key| table.key_path(key.name));
@@ -75,21 +79,6 @@ pub(super) fn read(table: &mut Fields<'_, '_>, sign: f64, throttle: Option<&Thro
         table.refuse::<()>(keys[1], Code::RotorAlone, message, label, help);
     }
     (table.faults.len() == before).then_some(RotorAlone { thrust_n, torque_nm })
-}
-
-/// Three coefficients.
-fn coefficients(table: &mut Fields<'_, '_>, key: &'static Key) -> Option<[f64; 3]> {
-    let coefficients = table.read::<Triple>(key)?.into_inner().map(|c| c.into_inner());
-    let Some(beyond) = coefficients.iter().find(|c| c.abs() > LARGEST_EFFORT) else {
-        return Some(coefficients);
-    };
-    let [beyond, largest] = [*beyond, LARGEST_EFFORT].map(number);
-    let message = format!(
-        "a coefficient of {beyond} in `{}` is beyond {largest}",
-        table.key_path(key.name)
-    );
-    let help = "the throttle of the polynomial runs from 0 to 1, not in microseconds";
-    table.refuse(key, Code::OutOfRange, message, "no rotor gives that", help)
 }
 
 fn value([a1, a2, a3]: [f64; 3], x: f64) -> f64 {

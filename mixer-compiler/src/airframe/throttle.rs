@@ -61,6 +61,5 @@ pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Throttle> {
             help,
         );
     }
-    // No negative zero: it would show in the generated code.
-    Some(Throttle { min: min + 0.0, max })
+    Some(Throttle { min, max })
 }

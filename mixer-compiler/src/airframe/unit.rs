@@ -1,11 +1,9 @@
 //! The units: where they are, where they push, how they turn and which channels drive them.
 
-use std::ops::Range;
-
 use super::pair::Spin;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::spec::keys::{Kind, keys};
-use crate::spec::{Channels, Fields, Spanned, Triple};
+use crate::spec::{Fields, Places, place_in};
 
 keys! { TABLE = "[[unit]]":
     POSITION_M "position_m" = "[0.3182, 0.3182, 0.0]", Kind::Numbers([3, 3]),
@@ -31,7 +29,7 @@ pub(super) const FARTHEST_M: f64 = 100.0;
 const AXIS_TOLERANCE: f64 = 1e-2;
 
 /// Thrust axis of a unit that is not tilted: up, in axes forward, right, down.
-const UPWARD: [f64; 3] = [0.0, 0.0, -1.0];
+pub(super) const UPWARD: [f64; 3] = [0.0, 0.0, -1.0];
 
 /// One coaxial unit.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,112 +58,47 @@ impl Unit {
     }
 }
 
-/// A unit as written, or as a layout stands for it.
+/// A unit as far as it could be read, or as a layout stands for it.
 pub(super) struct Written {
-    /// Path, like `unit[3]`.
-    pub(super) path: String,
-    /// Place of the header.
-    pub(super) place: Range<usize>,
-    pub(super) position_m: Option<Spanned<Triple>>,
+    pub(super) position_m: Option<[f64; 3]>,
+    pub(super) axis: Option<[f64; 3]>,
     pub(super) upper_spin: Option<Spin>,
-    pub(super) channels: Option<Spanned<Channels>>,
-    pub(super) axis: Option<Spanned<Triple>>,
+    /// Outputs of the upper and of the lower rotor.
+    pub(super) channels: Option<[usize; 2]>,
 }
 
 pub(super) fn read(table: &mut Fields<'_, '_>) -> Written {
     Written {
-        path: table.path().to_owned(),
-        place: table.place(),
-        position_m: table.read(&POSITION_M),
+        position_m: position(table),
         upper_spin: table.word(&UPPER_SPIN, &Spin::ALL),
-        channels: table.read(&CHANNELS),
-        axis: table.read(&AXIS),
+        channels: table.array(&CHANNELS),
+        axis: axis(table),
     }
 }
 
-/// Checks every unit, and the units together.
-pub(super) fn check(units: &[Written], faults: &mut Vec<Diagnostic>) -> Option<Vec<Unit>> {
-    if let Some(extra) = units.get(MOST_UNITS) {
-        faults.push(
-            Diagnostic::new(
-                Code::TooManyUnits,
-                extra.path.as_str(),
-                extra.place.clone(),
-                format!("{} units are more than {MOST_UNITS}", units.len()),
-            )
-            .label("one too many")
-            .help("a unit is one pair of rotors"),
-        );
-        return None;
-    }
-    same_places(units, faults);
-    channels(units, faults);
-    let checked: Vec<_> = units.iter().map(|unit| check_one(unit, faults)).collect();
-    checked.into_iter().collect()
-}
-
-fn check_one(unit: &Written, faults: &mut Vec<Diagnostic>) -> Option<Unit> {
-    let position_m = unit
-        .position_m
-        .as_ref()
-        .and_then(|field| position(unit, field, faults));
-    let axis = match &unit.axis {
-        None => Some(UPWARD),
-        Some(field) => axis(unit, field, faults),
-    };
-    let [upper, lower] = unit.channels.as_ref()?.get_ref();
-    Some(Unit {
-        position_m: position_m?,
-        axis: axis?,
-        upper_spin: unit.upper_spin?,
-        upper_channel: *upper.get_ref(),
-        lower_channel: *lower.get_ref(),
-    })
-}
-
-fn numbers(triple: &Spanned<Triple>) -> [f64; 3] {
-    triple.get_ref().each_ref().map(|x| *x.get_ref())
-}
-
-fn length([x, y, z]: [f64; 3]) -> f64 {
-    (x * x + y * y + z * z).sqrt()
-}
-
-fn position(unit: &Written, field: &Spanned<Triple>, faults: &mut Vec<Diagnostic>) -> Option<[f64; 3]> {
-    let position = numbers(field);
-    let distance = length(position);
+fn position(table: &mut Fields<'_, '_>) -> Option<[f64; 3]> {
+    let [x, y, z] = table.array(&POSITION_M)?;
+    let distance = libm::hypot(libm::hypot(x, y), z);
     if distance <= FARTHEST_M {
-        // No negative zeros: they would show in the generated code.
-        return Some(position.map(|x| x + 0.0));
+        return Some([x, y, z]);
     }
-    // The root of a sum of squares may overflow where the coordinates do not.
-    let distance = if distance.is_finite() {
-        distance
-    } else {
-        position.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
-    };
-    let [x, y, z] = position.map(|x| number(x / 1000.0));
-    faults.push(
-        Diagnostic::new(
-            Code::FarUnit,
-            format!("{}.position_m", unit.path),
-            field.span(),
-            format!(
-                "`{}` is {} m from the centre of gravity",
-                unit.path,
-                rounded(distance)
-            ),
-        )
-        .label(format!("expected metres, at most {FARTHEST_M}"))
-        .help(format!("if millimetres were meant, write [{x}, {y}, {z}]")),
+    let message = format!(
+        "`{}` is {} m from the centre of gravity",
+        table.path(),
+        rounded(distance)
     );
-    None
+    let label = format!("expected metres, at most {FARTHEST_M}");
+    let [x, y, z] = [x, y, z].map(|x| number(x / 1000.0));
+    let help = format!("if millimetres were meant, write [{x}, {y}, {z}]");
+    table.refuse(&POSITION_M, Code::FarUnit, message, label, help)
 }
 
-fn axis(unit: &Written, field: &Spanned<Triple>, faults: &mut Vec<Diagnostic>) -> Option<[f64; 3]> {
-    let axis = numbers(field);
-    let length = length(axis);
-    let key = format!("{}.axis", unit.path);
+fn axis(table: &mut Fields<'_, '_>) -> Option<[f64; 3]> {
+    if table.key_place(&AXIS).is_none() {
+        return Some(UPWARD);
+    }
+    let axis: [f64; 3] = table.array(&AXIS)?;
+    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     if (length - 1.0).abs() > AXIS_TOLERANCE {
         let help = if length > 0.0 && length.is_finite() {
             let [x, y, z] = axis.map(|x| rounded(x / length));
@@ -173,135 +106,117 @@ fn axis(unit: &Written, field: &Spanned<Triple>, faults: &mut Vec<Diagnostic>) -
         } else {
             "leave the key out for a thrust straight up, or write its direction".to_string()
         };
-        faults.push(
-            Diagnostic::new(
-                Code::AxisLength,
-                key,
-                field.span(),
-                format!(
-                    "the axis of `{}` has length {}, not 1",
-                    unit.path,
-                    rounded(length)
-                ),
-            )
-            .label("expected a unit vector")
-            .help(help),
-        );
-        return None;
+        let length = rounded(length);
+        let message = format!("the axis of `{}` has length {length}, not 1", table.path());
+        return table.refuse(&AXIS, Code::AxisLength, message, "expected a unit vector", help);
     }
     let [x, y, z] = axis;
-    if z >= 0.0 {
-        let help = if z > 0.0 {
-            let [x, y, z] = [x, y, -z].map(number);
-            format!("if z was meant upward, write axis = [{x}, {y}, {z}]")
-        } else {
-            "leave the key out for a thrust straight up; a tilted arm keeps z below 0".to_string()
-        };
-        faults.push(
-            Diagnostic::new(
-                Code::AxisNotUpward,
-                key,
-                field.span(),
-                format!(
-                    "the thrust of `{}` does not point upward: axis z = {}",
-                    unit.path,
-                    number(z)
-                ),
-            )
-            .label("forward, right, down: upward is negative")
-            .help(help),
-        );
+    if z < 0.0 {
+        return Some(axis.map(|x| x / length + 0.0));
+    }
+    let help = if z > 0.0 {
+        let [x, y, z] = [x, y, -z].map(number);
+        format!("if z was meant upward, write axis = [{x}, {y}, {z}]")
+    } else {
+        "leave the key out for a thrust straight up; a tilted arm keeps z below 0".to_string()
+    };
+    let (path, z) = (table.path(), number(z));
+    let message = format!("the thrust of `{path}` does not point upward: axis z = {z}");
+    let label = "forward, right, down: upward is negative";
+    table.refuse(&AXIS, Code::AxisNotUpward, message, label, help)
+}
+
+/// Checks the units together, and gives them where all are complete.
+pub(super) fn check(units: &[Written], places: &Places, faults: &mut Vec<Diagnostic>) -> Option<Vec<Unit>> {
+    if units.len() > MOST_UNITS {
+        let key = format!("unit[{MOST_UNITS}]");
+        let message = format!("{} units are more than {MOST_UNITS}", units.len());
+        let fault = Diagnostic::new(Code::TooManyUnits, key.as_str(), place_in(places, &key), message);
+        faults.push(fault.label("one too many").help("a unit is one pair of rotors"));
         return None;
     }
-    Some(axis.map(|x| x / length + 0.0))
+    check_places(units, places, faults);
+    check_channels(units, places, faults);
+    let complete = |unit: &Written| {
+        let [upper_channel, lower_channel] = unit.channels?;
+        Some(Unit {
+            position_m: unit.position_m?,
+            axis: unit.axis?,
+            upper_spin: unit.upper_spin?,
+            upper_channel,
+            lower_channel,
+        })
+    };
+    units.iter().map(complete).collect()
 }
 
-fn same_places(units: &[Written], faults: &mut Vec<Diagnostic>) {
-    let placed: Vec<_> = units
-        .iter()
-        .filter_map(|unit| {
-            unit.position_m
-                .as_ref()
-                .map(|field| (unit, field, numbers(field)))
-        })
-        .collect();
-    for (index, (unit, field, [x, y, z])) in placed.iter().enumerate() {
-        let near = placed[..index].iter().find_map(|(other, _, [ox, oy, oz])| {
-            let distance = length([x - ox, y - oy, z - oz]);
-            (distance < SAME_PLACE_M).then_some((other, distance))
-        });
-        if let Some((other, distance)) = near {
-            let apart = rounded(distance * 1000.0);
-            faults.push(
-                Diagnostic::new(
-                    Code::SamePlace,
-                    format!("{}.position_m", unit.path),
-                    field.span(),
-                    format!(
-                        "`{}` and `{}` are in one place, {apart} mm apart",
-                        other.path, unit.path
-                    ),
-                )
-                .label(format!("where `{}` is", other.path))
+/// No two units are in one place.
+fn check_places(units: &[Written], places: &Places, faults: &mut Vec<Diagnostic>) {
+    let placed = || {
+        units
+            .iter()
+            .enumerate()
+            .filter_map(|(k, unit)| Some((k, unit.position_m?)))
+    };
+    for (k, [x, y, z]) in placed() {
+        let distance = |[ox, oy, oz]: [f64; 3]| libm::hypot(libm::hypot(x - ox, y - oy), z - oz);
+        let mut before = placed().take_while(|(other, _)| *other < k);
+        let Some((other, place)) = before.find(|(_, place)| distance(*place) < SAME_PLACE_M) else {
+            continue;
+        };
+        let apart = rounded(distance(place) * 1000.0);
+        let key = format!("unit[{k}].position_m");
+        let message = format!("`unit[{other}]` and `unit[{k}]` are in one place, {apart} mm apart");
+        let fault = Diagnostic::new(Code::SamePlace, key.as_str(), place_in(places, &key), message);
+        faults.push(
+            fault
+                .label(format!("where `unit[{other}]` is"))
                 .help("one `[[unit]]` stands for both rotors of a pair; give each pair its own place"),
-            );
-        }
+        );
     }
 }
 
-/// Every output from 0 to 2n - 1 must drive exactly one rotor.
-fn channels(units: &[Written], faults: &mut Vec<Diagnostic>) {
+/// Every output from 0 to 2n - 1 drives exactly one rotor.
+fn check_channels(units: &[Written], places: &Places, faults: &mut Vec<Diagnostic>) {
     let rotors = 2 * units.len();
-    // Who drives each output, and where that is written.
+    let last = rotors.saturating_sub(1);
+    // Who drives each output.
     let mut driven: Vec<Option<String>> = vec![None; rotors];
     let mut bad = Vec::new();
-    for unit in units {
-        let Some(channels) = &unit.channels else { continue };
-        for (rotor, channel) in ["upper", "lower"].into_iter().zip(channels.get_ref()) {
-            let here = format!("the {rotor} rotor of `{}`", unit.path);
-            let key = format!("{}.channels", unit.path);
-            let output = *channel.get_ref();
-            match driven.get_mut(output) {
-                Some(slot @ None) => *slot = Some(here),
-                Some(Some(other)) => bad.push(
-                    Diagnostic::new(
-                        Code::DuplicateChannel,
-                        key,
-                        channel.span(),
-                        format!("output {output} drives {other} and {here}"),
-                    )
-                    .label("already taken"),
-                ),
-                None => bad.push(
-                    Diagnostic::new(
-                        Code::ChannelRange,
-                        key,
-                        channel.span(),
-                        format!("output {output} of {here} is beyond {}", rotors.saturating_sub(1)),
-                    )
-                    .label(format!(
-                        "{} units have outputs 0 to {}",
-                        units.len(),
-                        rotors.saturating_sub(1)
-                    )),
-                ),
-            }
+    for (k, channels) in units.iter().enumerate() {
+        let rotors = ["upper", "lower"]
+            .into_iter()
+            .zip(channels.channels.into_iter().flatten());
+        for (index, (rotor, output)) in rotors.enumerate() {
+            let here = format!("the {rotor} rotor of `unit[{k}]`");
+            let (code, message, label) = match driven.get_mut(output) {
+                Some(slot @ None) => {
+                    *slot = Some(here);
+                    continue;
+                }
+                Some(Some(other)) => {
+                    let message = format!("output {output} drives {other} and {here}");
+                    (Code::DuplicateChannel, message, "already taken".to_owned())
+                }
+                None => {
+                    let message = format!("output {output} of {here} is beyond {last}");
+                    let label = format!("{} units have outputs 0 to {last}", units.len());
+                    (Code::ChannelRange, message, label)
+                }
+            };
+            let key = format!("unit[{k}].channels");
+            let place = place_in(places, &format!("{key}[{index}]"));
+            bad.push(Diagnostic::new(code, key, place, message).label(label));
         }
     }
-    let complete = units.iter().all(|unit| unit.channels.is_some());
-    let free: Vec<_> = driven
-        .iter()
-        .enumerate()
-        .filter(|(_, slot)| slot.is_none())
-        .map(|(output, _)| output.to_string())
-        .collect();
+    let free = driven.iter().enumerate().filter(|(_, slot)| slot.is_none());
+    let free: Vec<_> = free.map(|(output, _)| output.to_string()).collect();
+    let is_complete = units.iter().all(|unit| unit.channels.is_some());
     let help = match free.as_slice() {
-        [output] if complete => format!("outputs count from 0; output {output} drives no rotor yet"),
-        [first @ .., last] if complete => {
-            format!(
-                "outputs count from 0; outputs {} and {last} drive no rotor yet",
-                first.join(", ")
-            )
+        [output] if is_complete => format!("outputs count from 0; output {output} drives no rotor yet"),
+        [first @ .., last] if is_complete => {
+            let first = first.join(", ");
+            format!("outputs count from 0; outputs {first} and {last} drive no rotor yet")
         }
         _ => "outputs count from 0, two for each unit, without a gap".to_string(),
     };

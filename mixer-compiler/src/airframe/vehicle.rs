@@ -1,8 +1,8 @@
 //! `[vehicle]`: what the units carry.
 
-use crate::diagnostic::{Code, Diagnostic, number};
+use crate::diagnostic::{Code, number};
+use crate::spec::Fields;
 use crate::spec::keys::{Kind, Range, keys};
-use crate::spec::{Fields, Spanned, Triple};
 
 keys! { TABLE = "[vehicle]":
     MASS_KG "mass_kg" = "3.2", Kind::Number(Range::UpTo(1e4)),
@@ -27,24 +27,22 @@ pub struct Vehicle {
 }
 
 pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Vehicle> {
-    let inertia = table.read(&INERTIA_KG_M2);
+    let inertia_kg_m2 = inertia(table);
     Some(Vehicle {
-        inertia_kg_m2: inertia.and_then(|field| inertia_kg_m2(&field, table.faults)),
         mass_kg: table.number(&MASS_KG)?,
+        inertia_kg_m2,
     })
 }
 
-fn inertia_kg_m2(field: &Spanned<Triple>, faults: &mut Vec<Diagnostic>) -> Option<[f64; 3]> {
-    let moments = field.get_ref();
-    let Some(wrong) = moments.iter().find(|moment| *moment.get_ref() <= 0.0) else {
-        return Some(moments.each_ref().map(|moment| *moment.get_ref()));
+fn inertia(table: &mut Fields<'_, '_>) -> Option<[f64; 3]> {
+    let moments = table.array(&INERTIA_KG_M2)?;
+    let Some(wrong) = moments.iter().find(|moment| **moment <= 0.0) else {
+        return Some(moments);
     };
-    let (key, moment) = ("vehicle.inertia_kg_m2", number(*wrong.get_ref()));
-    let message = format!("a moment of inertia of {moment} in `{key}` is not positive");
-    faults.push(
-        Diagnostic::new(Code::OutOfRange, key, wrong.span(), message)
-            .label("must be above 0")
-            .help("the moments about the forward, right and down axes, in kg m2; leave the key out where they are not known"),
+    let message = format!(
+        "a moment of inertia of {} in `vehicle.inertia_kg_m2` is not positive",
+        number(*wrong)
     );
-    None
+    let help = "the moments about the forward, right and down axes, in kg m2; leave the key out where they are not known";
+    table.refuse(&INERTIA_KG_M2, Code::OutOfRange, message, "must be above 0", help)
 }

@@ -73,8 +73,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Voltage> {
 
 fn supply(table: &mut Fields<'_, '_>) -> Option<Supply> {
     let reference = table.read::<f64>(&REFERENCE_V);
-    let range = table.read::<[Spanned<f64>; 2]>(&RANGE_V)?;
-    let [low, high] = range.get_ref().each_ref().map(|volts| *volts.get_ref());
+    let [low, high]: [f64; 2] = table.array(&RANGE_V)?;
     let [low_v, high_v] = [low, high].map(number);
     const PACK: &str = "write the pack's voltage under load when empty, then when full";
     let mut refuse = |message, label: String, help: String| {

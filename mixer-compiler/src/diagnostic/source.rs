@@ -38,40 +38,17 @@ impl Source {
         name.to_string_lossy().into_owned()
     }
 
-    /// The place of a byte offset. Offsets past the end or inside a character are moved back to the
-    /// nearest character boundary.
-    pub(crate) fn place(&self, offset: usize) -> Place {
-        let before = &self.text[..self.boundary(offset)];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        Place {
-            line: before.matches('\n').count() + 1,
-            // A byte order mark is no character that a user could see or count.
-            column: before[line_start..]
-                .chars()
-                .filter(|&c| c != BYTE_ORDER_MARK)
-                .count()
-                + 1,
-        }
-    }
-
-    /// The places of ascending byte offsets, in one pass over the text; those of descending ones
-    /// are found each by itself.
+    /// The places of ascending byte offsets, in one pass over the text. Offsets past the end or inside
+    /// a character are moved back to the nearest character boundary.
     pub(crate) fn places(&self, offsets: impl Iterator<Item = Option<usize>>) -> Vec<Option<Place>> {
         let mut counted = 0;
         let mut place = Place { line: 1, column: 1 };
         let mut next = |offset: usize| {
-            let offset = self.boundary(offset);
-            let Some(between) = self.text.get(counted..offset) else {
-                return self.place(offset);
-            };
-            for c in between.chars() {
+            let offset = self.boundary(offset).max(counted);
+            for c in self.text[counted..offset].chars() {
                 match c {
-                    '\n' => {
-                        place = Place {
-                            line: place.line + 1,
-                            column: 1,
-                        };
-                    }
+                    '\n' => (place.line, place.column) = (place.line + 1, 1),
+                    // No character that a user could see or count.
                     BYTE_ORDER_MARK => {}
                     _ => place.column += 1,
                 }
@@ -99,23 +76,26 @@ pub(crate) const BYTE_ORDER_MARK: char = '\u{feff}';
 mod tests {
     use super::*;
 
+    /// Lines and columns of ascending offsets.
+    fn places(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
+        let places = Source::new("a.toml", text).places(offsets.iter().map(|offset| Some(*offset)));
+        places
+            .into_iter()
+            .flatten()
+            .map(|place| (place.line, place.column))
+            .collect()
+    }
+
     #[test]
     fn places_count_characters_from_one() {
-        let source = Source::new("a.toml", "é = 1\r\nπρ = 2\n");
-        assert_eq!(source.place(0), Place { line: 1, column: 1 });
-        assert_eq!(source.place(3), Place { line: 1, column: 3 });
-        assert_eq!(
-            source.place(source.text.find('2').unwrap()),
-            Place { line: 2, column: 6 }
-        );
+        let text = "é = 1\r\nπρ = 2\n";
         // Inside the two bytes of `é`, and past the end.
-        assert_eq!(source.place(1), Place { line: 1, column: 1 });
-        assert_eq!(source.place(1000), Place { line: 3, column: 1 });
+        let offsets = [0, 1, 3, text.find('2').unwrap(), 1000];
+        assert_eq!(places(text, &offsets), [(1, 1), (1, 1), (1, 3), (2, 6), (3, 1)]);
     }
 
     #[test]
     fn byte_order_mark_takes_no_column() {
-        let source = Source::new("a.toml", "\u{feff}name = 1");
-        assert_eq!(source.place(3), Place { line: 1, column: 1 });
+        assert_eq!(places("\u{feff}name = 1", &[3]), [(1, 1)]);
     }
 }

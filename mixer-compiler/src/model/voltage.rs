@@ -21,34 +21,27 @@ pub(crate) const FIT_TOLERANCE: f64 = 1e-7;
 /// Highest degree that is tried.
 const HIGHEST_FITTED_DEGREE: usize = 12;
 
-/// Largest correction factors `[k_f, k_Q]` over the range; `[1, 1]` without a correction.
+/// Largest correction factors `[k_f, k_Q]` over the range; `[1, 1]` without a correction. Laws of
+/// exponents grow, those of points bend at points alone.
 pub(crate) fn largest_factors(airframe: &Airframe) -> [f64; 2] {
-    factors_over_range(airframe)
-        .into_iter()
-        .fold([0.0, 0.0], |[f, q], [k_f, k_q]| [k_f.max(f), k_q.max(q)])
-}
-
-/// Correction factors `[k_f, k_Q]` at voltages over the whole range, both ends and the points of a
-/// law included.
-pub(crate) fn factors_over_range(airframe: &Airframe) -> Vec<[f64; 2]> {
     let Some(voltage) = &airframe.voltage else {
-        return vec![[1.0, 1.0]];
+        return [1.0; 2];
     };
     let [low, high] = voltage.range_v;
-    let mut volts: Vec<f64> = (0..=32)
-        .map(|k| low + (high - low) * f64::from(k) / 32.0)
-        .collect();
-    for law in [&voltage.thrust, &voltage.torque] {
-        if let VoltageLaw::Points(points) = law {
-            volts.extend(
-                points
-                    .iter()
-                    .map(|point| point[0])
-                    .filter(|v| (low..=high).contains(v)),
-            );
-        }
-    }
-    volts.into_iter().map(|v| voltage.factors(v)).collect()
+    [&voltage.thrust, &voltage.torque].map(|law| {
+        let points = match law {
+            VoltageLaw::Points(points) => points.as_slice(),
+            VoltageLaw::Exponent(_) => &[],
+        };
+        let inner = points
+            .iter()
+            .map(|point| point[0])
+            .filter(|v| (low..=high).contains(v));
+        let factors = inner
+            .chain([low, high])
+            .map(|volts| law.factor(volts, voltage.reference_v));
+        factors.fold(0.0, f64::max)
+    })
 }
 
 /// The laws of thrust and torque, tabulated; `None` without a correction.

@@ -81,19 +81,24 @@ impl<'a, 'f> Fields<'a, 'f> {
         Some(Spanned::new(item.place, value))
     }
 
+    /// An array of as many values; `None` where the key is absent or was reported.
+    pub(crate) fn array<T: Read, const N: usize>(&mut self, key: &'static Key) -> Option<[T; N]> {
+        let values = self.read::<[Spanned<T>; N]>(key)?.into_inner();
+        Some(values.map(|value| value.into_inner()))
+    }
+
     /// A number within the key's range, or its default; `None` where there is none.
     pub(crate) fn number(&mut self, key: &'static Key) -> Option<f64> {
         if self.item(key).is_none() {
             return key.default;
         }
         let field = self.read::<f64>(key)?;
-        // No negative zeros: they would show in the generated code.
-        let x = *field.get_ref() + 0.0;
+        let x = *field.get_ref();
         if let Kind::Number(range) = key.kind
             && let Some([label, help]) = key.refusal
             && !range.contains(x)
         {
-            let (path, x) = (self.key_path(key.name), number(*field.get_ref()));
+            let (path, x) = (self.key_path(key.name), number(x));
             let message = format!("`{path}` = {x} is not {}", range.words());
             return self.refuse(key, Code::OutOfRange, message, label, help);
         }

@@ -125,52 +125,50 @@ fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
         .trim_end();
     let after_word = before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
 
+    let is_digit = |c: char| c.is_ascii_digit();
     let (message, help) = if said == DUPLICATE {
         let help = match written {
             "unit" => "head every unit `[[unit]]`, with two brackets on either side",
             _ => "keep one of the two",
         };
-        (format!("{} is there twice", quoted(written)), help.to_string())
+        (&*format!("{} is there twice", quoted(written)), help)
     } else if written.contains(char::is_control) && !written.contains(char::is_whitespace) {
         (
-            "an invisible control character".to_string(),
-            "remove it; a tab in a string is written `\\t`".to_string(),
+            "an invisible control character",
+            "remove it; a tab in a string is written `\\t`",
         )
-    } else if rest.starts_with(',') && before.ends_with(|c: char| c.is_ascii_digit()) {
+    } else if rest.starts_with(',') && before.ends_with(is_digit) {
         (
-            "a comma after a number".to_string(),
-            "decimals are written with a point: 0.1, not 0,1".to_string(),
+            "a comma after a number",
+            "decimals are written with a point: 0.1, not 0,1",
         )
     } else if rest.starts_with(':') && after_word {
         (
-            "a key with `:`".to_string(),
-            "a key and its value are joined by `=`, as in `min = 0.10`".to_string(),
+            "a key with `:`",
+            "a key and its value are joined by `=`, as in `min = 0.10`",
         )
     } else if before.ends_with('=') && written.starts_with(|c: char| c.is_ascii_alphabetic()) {
         (
-            "text without quotes".to_string(),
-            format!("quote it: \"{}\"", written.trim()),
+            "text without quotes",
+            &*format!("quote it: \"{}\"", written.trim()),
         )
-    } else if written.contains(' ') && written.starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c)) {
+    } else if written.contains(' ') && written.starts_with(|c: char| is_digit(c) || "+-".contains(c)) {
         let help = "part the elements of an array with commas, and keys with line breaks";
-        ("two values in a row".to_string(), help.to_string())
+        ("two values in a row", help)
     } else if before.ends_with('.') || rest.starts_with('.') {
-        (
-            said.to_string(),
-            "a decimal point has digits on both sides: 0.5, 1.0".to_string(),
-        )
+        (said, "a decimal point has digits on both sides: 0.5, 1.0")
     } else if rest.is_empty() && said.contains("string") {
         (
-            "a string that does not end".to_string(),
-            "close it with the quote that opens it".to_string(),
+            "a string that does not end",
+            "close it with the quote that opens it",
         )
     } else if said.contains("array") {
         let help = "close the array, which may start on an earlier line, with `]`; commas part its elements";
-        (said.to_string(), help.to_string())
+        (said, help)
     } else {
         (
-            said.to_string(),
-            "a line is `key = value`, `[table]` or `# comment`; see https://toml.io".to_string(),
+            said,
+            "a line is `key = value`, `[table]` or `# comment`; see https://toml.io",
         )
     };
     Diagnostic::new(Code::Syntax, "", span, format!("not TOML: {message}")).help(help)
@@ -184,6 +182,20 @@ pub(crate) fn places(table: &DeTable<'_>) -> Places {
         note(key.get_ref().to_string(), place, value, &mut places);
     }
     places
+}
+
+/// Place of a key like `unit[3].channels`, or of the nearest table or array around it that the file
+/// has; else of the name.
+pub(crate) fn place_in(places: &Places, mut key: &str) -> Option<Range<usize>> {
+    loop {
+        if let Some(place) = places.get(key) {
+            return Some(place.clone());
+        }
+        match key.rfind(['.', '[']) {
+            Some(parent) => key = &key[..parent],
+            None => return places.get("name").cloned(),
+        }
+    }
 }
 
 fn note(path: String, place: Range<usize>, value: &Spanned<DeValue<'_>>, places: &mut Places) {

@@ -26,31 +26,16 @@ impl<'a> Item<'a> {
         }
     }
 
-    pub(super) fn wrong_type(&self, wanted: &str) -> Diagnostic {
-        let found = type_of(self.value);
-        Diagnostic::new(
-            Code::WrongType,
-            self.path.as_str(),
-            self.place.clone(),
-            format!("`{}` is {found}, not {wanted}", self.path),
-        )
-        .label(format!("expected {wanted}"))
-        .help(format!("write it like `{}`", self.key.example()))
+    /// A fault of the value.
+    fn fault(&self, code: Code, message: String, label: &str) -> Diagnostic {
+        Diagnostic::new(code, self.path.as_str(), self.place.clone(), message)
+            .label(label)
+            .help(format!("write it like `{}`", self.key.example()))
     }
 
-    fn not_plain(&self, other: char) -> Diagnostic {
-        Diagnostic::new(
-            Code::NotPlain,
-            self.path.as_str(),
-            self.place.clone(),
-            format!(
-                "`{}` has the character U+{:04X}, which does not show as itself",
-                self.path,
-                u32::from(other)
-            ),
-        )
-        .label("expected plain text on one line")
-        .help(format!("write it like `{}`", self.key.example()))
+    pub(super) fn wrong_type(&self, wanted: &str) -> Diagnostic {
+        let message = format!("`{}` is {}, not {wanted}", self.path, type_of(self.value));
+        self.fault(Code::WrongType, message, &format!("expected {wanted}"))
     }
 }
 
@@ -92,7 +77,12 @@ impl Read for String {
         };
         // Strings reach the terminal and the comments of generated code.
         if let Some(other) = text.chars().find(|&c| !is_plain(c)) {
-            faults.push(item.not_plain(other));
+            let message = format!(
+                "`{}` has the character U+{:04X}, which does not show as itself",
+                item.path,
+                u32::from(other)
+            );
+            faults.push(item.fault(Code::NotPlain, message, "expected plain text on one line"));
             return None;
         }
         Some(text.to_string())
@@ -120,19 +110,16 @@ impl Read for f64 {
             } else {
                 "infinite, or too large for a float"
             };
-            faults.push(
-                Diagnostic::new(
-                    Code::NotFinite,
-                    item.path.as_str(),
-                    item.place.clone(),
-                    format!("`{}` is {what}", item.path),
-                )
-                .label("must be finite")
-                .help("write the measured number in the unit that the key names"),
+            let fault = item.fault(
+                Code::NotFinite,
+                format!("`{}` is {what}", item.path),
+                "must be finite",
             );
+            faults.push(fault.help("write the measured number in the unit that the key names"));
             return None;
         }
-        Some(number)
+        // No negative zeros: they would show in the generated code.
+        Some(number + 0.0)
     }
 }
 
@@ -155,16 +142,8 @@ impl Read for usize {
         // 32 bits on every machine, so that all accept the same files.
         let number = u32::from_str_radix(integer.as_str(), integer.radix()).ok();
         if number.is_none() {
-            faults.push(
-                Diagnostic::new(
-                    Code::OutOfRange,
-                    item.path.as_str(),
-                    item.place.clone(),
-                    format!("`{}` = {} is not a count", item.path, quoted(integer.as_str())),
-                )
-                .label("expected a small whole number, from 0")
-                .help(format!("write it like `{}`", item.key.example())),
-            );
+            let message = format!("`{}` = {} is not a count", item.path, quoted(integer.as_str()));
+            faults.push(item.fault(Code::OutOfRange, message, "expected a small whole number, from 0"));
         }
         number.map(|number| number as usize)
     }
@@ -196,16 +175,8 @@ impl<T: Read, const N: usize> Read for [Spanned<T>; N] {
         let array = values.try_into().ok();
         if array.is_none() {
             let elements = if found == 1 { "element" } else { "elements" };
-            faults.push(
-                Diagnostic::new(
-                    Code::WrongLength,
-                    item.path.as_str(),
-                    item.place.clone(),
-                    format!("`{}` has {found} {elements}, not {N}", item.path),
-                )
-                .label(format!("expected {N} elements"))
-                .help(format!("write it like `{}`", item.key.example())),
-            );
+            let message = format!("`{}` has {found} {elements}, not {N}", item.path);
+            faults.push(item.fault(Code::WrongLength, message, &format!("expected {N} elements")));
         }
         array
     }
