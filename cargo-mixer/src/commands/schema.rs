@@ -92,7 +92,6 @@ fn property(key: &Key) -> Value {
         Kind::Name => json!({ "type": "string", "pattern": "^[a-z][a-z0-9]*([-_][a-z0-9]+)*$" }),
         Kind::Word(words) => json!({ "type": "string", "enum": words }),
         Kind::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words } }),
-        Kind::Number(Range::Finite) => number(),
         Kind::Number(Range::Positive) => json!({ "type": "number", "exclusiveMinimum": 0 }),
         Kind::Number(Range::UpTo(most)) => {
             json!({ "type": "number", "exclusiveMinimum": 0, "maximum": bound(most) })

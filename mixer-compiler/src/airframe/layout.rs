@@ -24,8 +24,9 @@ keys! { TABLE = "[layout]":
         .refusing("must be above 0", ARM);
     UNITS "units" = "4", Kind::Count([1, MOST_UNITS]),
         "Pairs of rotors.".required();
-    FIRST_ANGLE_DEG "first_angle_deg" = "45", Kind::Number(Range::Finite),
-        "Of the first unit, degrees clockwise from the nose as seen from above.".required();
+    FIRST_ANGLE_DEG "first_angle_deg" = "45", Kind::Number(Range::Within([-360.0, 360.0])),
+        "Of the first unit, degrees clockwise from the nose as seen from above.".required()
+        .refusing("more than a turn", "degrees clockwise from the nose, seen from above");
     FIRST_SPIN "first_spin" = "\"cw\"", Kind::Word(&Spin::WORDS),
         "Of the first unit's upper rotor. They alternate for an even number of units and turn alike for an odd one.";
     SPINS "spins" = "[\"cw\", \"ccw\", \"cw\", \"ccw\"]", Kind::Words(&Spin::WORDS),
@@ -54,7 +55,7 @@ pub(super) struct Layout {
 pub(super) fn read(table: &mut Fields<'_, '_>, bench_spin: Option<Spin>) -> Layout {
     let units = count(table);
     let arm_m = arm(table, units);
-    let first_angle_deg = angle(table);
+    let first_angle_deg = table.number(&FIRST_ANGLE_DEG);
     let spins = spins(table, units, bench_spin);
     let channels = channels(table, units);
     let expanded = || {
@@ -120,22 +121,6 @@ fn arm(table: &mut Fields<'_, '_>, units: Option<usize>) -> Option<f64> {
         );
     }
     Some(arm_m)
-}
-
-fn angle(table: &mut Fields<'_, '_>) -> Option<f64> {
-    let angle = *table.read::<f64>(&FIRST_ANGLE_DEG)?.get_ref();
-    if angle.abs() <= 360.0 {
-        return Some(angle);
-    }
-    let message = format!("`layout.first_angle_deg` = {} is more than a turn", number(angle));
-    let help = "degrees clockwise from the nose, seen from above";
-    table.refuse(
-        &FIRST_ANGLE_DEG,
-        Code::OutOfRange,
-        message,
-        "expected -360 to 360",
-        help,
-    )
 }
 
 fn spins(table: &mut Fields<'_, '_>, units: Option<usize>, bench_spin: Option<Spin>) -> Option<Vec<Spin>> {

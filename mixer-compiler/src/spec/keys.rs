@@ -114,8 +114,6 @@ pub enum Kind {
 /// The numbers that a key takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Range {
-    /// Any finite one.
-    Finite,
     /// Those above 0.
     Positive,
     /// Those above 0, up to this one.
@@ -127,7 +125,6 @@ pub enum Range {
 impl Range {
     pub(crate) fn contains(self, x: f64) -> bool {
         match self {
-            Range::Finite => x.is_finite(),
             Range::Positive => x > 0.0,
             Range::UpTo(most) => x > 0.0 && x <= most,
             Range::Within([least, most]) => (least..=most).contains(&x),
@@ -137,7 +134,6 @@ impl Range {
     /// What a number of the range is, in words.
     pub fn words(self) -> String {
         match self {
-            Range::Finite => "finite".to_owned(),
             Range::Positive => "positive".to_owned(),
             Range::UpTo(most) => format!("above 0 and at most {}", number(most)),
             Range::Within([least, most]) => format!("between {} and {}", number(least), number(most)),
