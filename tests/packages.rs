@@ -9,12 +9,13 @@ use std::process::Command;
 use mixer_tests::root;
 
 /// In the order of publication: each uses only those before it.
-const PUBLISHED: [&str; 8] = [
+const PUBLISHED: [&str; 9] = [
     "mixer-rt",
     "mixer-compiler",
     "mixer-macros",
     "isolated-rotors",
     "mixer-identify",
+    "mixer-facts",
     "mixer-report",
     "mixer-c",
     "cargo-mixer",
@@ -109,6 +110,7 @@ fn firmware_builds_nothing_of_the_command_line() {
         );
         for absent in [
             "mixer-identify",
+            "mixer-facts",
             "mixer-report",
             "mixer-c",
             "cargo-mixer",

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use clap::ValueEnum;
+use mixer_compiler::Source;
 use mixer_compiler::airframe::Spin;
-use mixer_compiler::{Source, hover};
+use mixer_facts::hover;
 
 use crate::bench_args::quantity;
 use crate::commands::schema::DIRECTIVE;

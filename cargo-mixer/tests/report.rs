@@ -270,7 +270,7 @@ fn sweeps_are_rectangular_with_units_in_the_header() {
 fn the_error_stays_below_its_bound() {
     for compiled in airframes() {
         let study = Study::new(&compiled, None);
-        let summary = mixer_compiler::report::Summary::new(&compiled);
+        let summary = mixer_facts::report::Summary::new(&compiled);
         let allowed = summary.certificate.bound_at_reference;
         let data = sweep(&study, Data::Error).unwrap();
         let mut largest = [0.0f64; 2];

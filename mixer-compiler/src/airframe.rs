@@ -162,7 +162,7 @@ impl Airframe {
 
     /// The share of a pair's saving by `power_bias_nm_per_n` that is left in hover, as torques must
     /// cancel: 1 - (sum s / n)^2 with the spins s of n units.
-    pub(crate) fn power_bias_share(&self) -> f64 {
+    pub fn power_bias_share(&self) -> f64 {
         let spins = self.units.iter().map(|unit| unit.spin_sign(self.pair.upper_spin));
         let mean = spins.sum::<f64>() / self.units.len() as f64;
         1.0 - mean * mean

@@ -58,13 +58,13 @@ impl Certificate {
 
     /// Share of the tolerance that is left: the lesser of thrust and torque; negative where it does
     /// not hold.
-    pub(crate) fn margin(&self) -> f64 {
+    pub fn margin(&self) -> f64 {
         let left = |k: usize| 1.0 - self.stated[k] / self.tolerance[k];
         left(0).min(left(1))
     }
 
     /// Bound at the reference voltage over observed residual, of thrust and of torque.
-    pub(crate) fn over_observed(&self, observed: &Residual) -> [f64; 2] {
+    pub fn over_observed(&self, observed: &Residual) -> [f64; 2] {
         [0, 1].map(|k| self.reference[k] / observed.efforts[k])
     }
 }

@@ -300,7 +300,7 @@ impl MixerTables {
     }
 
     /// Bytes of the tables in flash.
-    pub(crate) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         let view = self.view();
         let parts: [&dyn Part; 13] = [
             &view.units,
@@ -318,6 +318,11 @@ impl MixerTables {
             &view.tolerance,
         ];
         parts.into_iter().map(Part::bytes).sum()
+    }
+
+    /// Bytes of the inverse map's own constants.
+    pub fn inverse_bytes(&self) -> usize {
+        self.inverse.bytes()
     }
 }
 

@@ -1,18 +1,13 @@
 //! Tables of what the airframe costs on the target.
 
 use maud::Markup;
-use mixer_compiler::alternatives::Alternative;
-use mixer_compiler::cost::Cost;
+use mixer_facts::cost::Cost;
 
 use crate::number::fixed;
-use crate::rows::{facts_table, table};
+use crate::rows::facts_table;
 
 /// Where an evaluator has not been counted.
 const NOT_COUNTED: &str = "not counted";
-
-fn number(value: Option<u32>) -> String {
-    value.map_or(NOT_COUNTED.to_owned(), |value| value.to_string())
-}
 
 /// The chosen evaluator and the whole mix.
 pub fn facts(cost: &Cost) -> Markup {
@@ -65,38 +60,4 @@ pub fn facts(cost: &Cost) -> Markup {
         ),
     ));
     facts_table(&facts)
-}
-
-/// All evaluators, in the order of their cost.
-pub fn evaluators(front: &[Alternative]) -> Markup {
-    let header = [
-        "evaluator of one unit",
-        "instructions",
-        "cycles",
-        "whole mix (instructions)",
-        "constants (bytes)",
-    ];
-    let rows: Vec<Vec<String>> = front
-        .iter()
-        .map(|alternative| {
-            vec![
-                named(alternative),
-                number(alternative.instructions),
-                number(alternative.cost),
-                number(alternative.delivered),
-                alternative.bytes.to_string(),
-            ]
-        })
-        .collect();
-    let caption = "Evaluators of the inverse map: instructions and cycles of one unit, about the instructions of a mix that least \
-                   norm delivers, bytes of constants";
-    table(caption, &header, &rows)
-}
-
-/// An evaluator with what became of it.
-pub(crate) fn named(alternative: &Alternative) -> String {
-    match alternative.verdict() {
-        "" => alternative.description.clone(),
-        verdict => format!("{} ({verdict})", alternative.description),
-    }
 }

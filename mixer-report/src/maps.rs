@@ -1,7 +1,7 @@
 //! Colour maps: forward (Fig. 3 and 4 of the paper), inverse over the attainable set (Fig. 5),
 //! error of the inverse.
 
-use mixer_compiler::report::rounded_up;
+use mixer_compiler::diagnostic::rounded_up;
 
 use crate::bench::{BenchPoint, BenchPoints};
 use crate::colour::Scale;

@@ -7,11 +7,10 @@ mod link;
 
 use maud::{Markup, PreEscaped, html};
 use mixer_compiler::airframe::Axis;
-use mixer_compiler::alternatives::Alternative;
-use mixer_compiler::cost::Cost;
 use mixer_compiler::diagnostic::printable;
+use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::hover;
-use mixer_compiler::report::rounded_up;
+use mixer_facts::cost::Cost;
 
 use crate::authority;
 use crate::bench::{BenchPoint, BenchPoints};
@@ -61,7 +60,6 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
-    let front = compiled.front();
     let section = |anchor| match anchor {
         "layout" => layout_section(study),
         "bench-check" => table::bench_check(study),
@@ -71,8 +69,8 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
         "attainable" => attainable_section(study),
         "forward" => forward_section(study, bench),
         "inverse" => inverse_section(study),
-        "error" => error_section(study, &errors, &front),
-        "cost" => cost_section(study, &front),
+        "error" => error_section(study, &errors),
+        "cost" => cost_section(study),
         _ => table::matrices(study),
     };
     let name = printable(&airframe.name);
@@ -415,7 +413,7 @@ fn inverse_section(study: &Study<'_>) -> Markup {
     html! { (figures(&maps)) }
 }
 
-fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[Alternative]) -> Markup {
+fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2]) -> Markup {
     let csv = link::csv(study, Data::Error);
     let plots: Vec<Markup> = Effort::BOTH
         .into_iter()
@@ -449,11 +447,10 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2], front: &[
              proven bound."
         }
         (figures(&plots))
-        (table::folded("All evaluators: what each is proven to miss", &table::front(study, front)))
     }
 }
 
-fn cost_section(study: &Study<'_>, front: &[Alternative]) -> Markup {
+fn cost_section(study: &Study<'_>) -> Markup {
     let costs = Cost::new(study.compiled);
     html! {
         p {
@@ -465,7 +462,6 @@ fn cost_section(study: &Study<'_>, front: &[Alternative]) -> Markup {
             " take per unit and per mix beside it. Memory that makes the core wait is not in it."
         }
         (cost::facts(&costs))
-        (table::folded("All evaluators: what each costs", &cost::evaluators(front)))
     }
 }
 

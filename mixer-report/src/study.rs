@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::model::PairMap;
-use mixer_compiler::report::Summary;
+use mixer_facts::report::Summary;
 use mixer_rt::{Health, Wrench, tables::Inverse};
 
 use crate::number::round_half_digit;

@@ -4,16 +4,15 @@ use std::fmt::Write as _;
 
 use maud::{Markup, html};
 use mixer_compiler::airframe::Axis;
-use mixer_compiler::alternatives::Alternative;
-use mixer_compiler::checklist::{self, Checklist};
 use mixer_compiler::diagnostic::printable;
-use mixer_compiler::hover::Hover;
+use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::power::LevelPower;
-use mixer_compiler::report::{in_words, rounded_up};
+use mixer_facts::checklist::{self, Checklist};
+use mixer_facts::hover::Hover;
+use mixer_facts::report::in_words;
 
 use crate::bench::BenchPoints;
 use crate::comparison::{Answer, Comparison};
-use crate::cost;
 use crate::effort::Effort;
 use crate::number::{fixed, shortest, significant};
 use crate::origin::Origin;
@@ -343,45 +342,6 @@ pub fn comparison_text(comparison: &Comparison) -> String {
     text.replace('\u{2212}', "-")
 }
 
-/// The evaluators to choose from.
-pub fn front(study: &Study<'_>, alternatives: &[Alternative]) -> Markup {
-    let header = [
-        "evaluator of one unit",
-        "f proven (N)",
-        "observed",
-        "Q proven (N m)",
-        "observed",
-    ];
-    let rows: Vec<Vec<String>> = alternatives
-        .iter()
-        .map(|alternative| {
-            let proven = alternative.proven.map(|bound| {
-                if bound.is_finite() {
-                    rounded_up(bound)
-                } else {
-                    "none".to_owned()
-                }
-            });
-            let observed = alternative.observed.map(rounded_up);
-            let [[proven_f, proven_q], [observed_f, observed_q]] = [proven, observed];
-            vec![
-                cost::named(alternative),
-                proven_f,
-                observed_f,
-                proven_q,
-                observed_q,
-            ]
-        })
-        .collect();
-    let at = match study.at_reference().as_str() {
-        "" => String::new(),
-        at => format!(": proven at every voltage, observed{at}"),
-    };
-    let caption =
-        format!("Evaluators, the cheapest first, with what one unit misses over the attainable set{at}");
-    table(caption, &header, &rows)
-}
-
 /// Model against bench; percent of the pair's largest thrust and torque.
 pub fn bench(study: &Study<'_>, bench: &BenchPoints) -> Markup {
     let header = [
@@ -498,9 +458,4 @@ pub fn coefficients(study: &Study<'_>) -> Markup {
 /// All digits, with a typographic minus.
 fn exact(x: f64) -> String {
     format!("{x:?}").replace('-', "\u{2212}")
-}
-
-/// A table behind a line that opens it.
-pub fn folded(line: &str, table: &Markup) -> Markup {
-    html! { details { summary { (line) } (table) } }
 }

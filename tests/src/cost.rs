@@ -1,7 +1,7 @@
 //! The compiler's statements of cost beside what was counted.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::cost::Cost;
+use mixer_facts::cost::Cost;
 
 use crate::counts::Row;
 use crate::frames::counted;

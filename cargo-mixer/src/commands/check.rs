@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use mixer_compiler::checklist::Checklist;
-use mixer_compiler::cost::Cost;
 use mixer_compiler::diagnostic::{Diagnostics, Record, Severity, printable};
-use mixer_compiler::report::{Report, Summary};
+use mixer_facts::checklist::Checklist;
+use mixer_facts::cost::Cost;
+use mixer_facts::report::{Report, Summary};
 use serde::Serialize;
 
 use self::verdict::Verdict;

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::cost::Cost;
-use mixer_compiler::hover::{Hover, HoverAt};
-use mixer_compiler::report::{Summary, rounded_up};
+use mixer_compiler::diagnostic::rounded_up;
+use mixer_compiler::hover::HoverAt;
+use mixer_facts::cost::Cost;
+use mixer_facts::hover::Hover;
+use mixer_facts::report::Summary;
 
 /// Share of the largest bare thrust at which authorities are compared.
 const SHARE: f64 = 0.4;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::report::Report;
+use mixer_facts::report::Report;
 
 pub mod compare;
 pub mod table;

@@ -49,7 +49,7 @@ const fn seeded(seed: SeedForm, steps: u8) -> Evaluator {
 
 impl Evaluator {
     /// The evaluators that a method allows, by what they cost: the order in which they are tried.
-    pub(crate) fn candidates(method: &Method) -> Vec<Evaluator> {
+    pub fn candidates(method: &Method) -> Vec<Evaluator> {
         match method {
             Method::Auto => CANDIDATES.to_vec(),
             Method::Polynomial { degree } => vec![Evaluator::Polynomial {
@@ -72,7 +72,7 @@ impl Evaluator {
     }
 
     /// The name with its parameters, for people.
-    pub(crate) fn description(self) -> String {
+    pub fn description(self) -> String {
         match self {
             Evaluator::Polynomial { degree } => format!("polynomial in (f, Q) of degree {degree}"),
             Evaluator::Seeded { seed, steps } => {

@@ -77,7 +77,7 @@ impl Effectiveness {
     }
 
     /// The most that units with efforts up to these sizes (N, N m) give on an axis, N m or N.
-    pub(crate) fn largest(&self, axis: usize, [f, q]: [f64; 2]) -> f64 {
+    pub fn largest(&self, axis: usize, [f, q]: [f64; 2]) -> f64 {
         let row = self.matrix.row(axis);
         let n = self.matrix.ncols() / 2;
         (0..n).map(|i| row[i].abs() * f + row[n + i].abs() * q).sum()

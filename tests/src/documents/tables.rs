@@ -2,9 +2,11 @@
 
 use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::{Basis, KEYS};
-use mixer_compiler::report::{Summary, rounded_up};
+use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::spec::keys::{Key, Kind, Shape};
-use mixer_compiler::{Compiled, Source, hover};
+use mixer_compiler::{Compiled, Source};
+use mixer_facts::hover;
+use mixer_facts::report::Summary;
 use mixer_report::comparison::{Answer, Comparison, throttles};
 use mixer_report::study::Study;
 use mixer_rt::Wrench;

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
-use mixer_compiler::checklist::Checklist;
 use mixer_compiler::diagnostic::{Diagnostics, printable, rounded_up};
-use mixer_compiler::report::{Summary, in_words};
+use mixer_facts::checklist::Checklist;
+use mixer_facts::report::{Summary, in_words};
 
 /// The verdict; its `Display` is the text.
 pub(super) struct Verdict<'a> {

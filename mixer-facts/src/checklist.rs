@@ -7,8 +7,8 @@ use std::fmt;
 
 use mixer_rt::Wrench;
 
-use crate::airframe::{Axis, Unit};
-use crate::compiled::Compiled;
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::{Axis, Unit};
 
 /// Share of an axis' size that is asked: small enough to be delivered in full.
 const ASKED: f64 = 0.02;

@@ -2,14 +2,14 @@
 
 use std::fmt;
 
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Uncertainty;
+use mixer_compiler::diagnostic::rounded_up;
+use mixer_compiler::power::LevelPower;
 use serde::Serialize;
 
-use crate::airframe::Uncertainty;
-use crate::compiled::Compiled;
-pub use crate::diagnostic::rounded_up;
-use crate::output::cost::Cost;
-use crate::output::hover::Hover;
-use crate::output::power::LevelPower;
+use crate::cost::Cost;
+use crate::hover::Hover;
 
 /// Border points per edge of the throttle box at which the largest efforts are looked for.
 const SAMPLES: usize = 64;
@@ -394,7 +394,7 @@ impl Report<'_> {
             )?;
         }
         if let Some(power) = &summary.power {
-            write!(f, "{power}")?;
+            in_level_flight(f, power)?;
         }
         Ok(())
     }
@@ -432,4 +432,28 @@ fn line<'a>(f: &mut fmt::Formatter<'_>, name: &str, values: impl Iterator<Item =
         write!(f, "{value:>9.4}")?;
     }
     writeln!(f)
+}
+
+fn in_level_flight(f: &mut fmt::Formatter<'_>, power: &LevelPower) -> fmt::Result {
+    let LevelPower {
+        thrust_n,
+        power_w,
+        without_bias_w,
+        saving_percent,
+        flight_time_percent,
+        is_hover,
+    } = power;
+    let what = if *is_hover {
+        "in hover"
+    } else {
+        "half of the largest bare thrust"
+    };
+    write!(f, "power           {power_w:.1} W at {thrust_n:.2} N ({what})")?;
+    if power_w == without_bias_w {
+        return writeln!(f, "; no power bias");
+    }
+    writeln!(
+        f,
+        ", {without_bias_w:.1} W at Q = 0: saves {saving_percent:.2} %, flight time {flight_time_percent:+.2} %"
+    )
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::compiled::Compiled;
+use mixer_compiler::Compiled;
 
 /// How a mixer brings a request within the attainable set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -8,9 +8,9 @@
 
 use mixer_rt::tables::{Facets, ITERATIONS, Outline};
 
-use crate::airframe::Basis;
-use crate::compiled::Compiled;
-use crate::tables::ClosedFormTable;
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Basis;
+use mixer_compiler::tables::ClosedFormTable;
 
 /// Checks, and voltage where there is a correction.
 const PER_MIX: u32 = 240;

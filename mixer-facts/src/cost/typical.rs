@@ -4,13 +4,12 @@
 //! per mix + n (per unit + evaluator) + PER_VOLTAGE where the airframe has a voltage correction
 //! ```
 //!
-//! The evaluators are counted on their own ([`crate::inverse::evaluator::cost`]). The overheads are
+//! The evaluators are counted on their own ([`mixer_compiler::evaluator::cost`]). The overheads are
 //! rounded from the counts of whole mixers in `docs/costs.md`; a test holds the sum to these counts,
 //! within the errors stated.
 
 use super::kind::DesaturationKind;
-use crate::compiled::Compiled;
-use crate::inverse::evaluator::Evaluator;
+use mixer_compiler::Compiled;
 
 /// Instructions beside the evaluators'.
 struct Overhead {
@@ -51,30 +50,29 @@ pub(super) struct Estimate {
     pub(super) error: f64,
 }
 
-/// A request that least norm delivers, were the inverse map evaluated by `evaluator`; `None` for one
-/// that has not been counted.
-pub(super) fn delivered(compiled: &Compiled, evaluator: Evaluator) -> Option<Estimate> {
+/// A request that least norm delivers; `None` for an evaluator that has not been counted.
+pub(super) fn delivered(compiled: &Compiled) -> Option<Estimate> {
     let overhead = match DesaturationKind::of(compiled) {
         DesaturationKind::ClosedForm => CLOSED_FORM,
         DesaturationKind::General => GENERAL,
     };
-    overhead.estimate(compiled, evaluator)
+    overhead.estimate(compiled)
 }
 
 /// The mean over attainable requests; `None` where it depends on the frame too much.
 pub(super) fn attainable(compiled: &Compiled) -> Option<Estimate> {
     match DesaturationKind::of(compiled) {
-        DesaturationKind::ClosedForm => CLOSED_FORM_MEAN.estimate(compiled, compiled.evaluator),
+        DesaturationKind::ClosedForm => CLOSED_FORM_MEAN.estimate(compiled),
         DesaturationKind::General => None,
     }
 }
 
 impl Overhead {
-    fn estimate(&self, compiled: &Compiled, evaluator: Evaluator) -> Option<Estimate> {
+    fn estimate(&self, compiled: &Compiled) -> Option<Estimate> {
         let airframe = &compiled.airframe;
         let units = airframe.units.len() as u32;
         let voltage = airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
-        let one = evaluator.instructions(airframe.pair.basis)?;
+        let one = compiled.evaluator.instructions(airframe.pair.basis)?;
         Some(Estimate {
             instructions: self.per_mix + units * (self.per_unit + one) + voltage,
             error: self.error,

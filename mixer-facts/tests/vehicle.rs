@@ -1,12 +1,12 @@
 //! The vehicle in hover.
 
 use mixer_compiler::airframe::GRAVITY;
-use mixer_compiler::hover::Hover;
-use mixer_compiler::report::{Report, Summary};
 use mixer_compiler::{Compiled, Source, compile};
+use mixer_facts::hover::Hover;
+use mixer_facts::report::{Report, Summary};
 
 fn x8(vehicle: &str) -> Compiled {
-    let text = format!("{}\n{vehicle}", include_str!("../airframes/isae-x8.toml"));
+    let text = format!("{}\n{vehicle}", include_str!("../../airframes/isae-x8.toml"));
     compile(&Source::new("x8.toml", text)).unwrap_or_else(|faults| panic!("{faults}"))
 }
 

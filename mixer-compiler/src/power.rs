@@ -1,8 +1,6 @@
 //! Electrical power in level flight and its saving by the power bias, by the mixer itself and the
 //! file's power map.
 
-use std::fmt;
-
 use mixer_rt::Wrench;
 use serde::Serialize;
 
@@ -90,30 +88,4 @@ fn at(compiled: &Compiled, tables: &MixerTables, thrust_n: f64) -> Option<f64> {
     let (throttle, _, saturation) = tables.mix(&setpoint, airframe.reference_v() as f32).ok()?;
     let throttle: Vec<f64> = throttle.into_iter().map(f64::from).collect();
     airframe.power_w(&throttle).filter(|_| !saturation.any_axis())
-}
-
-impl fmt::Display for LevelPower {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let LevelPower {
-            thrust_n,
-            power_w,
-            without_bias_w,
-            saving_percent,
-            flight_time_percent,
-            is_hover,
-        } = self;
-        let what = if *is_hover {
-            "in hover"
-        } else {
-            "half of the largest bare thrust"
-        };
-        write!(f, "power           {power_w:.1} W at {thrust_n:.2} N ({what})")?;
-        if power_w == without_bias_w {
-            return writeln!(f, "; no power bias");
-        }
-        writeln!(
-            f,
-            ", {without_bias_w:.1} W at Q = 0: saves {saving_percent:.2} %, flight time {flight_time_percent:+.2} %"
-        )
-    }
 }

@@ -1,7 +1,7 @@
 //! What a mix costs on a Cortex-M4F.
 //!
 //! The inverse map is counted on its own, evaluator by evaluator
-//! ([`crate::inverse::evaluator::cost`]). What a mix takes that delivers its request is estimated
+//! ([`mixer_compiler::evaluator::cost`]). What a mix takes that delivers its request is estimated
 //! (`cost/typical.rs`); any request takes at most what the code does at most (`cost/bound.rs`).
 
 mod bound;
@@ -12,9 +12,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::compiled::Compiled;
-use crate::inverse::evaluator::Evaluator;
-use crate::tables::Part;
+use mixer_compiler::Compiled;
 
 pub use kind::DesaturationKind;
 
@@ -61,7 +59,7 @@ impl Cost {
     pub fn new(compiled: &Compiled) -> Self {
         let basis = compiled.airframe.pair.basis;
         let units = compiled.airframe.units.len();
-        let delivered = typical::delivered(compiled, compiled.evaluator);
+        let delivered = typical::delivered(compiled);
         let attainable = typical::attainable(compiled);
         let all = |one: Option<u32>| one.map(|one| one * units as u32);
         let inverse_instructions = compiled.evaluator.instructions(basis);
@@ -79,16 +77,10 @@ impl Cost {
             desaturation: DesaturationKind::of(compiled),
             bound_instructions: bound::bound(compiled),
             bound_with_rotors_out_instructions: bound::with_rotors_out(compiled),
-            inverse_bytes: compiled.tables.inverse.bytes(),
+            inverse_bytes: compiled.tables.inverse_bytes(),
             table_bytes: compiled.tables.bytes(),
         }
     }
-}
-
-/// Instructions of a mix that delivers the request by least norm, were the inverse map evaluated by
-/// `evaluator`.
-pub fn delivered(compiled: &Compiled, evaluator: Evaluator) -> Option<u32> {
-    typical::delivered(compiled, evaluator).map(|estimate| estimate.instructions)
 }
 
 /// The lines of `check`.

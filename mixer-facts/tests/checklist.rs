@@ -1,14 +1,14 @@
 //! The check list for the bench.
 
 use mixer_compiler::airframe::Axis;
-use mixer_compiler::checklist::Checklist;
 use mixer_compiler::{Compiled, Source, compile};
+use mixer_facts::checklist::Checklist;
 
 fn compiled(text: &str) -> Compiled {
     compile(&Source::new("test.toml", text)).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-const X8: &str = include_str!("../airframes/isae-x8.toml");
+const X8: &str = include_str!("../../airframes/isae-x8.toml");
 
 #[test]
 fn an_x8_has_its_list() {
@@ -50,7 +50,7 @@ fn mistakes_show_in_the_list() {
 /// Axes that are not served are not in it.
 #[test]
 fn only_served_axes_are_listed() {
-    let bicopter = compiled(include_str!("../airframes/coaxial-bicopter.toml"));
+    let bicopter = compiled(include_str!("../../airframes/coaxial-bicopter.toml"));
     assert!(Checklist(&bicopter).rises(Axis::Pitch).is_none());
     let text = Checklist(&bicopter).to_string();
     assert!(

@@ -1,0 +1,107 @@
+//! The vehicle in hover, and a yaw reserve to begin with.
+
+use std::fmt;
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Axis;
+use mixer_compiler::hover::HoverAt;
+use serde::Serialize;
+
+/// The vehicle in hover.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hover {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Weight, N.
+    pub weight_n: f64,
+    /// Largest bare thrust over weight at the reference voltage.
+    pub thrust_over_weight: f64,
+    /// At the lowest and at the reference voltage; one without a voltage where it has no effect.
+    pub at: Vec<HoverAt>,
+}
+
+impl Hover {
+    /// The hover of a compiled airframe; `None` where the file has no mass.
+    pub fn new(compiled: &Compiled) -> Option<Hover> {
+        let mass_kg = compiled.airframe.vehicle.as_ref()?.mass_kg;
+        let weight_n = compiled.airframe.weight_n()?;
+        let volts = match &compiled.airframe.voltage {
+            None => vec![None],
+            Some(voltage) => {
+                let mut volts = vec![voltage.range_v[0], voltage.reference_v];
+                volts.dedup();
+                volts.into_iter().map(Some).collect()
+            }
+        };
+        Some(Hover {
+            mass_kg,
+            weight_n,
+            thrust_over_weight: f64::from(compiled.thrust_range_n[1]) / weight_n,
+            at: volts
+                .into_iter()
+                .map(|volts| HoverAt::new(compiled, weight_n, volts))
+                .collect(),
+        })
+    }
+}
+
+/// Share of the yaw in hover that [`yaw_reserve`] keeps.
+const KEPT_YAW: f64 = 0.2;
+
+/// A yaw reserve to begin with, N m: a fifth of the yaw that is left in hover either way, at the
+/// reference voltage. Hover is the weight, without a mass half of the largest bare thrust. `None`
+/// where nothing is left or yaw is not served.
+pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
+    let airframe = &compiled.airframe;
+    let weight_n = airframe
+        .weight_n()
+        .unwrap_or(0.5 * f64::from(compiled.thrust_range_n[1]));
+    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
+    let hover = HoverAt::new(compiled, weight_n, reference_v);
+    let yaw = hover
+        .margins
+        .iter()
+        .find(|margin| margin.axis == Axis::Yaw.name())?;
+    let [least, most] = yaw.torque_nm;
+    let reserve = KEPT_YAW * most.min(-least);
+    (reserve > 0.0).then_some(reserve)
+}
+
+impl fmt::Display for Hover {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "hover           {:?} kg, {:.2} N; largest thrust over weight {:.2}",
+            self.mass_kg, self.weight_n, self.thrust_over_weight
+        )?;
+        for at in &self.at {
+            let volts = at
+                .voltage_v
+                .map_or_else(String::new, |volts| format!("at {volts:?} V"));
+            write!(f, "  {volts:<14}")?;
+            let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
+                writeln!(f, "the weight is not carried")?;
+                continue;
+            };
+            write!(f, "throttle {upper:.3} upper, {lower:.3} lower; left (N m):")?;
+            for (index, margin) in at.margins.iter().enumerate() {
+                let [least, largest] = margin.torque_nm;
+                let comma = if index > 0 { "," } else { "" };
+                write!(f, "{comma} {} {least:.3} to {largest:.3}", margin.axis)?;
+                if let Some(band) = margin.band_nm {
+                    write!(f, " +- {band:.3}")?;
+                }
+            }
+            writeln!(f)?;
+            if let Some([[least_upper, least_lower], [upper, lower]]) = at.throttle_band {
+                writeln!(
+                    f,
+                    "  {:<14}by [pair.uncertainty]: throttle {least_upper:.3} to {upper:.3} upper, {least_lower:.3} to {lower:.3} \
+                     lower (one standard deviation)",
+                    ""
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
