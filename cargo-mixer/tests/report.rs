@@ -19,8 +19,6 @@ mod browser;
 mod content;
 #[path = "report/cost.rs"]
 mod cost;
-#[path = "report/doubts.rs"]
-mod doubts;
 #[path = "report/mixers.rs"]
 mod mixers;
 #[path = "report/pictures.rs"]
@@ -352,34 +350,6 @@ fn bench_points_stand_beside_the_model() {
 }
 
 #[test]
-fn bad_input_is_named_and_writes_nothing() {
-    let run = cargo_mixer(&["report", "airframes/isae-x8.toml"]);
-    assert_status(&run, 2, "--output");
-    let run = cargo_mixer(&["report", "airframes/none.toml", "-o", "x.html"]);
-    assert_status(&run, 1, "none.toml");
-    let run = cargo_mixer(&["report", "airframes/isae-x8.toml", "-o", "no/such/folder/x.html"]);
-    assert_status(&run, 1, "no/such/folder/x.html");
-    let output = scratch("unwritten.html").display().to_string();
-    let x8 = "airframes/isae-x8.toml";
-    let run = cargo_mixer(&["report", x8, "-o", &output, "--bench", "airframes/isae-x8.toml"]);
-    assert_status(&run, 1, "isae-x8.toml");
-    assert!(!Path::new(&output).exists());
-    let copy = scratch("copy.toml").display().to_string();
-    fs::copy(root().join(x8), &copy).unwrap();
-    for command in [&["report"][..], &["sweep", "--figure", "yaw"]] {
-        let run = cargo_mixer(&[command, &[&copy, "-o", &copy]].concat());
-        assert_status(&run, 2, "would be overwritten");
-        assert_eq!(fs::read(&copy).unwrap(), fs::read(root().join(x8)).unwrap());
-    }
-    let run = cargo_mixer(&["sweep", x8, "--figure", "yaw", "--thrust", "-3"]);
-    assert_status(&run, 2, "--thrust");
-    let run = cargo_mixer(&["sweep", x8, "--figure", "yaw", "--thrust", "500"]);
-    assert_status(&run, 1, "no yaw to sweep");
-    let run = cargo_mixer(&["sweep", x8, "--figure", "nothing"]);
-    assert_status(&run, 2, "attainable");
-}
-
-#[test]
 fn an_airframe_without_yaw_says_so() {
     let text = fs::read_to_string(root().join("airframes/coaxial-bicopter.toml")).unwrap();
     let text = text.replace("[\"roll\", \"yaw\", \"thrust\"]", "[\"roll\", \"thrust\"]");
@@ -391,22 +361,4 @@ fn an_airframe_without_yaw_says_so() {
             .unwrap_err()
             .contains("does not serve yaw")
     );
-}
-
-/// The static comparison goes beside the CSV: to stdout when the CSV is a file, else to stderr.
-#[test]
-fn the_yaw_sweep_prints_its_table() {
-    let output = scratch("yaw.csv").display().to_string();
-    let x8 = "airframes/isae-x8.toml";
-    let run = cargo_mixer(&["sweep", x8, "--figure", "yaw", "-o", &output]);
-    assert_status(&run, 0, "");
-    let table = String::from_utf8(run.stdout).unwrap();
-    assert!(
-        table.starts_with("40 N asked in all") && table.is_ascii(),
-        "{table}"
-    );
-    assert_eq!(table.lines().count(), 2 + 2 * 9, "{table}");
-    let run = cargo_mixer(&["sweep", x8, "--figure", "yaw"]);
-    assert_status(&run, 0, &table);
-    assert_eq!(run.stdout, fs::read(&output).unwrap());
 }

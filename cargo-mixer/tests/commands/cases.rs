@@ -40,7 +40,7 @@ macro_rules! folders {
     };
 }
 
-folders! { check compare expand golden mix new usage }
+folders! { check compare expand golden import library mix new params predict report usage }
 
 /// The names of what is in a folder, in order.
 fn names(folder: &Path) -> Vec<String> {
@@ -66,7 +66,8 @@ fn hold(folder: &str) {
             .join(folder)
             .join(&name);
         let told = session(&agreed, &place);
-        let acting = |c: char| (c.is_control() && c != '\n') || ('\u{2028}'..'\u{206f}').contains(&c);
+        let acting =
+            |c: char| (c.is_control() && c != '\n' && c != '\t') || ('\u{2028}'..'\u{206f}').contains(&c);
         if told.contains("panicked at") || told.contains("\nended by a signal") || told.contains(acting) {
             let _ = writeln!(
                 complaints,
@@ -136,7 +137,10 @@ fn answer(command: &str, place: &Path) -> String {
         .args(["-c", &script])
         .current_dir(place)
         .stdin(Stdio::null());
-    shell.env("LC_ALL", "C").env("SOURCE_DATE_EPOCH", "0");
+    shell
+        .env("LC_ALL", "C")
+        .env("SOURCE_DATE_EPOCH", "0")
+        .env_remove("RUSTC");
     let output = shell.output().unwrap();
     let mut told = String::new();
     for (mark, bytes) in [("  ", &output.stdout), ("! ", &output.stderr)] {

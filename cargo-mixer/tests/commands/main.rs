@@ -2,10 +2,12 @@
 //!
 //! `cases` has what is said and its status; code here is for what is not a sentence.
 
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 mod cases;
 mod mix;
+mod predict;
 mod shell;
+mod stacks;
 
 use std::fs;
 use std::io::Write;
@@ -56,6 +58,28 @@ fn stderr(output: &Output) -> &str {
     str::from_utf8(&output.stderr).unwrap()
 }
 
+/// Runs without any input.
+fn run(arguments: &[&str]) -> Output {
+    run_with(arguments, b"")
+}
+
+/// The JSON that a command prints; it succeeds.
+#[track_caller]
+fn json(output: &Output) -> serde_json::Value {
+    assert!(output.status.success(), "{}", stderr(output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The folder of real bench files, none of which is part of the project; without it the test says
+/// that it does not run.
+fn bench_data(test: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from);
+    if folder.is_none() {
+        eprintln!("NOT RUN: {test} needs MIXER_BENCH_DATA, the folder of real bench files");
+    }
+    folder
+}
+
 /// Runs with `input` on stdin; it succeeds and says nothing on stderr.
 #[track_caller]
 fn printed(arguments: &[&str], input: &[u8]) -> String {
@@ -102,7 +126,7 @@ fn the_quick_start_runs() {
             words[place + 1] = folder.join(&words[place + 1]).display().to_string();
         }
         let words: Vec<&str> = words[2..].iter().map(String::as_str).collect();
-        let output = run_with(&words, b"");
+        let output = run(&words);
         assert_eq!(output.status.code(), Some(0), "{line}\n{}", stderr(&output));
         count += 1;
     }

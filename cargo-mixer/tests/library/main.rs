@@ -6,7 +6,6 @@ mod example;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod exceptions;
 mod program;
-mod refusals;
 mod stacks;
 mod texts;
 

@@ -1,26 +1,101 @@
-//! `cargo mixer params` and `new --outputs`: what a stack is told is what it has for that frame.
+//! Frames of flight stacks: `import`, `params` and `new --outputs` against PX4's formulas, and, in
+//! `MIXER_BENCH_DATA`, against PX4's files and ArduPilot's frame tables. None of them is part of the
+//! project.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value as Json;
+use toml::{Table, Value};
 
-use crate::bench_data::{folder_of_data, is_pair, numbers};
-use crate::{Folder, Unit, cargo_mixer, import, outline};
+use crate::{bench_data, folder, json, run, stderr};
+
+/// A unit of an airframe file.
+#[derive(Debug, PartialEq)]
+struct Unit {
+    position_m: Vec<f64>,
+    upper_spin: String,
+    channels: Vec<i64>,
+}
+
+/// Imports `files` into `folder`, has the airframe checked, and returns its units and the file.
+#[track_caller]
+fn import(folder: &Path, files: &[&Path], options: &[&str]) -> (Vec<Unit>, String) {
+    let airframe = folder.join("airframe.toml");
+    let output = airframe.display().to_string();
+    let files: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    let mut arguments = vec![
+        "import",
+        "--pair",
+        "airframes/isae-x8.toml",
+        "--force",
+        "-o",
+        &output,
+    ];
+    arguments.extend(files.iter().map(String::as_str));
+    arguments.extend(options);
+    let imported = run(&arguments);
+    assert!(imported.status.success(), "{imported:?}");
+    let checked = run(&["check", &output]);
+    assert!(checked.status.success(), "{checked:?}");
+    let text = fs::read_to_string(airframe).unwrap();
+    (units(&text), text)
+}
+
+fn units(text: &str) -> Vec<Unit> {
+    let table: Table = text.parse().unwrap();
+    let unit = |unit: &Value| Unit {
+        position_m: floats(&unit["position_m"]),
+        upper_spin: unit["upper_spin"].as_str().unwrap().to_owned(),
+        channels: unit["channels"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|c| c.as_integer().unwrap())
+            .collect(),
+    };
+    table["unit"].as_array().unwrap().iter().map(unit).collect()
+}
+
+fn floats(value: &Value) -> Vec<f64> {
+    value
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|x| x.as_float().unwrap())
+        .collect()
+}
+
+/// Channels and upper spin of every unit.
+fn outline(units: &[Unit]) -> Vec<(Vec<i64>, &str)> {
+    units
+        .iter()
+        .map(|unit| (unit.channels.clone(), unit.upper_spin.as_str()))
+        .collect()
+}
+
+/// What a refusal says; nothing is written.
+#[track_caller]
+fn refused(file: &Path, options: &[&str]) -> String {
+    let arguments = [&["import", file.to_str().unwrap(), "-o", "never.toml"], options].concat();
+    let output = run(&arguments);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    stderr(&output).to_owned()
+}
+
+/// Writes a file of the folder.
+fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
 
 /// What a command prints; it succeeds.
 #[track_caller]
 fn printed(arguments: &[&str]) -> String {
-    let output = cargo_mixer(arguments);
+    let output = run(arguments);
     assert!(output.status.success(), "{arguments:?} {output:?}");
     String::from_utf8(output.stdout).unwrap()
-}
-
-/// Writes a copy of the paper's X8 with a mass.
-fn with_mass(folder: &Folder) -> PathBuf {
-    let text = fs::read_to_string(crate::root().join("airframes/isae-x8.toml")).unwrap();
-    let text = text.replacen("[throttle]", "[vehicle]\nmass_kg = 3.2\n\n[throttle]", 1);
-    folder.write("x8.toml", &text)
 }
 
 /// The value of a parameter in a file of any of the three forms.
@@ -38,192 +113,162 @@ fn value(text: &str, name: &str) -> Option<f64> {
         .next()
 }
 
-#[test]
-fn px4_parameters_describe_the_same_rotors() {
-    let folder = Folder::new("params-px4");
-    let airframe = with_mass(&folder);
-    let airframe = airframe.to_str().unwrap();
-    let text = printed(&["params", airframe, "--stack", "px4", "--pwm-range", "1070,1950"]);
-    // Every line is a comment or five columns, and whole numbers have MAV_PARAM_TYPE 6.
-    for line in text.lines().filter(|line| !line.starts_with('#')) {
-        let columns: Vec<&str> = line.split('\t').collect();
-        assert_eq!((columns.len(), columns[0], columns[1]), (5, "1", "1"), "{line}");
-        assert!(["6", "9"].contains(&columns[4]), "{line}");
-        assert!(columns[3].parse::<f64>().unwrap().is_finite());
-    }
-    assert!(text.contains("\tCA_ROTOR_COUNT\t8\t6\n") && text.contains("\tTHR_MDL_FAC\t0\t9\n"));
-    let file = folder.write("a.params", &text);
-    let (found, _) = import(&folder, &[&file], &["--upper", "0,1,2,3"]);
-    let expected = [
-        (vec![0, 4], "cw"),
-        (vec![1, 5], "ccw"),
-        (vec![2, 6], "cw"),
-        (vec![3, 7], "ccw"),
-    ];
-    assert_eq!(outline(&found), expected);
-    assert_eq!(found[1].position_m, [0.3182, -0.3182, 0.0]);
-    // 3.2 kg of 99.1508 N.
-    for (name, expected) in [
-        ("THR_MDL_FAC", 0.0),
-        ("MPC_THR_HOVER", 0.3165),
-        ("MPC_THR_MIN", 0.12),
-        ("CA_FAILURE_MODE", 1.0),
-        ("FD_ACT_EN", 0.0),
-        ("PWM_MAIN_MIN8", 1070.0),
-        ("PWM_MAIN_MAX1", 1950.0),
-    ] {
-        assert_eq!(value(&text, name), Some(expected), "{name}");
-    }
+/// PX4's octa_cox: pairs (0, 5), (1, 4), (2, 7), (3, 6).
+fn octa_cox() -> Vec<(Vec<i64>, &'static str)> {
+    vec![
+        (vec![0, 5], "ccw"),
+        (vec![1, 4], "cw"),
+        (vec![2, 7], "ccw"),
+        (vec![3, 6], "cw"),
+    ]
 }
 
-/// CT and KM: alike they give the header's units, by their slopes those of the map in hover.
 #[test]
-fn rotors_of_px4_give_its_unit_of_yaw() {
-    let folder = Folder::new("params-km");
-    let airframe = with_mass(&folder);
-    let airframe = airframe.to_str().unwrap();
-    let summary: Json = serde_json::from_str(&printed(&["check", "--json", airframe])).unwrap();
-    let yaw_nm = summary["normalised"]["yaw_nm"].as_f64().unwrap();
-    let constants = |options: &[&str], rotor: usize| {
-        let arguments = [&["params", airframe, "--stack", "px4", "--own"], options].concat();
-        let text = printed(&arguments);
-        ["CT", "KM"].map(|key| value(&text, &format!("CA_ROTOR{rotor}_{key}")).unwrap())
+fn px4_files_give_their_frames() {
+    let Some(data) = bench_data("px4_files_give_their_frames") else {
+        return;
     };
-    let alike: f64 = (0..8)
-        .map(|rotor| {
-            let [thrust, moment] = constants(&[], rotor);
-            (thrust * moment).abs()
-        })
-        .sum();
-    assert!((alike / yaw_nm - 1.0).abs() < 1e-3, "{alike} {yaw_nm}");
-    // At equal throttles the lower rotor of a pair gives less for more throttle than the upper one.
-    let [upper, lower] = [0, 4].map(|rotor| constants(&["--slopes"], rotor));
-    assert!(
-        lower[0] < upper[0] && upper[1] < 0.0 && lower[1] > 0.0,
-        "{upper:?} {lower:?}"
-    );
-}
-
-#[test]
-fn the_simulator_gets_a_script_and_what_runs_after_it() {
-    let folder = Folder::new("params-airframe");
-    let airframe = with_mass(&folder);
-    let script = folder.0.join("22000_x8");
-    let arguments = [
-        "params",
-        airframe.to_str().unwrap(),
-        "--stack",
-        "px4",
-        "--format",
-        "airframe",
+    let folder = folder("px4-data");
+    let file = |name: &str| data.join("px4").join(name);
+    let (units, _) = import(&folder, &[&file("CONSTRUCTED_octo_cox_qgc.params")], &[]);
+    assert_eq!(outline(&units), octa_cox());
+    let expected = [
+        [0.1905, 0.1905],
+        [0.1905, -0.1905],
+        [-0.1905, -0.1905],
+        [-0.1905, 0.1905],
     ];
-    // Two files do not fit on stdout.
-    assert_eq!(cargo_mixer(&arguments).status.code(), Some(1));
-    printed(&[&arguments[..], &["-o", script.to_str().unwrap()]].concat());
-    let text = fs::read_to_string(&script).unwrap();
-    assert!(text.starts_with("#!/bin/sh\n#\n# @name isae-x8\n"), "{text}");
-    let defaults = text.find("\n. ${R}etc/init.d/rc.mc_defaults\n").unwrap();
-    assert!(defaults < text.find("param set-default CA_AIRFRAME 0").unwrap());
-    assert!(text.contains("\nparam set-default PWM_MAIN_FUNC8 108\n") && !text.contains("PWM_MAIN_MIN"));
-    // PX4 reports 1 A + 15 A x output there: no healthy motor is found dead at any output.
-    let limit = |name: &str| value(&text, name).unwrap();
-    assert_eq!(limit("FD_ACT_EN"), 1.0);
-    for output in [0.0, 0.2, 0.55, 1.0] {
-        let (current, scale) = (1.0 + 15.0 * output, limit("FD_ACT_MOT_C2T"));
-        assert!(current > scale * output - limit("FD_ACT_LOW_OFF") + 1.0);
-        assert!(current < scale * output + limit("FD_ACT_HIGH_OFF") - 1.0);
+    for (unit, expected) in units.iter().zip(expected) {
+        assert_eq!(unit.position_m[..2], expected);
     }
-    assert_eq!((limit("SYS_FAILURE_EN"), limit("SIM_BAT_ENABLE")), (1.0, 0.0));
-    let after = fs::read_to_string(folder.0.join("22000_x8.post")).unwrap();
-    assert!(after.ends_with("\ncontrol_allocator stop\ncoaxial_mixer start\n"));
-    // Neither is overwritten by accident.
-    fs::remove_file(&script).unwrap();
-    let again = [&arguments[..], &["-o", script.to_str().unwrap()]].concat();
-    assert_eq!(cargo_mixer(&again).status.code(), Some(1));
-    assert!(!script.exists());
-    for file in [&script, &folder.0.join("22000_x8.post")] {
-        if file.exists() {
-            let shell = std::process::Command::new("sh")
-                .arg("-n")
-                .arg(file)
-                .status()
-                .unwrap();
-            assert!(shell.success());
+    let (units, _) = import(&folder, &[&file("octa_cox.toml")], &[]);
+    assert_eq!(outline(&units), octa_cox());
+    let layers = [file("dodeca_top_cox.toml"), file("dodeca_bottom_cox.toml")];
+    let (units, _) = import(&folder, &layers.each_ref().map(PathBuf::as_path), &[]);
+    let spins = ["cw", "ccw", "cw", "ccw", "ccw", "cw"];
+    let expected: Vec<_> = spins
+        .into_iter()
+        .zip(0..)
+        .map(|(spin, k)| (vec![k, 6 + k], spin))
+        .collect();
+    assert_eq!(outline(&units), expected);
+    for name in [
+        "REAL_excerpt_flight1_v1.12.3.params",
+        "REAL_excerpt_stable_old.params",
+    ] {
+        assert!(refused(&file(name), &[]).contains("no rotors"));
+    }
+}
+
+/// FRAME_CLASS and FRAME_TYPE by ArduPilot's names.
+fn numbers(frame: &Json) -> (u32, u32) {
+    let class = match frame["frame_class"].as_str().unwrap() {
+        "OCTAQUAD" => 4,
+        "Y6" => 5,
+        "DODECAHEXA" => 12,
+        other => panic!("{other}"),
+    };
+    let kind = match frame["frame_type"].as_str().unwrap() {
+        "PLUS" => 0,
+        "X" | "Y6A(default)" => 1,
+        "V" => 2,
+        "H" => 3,
+        "Y6B" => 10,
+        "Y6F" => 11,
+        "BF_X" => 12,
+        "CW_X" => 14,
+        "BF_X_REV" => 18,
+        "X_COR" => 20,
+        "CW_X_COR" => 21,
+        other => panic!("{other}"),
+    };
+    (class, kind)
+}
+
+/// Whether a unit is the pair of these motors: outputs, spin, and where it is.
+fn is_pair(unit: &Unit, frame: &Json, motors: &Json) -> bool {
+    let all = frame["motors"].as_array().unwrap();
+    let numbers = [0, 1].map(|k| motors[k].as_i64().unwrap());
+    let upper = all.iter().find(|motor| motor["motor"] == numbers[0]).unwrap();
+    // A spin, or a yaw factor, positive counter-clockwise.
+    let spin = match upper["spin"].as_str().unwrap() {
+        "CCW" => "ccw",
+        "CW" => "cw",
+        factor if factor.starts_with('+') => "ccw",
+        _ => "cw",
+    };
+    let [x, y] = [unit.position_m[0], unit.position_m[1]];
+    let is_there = match upper["angle_deg"].as_f64() {
+        Some(angle) => {
+            let turn = (libm::atan2(y, x).to_degrees() - angle).rem_euclid(360.0);
+            turn.min(360.0 - turn) < 0.1
         }
-    }
-    // Its own allocator needs no module.
-    let own = folder.0.join("22001_x8");
-    printed(&[&arguments[..], &["--own", "-o", own.to_str().unwrap()]].concat());
-    assert!(!folder.0.join("22001_x8.post").exists());
-    let factor = value(&fs::read_to_string(own).unwrap(), "THR_MDL_FAC").unwrap();
-    assert!((0.5..=1.0).contains(&factor), "{factor}");
+        // Roll is positive to the left, pitch to the front; a factor of 0 is on the axis.
+        None => {
+            let factor = |key: &str| upper[key].as_f64().unwrap();
+            let same = |factor: f64, place: f64| (factor == 0.0) == (place == 0.0) && factor * place >= 0.0;
+            same(-factor("roll_fac"), y) && same(factor("pitch_fac"), x)
+        }
+    };
+    unit.channels == numbers.map(|motor| motor - 1) && unit.upper_spin == spin && is_there
 }
 
 #[test]
-fn what_cannot_be_known_is_said() {
-    let output = cargo_mixer(&["params", "airframes/isae-x8.toml", "--stack", "ardupilot"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    for part in [
-        "MOT_THST_HOVER is missing",
-        "no FRAME_CLASS",
-        "`airmode = \"roll-pitch\"` in the airframe file",
-        "MOT_PWM_MIN and MOT_PWM_MAX are missing",
-    ] {
-        assert!(said.contains(part), "{said}");
-    }
-    let folder = Folder::new("params-idle");
-    let text = fs::read_to_string(crate::root().join("airframes/isae-x8.toml")).unwrap();
-    let high = folder.write("high.toml", &text.replacen("min = 0.10", "min = 0.34", 1));
-    let arguments = ["params", high.to_str().unwrap(), "--stack", "ardupilot"];
-    let output = cargo_mixer(&arguments);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        said.contains("does not arm with MOT_SPIN_MIN above 0.3"),
-        "{said}"
-    );
-    let text = printed(&arguments);
-    assert_eq!(value(&text, "MOT_SPIN_MIN"), Some(0.3));
-    // ArduPilot reads lines in pieces of 98 bytes: the rest of a longer comment would be a parameter.
-    let longest = text.lines().map(str::len).max().unwrap();
-    assert!((80..=98).contains(&longest), "{longest}: {text}");
-    for options in [["--slopes", "--own"], ["--format", "airframe"]] {
-        assert_eq!(
-            cargo_mixer(&[&arguments[..], &options].concat()).status.code(),
-            Some(1)
+fn ardupilot_tables_give_their_frames() {
+    let Some(data) = bench_data("ardupilot_tables_give_their_frames") else {
+        return;
+    };
+    let folder = folder("ardupilot-data");
+    let text = fs::read_to_string(data.join("ardupilot/coax_frames.json")).unwrap();
+    let table: Json = serde_json::from_str(&text).unwrap();
+    let frames = table["frames"].as_array().unwrap();
+    assert_eq!(frames.len(), 14);
+    for frame in frames {
+        let (class, kind) = numbers(frame);
+        let name = format!("{} {}", frame["frame_class"], frame["frame_type"]);
+        let file = write(
+            &folder,
+            "a.param",
+            &format!("FRAME_CLASS,{class}\nFRAME_TYPE,{kind}\n"),
         );
+        if kind == 20 || kind == 21 {
+            assert!(refused(&file, &["--arm", "0.45"]).contains("turn the same way"));
+            continue;
+        }
+        let (units, _) = import(&folder, &[Path::new(&file)], &["--arm", "0.45"]);
+        let pairs = frame["pairs_top_bottom"].as_array().unwrap();
+        assert_eq!(units.len(), pairs.len(), "{name}");
+        for pair in pairs {
+            assert!(
+                units.iter().any(|unit| is_pair(unit, frame, pair)),
+                "{name}: {pair} {units:?}"
+            );
+        }
     }
 }
 
 /// Channels, spins and places of `new --outputs` in the order of the first channel.
-fn new_frame(folder: &Folder, frame: &str, stack: &str) -> (PathBuf, String) {
-    let file = folder.0.join(format!("{frame}-{stack}.toml"));
+fn new_frame(folder: &Path, frame: &str, stack: &str) -> (PathBuf, String) {
+    let file = folder.join(format!("{frame}-{stack}.toml"));
     let arguments = ["new", "--frame", frame, "--arm", "1", "--outputs", stack, "-o"];
     printed(&[&arguments[..], &[file.to_str().unwrap()]].concat());
     let text = fs::read_to_string(&file).unwrap();
     (file, text)
 }
 
-#[test]
-fn new_has_no_outputs_of_frames_that_no_stack_has() {
-    for frame in [&["single"][..], &["bicopter", "--arm", "1"]] {
-        let arguments = [&["new", "-o", "/dev/null", "--outputs", "px4", "--frame"], frame].concat();
-        assert_eq!(cargo_mixer(&arguments).status.code(), Some(2), "{frame:?}");
-    }
-}
-
 /// The units of a frame that `new` writes, as `params` has them for PX4.
-fn of_px4(folder: &Folder, airframe: &Path, upper: &str) -> Vec<crate::Unit> {
+fn of_px4(folder: &Path, airframe: &Path, upper: &str) -> Vec<Unit> {
     let text = printed(&["params", airframe.to_str().unwrap(), "--stack", "px4"]);
-    let file = folder.write("new.params", &text);
+    let file = write(folder, "new.params", &text);
     import(folder, &[&file], &["--upper", upper]).0
 }
 
 #[test]
 fn new_frames_are_those_of_the_stacks_tables() {
-    let Some(data) = folder_of_data("new_frames_are_those_of_the_stacks_tables") else {
+    let Some(data) = bench_data("new_frames_are_those_of_the_stacks_tables") else {
         return;
     };
-    let folder = Folder::new("new-outputs");
+    let folder = folder("new-outputs");
     // PX4: place, spin and outputs of every unit are those of its own geometry files.
     let geometry = |names: &[&str]| {
         let files: Vec<PathBuf> = names.iter().map(|name| data.join("px4").join(name)).collect();
@@ -275,8 +320,7 @@ fn new_frames_are_those_of_the_stacks_tables() {
 /// b / sum b^2 by axis, PX4's scale of roll and pitch is sqrt(sum / (non-zero / 2)), and that of yaw
 /// the largest entry.
 fn assert_units_of_px4(name: &str, units: &[Unit], airframe: &str) {
-    let checked = printed(&["check", "--json", airframe]);
-    let summary: Json = serde_json::from_str(&checked).unwrap();
+    let summary = json(&run(&["check", "--json", airframe]));
     let unit = |key: &str| summary["normalised"][key].as_f64().unwrap();
     let rotors = 2 * units.len();
     let thrust_n = unit("thrust_n") / rotors as f64;
@@ -307,12 +351,25 @@ fn assert_units_of_px4(name: &str, units: &[Unit], airframe: &str) {
 }
 
 #[test]
+fn px4_units_are_those_of_its_formulas() {
+    let folder = folder("px4-formulas");
+    for frame in ["x8", "x12"] {
+        let (file, text) = new_frame(&folder, frame, "px4");
+        // As [[unit]] tables.
+        let upper = if frame == "x8" { "0,1,2,3" } else { "0,1,2,3,4,5" };
+        let units = of_px4(&folder, &file, upper);
+        assert!(text.contains("[layout]") && units.len() >= 4, "{text}");
+        assert_units_of_px4(frame, &units, file.to_str().unwrap());
+    }
+}
+
+#[test]
 fn px4_units_are_those_of_its_geometries() {
-    let Some(data) = folder_of_data("px4_units_are_those_of_its_geometries") else {
+    let Some(data) = bench_data("px4_units_are_those_of_its_geometries") else {
         return;
     };
-    let folder = Folder::new("px4-units");
-    let airframe = folder.0.join("airframe.toml");
+    let folder = folder("px4-units");
+    let airframe = folder.join("airframe.toml");
     for names in [
         &["octa_cox.toml"][..],
         &["dodeca_top_cox.toml", "dodeca_bottom_cox.toml"],
@@ -354,10 +411,10 @@ fn factors(motor: &Json) -> [f64; 3] {
 /// input by and of what the motor gives; and the frame's numbers are found again.
 #[test]
 fn ardupilot_units_are_those_of_its_tables() {
-    let Some(data) = folder_of_data("ardupilot_units_are_those_of_its_tables") else {
+    let Some(data) = bench_data("ardupilot_units_are_those_of_its_tables") else {
         return;
     };
-    let folder = Folder::new("ardupilot-units");
+    let folder = folder("ardupilot-units");
     let text = fs::read_to_string(data.join("ardupilot/coax_frames.json")).unwrap();
     let table: Json = serde_json::from_str(&text).unwrap();
     let mut seen = Vec::new();
@@ -369,13 +426,17 @@ fn ardupilot_units_are_those_of_its_tables() {
         }
         seen.push((class, kind));
         let name = format!("{} {}", frame["frame_class"], frame["frame_type"]);
-        let file = folder.write("a.param", &format!("FRAME_CLASS,{class}\nFRAME_TYPE,{kind}\n"));
+        let file = write(
+            &folder,
+            "a.param",
+            &format!("FRAME_CLASS,{class}\nFRAME_TYPE,{kind}\n"),
+        );
         let (units, _) = import(&folder, &[&file], &["--arm", "0.45"]);
-        let airframe = folder.0.join("airframe.toml");
+        let airframe = folder.join("airframe.toml");
         let airframe = airframe.to_str().unwrap();
         // PX4 has no files of +, H and Y6 frames in the data: its formulas on the same places.
         assert_units_of_px4(&name, &units, airframe);
-        let summary: Json = serde_json::from_str(&printed(&["check", "--json", airframe])).unwrap();
+        let summary: Json = json(&run(&["check", "--json", airframe]));
         let unit = |key: &str| summary["normalised_ardupilot"][key].as_f64().unwrap();
         let motors = frame["motors"].as_array().unwrap();
         let factors: Vec<[f64; 3]> = motors.iter().map(factors).collect();
@@ -420,16 +481,4 @@ fn ardupilot_units_are_those_of_its_tables() {
     for frame in [(4, 0), (4, 1), (4, 3), (5, 1), (5, 10), (12, 0), (12, 1)] {
         assert!(seen.contains(&frame), "{frame:?} is not in the tables");
     }
-}
-
-/// The airframe is an input, with `--force` too.
-#[test]
-fn parameters_spare_the_airframe() {
-    let folder = Folder::new("params-over-airframe");
-    let airframe = with_mass(&folder);
-    let before = fs::read(&airframe).unwrap();
-    let path = airframe.to_str().unwrap();
-    let output = cargo_mixer(&["params", path, "--stack", "px4", "-o", path, "--force"]);
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
-    assert_eq!(fs::read(&airframe).unwrap(), before);
 }
