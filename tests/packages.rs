@@ -115,7 +115,6 @@ fn firmware_builds_nothing_of_the_command_line() {
             "mixer-c",
             "cargo-mixer",
             "faer",
-            "clarabel",
             "csv",
             "clap",
         ] {

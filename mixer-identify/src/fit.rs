@@ -15,10 +15,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use self::basis::{Centred, ThrottleBox, monomials};
 
 pub mod basis;
-pub mod bernstein;
 pub mod cross;
 pub mod fold;
-pub mod monotone;
 pub(crate) mod normal;
 pub mod pair;
 pub mod polynomial;
@@ -274,17 +272,11 @@ fn left_out(design: &Design, residuals: &[f64]) -> Vec<f64> {
 
 /// Fits `y` on a design.
 pub fn fit(design: &Design, y: &[f64], throttle_box: ThrottleBox) -> Fit {
-    judge(design, y, &design.coordinates(y), throttle_box)
-}
-
-/// Statistics of given coordinates, those of the least squares or of a constrained fit. Intervals
-/// and leave-one-out errors are those of the unconstrained design; constraints can only narrow
-/// them.
-pub fn judge(design: &Design, y: &[f64], z: &[f64], throttle_box: ThrottleBox) -> Fit {
+    let z = design.coordinates(y);
     let n = y.len();
     let terms = design.centred.basis.exponents().len();
     let degrees_of_freedom = n - terms;
-    let residuals = design.residuals(y, z);
+    let residuals = design.residuals(y, &z);
     let squares = |values: &mut dyn Iterator<Item = f64>| values.map(|e| e * e).sum::<f64>();
     let sse = squares(&mut residuals.iter().copied());
     let mean = y.iter().sum::<f64>() / n as f64;
@@ -299,7 +291,7 @@ pub fn judge(design: &Design, y: &[f64], z: &[f64], throttle_box: ThrottleBox) -
     let least = least.map(|[u, l]| design.factor(u, l)).fold(f64::MAX, f64::min);
     let (worst, greatest_at) = design.worst_factor(throttle_box);
     Fit {
-        coefficients: design.coefficients(z).into_iter().map(ten_digits).collect(),
+        coefficients: design.coefficients(&z).into_iter().map(ten_digits).collect(),
         ci95: design.standard_errors().iter().map(|e| t * sigma * e).collect(),
         r2: if sst > 0.0 { 1.0 - sse / sst } else { 0.0 },
         residual_rms: (sse / n as f64).sqrt(),

@@ -119,10 +119,8 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
     } else {
         "is not proven injective"
     };
-    match (fold.injective, &pair.monotone, fold.least_idle) {
-        (false, None, Some(idle)) => writeln!(out, "# The map {what} below an idle of {idle:.4}.")?,
-        (false, Some(_), _) => writeln!(out, "# Fitted under det J > 0: the free fit {what} in this box.")?,
-        _ => {}
+    if let (false, Some(idle)) = (fold.injective, fold.least_idle) {
+        writeln!(out, "# The map {what} below an idle of {idle:.4}.")?;
     }
     writeln!(out, "min = {:?}", pair.throttle.min)?;
     writeln!(out, "max = {:?}", pair.throttle.max)?;
@@ -151,13 +149,6 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
         "# {} points, condition number {:.0}; behind each coefficient its 95 % interval",
         pair.thrust.points, pair.thrust.condition_number
     )?;
-    if let Some(cost) = &pair.monotone {
-        writeln!(
-            out,
-            "# without the constraint det J > 0: {:.3e} N rms and {:.3e} N m rms",
-            cost.free_thrust_rms, cost.free_torque_rms
-        )?;
-    }
     writeln!(
         out,
         "# Torque is positive where the lower rotor outweighs the upper, which is clockwise on the"

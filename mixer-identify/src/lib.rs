@@ -3,8 +3,7 @@
 //!
 //! text -> [`bench::read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) ->
 //! [`fit::voltage`] exponents -> [`fit::pair`]: outliers ([`fit::robust`]), choice of the basis
-//! ([`fit::cross`]), least squares ([`mod@fit`]), [`fit::fold`], [`fit::monotone`] -> [`fragment`],
-//! [`report`]. Of one rotor: [`rotor::single`] -> [`rotor::predict`].
+//! ([`fit::cross`]), least squares ([`mod@fit`]), [`fit::fold`] -> [`fragment`], [`report`]. Of one rotor: [`rotor::single`] -> [`rotor::predict`].
 //!
 //! The crate opens no file and prints nothing. A [`Refusal`](refusal::Refusal) names the file, the
 //! line where there is one, and what would serve. A caller that wants to show progress counts the

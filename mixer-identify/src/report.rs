@@ -133,19 +133,6 @@ fn write_pair(out: &mut String, pair: &Pair) -> std::fmt::Result {
     write_statistics(out, pair)?;
     write_outliers(out, pair)?;
     write_fold(out, &pair.fold)?;
-    if let Some(cost) = &pair.monotone {
-        let change = |free: f64, now: f64| 100.0 * (now / free - 1.0);
-        writeln!(
-            out,
-            "  kept positive (--monotone): residual rms {:.4} -> {:.4} N ({:+.1} %), {:.5} -> {:.5} N m ({:+.1} %)",
-            cost.free_thrust_rms,
-            pair.thrust.residual_rms,
-            change(cost.free_thrust_rms, pair.thrust.residual_rms),
-            cost.free_torque_rms,
-            pair.torque.residual_rms,
-            change(cost.free_torque_rms, pair.torque.residual_rms)
-        )?;
-    }
     writeln!(out, "  throttle {} .. {}", pair.throttle.min, pair.throttle.max)
 }
 

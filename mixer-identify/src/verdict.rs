@@ -106,7 +106,6 @@ fn of_pair(lines: &mut Lines, pair: &Pair) {
     );
     let fold = &pair.fold;
     let least = match fold.least_idle {
-        _ if pair.monotone.is_some() => "the map is kept without a fold".to_owned(),
         _ if fold.injective => "the map has no fold".to_owned(),
         Some(least) => format!("the map folds below {least:.3}"),
         None => "the map folds".to_owned(),

@@ -59,9 +59,6 @@ pub struct IdentifyArgs {
     /// Leave out the rows that stand out (they are named with or without this).
     #[arg(long)]
     pub robust: bool,
-    /// Keep det J positive over the box, so that the map has no fold there; shows the cost.
-    #[arg(long)]
-    pub monotone: bool,
     /// The throttles to command [default: those measured].
     #[arg(long, value_name = "MIN,MAX", value_parser = throttle_box)]
     pub throttle: Option<ThrottleBox>,
@@ -180,7 +177,6 @@ impl IdentifyArgs {
             wishes: Wishes {
                 basis: self.basis.0,
                 robust: self.robust,
-                monotone: self.monotone,
                 throttle: self.throttle,
                 reference_v: self.reference_voltage,
                 voltage_exponent: self.voltage_exponent.map(|e| e.0),

@@ -254,31 +254,6 @@ fn the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats() {
 }
 
 #[test]
-fn monotone_fits_have_no_fold_down_to_the_lowest_bench_throttle() {
-    let Some(data) = data("monotone_fits_have_no_fold_down_to_the_lowest_bench_throttle") else {
-        return;
-    };
-    for path in files(&data.join("newdexterity"), "full_range") {
-        let mut settings = settings(None);
-        (settings.wishes.monotone, settings.wishes.robust) = (true, true);
-        let pair = identify(std::slice::from_ref(&path), &settings)
-            .expect("a pair")
-            .pair
-            .expect("a pair");
-        assert_eq!(pair.throttle.min, 0.07, "{}", path.display());
-        let map = EnclosedPairMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm);
-        let proof = map.prove_injective(pair.throttle.into());
-        assert!(proof.is_ok(), "{}: {proof:?}", path.display());
-        assert_eq!(pair.fold.injective, pair.monotone.is_none());
-        if let Some(cost) = pair.monotone {
-            let ratio = pair.thrust.residual_rms / cost.free_thrust_rms;
-            println!("{}: thrust residual x {ratio:.2}", path.display());
-            assert!((1.0..1.7).contains(&ratio));
-        }
-    }
-}
-
-#[test]
 fn exponents_of_the_pairs_at_two_voltages() {
     let Some(data) = data("exponents_of_the_pairs_at_two_voltages") else {
         return;

@@ -1,7 +1,6 @@
 //! Known truth comes back, in every format.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::model::injectivity::EnclosedPairMap;
 use mixer_identify::bench::Bench;
 use mixer_identify::fit::basis::ThrottleBox;
 
@@ -203,17 +202,6 @@ fn the_idle_is_raised_above_the_fold_or_the_map_unfolded() {
         "{:?}",
         free.warnings
     );
-    settings.wishes.monotone = true;
-    let monotone = from_benches(vec![bench], &settings.wishes)
-        .expect("a pair")
-        .pair
-        .expect("a pair");
-    assert_eq!(monotone.throttle.min, 0.02);
-    let map = EnclosedPairMap::of(monotone.basis, &monotone.thrust_n, &monotone.torque_nm);
-    assert!(map.prove_injective(monotone.throttle.into()).is_ok());
-    let cost = monotone.monotone.expect("a cost");
-    assert!(cost.free_thrust_rms <= monotone.thrust.residual_rms + 1e-12);
-    assert!(cost.free_torque_rms <= monotone.torque.residual_rms + 1e-12);
 }
 
 #[test]

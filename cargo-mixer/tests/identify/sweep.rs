@@ -259,7 +259,6 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
         wishes: Wishes {
             basis,
             robust: false,
-            monotone: false,
             throttle: None,
             reference_v: None,
             voltage_exponent: None,

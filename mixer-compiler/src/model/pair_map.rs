@@ -1,7 +1,7 @@
 //! The forward map of one unit in f64, with its Jacobian: what inverses are fitted to and checked
 //! against.
 
-use crate::airframe::{POWERS, Pair, Throttle};
+use crate::airframe::{Basis, POWERS, Pair, Throttle};
 
 /// Thrust and torque of one unit at the reference voltage (eq. (1)).
 #[derive(Clone, Debug)]
@@ -25,14 +25,20 @@ struct Slopes {
 impl PairMap {
     /// The map of a pair over the allowed throttles.
     pub fn new(pair: &Pair, throttle: &Throttle) -> Self {
+        let range = [throttle.min, throttle.max];
+        Self::of(pair.basis, &pair.thrust_n, &pair.torque_nm, range)
+    }
+
+    /// The map of these coefficients, N and N m, one per term of the basis, over a range of throttle.
+    pub fn of(basis: Basis, thrust_n: &[f64], torque_nm: &[f64], range: [f64; 2]) -> Self {
         let mut map = PairMap {
             coefficients: [[[0.0; 2]; POWERS]; POWERS],
             widths: [0; POWERS],
             rows: 0,
-            range: [throttle.min, throttle.max],
+            range,
         };
-        let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
-        for (&exponents, (&f, &q)) in pair.basis.exponents().iter().zip(coefficients) {
+        let coefficients = thrust_n.iter().zip(torque_nm);
+        for (&exponents, (&f, &q)) in basis.exponents().iter().zip(coefficients) {
             let (i, j) = (usize::from(exponents.0), usize::from(exponents.1));
             map.coefficients[i][j] = [f, q];
             map.widths[i] = map.widths[i].max(j + 1);

@@ -6,11 +6,11 @@
 //! regions of the report are drawn on a grid.
 
 use mixer_compiler::airframe::Basis;
+use mixer_compiler::model::PairMap;
 use mixer_compiler::model::injectivity::{self, EnclosedPairMap};
 use serde::Serialize;
 
 use crate::fit::basis::ThrottleBox;
-use crate::fit::polynomial::Polynomial;
 
 /// The report on a map's fold.
 #[derive(Debug, Clone, Serialize)]
@@ -45,27 +45,6 @@ pub struct Region {
     pub least_det: f64,
     /// Where, (u, l).
     pub least_det_at: [f64; 2],
-}
-
-/// det J as a polynomial, of a thrust and a torque in this basis, with as many rows and columns as
-/// it can fill.
-pub fn determinant(basis: Basis, thrust: &Polynomial, torque: &Polynomial) -> Polynomial {
-    let det = thrust
-        .du()
-        .times(&torque.dl())
-        .plus(-1.0, &thrust.dl().times(&torque.du()));
-    det.resized(degree(basis))
-}
-
-/// Highest power of a throttle in det J. Of two terms u^i l^j and u^m l^n it has
-/// u^(i + m - 1) l^(j + n - 1), with a factor of i n - j m.
-fn degree(basis: Basis) -> usize {
-    let terms = basis.exponents();
-    let pairs = terms.iter().flat_map(|a| terms.iter().map(move |b| (a, b)));
-    let powers = pairs
-        .filter(|((i, j), (m, n))| i * n != j * m)
-        .map(|((i, j), (m, n))| (i + m).max(j + n) - 1);
-    powers.max().map_or(0, usize::from)
 }
 
 /// The least idle of both rotors from the box's on, rounded up to 1e-5, from which on the map is
@@ -144,13 +123,16 @@ fn regions(grid: &[f64], mut values: Vec<f64>) -> Vec<Region> {
 pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: ThrottleBox) -> Fold {
     let map = EnclosedPairMap::of(basis, thrust, torque);
     let proof = map.prove_injective(commanded.into());
-    let [thrust, torque] = [thrust, torque].map(|c| Polynomial::of(basis, c));
-    let det = determinant(basis, &thrust, &torque);
+    let pair = PairMap::of(basis, thrust, torque, [commanded.min, commanded.max]);
+    let det = |place| {
+        let [[f_u, f_l], [q_u, q_l]] = pair.jacobian(place);
+        f_u * q_l - f_l * q_u
+    };
     let grid: Vec<f64> = commanded.grid(STEPS).collect();
     let values: Vec<f64> = grid
         .iter()
-        .flat_map(|&u| grid.iter().map(move |&l| (u, l)))
-        .map(|(u, l)| det.at(u, l))
+        .flat_map(|&u| grid.iter().map(move |&l| [u, l]))
+        .map(det)
         .collect();
     let least = (0..values.len())
         .min_by(|&a, &b| values[a].total_cmp(&values[b]))

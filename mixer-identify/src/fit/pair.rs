@@ -1,4 +1,4 @@
-//! The map of a pair from bench points: choice of the basis, fit, outliers, fold, shape constraint.
+//! The map of a pair from bench points: choice of the basis, fit, outliers, fold.
 
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
@@ -10,12 +10,11 @@ use crate::bench::{Bench, Kind};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::cross::{self, Candidate};
 use crate::fit::fold::{self, Fold};
-use crate::fit::monotone::{self, MonotoneCost};
 use crate::fit::robust::{self, Outlier};
 use crate::fit::uncertainty::Uncertainty;
 use crate::fit::voltage::Voltage;
 use crate::fit::wishes::Wishes;
-use crate::fit::{Deficient, Design, Fit, fit, judge, range};
+use crate::fit::{Deficient, Design, Fit, fit, range};
 use crate::refusal::Refusal;
 use crate::rotor::Alone;
 
@@ -56,10 +55,8 @@ pub struct Pair {
     pub outliers: Vec<Outlier>,
     /// Whether they were left out.
     pub outliers_left_out: bool,
-    /// The fold of the map before `throttle.min` was raised or the shape constrained.
+    /// The fold of the map before `throttle.min` was raised.
     pub fold: Fold,
-    /// The cost of the shape constraint, where it was applied.
-    pub monotone: Option<MonotoneCost>,
     /// Reference voltage, V, to which the points were brought by the exponents.
     pub normalised_to_v: Option<f64>,
     /// Mean voltage of the rows, V.
@@ -93,22 +90,11 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
 
     let design =
         Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, &reason))?;
-    let free = channels(&points).map(|values| fit(&design, &values, throttle_box));
-    one_pair(basis, &points, throttle_box, &free, &mut warnings)?;
-    doubts::unexplained(&files, free.each_ref())?;
-    let free_fold = fold_of(basis, &free, throttle_box);
-    let (fits, monotone) = if !free_fold.injective && wishes.monotone {
-        let (fits, cost) =
-            constrained(&design, &points, &free, throttle_box).ok_or_else(|| no_monotone_map(&files))?;
-        doubts::costly_constraint(&cost, &points, &fits[1], &mut warnings);
-        (fits, Some(cost))
-    } else {
-        (free, None)
-    };
-    let fold = match &monotone {
-        Some(_) => fold_of(basis, &fits, throttle_box),
-        None => free_fold.clone(),
-    };
+    let fits = channels(&points).map(|values| fit(&design, &values, throttle_box));
+    one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
+    doubts::unexplained(&files, fits.each_ref())?;
+    let [thrust, torque] = fits.each_ref().map(|fit| fit.coefficients.as_slice());
+    let fold = fold::examine(basis, thrust, torque, throttle_box);
     let idle = idle(basis, &fits, &fold, &files, &mut warnings)?;
 
     let [thrust, torque] = fits;
@@ -135,8 +121,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         cross_validation,
         outliers_left_out: wishes.robust,
         outliers,
-        fold: free_fold,
-        monotone,
+        fold,
         normalised_to_v,
         mean_v: mean_voltage(&points),
         warnings,
@@ -224,40 +209,6 @@ fn deficient(files: &str, reason: &Deficient) -> Refusal {
 fn mean_voltage(points: &[Placed]) -> Option<f64> {
     let volts = || points.iter().map(|p| p.point.voltage).filter(|v| v.is_finite());
     (volts().count() > 0).then(|| volts().sum::<f64>() / volts().count() as f64)
-}
-
-fn fold_of(basis: Basis, [thrust, torque]: &[Fit; 2], throttle_box: ThrottleBox) -> Fold {
-    fold::examine(basis, &thrust.coefficients, &torque.coefficients, throttle_box)
-}
-
-/// The fits nearest to the free ones whose map does not fold, and what that costs; `None` where
-/// none was found.
-fn constrained(
-    design: &Design,
-    points: &[Placed],
-    free: &[Fit; 2],
-    throttle_box: ThrottleBox,
-) -> Option<([Fit; 2], MonotoneCost)> {
-    let [thrust, torque] = channels(points);
-    let coordinates = [&thrust, &torque].map(|values| design.coordinates(values));
-    let found = monotone::constrain(design, [&free[0], &free[1]], coordinates, throttle_box)?;
-    let fits = [
-        judge(design, &thrust, &found.thrust, throttle_box),
-        judge(design, &torque, &found.torque, throttle_box),
-    ];
-    let cost = MonotoneCost {
-        free_thrust_rms: free[0].residual_rms,
-        free_torque_rms: free[1].residual_rms,
-    };
-    Some((fits, cost))
-}
-
-fn no_monotone_map(files: &str) -> Refusal {
-    Refusal::of(
-        files,
-        "no monotone map was found near the measured one",
-        "a higher idle (--throttle MIN,MAX), another basis, or data without outliers (--robust)",
-    )
 }
 
 /// The square that both rotors were measured over, rounded inwards to a ten-thousandth.
@@ -387,7 +338,7 @@ fn raised(
             } else {
                 "the map could not be proven injective, whatever the idle".into()
             },
-            "--monotone, another basis, or data without outliers (--robust)",
+            "another basis, or data without outliers (--robust)",
         ));
     };
     let (why, without) = if fold.folds {
@@ -399,8 +350,7 @@ fn raised(
         ("the map could not be proven injective below".into(), "this doubt")
     };
     warnings.push(format!(
-        "throttle.min is raised from {} to {min}: {why}, the least idle without {without} is {least:.4}; --monotone \
-         would keep the idle",
+        "throttle.min is raised from {} to {min}: {why}, the least idle without {without} is {least:.4}",
         fold.commanded.min
     ));
     Ok(min)

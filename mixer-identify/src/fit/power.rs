@@ -11,12 +11,12 @@
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 use mixer_compiler::airframe::{self, Basis};
+use mixer_compiler::model::PairMap;
 use serde::Serialize;
 
 use crate::bench::{Bench, Kind, Point};
 use crate::fit::basis::{ThrottleBox, monomials};
 use crate::fit::pair::Pair;
-use crate::fit::polynomial::Polynomial;
 use crate::fit::voltage::Voltage;
 use crate::fit::{distinct_pairs, ten_digits};
 
@@ -130,56 +130,27 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Thrust and torque of the identified pair.
-struct Map {
-    thrust: [Polynomial; 3],
-    torque: [Polynomial; 3],
-    throttle: ThrottleBox,
+/// Thrust at both throttles at their greatest, N.
+fn full_thrust(map: &PairMap) -> f64 {
+    let [_, max] = map.range();
+    map.efforts([max; 2])[0]
 }
 
-impl Map {
-    fn new(pair: &Pair) -> Map {
-        let with_slopes = |coefficients: &[f64]| {
-            let value = Polynomial::of(pair.basis, coefficients);
-            let slopes = [value.du(), value.dl()];
-            let [du, dl] = slopes;
-            [value, du, dl]
-        };
-        Map {
-            thrust: with_slopes(&pair.thrust_n),
-            torque: with_slopes(&pair.torque_nm),
-            throttle: pair.throttle,
+/// The throttles of (f, Q) within the range, by Newton's method from equal throttles; nothing where
+/// there are none.
+fn throttles(map: &PairMap, f: f64, q: f64) -> Option<[f64; 2]> {
+    let ([min, max], full) = (map.range(), full_thrust(map));
+    let mut at = [(max * (f / full).clamp(0.0, 1.0).sqrt()).clamp(min, max); 2];
+    for _ in 0..50 {
+        let [u, l] = at;
+        at = map.newton(at, [f, q]);
+        if (at[0] - u).abs().max((at[1] - l).abs()) < 1e-10 {
+            break;
         }
     }
-
-    /// Thrust at both throttles at their greatest, N.
-    fn full_thrust(&self) -> f64 {
-        self.thrust[0].at(self.throttle.max, self.throttle.max)
-    }
-
-    /// The throttles of (f, Q) within the box, by Newton's method from equal throttles; nothing
-    /// where there are none.
-    fn throttles(&self, f: f64, q: f64) -> Option<[f64; 2]> {
-        let ThrottleBox { min, max } = self.throttle;
-        let share = (f / self.full_thrust()).clamp(0.0, 1.0).sqrt();
-        let [mut u, mut l] = [max * share; 2].map(|x: f64| x.clamp(min, max));
-        for _ in 0..50 {
-            let [ef, eq] = [f - self.thrust[0].at(u, l), q - self.torque[0].at(u, l)];
-            let [fu, fl] = [1, 2].map(|k| self.thrust[k].at(u, l));
-            let [qu, ql] = [1, 2].map(|k| self.torque[k].at(u, l));
-            let det = fu * ql - fl * qu;
-            if det <= 0.0 {
-                return None;
-            }
-            let (du, dl) = ((ef * ql - eq * fl) / det, (eq * fu - ef * qu) / det);
-            (u, l) = ((u + du).clamp(min, max), (l + dl).clamp(min, max));
-            if du.abs().max(dl.abs()) < 1e-10 {
-                break;
-            }
-        }
-        let missed = (f - self.thrust[0].at(u, l)).abs() / self.full_thrust();
-        (missed < 1e-8 && (q - self.torque[0].at(u, l)).abs() < 1e-8 * self.full_thrust()).then_some([u, l])
-    }
+    let [thrust, torque] = map.efforts(at);
+    let missed = (f - thrust).abs().max((q - torque).abs());
+    (missed < 1e-8 * full).then_some(at)
 }
 
 /// Examines the pair's files.
@@ -193,7 +164,7 @@ pub fn examine(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Pow
 fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Result<LeastPower, String> {
     let points = with_power(benches, pair, voltage)?;
     let power = power_map(&points)?;
-    let hover = Hover::new(Map::new(pair), &power)?;
+    let hover = Hover::new(pair, &power)?;
     // A digit more than a bench can tell, towards none, so that it stays attainable.
     let bias_nm_per_n = (1e5 * hover.best_bias()).trunc() / 1e5;
     let at = hover
@@ -262,7 +233,7 @@ fn power_map(points: &[Point]) -> Result<PowerMap, String> {
 
 /// The thrusts at which vehicles hover, and the power that torque saves there.
 struct Hover<'a> {
-    map: Map,
+    map: PairMap,
     power: &'a PowerMap,
     /// Greatest torque over thrust that is worth trying, N m per N.
     most: f64,
@@ -271,18 +242,20 @@ struct Hover<'a> {
 }
 
 impl<'a> Hover<'a> {
-    fn new(map: Map, power: &'a PowerMap) -> Result<Self, String> {
-        let full = map.full_thrust();
+    fn new(pair: &Pair, power: &'a PowerMap) -> Result<Self, String> {
+        let ThrottleBox { min, max } = pair.throttle;
+        let map = PairMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm, [min, max]);
+        let full = full_thrust(&map);
         // Torque over thrust with one rotor at its least and the other at full throttle bounds what
         // is worth trying.
-        let ThrottleBox { min, max } = map.throttle;
-        let most = map.torque[0].at(min, max).abs() / map.thrust[0].at(min, max);
+        let [f, q] = map.efforts([min, max]);
+        let most = q.abs() / f;
         let without = |share: &f64| {
             let f = share * full;
             let has_room = [-ROOM, ROOM]
                 .iter()
-                .all(|room| map.throttles(f, room * most * f).is_some());
-            has_room.then_some((f, power.at(map.throttles(f, 0.0)?)))
+                .all(|room| throttles(&map, f, room * most * f).is_some());
+            has_room.then_some((f, power.at(throttles(&map, f, 0.0)?)))
         };
         let without: Vec<(f64, f64)> = SHARES.iter().filter_map(without).collect();
         if without.len() < MOST_OF_THEM {
@@ -305,7 +278,7 @@ impl<'a> Hover<'a> {
             Some(AtThrust {
                 thrust_n,
                 power_w,
-                least_power_w: self.power.at(self.map.throttles(thrust_n, c * thrust_n)?),
+                least_power_w: self.power.at(throttles(&self.map, thrust_n, c * thrust_n)?),
             })
         };
         self.without.iter().map(along).collect()

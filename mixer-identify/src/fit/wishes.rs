@@ -11,8 +11,6 @@ pub struct Wishes {
     pub basis: Option<Basis>,
     /// Leave out the rows that stand out.
     pub robust: bool,
-    /// Keep det J positive over the box.
-    pub monotone: bool,
     /// The box to command, or nothing for the measured one.
     pub throttle: Option<ThrottleBox>,
     /// Reference voltage, V, or nothing for the mean of the rows.

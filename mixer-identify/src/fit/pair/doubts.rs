@@ -1,5 +1,5 @@
 //! Doubts that the statistics of a fit do not show: files of different pairs, throttles that were
-//! not measured, a costly constraint, exchanged rotors, a missing tare.
+//! not measured, exchanged rotors, a missing tare.
 
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::wake::{Wake, mean_torque};
@@ -7,7 +7,6 @@ use mixer_compiler::model::wake::{Wake, mean_torque};
 use super::placed::Placed;
 use crate::fit::Fit;
 use crate::fit::basis::ThrottleBox;
-use crate::fit::monotone::MonotoneCost;
 use crate::fit::polynomial::Polynomial;
 use crate::refusal::Refusal;
 
@@ -18,9 +17,6 @@ const FULL: f64 = 0.995;
 /// thrust. Repeats on another day differ by 0.004 to 0.008 so, real pairs of one propeller at other
 /// spacings or with another motor by as much.
 const APART: f64 = 0.01;
-
-/// Cost of the shape constraint in torque, as a share of the greatest torque.
-const COSTLY: f64 = 0.05;
 
 /// An idle that benches reach; maps that begin above leave much of the thrust always on.
 const LOW: f64 = 0.25;
@@ -59,33 +55,6 @@ pub(super) fn joined_files(
          misses by itself: files of one pair at one spacing belong into one fit ({})",
         100.0 * between / full_scale,
         files.join(", ")
-    ));
-}
-
-/// The cost in torque of det J > 0, and where: the row that it moves furthest from what was
-/// measured.
-pub(super) fn costly_constraint(
-    cost: &MonotoneCost,
-    points: &[Placed],
-    torque: &Fit,
-    warnings: &mut Vec<String>,
-) {
-    let furthest = points
-        .iter()
-        .zip(&torque.residuals)
-        .max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
-    let Some((at, residual)) = furthest else { return };
-    if residual.abs() <= COSTLY * torque.full_scale {
-        return;
-    }
-    warnings.push(format!(
-        "--monotone misses the torque by {:.3} N m at (u, l) = ({:.2}, {:.2}), {:.0} % of the greatest; its rms is \
-         {:.2} times that of the free fit",
-        residual.abs(),
-        at.point.u,
-        at.point.l,
-        100.0 * residual.abs() / torque.full_scale,
-        torque.residual_rms / cost.free_torque_rms
     ));
 }
 
