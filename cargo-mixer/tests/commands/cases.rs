@@ -40,7 +40,7 @@ macro_rules! folders {
     };
 }
 
-folders! { check compare expand golden import library mix new params predict report usage }
+folders! { check compare expand golden identify import library mix new params plan predict report usage }
 
 /// The names of what is in a folder, in order.
 fn names(folder: &Path) -> Vec<String> {
@@ -105,6 +105,11 @@ fn session(case: &str, place: &Path) -> String {
     let mut told = String::new();
     let mut lines = case.lines().peekable();
     while let Some(line) = lines.next() {
+        assert!(
+            !line.starts_with('>'),
+            "{}: no command above {line}",
+            place.display()
+        );
         if line.starts_with('#') {
             told += &format!("{line}\n");
         }

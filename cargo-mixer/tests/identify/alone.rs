@@ -79,46 +79,6 @@ fn a_run_at_another_voltage_is_brought_to_the_maps() {
     }
 }
 
-#[test]
-fn runs_that_cannot_serve_are_refused() {
-    let wishes = settings(None).wishes;
-    let refused = |benches: Vec<Bench>, run: Bench| {
-        let error = with_runs(benches, [Some(run), None], &wishes).unwrap_err();
-        error.to_string()
-    };
-    let error = refused(vec![map()], run(1, 14.8, 0.0));
-    assert!(
-        error.contains("--lower-out: the lower rotor turns in it"),
-        "{error}"
-    );
-    let error = refused(vec![map()], map());
-    assert!(error.contains("both rotors turn in it"), "{error}");
-    let custom = |text: &str| bench("run.csv", text.as_bytes(), &settings(None)).expect("a bench");
-    let short = custom("upper,thrust_n,torque_nm\n.2,1,.1\n.4,3,.2\n.6,6,.3\n.8,9,.4\n");
-    assert!(refused(vec![map()], short).contains("4 distinct throttles"));
-    let falling: String = (1..=10)
-        .map(|k| format!("{},{},0.1\n", 0.1 * f64::from(k), 11 - k))
-        .collect();
-    let error = refused(
-        vec![map()],
-        custom(&format!("upper,thrust_n,torque_nm\n{falling}")),
-    );
-    assert!(error.contains("does not grow with the throttle"), "{error}");
-    let without: String = (1..=10)
-        .map(|k| format!("{},{k}\n", 0.1 * f64::from(k)))
-        .collect();
-    let error = refused(vec![map()], custom(&format!("upper,thrust_n\n{without}")));
-    assert!(error.contains("rows without torque"), "{error}");
-    let single: String = [12.0, 16.0]
-        .iter()
-        .flat_map(|v| (1..=10).map(move |k| (*v, 0.1 * f64::from(k))))
-        .map(|(v, x)| format!("{x},{},{v}\n", x * x * libm::pow(v / 14.0, 1.75)))
-        .collect();
-    let single = custom(&format!("upper,thrust_n,voltage_v\n{single}"));
-    let error = refused(vec![single], run(0, 14.8, 0.0));
-    assert!(error.contains("belongs to a map of the pair"), "{error}");
-}
-
 /// A map whose rotors alone are [`THRUST`] and [`TORQUE`], from a lowest throttle on.
 fn map_from(lowest: f64) -> Bench {
     let mut text = String::from("upper,lower,thrust_n,torque_nm,voltage_v\n");
@@ -158,20 +118,5 @@ fn the_lowest_level_of_a_map_stands_for_a_run_where_asked() {
         "in which the other rotor turned at 0.10",
     ] {
         assert!(text.contains(caveat), "{caveat}: {text}");
-    }
-}
-
-#[test]
-fn a_map_that_begins_high_does_not() {
-    let mut wishes = settings(Some(Basis::Cubic)).wishes;
-    wishes.rotor_out_from_map = true;
-    let error = with_runs(vec![map_from(0.4)], [None, None], &wishes).unwrap_err();
-    let error = error.to_string();
-    for part in [
-        "--rotor-out-from-map: the lowest throttle of the lower rotor is 0.40",
-        "0.15 or lower",
-        "--lower-out",
-    ] {
-        assert!(error.contains(part), "{part}: {error}");
     }
 }

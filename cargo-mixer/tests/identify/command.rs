@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::bench_data::data;
 use crate::sweep::{bench, plain, rows, settings};
 
 /// A folder of this test's own, empty.
@@ -27,45 +28,6 @@ fn run(folder: &Path, args: &[&str]) -> Output {
 
 pub(crate) fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("UTF-8")
-}
-
-#[test]
-fn writes_a_fragment_that_completes_to_an_airframe() {
-    let folder = folder("fragment");
-    fs::write(folder.join("map_2024-05-06.csv"), plain(&rows(1))).expect("written");
-    let output = run(&folder, &["map_2024-05-06.csv", "-o", "pair.toml"]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let fragment = fs::read_to_string(folder.join("pair.toml")).expect("the fragment");
-    let mut names: Vec<_> = fs::read_dir(&folder)
-        .expect("a folder")
-        .flatten()
-        .map(|e| e.file_name())
-        .collect();
-    names.sort();
-    assert_eq!(
-        names,
-        ["map_2024-05-06.csv", "pair.toml"],
-        "no temporary file stays"
-    );
-    for provenance in [
-        "map_2024-05-06.csv",
-        "2024-05-06",
-        "100 of 100 rows used",
-        "R2 9",
-        "leave-one-out",
-        "[[unit]]",
-    ] {
-        assert!(fragment.contains(provenance), "{provenance} in\n{fragment}");
-    }
-    let unit = "[[unit]]\nposition_m = [0.0, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n";
-    let airframe: toml::Table = format!("name = \"x\"\n{fragment}\n{unit}").parse().expect("TOML");
-    assert_eq!(airframe["pair"]["upper_spin"].as_str(), Some("cw"));
-    assert_eq!(airframe["pair"]["thrust_n"].as_array().map(Vec::len), Some(8));
-    let min = airframe["throttle"]["min"].as_float().expect("an idle");
-    assert!((0.1..0.12).contains(&min), "{min}");
-    for line in text(&output.stdout).lines() {
-        assert!(line.chars().count() <= 100, "wider than 100 columns: {line}");
-    }
 }
 
 #[test]
@@ -111,55 +73,6 @@ fn json_and_the_fragment_agree() {
 }
 
 #[test]
-fn statuses_and_streams() {
-    let folder = folder("statuses");
-    fs::write(folder.join("map.csv"), plain(&rows(3))).expect("written");
-    fs::write(folder.join("bad.csv"), "a,b\n1,2\n").expect("written");
-    let status = |args: &[&str]| run(&folder, args).status.code();
-    assert_eq!(status(&["map.csv"]), Some(0));
-    assert_eq!(status(&["bad.csv", "-o", "out.toml"]), Some(1));
-    assert_eq!(status(&["missing.csv"]), Some(1));
-    assert_eq!(status(&["map.csv", "bad.csv", "-o", "out.toml"]), Some(1));
-    assert!(
-        !folder.join("out.toml").exists(),
-        "nothing is written when a file is refused"
-    );
-    assert_eq!(status(&["map.csv", "-o", "no/such/folder/out.toml"]), Some(1));
-    for usage in [
-        &["map.csv", "-o", "map.csv"][..],
-        &["map.csv", "--json", "-o", "-"],
-        &["map.csv", "--throttle", "0.5,0.2"],
-        &["map.csv", "--column", "up=x"],
-        &["map.csv", "--torque-sign", "x"],
-        &["map.csv", "--date", "yesterday"],
-        &["map.csv", "--basis", "quintic"],
-        &["map.csv", "--voltage-exponent", "0"],
-        &["map.csv", "--voltage-exponent", "1.7,x"],
-        &[],
-    ] {
-        assert_eq!(status(usage), Some(2), "{usage:?}");
-    }
-    assert_eq!(
-        fs::read(folder.join("map.csv")).expect("read"),
-        plain(&rows(3)),
-        "the input stays as it was"
-    );
-    let both = text(&run(&folder, &["bad.csv", "missing.csv"]).stderr);
-    assert!(
-        both.contains("bad.csv:1: no throttle column") && both.contains("missing.csv: cannot be read"),
-        "{both}"
-    );
-    let output = run(&folder, &["map.csv", "-o", "-"]);
-    assert!(
-        text(&output.stdout)
-            .parse::<toml::Table>()
-            .expect("TOML")
-            .contains_key("pair")
-    );
-    assert!(text(&output.stderr).contains("model error "));
-}
-
-#[test]
 fn streams_that_nobody_reads_change_no_status() {
     let folder = folder("unread");
     fs::write(folder.join("map.csv"), plain(&rows(3))).expect("written");
@@ -181,22 +94,6 @@ fn streams_that_nobody_reads_change_no_status() {
         assert_eq!(found.code(), Some(status), "{args:?}");
     }
     assert!(folder.join("out.toml").exists());
-}
-
-#[test]
-fn refused_rows_are_named_on_standard_error() {
-    let folder = folder("rows");
-    let mut bytes = plain(&rows(4));
-    bytes.extend(b"0.5,oops,1,1,14\n");
-    fs::write(folder.join("map.csv"), bytes).expect("written");
-    let output = run(&folder, &["map.csv"]);
-    assert!(output.status.success());
-    let told = text(&output.stderr);
-    assert!(
-        told.contains("refused: map.csv:102: \"lower\" = \"oops\" is not a finite number"),
-        "{told}"
-    );
-    assert!(text(&output.stdout).contains("1 refused"));
 }
 
 #[test]
@@ -274,23 +171,29 @@ fn sixteen_thousand_rows_are_read_in_well_under_a_second() {
     assert!(best < Duration::from_millis(700), "{best:?} without optimisation");
 }
 
-/// Messages do not grow with the input: megabytes of a broken file give a few lines.
+/// The run that docs/bench.md explains. `cargo xtask bench-data` writes it.
 #[test]
-fn messages_of_broken_files_are_short() {
-    let folder = folder("broken");
-    let header = "upper,lower,thrust_n,torque_nm\n";
-    let bad_rows: String = (0..50_000).map(|k| format!("0.5,none-{k},1,0.1\n")).collect();
-    let texts = [
-        format!("{header}0.5,0.5,{},1\n", "9".repeat(1_000_000)),
-        "x".repeat(1_000_000),
-        "c,".repeat(100_000),
-        text(&plain(&rows(1))) + &bad_rows,
-    ];
-    for (k, broken) in texts.iter().enumerate() {
-        fs::write(folder.join("broken.csv"), broken).expect("written");
-        let output = run(&folder, &["broken.csv"]);
-        let told = output.stderr.len();
-        assert!((1..25_000).contains(&told), "{k}: {told} bytes");
-        assert!(!text(&output.stderr).contains("panicked"), "{k}");
+fn the_report_of_the_documents_is_that_of_the_bench() {
+    const FILE: &str =
+        "data2021_08_17_23_41_12_16p2in_prop_400kv_22V_MN4014_T_motor_map10x10_full_range_zD_025.csv";
+    let Some(data) = data("the_report_of_the_documents_is_that_of_the_bench") else {
+        return;
+    };
+    let arguments = ["--voltage-exponent", "1.75", "--cells", "6"];
+    let output = run(&data.join("newdexterity"), &[&[FILE][..], &arguments].concat());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let told = text(&output.stdout);
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/bench.md");
+    let written = fs::read_to_string(&page).expect("the page");
+    let (before, rest) = written.split_once("<!-- identify -->").expect("a place");
+    let (_, after) = rest.split_once("<!-- end -->").expect("an end");
+    let command = format!("$ cargo mixer identify {FILE} {}", arguments.join(" "));
+    let now = format!("{before}<!-- identify -->\n\n```console\n{command}\n{told}```\n\n<!-- end -->{after}");
+    if std::env::var_os("MIXER_MEASUREMENTS").is_some_and(|word| word == "write") {
+        fs::write(&page, &now).expect("written");
     }
+    assert!(
+        fs::read_to_string(&page).expect("the page") == now,
+        "run `cargo xtask bench-data`"
+    );
 }

@@ -1,17 +1,13 @@
-//! `cargo mixer identify`: synthetic sweeps with known truth in every format, refusals, the
-//! command, real bench data.
+//! `cargo mixer identify`: synthetic sweeps with known truth in every format, the command, real
+//! bench data. What it says is in `cases`.
 
 mod alone;
 mod bench_data;
 mod command;
-mod doubts;
-mod first_hour;
 mod formats;
 #[path = "../measured/mod.rs"]
 mod measured;
-mod plan;
 mod power;
-mod refusals;
 mod saving;
 mod spacings;
 mod sweep;

@@ -44,13 +44,6 @@ const BOTH: Electrical = Electrical {
     row: |[upper, lower]| format!(",14.8,14.4,{},{}", upper / 14.8, lower / 14.4),
 };
 
-fn reason(electrical: &Electrical) -> String {
-    match identified(electrical, 0.0).power {
-        Some(Power::Refused { reason }) => reason,
-        other => panic!("{other:?}"),
-    }
-}
-
 #[test]
 fn the_bias_of_least_power_is_recovered() {
     let k = (1.0 - G * G) / (1.0 + G * G);
@@ -90,54 +83,6 @@ fn one_supply_current_of_the_whole_serves() {
         identified(&whole, 0.0).power,
         Some(Power::Identified(_))
     ));
-}
-
-#[test]
-fn why_there_is_none_is_told() {
-    let none = Electrical {
-        header: ",voltage_v",
-        row: |_| ",14.8".into(),
-    };
-    assert_eq!(reason(&none), "no file has the current of both rotors");
-    let one = Electrical {
-        header: ",voltage_v,upper_current_a",
-        row: |[upper, _]| format!(",14.8,{}", upper / 14.8),
-    };
-    assert!(
-        reason(&one).contains("one rotor only (\"upper_current_a\"): --column lower_current="),
-        "{}",
-        reason(&one)
-    );
-    let milliamperes = Electrical {
-        header: BOTH.header,
-        row: |[upper, lower]| format!(",14.8,14.8,{},{}", 1e3 * upper / 14.8, 1e3 * lower / 14.8),
-    };
-    assert!(
-        reason(&milliamperes).contains("mA for A"),
-        "{}",
-        reason(&milliamperes)
-    );
-    let falling = Electrical {
-        header: BOTH.header,
-        row: |[upper, lower]| format!(",14.8,14.8,{},{}", 20.0 - upper / 14.8, 20.0 - lower / 14.8),
-    };
-    assert_eq!(
-        reason(&falling),
-        "power falls with throttle: check the sign and the columns of the current"
-    );
-    let reversed = Electrical {
-        header: BOTH.header,
-        row: |[upper, lower]| format!(",14.8,14.8,{},{}", -upper / 14.8, -lower / 14.8),
-    };
-    assert_eq!(
-        reason(&reversed),
-        "power is negative: check the sign of voltage and current"
-    );
-    let empty = Electrical {
-        header: BOTH.header,
-        row: |_| ",14.8,14.8,,".into(),
-    };
-    assert_eq!(reason(&empty), "voltage or current is empty in every row");
 }
 
 #[test]

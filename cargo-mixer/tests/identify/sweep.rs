@@ -46,12 +46,8 @@ pub(crate) struct Row {
 
 /// A 10 x 10 sweep of Table I's pair with normal errors of 0.1 N and 1 mN m on the totals.
 pub(crate) fn rows(seed: u64) -> Vec<Row> {
-    rows_of(Basis::Biquadratic, [&THRUST, &TORQUE], seed)
-}
-
-pub(crate) fn rows_of(basis: Basis, coefficients: [&[f64]; 2], seed: u64) -> Vec<Row> {
     let mut normal = Normal::new(seed);
-    let [f, q] = coefficients.map(|c| Polynomial::of(basis, c));
+    let [f, q] = [&THRUST, &TORQUE].map(|c| Polynomial::of(Basis::Biquadratic, c));
     let level = |k: usize| 0.1 + 0.1 * k as f64;
     let row = |k: usize| {
         let (u, l) = (level(k / 10), level(k % 10));

@@ -80,13 +80,6 @@ fn sag_in_one_map_gives_no_exponent_and_is_told() {
 }
 
 #[test]
-fn voltages_too_near_for_an_exponent_and_too_far_to_join_are_refused() {
-    let benches = vec![map("a.csv", 14.8, 0.0, 1), map("b.csv", 14.1, 0.0, 2)];
-    let error = from_benches(benches, &settings(None).wishes).unwrap_err();
-    assert!(error.reason.contains("different voltages"), "{error}");
-}
-
-#[test]
 fn thrust_alone_leaves_the_table_to_be_completed() {
     let file = |name: &str, volts: f64| {
         let row = |k: i32| {
@@ -189,27 +182,6 @@ fn a_declared_exponent_brings_the_rows_to_the_reference() {
 }
 
 #[test]
-fn sag_in_a_map_without_exponents_is_told_once() {
-    let found = from_benches(vec![map("a.csv", 14.8, 0.8, 1)], &settings(None).wishes).expect("a pair");
-    let told: Vec<_> = found
-        .warnings
-        .iter()
-        .filter(|w| w.contains("the map includes"))
-        .collect();
-    assert!(
-        told.len() == 1 && told[0].contains("--voltage-exponent"),
-        "{:?}",
-        found.warnings
-    );
-    let found = from_benches(vec![map("a.csv", 14.8, 0.2, 1)], &settings(None).wishes).expect("a pair");
-    assert!(
-        !found.warnings.iter().any(|w| w.contains("sagged")),
-        "{:?}",
-        found.warnings
-    );
-}
-
-#[test]
 fn a_declared_exponent_that_the_files_contradict_is_told() {
     let mut wishes = settings(None).wishes;
     wishes.voltage_exponent = Some([1.6, 2.9]);
@@ -223,25 +195,4 @@ fn a_declared_exponent_that_the_files_contradict_is_told() {
         told("declares 1.6 for thrust, the files themselves give 1.72") && told("declares 2.9 for torque"),
         "{warnings:?}"
     );
-}
-
-#[test]
-fn a_declared_exponent_needs_a_map_with_voltages() {
-    let mut wishes = settings(None).wishes;
-    wishes.voltage_exponent = Some([1.75; 2]);
-    let map = String::from_utf8(plain(&rows(1))).expect("text");
-    let without: String = map
-        .lines()
-        .map(|l| format!("{}\n", l.rsplit_once(',').expect("a column").0))
-        .collect();
-    let without = bench("without.csv", without.as_bytes(), &settings(None)).expect("a bench");
-    let error = from_benches(vec![without.clone()], &wishes).unwrap_err();
-    assert!(error.reason.contains("no file has a voltage column"), "{error}");
-    let with = bench("with.csv", map.as_bytes(), &settings(None)).expect("a bench");
-    let error = from_benches(vec![with, without], &wishes).unwrap_err();
-    assert_eq!(error.place.as_deref(), Some("without.csv"), "{error}");
-    let single = "upper,thrust_n,voltage_v\n.2,1,12\n.4,3,12\n.6,6,12\n.8,9,12\n";
-    let single = bench("single.csv", single.as_bytes(), &settings(None)).expect("a bench");
-    let error = from_benches(vec![single], &wishes).unwrap_err();
-    assert!(error.reason.contains("one throttle only"), "{error}");
 }

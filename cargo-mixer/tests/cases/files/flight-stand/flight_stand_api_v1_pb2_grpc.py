@@ -1,0 +1,1 @@
+from flight_stand_api_v1_pb2 import *
