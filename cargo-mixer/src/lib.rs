@@ -19,7 +19,6 @@ pub mod commands;
 pub mod file;
 pub mod frame;
 pub mod pack;
-mod pair_file;
 mod place;
 pub mod setpoints;
 pub mod stack;

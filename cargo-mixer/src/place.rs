@@ -5,6 +5,9 @@ use std::io::{Write as _, stdout};
 use std::path::Path;
 use std::process::ExitCode;
 
+use mixer_identify::pair_file::PairFile;
+use mixer_identify::texts::Answer;
+
 use crate::frame::FrameArgs;
 use crate::{BAD_USAGE, output, print_error, print_note};
 
@@ -40,25 +43,27 @@ impl Place<'_> {
         }
     }
 
-    /// Writes report and tables, and says what comes next. `power_bias` is as of
-    /// [`FrameArgs::airframe`].
-    pub(crate) fn write(
-        &self,
-        report: &str,
-        tables: String,
-        power_bias: Option<f64>,
-    ) -> Result<(), ExitCode> {
+    /// Writes report and tables, and says what comes next.
+    pub(crate) fn write(&self, answer: &Answer, verbose: bool) -> Result<(), ExitCode> {
+        let report = match (self.json, verbose) {
+            (true, _) => &answer.json,
+            (_, true) => &answer.details,
+            _ => &answer.report,
+        };
         let text = match self.frame {
-            None => tables,
-            Some(frame) => frame
-                .airframe(self.file(), &tables, power_bias)
-                .map_err(|message| {
+            None => answer.tables.clone(),
+            Some(frame) => {
+                let pair = PairFile::read("the tables", &answer.tables).map_err(print_error)?;
+                let (tables, power_bias) = pair.model();
+                let text = frame.airframe(self.file(), &tables, power_bias);
+                text.map_err(|message| {
                     print_error(message);
                     ExitCode::from(BAD_USAGE)
-                })?,
+                })?
+            }
         };
         // Names, headers and cells of the bench files are in both.
-        let [report, text] = [report, &text].map(crate::printable_lines);
+        let [report, text] = [report.as_str(), &text].map(crate::printable_lines);
         let out = if self.to_stdout() {
             print_note(report.trim_end());
             text.trim_end()

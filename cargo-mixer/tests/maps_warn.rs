@@ -17,7 +17,6 @@ use mixer_identify::bench::Bench;
 use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, Settings, from_benches};
-use mixer_identify::rotor::predict;
 
 const BASES: [&str; 3] = ["biquadratic", "cubic", "quartic"];
 
@@ -171,11 +170,11 @@ fn no_prediction_of_a_real_run_warns() {
         let arguments = arguments.unwrap_or_else(|error| panic!("{error}")).predict;
         let predicted = arguments
             .predicted()
-            .unwrap_or_else(|refusal| panic!("{refusal}"));
+            .unwrap_or_else(|refusals| panic!("{refusals:?}"));
         for sentence in &predicted.warnings {
             told.sentence(sentence, run);
         }
-        told.check(&predict::text(&predicted), run);
+        told.check(&predicted.tables, run);
     }
     told.is_true(&format!("{} predictions", runs.len()));
     assert!(runs.len() >= 6, "{} runs", runs.len());

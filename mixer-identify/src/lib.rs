@@ -5,14 +5,15 @@
 //! [`fit::voltage`] exponents -> [`fit::pair`]: outliers ([`fit::robust`]), choice of the basis
 //! ([`fit::cross`]), least squares ([`mod@fit`]), [`fit::fold`] -> [`fragment`], [`report`]. Of one rotor: [`rotor::single`] -> [`rotor::predict`].
 //!
+//! What there is to say of a result is one list of facts ([`fact`]): [`report`] prints it, and
+//! [`fragment`] has it as comments of the tables. [`texts`] is for front ends: text in, text out.
+//!
 //! The crate opens no file and prints nothing. A [`Refusal`](refusal::Refusal) names the file, the
-//! line where there is one, and what would serve. A caller that wants to show progress counts the
-//! bytes that [`bench::read::read`] takes from the source that it is given.
+//! line where there is one, and what would serve.
 //!
 //! ```
-//! use mixer_identify::identified::{Settings, from_benches};
-//! use mixer_identify::bench::{self, read};
-//! use mixer_identify::fragment;
+//! use mixer_identify::identified::Settings;
+//! use mixer_identify::texts::{Text, identify};
 //!
 //! // A sweep of both throttles in five levels. (A bench would have measured it.)
 //! let mut csv = String::from("upper,lower,thrust_n,torque_nm\n");
@@ -22,25 +23,22 @@
 //!     csv += &format!("{u:.1},{l:.1},{thrust:.3},{torque:.5}\n");
 //! }
 //!
-//! let settings = Settings::default();
-//! let log = read::read("map.csv", csv.as_bytes(), &settings.reading)?;
-//! let bench = bench::prepare(log, &settings.preparation)?;
-//! let identified = from_benches(vec![bench], &settings.wishes)?;
-//!
-//! let pair = identified.pair.as_ref().expect("a map of both rotors");
-//! assert!(pair.thrust.leave_one_out_rms < 0.01);
-//! assert!(fragment::text(&identified).contains("[pair]"));
-//! # Ok::<(), mixer_identify::refusal::Refusal>(())
+//! let map = Text { name: "map.csv".into(), content: Ok(csv.into_bytes()) };
+//! let answer = identify(&[map], [None, None], &Settings::default()).expect("a map");
+//! assert!(answer.report.contains("the map has no fold"));
+//! assert!(answer.tables.contains("[pair]"));
 //! ```
 
 pub mod bench;
+pub mod fact;
 pub mod fit;
 pub mod fragment;
 pub mod identified;
+pub mod pair_file;
 pub mod paper;
 pub mod plan;
 pub mod refusal;
 pub mod report;
 pub mod rotor;
-pub mod verdict;
-pub mod wording;
+mod table;
+pub mod texts;

@@ -28,6 +28,14 @@ impl Turning {
         }
     }
 
+    /// The same by its whole name.
+    pub fn table(self) -> &'static str {
+        match self {
+            Turning::Upper => "pair.lower_out",
+            Turning::Lower => "pair.upper_out",
+        }
+    }
+
     pub(crate) fn words(self) -> [&'static str; 3] {
         match self {
             Turning::Upper => ["--lower-out", "upper", "lower"],

@@ -16,10 +16,10 @@ use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::{fragment, report, verdict};
+use mixer_identify::texts::{Prediction, identify};
 
 use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choice, throttle_box};
-use crate::bench_files::{identify_with_runs, read_all};
+use crate::bench_files::{text, texts};
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame::FrameArgs;
 use crate::pack::PackArgs;
@@ -207,49 +207,40 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     let inputs = args.files.iter().chain(runs.into_iter().flatten());
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     place.check(&inputs)?;
-    if let Some(single) = &args.prior {
-        return corrected(args, single, &place);
-    }
-    let runs = [args.lower_out.as_deref(), args.upper_out.as_deref()];
-    let identified = identify_with_runs(&args.files, runs, &args.settings()).map_err(refused)?;
-    let refused_rows = || identified.files.iter().flat_map(|f| &f.refused_rows);
+    let maps = texts(&args.files);
+    let [prior, upper, lower] = runs.map(|run| run.as_deref().map(text));
+    let settings = args.settings();
+    let answer = match &prior {
+        Some(single) => args.rotors.predict(
+            single,
+            &maps,
+            Prediction {
+                run: predict::of_one_rotor(),
+                map: settings,
+                known: args.rotors.known(args.reference_voltage),
+                wishes: args.rotors.wishes(args.throttle, false),
+            },
+        ),
+        None => identify(&maps, [upper.as_ref(), lower.as_ref()], &settings),
+    };
+    let answer = answer.map_err(refused)?;
     let most = MOST_TOLD[usize::from(args.verbose)];
-    for row in refused_rows().take(most) {
+    for row in answer.refused_rows.iter().take(most) {
         print_note(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
     }
-    let more = refused_rows().count().saturating_sub(most);
+    let more = answer.refused_rows.len().saturating_sub(most);
     if more > 0 {
         print_note(format_args!("refused: {more} rows more"));
     }
-    let report = if args.json {
-        serde_json::to_string_pretty(&identified).map_err(print_error)?
-    } else if args.verbose {
-        report::text(&identified)
-    } else {
-        verdict::text(&identified)
-    };
-    // An airframe has the bias elsewhere, or not at all.
-    let tables = match &args.frame {
-        None => fragment::text(&identified),
-        Some(_) => fragment::tables(&identified),
-    };
-    place.write(&report, tables, identified.power_bias())
+    place.write(&answer, args.verbose)
 }
 
 /// Says what is wrong with the files.
-fn refused(refusals: Vec<Refusal>) -> ExitCode {
+pub(crate) fn refused(refusals: Vec<Refusal>) -> ExitCode {
     for refusal in refusals {
         print_error(refusal);
     }
     ExitCode::FAILURE
-}
-
-/// `--prior`: the rows of the pair correct what a run of one rotor predicts.
-fn corrected(args: &IdentifyArgs, single: &Path, place: &Place<'_>) -> Result<(), ExitCode> {
-    let maps = read_all(&args.files, &args.settings()).map_err(refused)?;
-    let predicted = predict::correct(&maps, single, &args.rotors, args.reference_voltage, args.throttle)
-        .map_err(print_error)?;
-    predict::write(&predicted, place)
 }
 
 /// Largest exponent that is taken: a propeller has 2.5 at most.

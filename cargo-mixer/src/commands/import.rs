@@ -18,7 +18,6 @@ mod text;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::pair_file::PairFile;
 use parameters::Parameters;
 use rotors::Imported;
 
@@ -82,7 +81,7 @@ pub fn run(args: &ImportArgs) -> ExitCode {
 fn import(args: &ImportArgs) -> Result<Vec<String>, String> {
     let mut imported = read(args)?;
     let units = pairs::pair(&imported.rotors, &args.upper)?;
-    let pair = args.pair.as_deref().map(PairFile::read).transpose()?;
+    let pair = args.pair.as_deref().map(crate::bench_files::pair).transpose()?;
     let text = text::airframe(
         args.name.as_deref(),
         &args.files,

@@ -5,7 +5,6 @@ use std::process::ExitCode;
 
 use crate::airframe_file;
 use crate::frame::FrameArgs;
-use crate::pair_file::PairFile;
 
 /// Writes a complete, commented airframe file of a regular frame
 ///
@@ -35,7 +34,7 @@ pub fn run(args: &NewArgs) -> ExitCode {
     if let Err(status) = crate::file::writable(&args.output, args.force, inputs) {
         return status;
     }
-    let pair = match args.pair.as_deref().map(PairFile::read).transpose() {
+    let pair = match args.pair.as_deref().map(crate::bench_files::pair).transpose() {
         Ok(pair) => pair,
         Err(message) => return crate::print_error(message),
     };

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::ValueEnum;
 use mixer_compiler::Compiled;
-use mixer_identify::wording::wrapped;
+use mixer_identify::report::wrapped;
 
 use crate::bench_args::{PulseRange, pwm_range};
 use crate::stack::px4::{self, Currents};

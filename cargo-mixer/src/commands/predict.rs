@@ -4,21 +4,22 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use mixer_identify::bench::Preparation;
 use mixer_identify::bench::header::ByHand;
 use mixer_identify::bench::read::Reading;
 use mixer_identify::bench::sign::{SignChoice, SignPolicy};
-use mixer_identify::bench::{Bench, Preparation};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::rotor::predict::{self, Predicted, Wishes};
-use mixer_identify::rotor::single::{Known, Single};
+use mixer_identify::rotor::predict::Wishes;
+use mixer_identify::rotor::single::Known;
+use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
-use crate::bench_files::read_one;
+use crate::bench_files::text;
+use crate::commands::identify::refused;
 use crate::frame::FrameArgs;
 use crate::place::Place;
-use crate::print_error;
 use crate::today::today;
 
 /// Predict a pair's thrust and torque from a run of one rotor, or the table of its data sheet
@@ -101,26 +102,35 @@ impl RotorArgs {
         self.spacing_ratio.or(spacing.map(|(z, diameter)| z / diameter))
     }
 
-    /// The runs of the upper and, where it differs, of the lower rotor.
-    ///
-    /// # Errors
-    /// A file that cannot be read or used.
-    pub(crate) fn runs(
-        &self,
-        single: &Path,
-        reference_v: Option<f64>,
-        settings: &Settings,
-        warnings: &mut Vec<String>,
-    ) -> Result<(Single, Option<Single>), Refusal> {
-        let known = Known {
+    /// What is known of the runs.
+    pub(crate) fn known(&self, reference_v: Option<f64>) -> Known {
+        Known {
             kappa_m: self.kappa,
             diameter_m: self.diameter,
             run_v: self.run_voltage,
             reference_v,
-        };
-        let mut of = |path: &Path| Single::of(&read_one(path, settings)?, &known, warnings);
-        let upper = of(single)?;
-        Ok((upper, self.lower_single.as_deref().map(of).transpose()?))
+        }
+    }
+
+    /// What is wished of the pair.
+    pub(crate) fn wishes(&self, throttle: Option<ThrottleBox>, closed_loop: bool) -> Wishes {
+        Wishes {
+            spacing_ratio: self.ratio(),
+            closed_loop,
+            throttle: throttle.unwrap_or(Wishes::default().throttle),
+            date: today(),
+        }
+    }
+
+    /// Predicts the pair of the run of a rotor and of what is given.
+    pub(crate) fn predict(
+        &self,
+        single: &Text,
+        maps: &[Text],
+        how: Prediction,
+    ) -> Result<Answer, Vec<Refusal>> {
+        let lower = self.lower_single.as_deref().map(text);
+        texts::predict(single, lower.as_ref(), maps, &how)
     }
 
     /// Whether anything is given.
@@ -169,26 +179,29 @@ impl PredictArgs {
         }
     }
 
-    fn wishes(&self) -> Wishes {
-        Wishes {
-            spacing_ratio: self.rotors.ratio(),
-            closed_loop: self.rpm_at_full.is_some(),
-            throttle: self.throttle.unwrap_or(Wishes::default().throttle),
-            date: today(),
-        }
-    }
-
     /// Predicts the pair.
     ///
     /// # Errors
     /// Files that cannot serve.
-    pub fn predicted(&self) -> Result<Predicted, Refusal> {
-        let mut warnings = Vec::new();
-        let settings = self.settings();
-        let (upper, lower) =
-            self.rotors
-                .runs(&self.single, self.reference_voltage, &settings, &mut warnings)?;
-        predict::predict(upper, lower, &self.wishes(), warnings)
+    pub fn predicted(&self) -> Result<Answer, Vec<Refusal>> {
+        let how = Prediction {
+            run: self.settings(),
+            map: Settings::default(),
+            known: self.rotors.known(self.reference_voltage),
+            wishes: self.rotors.wishes(self.throttle, self.rpm_at_full.is_some()),
+        };
+        self.rotors.predict(&text(&self.single), &[], how)
+    }
+}
+
+/// How a run of one rotor is read.
+pub(crate) fn of_one_rotor() -> Settings {
+    Settings {
+        preparation: Preparation {
+            own_columns: true,
+            ..Preparation::default()
+        },
+        ..Settings::default()
     }
 }
 
@@ -203,50 +216,8 @@ pub fn run(args: &PredictArgs) -> ExitCode {
     let inputs = [Some(&args.single), args.rotors.lower_single.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let done = place.check(&inputs).and_then(|()| {
-        let predicted = args.predicted().map_err(print_error)?;
-        write(&predicted, &place)
+        let answer = args.predicted().map_err(refused)?;
+        place.write(&answer, false)
     });
     done.err().unwrap_or(ExitCode::SUCCESS)
-}
-
-/// [`predict::correct`] of files: `identify MAP.csv.. --prior SINGLE.csv`.
-///
-/// # Errors
-/// Files that cannot serve.
-pub(crate) fn correct(
-    maps: &[Bench],
-    single: &Path,
-    rotors: &RotorArgs,
-    reference_v: Option<f64>,
-    throttle: Option<ThrottleBox>,
-) -> Result<Predicted, Refusal> {
-    let mut warnings = Vec::new();
-    let settings = Settings {
-        preparation: Preparation {
-            own_columns: true,
-            ..Preparation::default()
-        },
-        ..Settings::default()
-    };
-    let (upper, lower) = rotors.runs(single, reference_v, &settings, &mut warnings)?;
-    let wishes = Wishes {
-        spacing_ratio: rotors.ratio(),
-        closed_loop: false,
-        throttle: throttle.unwrap_or(Wishes::default().throttle),
-        date: today(),
-    };
-    predict::correct(upper, lower, maps, &wishes, warnings)
-}
-
-/// Writes report and tables of a prediction.
-///
-/// # Errors
-/// The exit status; what is wrong is told.
-pub(crate) fn write(predicted: &Predicted, place: &Place<'_>) -> Result<(), ExitCode> {
-    let report = if place.json {
-        serde_json::to_string_pretty(predicted).map_err(print_error)?
-    } else {
-        predict::report(predicted)
-    };
-    place.write(&report, predict::text(predicted), None)
 }

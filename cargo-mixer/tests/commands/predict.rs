@@ -7,8 +7,9 @@ use mixer_compiler::airframe::Basis;
 use mixer_compiler::{Source, compile};
 use mixer_identify::bench::Preparation;
 use mixer_identify::fit::polynomial::Polynomial;
+use mixer_identify::fragment;
 use mixer_identify::identified::Settings;
-use mixer_identify::rotor::predict::{Predicted, Wishes, predict, text};
+use mixer_identify::rotor::predict::{Predicted, Wishes, correct};
 use mixer_identify::rotor::single::{Known, Single};
 use mixer_rt::Wrench;
 
@@ -125,10 +126,10 @@ fn predicted_airframes_lift_what_is_asked() {
             spacing_ratio: Some(spacing_ratio),
             ..Wishes::default()
         };
-        let predicted: Predicted = predict(single, None, &wishes, Vec::new()).expect("a pair");
+        let predicted: Predicted = correct(single, None, &[], &wishes, Vec::new()).expect("a pair");
         let airframe = format!(
             "name = \"predicted\"\n{}\n[layout]\narm_m = 0.4\nunits = 4\nfirst_angle_deg = 45.0\n",
-            text(&predicted)
+            fragment::of_prediction(&predicted)
         );
         let compiled = compile(&Source::new("predicted.toml", airframe))
             .unwrap_or_else(|faults| panic!("{map}: {faults}"));

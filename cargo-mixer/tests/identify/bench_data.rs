@@ -10,7 +10,7 @@ use mixer_identify::fit::Fit;
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::power::Power;
 
-use cargo_mixer::bench_files::{identify, identify_with_runs, read_file};
+use cargo_mixer::bench_files::{identify, identify_with_runs, read_one};
 use mixer_identify::fit::pair::Pair;
 use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
@@ -360,8 +360,7 @@ fn thinned(count: usize) -> Vec<usize> {
 /// `identify` refuses so few.
 fn left_out(path: &Path, basis: Basis, count: usize) -> Option<[f64; 2]> {
     let settings = settings(Some(basis));
-    let log = read_file(path, &settings.reading).expect("a log");
-    let whole = bench::prepare(log, &settings.preparation).expect("a bench");
+    let whole = read_one(path, &settings).expect("a bench");
     let level = |throttle: f64| (9.0 * (throttle - 0.07) / 0.88).round() as usize;
     let kept = thinned(count);
     let is_kept = |p: &Point| kept.contains(&level(p.u)) && kept.contains(&level(p.l));

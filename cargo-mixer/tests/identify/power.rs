@@ -67,7 +67,7 @@ fn the_bias_of_least_power_is_recovered() {
         );
         let text = fragment::text(&found);
         assert!(
-            text.contains("# Least power:") && text.contains("N m per N"),
+            text.contains("# least power:") && text.contains("N m per N"),
             "{text}"
         );
     }

@@ -3,10 +3,9 @@
 
 use std::path::Path;
 
-use cargo_mixer::bench_files::identify;
-use cargo_mixer::bench_files::read_file;
+use cargo_mixer::bench_files::{identify, read_one};
 use mixer_compiler::airframe::Basis;
-use mixer_identify::bench;
+use mixer_identify::bench::Point;
 use mixer_identify::fit::polynomial::Polynomial;
 
 use crate::bench_data::{coaxial, data};
@@ -44,9 +43,8 @@ fn a_map_between_two_spacings_is_interpolated() {
             .map(|(near, far)| (1.0 - weight) * near + weight * far)
             .collect()
     });
-    let reading = settings(None);
-    let log = read_file(&coaxial(&data, BETWEEN.0), &reading.reading).expect("a log");
-    let rows = bench::prepare(log, &reading.preparation).expect("a bench").points;
+    let bench = read_one(&coaxial(&data, BETWEEN.0), &settings(None));
+    let rows = bench.expect("a bench").points;
     let full = rows.iter().fold([0.0f64; 2], |full, row| {
         [full[0].max(row.thrust.abs()), full[1].max(row.torque.abs())]
     });
@@ -58,7 +56,7 @@ fn a_map_between_two_spacings_is_interpolated() {
     let percent = |coefficients: &[Vec<f64>; 2]| {
         [0, 1].map(|k| {
             let model = Polynomial::of(Basis::Cubic, &coefficients[k]);
-            let square = |row: &&bench::Point| {
+            let square = |row: &&Point| {
                 let at_reference = libm::pow(REFERENCE_V / row.voltage, EXPONENT);
                 let measured = [row.thrust, row.torque][k] * at_reference;
                 let missed = model.at(row.u, row.l) - measured;

@@ -171,7 +171,7 @@ fn a_declared_exponent_brings_the_rows_to_the_reference() {
         ["thrust_exponent", "torque_exponent"].map(|key| v[key].as_float()),
         [Some(1.7), Some(1.9)]
     );
-    assert!(text.contains("declared by --voltage-exponent"), "{text}");
+    assert!(text.contains("exponent 1.7 as declared"), "{text}");
     assert!(text.contains("must be measured where the bench's was"), "{text}");
     let told = |part: &str| found.warnings.iter().any(|w| w.contains(part));
     assert!(

@@ -1,14 +1,12 @@
-//! One bench file to samples in SI units, streaming.
+//! One bench file to samples in SI units.
 //!
 //! A cell that is not a number, or a throttle outside the range, refuses its row, named by file and
 //! line. An empty cell is a missing value: streaming tools leave torque blank in most rows.
 
-use std::io::{BufRead, BufReader, Read};
-
 use serde::Serialize;
 
 use crate::bench::header::{ByHand, Column, Columns};
-use crate::bench::text::{self, Normalised};
+use crate::bench::text;
 use crate::bench::units::Scale;
 use crate::refusal::{Refusal, cut, cut_cell};
 
@@ -85,14 +83,21 @@ pub fn unreadable(name: &str, reason: &str) -> Refusal {
 }
 
 /// Reads a bench log named `name`.
-pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, Refusal> {
-    let io = |e: std::io::Error| unreadable(name, &e.to_string());
-    let mut source = BufReader::with_capacity(1 << 16, Normalised::new(source));
-    let (header, header_line) = first_line(&mut source).map_err(io)?;
+///
+/// # Errors
+/// Bytes that are no text, and a header without the columns that every use needs.
+pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal> {
+    let text = text::normalised(bytes).map_err(|reason| unreadable(name, reason))?;
+    let (mut header, mut header_line, mut rows) = (&text[..0], 0, text.as_slice());
+    while header.trim_ascii().is_empty() && !rows.is_empty() {
+        let end = rows.iter().position(|byte| *byte == b'\n');
+        (header, rows) = rows.split_at(end.map_or(rows.len(), |at| at + 1));
+        header_line += 1;
+    }
     if header.contains(&0) {
         return Err(unreadable(name, "it holds zero bytes and is no text"));
     }
-    let separator = text::separator(&header);
+    let separator = text::separator(header);
     let columns = header.iter().filter(|byte| **byte == separator).count() + 1;
     if columns > MOST_COLUMNS || header.len() > LONGEST_HEADER {
         return Err(Refusal::of(
@@ -104,9 +109,9 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
     let csv_of = |input| {
         let mut builder = csv::ReaderBuilder::new();
         builder.delimiter(separator).flexible(true).has_headers(false);
-        builder.from_reader::<Box<dyn Read + '_>>(input)
+        builder.from_reader::<&[u8]>(input)
     };
-    let headers: Vec<String> = match csv_of(Box::new(header.as_slice())).byte_records().next() {
+    let headers: Vec<String> = match csv_of(header).byte_records().next() {
         Some(Ok(record)) => record
             .iter()
             .map(|cell| text::decode(cell).trim().to_string())
@@ -128,7 +133,7 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
         samples: Vec::new(),
         refused: Vec::new(),
     };
-    let mut rows = csv_of(Box::new(source));
+    let mut rows = csv_of(rows);
     let mut record = csv::ByteRecord::new();
     let mut cells = Cells {
         pwm_range: reading.pwm_range.unwrap_or(PWM_RANGE),
@@ -156,18 +161,6 @@ pub fn read(name: &str, source: impl BufRead, reading: &Reading) -> Result<Log, 
                 line,
                 reason: cut(reason),
             }),
-        }
-    }
-}
-
-/// The first line that is not blank, and its number from 1.
-fn first_line(source: &mut impl BufRead) -> std::io::Result<(Vec<u8>, u64)> {
-    let mut number = 0;
-    loop {
-        let mut line = Vec::new();
-        number += 1;
-        if source.read_until(b'\n', &mut line)? == 0 || !line.trim_ascii().is_empty() {
-            return Ok((line, number));
         }
     }
 }

@@ -53,60 +53,62 @@ pub fn spelled(text: &str) -> String {
         .to_lowercase()
 }
 
+/// What a unit of a quantity is in SI units, the names of units as [`scale`] strips them.
+const FACTORS: [(Quantity, &[&str], f64); 24] = [
+    (Quantity::Throttle, &["%", "percent"], 0.01),
+    (Quantity::Throttle, &["1", ""], 1.0),
+    (Quantity::Thrust, &["n"], 1.0),
+    (Quantity::Thrust, &["mn"], 1e-3),
+    (Quantity::Thrust, &["kn"], 1e3),
+    (Quantity::Thrust, &["g", "gf"], 1e-3 * G),
+    (Quantity::Thrust, &["kg", "kgf"], G),
+    (Quantity::Thrust, &["lb", "lbf", "lbs"], POUND),
+    (Quantity::Thrust, &["oz", "ozf"], OUNCE),
+    (Quantity::Torque, &["nm"], 1.0),
+    (Quantity::Torque, &["mnm", "nmm"], 1e-3),
+    (Quantity::Torque, &["ncm"], 1e-2),
+    (Quantity::Torque, &["kgfm", "kgm"], G),
+    (Quantity::Torque, &["kgfcm", "kgcm"], 1e-2 * G),
+    (Quantity::Torque, &["gfcm", "gcm"], 1e-5 * G),
+    (
+        Quantity::Torque,
+        &["lbfin", "lbin", "inlb", "inlbf"],
+        POUND * INCH,
+    ),
+    (
+        Quantity::Torque,
+        &["lbfft", "lbft", "ftlb", "ftlbf"],
+        POUND * 12.0 * INCH,
+    ),
+    (
+        Quantity::Torque,
+        &["ozfin", "ozin", "inoz", "inozf"],
+        OUNCE * INCH,
+    ),
+    (Quantity::Voltage, &["v"], 1.0),
+    (Quantity::Voltage, &["mv"], 1e-3),
+    (Quantity::Current, &["a"], 1.0),
+    (Quantity::Current, &["ma"], 1e-3),
+    (Quantity::Time, &["s", "sec"], 1.0),
+    (Quantity::Time, &["ms"], 1e-3),
+];
+
 /// The scale of `unit` for this quantity, or nothing if the unit does not measure it.
 pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
     let unit: String = spelled(unit)
         .chars()
         .filter(|c| !matches!(c, '·' | '*' | '-' | '.' | ' '))
         .collect();
-    let factor = match quantity {
-        Quantity::Throttle => match unit.as_str() {
-            "us" | "pwm" => return Some(Scale::Pulse(1.0)),
-            "ms" => return Some(Scale::Pulse(1000.0)),
-            "%" | "percent" => 0.01,
-            "1" | "" => 1.0,
-            _ => return None,
-        },
-        Quantity::Thrust => match unit.as_str() {
-            "n" => 1.0,
-            "mn" => 1e-3,
-            "kn" => 1e3,
-            "g" | "gf" => 1e-3 * G,
-            "kg" | "kgf" => G,
-            "lb" | "lbf" | "lbs" => POUND,
-            "oz" | "ozf" => OUNCE,
-            _ => return None,
-        },
-        Quantity::Torque => match unit.as_str() {
-            "nm" => 1.0,
-            "mnm" => 1e-3,
-            "ncm" => 1e-2,
-            "nmm" => 1e-3,
-            "kgfm" | "kgm" => G,
-            "kgfcm" | "kgcm" => 1e-2 * G,
-            "gfcm" | "gcm" => 1e-5 * G,
-            "lbfin" | "lbin" | "inlb" | "inlbf" => POUND * INCH,
-            "lbfft" | "lbft" | "ftlb" | "ftlbf" => POUND * 12.0 * INCH,
-            "ozfin" | "ozin" | "inoz" | "inozf" => OUNCE * INCH,
-            _ => return None,
-        },
-        Quantity::Voltage => match unit.as_str() {
-            "v" => 1.0,
-            "mv" => 1e-3,
-            _ => return None,
-        },
-        Quantity::Current => match unit.as_str() {
-            "a" => 1.0,
-            "ma" => 1e-3,
-            _ => return None,
-        },
-        Quantity::Time => match unit.as_str() {
-            "s" | "sec" => 1.0,
-            "ms" => 1e-3,
-            _ => return None,
-        },
-    };
-    Some(Scale::Factor(factor))
+    match (quantity, unit.as_str()) {
+        (Quantity::Throttle, "us" | "pwm") => Some(Scale::Pulse(1.0)),
+        (Quantity::Throttle, "ms") => Some(Scale::Pulse(1000.0)),
+        (_, unit) => {
+            let found = FACTORS
+                .iter()
+                .find(|(of, names, _)| *of == quantity && names.contains(&unit));
+            found.map(|(_, _, factor)| Scale::Factor(*factor))
+        }
+    }
 }
 
 /// The units that `scale` knows, for messages.

@@ -1,8 +1,9 @@
 //! How far a map may be from its pair, `[pair.uncertainty]`.
 
-use std::fmt;
-
 use serde::Serialize;
+use toml_edit::{Item, value};
+
+use crate::table::table;
 
 /// One standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -36,18 +37,16 @@ impl Uncertainty {
     }
 }
 
-/// The table of the airframe file.
-impl fmt::Display for Uncertainty {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "[pair.uncertainty]                     # one standard deviation, % of full scale\n\
-             thrust_percent = {:?}\ntorque_percent = {:?}",
-            self.thrust_percent, self.torque_percent
-        )?;
+impl Uncertainty {
+    /// The table of the airframe file.
+    pub(crate) fn table(&self) -> Item {
+        let mut entries = vec![
+            ("thrust_percent", value(self.thrust_percent)),
+            ("torque_percent", value(self.torque_percent)),
+        ];
         if self.is_predicted {
-            writeln!(f, "source = \"prediction\"")?;
+            entries.push(("source", value("prediction")));
         }
-        Ok(())
+        table("# One standard deviation, % of full scale.\n", entries)
     }
 }

@@ -5,12 +5,11 @@
 //! idle raised until the compiler takes it -> `[throttle]`, `[pair]`, `[pair.uncertainty]`,
 //! `[pair.lower_out]`, `[pair.upper_out]`.
 
-use std::fmt::Write as _;
-
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
+use toml_edit::{DocumentMut, value};
 
 use crate::bench::{Bench, Kind};
 use crate::fit::basis::ThrottleBox;
@@ -20,8 +19,8 @@ use crate::refusal::Refusal;
 use crate::rotor::curve::Rotor;
 use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
 use crate::rotor::posterior::{self, BETWEEN_SYSTEMS, Case, scaled};
-use crate::rotor::single::{EXPONENT, Single};
-use crate::wording::wrapped;
+use crate::rotor::single::Single;
+use crate::table::{commented, numbers, table};
 
 /// z/D where the user does not say: spacing matters little (docs/no-bench.md).
 pub const SPACING_RATIO: f64 = 0.25;
@@ -138,20 +137,7 @@ pub struct Out {
     pub torque_nm: [f64; 3],
 }
 
-/// Predicts the pair of a rotor, or of two that differ.
-///
-/// # Errors
-/// A map that the compiler does not take at any idle.
-pub fn predict(
-    upper: Single,
-    lower: Option<Single>,
-    wishes: &Wishes,
-    warnings: Vec<String>,
-) -> Result<Predicted, Refusal> {
-    correct(upper, lower, &[], wishes, warnings)
-}
-
-/// [`predict`] with rows of the pair, which move the constants.
+/// Predicts the pair of a rotor, or of two that differ; rows of the pair move the constants.
 ///
 /// # Errors
 /// Files that are no maps, and a map that the compiler does not take at any idle.
@@ -409,120 +395,42 @@ fn compiled(
 
 /// An airframe of one such pair, for the compiler to judge.
 fn one_pair(pair: &PredictedPair) -> String {
-    let mut text = String::from("name = \"predicted\"\n");
-    let _ = write_keys(&mut text, pair);
-    text + "[[unit]]\nposition_m = [0.0, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n\
-            [allocation]\naxes = [\"yaw\", \"thrust\"]\n"
-}
-
-/// The tables, with where they come from in comments.
-pub fn text(predicted: &Predicted) -> String {
-    let mut out = String::new();
-    // Writing to a String cannot fail; the result is dropped.
-    let _ = write_text(&mut out, predicted);
-    out
-}
-
-fn write_text(out: &mut String, predicted: &Predicted) -> std::fmt::Result {
-    let day = predicted.date.iter().map(|date| format!(" on {date}"));
-    writeln!(
-        out,
-        "# Predicted by {}{}, not measured.",
-        predicted.generator,
-        day.collect::<String>()
-    )?;
-    for line in lines(predicted) {
-        for (k, line) in wrapped(&line, 104).iter().enumerate() {
-            writeln!(out, "# {}{line}", if k == 0 { "" } else { "  " })?;
-        }
-    }
-    writeln!(out)?;
-    write_keys(out, &predicted.pair)?;
-    let (at, mark) = match predicted.reference_v {
-        Some(volts) => (format!("{:?}", (100.0 * volts).round() / 100.0), ""),
-        None => ("?".to_owned(), " The run does not say at which voltage."),
-    };
-    writeln!(
-        out,
-        "\n# No [voltage]: the mixer takes k = 1 at any voltage.{mark} To follow the battery, complete\n\
-         # [voltage]\n# reference_v = {at}\n# range_v = [?, ?]                   # what the battery gives in flight, under load\n\
-         # thrust_exponent = {EXPONENT}\n# torque_exponent = {EXPONENT}"
+    format!(
+        "name = \"predicted\"\n{}[[unit]]\nposition_m = [0.0, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\n\
+         [allocation]\naxes = [\"yaw\", \"thrust\"]\n",
+        pair.tables(&|_| String::new())
     )
 }
 
-fn write_keys(out: &mut String, pair: &PredictedPair) -> std::fmt::Result {
-    let ThrottleBox { min, max } = pair.throttle;
-    writeln!(out, "[throttle]\nmin = {min:?}\nmax = {max:?}\n")?;
-    writeln!(
-        out,
-        "[pair]\nbasis = \"{}\"                       # {}\nthrust_n = {:?}\ntorque_nm = {:?}\nupper_spin = \"{}\"\n",
-        pair.basis.name(),
-        pair.terms.join(", "),
-        pair.thrust_n,
-        pair.torque_nm,
-        pair.upper_spin
-    )?;
-    for (key, out_of, which) in [
-        ("lower_out", pair.lower_out, "upper"),
-        ("upper_out", pair.upper_out, "lower"),
-    ] {
-        writeln!(
-            out,
-            "[pair.{key}]                       # the {which} rotor alone\nthrust_n = {:?}\ntorque_nm = {:?}\n",
-            out_of.thrust_n, out_of.torque_nm
-        )?;
+impl PredictedPair {
+    /// `[throttle]` and `[pair]`, with what stands above a table by its name.
+    pub(crate) fn tables(&self, about: &dyn Fn(&str) -> String) -> DocumentMut {
+        let curves = |name: &str, out: Out| {
+            let curves = [
+                ("thrust_n", numbers(out.thrust_n)),
+                ("torque_nm", numbers(out.torque_nm)),
+            ];
+            table(&about(name), curves)
+        };
+        let pair = [
+            ("basis", value(self.basis.name())),
+            ("thrust_n", commented(&self.thrust_n, self.terms.iter().cloned())),
+            (
+                "torque_nm",
+                commented(&self.torque_nm, self.terms.iter().cloned()),
+            ),
+            ("upper_spin", value(self.upper_spin)),
+            ("lower_out", curves("pair.lower_out", self.lower_out)),
+            ("upper_out", curves("pair.upper_out", self.upper_out)),
+            ("uncertainty", self.uncertainty.table()),
+        ];
+        let limits = [
+            ("min", value(self.throttle.min)),
+            ("max", value(self.throttle.max)),
+        ];
+        let mut document = DocumentMut::new();
+        document.insert("throttle", table(&about("throttle"), limits));
+        document.insert("pair", table(&about("pair"), pair));
+        document
     }
-    write!(out, "{}", pair.uncertainty)
-}
-
-/// The report: what was read, what came of it, how far to trust it.
-pub fn report(predicted: &Predicted) -> String {
-    let mut out = String::from("Predicted, not measured\n");
-    for line in lines(predicted) {
-        for (k, line) in wrapped(&line, 96).iter().enumerate() {
-            let _ = writeln!(out, "  {}{line}", if k == 0 { "" } else { "  " });
-        }
-    }
-    let pair = &predicted.pair;
-    let _ = writeln!(
-        out,
-        "\nThrottle {} .. {}; the cubic misses the model by {:.2} % of thrust and {:.2} % of torque, rms",
-        pair.throttle.min, pair.throttle.max, pair.misfit_percent[0], pair.misfit_percent[1]
-    );
-    out
-}
-
-fn lines(predicted: &Predicted) -> Vec<String> {
-    let mut lines = Vec::new();
-    for run in &predicted.runs {
-        lines.push(format!(
-            "from {}: {} points of one rotor, throttle {:.2} to {:.2}{}",
-            run.file,
-            run.points,
-            run.measured[0],
-            run.measured[1],
-            run.voltage_v
-                .map_or(String::new(), |volts| format!(", {volts:.2} V"))
-        ));
-    }
-    for (file, rows) in &predicted.corrected_by {
-        lines.push(format!("corrected by {rows} rows of the pair in {file}"));
-    }
-    let [b, m0, m1, n, a, limit] = predicted.constants;
-    lines.push(format!(
-        "z/D {:.3}; constants B {b}, m0 {m0}, m1 {m1}, n {n}, a {a}, b {limit}",
-        predicted.spacing_ratio
-    ));
-    let Uncertainty {
-        thrust_percent,
-        torque_percent,
-        ..
-    } = predicted.pair.uncertainty;
-    lines.push(format!(
-        "to trust: thrust within {thrust_percent} %, torque within {torque_percent} % of full scale (one standard deviation), for \
-         open, equal rotors that turn against each other, z/D 0.1 to 1; not for ducts, co-rotating or blocked rotors. In the \
-         first hover compare the thrust asked with the weight; docs/no-bench.md goes on from there."
-    ));
-    lines.extend(predicted.warnings.iter().map(|warning| format!("! {warning}")));
-    lines
 }

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use toml::{Table, Value};
+use mixer_identify::pair_file::PairFile;
+use toml::Value;
 
 use super::rotors::{Imported, Unit};
-use crate::pair_file::PairFile;
 
 /// Idle where nothing says one.
 const IDLE: f64 = 0.1;
@@ -26,10 +26,8 @@ pub(super) fn airframe(
     units: &[Unit],
     pair: Option<&PairFile>,
 ) -> String {
-    let none = Table::new();
-    let table = pair.map_or(&none, |pair| &pair.table);
-    let [min, max] = throttle(imported, table);
-    let voltage = voltage(imported, table);
+    let [min, max] = throttle(imported, pair);
+    let voltage = voltage(imported, pair);
     if pair.is_none() {
         imported.notes.push(
             "no parameter describes the pair: `cargo mixer identify` makes [pair] of bench data; --pair takes it in".to_owned(),
@@ -56,7 +54,7 @@ pub(super) fn airframe(
     }
     let _ = writeln!(out, "\n[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}");
     match pair {
-        Some(pair) => out += &pair.tables(TAKEN),
+        Some(pair) => out += &pair.tables(TAKEN).0,
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
     }
     if let Some((airmode, reason)) = imported.airmode {
@@ -85,9 +83,8 @@ pub(super) fn airframe(
 }
 
 /// Both files' ranges: the pair's model is known in its own alone.
-fn throttle(imported: &mut Imported, pair: &Table) -> [f64; 2] {
-    let of_pair = pair.get("throttle").and_then(Value::as_table);
-    let number = |key| of_pair.and_then(|table| table.get(key)).and_then(number);
+fn throttle(imported: &mut Imported, pair: Option<&PairFile>) -> [f64; 2] {
+    let number = |key| pair.and_then(|pair| pair.number("throttle", key));
     match (imported.throttle, number("min"), number("max")) {
         (Some([min, max]), low, high) => {
             let (least, most) = (low.unwrap_or(min).max(min), high.unwrap_or(max).min(max));
@@ -104,12 +101,12 @@ fn throttle(imported: &mut Imported, pair: &Table) -> [f64; 2] {
 }
 
 /// `[voltage]` where the pair's file has none: in comments, since the bench's voltage is not known.
-fn voltage(imported: &mut Imported, pair: &Table) -> String {
+fn voltage(imported: &mut Imported, pair: Option<&PairFile>) -> String {
     let Some([low, high]) = imported.range_v else {
         return String::new();
     };
     let range: [f64; 2] = [low, high].map(|volts| (volts * 100.0).round() / 100.0);
-    if pair.contains_key("voltage") {
+    if pair.is_some_and(|pair| pair.has("voltage")) {
         imported.notes.push(format!(
             "the stack's battery is {:?} to {:?} V: compare with range_v of [voltage]",
             range[0], range[1]
@@ -124,10 +121,6 @@ fn voltage(imported: &mut Imported, pair: &Table) -> String {
         "# [voltage]                            # reference_v: of the bench; exponents: a median\n# reference_v = \n\
          # range_v = {range:?}\n# thrust_exponent = {EXPONENT}\n# torque_exponent = {EXPONENT}\n\n"
     )
-}
-
-fn number(value: &Value) -> Option<f64> {
-    value.as_float().or_else(|| Some(value.as_integer()? as f64))
 }
 
 fn default_name(units: usize) -> String {

@@ -1,0 +1,380 @@
+//! What there is to say of a result, once: the report prints it, and the tables have it as comments.
+
+use mixer_compiler::model::PairMap;
+
+use super::bench::{Bench, Kind};
+use super::fit::Fit;
+use super::fit::pair::Pair;
+use super::fit::power::{LeastPower, Power};
+use super::fit::voltage::{Estimate, Exponent, Voltage};
+use super::identified::Identified;
+use super::rotor::predict::Predicted;
+use super::rotor::{Alone, Turning};
+
+/// Where a fact is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Told {
+    /// In every report and in the tables.
+    Always,
+    /// In the long report and in the tables.
+    Detail,
+    /// In reports only.
+    Reported,
+}
+
+/// One of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fact {
+    /// The table that it is about, as `pair.power`; empty for the whole file.
+    pub table: &'static str,
+    /// What it is; empty where it goes on with the one before.
+    pub name: &'static str,
+    /// The words.
+    pub text: String,
+    /// Where it is told.
+    pub told: Told,
+}
+
+/// A list in the making, of one table at a time.
+#[derive(Default)]
+struct Facts {
+    table: &'static str,
+    all: Vec<Fact>,
+}
+
+impl Facts {
+    fn add(&mut self, told: Told, name: &'static str, text: String) {
+        let table = self.table;
+        self.all.push(Fact {
+            table,
+            name,
+            text,
+            told,
+        });
+    }
+
+    fn always(&mut self, name: &'static str, text: String) {
+        self.add(Told::Always, name, text);
+    }
+
+    fn detail(&mut self, name: &'static str, text: String) {
+        self.add(Told::Detail, name, text);
+    }
+}
+
+/// Files that are named one by one in every report.
+const MOST_FILES: usize = 4;
+
+/// What was identified.
+pub fn of_identified(identified: &Identified) -> Vec<Fact> {
+    let mut facts = Facts::default();
+    for (k, file) in identified.files.iter().enumerate() {
+        let told = if k < MOST_FILES {
+            Told::Always
+        } else {
+            Told::Detail
+        };
+        facts.add(told, "read", format!("{}: {}", file.file, provenance(file)));
+        facts.detail("", signs(file));
+    }
+    let more = identified.files.len().saturating_sub(MOST_FILES);
+    if more > 0 {
+        facts.add(Told::Reported, "read", format!("and {more} files more"));
+    }
+    if let Some(pair) = &identified.pair {
+        of_pair(&mut facts, pair);
+    }
+    facts.table = "voltage";
+    match &identified.voltage {
+        Some(voltage) => of_voltage(&mut facts, voltage),
+        None => facts.always(
+            "voltage",
+            "not corrected for: no file has a voltage column".into(),
+        ),
+    }
+    facts.table = "pair.power";
+    match &identified.power {
+        Some(Power::Identified(found)) => of_power(&mut facts, found),
+        Some(Power::Refused { reason }) => facts.always("least power", format!("none: {reason}")),
+        None => {}
+    }
+    facts.all
+}
+
+/// One line on a file: format, date, rows.
+fn provenance(file: &Bench) -> String {
+    let date = file.date.as_deref().unwrap_or("date unknown");
+    let kind = if file.kind == Kind::Pair {
+        ""
+    } else {
+        ", single rotor"
+    };
+    let refused = file.refused_rows.len();
+    let used = file
+        .rows
+        .saturating_sub(file.start_stop_rows + file.settling_rows + refused);
+    let parts = [
+        (file.start_stop_rows, "start and stop rows dropped"),
+        (file.settling_rows, "settling"),
+        (if file.streaming { file.points_used } else { 0 }, "plateaus"),
+        (refused, "refused"),
+    ];
+    let parts = parts.iter().filter(|(count, _)| *count > 0);
+    let parts: String = parts.map(|(count, what)| format!(", {count} {what}")).collect();
+    format!(
+        "{}{kind}, {date}: {used} of {} rows used{parts}",
+        file.format, file.rows
+    )
+}
+
+fn signs(file: &Bench) -> String {
+    let of = |name: &str, signs: &[f64], policy: &str| {
+        let signs: Vec<&str> = signs.iter().map(|s| if *s < 0.0 { "-" } else { "+" }).collect();
+        format!("{name} {} ({policy})", signs.join(","))
+    };
+    let s = &file.signs;
+    let thrust = of("thrust", &s.thrust, s.thrust_policy);
+    let torque = of(", torque", &s.torque, s.torque_policy);
+    let torque = if s.torque.is_empty() { "" } else { &torque };
+    format!("signs applied: {thrust}{torque}")
+}
+
+fn of_pair(facts: &mut Facts, pair: &Pair) {
+    let (min, max) = (pair.throttle.min, pair.throttle.max);
+    let map = PairMap::of(pair.basis, &pair.thrust_n, &pair.torque_nm, [min, max]);
+    let [floor, full] = [min, max].map(|t| map.efforts([t, t])[0]);
+    let [least, most] = [[max, min], [min, max]].map(|t| map.efforts(t)[1]);
+    facts.table = "throttle";
+    let text = format!("{floor:.1} to {full:.1} N of one pair; torque {least:+.3} N m to {most:+.3} N m");
+    facts.always("thrust", text);
+    let fold = match pair.fold.least_idle {
+        _ if pair.fold.injective => "the map has no fold".to_owned(),
+        Some(least) => format!("the map folds below {least:.4}"),
+        None => "the map folds".to_owned(),
+    };
+    let idle = 100.0 * floor / full;
+    let text = format!("{min} to {max}; at idle {idle:.1} % of the largest thrust; {fold}");
+    facts.always("throttle", text);
+    let (least, [u, l]) = (pair.fold.least_det, pair.fold.least_det_at);
+    let sign = if pair.fold.folds {
+        ""
+    } else {
+        ", and is proven positive"
+    };
+    facts.detail(
+        "",
+        format!("the least det J is {least:.4}, at ({u:.3}, {l:.3}){sign}"),
+    );
+    for region in &pair.fold.regions {
+        let ([ua, ub], [la, lb]) = (region.u, region.l);
+        facts.detail(
+            "",
+            format!("det J <= 0 within u {ua:.3} .. {ub:.3}, l {la:.3} .. {lb:.3}"),
+        );
+    }
+
+    facts.table = "pair";
+    let (thrust, torque) = (&pair.thrust, &pair.torque);
+    let (basis, left_out) = (pair.basis.name(), "of the largest torque at");
+    let [f, q] = [thrust, torque].map(|fit| 100.0 * fit.leave_one_out_rms / fit.full_scale);
+    let errors = match pair.uncertainty.map(|u| (u.thrust_percent, u.torque_percent)) {
+        Some((f, q)) => format!("{f} % of the largest thrust and {q} % {left_out} throttles left out"),
+        None => format!("{f:.1} % of the largest thrust and {q:.1} % {left_out} rows left out"),
+    };
+    facts.always("model error", format!("{errors}; {basis} basis"));
+    let standing_out = match (pair.outliers.len(), pair.outliers_left_out) {
+        (0, _) => "no row stands out".to_owned(),
+        (count, true) => format!("{count} rows stand out and are left out"),
+        (count, false) => format!("{count} rows stand out"),
+    };
+    let [(f, of_f), (q, of_q)] =
+        [thrust, torque].map(|fit| (fit.residual_max, 100.0 * fit.residual_max / fit.full_scale));
+    let text = format!("{f:.2} N ({of_f:.1} %) and {q:.4} N m ({of_q:.1} %) off; {standing_out}");
+    facts.always("worst row", text);
+    for o in &pair.outliers {
+        let (f, of_f) = (o.thrust_residual, o.thrust_deviations);
+        let (q, of_q) = (o.torque_residual, o.torque_deviations);
+        let text = format!(
+            "{}:{} at ({:.3}, {:.3}): thrust {f:+.3} N ({of_f:+.0} sigma), torque {q:+.4} N m ({of_q:+.0} sigma)",
+            o.file, o.line, o.u, o.l
+        );
+        facts.detail("", text);
+    }
+    facts.detail("fit of thrust", of_fit(thrust, "N"));
+    facts.detail("fit of torque", of_fit(torque, "N m"));
+    let [u, l] = thrust.prediction.greatest_at;
+    let text = format!(
+        "{} points, {} degrees of freedom, condition number {:.1}; prediction widest at ({u:.2}, {l:.2})",
+        thrust.points, thrust.degrees_of_freedom, thrust.condition_number
+    );
+    facts.detail("", text);
+    if let Some(volts) = pair.normalised_to_v {
+        facts.detail(
+            "",
+            format!("all points are brought to {volts} V by the exponents of voltage"),
+        );
+    }
+    if runs(pair).next().is_none() {
+        let text = "by the map, extrapolated to a throttle of 0 (--lower-out, --upper-out take runs)";
+        facts.add(Told::Reported, "rotor out", text.into());
+    }
+    runs(pair).for_each(|(turning, alone)| of_alone(facts, turning, alone));
+}
+
+fn of_fit(fit: &Fit, unit: &str) -> String {
+    let (left_out, full) = (fit.leave_one_out_rms, fit.full_scale);
+    let (share, within) = (100.0 * left_out / full, &fit.prediction);
+    let terms = fit.coefficients.iter().zip(&fit.ci95);
+    let weak = match terms.filter(|(c, ci)| c.abs() < **ci).count() {
+        0 => String::new(),
+        weak => format!(
+            "; {weak} of {} coefficients are smaller than their 95 % interval: trust the map, not its single terms",
+            fit.coefficients.len()
+        ),
+    };
+    format!(
+        "R2 {:.5}; residual {:.5} {unit} rms, {:.5} at most; leave-one-out {left_out:.5} {unit} rms, {share:.2} % of \
+         {full:.5}; prediction +- {:.5} to {:.5} {unit}{weak}",
+        fit.r2, fit.residual_rms, fit.residual_max, within.least, within.greatest
+    )
+}
+
+/// The rotors of a pair that were run alone.
+pub fn runs(pair: &Pair) -> impl Iterator<Item = (Turning, &Alone)> {
+    let both = [
+        (Turning::Upper, &pair.lower_out),
+        (Turning::Lower, &pair.upper_out),
+    ];
+    both.into_iter()
+        .filter_map(|(turning, alone)| Some((turning, alone.as_ref()?)))
+}
+
+fn of_alone(facts: &mut Facts, turning: Turning, alone: &Alone) {
+    facts.table = turning.table();
+    let other = alone.other_at.map_or(String::new(), |level| {
+        format!(
+            ", of a map in which the other rotor turned at {level:.2}: taken off by the pair's polynomials"
+        )
+    });
+    let (table, [from, to]) = (turning.table(), alone.measured);
+    let text = format!(
+        "[{table}] from {}: {} points, throttle {from:.2} to {to:.2}{other}",
+        alone.file, alone.points
+    );
+    facts.always("rotor out", text);
+    for (name, unit, [a1, a2, a3], fit) in [
+        ("thrust", "N", alone.thrust_n, &alone.thrust),
+        ("torque", "N m", alone.torque_nm, &alone.torque),
+    ] {
+        let full = fit.full_scale;
+        let [own, pair] = [fit.leave_one_out_rms, fit.of_the_pair_rms].map(|rms| 100.0 * rms / full);
+        let text = format!(
+            "{name} {a1:.5} x {a2:+.5} x2 {a3:+.5} x3 {unit}: leave-one-out {own:.2} % of {full:.4} {unit}; the pair's \
+             polynomial at zero misses this run by {pair:.2} %"
+        );
+        facts.detail("", text);
+    }
+}
+
+fn of_voltage(facts: &mut Facts, voltage: &Voltage) {
+    for (name, exponent) in voltage.channels() {
+        let (told, more) = match exponent {
+            Exponent::Identified(e) => (of_estimate(e), ""),
+            Exponent::Declared { exponent, .. } => (format!("exponent {exponent} as declared"), ""),
+            // Where voltages differ, a warning has the reason and what is needed.
+            Exponent::Refused { .. } if voltage.varies() => ("not corrected for: no exponent".to_owned(), ""),
+            Exponent::Refused { reason, needed } => (format!("not corrected for: {reason}"), needed.as_str()),
+            Exponent::NotMeasured => (
+                "not measured".to_owned(),
+                "both channels' exponents: thrust and torque follow the square of rotor speed, so that the other's is the \
+                 usual stand-in",
+            ),
+        };
+        facts.always("voltage", format!("{name} {told}"));
+        if !more.is_empty() {
+            facts.detail("", format!("needed: {more}"));
+        }
+    }
+    let ([low, high], mean) = (voltage.range_v, voltage.mean_v);
+    facts.detail("", format!("rows of {low:.2} to {high:.2} V, mean {mean:.2} V"));
+}
+
+fn of_estimate(e: &Estimate) -> String {
+    let levels = match e.levels {
+        0 => String::new(),
+        levels => format!(", {levels} levels"),
+    };
+    let quartiles = e
+        .quartiles
+        .map(|[low, median, high]| format!("; levels' median {median:.2}, quartiles {low:.2} and {high:.2}"));
+    let halves = e
+        .low_and_high_throttle
+        .map(|[low, high]| format!("; {low:.2} in the lower half of the throttle range, {high:.2} above"));
+    let [quartiles, halves] = [quartiles, halves].map(Option::unwrap_or_default);
+    let (exponent, ci95, method) = (e.exponent, e.ci95, e.method);
+    format!("exponent {exponent:.3} +- {ci95:.3} (95 %), by {method}{levels}{quartiles}{halves}")
+}
+
+fn of_power(facts: &mut Facts, found: &LeastPower) {
+    let (bias, saving, at) = (
+        found.bias_nm_per_n,
+        found.saving_percent,
+        found.at[found.at.len() / 2],
+    );
+    let text = format!(
+        "Q = c f with c = {bias:?} N m per N takes {saving:.1} % less than Q = 0 at 0.3 to 0.7 of full thrust: {:.1} for \
+         {:.1} W at {:.2} N",
+        at.least_power_w, at.power_w, at.thrust_n
+    );
+    facts.always("least power", text);
+    let longer = 100.0 * (1.0 / (1.0 - 0.01 * saving) - 1.0);
+    let text = format!(
+        "that is {longer:.1} % of flight time where as many upper rotors turn one way as the other; with spins s of n units \
+         1 - (sum s / n)^2 of it is left, none where all turn alike (a Y6)"
+    );
+    facts.detail("", text);
+    let (points, rms) = (found.points, found.residual_rms_w);
+    let share = 100.0 * rms / found.full_scale_w;
+    let refused = match found.power_w {
+        Some(_) => "",
+        None => "; no [pair.power], as it is not positive, or does not grow, over the throttles to command",
+    };
+    let text = format!(
+        "power map of {points} rows: residual {rms:.2} W rms, {share:.2} % of the greatest power{refused}"
+    );
+    facts.detail("", text);
+}
+
+/// What was predicted.
+pub fn of_predicted(predicted: &Predicted) -> Vec<Fact> {
+    let mut facts = Facts::default();
+    for run in &predicted.runs {
+        let (file, points, [from, to]) = (&run.file, run.points, run.measured);
+        let volts = run
+            .voltage_v
+            .map_or(String::new(), |volts| format!(", {volts:.2} V"));
+        let text = format!("{file}: {points} points of one rotor, throttle {from:.2} to {to:.2}{volts}");
+        facts.always("from", text);
+    }
+    for (file, rows) in &predicted.corrected_by {
+        facts.always("corrected by", format!("{rows} rows of the pair in {file}"));
+    }
+    let (ratio, [b, m0, m1, n, a, limit]) = (predicted.spacing_ratio, predicted.constants);
+    let text = format!("{ratio:.3}; constants B {b}, m0 {m0}, m1 {m1}, n {n}, a {a}, b {limit}");
+    facts.always("z/D", text);
+    let pair = &predicted.pair;
+    let (f, q) = (pair.uncertainty.thrust_percent, pair.uncertainty.torque_percent);
+    let text = format!(
+        "thrust within {f} %, torque within {q} % of full scale (one standard deviation), for open, equal rotors that turn \
+         against each other, z/D 0.1 to 1; not for ducts, co-rotating or blocked rotors. In the first hover compare the \
+         thrust asked with the weight; docs/no-bench.md goes on from there."
+    );
+    facts.always("to trust", text);
+    facts.table = "throttle";
+    let (min, max, [f, q]) = (pair.throttle.min, pair.throttle.max, pair.misfit_percent);
+    let text = format!(
+        "{min} to {max}; the cubic misses the model by {f:.2} % of thrust and {q:.2} % of torque, rms"
+    );
+    facts.always("throttle", text);
+    facts.all
+}

@@ -1,0 +1,159 @@
+//! Text in, text out: what a front end calls, be it the command line, a page or a notebook.
+
+use serde::Serialize;
+
+use super::bench::read::{self, RefusedRow};
+use super::bench::{self, Bench};
+use super::identified::{Identified, Settings, with_runs};
+use super::refusal::Refusal;
+use super::rotor::predict::{self, Predicted, Wishes};
+use super::rotor::single::{Known, Single};
+use super::{fragment, report};
+
+/// A bench file.
+#[derive(Debug, Clone)]
+pub struct Text {
+    /// Its name without folders, as it is told.
+    pub name: String,
+    /// Its bytes, UTF-8 or Latin-1, or why it cannot be read.
+    pub content: Result<Vec<u8>, Refusal>,
+}
+
+/// What came of files.
+#[derive(Debug, Clone)]
+pub struct Answer {
+    /// The report in at most 30 lines of 100 columns.
+    pub report: String,
+    /// Every number.
+    pub details: String,
+    /// The tables of an airframe file; [`PairFile`](super::pair_file::PairFile) reads them.
+    pub tables: String,
+    /// Everything as JSON.
+    pub json: String,
+    /// What the user should know; the reports have it too.
+    pub warnings: Vec<String>,
+    /// Rows that were left out as they cannot be read.
+    pub refused_rows: Vec<RefusedRow>,
+}
+
+/// Reads a file and makes it ready.
+///
+/// # Errors
+/// A file that cannot be read or used.
+pub fn read(text: &Text, settings: &Settings) -> Result<Bench, Refusal> {
+    let bytes = text.content.as_ref().map_err(Refusal::clone)?;
+    let log = read::read(&text.name, bytes.as_slice(), &settings.reading)?;
+    bench::prepare(log, &settings.preparation)
+}
+
+fn read_all(texts: &[Text], settings: &Settings) -> Result<Vec<Bench>, Vec<Refusal>> {
+    let (mut benches, mut refusals) = (Vec::new(), Vec::new());
+    for text in texts {
+        match read(text, settings) {
+            Ok(bench) => benches.push(bench),
+            Err(refusal) => refusals.push(refusal),
+        }
+    }
+    if refusals.is_empty() {
+        Ok(benches)
+    } else {
+        Err(refusals)
+    }
+}
+
+/// Identifies a pair from maps, and its rotors alone from `runs` of the upper and of the lower one.
+///
+/// # Errors
+/// All files that cannot be read or used, else why they do not give a pair.
+pub fn identified(
+    maps: &[Text],
+    runs: [Option<&Text>; 2],
+    settings: &Settings,
+) -> Result<Identified, Vec<Refusal>> {
+    let benches = read_all(maps, settings)?;
+    let run = |run: Option<&Text>| run.map(|run| read(run, settings)).transpose();
+    let [upper, lower] = runs;
+    run(upper)
+        .and_then(|upper| with_runs(benches, [upper, run(lower)?], &settings.wishes))
+        .map_err(|refusal| vec![refusal])
+}
+
+/// [`identified`] in words, tables and JSON.
+///
+/// # Errors
+/// As of [`identified`].
+pub fn identify(
+    maps: &[Text],
+    runs: [Option<&Text>; 2],
+    settings: &Settings,
+) -> Result<Answer, Vec<Refusal>> {
+    let identified = identified(maps, runs, settings)?;
+    let files = identified.files.iter();
+    Ok(Answer {
+        report: report::verdict(&identified),
+        details: report::text(&identified),
+        tables: fragment::text(&identified),
+        json: json(&identified)?,
+        refused_rows: files.flat_map(|file| file.refused_rows.clone()).collect(),
+        warnings: identified.warnings,
+    })
+}
+
+/// How a pair is predicted.
+#[derive(Debug, Clone, Default)]
+pub struct Prediction {
+    /// How runs of one rotor are read.
+    pub run: Settings,
+    /// How rows of the pair are read.
+    pub map: Settings,
+    /// What is known of the runs beside their files.
+    pub known: Known,
+    /// What is wished of the pair.
+    pub wishes: Wishes,
+}
+
+/// Predicts a pair from a run of the upper rotor and, where it differs, of the lower one; rows of the
+/// pair in `maps`, where there are any, correct it.
+///
+/// # Errors
+/// All maps that cannot be read or used, else why there is no pair.
+pub fn predicted(
+    upper: &Text,
+    lower: Option<&Text>,
+    maps: &[Text],
+    how: &Prediction,
+) -> Result<Predicted, Vec<Refusal>> {
+    let maps = read_all(maps, &how.map)?;
+    let mut warnings = Vec::new();
+    let mut single = |text: &Text| Single::of(&read(text, &how.run)?, &how.known, &mut warnings);
+    let runs = single(upper).and_then(|upper| Ok((upper, lower.map(single).transpose()?)));
+    runs.and_then(|(upper, lower)| predict::correct(upper, lower, &maps, &how.wishes, warnings))
+        .map_err(|refusal| vec![refusal])
+}
+
+/// [`predicted`] in words, tables and JSON.
+///
+/// # Errors
+/// As of [`predicted`].
+pub fn predict(
+    upper: &Text,
+    lower: Option<&Text>,
+    maps: &[Text],
+    how: &Prediction,
+) -> Result<Answer, Vec<Refusal>> {
+    let predicted = predicted(upper, lower, maps, how)?;
+    let report = report::of_prediction(&predicted);
+    Ok(Answer {
+        details: report.clone(),
+        report,
+        tables: fragment::of_prediction(&predicted),
+        json: json(&predicted)?,
+        refused_rows: Vec::new(),
+        warnings: predicted.warnings,
+    })
+}
+
+fn json(what: &impl Serialize) -> Result<String, Vec<Refusal>> {
+    serde_json::to_string_pretty(what)
+        .map_err(|error| vec![Refusal::general(error.to_string(), "numbers that JSON can hold")])
+}
