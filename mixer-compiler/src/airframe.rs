@@ -21,7 +21,7 @@ use toml::de::DeTable;
 
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::basis::Basis;
-pub(crate) use self::basis::POWERS;
+pub(crate) use self::basis::{POWERS, value_of_terms};
 pub(crate) use self::inverse::METHODS;
 pub use self::inverse::{Inverse, Method};
 pub use self::pair::{Pair, Spin};
@@ -36,7 +36,6 @@ use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::spec::keys::{Kind, Shape, keys};
 use crate::spec::{self, Fields, Places, Spanned};
-use layout::Layout;
 
 keys! { FILE = "":
     NAME "name" = "\"my-x8\"", Kind::Name,
@@ -206,13 +205,6 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         return None;
     }
     let mut file = Fields::of_file(table, &FILE, top, faults);
-    if file.key_place(&UNIT).is_none() && file.key_place(&LAYOUT).is_none() {
-        file.faults.push(
-            Diagnostic::new(Code::MissingKey, "unit", file.place(), "the airframe has 0 units")
-                .label("this airframe has no `[[unit]]`")
-                .help("add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame"),
-        );
-    }
     let name = file
         .read(&NAME)
         .and_then(|field| name::check(&field, file.faults));
@@ -228,9 +220,28 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let allocation = file.table(&ALLOCATION, allocation::read);
     let vehicle = file.table(&VEHICLE, vehicle::read);
 
-    let written = places.get("unit").cloned();
-    if let Some(fault) = units_stated_once(written, layout.as_ref(), units.len(), file.faults) {
-        file.faults.push(fault);
+    let written = file.key_place(&UNIT);
+    let is_told = || file.faults.iter().any(|fault| fault.key.starts_with("unit"));
+    if written.is_some()
+        && let Some(layout) = &layout
+    {
+        let message = format!("the file has `[layout]` and {} `[[unit]]`", units.len());
+        let fault = Diagnostic::new(Code::Conflict, "layout", layout.place.clone(), message);
+        let help = "keep one: `[layout]` for a regular frame, else `[[unit]]`";
+        file.faults
+            .push(fault.label("second description of the units").help(help));
+        return None;
+    }
+    if file.key_place(&LAYOUT).is_none() && units.is_empty() && !is_told() {
+        let code = if written.is_some() {
+            Code::WrongLength
+        } else {
+            Code::MissingKey
+        };
+        let place = written.unwrap_or(file.place());
+        let help = "add a `[[unit]]` for each pair of rotors, or a `[layout]` for a regular frame";
+        let fault = Diagnostic::new(code, "unit", place, "the airframe has 0 units");
+        file.faults.push(fault.label("no `[[unit]]`").help(help));
         return None;
     }
     let first_angle_deg = layout.as_ref().and_then(|layout| layout.first_angle_deg);
@@ -265,30 +276,4 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         first_angle_deg,
         places,
     })
-}
-
-/// The fault of units that are `written` without any, or beside a layout.
-fn units_stated_once(
-    written: Option<Range<usize>>,
-    layout: Option<&Layout>,
-    units: usize,
-    faults: &[Diagnostic],
-) -> Option<Diagnostic> {
-    let fault = match (written, layout) {
-        (Some(_), Some(layout)) => Diagnostic::new(
-            Code::Conflict,
-            "layout",
-            layout.place.clone(),
-            format!("the file has `[layout]` and {units} `[[unit]]`"),
-        )
-        .label("second description of the units")
-        .help("keep one: `[layout]` for a regular frame, else `[[unit]]`"),
-        (Some(place), None) if units == 0 && !faults.iter().any(|fault| fault.key.starts_with("unit")) => {
-            Diagnostic::new(Code::WrongLength, "unit", place, "the airframe has 0 units")
-                .label("empty")
-                .help("add a `[[unit]]` for each pair of rotors")
-        }
-        _ => return None,
-    };
-    Some(fault)
 }

@@ -78,19 +78,17 @@ pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Allocation> {
 
 fn axes(table: &mut Fields<'_, '_>, field: &Spanned<Vec<Spanned<String>>>) -> Option<Vec<Axis>> {
     let before = table.faults.len();
-    let fault =
-        |place, message: String| Diagnostic::new(Code::ControlAxes, "allocation.axes", place, message);
     let mut axes = Vec::new();
     for written in field.get_ref() {
         let Some(axis) = table.meaning(&AXES, written, &Axis::ALL) else {
             continue;
         };
         if axes.contains(&axis) {
-            table.faults.push(
-                fault(written.span(), format!("`{}` is listed twice", axis.name()))
-                    .label("again")
-                    .help("list every controlled axis once"),
-            );
+            let message = format!("`{}` is listed twice", axis.name());
+            let fault = Diagnostic::new(Code::ControlAxes, "allocation.axes", written.span(), message);
+            table
+                .faults
+                .push(fault.label("again").help("list every controlled axis once"));
         } else {
             axes.push(axis);
         }
@@ -99,19 +97,19 @@ fn axes(table: &mut Fields<'_, '_>, field: &Spanned<Vec<Spanned<String>>>) -> Op
         return None;
     }
     if !axes.contains(&Axis::Thrust) {
-        let message = match field.get_ref().len() {
-            0 => "`allocation.axes` is empty".to_string(),
-            _ => {
-                let names: Vec<_> = axes.iter().map(|axis| axis.name()).collect();
-                format!("`allocation.axes` has {} and no thrust", names.join(", "))
-            }
+        let names: Vec<_> = axes.iter().map(|axis| axis.name()).collect();
+        let message = match names.as_slice() {
+            [] => "`allocation.axes` is empty".to_string(),
+            names => format!("`allocation.axes` has {} and no thrust", names.join(", ")),
         };
-        table.faults.push(
-            fault(field.span(), message)
-                .label("`thrust` must be among them")
-                .help("leave out only what the units cannot produce, as in `axes = [\"yaw\", \"thrust\"]`"),
+        let help = "leave out only what the units cannot produce, as in `axes = [\"yaw\", \"thrust\"]`";
+        return table.refuse(
+            &AXES,
+            Code::ControlAxes,
+            message,
+            "`thrust` must be among them",
+            help,
         );
-        return None;
     }
     axes.sort();
     Some(axes)

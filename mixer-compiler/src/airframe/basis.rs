@@ -66,3 +66,14 @@ impl Basis {
         self.term_names().join(", ")
     }
 }
+
+/// `sum coefficient u^i l^j` at `[u, l]`.
+pub(crate) fn value_of_terms<'a>(
+    exponents: impl IntoIterator<Item = &'a (u8, u8)>,
+    coefficients: &[f64],
+    [u, l]: [f64; 2],
+) -> f64 {
+    let power = |x: f64, exponent: u8| (0..exponent).fold(1.0, |product, _| product * x);
+    let terms = exponents.into_iter().zip(coefficients);
+    terms.map(|(&(i, j), c)| c * power(u, i) * power(l, j)).sum()
+}

@@ -23,16 +23,9 @@ const RESERVED: &[&str] = &[
 ];
 
 /// Constants of the generated module, which its type cannot be called.
+#[rustfmt::skip]
 const CONSTANTS: &[&str] = &[
-    "ATTAINABLE",
-    "CHANNELS",
-    "INVERSE",
-    "LEVEL",
-    "PAIR",
-    "SCALE",
-    "TABLES",
-    "UNITS",
-    "VOLTAGE",
+    "ATTAINABLE", "CHANNELS", "INVERSE", "LEVEL", "PAIR", "SCALE", "TABLES", "UNITS", "VOLTAGE",
 ];
 
 /// `isae-x8` as a Rust module: `isae_x8`.

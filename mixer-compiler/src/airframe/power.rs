@@ -1,6 +1,6 @@
 //! `[pair.power]`: the electrical power of one pair over its throttles.
 
-use super::basis::Basis;
+use super::basis::{Basis, value_of_terms};
 use super::limits;
 use super::throttle::Throttle;
 use crate::diagnostic::Code;
@@ -75,9 +75,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> O
     })
 }
 
-fn value(coefficients: &[f64], [u, l]: [f64; 2]) -> f64 {
-    let power = |x: f64, n: u8| (0..n).fold(1.0, |product, _| product * x);
-    let terms = Basis::Quartic.exponents().iter().chain(&[(0, 0)]);
-    let terms = terms.zip(coefficients);
-    terms.map(|(&(i, j), c)| c * power(u, i) * power(l, j)).sum()
+fn value(coefficients: &[f64], at: [f64; 2]) -> f64 {
+    let exponents = Basis::Quartic.exponents().iter().chain(&[(0, 0)]);
+    value_of_terms(exponents, coefficients, at)
 }

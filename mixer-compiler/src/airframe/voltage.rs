@@ -2,8 +2,6 @@
 
 mod law;
 
-use std::ops::Range;
-
 pub use self::law::{Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic, any_of, number, rounded};
 use crate::spec::keys::{self, Key, Kind, keys};
@@ -152,9 +150,12 @@ fn law(
 fn check_size(table: &mut Fields<'_, '_>, key: &'static Key, law: &VoltageLaw, supply: Supply) -> bool {
     let path = table.key_path(key.name);
     let factor = |volts: f64| (law.factor(volts, supply.reference_v), volts);
-    let volts = match law {
-        VoltageLaw::Exponent(_) => supply.range_v.to_vec(),
-        VoltageLaw::Points(points) => points.iter().map(|point| point[0]).collect(),
+    let (volts, mend) = match law {
+        VoltageLaw::Exponent(_) => (supply.range_v.to_vec(), "raise the lower end of `range_v`"),
+        VoltageLaw::Points(points) => (
+            points.iter().map(|point| point[0]).collect(),
+            "a point is [volts, factor], the factor relative to the reference voltage",
+        ),
     };
     let factors = || volts.iter().map(|volts| factor(*volts));
     let of_reference = factor(supply.reference_v).0;
@@ -163,8 +164,7 @@ fn check_size(table: &mut Fields<'_, '_>, key: &'static Key, law: &VoltageLaw, s
     let (code, message, label, help) = if least < LEAST_FACTOR {
         let message = format!("`{path}` falls to {} at {} V", rounded(least), rounded(least_v));
         let label = format!("must stay above {LEAST_FACTOR} over `range_v`");
-        let help = "raise the lower end of `range_v`".to_owned();
-        (Code::VoltageNotPositive, message, label, help)
+        (Code::VoltageNotPositive, message, label, mend.to_owned())
     } else if (of_reference - 1.0).abs() > REFERENCE_TOLERANCE {
         let (k, volts) = (rounded(of_reference), number(supply.reference_v));
         let message = format!("`{path}` is {k} at the reference of {volts} V");
@@ -183,7 +183,7 @@ fn check_size(table: &mut Fields<'_, '_>, key: &'static Key, law: &VoltageLaw, s
     table.refuse::<()>(key, code, message, label, help).is_some()
 }
 
-/// Points whose voltages ascend over the whole range, none of their factors near zero.
+/// Points whose voltages ascend over the whole range.
 fn check_points(
     table: &mut Fields<'_, '_>,
     key: &'static Key,
@@ -192,31 +192,31 @@ fn check_points(
 ) -> Option<Vec<[f64; 2]>> {
     let path = table.key_path(key.name);
     let before = table.faults.len();
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    for written in field.get_ref() {
-        let point = written.get_ref().each_ref().map(|x| *x.get_ref());
-        let fault = point_fault(&path, written.span(), points.last(), point);
-        table.faults.extend(fault);
-        points.push(point);
+    let values = |point: &Point| point.get_ref().each_ref().map(|x| *x.get_ref());
+    let points: Vec<[f64; 2]> = field.get_ref().iter().map(values).collect();
+    for (pair, written) in points.windows(2).zip(field.get_ref().iter().skip(1)) {
+        let [from, to] = [pair[0][0], pair[1][0]];
+        let least = LEAST_STEP * to.abs();
+        if to - from >= least {
+            continue;
+        }
+        let message = format!("{} V does not come after {} V", number(to), number(from));
+        let label = format!("expected at least {} mV above it", rounded(least * 1000.0));
+        let fault = Diagnostic::new(Code::VoltagePoints, path.as_str(), written.span(), message);
+        let help = "sort the points by voltage and keep one at each";
+        table.faults.push(fault.label(label).help(help));
     }
-    let [low, high] = supply.range_v;
+    let [low, high] = supply.range_v.map(number);
     let reach = match (points.first(), points.last()) {
-        (Some(first), Some(last)) if first[0] <= low && high <= last[0] => None,
-        (Some(first), Some(last)) => Some(format!(
-            "reaches from {} V to {} V",
-            number(first[0]),
-            number(last[0])
-        )),
+        (Some([first, _]), Some([last, _])) => {
+            let [low, high] = supply.range_v;
+            let covers = *first <= low && high <= *last;
+            (!covers).then(|| format!("reaches from {} V to {} V", number(*first), number(*last)))
+        }
         _ => Some("is empty".to_owned()),
     };
-    if let Some(reach) = reach
-        && table.faults.len() == before
-    {
-        let message = format!(
-            "`{path}` {reach}, `range_v` from {} V to {} V",
-            number(low),
-            number(high)
-        );
+    if let (Some(reach), true) = (reach, table.faults.len() == before) {
+        let message = format!("`{path}` {reach}, `range_v` from {low} V to {high} V");
         let help = "add measured points at both ends, or narrow `range_v`";
         table.refuse::<()>(
             key,
@@ -227,43 +227,4 @@ fn check_points(
         );
     }
     (table.faults.len() == before).then_some(points)
-}
-
-/// What is wrong with a point after the one before it.
-fn point_fault(
-    path: &str,
-    place: Range<usize>,
-    previous: Option<&[f64; 2]>,
-    [volts, k]: [f64; 2],
-) -> Option<Diagnostic> {
-    let fault = |code, message: String| Diagnostic::new(code, path, place, message);
-    let millivolts = |volts: f64| rounded(volts * 1000.0);
-    let previous = previous.map_or(f64::NEG_INFINITY, |previous| previous[0]);
-    let (from_v, to_v) = (number(previous), number(volts));
-    if volts <= previous {
-        let message = format!("{to_v} V does not come after {from_v} V");
-        let fault = fault(Code::VoltagePoints, message).label("expected ascending voltages");
-        return Some(fault.help("sort the points by voltage and keep one at each"));
-    }
-    if volts - previous < LEAST_STEP * volts {
-        let message = format!(
-            "{from_v} V and {to_v} V are {} mV apart",
-            millivolts(volts - previous)
-        );
-        let fault = fault(Code::VoltagePoints, message);
-        let label = format!("expected {} mV at least", millivolts(LEAST_STEP * volts));
-        return Some(
-            fault
-                .label(label)
-                .help("keep one of the two: between them the law would be a jump"),
-        );
-    }
-    if k < LEAST_FACTOR {
-        let message = format!("`{path}` falls to {} at {to_v} V", rounded(k));
-        let fault = fault(Code::VoltageNotPositive, message);
-        let label = format!("must stay above {LEAST_FACTOR} over `range_v`");
-        let help = "a point is [volts, factor], the factor relative to the reference voltage";
-        return Some(fault.label(label).help(help));
-    }
-    None
 }

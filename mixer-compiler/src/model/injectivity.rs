@@ -12,11 +12,11 @@
 //! An invertible linear change of the efforts changes nothing about injectivity. All signs are
 //! proven by [`Bivariate`].
 
-use crate::airframe::{Airframe, Basis, Pair};
+use crate::airframe::{Airframe, Basis, Pair, value_of_terms};
 use crate::bounds::interval::Interval;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 use crate::model::PairMap;
-use crate::model::polynomial::{Bivariate, Sign, ThrottleBox};
+use crate::model::polynomial::{Bivariate, ThrottleBox};
 use crate::model::wake::{self, Wake};
 
 /// The forward map with coefficients that are enclosed by intervals, for proofs. For its values see
@@ -77,7 +77,8 @@ impl EnclosedPairMap {
             .plus(minus, &thrust[1].times(&torque[0]));
         // The size of thrust is its value at full throttle, that of torque its range over the
         // diagonal's ends.
-        let corner = |coefficients: &[f64], u: f64, l: f64| value(exponents, coefficients, u, l).abs();
+        let corner =
+            |coefficients: &[f64], u: f64, l: f64| value_of_terms(exponents, coefficients, [u, l]).abs();
         let size = |c: &[f64]| {
             corner(c, 1.0, 1.0)
                 .max(corner(c, 0.0, 1.0))
@@ -105,34 +106,18 @@ impl EnclosedPairMap {
 
     /// The proof, or throttles where det J may not be positive, if that is what fails.
     fn injective(&self, throttle: ThrottleBox) -> Result<Injectivity, Option<[f64; 2]>> {
-        let least_determinant = match self.determinant.prove_positive(throttle) {
-            Sign::Positive { bound } => bound,
-            Sign::NotPositive { at } | Sign::Undecided { near: at } => return Err(Some(at)),
-        };
+        let least_determinant = self.determinant.prove_positive(throttle).map_err(Some)?;
         let [thrust_size, torque_size] = self.scale.map(|size| Interval::exact(1.0 / size));
-        let positive = |p: Bivariate| matches!(p.prove_positive(throttle), Sign::Positive { .. });
         let zero = Bivariate::from_terms(&[(0, 0)], &[0.0]);
-        let combine = |p: &Bivariate, p_size, q: &Bivariate, q_size, factor: f64| {
-            zero.plus(p_size, p).plus(Interval::exact(factor) * q_size, q)
+        let combines = |p: &Bivariate, p_size, q: &Bivariate, q_size, factor: f64| {
+            let sum = zero.plus(p_size, p).plus(Interval::exact(factor) * q_size, q);
+            sum.prove_positive(throttle).is_ok()
         };
-        let a = COMBINATIONS.into_iter().find(|&a| {
-            positive(combine(
-                &self.thrust[0],
-                thrust_size,
-                &self.torque[0],
-                torque_size,
-                -a,
-            ))
-        });
-        let b = COMBINATIONS.into_iter().find(|&b| {
-            positive(combine(
-                &self.torque[1],
-                torque_size,
-                &self.thrust[1],
-                thrust_size,
-                b,
-            ))
-        });
+        let (f, q) = (&self.thrust, &self.torque);
+        let mut factors = COMBINATIONS.into_iter();
+        let a = factors.find(|&a| combines(&f[0], thrust_size, &q[0], torque_size, -a));
+        let mut factors = COMBINATIONS.into_iter();
+        let b = factors.find(|&b| combines(&q[1], torque_size, &f[1], thrust_size, b));
         match (a, b) {
             (Some(a), Some(b)) => Ok(Injectivity {
                 least_determinant,
@@ -277,13 +262,3 @@ const GRID: u32 = 16;
 
 /// Resolution of [`EnclosedPairMap::least_idle`]: steps per unit of throttle.
 const IDLE_STEPS: f64 = 1e5;
-
-/// `sum coefficient u^i l^j`, in f64.
-pub(crate) fn value(exponents: &[(u8, u8)], coefficients: &[f64], u: f64, l: f64) -> f64 {
-    let power = |x: f64, exponent: u8| (0..exponent).fold(1.0, |product, _| product * x);
-    exponents
-        .iter()
-        .zip(coefficients)
-        .map(|(&(i, j), c)| c * power(u, i) * power(l, j))
-        .sum()
-}

@@ -23,26 +23,6 @@ pub struct ThrottleBox {
     pub high: f64,
 }
 
-/// What [`Bivariate::prove_positive`] found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Sign {
-    /// Positive everywhere on the box; the proven lower bound of the value.
-    Positive {
-        /// The least Bernstein coefficient met, > 0.
-        bound: f64,
-    },
-    /// Not positive at this point.
-    NotPositive {
-        /// The throttles `(u, l)`.
-        at: [f64; 2],
-    },
-    /// Neither proven nor refuted within the work allowed; the undecided box is around this point.
-    Undecided {
-        /// The throttles `(u, l)`.
-        near: [f64; 2],
-    },
-}
-
 /// Boxes looked at before giving up: enough to separate values of 1e-9 of the polynomial's size.
 const MOST_BOXES: usize = 4096;
 
@@ -144,59 +124,68 @@ impl Bivariate {
         })
     }
 
-    /// Proves that the polynomial is positive on the whole box, or finds where it is not.
-    pub(crate) fn prove_positive(&self, throttle: ThrottleBox) -> Sign {
-        let whole = Patch {
-            coefficients: self.bernstein(throttle),
+    /// Proves that the polynomial is positive on the whole box: a lower bound of it, above 0.
+    ///
+    /// # Errors
+    /// Throttles `(u, l)` where it is not positive, or around which it is neither proven nor refuted
+    /// within the work allowed.
+    pub(crate) fn prove_positive(&self, throttle: ThrottleBox) -> Result<f64, [f64; 2]> {
+        let mut bound = f64::INFINITY;
+        let mut open = vec![Patch {
+            polynomial: self.bernstein(throttle),
             low: [throttle.low; 2],
             high: [throttle.high; 2],
-        };
-        let mut bound = f64::INFINITY;
-        let mut open = vec![whole];
+        }];
         let mut looked_at = 0;
         while let Some(patch) = open.pop() {
             looked_at += 1;
-            let least = patch
-                .coefficients
-                .iter()
-                .flatten()
-                .map(|c| c.low)
-                .fold(f64::INFINITY, f64::min);
+            let coefficients = patch.polynomial.coefficients.iter().flatten();
+            let least = coefficients.map(|c| c.low).fold(f64::INFINITY, f64::min);
             if least > 0.0 {
                 bound = bound.min(least);
                 continue;
             }
-            if let Some(at) = patch
-                .corners()
-                .into_iter()
-                .find(|&at| self.at(at).is_not_positive())
-            {
-                return Sign::NotPositive { at };
+            let corners = patch.corners();
+            if let Some(at) = corners.into_iter().find(|&at| self.at(at).is_not_positive()) {
+                return Err(at);
             }
             if looked_at + open.len() >= MOST_BOXES {
-                return Sign::Undecided {
-                    near: patch.corners()[0],
-                };
+                return Err(corners[0]);
             }
             open.extend(patch.halves());
         }
-        Sign::Positive { bound }
+        Ok(bound)
+    }
+
+    /// De Casteljau at one half on every row of Bernstein coefficients: those of both halves.
+    fn split(self) -> [Self; 2] {
+        let (first, second) = self
+            .coefficients
+            .into_iter()
+            .map(|mut row| {
+                let (mut first, mut second) = (Vec::new(), Vec::new());
+                while let (Some(&left), Some(&right)) = (row.first(), row.last()) {
+                    first.push(left);
+                    second.push(right);
+                    row = row.windows(2).map(|pair| (pair[0] + pair[1]).half()).collect();
+                }
+                second.reverse();
+                (first, second)
+            })
+            .unzip();
+        [first, second].map(|coefficients| Bivariate { coefficients })
     }
 
     /// Bernstein coefficients on the box.
-    fn bernstein(&self, throttle: ThrottleBox) -> Vec<Vec<Interval>> {
-        let in_l: Vec<Vec<Interval>> = self
-            .coefficients
-            .iter()
-            .map(|row| univariate_bernstein(row, throttle))
-            .collect();
-        let in_u = Bivariate { coefficients: in_l }.transposed();
-        let both: Vec<Vec<Interval>> = in_u
-            .coefficients
-            .iter()
-            .map(|row| univariate_bernstein(row, throttle))
-            .collect();
-        Bivariate { coefficients: both }.transposed().coefficients
+    fn bernstein(&self, throttle: ThrottleBox) -> Self {
+        let of_rows = |polynomial: &Self| Bivariate {
+            coefficients: polynomial
+                .coefficients
+                .iter()
+                .map(|row| univariate_bernstein(row, throttle))
+                .collect(),
+        };
+        of_rows(&of_rows(self).transposed()).transposed()
     }
 }
 
@@ -239,7 +228,7 @@ fn univariate_bernstein(coefficients: &[Interval], throttle: ThrottleBox) -> Vec
 
 /// A part of the box with its Bernstein coefficients `[in u][in l]`.
 struct Patch {
-    coefficients: Vec<Vec<Interval>>,
+    polynomial: Bivariate,
     low: [f64; 2],
     high: [f64; 2],
 }
@@ -255,54 +244,30 @@ impl Patch {
     /// middle, which differs by rounding only, and corners are used for refutation, never for the
     /// proof.
     fn halves(self) -> [Patch; 2] {
-        let along_u = self.high[0] - self.low[0] >= self.high[1] - self.low[1];
-        let axis = usize::from(!along_u);
-        let middle = 0.5 * (self.low[axis] + self.high[axis]);
-        let (first, second) = if along_u {
-            let transposed = Bivariate {
-                coefficients: self.coefficients,
-            }
-            .transposed()
-            .coefficients;
-            let (first, second) = split_rows(transposed);
-            let back = |rows| Bivariate { coefficients: rows }.transposed().coefficients;
-            (back(first), back(second))
-        } else {
-            split_rows(self.coefficients)
+        let Patch {
+            polynomial,
+            low,
+            high,
+        } = self;
+        let along_u = high[0] - low[0] >= high[1] - low[1];
+        let halves = match along_u {
+            true => polynomial.transposed().split().map(|half| half.transposed()),
+            false => polynomial.split(),
         };
-        let (mut middle_high, mut middle_low) = (self.high, self.low);
-        middle_high[axis] = middle;
-        middle_low[axis] = middle;
-        [
+        let (mut middle_high, mut middle_low) = (high, low);
+        let axis = usize::from(!along_u);
+        middle_high[axis] = 0.5 * (low[axis] + high[axis]);
+        middle_low[axis] = middle_high[axis];
+        let mut boxes = [(low, middle_high), (middle_low, high)].into_iter();
+        halves.map(|polynomial| {
+            let (low, high) = boxes.next().unwrap_or((low, high));
             Patch {
-                coefficients: first,
-                low: self.low,
-                high: middle_high,
-            },
-            Patch {
-                coefficients: second,
-                low: middle_low,
-                high: self.high,
-            },
-        ]
-    }
-}
-
-/// De Casteljau at one half on every row: the coefficients of both halves.
-fn split_rows(rows: Vec<Vec<Interval>>) -> (Vec<Vec<Interval>>, Vec<Vec<Interval>>) {
-    rows.into_iter()
-        .map(|mut row| {
-            let mut first = Vec::with_capacity(row.len());
-            let mut second = Vec::with_capacity(row.len());
-            while let (Some(&left), Some(&right)) = (row.first(), row.last()) {
-                first.push(left);
-                second.push(right);
-                row = row.windows(2).map(|pair| (pair[0] + pair[1]).half()).collect();
+                polynomial,
+                low,
+                high,
             }
-            second.reverse();
-            (first, second)
         })
-        .unzip()
+    }
 }
 
 #[cfg(test)]
@@ -318,22 +283,19 @@ mod tests {
             let exponents = [(2, 0), (1, 0), (0, 2), (0, 1), (0, 0)];
             Bivariate::from_terms(&exponents, &[1.0, -1.0, 1.0, -0.5, 0.3125 + c])
         };
-        assert!(matches!(bowl(1e-4).prove_positive(BOX), Sign::Positive { bound } if bound <= 1e-4));
-        match bowl(-1e-4).prove_positive(BOX) {
-            Sign::NotPositive { at: [u, l] } => assert!((u - 0.5).abs() < 0.02 && (l - 0.25).abs() < 0.02),
-            other => panic!("{other:?}"),
-        }
+        assert!(bowl(1e-4).prove_positive(BOX).is_ok_and(|bound| bound <= 1e-4));
+        let [u, l] = bowl(-1e-4).prove_positive(BOX).unwrap_err();
+        assert!((u - 0.5).abs() < 0.02 && (l - 0.25).abs() < 0.02);
         // A double zero that no corner of a halving hits exactly can be neither proven nor refuted.
         let thirds = Bivariate::from_terms(&[(2, 0), (1, 0), (0, 0)], &[9.0, -6.0, 1.0]);
-        assert!(
-            matches!(thirds.prove_positive(BOX), Sign::Undecided { near: [u, _] } if (u - 1.0 / 3.0).abs() < 0.01)
-        );
+        let [u, _] = thirds.prove_positive(BOX).unwrap_err();
+        assert!((u - 1.0 / 3.0).abs() < 0.01);
     }
 
     #[test]
     fn a_coefficient_that_is_no_number_proves_nothing() {
         let line = |c: f64| Bivariate::from_terms(&[(1, 0), (0, 0)], &[c, 1.0]);
-        let positive = |p: Bivariate| matches!(p.prove_positive(BOX), Sign::Positive { .. });
+        let positive = |p: Bivariate| p.prove_positive(BOX).is_ok();
         for c in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(!positive(line(c)) && !positive(line(c).times(&line(c))), "{c}");
         }

@@ -27,10 +27,10 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     let (table, mut errors) = DeTable::parse_recoverable(&source.text);
     let table = table.into_inner();
     let sound = errors.iter().all(|error| error.message() == DUPLICATE);
-    let mut long_values = Vec::new();
-    if !errors.is_empty() {
-        note_long_values(&table, &source.text, &mut long_values);
-    }
+    let long_values = match errors.is_empty() {
+        true => Vec::new(),
+        false => long_values(&table, &source.text),
+    };
 
     errors.sort_by_key(start);
     // Lines are counted on from error to error: from the start for each it would take the square of
@@ -52,7 +52,7 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
         }
         faults.push(diagnostic(source, error));
         noted += 1;
-        if noted == MOST || long_values.iter().any(|value| within(value, offset)) {
+        if noted == MOST || long_values.iter().any(|lines| lines.contains(&offset)) {
             break;
         }
     }
@@ -68,44 +68,26 @@ fn newlines(text: &str, range: Range<usize>) -> usize {
     bytes.iter().filter(|byte| **byte == b'\n').count()
 }
 
-/// A value of several lines.
-struct LongValue {
-    span: Range<usize>,
-    /// The end of its first line.
-    first_line_end: usize,
-}
-
-/// Whether `offset` is in the value, after its first line.
-fn within(value: &LongValue, offset: usize) -> bool {
-    value.span.contains(&offset) && offset > value.first_line_end
-}
-
-/// Every value of several lines, tables aside.
-fn note_long_values(table: &DeTable<'_>, text: &str, found: &mut Vec<LongValue>) {
-    let mut note = |span: Range<usize>| {
-        let first_line = text.get(span.clone()).and_then(|value| value.find('\n'));
-        found.extend(first_line.map(|length| LongValue {
-            first_line_end: span.start + length,
-            span,
-        }));
-    };
-    let mut tables = Vec::new();
+/// Where values of several lines are after their first line, tables aside.
+fn long_values(table: &DeTable<'_>, text: &str) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
     for (_, value) in table {
-        match value.get_ref() {
-            DeValue::Table(table) => tables.push(table),
-            DeValue::Array(elements) => {
-                note(value.span());
-                tables.extend(elements.iter().filter_map(|element| match element.get_ref() {
-                    DeValue::Table(table) => Some(table),
-                    _ => None,
-                }));
-            }
-            _ => note(value.span()),
+        if let DeValue::Table(table) = value.get_ref() {
+            found.extend(long_values(table, text));
+            continue;
         }
+        let span = value.span();
+        let first_line = text.get(span.clone()).and_then(|value| value.find('\n'));
+        found.extend(first_line.map(|length| span.start + length + 1..span.end));
+        let elements = value
+            .get_ref()
+            .as_array()
+            .into_iter()
+            .flat_map(|array| array.iter());
+        let tables = elements.filter_map(|element| element.get_ref().as_table());
+        found.extend(tables.flat_map(|table| long_values(table, text)));
     }
-    for table in tables {
-        note_long_values(table, text, found);
-    }
+    found
 }
 
 fn diagnostic(source: &Source, error: &Error) -> Diagnostic {
