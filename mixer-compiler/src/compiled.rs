@@ -33,9 +33,9 @@ pub struct Compiled {
     pub thrust_range_n: [f32; 2],
     /// Proven bounds of the evaluator's errors.
     pub certificate: Certificate,
-    /// Share of the attainable set's area that the sides of the closed form lose; `None` without a
-    /// closed form.
-    pub lost_between_sides: Option<f64>,
+    /// Share of the attainable set's area that the sides of the closed form lose, or why the airframe
+    /// has no closed form.
+    pub lost_between_sides: Result<f64, &'static str>,
     /// What is emitted.
     pub tables: MixerTables,
 }

@@ -120,8 +120,9 @@ impl Model {
         })
     }
 
-    /// The tables, and the share of the attainable set's area that the sides of the closed form lose.
-    fn tables(&self, selected: &Selected) -> (MixerTables, Option<f64>) {
+    /// The tables, and the share of the attainable set's area that the sides of the closed form lose,
+    /// or why there is none.
+    fn tables(&self, selected: &Selected) -> (MixerTables, Result<f64, &'static str>) {
         let Model {
             airframe,
             pair,
@@ -137,7 +138,10 @@ impl Model {
             map: &selected.map,
             tolerance: selection::tolerance(airframe, effectiveness, pair, voltage, selected),
         };
-        let (closed_form, lost_between_sides) = closed_form::table(airframe, effectiveness, pair).unzip();
+        let (closed_form, lost_between_sides) = match closed_form::table(airframe, effectiveness, pair) {
+            Ok((table, lost)) => (Some(table), Ok(lost)),
+            Err(reason) => (None, Err(reason)),
+        };
         let mut tables = MixerTables::new(&parts, closed_form);
         tables.level_n = thrust_range::level(airframe, &tables);
         (tables, lost_between_sides)

@@ -193,7 +193,7 @@ impl Summary {
             rank: compiled.effectiveness.rank,
             condition: compiled.effectiveness.condition,
             axes: airframe.allocation.axes.iter().map(|axis| axis.name()).collect(),
-            attainable_area_lost_in_closed_form: compiled.lost_between_sides,
+            attainable_area_lost_in_closed_form: compiled.lost_between_sides.ok(),
             thrust_range_n: compiled.thrust_range_n,
             uncertainty: compiled
                 .airframe
@@ -349,8 +349,8 @@ impl Report<'_> {
             f,
             "attainable set  f {f_low:.3} to {f_high:.3} N, Q {q_low:.4} to {q_high:.4} N m per unit",
         )?;
-        match summary.attainable_area_lost_in_closed_form {
-            Some(lost) => {
+        match self.0.lost_between_sides {
+            Ok(lost) => {
                 let cells = tables
                     .closed_form
                     .as_ref()
@@ -362,7 +362,10 @@ impl Report<'_> {
                     100.0 * lost
                 )?;
             }
-            None => writeln!(f, "desaturation    on the throttles, over the whole set")?,
+            Err(reason) => writeln!(
+                f,
+                "desaturation    on the throttles, over the whole set: no closed form, as {reason}"
+            )?,
         }
         let [floor, ceiling] = summary.thrust_range_n;
         writeln!(f, "bare thrust     {floor:.3} to {ceiling:.3} N (no torque)")?;

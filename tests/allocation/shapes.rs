@@ -216,7 +216,7 @@ fn judge(name: &str, pair: &str, count: usize) -> Tally {
             let compiled = frames::compile_text(&text).unwrap_or_else(|faults| panic!("{name}: {faults}"));
             let frame = Frame::new(compiled);
             let lost = frame.compiled.lost_between_sides;
-            let lost = lost.unwrap_or_else(|| panic!("{name}, {frame_name}: no closed form"));
+            let lost = lost.unwrap_or_else(|reason| panic!("{name}, {frame_name}: {reason}"));
             assert!(lost <= LOST, "{name}, {frame_name}: {lost}");
             let table = frame.compiled.tables.closed_form.as_ref().expect("closed form");
             let floor = f64::from(table.thrust_floor_n);

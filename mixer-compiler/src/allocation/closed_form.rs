@@ -24,41 +24,60 @@ const YAW_ROUNDING: f64 = 1e-5;
 /// part in it.
 const NO_PART: f64 = 1e-5;
 
-/// The table, where the layout and the priorities allow a closed form, and the share of the area of
-/// a unit's attainable set that its border loses.
+/// The thrusts of the units in what is served of roll, pitch and thrust.
+struct Layout {
+    /// Roll, pitch (N m) and thrust (N) per N of each unit, 0 where not served.
+    columns: Vec<Vector3<f64>>,
+    /// The axes, of roll and pitch, that are not served.
+    free: Vec<Vector3<f64>>,
+}
+
+impl Layout {
+    /// # Errors
+    /// Why the layout or the priorities allow no closed form.
+    fn new(airframe: &Airframe, effectiveness: &Effectiveness) -> Result<Layout, &'static str> {
+        let (n, matrix) = (airframe.units.len(), &effectiveness.matrix);
+        let served = [Axis::Roll, Axis::Pitch].map(|axis| airframe.allocation.controls(axis));
+        let axes = [Vector3::x(), Vector3::y()].into_iter().zip(served);
+        let free: Vec<_> = axes.filter(|(_, served)| !served).map(|(axis, _)| axis).collect();
+        if !effectiveness.is_vertical() {
+            return Err("thrust axes are tilted");
+        }
+        // Else the null space of the thrusts has more dimensions than one.
+        if !(3..=4).contains(&(n + free.len())) {
+            return Err(
+                "it takes three or four units, one less for each of roll and pitch that is not served",
+            );
+        }
+        if airframe.allocation.airmode == Airmode::RollPitchYaw {
+            return Err("yaw comes before thrust");
+        }
+        if !airframe.allocation.controls(Axis::Yaw) {
+            return Err("yaw is not served");
+        }
+        let lever = |axis: usize, unit: usize| if served[axis] { matrix[(axis, unit)] } else { 0.0 };
+        let column = |unit| Vector3::new(lever(0, unit), lever(1, unit), matrix[(3, unit)]);
+        let columns = (0..n).map(column).collect();
+        Ok(Layout { columns, free })
+    }
+}
+
+/// The table, and the share of the area of a unit's attainable set that its border loses.
+///
+/// # Errors
+/// Why there is no closed form, in words.
 pub(crate) fn table(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,
-) -> Option<(ClosedFormTable, f64)> {
-    let n = airframe.units.len();
-    let allocation = &airframe.allocation;
-    let matrix = &effectiveness.matrix;
-    let vertical = effectiveness.is_vertical();
-    let levers = [Axis::Roll, Axis::Pitch].map(|axis| allocation.controls(axis));
-    let free: Vec<Vector3<f64>> = [Vector3::x(), Vector3::y()]
-        .into_iter()
-        .zip(levers)
-        .filter_map(|(axis, served)| (!served).then_some(axis))
-        .collect();
-    // The null space of the thrusts has one dimension or none.
-    let spanned = (3..=4).contains(&(n + free.len()));
-    // Yaw before thrust couples the two.
-    let coupled = allocation.airmode == Airmode::RollPitchYaw;
-    if !vertical || !spanned || coupled || !allocation.controls(Axis::Yaw) {
-        return None;
-    }
+) -> Result<(ClosedFormTable, f64), &'static str> {
+    let Layout { columns, free } = Layout::new(airframe, effectiveness)?;
     let [low, high] = pair.range();
-    let columns: Vec<Vector3<f64>> = (0..n)
-        .map(|i| {
-            let [roll, pitch] = [0, 1].map(|axis| if levers[axis] { matrix[(axis, i)] } else { 0.0 });
-            Vector3::new(roll, pitch, matrix[(3, i)])
-        })
-        .collect();
     let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
     // f32 rounding, inwards.
     let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
-    let (border, lost) = border::border(pair)?;
+    let (border, lost) =
+        border::border(pair).ok_or("sides of the attainable set would leave out much of it")?;
     let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
     let mut table = ClosedFormTable {
         units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
@@ -69,9 +88,9 @@ pub(crate) fn table(
         walls,
         thrust_floor_n: 0.0,
         thrust_middle_n: 0.0,
-        yaw_rounding_nm: (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32,
+        yaw_rounding_nm: (YAW_ROUNDING * airframe.units.len() as f64 * pair.scale()[1]) as f32,
     };
-    let [floor, ceiling] = level_range(&table)?;
+    let [floor, ceiling] = level_range(&table).ok_or("no thrust leaves yaw at zero")?;
     // At least what the facets allow without roll and pitch, with rounding.
     let least_level = table
         .slopes
@@ -80,7 +99,7 @@ pub(crate) fn table(
         .fold(floor, f32::max);
     table.thrust_floor_n = least_level * (1.0 + ROUNDING);
     table.thrust_middle_n = 0.5 * (floor + ceiling);
-    Some((table, lost))
+    Ok((table, lost))
 }
 
 /// The least and the largest thrust in all (N) without roll and pitch, z as near zero as can be,
