@@ -147,22 +147,11 @@ impl<'a, 'f> Fields<'a, 'f> {
     ) -> Option<T> {
         let item = self.item(key)?;
         let Kind::Table(shape) = key.kind else { return None };
-        let DeValue::Table(table) = item.value else {
-            let help = match item.value {
-                DeValue::Array(_) => format!("there is one such table: head it `{}`", shape.header),
-                _ => format!("head the table `{}`", shape.header),
-            };
-            self.faults.push(item.wrong_type("a table").help(help));
-            return None;
+        let help = match item.value {
+            DeValue::Array(_) => format!("there is one such table: head it `{}`", shape.header),
+            _ => format!("head the table `{}`", shape.header),
         };
-        let shapes = [shape, self.file];
-        Some(read(&mut Fields::new(
-            table,
-            shapes,
-            item.path,
-            item.place,
-            self.faults,
-        )))
+        self.inner(item, shape, help).map(|mut fields| read(&mut fields))
     }
 
     /// An array of tables in this one; empty where it is absent or was reported.
@@ -185,20 +174,23 @@ impl<'a, 'f> Fields<'a, 'f> {
         let mut values = Vec::with_capacity(elements.len());
         for (index, element) in elements.iter().enumerate() {
             let element = item.element(index, element);
-            match element.value {
-                DeValue::Table(table) => {
-                    let shapes = [shape, self.file];
-                    let mut fields = Fields::new(table, shapes, element.path, element.place, self.faults);
-                    values.push(read(&mut fields));
-                }
-                _ => self.faults.push(
-                    element
-                        .wrong_type("a table")
-                        .help(format!("head each of them `{}`", shape.header)),
-                ),
-            }
+            let help = format!("head each of them `{}`", shape.header);
+            values.extend(
+                self.inner(element, shape, help)
+                    .map(|mut fields| read(&mut fields)),
+            );
         }
         values
+    }
+
+    /// A table in this one, or the fault of what is no table, with this help.
+    fn inner(&mut self, item: Item<'a>, shape: &'static Shape, help: String) -> Option<Fields<'a, '_>> {
+        let DeValue::Table(table) = item.value else {
+            self.faults.push(item.wrong_type("a table").help(help));
+            return None;
+        };
+        let shapes = [shape, self.file];
+        Some(Fields::new(table, shapes, item.path, item.place, self.faults))
     }
 
     /// Path of the table.
@@ -281,10 +273,10 @@ impl<'a, 'f> Fields<'a, 'f> {
                 format!("add a line like `{example}`"),
             ),
         };
-        let label = match self.shape.header {
-            "" => format!("this airframe has no `{name}`"),
-            header => format!("this `{header}` has no `{name}`"),
-        };
+        let label = format!(
+            "{} has no `{name}`",
+            of_header(self.shape, "this ", "this airframe")
+        );
         Diagnostic::new(Code::MissingKey, path, self.place(), message)
             .label(label)
             .help(help)
@@ -292,10 +284,6 @@ impl<'a, 'f> Fields<'a, 'f> {
 
     fn unknown(&self, key: &Spanned<Cow<'a, str>>, near: Option<&'static str>) -> Diagnostic {
         let name = key.get_ref();
-        let (here, shape) = match self.shape.header {
-            "" => ("at the top of the file".to_string(), "the file".to_string()),
-            header => (format!("in `{header}`"), format!("`{header}`")),
-        };
         let shapes = self.file.all();
         let home = shapes.iter().find(|shape| shape.key(name).is_some());
         // What is spelt as a key of another table is that key, unless this table lacks one that is
@@ -303,41 +291,41 @@ impl<'a, 'f> Fields<'a, 'f> {
         let near = near.filter(|near| home.is_none() || !self.table.contains_key(*near));
         let elsewhere = shapes
             .iter()
-            .find_map(|shape| Some((shape.header, nearest(name, shape.names())?)));
-        let belongs = |header: &str| match header {
-            "" => "at the top".to_owned(),
-            header => format!("in `{header}`"),
-        };
-        let under = |header: &str| match header {
-            "" => "above the first `[table]` of the file".to_owned(),
-            header => format!("under `{header}`"),
-        };
+            .find_map(|shape| Some((shape, nearest(name, shape.names())?)));
+        let belongs = |shape| format!("belongs {}", of_header(shape, "in ", "at the top"));
+        let under = |shape| of_header(shape, "under ", "above the first `[table]` of the file");
         let (label, help) = match (near, home, elsewhere) {
             (Some(near), ..) => (
                 format!("did you mean `{near}`?"),
                 format!("rename it `{near}`, or remove it"),
             ),
             // A key written under the wrong header is spelt as elsewhere.
-            (None, Some(Shape { header, .. }), _) => (
-                format!("belongs {}", belongs(header)),
-                format!("move it {}", under(header)),
+            (None, Some(home), _) => (belongs(home), format!("move it {}", under(home))),
+            (None, None, Some((home, near))) => (
+                format!("did you mean `{near}`, which {}?", belongs(home)),
+                format!("rename it `{near}` and move it {}, or remove it", under(home)),
             ),
-            (None, None, Some((header, near))) => (
-                format!("did you mean `{near}`, which belongs {}?", belongs(header)),
-                format!("rename it `{near}` and move it {}, or remove it", under(header)),
-            ),
-            (None, None, None) => (
-                "unknown".to_owned(),
-                format!(
-                    "remove it; the keys of {shape} are {}",
-                    joined(self.shape.names())
-                ),
-            ),
+            (None, None, None) => {
+                let (here, keys) = (of_header(self.shape, "", "the file"), joined(self.shape.names()));
+                (
+                    "unknown".to_owned(),
+                    format!("remove it; the keys of {here} are {keys}"),
+                )
+            }
         };
+        let here = of_header(self.shape, "in ", "at the top of the file");
         let message = format!("there is no key {} {here}", quoted(name));
         Diagnostic::new(Code::UnknownKey, self.key_path(name), key.span(), message)
             .label(label)
             .help(help)
+    }
+}
+
+/// A table by its header after some words, or the top of the file in others.
+fn of_header(shape: &Shape, words: &str, top: &str) -> String {
+    match shape.header {
+        "" => top.to_owned(),
+        header => format!("{words}`{header}`"),
     }
 }
 
