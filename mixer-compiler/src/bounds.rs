@@ -1,4 +1,3 @@
-//! Tools that enclose a value between two floats: Bernstein coefficients and interval arithmetic.
+//! Tools that enclose a value between two floats: interval arithmetic.
 
-pub mod bernstein;
 pub(crate) mod interval;

@@ -6,7 +6,7 @@
 
 pub mod airframe;
 mod allocation;
-pub mod bounds;
+mod bounds;
 #[cfg(feature = "format")]
 pub mod build_script;
 mod compiled;

@@ -5,7 +5,6 @@
 //! so a sign is proven in a few halvings. Coefficients are intervals throughout: what is proven
 //! holds in exact arithmetic.
 
-use crate::bounds::bernstein::binomial;
 use crate::bounds::interval::Interval;
 
 /// A polynomial `sum c[i][j] u^i l^j` with as many coefficients in every row.
@@ -224,6 +223,11 @@ fn univariate_bernstein(coefficients: &[Interval], throttle: ThrottleBox) -> Vec
             })
         })
         .collect()
+}
+
+/// Binomial coefficient, exact for the small degrees that occur here.
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
 }
 
 /// A part of the box with its Bernstein coefficients `[in u][in l]`.
