@@ -1,8 +1,8 @@
 //! How the pair's map is to be inverted, and how truly.
 
-use crate::diagnostic::{Code, Diagnostic, any_of, nearest, quoted};
+use crate::diagnostic::Code;
+use crate::spec::Fields;
 use crate::spec::keys::{Kind, Range, keys};
-use crate::spec::{Fields, Spanned};
 
 /// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.
 const HIGHEST_INVERSE_DEGREE: usize = 15;
@@ -74,8 +74,7 @@ impl Default for Inverse {
 
 pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Inverse> {
     let [thrust, torque] = [&THRUST_TOLERANCE_N, &TORQUE_TOLERANCE_NM].map(|key| table.number(key));
-    let (method_field, degree) = (table.read(&METHOD), table.read(&DEGREE));
-    let method = method(table, method_field.as_ref(), degree.as_ref());
+    let method = method(table);
     Some(Inverse {
         thrust_tolerance_n: thrust?,
         torque_tolerance_nm: torque?,
@@ -83,70 +82,36 @@ pub(super) fn read(table: &mut Fields<'_, '_>) -> Option<Inverse> {
     })
 }
 
-fn method(
-    table: &mut Fields<'_, '_>,
-    field: Option<&Spanned<String>>,
-    degree: Option<&Spanned<usize>>,
-) -> Option<Method> {
-    let name = field.map_or("auto", |field| field.get_ref().as_str());
-    if let ("polynomial", Some(field)) = (name, field) {
-        return polynomial(table, field, degree);
-    }
-    if !METHODS.contains(&name) {
-        let label = match nearest(name, METHODS) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "unknown method".to_string(),
-        };
-        let message = format!("`inverse.method` cannot be {}", quoted(name));
-        let help = format!("write {}", any_of(METHODS));
-        return table.refuse(&METHOD, Code::UnknownWord, message, label, help);
-    }
-    if let Some(degree) = degree {
-        let message = format!(
-            "`inverse.degree` = {} means nothing to method \"{name}\"",
-            degree.get_ref()
-        );
-        let help = "remove it, or set `method = \"polynomial\"`";
-        return table.refuse(&DEGREE, Code::Conflict, message, "only for the polynomial", help);
-    }
-    Some(match name {
-        "auto" => Method::Auto,
-        name => Method::Named(name.to_string()),
-    })
-}
-
-fn polynomial(
-    table: &mut Fields<'_, '_>,
-    method: &Spanned<String>,
-    degree: Option<&Spanned<usize>>,
-) -> Option<Method> {
-    let Some(field) = degree else {
-        // A degree of a wrong shape was reported; saying that it is missing would be wrong.
-        if !table.faults.iter().any(|fault| fault.key == "inverse.degree") {
-            table.faults.push(
-                Diagnostic::new(
-                    Code::MissingKey,
-                    "inverse.degree",
-                    method.span(),
-                    "`inverse.degree` is missing: the polynomial has no degree of its own",
-                )
-                .label("needs `degree`")
-                .help(format!(
-                    "add `degree = 7`; 1 to {HIGHEST_INVERSE_DEGREE} are possible"
-                )),
-            );
-        }
-        return None;
+fn method(table: &mut Fields<'_, '_>) -> Option<Method> {
+    let degree = table.read::<usize>(&DEGREE).map(|degree| *degree.get_ref());
+    let name = match table.read(&METHOD) {
+        Some(written) => table.meaning(&METHOD, &written, &METHODS)?,
+        None => "auto",
     };
-    let degree = *field.get_ref();
-    if (1..=HIGHEST_INVERSE_DEGREE).contains(&degree) {
-        return Some(Method::Polynomial { degree });
+    match (name, degree) {
+        ("auto", None) => Some(Method::Auto),
+        ("polynomial", Some(degree)) if (1..=HIGHEST_INVERSE_DEGREE).contains(&degree) => {
+            Some(Method::Polynomial { degree })
+        }
+        ("polynomial", Some(degree)) => {
+            let message =
+                format!("`inverse.degree` = {degree} is not between 1 and {HIGHEST_INVERSE_DEGREE}");
+            let label = format!("expected 1 to {HIGHEST_INVERSE_DEGREE}");
+            let help = "errors shrink slowly with the degree; `method = \"auto\"` finds a cheaper evaluator";
+            table.refuse(&DEGREE, Code::OutOfRange, message, label, help)
+        }
+        // A degree of a wrong shape was reported; saying that it is missing would be wrong.
+        ("polynomial", None) if table.key_place(&DEGREE).is_some() => None,
+        ("polynomial", None) => {
+            let message = "`inverse.degree` is missing: the polynomial has no degree of its own".to_owned();
+            let help = format!("add `degree = 7`; 1 to {HIGHEST_INVERSE_DEGREE} are possible");
+            table.refuse(&METHOD, Code::MissingKey, message, "needs `degree`", help)
+        }
+        (name, Some(degree)) => {
+            let message = format!("`inverse.degree` = {degree} means nothing to method \"{name}\"");
+            let help = "remove it, or set `method = \"polynomial\"`";
+            table.refuse(&DEGREE, Code::Conflict, message, "only for the polynomial", help)
+        }
+        (name, None) => Some(Method::Named(name.to_owned())),
     }
-    table.refuse(
-        &DEGREE,
-        Code::OutOfRange,
-        format!("`inverse.degree` = {degree} is not between 1 and {HIGHEST_INVERSE_DEGREE}"),
-        format!("expected 1 to {HIGHEST_INVERSE_DEGREE}"),
-        "errors shrink slowly with the degree; `method = \"auto\"` finds a cheaper evaluator",
-    )
 }
