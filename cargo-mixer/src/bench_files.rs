@@ -42,7 +42,7 @@ pub fn identify_with_runs(
     settings: &Settings,
 ) -> Result<Identified, Vec<Refusal>> {
     let runs = runs.map(|run| run.map(text));
-    texts::identified(&texts(paths), runs.each_ref().map(Option::as_ref), settings)
+    texts::identify(&texts(paths), runs.each_ref().map(Option::as_ref), settings).map(|answer| answer.found)
 }
 
 /// Reads a file and makes it ready.

@@ -44,7 +44,7 @@ impl Place<'_> {
     }
 
     /// Writes report and tables, and says what comes next.
-    pub(crate) fn write(&self, answer: &Answer, verbose: bool) -> Result<(), ExitCode> {
+    pub(crate) fn write<T>(&self, answer: &Answer<T>, verbose: bool) -> Result<(), ExitCode> {
         let report = match (self.json, verbose) {
             (true, _) => &answer.json,
             (_, true) => &answer.details,

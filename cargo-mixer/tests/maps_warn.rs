@@ -171,7 +171,7 @@ fn no_prediction_of_a_real_run_warns() {
         let predicted = arguments
             .predicted()
             .unwrap_or_else(|refusals| panic!("{refusals:?}"));
-        for sentence in &predicted.warnings {
+        for sentence in &predicted.found.warnings {
             told.sentence(sentence, run);
         }
         told.check(&predicted.tables, run);

@@ -4,6 +4,8 @@
 //! below `stop_throttle`); reduce a streaming log to one mean per plateau of constant command; make
 //! signs and sums; refuse rows with a missing value.
 
+use std::collections::BTreeSet;
+
 use serde::Serialize;
 
 use self::date::date_in;
@@ -86,6 +88,18 @@ pub struct Bench {
     pub points: Vec<Point>,
 }
 
+/// Mean supply voltage, V, and whether every point has one; nothing where none has.
+pub(crate) fn mean_voltage<'a>(points: impl IntoIterator<Item = &'a Point>) -> Option<(f64, bool)> {
+    let (mut sum, mut count, mut all) = (0.0, 0, true);
+    for point in points {
+        match point.voltage.is_finite() {
+            true => (sum, count) = (sum + point.voltage, count + 1),
+            false => all = false,
+        }
+    }
+    (count > 0).then(|| (sum / f64::from(count), all))
+}
+
 /// What decides how a log becomes points.
 #[derive(Debug, Clone)]
 pub struct Preparation {
@@ -129,25 +143,50 @@ impl Default for Preparation {
 const MOST_POINTS: usize = 10_000;
 
 /// Makes a log ready.
+///
+/// # Errors
+/// A log of which no row can be used, and columns that do not measure a pair.
 pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     let Log {
         name,
         columns,
-        samples,
+        mut samples,
         mut refused,
     } = log;
     let rows = samples.len() + refused.len();
     some_readable(&name, &columns, &samples, &refused)?;
     let mut notes = Vec::new();
-    let turned = turned(&samples, &columns, how.stop_throttle, &mut notes);
-    let Turned { kind, rotor } = turned;
+    let two_throttles = columns.throttle.rotors[1].is_some();
+    let turns = |rotor: usize| samples.iter().any(|s| s.throttle[rotor] > how.stop_throttle);
+    let kind = match two_throttles && turns(0) && turns(1) {
+        true => Kind::Pair,
+        false => Kind::SingleRotor,
+    };
+    // Of a single rotor: its index among the throttles.
+    let rotor = usize::from(two_throttles && !turns(0));
+    match kind {
+        Kind::SingleRotor if two_throttles => notes.push(format!(
+            "the {} rotor stands still throughout: a single rotor",
+            ["lower", "upper"][rotor]
+        )),
+        Kind::Pair if !columns.sides_named => notes.push(
+            "the header does not say which rotor is above: the first is taken (--swap exchanges)".into(),
+        ),
+        _ => {}
+    }
 
-    let Steady {
-        samples,
-        start_stop_rows,
-        streaming,
-        settling_rows,
-    } = steady(&name, samples, &turned, how, &mut refused, &mut notes);
+    // An empty throttle is no start or stop row: it stays and is refused later, with its line.
+    let before = samples.len();
+    samples.retain(|s| match kind {
+        Kind::Pair => !s.throttle.iter().any(|&t| t <= how.stop_throttle),
+        Kind::SingleRotor => s.throttle[rotor].is_nan() || s.throttle[rotor] > how.stop_throttle,
+    });
+    let start_stop_rows = before - samples.len();
+    supplied(&name, &mut samples, &mut refused, &mut notes);
+    let (streaming, mut settling_rows) = (plateau::is_streaming(&samples), 0);
+    if streaming {
+        (samples, settling_rows) = plateau::means(&samples, how.settle);
+    }
     if samples.len() > MOST_POINTS {
         return Err(Refusal::of(
             name,
@@ -155,41 +194,61 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             "the mean of what was recorded at each command",
         ));
     }
-    if kind == Kind::Pair {
-        notes.extend(uneven_levels(&samples));
-    }
 
+    let may_lack = how.torque_may_lack;
     let (signs, sums) = match kind {
-        Kind::Pair => sign::pair(
-            &name,
-            &columns,
-            &samples,
-            &how.signs,
-            how.torque_may_lack,
-            &mut notes,
-        )?,
+        Kind::Pair => {
+            notes.extend(uneven_levels(&samples));
+            sign::pair(&name, &columns, &samples, &how.signs, may_lack, &mut notes)?
+        }
         Kind::SingleRotor => sign::single(&columns, rotor, how.own_columns, &samples, &how.signs),
     };
-    let points = points_of(
-        &name,
-        &turned,
-        how.torque_may_lack,
-        samples.iter().zip(sums),
-        &mut refused,
-    );
+    let mut points = Vec::new();
+    for (sample, (thrust, torque)) in samples.iter().zip(sums) {
+        let ([u, l], torque_counts) = match kind {
+            Kind::Pair => (sample.throttle, !may_lack),
+            Kind::SingleRotor => ([sample.throttle[rotor], 0.0], false),
+        };
+        let missing = [
+            (u.is_nan() || l.is_nan(), "the throttle is empty"),
+            (thrust.is_nan(), "the thrust is empty"),
+            (torque.is_nan() && torque_counts, "the torque is empty"),
+        ];
+        match missing.iter().find(|(is, _)| *is) {
+            Some((_, reason)) => refused.push(RefusedRow::new(&name, sample.line, *reason)),
+            None => points.push(Point {
+                line: sample.line,
+                u,
+                l,
+                thrust,
+                torque,
+                voltage: sample.voltage,
+                power_w: sample.power_w,
+            }),
+        }
+    }
     refused.sort_by_key(|r| r.line);
     if points.is_empty() {
-        let dropped = format!("{start_stop_rows} start and stop rows, {settling_rows} settling");
-        return Err(none_usable(name, rows, &dropped, &refused));
+        let first = refused.first().map_or(String::new(), |r| {
+            format!(", the first: line {}: {}", r.line, r.reason)
+        });
+        return Err(Refusal::of(
+            name,
+            format!(
+                "none of {rows} rows can be used: {start_stop_rows} start and stop rows, {settling_rows} settling, {} \
+                 refused{first}",
+                refused.len()
+            ),
+            "rows with both rotors turning (see --stop-throttle) and thrust and torque measured",
+        ));
     }
-    let date = how.date.clone().or_else(|| date_in(&name));
     Ok(Bench {
         no_power: columns.no_power(),
-        turning: (kind == Kind::SingleRotor && columns.lower.is_some())
+        turning: (kind == Kind::SingleRotor && two_throttles)
             .then_some([Turning::Upper, Turning::Lower][rotor]),
+        date: how.date.clone().or_else(|| date_in(&name)),
         file: name,
         format: columns.format,
-        date,
         kind,
         rows,
         start_stop_rows,
@@ -211,60 +270,28 @@ fn some_readable(
     refused: &[RefusedRow],
 ) -> Result<(), Refusal> {
     if let (true, Some(first)) = (samples.is_empty(), refused.first()) {
+        let (count, reason) = (refused.len(), &first.reason);
         return Err(Refusal::of(
             format!("{name}:{}", first.line),
-            format!(
-                "none of {} rows can be read, and this is the first: {}",
-                refused.len(),
-                first.reason
-            ),
+            format!("none of {count} rows can be read, and this is the first: {reason}"),
             "numbers in every row, throttles in [0, 1] or with their unit",
         ));
     }
-    let throttle = columns.upper.as_ref().map_or("", |c| c.name.as_str());
-    no_empty_throttle(name, throttle, samples, 0)
-}
-
-/// The samples of turning rotors at a command that holds.
-struct Steady {
-    samples: Vec<Sample>,
-    start_stop_rows: usize,
-    streaming: bool,
-    settling_rows: usize,
-}
-
-/// Drops start and stop rows and those of a supply that was off, and reduces a streaming log to its
-/// plateaus.
-fn steady(
-    name: &str,
-    mut samples: Vec<Sample>,
-    turned: &Turned,
-    how: &Preparation,
-    refused: &mut Vec<RefusedRow>,
-    notes: &mut Vec<String>,
-) -> Steady {
-    let before = samples.len();
-    // An empty throttle is no start or stop row: it stays and is refused later, with its line.
-    samples.retain(|s| match turned.kind {
-        Kind::Pair => !s.throttle.iter().any(|&t| t <= how.stop_throttle),
-        Kind::SingleRotor => {
-            let throttle = s.throttle[turned.rotor];
-            throttle.is_nan() || throttle > how.stop_throttle
-        }
-    });
-    let start_stop_rows = before - samples.len();
-    supplied(name, &mut samples, refused, notes);
-    let streaming = plateau::is_streaming(&samples);
-    let mut settling_rows = 0;
-    if streaming {
-        (samples, settling_rows) = plateau::means(&samples, how.settle);
+    if samples.iter().any(|s| !s.throttle[0].is_nan()) {
+        return Ok(());
     }
-    Steady {
-        samples,
-        start_stop_rows,
-        streaming,
-        settling_rows,
-    }
+    let column = columns.throttle.rotors[0]
+        .as_ref()
+        .map_or("", |c| c.name.as_str());
+    let reason = match samples.len() {
+        0 => "there are no rows below the header".to_string(),
+        n => format!("the throttle column {column:?} is empty in all {n} rows"),
+    };
+    Err(Refusal::of(
+        name,
+        reason,
+        "a log in which the command of each rotor was recorded with the measurements",
+    ))
 }
 
 /// Share of the median voltage below which a supply is off, or was not recorded.
@@ -272,11 +299,8 @@ const OFF: f64 = 0.25;
 
 /// Refuses rows whose voltage cannot have driven the rotors. Where all are 0 none was recorded.
 fn supplied(name: &str, samples: &mut Vec<Sample>, refused: &mut Vec<RefusedRow>, notes: &mut Vec<String>) {
-    let mut volts: Vec<f64> = samples
-        .iter()
-        .map(|s| s.voltage)
-        .filter(|v| v.is_finite())
-        .collect();
+    let volts = samples.iter().map(|s| s.voltage);
+    let mut volts: Vec<f64> = volts.filter(|v| v.is_finite()).collect();
     volts.sort_by(f64::total_cmp);
     let Some(&median) = volts.get(volts.len() / 2) else {
         return;
@@ -293,140 +317,34 @@ fn supplied(name: &str, samples: &mut Vec<Sample>, refused: &mut Vec<RefusedRow>
     samples.retain(|s| {
         let off = s.voltage <= OFF * median;
         if off {
-            refused.push(RefusedRow {
-                file: name.to_owned(),
-                line: s.line,
-                reason: format!(
-                    "the voltage is {} V, in the middle of the rows {median} V",
-                    s.voltage
-                ),
-            });
+            let reason = format!(
+                "the voltage is {} V, in the middle of the rows {median} V",
+                s.voltage
+            );
+            refused.push(RefusedRow::new(name, s.line, reason));
         }
         !off
     });
-}
-
-fn none_usable(name: String, rows: usize, dropped: &str, refused: &[RefusedRow]) -> Refusal {
-    let first = refused.first().map_or(String::new(), |r| {
-        format!(", the first: line {}: {}", r.line, r.reason)
-    });
-    Refusal::of(
-        name,
-        format!(
-            "none of {rows} rows can be used: {dropped}, {} refused{first}",
-            refused.len()
-        ),
-        "rows with both rotors turning (see --stop-throttle) and thrust and torque measured",
-    )
-}
-
-/// Which rotors of a log turned.
-struct Turned {
-    kind: Kind,
-    /// Of a single rotor: its index among the throttles.
-    rotor: usize,
-}
-
-fn turned(samples: &[Sample], columns: &Columns, stop_throttle: f64, notes: &mut Vec<String>) -> Turned {
-    let turning = |s: &Sample, rotor: usize| s.throttle[rotor] > stop_throttle;
-    let both =
-        columns.lower.is_some() && [0, 1].map(|r| samples.iter().any(|s| turning(s, r))) == [true, true];
-    let kind = if both { Kind::Pair } else { Kind::SingleRotor };
-    let rotor = usize::from(columns.lower.is_some() && !samples.iter().any(|s| turning(s, 0)));
-    if kind == Kind::SingleRotor && columns.lower.is_some() {
-        notes.push(format!(
-            "the {} rotor stands still throughout: a single rotor",
-            ["lower", "upper"][rotor]
-        ));
-    }
-    if kind == Kind::Pair && !columns.sides_named {
-        notes.push(
-            "the header does not say which rotor is above: the first is taken (--swap exchanges)".into(),
-        );
-    }
-    Turned { kind, rotor }
-}
-
-/// The points of rows with all that a fit needs; the others are refused.
-fn points_of<'a>(
-    name: &str,
-    &Turned { kind, rotor }: &Turned,
-    torque_may_lack: bool,
-    rows: impl Iterator<Item = (&'a Sample, (f64, f64))>,
-    refused: &mut Vec<RefusedRow>,
-) -> Vec<Point> {
-    let both = kind == Kind::Pair;
-    let mut points = Vec::new();
-    for (sample, (thrust, torque)) in rows {
-        let missing = if sample.throttle[rotor].is_nan() || (both && sample.throttle[1].is_nan()) {
-            Some("the throttle is empty")
-        } else if thrust.is_nan() {
-            Some("the thrust is empty")
-        } else if both && torque.is_nan() && !torque_may_lack {
-            Some("the torque is empty")
-        } else {
-            None
-        };
-        if let Some(reason) = missing {
-            refused.push(RefusedRow {
-                file: name.to_owned(),
-                line: sample.line,
-                reason: reason.into(),
-            });
-            continue;
-        }
-        let [u, l] = match kind {
-            Kind::Pair => sample.throttle,
-            Kind::SingleRotor => [sample.throttle[rotor], 0.0],
-        };
-        points.push(Point {
-            line: sample.line,
-            u,
-            l,
-            thrust,
-            torque,
-            voltage: sample.voltage,
-            power_w: sample.power_w,
-        });
-    }
-    points
 }
 
 /// A grid whose one rotor repeats its commands and the other does not: its record may have drifted,
 /// which no fit sees.
 fn uneven_levels(samples: &[Sample]) -> Option<String> {
     let levels = [0, 1].map(|rotor| {
-        let mut us: Vec<i64> = samples
+        let throttles = samples
             .iter()
-            .map(|s| (s.throttle[rotor] * 1000.0).round() as i64)
-            .collect();
-        us.sort_unstable();
-        us.dedup();
-        us.len()
+            .map(|s| (s.throttle[rotor] * 1000.0).round() as i64);
+        throttles.collect::<BTreeSet<i64>>().len()
     });
     let (few, many) = (levels[0].min(levels[1]), levels[0].max(levels[1]));
     (few * few <= 4 * samples.len() && many > 3 * few).then(|| {
-        let rotor = if levels[0] > levels[1] { ["upper", "lower"] } else { ["lower", "upper"] };
+        let [of_many, of_few] = match levels[0] > levels[1] {
+            true => ["upper", "lower"],
+            false => ["lower", "upper"],
+        };
         format!(
-            "the {} rotor's command takes {many} values, the {}'s {few}: if a grid was commanded, the record of the \
-             former drifts, and the map with it",
-            rotor[0], rotor[1]
+            "the {of_many} rotor's command takes {many} values, the {of_few}'s {few}: if a grid was commanded, the record of the \
+             former drifts, and the map with it"
         )
     })
-}
-
-/// Refuses a file whose command was not recorded.
-fn no_empty_throttle(name: &str, column: &str, samples: &[Sample], rotor: usize) -> Result<(), Refusal> {
-    if samples.iter().any(|s| !s.throttle[rotor].is_nan()) {
-        return Ok(());
-    }
-    let reason = match samples.len() {
-        0 => "there are no rows below the header".to_string(),
-        n => format!("the throttle column {column:?} is empty in all {n} rows"),
-    };
-    Err(Refusal::of(
-        name,
-        reason,
-        "a log in which the command of each rotor was recorded with the measurements",
-    ))
 }

@@ -43,8 +43,8 @@ struct Facts {
 }
 
 impl Facts {
-    fn add(&mut self, told: Told, name: &'static str, text: String) {
-        let table = self.table;
+    fn add(&mut self, told: Told, name: &'static str, text: impl Into<String>) {
+        let (table, text) = (self.table, text.into());
         self.all.push(Fact {
             table,
             name,
@@ -53,12 +53,13 @@ impl Facts {
         });
     }
 
-    fn always(&mut self, name: &'static str, text: String) {
+    fn always(&mut self, name: &'static str, text: impl Into<String>) {
         self.add(Told::Always, name, text);
     }
 
-    fn detail(&mut self, name: &'static str, text: String) {
-        self.add(Told::Detail, name, text);
+    /// A detail of what was said before.
+    fn more(&mut self, text: impl Into<String>) {
+        self.add(Told::Detail, "", text);
     }
 }
 
@@ -69,13 +70,9 @@ const MOST_FILES: usize = 4;
 pub fn of_identified(identified: &Identified) -> Vec<Fact> {
     let mut facts = Facts::default();
     for (k, file) in identified.files.iter().enumerate() {
-        let told = if k < MOST_FILES {
-            Told::Always
-        } else {
-            Told::Detail
-        };
+        let told = [Told::Always, Told::Detail][usize::from(k >= MOST_FILES)];
         facts.add(told, "read", format!("{}: {}", file.file, provenance(file)));
-        facts.detail("", signs(file));
+        facts.more(signs(file));
     }
     let more = identified.files.len().saturating_sub(MOST_FILES);
     if more > 0 {
@@ -87,10 +84,7 @@ pub fn of_identified(identified: &Identified) -> Vec<Fact> {
     facts.table = "voltage";
     match &identified.voltage {
         Some(voltage) => of_voltage(&mut facts, voltage),
-        None => facts.always(
-            "voltage",
-            "not corrected for: no file has a voltage column".into(),
-        ),
+        None => facts.always("voltage", "not corrected for: no file has a voltage column"),
     }
     facts.table = "pair.power";
     match &identified.power {
@@ -104,11 +98,7 @@ pub fn of_identified(identified: &Identified) -> Vec<Fact> {
 /// One line on a file: format, date, rows.
 fn provenance(file: &Bench) -> String {
     let date = file.date.as_deref().unwrap_or("date unknown");
-    let kind = if file.kind == Kind::Pair {
-        ""
-    } else {
-        ", single rotor"
-    };
+    let kind = ["", ", single rotor"][usize::from(file.kind == Kind::SingleRotor)];
     let refused = file.refused_rows.len();
     let used = file
         .rows
@@ -156,21 +146,15 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
     let text = format!("{min} to {max}; at idle {idle:.1} % of the largest thrust; {fold}");
     facts.always("throttle", text);
     let (least, [u, l]) = (pair.fold.least_det, pair.fold.least_det_at);
-    let sign = if pair.fold.folds {
-        ""
-    } else {
-        ", and is proven positive"
-    };
-    facts.detail(
-        "",
-        format!("the least det J is {least:.4}, at ({u:.3}, {l:.3}){sign}"),
-    );
+    let proven = if pair.fold.folds { "" } else { ", proven > 0" };
+    facts.more(format!(
+        "the least det J is {least:.4}, at ({u:.3}, {l:.3}){proven}"
+    ));
     for region in &pair.fold.regions {
         let ([ua, ub], [la, lb]) = (region.u, region.l);
-        facts.detail(
-            "",
-            format!("det J <= 0 within u {ua:.3} .. {ub:.3}, l {la:.3} .. {lb:.3}"),
-        );
+        facts.more(format!(
+            "det J <= 0 within u {ua:.3} .. {ub:.3}, l {la:.3} .. {lb:.3}"
+        ));
     }
 
     facts.table = "pair";
@@ -198,25 +182,24 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
             "{}:{} at ({:.3}, {:.3}): thrust {f:+.3} N ({of_f:+.0} sigma), torque {q:+.4} N m ({of_q:+.0} sigma)",
             o.file, o.line, o.u, o.l
         );
-        facts.detail("", text);
+        facts.more(text);
     }
-    facts.detail("fit of thrust", of_fit(thrust, "N"));
-    facts.detail("fit of torque", of_fit(torque, "N m"));
+    facts.add(Told::Detail, "fit of thrust", of_fit(thrust, "N"));
+    facts.add(Told::Detail, "fit of torque", of_fit(torque, "N m"));
     let [u, l] = thrust.prediction.greatest_at;
     let text = format!(
         "{} points, {} degrees of freedom, condition number {:.1}; prediction widest at ({u:.2}, {l:.2})",
         thrust.points, thrust.degrees_of_freedom, thrust.condition_number
     );
-    facts.detail("", text);
+    facts.more(text);
     if let Some(volts) = pair.normalised_to_v {
-        facts.detail(
-            "",
-            format!("all points are brought to {volts} V by the exponents of voltage"),
-        );
+        facts.more(format!(
+            "all points are brought to {volts} V by the exponents of voltage"
+        ));
     }
     if runs(pair).next().is_none() {
         let text = "by the map, extrapolated to a throttle of 0 (--lower-out, --upper-out take runs)";
-        facts.add(Told::Reported, "rotor out", text.into());
+        facts.add(Told::Reported, "rotor out", text);
     }
     runs(pair).for_each(|(turning, alone)| of_alone(facts, turning, alone));
 }
@@ -241,12 +224,9 @@ fn of_fit(fit: &Fit, unit: &str) -> String {
 
 /// The rotors of a pair that were run alone.
 pub fn runs(pair: &Pair) -> impl Iterator<Item = (Turning, &Alone)> {
-    let both = [
-        (Turning::Upper, &pair.lower_out),
-        (Turning::Lower, &pair.upper_out),
-    ];
-    both.into_iter()
-        .filter_map(|(turning, alone)| Some((turning, alone.as_ref()?)))
+    let both = [Turning::Upper, Turning::Lower].into_iter();
+    let both = both.zip([&pair.lower_out, &pair.upper_out]);
+    both.filter_map(|(turning, alone)| Some((turning, alone.as_ref()?)))
 }
 
 fn of_alone(facts: &mut Facts, turning: Turning, alone: &Alone) {
@@ -272,12 +252,14 @@ fn of_alone(facts: &mut Facts, turning: Turning, alone: &Alone) {
             "{name} {a1:.5} x {a2:+.5} x2 {a3:+.5} x3 {unit}: leave-one-out {own:.2} % of {full:.4} {unit}; the pair's \
              polynomial at zero misses this run by {pair:.2} %"
         );
-        facts.detail("", text);
+        facts.more(text);
     }
 }
 
 fn of_voltage(facts: &mut Facts, voltage: &Voltage) {
-    for (name, exponent) in voltage.channels() {
+    let channels = voltage.channels();
+    let one = channels.len() == 1;
+    for (name, exponent) in channels {
         let (told, more) = match exponent {
             Exponent::Identified(e) => (of_estimate(e), ""),
             Exponent::Declared { exponent, .. } => (format!("exponent {exponent} as declared"), ""),
@@ -290,13 +272,14 @@ fn of_voltage(facts: &mut Facts, voltage: &Voltage) {
                  usual stand-in",
             ),
         };
-        facts.always("voltage", format!("{name} {told}"));
+        let text = if one { told } else { format!("{name} {told}") };
+        facts.always("voltage", text);
         if !more.is_empty() {
-            facts.detail("", format!("needed: {more}"));
+            facts.more(format!("needed: {more}"));
         }
     }
     let ([low, high], mean) = (voltage.range_v, voltage.mean_v);
-    facts.detail("", format!("rows of {low:.2} to {high:.2} V, mean {mean:.2} V"));
+    facts.more(format!("rows of {low:.2} to {high:.2} V, mean {mean:.2} V"));
 }
 
 fn of_estimate(e: &Estimate) -> String {
@@ -304,12 +287,13 @@ fn of_estimate(e: &Estimate) -> String {
         0 => String::new(),
         levels => format!(", {levels} levels"),
     };
-    let quartiles = e
-        .quartiles
-        .map(|[low, median, high]| format!("; levels' median {median:.2}, quartiles {low:.2} and {high:.2}"));
-    let halves = e
-        .low_and_high_throttle
-        .map(|[low, high]| format!("; {low:.2} in the lower half of the throttle range, {high:.2} above"));
+    let of_levels = |[low, median, high]: [f64; 3]| {
+        format!("; levels' median {median:.2}, quartiles {low:.2} and {high:.2}")
+    };
+    let of_halves = |[low, high]: [f64; 2]| {
+        format!("; {low:.2} in the lower half of the throttle range, {high:.2} above")
+    };
+    let (quartiles, halves) = (e.quartiles.map(of_levels), e.low_and_high_throttle.map(of_halves));
     let [quartiles, halves] = [quartiles, halves].map(Option::unwrap_or_default);
     let (exponent, ci95, method) = (e.exponent, e.ci95, e.method);
     format!("exponent {exponent:.3} +- {ci95:.3} (95 %), by {method}{levels}{quartiles}{halves}")
@@ -332,7 +316,7 @@ fn of_power(facts: &mut Facts, found: &LeastPower) {
         "that is {longer:.1} % of flight time where as many upper rotors turn one way as the other; with spins s of n units \
          1 - (sum s / n)^2 of it is left, none where all turn alike (a Y6)"
     );
-    facts.detail("", text);
+    facts.more(text);
     let (points, rms) = (found.points, found.residual_rms_w);
     let share = 100.0 * rms / found.full_scale_w;
     let refused = match found.power_w {
@@ -342,7 +326,7 @@ fn of_power(facts: &mut Facts, found: &LeastPower) {
     let text = format!(
         "power map of {points} rows: residual {rms:.2} W rms, {share:.2} % of the greatest power{refused}"
     );
-    facts.detail("", text);
+    facts.more(text);
 }
 
 /// What was predicted.

@@ -6,6 +6,8 @@
 //! sqrt(diag cov). The leverage of point i is h_i = |row i of Q|^2; left out, it would miss by e_i
 //! / (1 - h_i). A prediction at (u, l) has the half-width t sigma sqrt(1 + |R^-T phi(u, l)|^2).
 
+use std::collections::BTreeSet;
+
 use faer::Mat;
 use faer::linalg::solvers::Qr;
 use mixer_compiler::airframe::Basis;
@@ -13,6 +15,7 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use self::basis::{Centred, ThrottleBox, monomials};
+use self::statistics::{dot, extent, greatest, rms, times};
 
 pub mod basis;
 pub mod cross;
@@ -22,6 +25,7 @@ pub mod pair;
 pub mod polynomial;
 pub mod power;
 pub mod robust;
+pub(crate) mod statistics;
 pub mod uncertainty;
 pub mod voltage;
 pub mod wishes;
@@ -41,50 +45,7 @@ pub struct Design {
 
 /// Why a design cannot carry a basis.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Deficient {
-    /// Fewer distinct throttle pairs than needed.
-    TooFew {
-        /// Distinct pairs there are.
-        distinct: usize,
-        /// Distinct pairs needed.
-        needed: usize,
-    },
-    /// A corner or part of the box that the points do not determine.
-    Undetermined {
-        /// Where.
-        u: f64,
-        /// Where.
-        l: f64,
-        /// Standard error there in units of the residual's.
-        factor: f64,
-    },
-    /// Points on one line, or on too few levels.
-    Dependent,
-}
-
-impl std::fmt::Display for Deficient {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Deficient::TooFew { distinct, needed } => {
-                write!(
-                    f,
-                    "{distinct} distinct throttle pairs, at least {needed} are needed"
-                )
-            }
-            Deficient::Undetermined { u, l, factor } => write!(
-                f,
-                "the points do not determine the map at (u, l) = ({u:.2}, {l:.2}): \
-                 its standard error there is {factor:.0} times the residual's"
-            ),
-            Deficient::Dependent => {
-                write!(
-                    f,
-                    "the points lie on too few levels or on one line of the throttle square"
-                )
-            }
-        }
-    }
-}
+pub struct Deficient(pub String);
 
 /// Distinct throttle pairs beyond the number of terms that a fit needs to judge itself.
 const SPARE_PAIRS: usize = 4;
@@ -100,7 +61,10 @@ impl Design {
         let design = Self::within_its_points(basis, points)?;
         let (factor, [u, l]) = design.worst_factor(throttle_box);
         if factor > UNDETERMINED {
-            Err(Deficient::Undetermined { u, l, factor })
+            Err(Deficient(format!(
+                "the points do not determine the map at (u, l) = ({u:.2}, {l:.2}): its standard error there is {factor:.0} \
+                 times the residual's"
+            )))
         } else {
             Ok(design)
         }
@@ -112,7 +76,9 @@ impl Design {
         let needed = terms + SPARE_PAIRS;
         let distinct = distinct_pairs(points);
         if distinct < needed {
-            return Err(Deficient::TooFew { distinct, needed });
+            return Err(Deficient(format!(
+                "{distinct} distinct throttle pairs, at least {needed} are needed"
+            )));
         }
         let centred = Centred::new(basis, range(points));
         let rows: Vec<Vec<f64>> = points.iter().map(|&[u, l]| centred.values(u, l)).collect();
@@ -122,7 +88,8 @@ impl Design {
         let largest = (0..terms).map(|k| r[(k, k)].abs()).fold(0.0, f64::max);
         let degenerate = (0..terms).any(|k| r[(k, k)].abs() <= 1e-9 * largest);
         if degenerate {
-            return Err(Deficient::Dependent);
+            let reason = "the points lie on too few levels or on one line of the throttle square";
+            return Err(Deficient(reason.into()));
         }
         let mut inverse = Mat::<f64>::identity(terms, terms);
         r.solve_upper_triangular_in_place(&mut inverse);
@@ -148,38 +115,31 @@ impl Design {
     }
 
     fn worst_factor(&self, throttle_box: ThrottleBox) -> (f64, [f64; 2]) {
-        let grid = throttle_box.grid(20);
-        let places = grid.clone().flat_map(|u| grid.clone().map(move |l| [u, l]));
-        places
-            .map(|[u, l]| (self.factor(u, l), [u, l]))
-            .fold(
-                (0.0, [0.0; 2]),
-                |worst, here| {
-                    if here.0 > worst.0 { here } else { worst }
-                },
-            )
+        let places = throttle_box.square(20);
+        places.fold((0.0, [0.0; 2]), |worst, [u, l]| {
+            let factor = self.factor(u, l);
+            if factor > worst.0 { (factor, [u, l]) } else { worst }
+        })
     }
 
     /// Q'y: the coordinates of the fit in the orthonormal columns.
     pub fn coordinates(&self, y: &[f64]) -> Vec<f64> {
         let terms = self.centred.basis.exponents().len();
-        (0..terms)
-            .map(|k| self.q.iter().zip(y).map(|(row, y)| row[k] * y).sum())
-            .collect()
+        let along = |k| self.q.iter().zip(y).map(|(row, y)| row[k] * y).sum();
+        (0..terms).map(along).collect()
     }
 
     /// Monomial coefficients of orthonormal coordinates.
     pub fn coefficients(&self, z: &[f64]) -> Vec<f64> {
-        self.to_monomials
-            .iter()
-            .map(|row| row.iter().zip(z).map(|(c, z)| c * z).sum())
-            .collect()
+        times(&self.to_monomials, z)
     }
 
     /// Measured less fitted, for orthonormal coordinates `z`.
     pub fn residuals(&self, y: &[f64], z: &[f64]) -> Vec<f64> {
-        let fitted = |row: &Vec<f64>| row.iter().zip(z).map(|(q, z)| q * z).sum::<f64>();
-        self.q.iter().zip(y).map(|(row, y)| y - fitted(row)).collect()
+        y.iter()
+            .zip(times(&self.q, z))
+            .map(|(y, fitted)| y - fitted)
+            .collect()
     }
 
     /// 2-norm condition number of the matrix of raw monomials.
@@ -189,9 +149,7 @@ impl Design {
         let matrix = Mat::from_fn(rows.len(), basis.exponents().len(), |i, j| rows[i][j]);
         match matrix.singular_values() {
             Ok(s) => {
-                let (low, high) = s
-                    .iter()
-                    .fold((f64::MAX, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
+                let [low, high] = extent(s.iter().copied());
                 high / low
             }
             Err(_) => f64::INFINITY,
@@ -200,15 +158,12 @@ impl Design {
 
     /// Standard errors of the coefficients in units of the residual's standard deviation.
     pub fn standard_errors(&self) -> Vec<f64> {
-        self.to_monomials
-            .iter()
-            .map(|row| row.iter().map(|x| x * x).sum::<f64>().sqrt())
-            .collect()
+        self.to_monomials.iter().map(|row| dot(row, row).sqrt()).collect()
     }
 
     /// Leverages h_i.
     pub fn leverages(&self) -> Vec<f64> {
-        self.q.iter().map(|row| row.iter().map(|x| x * x).sum()).collect()
+        self.q.iter().map(|row| dot(row, row)).collect()
     }
 }
 
@@ -258,16 +213,12 @@ pub struct Prediction {
 /// Root of the mean squared leave-one-out error of `y`.
 pub fn leave_one_out(design: &Design, y: &[f64]) -> f64 {
     let z = design.coordinates(y);
-    let left_out = left_out(design, &design.residuals(y, &z));
-    (left_out.iter().map(|e| e * e).sum::<f64>() / y.len() as f64).sqrt()
+    rms(left_out(design, &design.residuals(y, &z)))
 }
 
 fn left_out(design: &Design, residuals: &[f64]) -> Vec<f64> {
-    residuals
-        .iter()
-        .zip(design.leverages())
-        .map(|(e, h)| e / (1.0 - h).max(1e-12))
-        .collect()
+    let points = residuals.iter().zip(design.leverages());
+    points.map(|(e, h)| e / (1.0 - h).max(1e-12)).collect()
 }
 
 /// Fits `y` on a design.
@@ -277,18 +228,14 @@ pub fn fit(design: &Design, y: &[f64], throttle_box: ThrottleBox) -> Fit {
     let terms = design.centred.basis.exponents().len();
     let degrees_of_freedom = n - terms;
     let residuals = design.residuals(y, &z);
-    let squares = |values: &mut dyn Iterator<Item = f64>| values.map(|e| e * e).sum::<f64>();
-    let sse = squares(&mut residuals.iter().copied());
+    let sse = dot(&residuals, &residuals);
     let mean = y.iter().sum::<f64>() / n as f64;
-    let sst = squares(&mut y.iter().map(|y| y - mean));
+    let sst: f64 = y.iter().map(|y| (y - mean) * (y - mean)).sum();
     let sigma = (sse / degrees_of_freedom as f64).sqrt();
     let t = student_t_975(degrees_of_freedom);
     let left_out = left_out(design, &residuals);
-    let greatest = |values: &[f64]| values.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
     let half_width = |factor: f64| t * sigma * (1.0 + factor * factor).sqrt();
-    let grid = throttle_box.grid(20);
-    let least = grid.clone().flat_map(|u| grid.clone().map(move |l| [u, l]));
-    let least = least.map(|[u, l]| design.factor(u, l)).fold(f64::MAX, f64::min);
+    let [least, _] = extent(throttle_box.square(20).map(|[u, l]| design.factor(u, l)));
     let (worst, greatest_at) = design.worst_factor(throttle_box);
     Fit {
         coefficients: design.coefficients(&z).into_iter().map(ten_digits).collect(),
@@ -296,7 +243,7 @@ pub fn fit(design: &Design, y: &[f64], throttle_box: ThrottleBox) -> Fit {
         r2: if sst > 0.0 { 1.0 - sse / sst } else { 0.0 },
         residual_rms: (sse / n as f64).sqrt(),
         residual_max: greatest(&residuals),
-        leave_one_out_rms: (squares(&mut left_out.iter().copied()) / n as f64).sqrt(),
+        leave_one_out_rms: rms(left_out.iter().copied()),
         leave_one_out_max: greatest(&left_out),
         full_scale: greatest(y),
         condition_number: design.condition_number(),
@@ -334,22 +281,13 @@ pub fn student_t_975(degrees_of_freedom: usize) -> f64 {
 
 /// Least and greatest throttle of each rotor.
 pub fn range(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    [0, 1].map(|r| {
-        points
-            .iter()
-            .fold([f64::MAX, f64::MIN], |[a, b], p| [a.min(p[r]), b.max(p[r])])
-    })
+    [0, 1].map(|rotor| extent(points.iter().map(|p| p[rotor])))
 }
 
 /// Number of throttle pairs that differ by more than a thousandth.
 pub fn distinct_pairs(points: &[[f64; 2]]) -> usize {
-    let mut keys: Vec<[i64; 2]> = points
-        .iter()
-        .map(|p| p.map(|t| (t * 1000.0).round() as i64))
-        .collect();
-    keys.sort_unstable();
-    keys.dedup();
-    keys.len()
+    let keys = points.iter().map(|p| p.map(|t| (t * 1000.0).round() as i64));
+    keys.collect::<BTreeSet<[i64; 2]>>().len()
 }
 
 fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {

@@ -78,14 +78,8 @@ pub fn with_runs(
     let pair = if has(Kind::Pair) {
         let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;
         warnings.extend(pair.warnings.clone());
-        Some(with_alone(
-            pair,
-            &benches,
-            &runs,
-            voltage.as_ref(),
-            wishes,
-            &mut warnings,
-        )?)
+        let of_runs = with_alone(pair, &benches, &runs, voltage.as_ref(), wishes, &mut warnings);
+        Some(of_runs?)
     } else {
         only_single(&benches, voltage.as_ref())?;
         no_runs(&runs)?;
@@ -120,26 +114,20 @@ pub fn with_runs(
 fn with_alone(
     mut pair: Pair,
     benches: &[Bench],
-    [upper, lower]: &[Option<Bench>; 2],
+    runs: &[Option<Bench>; 2],
     voltage: Option<&Voltage>,
     wishes: &Wishes,
     warnings: &mut Vec<String>,
 ) -> Result<Pair, Refusal> {
-    let mut alone = |run: &Option<Bench>, turning, pair: &Pair| {
-        let run = run.as_ref();
-        run.map(|run| alone::identify(run, turning, pair, voltage, warnings))
-            .transpose()
-    };
-    pair.lower_out = alone(upper, Turning::Upper, &pair)?;
-    pair.upper_out = alone(lower, Turning::Lower, &pair)?;
-    if wishes.rotor_out_from_map {
-        let mut from_map =
-            |turning, pair: &Pair| alone::from_map(benches, turning, pair, voltage, warnings).map(Some);
-        if pair.lower_out.is_none() {
-            pair.lower_out = from_map(Turning::Upper, &pair)?;
-        }
-        if pair.upper_out.is_none() {
-            pair.upper_out = from_map(Turning::Lower, &pair)?;
+    for (run, turning) in runs.iter().zip([Turning::Upper, Turning::Lower]) {
+        let found = match run {
+            Some(run) => alone::identify(run, turning, &pair, voltage, warnings)?,
+            None if wishes.rotor_out_from_map => alone::from_map(benches, turning, &pair, voltage, warnings)?,
+            None => continue,
+        };
+        match turning {
+            Turning::Upper => pair.lower_out = Some(found),
+            Turning::Lower => pair.upper_out = Some(found),
         }
     }
     warnings.extend(alone::extrapolated(&pair));
@@ -203,13 +191,15 @@ fn in_pack(reference_v: Option<f64>, pack_v: Option<[f64; 2]>) -> Result<(), Ref
     }
 }
 
+fn names(benches: &[Bench]) -> String {
+    let names: Vec<&str> = benches.iter().map(|b| b.file.as_str()).collect();
+    names.join(", ")
+}
+
 /// Rows are named by file name and line, so names must differ.
 fn distinct_names(benches: &[Bench]) -> Result<(), Refusal> {
-    let twice = benches
-        .iter()
-        .enumerate()
-        .find(|(i, b)| benches[..*i].iter().any(|a| a.file == b.file));
-    match twice {
+    let is_twice = |(i, b): &(usize, &Bench)| benches[..*i].iter().any(|a| a.file == b.file);
+    match benches.iter().enumerate().find(is_twice) {
         None => Ok(()),
         Some((_, b)) => Err(Refusal::of(
             &b.file,
@@ -235,26 +225,21 @@ fn declared(
     [thrust, torque]: [f64; 2],
     benches: &[Bench],
 ) -> Result<Voltage, Refusal> {
-    let files = || {
-        benches
-            .iter()
-            .map(|b| b.file.as_str())
-            .collect::<Vec<_>>()
-            .join(", ")
+    let refuse = |reason: &str, needed: &str| {
+        let reason = format!("--voltage-exponent has nothing to work on: {reason}");
+        Err(Refusal::of(names(benches), reason, needed))
     };
     let Some(voltage) = measured else {
-        return Err(Refusal::of(
-            files(),
-            "--voltage-exponent has nothing to work on: no file has a voltage column",
+        return refuse(
+            "no file has a voltage column",
             "the supply voltage of every row, in a column of its own (--column voltage=HEADER)",
-        ));
+        );
     };
     if !benches.iter().any(|b| b.kind == Kind::Pair) {
-        return Err(Refusal::of(
-            files(),
-            "--voltage-exponent has nothing to work on: one throttle only, so there is no map of a pair",
+        return refuse(
+            "one throttle only, so there is no map of a pair",
             "a sweep of both throttles independently; or no --voltage-exponent, to identify it from these files",
-        ));
+        );
     }
     Ok(Voltage {
         thrust: voltage.thrust.declared(thrust),
@@ -265,28 +250,24 @@ fn declared(
 
 /// Without a pair the files must at least give an exponent.
 fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refusal> {
-    let files = benches
-        .iter()
-        .map(|b| b.file.as_str())
-        .collect::<Vec<_>>()
-        .join(", ");
+    let files = names(benches);
     let for_pair = "for [pair]: a sweep of both throttles independently, with thrust and torque of the pair, or cargo mixer predict, which makes a pair of \
                     a run of one rotor";
-    match voltage.map(|v| &v.thrust) {
-        Some(Exponent::Identified(_)) => Ok(()),
-        Some(Exponent::Refused { reason, needed }) => Err(Refusal::of(
-            files,
-            format!("one throttle only, so there is no map of a pair; and no voltage exponent: {reason}"),
-            format!("{for_pair}; for [voltage]: {needed}"),
-        )),
-        Some(Exponent::Declared { .. } | Exponent::NotMeasured) | None => Err(Refusal::of(
-            files,
-            "one throttle only, so there is no map of a pair; and no voltage was measured",
-            format!(
-                "{for_pair}; for [voltage]: the same sweep at two supply voltages, with a voltage column"
-            ),
-        )),
-    }
+    let (why, needed) = match voltage.map(|v| &v.thrust) {
+        Some(Exponent::Identified(_)) => return Ok(()),
+        Some(Exponent::Refused { reason, needed }) => {
+            (format!("no voltage exponent: {reason}"), needed.as_str())
+        }
+        Some(Exponent::Declared { .. } | Exponent::NotMeasured) | None => (
+            "no voltage was measured".to_owned(),
+            "the same sweep at two supply voltages, with a voltage column",
+        ),
+    };
+    Err(Refusal::of(
+        files,
+        format!("one throttle only, so there is no map of a pair; and {why}"),
+        format!("{for_pair}; for [voltage]: {needed}"),
+    ))
 }
 
 /// Sag of the supply within one map, as a share of its highest voltage, above which it matters how
@@ -295,13 +276,13 @@ const SAG: f64 = 0.03;
 
 /// A warning about a supply that sagged with the load, for the use of `[voltage]`.
 fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
-    let of = |bench: &&Bench| {
+    let sag_of = |bench: &Bench| {
         let volts = bench.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());
         let (low, high) = volts.fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
         if high > 0.0 { 1.0 - low / high } else { 0.0 }
     };
     let maps = benches.iter().filter(|b| b.kind == Kind::Pair);
-    let sag = maps.map(|b| of(&b)).fold(0.0, f64::max);
+    let sag = maps.map(sag_of).fold(0.0, f64::max);
     if sag <= SAG {
         return None;
     }
@@ -322,47 +303,37 @@ fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
 }
 
 fn voltage_warnings(voltage: &Voltage, pack_is_known: bool) -> Vec<String> {
-    let [low, high] = voltage.range_v;
-    let contradicted = voltage.channels().into_iter().filter_map(|(name, exponent)| match exponent {
-        Exponent::Declared { exponent, measured: Some(e) } if (exponent - e.exponent).abs() > e.ci95 => Some(format!(
-            "--voltage-exponent declares {exponent} for {name}, the files themselves give {:.3} +- {:.3}",
-            e.exponent, e.ci95
-        )),
-        Exponent::Declared { exponent, .. } if !(PLAUSIBLE[0]..=PLAUSIBLE[1]).contains(exponent) => Some(format!(
-            "--voltage-exponent declares {exponent} for {name}, outside {}..{}, which no propeller has",
-            PLAUSIBLE[0], PLAUSIBLE[1]
-        )),
-        _ => None,
-    });
-    let contradicted: Vec<String> = contradicted.collect();
+    let ([low, high], [least, most]) = (voltage.range_v, PLAUSIBLE);
+    let channels = voltage.channels().into_iter();
+    let mut told: Vec<String> = channels
+        .filter_map(|(name, exponent)| match exponent {
+            Exponent::Declared { exponent, measured: Some(e) } if (exponent - e.exponent).abs() > e.ci95 => Some(format!(
+                "--voltage-exponent declares {exponent} for {name}, the files themselves give {:.3} +- {:.3}",
+                e.exponent, e.ci95
+            )),
+            Exponent::Declared { exponent, .. } if !(least..=most).contains(exponent) => Some(format!(
+                "--voltage-exponent declares {exponent} for {name}, outside {least}..{most}, which no propeller has"
+            )),
+            Exponent::Refused { reason, needed } if voltage.varies() => Some(format!(
+                "no {name} exponent of voltage: {reason}; needed: {needed}"
+            )),
+            Exponent::NotMeasured if voltage.varies() => {
+                Some(format!("no {name} exponent of voltage: no file has its column"))
+            }
+            _ => None,
+        })
+        .collect();
+    let sag = 1.0 - low / high;
     if matches!(voltage.thrust, Exponent::Declared { .. }) {
         let range = format!(
             "range_v is {low:.2}..{high:.2} V, what the bench had, and a voltage outside is clamped: --cells N gives the pack's"
         );
-        return match pack_is_known {
-            true => contradicted,
-            false => [contradicted, vec![range]].concat(),
-        };
+        told.extend((!pack_is_known).then_some(range));
+    } else if !voltage.varies() && 0.02 < sag && sag <= SAG {
+        let sag = 100.0 * sag;
+        told.push(format!(
+            "the supply varied by {sag:.1} % ({high:.2} to {low:.2} V), which the map includes"
+        ));
     }
-    if !voltage.varies() {
-        let sag = 100.0 * (1.0 - low / high);
-        let told =
-            format!("the supply varied by {sag:.1} % ({high:.2} to {low:.2} V), which the map includes");
-        return if sag > 2.0 && sag <= 100.0 * SAG {
-            vec![told]
-        } else {
-            Vec::new()
-        };
-    }
-    let told = voltage
-        .channels()
-        .into_iter()
-        .filter_map(|(name, exponent)| match exponent {
-            Exponent::Refused { reason, needed } => Some(format!(
-                "no {name} exponent of voltage: {reason}; needed: {needed}"
-            )),
-            Exponent::NotMeasured => Some(format!("no {name} exponent of voltage: no file has its column")),
-            Exponent::Identified(_) | Exponent::Declared { .. } => None,
-        });
-    told.collect()
+    told
 }

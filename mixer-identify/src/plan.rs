@@ -12,6 +12,7 @@ use std::fmt::Write as _;
 use mixer_compiler::airframe::Basis;
 
 use crate::fit::basis::monomials;
+use crate::fit::statistics::dot;
 
 /// The throttles `[u, l]` that correct a prediction (`identify --prior`): both rotors at half and at
 /// full thrust, and either one far above the other.
@@ -64,8 +65,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
         x.iter().map(|x| x - mean).collect()
     };
     let (a, b) = (centred(a), centred(b));
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt()
+    dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt()
 }
 
 /// The columns to fill in behind the throttles. Voltage and current are for the supply's sag and
@@ -92,10 +92,8 @@ pub fn template(pairs: &[[f64; 2]]) -> String {
 /// microseconds.
 pub fn rcbenchmark(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> String {
     let pulse = |throttle: f64| (low + throttle * (high - low)).round();
-    let pairs: Vec<String> = pairs
-        .iter()
-        .map(|[u, l]| format!("    [{}, {}]", pulse(*u), pulse(*l)))
-        .collect();
+    let line = |[u, l]: &[f64; 2]| format!("    [{}, {}]", pulse(*u), pulse(*l));
+    let pairs: Vec<String> = pairs.iter().map(line).collect();
     include_str!("plan/rcbenchmark.js")
         .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
         .replace("@STOP@", &pulse(0.0).to_string())
@@ -104,10 +102,8 @@ pub fn rcbenchmark(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> String {
 
 /// A script for the Flight Stand software, likewise.
 pub fn flight_stand(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> String {
-    let pairs: Vec<String> = pairs
-        .iter()
-        .map(|[u, l]| format!("    [{u:?}, {l:?}],"))
-        .collect();
+    let line = |[u, l]: &[f64; 2]| format!("    [{u:?}, {l:?}],");
+    let pairs: Vec<String> = pairs.iter().map(line).collect();
     include_str!("plan/flight_stand.py")
         .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
         .replace("@LOW@", &low.to_string())

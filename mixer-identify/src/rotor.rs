@@ -20,15 +20,12 @@ pub enum Turning {
 }
 
 impl Turning {
-    /// The table of the airframe file.
+    /// The key of its table in `[pair]`.
     pub fn key(self) -> &'static str {
-        match self {
-            Turning::Upper => "lower_out",
-            Turning::Lower => "upper_out",
-        }
+        self.table().trim_start_matches("pair.")
     }
 
-    /// The same by its whole name.
+    /// The table of the airframe file.
     pub fn table(self) -> &'static str {
         match self {
             Turning::Upper => "pair.lower_out",

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::bench::read::{self, RefusedRow};
+use super::bench::read;
 use super::bench::{self, Bench};
 use super::identified::{Identified, Settings, with_runs};
 use super::refusal::Refusal;
@@ -21,7 +21,9 @@ pub struct Text {
 
 /// What came of files.
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct Answer<T> {
+    /// In numbers.
+    pub found: T,
     /// The report in at most 30 lines of 100 columns.
     pub report: String,
     /// Every number.
@@ -30,10 +32,6 @@ pub struct Answer {
     pub tables: String,
     /// Everything as JSON.
     pub json: String,
-    /// What the user should know; the reports have it too.
-    pub warnings: Vec<String>,
-    /// Rows that were left out as they cannot be read.
-    pub refused_rows: Vec<RefusedRow>,
 }
 
 /// Reads a file and makes it ready.
@@ -65,37 +63,22 @@ fn read_all(texts: &[Text], settings: &Settings) -> Result<Vec<Bench>, Vec<Refus
 ///
 /// # Errors
 /// All files that cannot be read or used, else why they do not give a pair.
-pub fn identified(
-    maps: &[Text],
-    runs: [Option<&Text>; 2],
-    settings: &Settings,
-) -> Result<Identified, Vec<Refusal>> {
-    let benches = read_all(maps, settings)?;
-    let run = |run: Option<&Text>| run.map(|run| read(run, settings)).transpose();
-    let [upper, lower] = runs;
-    run(upper)
-        .and_then(|upper| with_runs(benches, [upper, run(lower)?], &settings.wishes))
-        .map_err(|refusal| vec![refusal])
-}
-
-/// [`identified`] in words, tables and JSON.
-///
-/// # Errors
-/// As of [`identified`].
 pub fn identify(
     maps: &[Text],
     runs: [Option<&Text>; 2],
     settings: &Settings,
-) -> Result<Answer, Vec<Refusal>> {
-    let identified = identified(maps, runs, settings)?;
-    let files = identified.files.iter();
+) -> Result<Answer<Identified>, Vec<Refusal>> {
+    let benches = read_all(maps, settings)?;
+    let run = |run: Option<&Text>| run.map(|run| read(run, settings)).transpose();
+    let [upper, lower] = runs;
+    let found = run(upper).and_then(|upper| with_runs(benches, [upper, run(lower)?], &settings.wishes));
+    let found = found.map_err(|refusal| vec![refusal])?;
     Ok(Answer {
-        report: report::verdict(&identified),
-        details: report::text(&identified),
-        tables: fragment::text(&identified),
-        json: json(&identified)?,
-        refused_rows: files.flat_map(|file| file.refused_rows.clone()).collect(),
-        warnings: identified.warnings,
+        report: report::verdict(&found),
+        details: report::text(&found),
+        tables: fragment::text(&found),
+        json: json(&found)?,
+        found,
     })
 }
 
@@ -117,39 +100,25 @@ pub struct Prediction {
 ///
 /// # Errors
 /// All maps that cannot be read or used, else why there is no pair.
-pub fn predicted(
-    upper: &Text,
-    lower: Option<&Text>,
-    maps: &[Text],
-    how: &Prediction,
-) -> Result<Predicted, Vec<Refusal>> {
-    let maps = read_all(maps, &how.map)?;
-    let mut warnings = Vec::new();
-    let mut single = |text: &Text| Single::of(&read(text, &how.run)?, &how.known, &mut warnings);
-    let runs = single(upper).and_then(|upper| Ok((upper, lower.map(single).transpose()?)));
-    runs.and_then(|(upper, lower)| predict::correct(upper, lower, &maps, &how.wishes, warnings))
-        .map_err(|refusal| vec![refusal])
-}
-
-/// [`predicted`] in words, tables and JSON.
-///
-/// # Errors
-/// As of [`predicted`].
 pub fn predict(
     upper: &Text,
     lower: Option<&Text>,
     maps: &[Text],
     how: &Prediction,
-) -> Result<Answer, Vec<Refusal>> {
-    let predicted = predicted(upper, lower, maps, how)?;
-    let report = report::of_prediction(&predicted);
+) -> Result<Answer<Predicted>, Vec<Refusal>> {
+    let maps = read_all(maps, &how.map)?;
+    let mut warnings = Vec::new();
+    let mut single = |text: &Text| Single::of(&read(text, &how.run)?, &how.known, &mut warnings);
+    let runs = single(upper).and_then(|upper| Ok((upper, lower.map(single).transpose()?)));
+    let found = runs.and_then(|(upper, lower)| predict::correct(upper, lower, &maps, &how.wishes, warnings));
+    let found = found.map_err(|refusal| vec![refusal])?;
+    let report = report::of_prediction(&found);
     Ok(Answer {
         details: report.clone(),
         report,
-        tables: fragment::of_prediction(&predicted),
-        json: json(&predicted)?,
-        refused_rows: Vec::new(),
-        warnings: predicted.warnings,
+        tables: fragment::of_prediction(&found),
+        json: json(&found)?,
+        found,
     })
 }
 

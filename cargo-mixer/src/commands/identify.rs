@@ -210,25 +210,23 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
     let maps = texts(&args.files);
     let [prior, upper, lower] = runs.map(|run| run.as_deref().map(text));
     let settings = args.settings();
-    let answer = match &prior {
-        Some(single) => args.rotors.predict(
-            single,
-            &maps,
-            Prediction {
-                run: predict::of_one_rotor(),
-                map: settings,
-                known: args.rotors.known(args.reference_voltage),
-                wishes: args.rotors.wishes(args.throttle, false),
-            },
-        ),
-        None => identify(&maps, [upper.as_ref(), lower.as_ref()], &settings),
-    };
-    let answer = answer.map_err(refused)?;
+    if let Some(single) = &prior {
+        let how = Prediction {
+            run: predict::of_one_rotor(),
+            map: settings,
+            known: args.rotors.known(args.reference_voltage),
+            wishes: args.rotors.wishes(args.throttle, false),
+        };
+        let answer = args.rotors.predict(single, &maps, &how).map_err(refused)?;
+        return place.write(&answer, args.verbose);
+    }
+    let answer = identify(&maps, [upper.as_ref(), lower.as_ref()], &settings).map_err(refused)?;
+    let refused_rows = || answer.found.files.iter().flat_map(|file| &file.refused_rows);
     let most = MOST_TOLD[usize::from(args.verbose)];
-    for row in answer.refused_rows.iter().take(most) {
+    for row in refused_rows().take(most) {
         print_note(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
     }
-    let more = answer.refused_rows.len().saturating_sub(most);
+    let more = refused_rows().count().saturating_sub(most);
     if more > 0 {
         print_note(format_args!("refused: {more} rows more"));
     }

@@ -11,7 +11,7 @@ use mixer_identify::bench::sign::{SignChoice, SignPolicy};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
-use mixer_identify::rotor::predict::Wishes;
+use mixer_identify::rotor::predict::{Predicted, Wishes};
 use mixer_identify::rotor::single::Known;
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
@@ -117,7 +117,7 @@ impl RotorArgs {
         Wishes {
             spacing_ratio: self.ratio(),
             closed_loop,
-            throttle: throttle.unwrap_or(Wishes::default().throttle),
+            throttle,
             date: today(),
         }
     }
@@ -127,10 +127,10 @@ impl RotorArgs {
         &self,
         single: &Text,
         maps: &[Text],
-        how: Prediction,
-    ) -> Result<Answer, Vec<Refusal>> {
+        how: &Prediction,
+    ) -> Result<Answer<Predicted>, Vec<Refusal>> {
         let lower = self.lower_single.as_deref().map(text);
-        texts::predict(single, lower.as_ref(), maps, &how)
+        texts::predict(single, lower.as_ref(), maps, how)
     }
 
     /// Whether anything is given.
@@ -183,14 +183,14 @@ impl PredictArgs {
     ///
     /// # Errors
     /// Files that cannot serve.
-    pub fn predicted(&self) -> Result<Answer, Vec<Refusal>> {
+    pub fn predicted(&self) -> Result<Answer<Predicted>, Vec<Refusal>> {
         let how = Prediction {
             run: self.settings(),
             map: Settings::default(),
             known: self.rotors.known(self.reference_voltage),
             wishes: self.rotors.wishes(self.throttle, self.rpm_at_full.is_some()),
         };
-        self.rotors.predict(&text(&self.single), &[], how)
+        self.rotors.predict(&text(&self.single), &[], &how)
     }
 }
 

@@ -23,32 +23,43 @@ pub struct Column {
     pub scale: Scale,
 }
 
-/// The roles that columns can play; `--column ROLE=HEADER` names them in snake case.
+/// A quantity of the whole and of the upper and the lower rotor.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Split<T> {
+    /// Of both rotors together.
+    pub whole: T,
+    /// Of the upper and of the lower one.
+    pub rotors: [T; 2],
+}
+
+impl<T> Split<Option<T>> {
+    /// Whether there is any.
+    pub fn any(&self) -> bool {
+        self.whole.is_some() || self.rotors.iter().any(Option::is_some)
+    }
+
+    /// Whether there is the whole, or both rotors.
+    pub fn complete(&self) -> bool {
+        self.whole.is_some() || self.rotors.iter().all(Option::is_some)
+    }
+}
+
+/// The columns that are read; `--column ROLE=HEADER` names them by [`ROLES`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Columns {
-    /// Command of the upper rotor, or of the only one.
-    pub upper: Option<Column>,
-    /// Command of the lower rotor.
-    pub lower: Option<Column>,
-    /// Thrust of the whole.
-    pub thrust: Option<Column>,
-    /// Torque of the whole.
-    pub torque: Option<Column>,
-    /// Thrust of the upper and of the lower rotor.
-    pub rotor_thrust: [Option<Column>; 2],
-    /// Torque of the upper and of the lower rotor.
-    pub rotor_torque: [Option<Column>; 2],
-    /// Supply voltage (of the upper rotor where each has its own sensor: two sensors differ by
-    /// their calibration).
-    pub voltage: Option<Column>,
-    /// Supply voltage of the lower rotor, for its power only.
-    pub lower_voltage: Option<Column>,
-    /// Supply current of the whole.
-    pub current: Option<Column>,
-    /// Supply current of the upper and of the lower rotor.
-    pub rotor_current: [Option<Column>; 2],
+    /// Commands of the upper rotor, or of the only one, and of the lower rotor.
+    pub throttle: Split<Option<Column>>,
+    /// Thrust.
+    pub thrust: Split<Option<Column>>,
+    /// Torque.
+    pub torque: Split<Option<Column>>,
+    /// Supply voltage of the whole or of the upper rotor; that of the lower rotor for its power only,
+    /// as two sensors differ by their calibration.
+    pub voltage: Split<Option<Column>>,
+    /// Supply current.
+    pub current: Split<Option<Column>>,
     /// Time.
-    pub time: Option<Column>,
+    pub time: Split<Option<Column>>,
     /// The format that the header was recognised as, for the report.
     pub format: String,
     /// Whether names, rather than an assumption, say which rotor is the upper one.
@@ -68,44 +79,44 @@ pub struct ByHand {
     pub swap: bool,
 }
 
-/// Roles for `--column`, with what they measure.
-pub const ROLES: [(&str, Quantity); 14] = [
-    ("upper", Quantity::Throttle),
-    ("lower", Quantity::Throttle),
-    ("thrust", Quantity::Thrust),
-    ("torque", Quantity::Torque),
-    ("upper_thrust", Quantity::Thrust),
-    ("lower_thrust", Quantity::Thrust),
-    ("upper_torque", Quantity::Torque),
-    ("lower_torque", Quantity::Torque),
-    ("voltage", Quantity::Voltage),
-    ("lower_voltage", Quantity::Voltage),
-    ("current", Quantity::Current),
-    ("upper_current", Quantity::Current),
-    ("lower_current", Quantity::Current),
-    ("time", Quantity::Time),
+/// Roles for `--column`, with what they measure and of which rotor.
+pub const ROLES: [(&str, Quantity, Option<usize>); 14] = [
+    ("upper", Quantity::Throttle, Some(0)),
+    ("lower", Quantity::Throttle, Some(1)),
+    ("thrust", Quantity::Thrust, None),
+    ("torque", Quantity::Torque, None),
+    ("upper_thrust", Quantity::Thrust, Some(0)),
+    ("lower_thrust", Quantity::Thrust, Some(1)),
+    ("upper_torque", Quantity::Torque, Some(0)),
+    ("lower_torque", Quantity::Torque, Some(1)),
+    ("voltage", Quantity::Voltage, Some(0)),
+    ("lower_voltage", Quantity::Voltage, Some(1)),
+    ("current", Quantity::Current, None),
+    ("upper_current", Quantity::Current, Some(0)),
+    ("lower_current", Quantity::Current, Some(1)),
+    ("time", Quantity::Time, None),
 ];
 
 impl Columns {
-    /// The place of a role.
-    fn slot(&mut self, role: &str) -> Option<&mut Option<Column>> {
-        Some(match role {
-            "upper" => &mut self.upper,
-            "lower" => &mut self.lower,
-            "thrust" => &mut self.thrust,
-            "torque" => &mut self.torque,
-            "upper_thrust" => &mut self.rotor_thrust[0],
-            "lower_thrust" => &mut self.rotor_thrust[1],
-            "upper_torque" => &mut self.rotor_torque[0],
-            "lower_torque" => &mut self.rotor_torque[1],
-            "voltage" => &mut self.voltage,
-            "lower_voltage" => &mut self.lower_voltage,
-            "current" => &mut self.current,
-            "upper_current" => &mut self.rotor_current[0],
-            "lower_current" => &mut self.rotor_current[1],
-            "time" => &mut self.time,
-            _ => return None,
-        })
+    fn of(&mut self, quantity: Quantity) -> &mut Split<Option<Column>> {
+        match quantity {
+            Quantity::Throttle => &mut self.throttle,
+            Quantity::Thrust => &mut self.thrust,
+            Quantity::Torque => &mut self.torque,
+            Quantity::Voltage => &mut self.voltage,
+            Quantity::Current => &mut self.current,
+            Quantity::Time => &mut self.time,
+        }
+    }
+
+    /// The place of a quantity's column.
+    fn slot(&mut self, quantity: Quantity, side: Option<usize>) -> &mut Option<Column> {
+        let Split { whole, rotors } = self.of(quantity);
+        match (side, rotors) {
+            (None, _) => whole,
+            (Some(0), [upper, _]) => upper,
+            (_, [_, lower]) => lower,
+        }
     }
 
     /// Reads the header line of `file`. `headers` are the decoded names.
@@ -117,13 +128,13 @@ impl Columns {
         };
         columns.by_name(file, &names, by_hand)?;
         if by_hand.swap {
-            std::mem::swap(&mut columns.upper, &mut columns.lower);
-            columns.rotor_thrust.swap(0, 1);
-            columns.rotor_torque.swap(0, 1);
-            columns.rotor_current.swap(0, 1);
+            use Quantity::{Current, Throttle, Thrust, Torque};
+            for quantity in [Throttle, Thrust, Torque, Current] {
+                columns.of(quantity).rotors.swap(0, 1);
+            }
         }
         for (role, wanted) in &by_hand.columns {
-            let Some(&(_, quantity)) = ROLES.iter().find(|(r, _)| r == role) else {
+            let Some(&(_, quantity, side)) = ROLES.iter().find(|(r, ..)| r == role) else {
                 return Err(unknown_role(role));
             };
             let index = position(headers, wanted).ok_or_else(|| {
@@ -134,15 +145,11 @@ impl Columns {
                 )
             })?;
             let column = scaled(file, index, &names[index], quantity, role, by_hand)?;
-            // A total given by hand stands above the rotors' own columns, and the other way round.
-            match role.as_str() {
-                "upper_thrust" | "lower_thrust" => columns.thrust = None,
-                "upper_torque" | "lower_torque" => columns.torque = None,
-                _ => {}
+            // A column of one rotor given by hand stands above the whole's.
+            if side.is_some() {
+                columns.of(quantity).whole = None;
             }
-            if let Some(slot) = columns.slot(role) {
-                *slot = Some(column);
-            }
+            *columns.slot(quantity, side) = Some(column);
             columns.sides_named |= matches!(role.as_str(), "upper" | "lower");
         }
         columns.sides_named |= by_hand.swap;
@@ -157,7 +164,7 @@ impl Columns {
                 named.name
             )
         };
-        match (&self.voltage, &self.current, &self.rotor_current) {
+        match (&self.voltage.rotors[0], &self.current.whole, &self.current.rotors) {
             (Some(_), Some(_), _) | (Some(_), _, [Some(_), Some(_)]) => None,
             (_, None, [Some(upper), None]) => Some(of_one(upper, "lower")),
             (_, None, [None, Some(lower)]) => Some(of_one(lower, "upper")),
@@ -170,27 +177,17 @@ impl Columns {
         let prefixes = distinct_prefixes(names);
         for (index, name) in names.iter().enumerate() {
             let Some(quantity) = name.quantity() else { continue };
-            let side = name.side(&prefixes);
-            let role = match (quantity, side) {
-                (Quantity::Throttle, None | Some(0)) => "upper",
-                (Quantity::Throttle, _) => "lower",
-                (Quantity::Thrust, None) => "thrust",
-                (Quantity::Thrust, Some(0)) => "upper_thrust",
-                (Quantity::Thrust, _) => "lower_thrust",
-                (Quantity::Torque, None) => "torque",
-                (Quantity::Torque, Some(0)) => "upper_torque",
-                (Quantity::Torque, _) => "lower_torque",
-                (Quantity::Voltage, None | Some(0)) => "voltage",
-                (Quantity::Voltage, _) => "lower_voltage",
-                (Quantity::Current, None) => "current",
-                (Quantity::Current, Some(0)) => "upper_current",
-                (Quantity::Current, _) => "lower_current",
-                (Quantity::Time, _) => "time",
+            let side = match (quantity, name.side(&prefixes)) {
+                (Quantity::Time, _) => None,
+                (Quantity::Throttle | Quantity::Voltage, None) => Some(0),
+                (_, side) => side,
             };
+            let role = ROLES.iter().find(|(_, of, at)| (*of, *at) == (quantity, side));
+            let Some(&(role, ..)) = role else { continue };
             if by_hand.columns.iter().any(|(r, _)| r == role) {
                 continue;
             }
-            let Some(slot) = self.slot(role) else { continue };
+            let slot = self.slot(quantity, side);
             if let Some(first) = slot {
                 // Two columns for one role: guessing would be silent. Time is only used to keep
                 // rows in order. Power is a by-product: what is doubtful there refuses no map.
@@ -221,7 +218,7 @@ impl Columns {
 
 /// The refusal of a role that does not exist.
 pub fn unknown_role(role: &str) -> Refusal {
-    let roles: Vec<&str> = ROLES.iter().map(|(r, _)| *r).collect();
+    let roles: Vec<&str> = ROLES.iter().map(|(r, ..)| *r).collect();
     Refusal::general(
         format!("unknown role {role:?}"),
         format!("one of: {}", roles.join(", ")),

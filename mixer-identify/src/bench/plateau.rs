@@ -6,6 +6,7 @@
 //! mean of its rows after a settling time; rows of ramps between plateaus are dropped. Each
 //! channel's mean is over the rows where it is not blank.
 
+use crate::bench::header::Split;
 use crate::bench::read::Sample;
 
 /// Fewer rows than this make no plateau.
@@ -42,13 +43,15 @@ pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
             let (sum, count) = measured.fold((0.0, 0), |(sum, count), x| (sum + x, count + 1));
             if count == 0 { f64::NAN } else { sum / count as f64 }
         };
+        let split = |of: fn(&Sample) -> Split<f64>| Split {
+            whole: mean(&|s| of(s).whole),
+            rotors: [0, 1].map(|r| mean(&|s| of(s).rotors[r])),
+        };
         points.push(Sample {
             line: rows[0].line,
             throttle: [0, 1].map(|r| mean(&|s| s.throttle[r])),
-            thrust: mean(&|s| s.thrust),
-            torque: mean(&|s| s.torque),
-            rotor_thrust: [0, 1].map(|r| mean(&|s| s.rotor_thrust[r])),
-            rotor_torque: [0, 1].map(|r| mean(&|s| s.rotor_torque[r])),
+            thrust: split(|s| s.thrust),
+            torque: split(|s| s.torque),
             voltage: mean(&|s| s.voltage),
             power_w: mean(&|s| s.power_w),
         });
@@ -77,10 +80,14 @@ mod tests {
         Sample {
             line,
             throttle: [u, 0.5],
-            thrust,
-            torque: f64::NAN,
-            rotor_thrust: [f64::NAN; 2],
-            rotor_torque: [f64::NAN; 2],
+            thrust: Split {
+                whole: thrust,
+                rotors: [f64::NAN; 2],
+            },
+            torque: Split {
+                whole: f64::NAN,
+                rotors: [f64::NAN; 2],
+            },
             voltage: f64::NAN,
             power_w: f64::NAN,
         }
@@ -91,18 +98,18 @@ mod tests {
         let mut rows: Vec<Sample> = (0..10)
             .map(|k| sample(k, 0.2, if k < 4 { 99.0 } else { 1.0 }))
             .collect();
-        rows[6].thrust = f64::NAN; // a blank
+        rows[6].thrust.whole = f64::NAN; // a blank
         rows.extend((10..13).map(|k| sample(k, 0.2 + 0.01 * k as f64, 50.0))); // a ramp
         rows.extend((13..23).map(|k| sample(k, 0.5, 2.0)));
         assert!(is_streaming(&rows));
         let (points, dropped) = means(&rows, 0.4);
         let seen: Vec<(u64, f64, f64)> = points
             .iter()
-            .map(|p| (p.line, (1e6 * p.throttle[0]).round() / 1e6, p.thrust))
+            .map(|p| (p.line, (1e6 * p.throttle[0]).round() / 1e6, p.thrust.whole))
             .collect();
         assert_eq!(seen, [(4, 0.2, 1.0), (17, 0.5, 2.0)]);
         assert_eq!(dropped, 4 + 3 + 4);
-        assert!(points[0].torque.is_nan());
+        assert!(points[0].torque.whole.is_nan());
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 use serde::Serialize;
 
-use crate::bench::header::{ByHand, Column, Columns};
+use crate::bench::header::{ByHand, Column, Columns, Split};
 use crate::bench::text;
 use crate::bench::units::Scale;
 use crate::refusal::{Refusal, cut, cut_cell};
@@ -27,6 +27,16 @@ pub struct RefusedRow {
     pub reason: String,
 }
 
+impl RefusedRow {
+    pub(crate) fn new(file: &str, line: u64, reason: impl Into<String>) -> Self {
+        RefusedRow {
+            file: file.to_owned(),
+            line,
+            reason: cut(reason.into()),
+        }
+    }
+}
+
 /// One row. Missing values are NaN.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
@@ -34,14 +44,10 @@ pub struct Sample {
     pub line: u64,
     /// Throttles of the upper and of the lower rotor.
     pub throttle: [f64; 2],
-    /// Thrust of the whole, N.
-    pub thrust: f64,
-    /// Torque of the whole, N m.
-    pub torque: f64,
-    /// Thrust of the upper and of the lower rotor, N.
-    pub rotor_thrust: [f64; 2],
-    /// Torque of the upper and of the lower rotor, N m.
-    pub rotor_torque: [f64; 2],
+    /// Thrust, N.
+    pub thrust: Split<f64>,
+    /// Torque, N m.
+    pub torque: Split<f64>,
     /// Supply voltage, V.
     pub voltage: f64,
     /// Electrical power of the whole, W.
@@ -156,24 +162,20 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         }
         match cells.sample(line, &log.columns, &record) {
             Ok(sample) => log.samples.push(sample),
-            Err(reason) => log.refused.push(RefusedRow {
-                file: name.to_string(),
-                line,
-                reason: cut(reason),
-            }),
+            Err(reason) => log.refused.push(RefusedRow::new(name, line, reason)),
         }
     }
 }
 
 /// Refuses a header without the columns that every use needs.
 fn require(name: &str, columns: &Columns, headers: &[String]) -> Result<(), Refusal> {
-    let has_thrust = columns.thrust.is_some() || columns.rotor_thrust.iter().any(Option::is_some);
-    let (what, roles) = match (&columns.upper, &columns.lower) {
-        (None, None) => (
+    let has_thrust = columns.thrust.any();
+    let (what, roles) = match columns.throttle.rotors.each_ref() {
+        [None, None] => (
             "throttle",
             "upper=HEADER and --column lower=HEADER (rotor speeds are no throttles)",
         ),
-        (None, Some(_)) => ("throttle of the upper rotor", "upper=HEADER"),
+        [None, Some(_)] => ("throttle of the upper rotor", "upper=HEADER"),
         _ if !has_thrust => ("thrust", "thrust=HEADER"),
         _ => return Ok(()),
     };
@@ -203,42 +205,30 @@ struct Cells {
 
 impl Cells {
     fn sample(&mut self, line: u64, columns: &Columns, record: &csv::ByteRecord) -> Result<Sample, String> {
-        let throttle = [
-            self.throttle(&columns.upper, record)?,
-            self.throttle(&columns.lower, record)?,
-        ];
-        let [upper_thrust, lower_thrust] = &columns.rotor_thrust;
-        let [upper_torque, lower_torque] = &columns.rotor_torque;
-        let voltage = self.value(&columns.voltage, record)?;
+        let [upper, lower] = &columns.throttle.rotors;
+        let split = |columns: &Split<Option<Column>>| -> Result<Split<f64>, String> {
+            let [upper, lower] = &columns.rotors;
+            Ok(Split {
+                whole: self.value(&columns.whole, record)?,
+                rotors: [self.value(upper, record)?, self.value(lower, record)?],
+            })
+        };
+        let throttle = [self.throttle(upper, record)?, self.throttle(lower, record)?];
+        let (voltage, current) = (split(&columns.voltage)?.rotors, split(&columns.current)?);
+        // Of the whole, or of both rotors together; NaN where a part of it is not measured.
+        let lower_voltage = voltage[usize::from(columns.voltage.rotors[1].is_some())];
+        let power_w = match columns.current.whole {
+            Some(_) => voltage[0] * current.whole,
+            None => voltage[0] * current.rotors[0] + lower_voltage * current.rotors[1],
+        };
         Ok(Sample {
             line,
             throttle,
-            thrust: self.value(&columns.thrust, record)?,
-            torque: self.value(&columns.torque, record)?,
-            rotor_thrust: [
-                self.value(upper_thrust, record)?,
-                self.value(lower_thrust, record)?,
-            ],
-            rotor_torque: [
-                self.value(upper_torque, record)?,
-                self.value(lower_torque, record)?,
-            ],
-            voltage,
-            power_w: self.power(columns, voltage, record)?,
+            thrust: split(&columns.thrust)?,
+            torque: split(&columns.torque)?,
+            voltage: voltage[0],
+            power_w,
         })
-    }
-
-    /// Power of the whole, or of both rotors together; NaN where a part of it is not measured.
-    fn power(&self, columns: &Columns, voltage: f64, record: &csv::ByteRecord) -> Result<f64, String> {
-        if columns.current.is_some() {
-            return Ok(voltage * self.value(&columns.current, record)?);
-        }
-        let [upper, lower] = &columns.rotor_current;
-        let lower_voltage = match columns.lower_voltage {
-            Some(_) => self.value(&columns.lower_voltage, record)?,
-            None => voltage,
-        };
-        Ok(voltage * self.value(upper, record)? + lower_voltage * self.value(lower, record)?)
     }
 
     fn value(&self, column: &Option<Column>, record: &csv::ByteRecord) -> Result<f64, String> {
@@ -320,7 +310,7 @@ mod tests {
         assert_eq!(refused[0], (3, "\"lower\" = \"x\" is not a finite number"));
         assert_eq!(refused[1].0, 5);
         assert_eq!(log.samples[1].line, 6);
-        assert!(log.samples[1].torque.is_nan());
+        assert!(log.samples[1].torque.whole.is_nan());
     }
 
     #[test]
@@ -344,8 +334,8 @@ mod tests {
     fn semicolons_allow_decimal_commas() {
         let log = log(b"upper;lower;Thrust (kgf);Torque (N\xb7m)\n0,5;0,25;1,5;-0,02\n").expect("a log");
         let s = log.samples[0];
-        assert_eq!((s.throttle, s.torque), ([0.5, 0.25], -0.02));
-        assert!((s.thrust - 1.5 * 9.80665).abs() < 1e-12);
+        assert_eq!((s.throttle, s.torque.whole), ([0.5, 0.25], -0.02));
+        assert!((s.thrust.whole - 1.5 * 9.80665).abs() < 1e-12);
     }
 
     #[test]

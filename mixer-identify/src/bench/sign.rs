@@ -17,7 +17,7 @@
 
 use serde::Serialize;
 
-use crate::bench::header::Columns;
+use crate::bench::header::{Column, Columns, Split};
 use crate::bench::read::Sample;
 use crate::refusal::Refusal;
 
@@ -68,19 +68,72 @@ fn sign_of_sum(values: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// Values of a channel, one column or one per rotor, times signs.
-fn signed(
-    samples: &[Sample],
-    of: impl Fn(&Sample) -> (f64, [f64; 2]),
+/// A channel of a pair: what its columns measured.
+struct Channel<'a> {
+    name: &'static str,
+    samples: &'a [Sample],
+    of: fn(&Sample) -> Split<f64>,
+    /// Whether the whole has a column; else each rotor has one.
     total: bool,
-    signs: &[f64],
-) -> Vec<f64> {
-    let value = |s: &Sample| match of(s) {
-        (whole, _) if total => signs[0] * whole,
-        (_, [upper, lower]) => signs[0] * upper + signs[1] * lower,
-    };
-    samples.iter().map(value).collect()
 }
+
+impl Channel<'_> {
+    fn rotors(&self) -> impl Iterator<Item = [f64; 2]> + Clone {
+        self.samples.iter().map(|s| (self.of)(s).rotors)
+    }
+
+    /// The signs that make every column positive.
+    fn positive(&self) -> [f64; 2] {
+        match self.total {
+            true => [sign_of_sum(self.samples.iter().map(|s| (self.of)(s).whole)); 2],
+            false => [0, 1].map(|r| sign_of_sum(self.rotors().map(|rotors| rotors[r]))),
+        }
+    }
+
+    /// Values of the whole, of columns times signs.
+    fn sums(&self, signs: [f64; 2], notes: &mut Vec<String>) -> Vec<f64> {
+        let of = |s: &Sample| match ((self.of)(s), self.total) {
+            (Split { whole, .. }, true) => signs[0] * whole,
+            (Split { rotors: [a, b], .. }, false) => signs[0] * a + signs[1] * b,
+        };
+        let sums: Vec<f64> = self.samples.iter().map(of).collect();
+        if self.total {
+            notes.extend(self.other_sum(&sums));
+        }
+        sums
+    }
+
+    /// Says so where a total is not the sum of the rotors' columns, whatever their signs.
+    fn other_sum(&self, totals: &[f64]) -> Option<String> {
+        let measured = totals.iter().filter(|x| x.is_finite());
+        let largest = measured.fold(0.0_f64, |most, x| most.max(x.abs()));
+        let differs = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[a, b]| {
+            let rows = totals.iter().zip(self.rotors());
+            let differences = rows.map(|(x, [upper, lower])| x - a * upper - b * lower);
+            let (sum, count) = differences
+                .filter(|d| d.is_finite())
+                .fold((0.0, 0), |(sum, count), d| (sum + d * d, count + 1));
+            (sum / f64::from(count.max(1))).sqrt()
+        });
+        let (what, least) = (self.name, differs.into_iter().fold(f64::INFINITY, f64::min));
+        (least > SUM * largest).then(|| {
+            format!(
+                "the total {what} differs from the sum of the rotors' columns by {:.1} % of its greatest value, rms: the total is \
+                 taken; --column {what}=HEADER names another",
+                100.0 * least / largest
+            )
+        })
+    }
+
+    /// One sign per column.
+    fn told(&self, signs: [f64; 2]) -> Vec<f64> {
+        signs[..if self.total { 1 } else { 2 }].to_vec()
+    }
+}
+
+/// What a total may differ by from the sum of the rotors' columns, rms, in shares of the greatest
+/// total.
+const SUM: f64 = 0.02;
 
 /// Sums of a pair, (thrust, torque) per sample.
 pub fn pair(
@@ -91,156 +144,72 @@ pub fn pair(
     torque_may_lack: bool,
     notes: &mut Vec<String>,
 ) -> Result<(Signs, Vec<(f64, f64)>), Refusal> {
-    let lacks = torque_may_lack && !has_torque(columns, samples);
-    thrust_measured(file, columns)?;
-    let torque = if lacks {
-        Channel {
-            signs: Vec::new(),
-            sums: vec![f64::NAN; samples.len()],
-        }
-    } else {
-        torque_measured(file, columns)?;
-        pair_torque(file, columns, samples, policy.torque, notes)?
+    let channel = |name, of: fn(&Sample) -> Split<f64>, columns: &Split<Option<Column>>| Channel {
+        name,
+        samples,
+        of,
+        total: columns.whole.is_some(),
     };
-    let thrust = pair_thrust(columns, samples, policy.thrust, notes);
-    let signs = Signs {
-        thrust: thrust.signs,
-        torque: torque.signs,
-        thrust_policy: policy_word(policy.thrust),
-        torque_policy: policy_word(policy.torque),
-    };
-    Ok((signs, thrust.sums.into_iter().zip(torque.sums).collect()))
-}
-
-/// Whether any row has the torque of the whole pair.
-fn has_torque(columns: &Columns, samples: &[Sample]) -> bool {
-    let measured = |s: &Sample| match columns.torque {
-        Some(_) => s.torque.is_finite(),
-        None => s.rotor_torque.iter().all(|q| q.is_finite()),
-    };
-    samples.iter().any(measured)
-}
-
-/// Refuses a pair without thrust of the whole or of each rotor.
-fn thrust_measured(file: &str, columns: &Columns) -> Result<(), Refusal> {
-    if columns.thrust.is_none() && columns.rotor_thrust.iter().any(Option::is_none) {
+    let thrust = channel("thrust", |s| s.thrust, &columns.thrust);
+    let torque = channel("torque", |s| s.torque, &columns.torque);
+    if !columns.thrust.complete() {
         return Err(Refusal::of(
             file,
             "thrust of one rotor only, though both turn",
             "a column of total thrust, or one per rotor",
         ));
     }
-    Ok(())
-}
-
-/// Refuses a pair without torque of the whole or of each rotor.
-fn torque_measured(file: &str, columns: &Columns) -> Result<(), Refusal> {
-    if columns.torque.is_none() && columns.rotor_torque.iter().any(Option::is_none) {
-        return Err(Refusal::of(
-            format!("{file}:1"),
-            match columns.rotor_torque.iter().flatten().next() {
-                Some(column) => format!("torque of one rotor only ({:?})", column.name),
-                None => "no torque column".to_string(),
-            },
-            "the torque of the whole pair, or of each rotor (--column torque=HEADER)",
-        ));
-    }
-    Ok(())
-}
-
-/// A channel of a pair: the factors of its columns, and the sum per sample.
-struct Channel {
-    signs: Vec<f64>,
-    sums: Vec<f64>,
-}
-
-fn pair_thrust(
-    columns: &Columns,
-    samples: &[Sample],
-    choice: SignChoice,
-    notes: &mut Vec<String>,
-) -> Channel {
-    let total = columns.thrust.is_some();
-    let signs = match choice {
-        SignChoice::Given(signs) => signs,
-        SignChoice::Auto if total => [sign_of_sum(samples.iter().map(|s| s.thrust)); 2],
-        SignChoice::Auto => [0, 1].map(|r| sign_of_sum(samples.iter().map(|s| s.rotor_thrust[r]))),
+    let has_torque = samples.iter().any(|s| match (s.torque, torque.total) {
+        (Split { whole, .. }, true) => whole.is_finite(),
+        (Split { rotors, .. }, false) => rotors.iter().all(|q| q.is_finite()),
+    });
+    let (torque_signs, torques) = match torque_may_lack && !has_torque {
+        true => (Vec::new(), vec![f64::NAN; samples.len()]),
+        false => pair_torque(file, columns, &torque, policy.torque, notes)?,
     };
-    if !total {
+    let signs = match policy.thrust {
+        SignChoice::Given(signs) => signs,
+        SignChoice::Auto => thrust.positive(),
+    };
+    if !thrust.total {
         compare_sides(samples, signs, notes);
     }
-    let sums = signed(samples, |s| (s.thrust, s.rotor_thrust), total, &signs);
-    if total {
-        compare_sum("thrust", &sums, samples.iter().map(|s| s.rotor_thrust), notes);
-    }
-    Channel {
-        sums,
-        signs: signs[..if total { 1 } else { 2 }].to_vec(),
-    }
-}
-
-/// What a total may differ by from the sum of the rotors' columns, rms, in shares of the greatest
-/// total.
-const SUM: f64 = 0.02;
-
-/// A total that is not the sum of the rotors' columns, whatever their signs: says so.
-fn compare_sum(
-    what: &str,
-    totals: &[f64],
-    rotors: impl Iterator<Item = [f64; 2]> + Clone,
-    notes: &mut Vec<String>,
-) {
-    let largest = totals
-        .iter()
-        .filter(|x| x.is_finite())
-        .fold(0.0_f64, |most, x| most.max(x.abs()));
-    let differs = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[a, b]| {
-        let differences = totals
-            .iter()
-            .zip(rotors.clone())
-            .map(|(x, [upper, lower])| x - a * upper - b * lower);
-        let (sum, count) = differences
-            .filter(|d| d.is_finite())
-            .fold((0.0, 0), |(sum, count), d| (sum + d * d, count + 1));
-        if count > 0 {
-            (sum / f64::from(count)).sqrt()
-        } else {
-            0.0
-        }
-    });
-    let least = differs.into_iter().fold(f64::INFINITY, f64::min);
-    if least > SUM * largest {
-        notes.push(format!(
-            "the total {what} differs from the sum of the rotors' columns by {:.1} % of its greatest value, rms: the total is taken; \
-             --column {what}=HEADER names another",
-            100.0 * least / largest
-        ));
-    }
+    let sums = thrust.sums(signs, notes).into_iter().zip(torques).collect();
+    let signs = Signs {
+        thrust: thrust.told(signs),
+        torque: torque_signs,
+        thrust_policy: policy_word(policy.thrust),
+        torque_policy: policy_word(policy.torque),
+    };
+    Ok((signs, sums))
 }
 
 /// Torque is turned to that of an upper rotor that turns clockwise.
 fn pair_torque(
     file: &str,
     columns: &Columns,
-    samples: &[Sample],
+    torque: &Channel<'_>,
     choice: SignChoice,
     notes: &mut Vec<String>,
-) -> Result<Channel, Refusal> {
-    let total = columns.torque.is_some();
-    let mut signs = match choice {
-        SignChoice::Given(signs) => signs,
-        SignChoice::Auto if total => [1.0; 2],
-        SignChoice::Auto => {
-            let signs = [0, 1].map(|r| sign_of_sum(samples.iter().map(|s| s.rotor_torque[r])));
-            [-signs[0], signs[1]]
-        }
-    };
-    let mut sums = signed(samples, |s| (s.torque, s.rotor_torque), total, &signs);
-    if total {
-        compare_sum("torque", &sums, samples.iter().map(|s| s.rotor_torque), notes);
+) -> Result<(Vec<f64>, Vec<f64>), Refusal> {
+    if !columns.torque.complete() {
+        return Err(Refusal::of(
+            format!("{file}:1"),
+            match columns.torque.rotors.iter().flatten().next() {
+                Some(column) => format!("torque of one rotor only ({:?})", column.name),
+                None => "no torque column".to_string(),
+            },
+            "the torque of the whole pair, or of each rotor (--column torque=HEADER)",
+        ));
     }
+    let mut signs = match (choice, torque.positive()) {
+        (SignChoice::Given(signs), _) => signs,
+        (SignChoice::Auto, _) if torque.total => [1.0; 2],
+        (SignChoice::Auto, [upper, lower]) => [-upper, lower],
+    };
+    let mut sums = torque.sums(signs, notes);
     constant(file, &sums)?;
-    let [by_upper, by_lower] = slopes(samples, &sums);
+    let [by_upper, by_lower] = slopes(torque.samples, &sums);
     no_magnitudes(file, by_upper, by_lower)?;
     if by_lower < by_upper {
         sums.iter_mut().for_each(|q| *q = -*q);
@@ -251,17 +220,14 @@ fn pair_torque(
                  mirrored, for one that turns clockwise"
                     .into(),
             );
-        } else if total && columns.sides_named {
+        } else if torque.total && columns.sides_named {
             notes.push(
                 "torque is turned, as of an upper rotor that turned counter-clockwise or a sensor mounted that way"
                     .into(),
             );
         }
     }
-    Ok(Channel {
-        sums,
-        signs: signs[..if total { 1 } else { 2 }].to_vec(),
-    })
+    Ok((torque.told(signs), sums))
 }
 
 /// Refuses a torque that grows with both throttles, by these slopes over their squares.
@@ -290,43 +256,27 @@ pub fn single(
     policy: &SignPolicy,
 ) -> (Signs, Vec<(f64, f64)>) {
     // The whole where it is measured: a rotor at rest in the wake has a drag of its own.
-    let whole = |total: bool, own: bool| total && !(own_columns && own);
-    let whole_thrust = whole(columns.thrust.is_some(), columns.rotor_thrust[rotor].is_some());
-    let whole_torque = whole(columns.torque.is_some(), columns.rotor_torque[rotor].is_some());
-    let thrust = |s: &Sample| {
-        if whole_thrust {
-            s.thrust
-        } else {
-            s.rotor_thrust[rotor]
-        }
+    let whole = |columns: &Split<Option<Column>>| {
+        columns.whole.is_some() && !(own_columns && columns.rotors[rotor].is_some())
     };
-    let torque = |s: &Sample| {
-        if whole_torque {
-            s.torque
-        } else {
-            s.rotor_torque[rotor]
-        }
-    };
-    let sign = |choice: SignChoice, automatic: f64| match choice {
-        SignChoice::Auto => automatic,
+    let [whole_thrust, whole_torque] = [&columns.thrust, &columns.torque].map(whole);
+    let of = |value: Split<f64>, whole: bool| if whole { value.whole } else { value.rotors[rotor] };
+    let thrust = |s: &Sample| of(s.thrust, whole_thrust);
+    let torque = |s: &Sample| of(s.torque, whole_torque);
+    let thrust_sign = match policy.thrust {
+        SignChoice::Auto => sign_of_sum(samples.iter().map(thrust)),
         SignChoice::Given(signs) => signs[rotor],
     };
-    let thrust_sign = sign(policy.thrust, sign_of_sum(samples.iter().map(thrust)));
     let torque_sign = sign_of_sum(samples.iter().map(torque));
-    let has_torque = whole_torque || columns.rotor_torque[rotor].is_some();
+    let has_torque = whole_torque || columns.torque.rotors[rotor].is_some();
     let signs = Signs {
         thrust: vec![thrust_sign],
         torque: if has_torque { vec![torque_sign] } else { Vec::new() },
         thrust_policy: policy_word(policy.thrust),
         torque_policy: "auto",
     };
-    (
-        signs,
-        samples
-            .iter()
-            .map(|s| (thrust_sign * thrust(s), torque_sign * torque(s)))
-            .collect(),
-    )
+    let signed = |s: &Sample| (thrust_sign * thrust(s), torque_sign * torque(s));
+    (signs, samples.iter().map(signed).collect())
 }
 
 fn constant(file: &str, torque: &[f64]) -> Result<(), Refusal> {
@@ -372,7 +322,10 @@ fn compare_sides(samples: &[Sample], signs: [f64; 2], notes: &mut Vec<String>) {
         .iter()
         .filter(|s| (s.throttle[0] - s.throttle[1]).abs() < 0.05);
     let (upper, lower) = level.fold((0.0, 0.0), |(a, b), s| {
-        (a + signs[0] * s.rotor_thrust[0], b + signs[1] * s.rotor_thrust[1])
+        (
+            a + signs[0] * s.thrust.rotors[0],
+            b + signs[1] * s.thrust.rotors[1],
+        )
     });
     if upper < 0.9 * lower {
         notes.push(format!(

@@ -54,43 +54,31 @@ pub fn spelled(text: &str) -> String {
 }
 
 /// What a unit of a quantity is in SI units, the names of units as [`scale`] strips them.
-const FACTORS: [(Quantity, &[&str], f64); 24] = [
-    (Quantity::Throttle, &["%", "percent"], 0.01),
-    (Quantity::Throttle, &["1", ""], 1.0),
-    (Quantity::Thrust, &["n"], 1.0),
-    (Quantity::Thrust, &["mn"], 1e-3),
-    (Quantity::Thrust, &["kn"], 1e3),
-    (Quantity::Thrust, &["g", "gf"], 1e-3 * G),
-    (Quantity::Thrust, &["kg", "kgf"], G),
-    (Quantity::Thrust, &["lb", "lbf", "lbs"], POUND),
-    (Quantity::Thrust, &["oz", "ozf"], OUNCE),
-    (Quantity::Torque, &["nm"], 1.0),
-    (Quantity::Torque, &["mnm", "nmm"], 1e-3),
-    (Quantity::Torque, &["ncm"], 1e-2),
-    (Quantity::Torque, &["kgfm", "kgm"], G),
-    (Quantity::Torque, &["kgfcm", "kgcm"], 1e-2 * G),
-    (Quantity::Torque, &["gfcm", "gcm"], 1e-5 * G),
-    (
-        Quantity::Torque,
-        &["lbfin", "lbin", "inlb", "inlbf"],
-        POUND * INCH,
-    ),
-    (
-        Quantity::Torque,
-        &["lbfft", "lbft", "ftlb", "ftlbf"],
-        POUND * 12.0 * INCH,
-    ),
-    (
-        Quantity::Torque,
-        &["ozfin", "ozin", "inoz", "inozf"],
-        OUNCE * INCH,
-    ),
-    (Quantity::Voltage, &["v"], 1.0),
-    (Quantity::Voltage, &["mv"], 1e-3),
-    (Quantity::Current, &["a"], 1.0),
-    (Quantity::Current, &["ma"], 1e-3),
-    (Quantity::Time, &["s", "sec"], 1.0),
-    (Quantity::Time, &["ms"], 1e-3),
+const FACTORS: [(Quantity, &str, f64); 24] = [
+    (Quantity::Throttle, "% percent", 0.01),
+    (Quantity::Throttle, "1", 1.0),
+    (Quantity::Thrust, "n", 1.0),
+    (Quantity::Thrust, "mn", 1e-3),
+    (Quantity::Thrust, "kn", 1e3),
+    (Quantity::Thrust, "g gf", 1e-3 * G),
+    (Quantity::Thrust, "kg kgf", G),
+    (Quantity::Thrust, "lb lbf lbs", POUND),
+    (Quantity::Thrust, "oz ozf", OUNCE),
+    (Quantity::Torque, "nm", 1.0),
+    (Quantity::Torque, "mnm nmm", 1e-3),
+    (Quantity::Torque, "ncm", 1e-2),
+    (Quantity::Torque, "kgfm kgm", G),
+    (Quantity::Torque, "kgfcm kgcm", 1e-2 * G),
+    (Quantity::Torque, "gfcm gcm", 1e-5 * G),
+    (Quantity::Torque, "lbfin lbin inlb inlbf", POUND * INCH),
+    (Quantity::Torque, "lbfft lbft ftlb ftlbf", POUND * 12.0 * INCH),
+    (Quantity::Torque, "ozfin ozin inoz inozf", OUNCE * INCH),
+    (Quantity::Voltage, "v", 1.0),
+    (Quantity::Voltage, "mv", 1e-3),
+    (Quantity::Current, "a", 1.0),
+    (Quantity::Current, "ma", 1e-3),
+    (Quantity::Time, "s sec", 1.0),
+    (Quantity::Time, "ms", 1e-3),
 ];
 
 /// The scale of `unit` for this quantity, or nothing if the unit does not measure it.
@@ -102,11 +90,12 @@ pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
     match (quantity, unit.as_str()) {
         (Quantity::Throttle, "us" | "pwm") => Some(Scale::Pulse(1.0)),
         (Quantity::Throttle, "ms") => Some(Scale::Pulse(1000.0)),
+        (Quantity::Throttle, "") => Some(Scale::Factor(1.0)),
         (_, unit) => {
-            let found = FACTORS
-                .iter()
-                .find(|(of, names, _)| *of == quantity && names.contains(&unit));
-            found.map(|(_, _, factor)| Scale::Factor(*factor))
+            let is = |names: &str| names.split(' ').any(|name| name == unit);
+            let mut factors = FACTORS.iter();
+            let found = factors.find(|(of, names, _)| *of == quantity && is(names))?;
+            Some(Scale::Factor(found.2))
         }
     }
 }

@@ -25,6 +25,12 @@ impl ThrottleBox {
     pub fn grid(self, steps: usize) -> impl Iterator<Item = f64> + Clone {
         (0..=steps).map(move |k| self.min + (self.max - self.min) * k as f64 / steps as f64)
     }
+
+    /// [`ThrottleBox::grid`] of both throttles, by u.
+    pub fn square(self, steps: usize) -> impl Iterator<Item = [f64; 2]> {
+        let grid = self.grid(steps);
+        grid.clone().flat_map(move |u| grid.clone().map(move |l| [u, l]))
+    }
 }
 
 impl From<ThrottleBox> for polynomial::ThrottleBox {

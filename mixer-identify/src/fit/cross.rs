@@ -70,20 +70,18 @@ pub fn choose(
     for &basis in bases {
         let mut least_idle = None;
         let (errors, refused) = match Design::new(basis, points, throttle_box) {
-            Ok(design) => match errors(&design, points, [thrust, torque], &folds) {
-                Some(errors) => {
+            Ok(design) => {
+                let found = errors(&design, points, [thrust, torque], &folds);
+                if found.is_some() {
                     let [f, q] = [thrust, torque].map(|y| design.coefficients(&design.coordinates(y)));
                     least_idle = fold::least_idle(&EnclosedPairMap::of(basis, &f, &q), throttle_box);
-                    (Some(errors), None)
                 }
-                None => (
-                    None,
-                    Some("not determined without one throttle level".to_string()),
-                ),
-            },
+                let why = "not determined without one throttle level";
+                (found, found.is_none().then(|| why.to_string()))
+            }
             Err(deficient) => {
                 first_reason.get_or_insert_with(|| deficient.clone());
-                (None, Some(deficient.to_string()))
+                (None, Some(deficient.0))
             }
         };
         table.push(Candidate {

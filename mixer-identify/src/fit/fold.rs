@@ -106,12 +106,8 @@ fn regions(grid: &[f64], mut values: Vec<f64>) -> Vec<Region> {
                 (j > 0, k.wrapping_sub(1)),
                 (j + 1 < n, k + 1),
             ];
-            open.extend(
-                beside
-                    .into_iter()
-                    .filter(|(inside, _)| *inside)
-                    .map(|(_, next)| next),
-            );
+            let inside = beside.into_iter().filter(|(inside, _)| *inside);
+            open.extend(inside.map(|(_, next)| next));
         }
         found.push(region);
     }
@@ -129,11 +125,7 @@ pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: Throttle
         f_u * q_l - f_l * q_u
     };
     let grid: Vec<f64> = commanded.grid(STEPS).collect();
-    let values: Vec<f64> = grid
-        .iter()
-        .flat_map(|&u| grid.iter().map(move |&l| [u, l]))
-        .map(det)
-        .collect();
+    let values: Vec<f64> = commanded.square(STEPS).map(det).collect();
     let least = (0..values.len())
         .min_by(|&a, &b| values[a].total_cmp(&values[b]))
         .unwrap_or(0);

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use self::placed::{Placed, at_reference, channels, confirmed, places, suspects, without};
 use crate::bench::sign::AUTO;
-use crate::bench::{Bench, Kind};
+use crate::bench::{Bench, Kind, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::cross::{self, Candidate};
 use crate::fit::fold::{self, Fold};
@@ -78,18 +78,16 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         basis,
         cross_validation,
         outliers,
-    } = choose(&points, throttle_box, wishes).map_err(|reason| deficient(&files, &reason))?;
+    } = choose(&points, throttle_box, wishes).map_err(|reason| deficient(&files, reason))?;
     if wishes.robust {
         points = without_outliers(&points, &outliers);
     } else if !outliers.is_empty() {
-        warnings.push(format!(
-            "{} rows stand out: --robust fits without them",
-            outliers.len()
-        ));
+        let count = outliers.len();
+        warnings.push(format!("{count} rows stand out: --robust fits without them"));
     }
 
     let design =
-        Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, &reason))?;
+        Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, reason))?;
     let fits = channels(&points).map(|values| fit(&design, &values, throttle_box));
     one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
     doubts::unexplained(&files, fits.each_ref())?;
@@ -123,7 +121,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         outliers,
         fold,
         normalised_to_v,
-        mean_v: mean_voltage(&points),
+        mean_v: mean_voltage(points.iter().map(|p| p.point)).map(|(mean, _)| mean),
         warnings,
     })
 }
@@ -140,19 +138,22 @@ fn to_command(
     files: &str,
     warnings: &mut Vec<String>,
 ) -> Result<ThrottleBox, Refusal> {
-    let throttle_box = match wished {
-        Some(wished) => beyond(wished, measured, warnings),
-        None => inside(measured),
-    };
-    doubts::coverage(throttle_box, warnings);
-    if throttle_box.min >= throttle_box.max {
+    let (known, throttle) = (inside(measured), wished.unwrap_or(inside(measured)));
+    if throttle.min < known.min - 1e-9 || throttle.max > known.max + 1e-9 {
+        warnings.push(format!(
+            "throttle {}..{} goes beyond the measured {}..{}: the map is extrapolated there",
+            throttle.min, throttle.max, known.min, known.max
+        ));
+    }
+    doubts::coverage(throttle, warnings);
+    if throttle.min >= throttle.max {
         return Err(Refusal::of(
             files,
             format!("the measured throttles {measured:.3?} of both rotors share no range"),
             "a sweep of both rotors over one range of throttle, each from idle to full",
         ));
     }
-    Ok(throttle_box)
+    Ok(throttle)
 }
 
 /// The basis, and the rows that stand out of its fit.
@@ -170,10 +171,8 @@ fn choose(points: &[Placed], throttle_box: ThrottleBox, wishes: &Wishes) -> Resu
     let [thrust, torque] = channels(chosen_on);
     let bases = wishes.basis.map_or(Basis::ALL.to_vec(), |basis| vec![basis]);
     let cross_validation = cross::choose(&bases, &places(chosen_on), &thrust, &torque, throttle_box)?;
-    let basis = cross_validation
-        .iter()
-        .find(|c| c.chosen)
-        .map_or(Basis::Biquadratic, |c| c.basis);
+    let chosen = cross_validation.iter().find(|c| c.chosen);
+    let basis = chosen.map_or(Basis::Biquadratic, |c| c.basis);
     Ok(Choice {
         basis,
         outliers: confirmed(basis, points, &suspects, &clean, throttle_box),
@@ -191,24 +190,13 @@ fn of_levels(candidates: &[Candidate]) -> Option<Uncertainty> {
 }
 
 fn without_outliers<'a>(points: &[Placed<'a>], outliers: &[Outlier]) -> Vec<Placed<'a>> {
-    let out: Vec<bool> = points
-        .iter()
-        .map(|p| outliers.iter().any(|o| o.is(p.file, p.point.line)))
-        .collect();
-    without(points, &out)
+    let is_out = |p: &Placed| outliers.iter().any(|o| o.is(p.file, p.point.line));
+    points.iter().copied().filter(|p| !is_out(p)).collect()
 }
 
-fn deficient(files: &str, reason: &Deficient) -> Refusal {
-    Refusal::of(
-        files,
-        reason.to_string(),
-        "a sweep of both throttles independently: a grid of 5 x 5 levels or more from idle to full (cargo mixer plan)",
-    )
-}
-
-fn mean_voltage(points: &[Placed]) -> Option<f64> {
-    let volts = || points.iter().map(|p| p.point.voltage).filter(|v| v.is_finite());
-    (volts().count() > 0).then(|| volts().sum::<f64>() / volts().count() as f64)
+fn deficient(files: &str, Deficient(reason): Deficient) -> Refusal {
+    let needed = "a sweep of both throttles independently: a grid of 5 x 5 levels or more from idle to full (cargo mixer plan)";
+    Refusal::of(files, reason, needed)
 }
 
 /// The square that both rotors were measured over, rounded inwards to a ten-thousandth.
@@ -219,18 +207,6 @@ fn inside([upper, lower]: [[f64; 2]; 2]) -> ThrottleBox {
         min: (1e4 * min - 1e-6).ceil() / 1e4,
         max: (1e4 * max + 1e-6).floor() / 1e4,
     }
-}
-
-/// Takes the user's box, and warns where it leaves the measured one.
-fn beyond(wished: ThrottleBox, measured: [[f64; 2]; 2], warnings: &mut Vec<String>) -> ThrottleBox {
-    let known = inside(measured);
-    if wished.min < known.min - 1e-9 || wished.max > known.max + 1e-9 {
-        warnings.push(format!(
-            "throttle {}..{} goes beyond the measured {}..{}: the map is extrapolated there",
-            wished.min, wished.max, known.min, known.max
-        ));
-    }
-    wished
 }
 
 /// Refuses files that each fit well but not together, and warns of those that do not fit as well.
@@ -248,19 +224,13 @@ fn one_pair(
     }
     let (mut sse, mut n) = (0.0, 0);
     for file in &files {
-        let own: Vec<usize> = (0..points.len()).filter(|&i| points[i].file == *file).collect();
-        let at: Vec<[f64; 2]> = own
-            .iter()
-            .map(|&i| [points[i].point.u, points[i].point.l])
-            .collect();
+        let own: Vec<Placed> = points.iter().copied().filter(|p| p.file == *file).collect();
+        let at = places(&own);
         let Ok(design) = Design::new(basis, &at, inside(range(&at))) else {
             continue;
         };
-        let alone = fit(
-            &design,
-            &own.iter().map(|&i| points[i].thrust).collect::<Vec<_>>(),
-            throttle_box,
-        );
+        let [thrust, _] = channels(&own);
+        let alone = fit(&design, &thrust, throttle_box);
         sse += alone.residuals.iter().map(|e| e * e).sum::<f64>();
         n += own.len();
     }
@@ -282,7 +252,12 @@ fn one_pair(
     Ok(())
 }
 
-/// The idle of the identified map: the box's, or a higher one where the map folds at or next to it.
+/// The idle over the least one at which the map can be inverted. Right at that the inverse bends
+/// without bound, and no tolerance is met.
+const CLEAR: f64 = 1.03;
+
+/// The idle of the identified map: the box's, or where the map folds in it or next to it a little
+/// over the least one without a fold, rounded up to 0.005.
 fn idle(
     basis: Basis,
     [thrust, torque]: &[Fit; 2],
@@ -291,67 +266,40 @@ fn idle(
     warnings: &mut Vec<String>,
 ) -> Result<f64, Refusal> {
     let map = EnclosedPairMap::of(basis, &thrust.coefficients, &torque.coefficients);
+    let ThrottleBox { min: from, max } = fold.commanded;
+    let raised = |least: f64| Some((least, fold::round_idle(&map, CLEAR * least, max)?));
+    let ([u, l], least_det) = (fold.least_det_at, fold.least_det);
     if fold.injective {
-        Ok(clear_of_fold(&map, fold.commanded, warnings))
-    } else {
-        raised(fold, &map, files, warnings)
+        let least = map.least_idle(max).filter(|least| from < CLEAR * least);
+        let Some((least, min)) = least.and_then(raised) else {
+            return Ok(from);
+        };
+        warnings.push(format!(
+            "throttle.min is raised from {from} to {min}: the map folds right below, at {least:.4}"
+        ));
+        return Ok(min);
     }
-}
-
-/// The idle over the least one at which the map can be inverted. Right at that the inverse bends
-/// without bound, and no tolerance is met.
-const CLEAR: f64 = 1.03;
-
-/// The idle of a map that can be inverted over its box: the box's, or a little more where that is
-/// next to a fold.
-fn clear_of_fold(map: &EnclosedPairMap, throttle: ThrottleBox, warnings: &mut Vec<String>) -> f64 {
-    let least = map.least_idle(throttle.max).unwrap_or(0.0);
-    if throttle.min >= CLEAR * least {
-        return throttle.min;
-    }
-    let Some(min) = fold::round_idle(map, CLEAR * least, throttle.max) else {
-        return throttle.min;
-    };
-    warnings.push(format!(
-        "throttle.min is raised from {} to {min}: the map folds right below, at {least:.4}",
-        throttle.min
-    ));
-    min
-}
-
-/// The idle of a map that is not proven injective over its box: a little over the least one,
-/// rounded up to 0.005.
-fn raised(
-    fold: &Fold,
-    map: &EnclosedPairMap,
-    files: &str,
-    warnings: &mut Vec<String>,
-) -> Result<f64, Refusal> {
-    let [u, l] = fold.least_det_at;
-    let least_det = fold.least_det;
-    let rounded = |least: f64| fold::round_idle(map, CLEAR * least, fold.commanded.max);
-    let Some((least, min)) = fold.least_idle.and_then(|least| Some((least, rounded(least)?))) else {
+    let Some((least, min)) = fold.least_idle.and_then(raised) else {
         return Err(Refusal::of(
             files,
-            if fold.folds {
-                format!("the map folds whatever the idle: det J = {least_det:.3} at ({u:.2}, {l:.2})")
-            } else {
-                "the map could not be proven injective, whatever the idle".into()
+            match fold.folds {
+                true => {
+                    format!("the map folds whatever the idle: det J = {least_det:.3} at ({u:.2}, {l:.2})")
+                }
+                false => "the map could not be proven injective, whatever the idle".into(),
             },
             "another basis, or data without outliers (--robust)",
         ));
     };
-    let (why, without) = if fold.folds {
-        (
+    let (why, without) = match fold.folds {
+        true => (
             format!("det J falls to {least_det:.3} at (u, l) = ({u:.3}, {l:.3})"),
             "fold",
-        )
-    } else {
-        ("the map could not be proven injective below".into(), "this doubt")
+        ),
+        false => ("the map could not be proven injective below".into(), "this doubt"),
     };
     warnings.push(format!(
-        "throttle.min is raised from {} to {min}: {why}, the least idle without {without} is {least:.4}",
-        fold.commanded.min
+        "throttle.min is raised from {from} to {min}: {why}, the least idle without {without} is {least:.4}"
     ));
     Ok(min)
 }

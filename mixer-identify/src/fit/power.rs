@@ -17,6 +17,7 @@ use serde::Serialize;
 use crate::bench::{Bench, Kind, Point};
 use crate::fit::basis::{ThrottleBox, monomials};
 use crate::fit::pair::Pair;
+use crate::fit::statistics::{dot, rms, times};
 use crate::fit::voltage::Voltage;
 use crate::fit::{distinct_pairs, ten_digits};
 
@@ -99,11 +100,10 @@ impl PowerMap {
         let coefficients: Vec<f64> = (0..columns).map(|k| solved[(k, 0)]).collect();
         let missed = points
             .iter()
-            .zip(&rows)
-            .map(|(p, row)| p.power_w - dot(row, &coefficients));
-        let rms = (missed.map(|e| e * e).sum::<f64>() / points.len() as f64).sqrt();
+            .zip(times(&rows, &coefficients))
+            .map(|(p, power)| p.power_w - power);
         PowerMap {
-            residual_rms: rms,
+            residual_rms: rms(missed),
             full_scale: points.iter().map(|p| p.power_w).fold(0.0, f64::max),
             coefficients,
         }
@@ -124,10 +124,6 @@ fn terms(u: f64, l: f64) -> Vec<f64> {
     let mut terms = monomials(Basis::Quartic, u, l);
     terms.push(1.0);
     terms
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Thrust at both throttles at their greatest, N.
@@ -195,14 +191,11 @@ fn with_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Resu
         (Some(reference), Some(exponent)) => p.power_w / libm::pow(p.voltage / reference, exponent),
         _ => p.power_w,
     };
-    let points: Vec<Point> = of_pair()
-        .flat_map(|b| &b.points)
-        .map(|p| Point {
-            power_w: at_reference(p),
-            ..*p
-        })
-        .filter(|p| p.power_w.is_finite())
-        .collect();
+    let points = of_pair().flat_map(|b| &b.points).map(|p| Point {
+        power_w: at_reference(p),
+        ..*p
+    });
+    let points: Vec<Point> = points.filter(|p| p.power_w.is_finite()).collect();
     if points.is_empty() {
         return Err(of_pair()
             .find_map(|b| b.no_power.clone())
@@ -252,9 +245,8 @@ impl<'a> Hover<'a> {
         let most = q.abs() / f;
         let without = |share: &f64| {
             let f = share * full;
-            let has_room = [-ROOM, ROOM]
-                .iter()
-                .all(|room| throttles(&map, f, room * most * f).is_some());
+            let has = |room: f64| throttles(&map, f, room * most * f).is_some();
+            let has_room = has(-ROOM) && has(ROOM);
             has_room.then_some((f, power.at(throttles(&map, f, 0.0)?)))
         };
         let without: Vec<(f64, f64)> = SHARES.iter().filter_map(without).collect();

@@ -18,6 +18,7 @@ use serde::Serialize;
 
 use crate::fit::Design;
 use crate::fit::polynomial::Polynomial;
+use crate::fit::statistics::greatest;
 
 /// Rows stand out from this many robust standard deviations on. A polynomial's lack of fit alone
 /// reaches five on clean bench maps; rows of a faulty run have ten to fifty.
@@ -59,18 +60,13 @@ pub fn stands_out(residual: f64, deviations: f64, full_scale: f64) -> bool {
     deviations.abs() > STANDS_OUT && residual.abs() > NEGLIGIBLE * full_scale
 }
 
-/// Largest value of a channel.
-pub fn full_scale(y: &[f64]) -> f64 {
-    y.iter().fold(0.0, |m, y| m.max(y.abs()))
-}
-
 /// Residuals of suspects against a fit without them, in standard deviations of a prediction there:
 /// (y - fitted) / (sigma sqrt(1 + h)). `clean` is the design of the other rows, `y_clean` their
 /// values.
 pub fn against_the_others(clean: &Design, y_clean: &[f64], suspects: &[([f64; 2], f64)]) -> Vec<(f64, f64)> {
     let z = clean.coordinates(y_clean);
     let terms = clean.centred.basis.exponents().len();
-    let scale = robust_scale(&clean.residuals(y_clean, &z), terms, full_scale(y_clean));
+    let scale = robust_scale(&clean.residuals(y_clean, &z), terms, greatest(y_clean));
     let polynomial = Polynomial::of(clean.centred.basis, &clean.coefficients(&z));
     let miss = |&([u, l], y): &([f64; 2], f64)| {
         let residual = y - polynomial.at(u, l);
@@ -103,7 +99,7 @@ impl Judged {
 
 /// Fits `y` robustly on the design's orthonormal columns.
 pub fn judge(design: &Design, y: &[f64]) -> Judged {
-    let full_scale = full_scale(y);
+    let full_scale = greatest(y);
     let terms = design.centred.basis.exponents().len();
     let mut residuals = design.residuals(y, &design.coordinates(y));
     let huber = |z: f64| if z.abs() <= 1.345 { 1.0 } else { 1.345 / z.abs() };
@@ -119,10 +115,8 @@ pub fn judge(design: &Design, y: &[f64]) -> Judged {
                 break;
             };
             let next = design.residuals(y, &z);
-            let moved = next
-                .iter()
-                .zip(&residuals)
-                .fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+            let moves = next.iter().zip(&residuals).map(|(a, b)| (a - b).abs());
+            let moved = moves.fold(0.0, f64::max);
             residuals = next;
             if moved < 1e-3 * scale {
                 break;

@@ -69,7 +69,7 @@ fn designs_that_do_not_determine_the_map_are_refused() {
         .map(|k| [k as f64 / 30.0, k as f64 / 30.0 * 0.98])
         .collect();
     let error = Design::new(Basis::Cubic, &line, BOX).err().expect("refused");
-    assert_eq!(error, Deficient::Dependent);
+    assert!(error.0.contains("on one line"), "{error:?}");
     // Near a line: rank enough, but a guess away from it.
     let bent: Vec<[f64; 2]> = (1..=30)
         .map(|k| [k as f64 / 30.0, k as f64 / 30.0 + 0.01 * ((k * 7) % 5) as f64])
@@ -77,25 +77,13 @@ fn designs_that_do_not_determine_the_map_are_refused() {
     let error = Design::new(Basis::Biquadratic, &bent, BOX)
         .err()
         .expect("refused");
-    assert!(matches!(error, Deficient::Undetermined { .. }), "{error:?}");
+    assert!(error.0.contains("do not determine the map"), "{error:?}");
     let error = Design::new(Basis::Quartic, &grid(4), BOX).err().expect("refused");
-    assert_eq!(
-        error,
-        Deficient::TooFew {
-            distinct: 16,
-            needed: 18
-        }
-    );
+    assert_eq!(error.0, "16 distinct throttle pairs, at least 18 are needed");
     // Repeats of a few pairs are no new pairs.
     let few: Vec<[f64; 2]> = grid(3).into_iter().cycle().take(90).collect();
     let error = Design::new(Basis::Biquadratic, &few, BOX).err().expect("refused");
-    assert_eq!(
-        error,
-        Deficient::TooFew {
-            distinct: 9,
-            needed: 12
-        }
-    );
+    assert_eq!(error.0, "9 distinct throttle pairs, at least 12 are needed");
 }
 
 #[test]

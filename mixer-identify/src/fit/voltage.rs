@@ -22,6 +22,7 @@ use self::profile::{Regressors, off_span, profile};
 use crate::bench::{Bench, Kind, Point};
 use crate::fit::basis::Centred;
 use crate::fit::range;
+use crate::fit::statistics::{dot, extent, rms};
 
 mod exponent;
 mod profile;
@@ -75,17 +76,15 @@ impl Voltage {
 
 /// Examines the files of one kind. Nothing if no row has a voltage.
 pub fn examine(benches: &[Bench], kind: Kind) -> Option<Voltage> {
-    let points: Vec<&Point> = benches
-        .iter()
-        .filter(|b| b.kind == kind)
-        .flat_map(|b| &b.points)
-        .filter(|p| p.voltage.is_finite() && p.voltage > 0.0)
+    let of_kind = benches.iter().filter(|b| b.kind == kind).flat_map(|b| &b.points);
+    let points: Vec<&Point> = of_kind
+        .filter(|p| p.voltage > 0.0 && p.voltage.is_finite())
         .collect();
     if points.is_empty() {
         return None;
     }
     let voltages = || points.iter().map(|p| p.voltage);
-    let range_v = voltages().fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(v), b.max(v)]);
+    let range_v = extent(voltages());
     let mean_v = voltages().sum::<f64>() / points.len() as f64;
     let levels = levels(&points);
     let rows = |of: fn(&Point) -> f64| -> Vec<Row> {
@@ -157,14 +156,9 @@ fn exponent(rows: Vec<Row>, kind: Kind, reference: f64) -> Exponent {
     let varied_levels = (0..count)
         .filter(|&l| of_level[l].0 <= of_level[l].1 && varied(l))
         .count();
-    let throttle = |r: &Row| r.throttle[0].max(r.throttle[1]);
-    let spread = |rows: &[&Row]| {
-        let (a, b) = rows.iter().fold((f64::MAX, f64::MIN), |(a, b), r| {
-            (a.min(throttle(r)), b.max(throttle(r)))
-        });
-        b - a
-    };
-    let estimate = if varied_levels >= LEAST_LEVELS && spread(&varied_rows) >= LEAST_SPREAD {
+    let throttles = varied_rows.iter().map(|r| r.throttle[0].max(r.throttle[1]));
+    let [least, most] = extent(throttles);
+    let estimate = if varied_levels >= LEAST_LEVELS && most - least >= LEAST_SPREAD {
         profile(&varied_rows, &Regressors::Levels, reference).map(|mut e| {
             e.method = "equal throttles";
             e.levels = varied_levels;
@@ -185,38 +179,35 @@ fn exponent(rows: Vec<Row>, kind: Kind, reference: f64) -> Exponent {
 
 /// The estimate if it is sound, or the reason why not.
 fn sound(e: Estimate) -> Exponent {
-    if e.residual_percent > 100.0 * ONE_POWER {
-        return refused(
+    let ([least, most], missed, uncertain) = (PLAUSIBLE, e.residual_percent, e.ci95);
+    let (reason, needed) = if missed > 100.0 * ONE_POWER {
+        (
             format!(
-                "at equal throttles the rows do not follow one power of voltage (they miss it by {:.0} %)",
-                e.residual_percent
+                "at equal throttles the rows do not follow one power of voltage (they miss it by {missed:.0} %)"
             ),
             "files of one and the same rotor or pair; name others in a run of their own",
-        );
-    }
-    if e.ci95 > WIDEST {
-        return refused(
-            format!("the exponent is uncertain by +-{:.2}", e.ci95),
+        )
+    } else if uncertain > WIDEST {
+        (
+            format!("the exponent is uncertain by +-{uncertain:.2}"),
             "voltages further apart, or more throttle levels",
-        );
-    }
-    if !(PLAUSIBLE[0]..=PLAUSIBLE[1]).contains(&e.exponent) {
-        return refused(
-            format!(
-                "the rows would ask for an exponent outside {}..{}, which no propeller has",
-                PLAUSIBLE[0], PLAUSIBLE[1]
-            ),
+        )
+    } else if !(least..=most).contains(&e.exponent) {
+        (
+            format!("the rows would ask for an exponent outside {least}..{most}, which no propeller has"),
             "files of one and the same rotor or pair, with the voltage measured at the speed controller",
-        );
-    }
-    Exponent::Identified(e)
+        )
+    } else {
+        return Exponent::Identified(e);
+    };
+    refused(reason, needed)
 }
 
 /// A polynomial through all rows, where files do not share their levels: refused unless voltage
 /// varies on its own.
 fn joint(rows: &[Row], kind: Kind, reference: f64) -> Result<Option<Estimate>, Exponent> {
     let voltages = || rows.iter().map(|r| r.voltage);
-    let (low, high) = voltages().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+    let [low, high] = extent(voltages());
     if high < LEAST_RATIO * low {
         return Err(refused(
             format!("all rows lie between {low:.2} and {high:.2} V: one voltage only"),
@@ -247,8 +238,7 @@ fn joint(rows: &[Row], kind: Kind, reference: f64) -> Result<Option<Estimate>, E
             ANOTHER_VOLTAGE,
         ));
     };
-    let own_rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
-    let explained = 1.0 - own.iter().map(|x| x * x).sum::<f64>() / total;
+    let (own_rms, explained) = (rms(own.iter().copied()), 1.0 - dot(&own, &own) / total);
     // Two voltages in equal parts with the least ratio have an rms of half its logarithm.
     if own_rms < 0.5 * libm::log(LEAST_RATIO) {
         return Err(refused(

@@ -8,10 +8,11 @@
 
 use faer::Mat;
 
-use crate::bench::{Bench, Kind, Point};
+use crate::bench::{Bench, Kind, Point, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::pair::Pair;
 use crate::fit::polynomial::Polynomial;
+use crate::fit::statistics::{extent, greatest, rms};
 use crate::fit::voltage::Voltage;
 use crate::fit::{distinct_pairs, ten_digits};
 use crate::refusal::Refusal;
@@ -38,33 +39,30 @@ pub fn identify(
     warnings: &mut Vec<String>,
 ) -> Result<Alone, Refusal> {
     let [flag, rotor, other] = turning.words();
-    let needed =
-        || format!("a run of the {rotor} rotor over all throttles with the {other} one standing still");
+    let refuse = |reason: String| {
+        let needed =
+            format!("a run of the {rotor} rotor over all throttles with the {other} one standing still");
+        Err(Refusal::of(&run.file, format!("{flag}: {reason}"), needed))
+    };
     if run.kind == Kind::Pair {
-        return Err(Refusal::of(
-            &run.file,
-            format!("{flag}: both rotors turn in it"),
-            needed(),
-        ));
+        return refuse("both rotors turn in it".into());
     }
     if run.turning.is_some_and(|found| found != turning) {
-        return Err(Refusal::of(
-            &run.file,
-            format!("{flag}: the {other} rotor turns in it, the {rotor} one stands still"),
-            needed(),
+        return refuse(format!(
+            "the {other} rotor turns in it, the {rotor} one stands still"
         ));
     }
     let points = at_reference(run, turning, pair, voltage, warnings);
     let x: Vec<f64> = points.iter().map(|p| p.u).collect();
     let places: Vec<[f64; 2]> = x.iter().map(|&x| turning.throttles(x)).collect();
     let distinct = distinct_pairs(&places);
-    if distinct < FEWEST || points.iter().any(|p| !p.torque.is_finite()) {
-        let reason = if distinct < FEWEST {
-            format!("{flag}: {distinct} distinct throttles, at least {FEWEST} are needed")
-        } else {
-            format!("{flag}: rows without torque")
-        };
-        return Err(Refusal::of(&run.file, reason, needed()));
+    if distinct < FEWEST {
+        return refuse(format!(
+            "{distinct} distinct throttles, at least {FEWEST} are needed"
+        ));
+    }
+    if points.iter().any(|p| !p.torque.is_finite()) {
+        return refuse("rows without torque".into());
     }
     let channel = |of: fn(&Point) -> f64, model: &[f64]| {
         let y: Vec<f64> = points.iter().map(of).collect();
@@ -76,16 +74,11 @@ pub fn identify(
     };
     let (thrust_n, thrust) = channel(|p| p.thrust, &pair.thrust_n);
     let (torque_nm, torque) = channel(|p| p.torque, &pair.torque_nm);
-    let measured = [
-        x.iter().copied().fold(f64::MAX, f64::min),
-        x.iter().copied().fold(f64::MIN, f64::max),
-    ];
+    let measured = extent(x.iter().copied());
     let ThrottleBox { min, max } = pair.throttle;
     if let Some(at) = falls(thrust_n, pair.throttle) {
-        return Err(Refusal::of(
-            &run.file,
-            format!("{flag}: the fitted thrust does not grow with the throttle at {at:.2}"),
-            needed(),
+        return refuse(format!(
+            "the fitted thrust does not grow with the throttle at {at:.2}"
         ));
     }
     if measured[0] > min + SHORT || measured[1] < max - SHORT {
@@ -187,20 +180,12 @@ fn at_reference(
     warnings: &mut Vec<String>,
 ) -> Vec<Point> {
     let [flag, ..] = turning.words();
-    let volts: Vec<f64> = run
-        .points
-        .iter()
-        .map(|p| p.voltage)
-        .filter(|v| v.is_finite())
-        .collect();
-    let mean = volts.iter().sum::<f64>() / volts.len().max(1) as f64;
-    let complete = volts.len() == run.points.len() && !volts.is_empty();
+    let volts = mean_voltage(&run.points)
+        .filter(|(_, all)| *all)
+        .map(|(mean, _)| mean);
     let exponents = voltage.and_then(|v| Some([v.thrust.value()?, v.torque.value()?]));
-    let brought = match (pair.normalised_to_v, exponents) {
-        (Some(reference), Some(exponents)) if complete => Some((reference, exponents)),
-        _ => None,
-    };
-    if let (None, Some(of_pair), true) = (brought, pair.mean_v, complete)
+    let brought = pair.normalised_to_v.zip(exponents).filter(|_| volts.is_some());
+    if let (None, Some(of_pair), Some(mean)) = (brought, pair.mean_v, volts)
         && (mean / of_pair - 1.0).abs() > OTHER_VOLTAGE
     {
         warnings.push(format!(
@@ -224,42 +209,39 @@ fn at_reference(
 fn fit(x: &[f64], y: &[f64], of_the_pair: impl Fn(f64) -> f64) -> ([f64; 3], AloneFit) {
     let qr = Mat::from_fn(x.len(), 3, |i, j| [x[i], x[i] * x[i], x[i] * x[i] * x[i]][j]).qr();
     let (q, r) = (qr.compute_thin_Q(), qr.thin_R());
-    let z: Vec<f64> = (0..3)
-        .map(|k| y.iter().enumerate().map(|(i, y)| q[(i, k)] * y).sum())
-        .collect();
+    let along = |k: usize| y.iter().enumerate().map(|(i, y)| q[(i, k)] * y).sum::<f64>();
+    let z = [0, 1, 2].map(along);
     let a3 = z[2] / r[(2, 2)];
     let a2 = (z[1] - r[(1, 2)] * a3) / r[(1, 1)];
     let a1 = (z[0] - r[(0, 1)] * a2 - r[(0, 2)] * a3) / r[(0, 0)];
     let coefficients = [a1, a2, a3].map(ten_digits);
-    let rms = |errors: &dyn Fn(usize) -> f64| {
-        ((0..y.len()).map(|i| errors(i) * errors(i)).sum::<f64>() / y.len() as f64).sqrt()
-    };
-    let missed = |i: usize| y[i] - ((a3 * x[i] + a2) * x[i] + a1) * x[i];
+    let (points, missed) = (0..y.len(), |i: usize| {
+        y[i] - ((a3 * x[i] + a2) * x[i] + a1) * x[i]
+    });
     let leverage = |i: usize| (0..3).map(|k| q[(i, k)] * q[(i, k)]).sum::<f64>();
+    let left_out = |i: usize| missed(i) / (1.0 - leverage(i)).max(1e-12);
     let statistics = AloneFit {
-        residual_rms: rms(&missed),
-        leave_one_out_rms: rms(&|i| missed(i) / (1.0 - leverage(i)).max(1e-12)),
-        of_the_pair_rms: rms(&|i| y[i] - of_the_pair(x[i])),
-        full_scale: y.iter().fold(0.0, |m, y| m.max(y.abs())),
+        residual_rms: rms(points.clone().map(missed)),
+        leave_one_out_rms: rms(points.clone().map(left_out)),
+        of_the_pair_rms: rms(points.map(|i| y[i] - of_the_pair(x[i]))),
+        full_scale: greatest(y),
     };
     (coefficients, statistics)
 }
 
 /// A throttle of the range at which a1 x + a2 x2 + a3 x3 does not grow.
 fn falls([a1, a2, a3]: [f64; 3], throttle: ThrottleBox) -> Option<f64> {
-    throttle
-        .grid(200)
-        .find(|x| (3.0 * a3 * x + 2.0 * a2) * x + a1 <= 0.0)
+    let slope = |x: &f64| (3.0 * a3 * x + 2.0 * a2) * x + a1;
+    throttle.grid(200).find(|x| slope(x) <= 0.0)
 }
 
 /// A warning that the map is extrapolated where a rotor is out; none where both rotors were run
 /// alone or it begins low.
 pub fn extrapolated(pair: &Pair) -> Option<String> {
     let lowest = pair.measured[0][0].max(pair.measured[1][0]);
-    let missing: Vec<&str> = [(&pair.lower_out, "--lower-out"), (&pair.upper_out, "--upper-out")]
-        .into_iter()
-        .filter_map(|(alone, flag)| alone.is_none().then_some(flag))
-        .collect();
+    let flags = [(&pair.lower_out, "--lower-out"), (&pair.upper_out, "--upper-out")];
+    let missing = flags.into_iter().filter(|(alone, _)| alone.is_none());
+    let missing: Vec<&str> = missing.map(|(_, flag)| flag).collect();
     (lowest > LOW && !missing.is_empty()).then(|| {
         format!(
             "nothing was measured below a throttle of {lowest:.2}: with a rotor out the map is extrapolated to 0, on real \

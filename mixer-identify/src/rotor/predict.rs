@@ -11,8 +11,9 @@ use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 use toml_edit::{DocumentMut, value};
 
-use crate::bench::{Bench, Kind};
+use crate::bench::{Bench, Kind, mean_voltage};
 use crate::fit::basis::ThrottleBox;
+use crate::fit::statistics::{greatest, rms};
 use crate::fit::uncertainty::Uncertainty;
 use crate::fit::{Design, ten_digits};
 use crate::refusal::Refusal;
@@ -50,30 +51,16 @@ const CORRECTED: [f64; 2] = [1.2, 2.8];
 const CORRECTING_ROWS: usize = 4;
 
 /// What the user decides.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Wishes {
     /// z/D.
     pub spacing_ratio: Option<f64>,
     /// Whether a throttle commands a speed that the controller holds.
     pub closed_loop: bool,
-    /// The box to command; its least idle is raised where the map asks for it.
-    pub throttle: ThrottleBox,
+    /// The box to command, or nothing for 0.2 to 1; its least idle is raised where the map asks for it.
+    pub throttle: Option<ThrottleBox>,
     /// `YYYY-MM-DD`, for the comment of the tables.
     pub date: Option<String>,
-}
-
-impl Default for Wishes {
-    fn default() -> Self {
-        Wishes {
-            spacing_ratio: None,
-            closed_loop: false,
-            throttle: ThrottleBox {
-                min: LEAST_IDLE,
-                max: 1.0,
-            },
-            date: None,
-        }
-    }
 }
 
 /// All that `--json` prints.
@@ -149,28 +136,22 @@ pub fn correct(
     mut warnings: Vec<String>,
 ) -> Result<Predicted, Refusal> {
     let runs: Vec<Single> = [Some(upper), lower].into_iter().flatten().collect();
-    let of = |k: usize| runs.get(k).unwrap_or(&runs[0]);
-    remarks(&runs, wishes, &mut warnings);
-    let alone = [of(0).rotor, of(1).rotor];
+    let throttle = wishes.throttle.unwrap_or(ThrottleBox {
+        min: LEAST_IDLE,
+        max: 1.0,
+    });
+    remarks(&runs, wishes, throttle, &mut warnings);
+    let alone = rotors(&runs);
     let spacing_ratio = wishes.spacing_ratio.unwrap_or(SPACING_RATIO);
-    let general = if wishes.closed_loop {
-        CLOSED_LOOP
-    } else {
-        OPEN_LOOP
+    let general = match wishes.closed_loop {
+        true => CLOSED_LOOP,
+        false => OPEN_LOOP,
     };
     let mut constants = general;
     let mut factors = [1.0; 3];
     let mut rows_with_torque = 0;
     if !maps.is_empty() {
-        let case = case(
-            &runs,
-            maps,
-            general,
-            alone,
-            spacing_ratio,
-            wishes.throttle,
-            &mut warnings,
-        )?;
+        let case = case(&runs, maps, general, spacing_ratio, throttle, &mut warnings)?;
         rows_with_torque = case.rows.iter().filter(|row| row[3].is_finite()).count();
         advise(case.rows.len(), rows_with_torque, &mut warnings);
         let found = posterior::fit(general, BETWEEN_SYSTEMS, &[case]);
@@ -180,11 +161,11 @@ pub fn correct(
     let rotors = scaled(&alone, factors);
     let uncertainty = uncertainty(&runs, rows_with_torque);
     let map = |throttles| constants.pair(&rotors, spacing_ratio, throttles);
-    let pair = compiled(&map, rotors, uncertainty, wishes.throttle, &runs[0].file)?;
-    if pair.min_idle > wishes.throttle.min + 1e-9 {
+    let pair = compiled(&map, rotors, uncertainty, throttle, &runs[0].file)?;
+    if pair.min_idle > throttle.min + 1e-9 {
         warnings.push(format!(
             "throttle.min is raised from {} to {}: below, the predicted map folds or is not inverted to its tolerance",
-            wishes.throttle.min, pair.min_idle
+            throttle.min, pair.min_idle
         ));
     }
     Ok(Predicted {
@@ -193,10 +174,7 @@ pub fn correct(
         pair,
         reference_v: runs[0].voltage_v,
         runs,
-        corrected_by: maps
-            .iter()
-            .map(|map| (map.file.clone(), map.points.len()))
-            .collect(),
+        corrected_by: maps.iter().map(|m| (m.file.clone(), m.points.len())).collect(),
         spacing_ratio,
         constants: constants.constants.map(ten_digits),
         factors: factors.map(ten_digits),
@@ -205,7 +183,7 @@ pub fn correct(
 }
 
 /// What speaks against the model, for these runs.
-fn remarks(runs: &[Single], wishes: &Wishes, warnings: &mut Vec<String>) {
+fn remarks(runs: &[Single], wishes: &Wishes, throttle: ThrottleBox, warnings: &mut Vec<String>) {
     let [least, most] = KNOWN_SPACINGS;
     if let Some(ratio) = wishes.spacing_ratio
         && !(least..=most).contains(&ratio)
@@ -214,14 +192,13 @@ fn remarks(runs: &[Single], wishes: &Wishes, warnings: &mut Vec<String>) {
             "z/D is {ratio}: the interaction was measured from {least} to {most} and is extrapolated"
         ));
     }
-    if wishes.throttle.min < LEAST_IDLE {
+    if throttle.min < LEAST_IDLE {
         warnings.push(format!(
             "the idle of {} is below {LEAST_IDLE}, where a prediction was not held against benches",
-            wishes.throttle.min
+            throttle.min
         ));
     }
-    let [upper, lower] =
-        [runs.first(), runs.last()].map(|run| run.map_or(0.0, |run| run.rotor.thrust.at(1.0)));
+    let [upper, lower] = rotors(runs).map(|rotor| rotor.thrust.at(1.0));
     if (upper / lower - 1.0).abs() > UNEQUAL {
         warnings.push(format!(
             "the rotors alone give {upper:.2} and {lower:.2} N at full throttle: the interaction was measured on equal \
@@ -238,17 +215,21 @@ fn remarks(runs: &[Single], wishes: &Wishes, warnings: &mut Vec<String>) {
     }
 }
 
+/// The upper and the lower rotor, which may be alike.
+fn rotors(runs: &[Single]) -> [Rotor; 2] {
+    [&runs[0], runs.get(1).unwrap_or(&runs[0])].map(|run| run.rotor)
+}
+
 /// The rows of maps at the voltage of the runs.
 fn case(
     runs: &[Single],
     maps: &[Bench],
     general: Interaction,
-    rotors: [Rotor; 2],
     spacing_ratio: f64,
     ThrottleBox { max, .. }: ThrottleBox,
     warnings: &mut Vec<String>,
 ) -> Result<Case, Refusal> {
-    let mut rows = Vec::new();
+    let (rotors, mut rows) = (rotors(runs), Vec::new());
     for map in maps {
         if map.kind != Kind::Pair {
             return Err(Refusal::of(
@@ -259,14 +240,8 @@ fn case(
         }
         rows.extend(map.points.iter().map(|p| [p.u, p.l, p.thrust, p.torque]));
     }
-    let volts: Vec<f64> = maps
-        .iter()
-        .flat_map(|map| &map.points)
-        .map(|p| p.voltage)
-        .filter(|v| v.is_finite())
-        .collect();
-    let mean = volts.iter().sum::<f64>() / volts.len() as f64;
-    if let Some(of_run) = runs[0].voltage_v
+    let volts = mean_voltage(maps.iter().flat_map(|map| &map.points));
+    if let (Some((mean, _)), Some(of_run)) = (volts, runs[0].voltage_v)
         && (mean / of_run - 1.0).abs() > 0.1
     {
         warnings.push(format!(
@@ -303,15 +278,13 @@ fn advise(rows: usize, with_torque: usize, warnings: &mut Vec<String>) {
 fn uncertainty(runs: &[Single], rows_with_torque: usize) -> Uncertainty {
     let few = runs.iter().any(Single::is_sparse);
     let no_torque = runs.iter().any(|run| run.kappa_m.is_some());
-    let percent = |k: usize| {
-        if rows_with_torque >= CORRECTING_ROWS {
-            return CORRECTED[k];
+    let adding = [(true, PREDICTED), (few, FEW_ROWS), (no_torque, WITHOUT_TORQUE)];
+    let percent = |k: usize| match rows_with_torque >= CORRECTING_ROWS {
+        true => CORRECTED[k],
+        false => {
+            let adding = adding.iter().filter(|(is, _)| *is);
+            adding.map(|(_, of)| of[k] * of[k]).sum::<f64>().sqrt()
         }
-        let mut squares = PREDICTED[k] * PREDICTED[k];
-        for (is, adds) in [(few, FEW_ROWS[k]), (no_torque, WITHOUT_TORQUE[k])] {
-            squares += if is { adds * adds } else { 0.0 };
-        }
-        squares.sqrt()
     };
     Uncertainty::rounded(percent(0), percent(1)).of_prediction()
 }
@@ -349,20 +322,15 @@ fn compiled(
         if throttle.min > MOST_IDLE.max(wished.min) {
             break;
         }
-        let grid = throttle.grid(20);
-        let points: Vec<[f64; 2]> = grid
-            .clone()
-            .flat_map(|u| grid.clone().map(move |l| [u, l]))
-            .collect();
+        let points: Vec<[f64; 2]> = throttle.square(20).collect();
         let design = Design::new(basis, &points, throttle).map_err(|_| fault())?;
         let values: Vec<[f64; 2]> = points.iter().map(|&t| map(t)).collect();
         let channel = |k: usize| {
             let y: Vec<f64> = values.iter().map(|v| v[k]).collect();
             let z = design.coordinates(&y);
-            let squares: f64 = design.residuals(&y, &z).iter().map(|e| e * e).sum();
-            let greatest = y.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
+            let missed = rms(design.residuals(&y, &z)) / greatest(&y);
             let coefficients: Vec<f64> = design.coefficients(&z).into_iter().map(ten_digits).collect();
-            (coefficients, 100.0 * (squares / y.len() as f64).sqrt() / greatest)
+            (coefficients, 100.0 * missed)
         };
         let ((thrust_n, f), (torque_nm, q)) = (channel(0), channel(1));
         let enclosed = EnclosedPairMap::of(basis, &thrust_n, &torque_nm);

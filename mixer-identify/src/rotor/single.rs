@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use crate::bench::{Bench, Kind, Point};
+use crate::bench::{Bench, Kind, Point, mean_voltage};
+use crate::fit::distinct_pairs;
+use crate::fit::statistics::{extent, rms};
 use crate::refusal::Refusal;
 use crate::rotor::curve::{Curve, Rotor};
 
@@ -72,7 +74,7 @@ impl Single {
             ));
         }
         let points = &bench.points;
-        let measured = range(points);
+        let measured = extent(points.iter().map(|p| p.u));
         enough(file, points, measured)?;
         if measured[1] < FULL {
             warnings.push(format!(
@@ -82,12 +84,9 @@ impl Single {
         }
         let thrust = channel(file, "thrust", points, |p| p.thrust, warnings)?;
         let with_torque: Vec<Point> = points.iter().copied().filter(|p| p.torque.is_finite()).collect();
-        let torque_is_measured = distinct(&with_torque) >= FEWEST;
-        let (torque, kappa_m) = if torque_is_measured {
-            (
-                channel(file, "torque", &with_torque, |p| p.torque, warnings)?,
-                None,
-            )
+        let (torque, kappa_m) = if distinct(&with_torque) >= FEWEST {
+            let torque = channel(file, "torque", &with_torque, |p| p.torque, warnings)?;
+            (torque, None)
         } else {
             let (kappa, why) = stand_in(file, known)?;
             warnings.push(format!(
@@ -127,32 +126,22 @@ impl Single {
     }
 }
 
-fn range(points: &[Point]) -> [f64; 2] {
-    let throttles = points.iter().map(|p| p.u);
-    throttles.fold([f64::MAX, f64::MIN], |[a, b], u| [a.min(u), b.max(u)])
-}
-
 fn distinct(points: &[Point]) -> usize {
-    let mut levels: Vec<i64> = points.iter().map(|p| (1000.0 * p.u).round() as i64).collect();
-    levels.sort_unstable();
-    levels.dedup();
-    levels.len()
+    let places: Vec<[f64; 2]> = points.iter().map(|p| [p.u, 0.0]).collect();
+    distinct_pairs(&places)
 }
 
 fn enough(file: &str, points: &[Point], [_, highest]: [f64; 2]) -> Result<(), Refusal> {
+    let count = distinct(points);
+    let reason = match count < FEWEST {
+        true => format!("{count} distinct throttles, at least {FEWEST} are needed"),
+        false if highest < REACHES => {
+            format!("the run stops at a throttle of {highest:.2}, below {REACHES}")
+        }
+        false => return Ok(()),
+    };
     let needed = format!("{FEWEST} throttles or more, up to full throttle or near it");
-    if distinct(points) < FEWEST {
-        let reason = format!(
-            "{} distinct throttles, at least {FEWEST} are needed",
-            distinct(points)
-        );
-        return Err(Refusal::of(file, reason, needed));
-    }
-    if highest < REACHES {
-        let reason = format!("the run stops at a throttle of {highest:.2}, below {REACHES}");
-        return Err(Refusal::of(file, reason, needed));
-    }
-    Ok(())
+    Err(Refusal::of(file, reason, needed))
 }
 
 struct Channel {
@@ -177,31 +166,26 @@ fn channel(
             format!("a run of one rotor; the sign of a column by --{name}-sign"),
         ));
     };
-    let squares: f64 = places
-        .iter()
-        .map(|[x, y]| (y - curve.at(*x)) * (y - curve.at(*x)))
-        .sum();
-    let share = (squares / places.len() as f64).sqrt() / greatest;
+    let share = rms(places.iter().map(|[x, y]| y - curve.at(*x))) / greatest;
+    let percent = 100.0 * share;
     if share > MISFIT[1] {
         return Err(Refusal::of(
             file,
             format!(
-                "the {name} misses a growing curve over the throttle by {:.0} % rms of its greatest value",
-                100.0 * share
+                "the {name} misses a growing curve over the throttle by {percent:.0} % rms of its greatest value"
             ),
             "one run of one rotor, at a supply that holds, with the throttle that was commanded",
         ));
     }
     if share > MISFIT[0] {
         warnings.push(format!(
-            "the {name} in {file} misses a growing curve over the throttle by {:.1} % rms of its greatest value; good \
-             runs miss it by 1 % or less",
-            100.0 * share
+            "the {name} in {file} misses a growing curve over the throttle by {percent:.1} % rms of its greatest value; good \
+             runs miss it by 1 % or less"
         ));
     }
     Ok(Channel {
         curve,
-        misfit_percent: Some(100.0 * share),
+        misfit_percent: Some(percent),
     })
 }
 
@@ -225,13 +209,7 @@ fn stand_in(file: &str, known: &Known) -> Result<(f64, String), Refusal> {
 
 /// The factor that brings a run to the reference voltage, and the voltage where its curves hold.
 fn brought(bench: &Bench, known: &Known, warnings: &mut Vec<String>) -> Result<(f64, Option<f64>), Refusal> {
-    let volts: Vec<f64> = bench
-        .points
-        .iter()
-        .map(|p| p.voltage)
-        .filter(|v| v.is_finite())
-        .collect();
-    let mean = (!volts.is_empty()).then(|| volts.iter().sum::<f64>() / volts.len() as f64);
+    let mean = mean_voltage(&bench.points).map(|(mean, _)| mean);
     match (known.run_v.or(mean), known.reference_v) {
         (own, None) => Ok((1.0, own)),
         (Some(own), Some(reference)) => {

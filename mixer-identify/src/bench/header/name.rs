@@ -27,6 +27,18 @@ const OTHERS: [&str; 11] = [
     "std",
 ];
 
+/// Words that tell what a column measures, the first that is there.
+const WORDS: [(&str, Quantity); 8] = [
+    ("esc", Quantity::Throttle),
+    ("pwm", Quantity::Throttle),
+    ("throttle", Quantity::Throttle),
+    ("thrust", Quantity::Thrust),
+    ("torque", Quantity::Torque),
+    ("voltage", Quantity::Voltage),
+    ("time", Quantity::Time),
+    ("current", Quantity::Current),
+];
+
 impl Name {
     pub(super) fn new(raw: &str) -> Self {
         let raw = raw.trim().to_string();
@@ -53,22 +65,12 @@ impl Name {
         if OTHERS.iter().any(|other| padded.contains(other)) {
             return None;
         }
-        let word = |w: &str| self.words().any(|x| x == w);
-        if word("esc") || word("pwm") || word("throttle") || matches!(self.text.as_str(), "upper" | "lower") {
-            Some(Quantity::Throttle)
-        } else if word("thrust") {
-            Some(Quantity::Thrust)
-        } else if word("torque") {
-            Some(Quantity::Torque)
-        } else if word("voltage") {
-            Some(Quantity::Voltage)
-        } else if word("time") {
-            Some(Quantity::Time)
-        } else if word("current") {
-            Some(Quantity::Current)
-        } else {
-            None
+        if matches!(self.text.as_str(), "upper" | "lower") {
+            return Some(Quantity::Throttle);
         }
+        let mut quantities = WORDS.iter();
+        let found = quantities.find(|(word, _)| self.words().any(|own| own == *word));
+        found.map(|(_, quantity)| *quantity)
     }
 
     pub(super) fn says_upper_or_lower(&self) -> bool {

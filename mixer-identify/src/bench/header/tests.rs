@@ -21,13 +21,19 @@ fn coaxial_map() {
          Current Left [A],Current Right [A],Speed Left [rpm],Speed Right [rpm],Total Thrust [g],\
          Total Torque [Nm],Time [s]",
     );
-    assert_eq!((at(&c.upper), at(&c.lower)), (Some(0), Some(1)));
     assert_eq!(
-        (at(&c.thrust), at(&c.torque), at(&c.voltage)),
+        (at(&c.throttle.rotors[0]), at(&c.throttle.rotors[1])),
+        (Some(0), Some(1))
+    );
+    assert_eq!(
+        (at(&c.thrust.whole), at(&c.torque.whole), at(&c.voltage.rotors[0])),
         (Some(16), Some(17), Some(10))
     );
-    assert_eq!(c.rotor_thrust.each_ref().map(at), [Some(4), Some(6)]);
-    assert_eq!(c.upper.expect("upper").scale, Scale::Pulse(1.0));
+    assert_eq!(c.thrust.rotors.each_ref().map(at), [Some(4), Some(6)]);
+    assert_eq!(
+        c.throttle.rotors[0].clone().expect("upper").scale,
+        Scale::Pulse(1.0)
+    );
     assert!(c.sides_named);
 }
 
@@ -38,10 +44,15 @@ fn rcbenchmark_single() {
          Motor Electrical Speed (RPM),Electrical Power (W),Propeller Mech. Efficiency (gf/W),App message,",
     );
     assert_eq!(
-        (at(&c.upper), at(&c.lower), at(&c.torque), at(&c.thrust)),
+        (
+            at(&c.throttle.rotors[0]),
+            at(&c.throttle.rotors[1]),
+            at(&c.torque.whole),
+            at(&c.thrust.whole)
+        ),
         (Some(1), None, Some(4), Some(5))
     );
-    assert_eq!(at(&c.time), Some(0));
+    assert_eq!(at(&c.time.whole), Some(0));
 }
 
 #[test]
@@ -50,10 +61,14 @@ fn rcbenchmark_dual() {
         "Time (s),ESC A (us),Torque A (N-m),Thrust A (N),Voltage A (V),ESC B (us),Torque B (N-m),Thrust B (N)",
     );
     assert_eq!(
-        (at(&c.upper), at(&c.lower), at(&c.thrust)),
+        (
+            at(&c.throttle.rotors[0]),
+            at(&c.throttle.rotors[1]),
+            at(&c.thrust.whole)
+        ),
         (Some(1), Some(5), None)
     );
-    assert_eq!(c.rotor_torque.each_ref().map(at), [Some(2), Some(6)]);
+    assert_eq!(c.torque.rotors.each_ref().map(at), [Some(2), Some(6)]);
     assert!(!c.sides_named, "A and B do not say which is above");
 }
 
@@ -65,23 +80,35 @@ fn flight_stand_with_edited_prefixes() {
          Front - torque MZ (torque) (N⋅m),Front - voltage (V),Front - propeller efficiency (gf/W)",
     );
     assert_eq!(
-        (at(&c.upper), at(&c.lower), at(&c.voltage)),
+        (
+            at(&c.throttle.rotors[0]),
+            at(&c.throttle.rotors[1]),
+            at(&c.voltage.rotors[0])
+        ),
         (Some(1), Some(5), Some(4))
     );
-    assert_eq!(c.rotor_thrust.each_ref().map(at), [Some(2), Some(6)]);
+    assert_eq!(c.thrust.rotors.each_ref().map(at), [Some(2), Some(6)]);
     assert_eq!(
-        c.rotor_thrust[0].as_ref().expect("thrust").scale,
+        c.thrust.rotors[0].as_ref().expect("thrust").scale,
         Scale::Factor(9.80665)
     );
     let c = find("Bottom motor - ESC throttle (%),Top motor - ESC throttle (%)");
     assert_eq!(
-        (at(&c.upper), at(&c.lower), c.sides_named),
+        (
+            at(&c.throttle.rotors[0]),
+            at(&c.throttle.rotors[1]),
+            c.sides_named
+        ),
         (Some(1), Some(0), true)
     );
     // One prefix only: a single rotor on the stand.
     let c = find("Powertrain 1 - ESC throttle (μs),Powertrain 1 - force Fz (thrust) (N)");
     assert_eq!(
-        (at(&c.upper), at(&c.lower), at(&c.thrust)),
+        (
+            at(&c.throttle.rotors[0]),
+            at(&c.throttle.rotors[1]),
+            at(&c.thrust.whole)
+        ),
         (Some(0), None, Some(1))
     );
 }
@@ -90,12 +117,20 @@ fn flight_stand_with_edited_prefixes() {
 fn plain() {
     let c = find("upper,lower,thrust_n,torque_nm,voltage_v");
     assert_eq!(
-        (at(&c.upper), at(&c.lower), at(&c.thrust), at(&c.torque)),
+        (
+            at(&c.throttle.rotors[0]),
+            at(&c.throttle.rotors[1]),
+            at(&c.thrust.whole),
+            at(&c.torque.whole)
+        ),
         (Some(0), Some(1), Some(2), Some(3))
     );
-    assert_eq!(c.upper.expect("upper").scale, Scale::Factor(1.0));
+    assert_eq!(
+        c.throttle.rotors[0].clone().expect("upper").scale,
+        Scale::Factor(1.0)
+    );
     let c = find("upper,lower,thrust_gf,torque_ozf-in");
-    assert_eq!(c.thrust.expect("thrust").scale, Scale::Factor(0.00980665));
+    assert_eq!(c.thrust.whole.expect("thrust").scale, Scale::Factor(0.00980665));
 }
 
 #[test]
@@ -113,7 +148,12 @@ fn by_hand() {
     };
     let c = find_by_hand("cmd_one,x,F,M (N⋅m)", &hand).expect("mapped");
     assert_eq!(
-        (at(&c.upper), at(&c.lower), at(&c.thrust), at(&c.torque)),
+        (
+            at(&c.throttle.rotors[0]),
+            at(&c.throttle.rotors[1]),
+            at(&c.thrust.whole),
+            at(&c.torque.whole)
+        ),
         (Some(0), Some(1), Some(2), Some(3))
     );
     let error = find_by_hand("a,b", &hand).unwrap_err();
@@ -132,8 +172,11 @@ fn swap_exchanges_the_rotors() {
         ..ByHand::default()
     };
     let c = find_by_hand("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N)", &hand).expect("a header");
-    assert_eq!((at(&c.upper), at(&c.lower)), (Some(1), Some(0)));
-    assert_eq!(c.rotor_thrust.each_ref().map(at), [Some(3), Some(2)]);
+    assert_eq!(
+        (at(&c.throttle.rotors[0]), at(&c.throttle.rotors[1])),
+        (Some(1), Some(0))
+    );
+    assert_eq!(c.thrust.rotors.each_ref().map(at), [Some(3), Some(2)]);
 }
 
 #[test]

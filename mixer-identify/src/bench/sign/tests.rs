@@ -1,5 +1,5 @@
 use super::*;
-use crate::bench::header::{ByHand, Columns};
+use crate::bench::header::ByHand;
 
 fn columns(line: &str) -> Columns {
     let headers: Vec<String> = line.split(',').map(str::to_string).collect();
@@ -11,10 +11,14 @@ fn samples(a: f64, b: f64) -> Vec<Sample> {
     let at = |u: f64, l: f64| Sample {
         line: 1,
         throttle: [u, l],
-        thrust: -(u + l),
-        torque: a * u * u + b * l * l,
-        rotor_thrust: [u, -0.5 * l],
-        rotor_torque: [a * u * u, b * l * l],
+        thrust: Split {
+            whole: -(u + l),
+            rotors: [u, -0.5 * l],
+        },
+        torque: Split {
+            whole: a * u * u + b * l * l,
+            rotors: [a * u * u, b * l * l],
+        },
         voltage: f64::NAN,
         power_w: f64::NAN,
     };
@@ -75,7 +79,7 @@ fn magnitudes_are_refused_and_given_signs_help() {
 fn constant_and_missing_torque_are_refused() {
     let c = columns("upper,lower,thrust_n,torque_nm");
     let mut s = samples(-1.0, 0.8);
-    s.iter_mut().for_each(|s| s.torque = 0.25);
+    s.iter_mut().for_each(|s| s.torque.whole = 0.25);
     let error = pair("b.csv", &c, &s, &AUTO, false, &mut Vec::new()).unwrap_err();
     assert!(error.reason.contains("constant at 0.25"), "{error}");
     let c = columns("upper,lower,thrust_n");
@@ -87,7 +91,7 @@ fn constant_and_missing_torque_are_refused() {
 fn the_rotor_in_the_wake_is_noticed() {
     let mut c = columns("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N),Torque A (Nm),Torque B (Nm)");
     let mut s = samples(-1.0, 0.8);
-    s.iter_mut().for_each(|s| s.rotor_thrust[1] *= 4.0);
+    s.iter_mut().for_each(|s| s.thrust.rotors[1] *= 4.0);
     // A header that names the rotors may be wrong about them.
     for named in [false, true] {
         c.sides_named = named;

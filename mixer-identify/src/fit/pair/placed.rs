@@ -2,9 +2,10 @@
 
 use mixer_compiler::airframe::Basis;
 
-use crate::bench::{Bench, Point};
+use crate::bench::{Bench, Point, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::robust::{self, Outlier};
+use crate::fit::statistics::{extent, greatest};
 use crate::fit::voltage::Voltage;
 use crate::fit::wishes::Wishes;
 use crate::fit::{Design, hundredths};
@@ -37,16 +38,10 @@ pub(super) fn at_reference<'a>(
     wishes: &Wishes,
 ) -> Result<(Vec<Placed<'a>>, Option<f64>), Refusal> {
     let sound = voltage.and_then(|v| Some((v.thrust.value()?, v.torque.value()?)));
-    let volts = |b: &Bench| {
-        let measured = b.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());
-        let (sum, n) = measured.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
-        (n == b.points.len() && n > 0).then(|| sum / n as f64)
-    };
+    let volts = |b: &Bench| mean_voltage(&b.points).and_then(|(mean, all)| all.then_some(mean));
     let means: Vec<f64> = benches.iter().filter_map(|b| volts(b)).collect();
     let all = means.len() == benches.len();
-    let (low, high) = means
-        .iter()
-        .fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
+    let [low, high] = extent(means.iter().copied());
     if sound.is_none() && high > 1.03 * low {
         return Err(Refusal::general(
             format!(
@@ -69,35 +64,30 @@ pub(super) fn at_reference<'a>(
         ));
     }
     let bring = |y: f64, v: f64, exponent: f64| y / libm::pow(v / reference, exponent);
-    let mut points = Vec::new();
-    for bench in benches {
-        for point in &bench.points {
-            let (thrust, torque) = match exponents {
-                Some((f, q)) => (
-                    bring(point.thrust, point.voltage, f),
-                    bring(point.torque, point.voltage, q),
-                ),
-                None => (point.thrust, point.torque),
-            };
-            points.push(Placed {
-                point,
-                file: &bench.file,
-                thrust,
-                torque,
-            });
+    let place = |bench: &&'a Bench, point: &'a Point| {
+        let (thrust, torque) = match exponents {
+            Some((f, q)) => (
+                bring(point.thrust, point.voltage, f),
+                bring(point.torque, point.voltage, q),
+            ),
+            None => (point.thrust, point.torque),
+        };
+        Placed {
+            point,
+            file: &bench.file,
+            thrust,
+            torque,
         }
-    }
+    };
+    let rows = benches.iter().flat_map(|b| b.points.iter().map(move |p| (b, p)));
+    let points = rows.map(|(bench, point)| place(bench, point)).collect();
     Ok((points, exponents.map(|_| reference)))
 }
 
 /// The points that are not marked.
 pub(super) fn without<'a>(points: &[Placed<'a>], out: &[bool]) -> Vec<Placed<'a>> {
-    points
-        .iter()
-        .zip(out)
-        .filter(|(_, out)| !**out)
-        .map(|(p, _)| *p)
-        .collect()
+    let kept = points.iter().zip(out).filter(|(_, out)| !**out);
+    kept.map(|(p, _)| *p).collect()
 }
 
 /// Which rows stand out of a robust fit of either channel. None if the points do not determine the
@@ -120,12 +110,8 @@ pub(super) fn confirmed(
     clean: &[Placed],
     throttle_box: ThrottleBox,
 ) -> Vec<Outlier> {
-    let accused: Vec<&Placed> = points
-        .iter()
-        .zip(suspects)
-        .filter(|(_, s)| **s)
-        .map(|(p, _)| p)
-        .collect();
+    let marked = points.iter().zip(suspects).filter(|(_, marked)| **marked);
+    let accused: Vec<&Placed> = marked.map(|(p, _)| p).collect();
     let Ok(design) = Design::new(basis, &places(clean), throttle_box) else {
         return Vec::new();
     };
@@ -135,20 +121,18 @@ pub(super) fn confirmed(
         robust::against_the_others(&design, y, &rows)
     };
     let (of_thrust, of_torque) = (against(&thrust, |p| p.thrust), against(&torque, |p| p.torque));
-    let outliers = accused
-        .iter()
-        .zip(of_thrust.into_iter().zip(of_torque))
-        .map(|(p, (f, q))| Outlier {
-            file: p.file.to_string(),
-            line: p.point.line,
-            u: p.point.u,
-            l: p.point.l,
-            thrust_residual: f.0,
-            thrust_deviations: f.1,
-            torque_residual: q.0,
-            torque_deviations: q.1,
-        });
-    let scales = [&thrust, &torque].map(|y| robust::full_scale(y));
+    let channels = of_thrust.into_iter().zip(of_torque);
+    let outliers = accused.iter().zip(channels).map(|(p, (f, q))| Outlier {
+        file: p.file.to_string(),
+        line: p.point.line,
+        u: p.point.u,
+        l: p.point.l,
+        thrust_residual: f.0,
+        thrust_deviations: f.1,
+        torque_residual: q.0,
+        torque_deviations: q.1,
+    });
+    let scales = [&thrust, &torque].map(|y| greatest(y));
     let stands_out = |o: &Outlier| {
         robust::stands_out(o.thrust_residual, o.thrust_deviations, scales[0])
             || robust::stands_out(o.torque_residual, o.torque_deviations, scales[1])

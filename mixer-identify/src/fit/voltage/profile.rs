@@ -33,11 +33,8 @@ impl Regressors {
     fn off_span(&self, rows: &[&Row], factor: &[f64], y: &[f64]) -> Option<Vec<f64>> {
         match self {
             Regressors::Columns(columns) => {
-                let scaled: Vec<Vec<f64>> = columns
-                    .iter()
-                    .zip(factor)
-                    .map(|(c, f)| c.iter().map(|x| f * x).collect())
-                    .collect();
+                let times = |(c, f): (&Vec<f64>, &f64)| c.iter().map(|x| f * x).collect();
+                let scaled: Vec<Vec<f64>> = columns.iter().zip(factor).map(times).collect();
                 off_span(&scaled, y)
             }
             Regressors::Levels => {
@@ -79,18 +76,11 @@ pub(super) fn profile(rows: &[&Row], g: &Regressors, reference: f64) -> Option<E
     let y: Vec<f64> = rows.iter().zip(&weights).map(|(r, w)| w * r.y).collect();
     let mut k = 1.75; // the field's median; the problem is nearly linear in k
     for _ in 0..50 {
-        let factor: Vec<f64> = ratio
-            .iter()
-            .zip(&weights)
-            .map(|(r, w)| w * libm::pow(*r, k))
-            .collect();
+        let factor = ratio.iter().zip(&weights).map(|(r, w)| w * libm::pow(*r, k));
+        let factor: Vec<f64> = factor.collect();
         let residual = g.off_span(rows, &factor, &y)?;
-        let derivative: Vec<f64> = y
-            .iter()
-            .zip(&residual)
-            .zip(&ratio)
-            .map(|((y, e), r)| (y - e) * libm::log(*r))
-            .collect();
+        let points = y.iter().zip(&residual).zip(&ratio);
+        let derivative: Vec<f64> = points.map(|((y, e), r)| (y - e) * libm::log(*r)).collect();
         let own = g.off_span(rows, &factor, &derivative)?;
         let norm: f64 = own.iter().map(|d| d * d).sum();
         if norm <= 1e-12 {
