@@ -157,17 +157,11 @@ impl Diagnostics {
         faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
         faults.dedup();
         // Words of the file may be among them.
-        for Diagnostic {
-            key,
-            message,
-            label,
-            help,
-            ..
-        } in &mut faults
-        {
-            for text in [key, message, label, help] {
-                *text = printable(text);
-            }
+        for fault in &mut faults {
+            fault.key = printable(&fault.key);
+            fault.message = printable(&fault.message);
+            fault.label = printable(&fault.label);
+            fault.help = printable(&fault.help);
         }
         let offsets = faults
             .iter()

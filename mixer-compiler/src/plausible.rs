@@ -35,7 +35,7 @@ const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 14] = [
     geometry::centre_of_gravity,
     geometry::outputs,
     supply::voltage,
-    allocation::tolerances,
+    limits::wide_tolerances,
     allocation::yaw,
     allocation::power_bias,
     vehicle::hover,

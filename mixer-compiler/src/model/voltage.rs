@@ -52,27 +52,24 @@ pub fn tabulate(airframe: &Airframe) -> Result<Option<[TabulatedLaw; 2]>, Vec<Di
     let Some(voltage) = &airframe.voltage else {
         return Ok(None);
     };
-    let law = |key: &str, law: &VoltageLaw| {
-        tabulate_law(law, voltage).map_err(|error| {
-            vec![airframe.diagnostic(
-                Code::VoltageTable,
-                key,
-                format!("no polynomial up to degree {HIGHEST_FITTED_DEGREE} follows this law within {FIT_TOLERANCE:e}; the best is {error:.1e} off"),
-                "",
-                "narrow voltage.range_v to the voltages of the pack, or give points",
-            )]
-        })
+    let fault = |key: &str, error: f64| {
+        airframe.diagnostic(
+            Code::VoltageTable,
+            key,
+            format!("no polynomial up to degree {HIGHEST_FITTED_DEGREE} follows this law within {FIT_TOLERANCE:e}; the best is {error:.1e} off"),
+            "",
+            "narrow voltage.range_v to the voltages of the pack, or give points",
+        )
     };
-    match (
-        law("voltage.thrust_exponent", &voltage.thrust),
-        law("voltage.torque_exponent", &voltage.torque),
-    ) {
-        (Ok(thrust), Ok(torque)) => Ok(Some([thrust, torque])),
-        (thrust, torque) => Err([thrust.err(), torque.err()]
-            .into_iter()
-            .flatten()
-            .flatten()
-            .collect()),
+    match [&voltage.thrust, &voltage.torque].map(|law| tabulate_law(law, voltage)) {
+        [Ok(thrust), Ok(torque)] => Ok(Some([thrust, torque])),
+        laws => {
+            let keys = ["voltage.thrust_exponent", "voltage.torque_exponent"].into_iter();
+            let faults = keys
+                .zip(laws)
+                .filter_map(|(key, law)| Some(fault(key, law.err()?)));
+            Err(faults.collect())
+        }
     }
 }
 

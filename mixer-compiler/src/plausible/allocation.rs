@@ -1,35 +1,13 @@
-//! Rules on what the mixer is asked to keep: tolerances, yaw and the torque of least power.
+//! Rules on what the mixer is asked to keep: yaw, and the torque of least power.
 
-use super::limits;
 use super::rule::{Facts, Rule};
 use crate::airframe::{Airmode, Axis};
 use crate::diagnostic::{Code, number, rounded};
 use crate::model::effectiveness::Effectiveness;
 
-/// Share of a unit's largest effort above which a tolerance is a mistake.
-const WIDE: f64 = 0.01;
-
 /// Share of a frame's saving below which there is none: upper rotors that all turn alike leave
 /// nothing to cancel torques with.
 const NO_SHARE: f64 = 1e-6;
-
-/// Tolerances above a hundredth of the largest effort that are no errors.
-pub(super) fn tolerances(facts: &Facts<'_>) -> Vec<Rule> {
-    let tolerances = limits::tolerances(facts.airframe, facts.scale).into_iter();
-    tolerances
-        .filter(|tolerance| !tolerance.is_absurd(facts.airframe))
-        .map(|tolerance| {
-            let [message, label, help] = tolerance.words(WIDE);
-            Rule::at_most(
-                Code::WideTolerance,
-                tolerance.key,
-                tolerance.stated,
-                WIDE * tolerance.largest,
-            )
-            .says(message, label, help)
-        })
-        .collect()
-}
 
 /// Where every unit yaws as far as it can to one side: the yaw to that side, N m, and the thrust, N.
 fn furthest(facts: &Facts<'_>, effectiveness: &Effectiveness, sign: f64) -> [f64; 2] {

@@ -1,75 +1,51 @@
-//! What is refused because its size is absurd: tolerances, and the authority of the rotors.
+//! Tolerances that are wide or absurd, and rotors of absurd authority.
 
 use mixer_rt::tables::REQUEST_LIMIT;
 
+use super::rule::{Facts, Rule};
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::effectiveness::Effectiveness;
 use crate::model::{PairMap, voltage};
 
-/// Share of a unit's largest effort above which a tolerance is refused. The evaluators are fitted to
-/// the tolerance; nothing is left to fit to here.
+/// Share of a unit's largest effort above which a tolerance is a mistake.
+const WIDE: f64 = 0.01;
+
+/// Share above which one that the file states is refused. The evaluators are fitted to the tolerance;
+/// nothing is left to fit to here.
 const ABSURD: f64 = 0.1;
 
-/// A tolerance beside what it is of.
-#[derive(Clone, Copy)]
-pub(super) struct Tolerance {
-    pub(super) key: &'static str,
-    unit: &'static str,
-    pub(super) stated: f64,
-    /// A unit's largest effort.
-    pub(super) largest: f64,
-}
-
-/// Those of thrust and torque, of units of this scale.
-pub(super) fn tolerances(airframe: &Airframe, scale: [f64; 2]) -> [Tolerance; 2] {
+/// Rules on the tolerances beside the largest efforts of a unit, N and N m.
+fn tolerances(airframe: &Airframe, scale: [f64; 2]) -> impl Iterator<Item = Rule> {
     let inverse = &airframe.inverse;
-    let of = |key, unit, stated, largest| Tolerance {
-        key,
-        unit,
-        stated,
-        largest,
-    };
-    [
-        of(
-            "inverse.thrust_tolerance_n",
-            "N",
-            inverse.thrust_tolerance_n,
-            scale[0],
-        ),
-        of(
-            "inverse.torque_tolerance_nm",
-            "N m",
-            inverse.torque_tolerance_nm,
-            scale[1],
-        ),
-    ]
-}
-
-impl Tolerance {
-    /// Whether the file states a tolerance above a tenth of the largest effort.
-    pub(super) fn is_absurd(&self, airframe: &Airframe) -> bool {
-        self.largest > 0.0 && self.stated > ABSURD * self.largest && airframe.states(self.key)
-    }
-
-    /// Message, label and help where it is above this share of the largest effort.
-    pub(super) fn words(&self, most: f64) -> [String; 3] {
-        let unit = self.unit;
+    let stated = [
+        ("inverse.thrust_tolerance_n", "N", inverse.thrust_tolerance_n),
+        ("inverse.torque_tolerance_nm", "N m", inverse.torque_tolerance_nm),
+    ];
+    stated.into_iter().zip(scale).map(|((key, unit, stated), largest)| {
+        let is_absurd = largest > 0.0 && stated > ABSURD * largest && airframe.states(key);
+        let (code, most) = match is_absurd {
+            true => (Code::ToleranceAbsurd, ABSURD),
+            false => (Code::WideTolerance, WIDE),
+        };
         // A percentage beyond the largest float is written as a bound.
-        let percent = match 100.0 * (self.stated / self.largest) {
+        let percent = match 100.0 * (stated / largest) {
             percent if percent.is_finite() => format!("{} %", rounded(percent)),
             _ => "more than 1e308 %".to_owned(),
         };
-        [
-            format!(
-                "a tolerance of {} {unit} is {percent} of a unit's largest effort, {} {unit}",
-                number(self.stated),
-                rounded(self.largest)
-            ),
+        let [stated_as, largest_as] = [number(stated), rounded(largest)];
+        Rule::at_most(code, key, stated, most * largest).says(
+            format!("a tolerance of {stated_as} {unit} is {percent} of a unit's largest effort, {largest_as} {unit}"),
             format!("expected at most {} %", number(100.0 * most)),
-            "the defaults are 0.01 N and 0.0001 N m".to_owned(),
-        ]
-    }
+            "the defaults are 0.01 N and 0.0001 N m",
+        )
+    })
+}
+
+/// Tolerances above a hundredth of the largest effort that are no errors.
+pub(super) fn wide_tolerances(facts: &Facts<'_>) -> Vec<Rule> {
+    let rules = tolerances(facts.airframe, facts.scale);
+    rules.filter(|rule| rule.code == Code::WideTolerance).collect()
 }
 
 /// Refuses tolerances that are too wide to mean anything.
@@ -77,14 +53,11 @@ impl Tolerance {
 /// # Errors
 /// A tolerance above a tenth of a unit's largest effort.
 pub(crate) fn check_tolerances(airframe: &Airframe, pair: &PairMap) -> Result<(), Vec<Diagnostic>> {
-    let faults: Vec<Diagnostic> = tolerances(airframe, pair.scale())
-        .into_iter()
-        .filter(|tolerance| tolerance.is_absurd(airframe))
-        .map(|tolerance| {
-            let [message, label, help] = tolerance.words(ABSURD);
-            airframe.diagnostic(Code::ToleranceAbsurd, tolerance.key, message, label, help)
-        })
-        .collect();
+    let mut faults = Vec::new();
+    let rules = tolerances(airframe, pair.scale());
+    for rule in rules.filter(|rule| rule.code == Code::ToleranceAbsurd) {
+        rule.check(airframe, &mut faults);
+    }
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 

@@ -26,7 +26,7 @@ const KEYS: [&str; 2] = ["thrust_n", "torque_nm"];
 /// Torque falls with the upper throttle and rises with the lower one. Where both are exchanged, det
 /// J is negative and the file is refused; the corner of the fold tells nothing: real maps fold at
 /// (full, idle), the paper's at (idle, full). The rotor in the wake takes less torque:
-/// [`wake`](crate::model::wake). The lower rotor of a bench whose upper one turned counter-clockwise
+/// [`wake`]. The lower rotor of a bench whose upper one turned counter-clockwise
 /// turns clockwise: it yaws to the left, but the torque counts it positive.
 pub(super) fn order(facts: &Facts<'_>) -> Vec<Rule> {
     let rule =

@@ -46,17 +46,13 @@ impl Rule {
 
     /// The same rule with what is said where it is broken: message, label and help.
     pub(super) fn says(
-        self,
+        mut self,
         message: impl Into<String>,
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> Rule {
-        Rule {
-            message: message.into(),
-            label: label.into(),
-            help: help.into(),
-            ..self
-        }
+        (self.message, self.label, self.help) = (message.into(), label.into(), help.into());
+        self
     }
 
     /// The same rule, silent where one of these is told.

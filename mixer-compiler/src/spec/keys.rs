@@ -42,25 +42,19 @@ impl Key {
         }
     }
 
-    pub(crate) const fn required(self) -> Self {
-        Key {
-            required: true,
-            ..self
-        }
+    pub(crate) const fn required(mut self) -> Self {
+        self.required = true;
+        self
     }
 
-    pub(crate) const fn default(self, default: f64) -> Self {
-        Key {
-            default: Some(default),
-            ..self
-        }
+    pub(crate) const fn default(mut self, default: f64) -> Self {
+        self.default = Some(default);
+        self
     }
 
-    pub(crate) const fn refusing(self, label: &'static str, help: &'static str) -> Self {
-        Key {
-            refusal: Some([label, help]),
-            ..self
-        }
+    pub(crate) const fn refusing(mut self, label: &'static str, help: &'static str) -> Self {
+        self.refusal = Some([label, help]);
+        self
     }
 
     /// The line, or the header, that a user could add.
