@@ -8,8 +8,6 @@ mod bound;
 mod kind;
 mod typical;
 
-use std::fmt;
-
 use serde::Serialize;
 
 use mixer_compiler::Compiled;
@@ -80,52 +78,5 @@ impl Cost {
             inverse_bytes: compiled.tables.inverse_bytes(),
             table_bytes: compiled.tables.bytes(),
         }
-    }
-}
-
-/// The lines of `check`.
-impl fmt::Display for Cost {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = |value: Option<u32>| value.map_or("not counted".to_owned(), |value| value.to_string());
-        writeln!(
-            f,
-            "cost            {}; instructions (cycles of the inverse in brackets)",
-            self.target
-        )?;
-        writeln!(
-            f,
-            "  inverse       {} ({}) per unit, {} ({}) for all units; {} bytes of constants",
-            number(self.inverse_instructions),
-            number(self.inverse_cycles),
-            number(self.inverses_instructions),
-            number(self.inverses_cycles),
-            self.inverse_bytes
-        )?;
-        if let (Some(delivered), Some(error)) = (self.delivered_instructions, self.delivered_error) {
-            writeln!(
-                f,
-                "  mix           about {delivered} where least norm delivers the request; the estimate is off by {:.0} % at most \
-                 on counted frames",
-                100.0 * error
-            )?;
-        }
-        if let (Some(attainable), Some(error)) = (self.attainable_instructions, self.attainable_error) {
-            writeln!(
-                f,
-                "                about {attainable} in the mean of attainable requests; off by {:.0} % at most",
-                100.0 * error
-            )?;
-        }
-        if let Some(bound) = self.bound_instructions {
-            writeln!(
-                f,
-                "  any request   at most {bound}, desaturation {}: the sum of what the code does at most",
-                self.desaturation.description()
-            )?;
-        }
-        if let Some(bound) = self.bound_with_rotors_out_instructions {
-            writeln!(f, "  rotors out    at most {bound}, however many")?;
-        }
-        Ok(())
     }
 }

@@ -1,7 +1,5 @@
 //! The vehicle in hover, and a yaw reserve to begin with.
 
-use std::fmt;
-
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::hover::HoverAt;
@@ -65,43 +63,4 @@ pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let [least, most] = yaw.torque_nm;
     let reserve = KEPT_YAW * most.min(-least);
     (reserve > 0.0).then_some(reserve)
-}
-
-impl fmt::Display for Hover {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "hover           {:?} kg, {:.2} N; largest thrust over weight {:.2}",
-            self.mass_kg, self.weight_n, self.thrust_over_weight
-        )?;
-        for at in &self.at {
-            let volts = at
-                .voltage_v
-                .map_or_else(String::new, |volts| format!("at {volts:?} V"));
-            write!(f, "  {volts:<14}")?;
-            let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
-                writeln!(f, "the weight is not carried")?;
-                continue;
-            };
-            write!(f, "throttle {upper:.3} upper, {lower:.3} lower; left (N m):")?;
-            for (index, margin) in at.margins.iter().enumerate() {
-                let [least, largest] = margin.torque_nm;
-                let comma = if index > 0 { "," } else { "" };
-                write!(f, "{comma} {} {least:.3} to {largest:.3}", margin.axis)?;
-                if let Some(band) = margin.band_nm {
-                    write!(f, " +- {band:.3}")?;
-                }
-            }
-            writeln!(f)?;
-            if let Some([[least_upper, least_lower], [upper, lower]]) = at.throttle_band {
-                writeln!(
-                    f,
-                    "  {:<14}by [pair.uncertainty]: throttle {least_upper:.3} to {upper:.3} upper, {least_lower:.3} to {lower:.3} \
-                     lower (one standard deviation)",
-                    ""
-                )?;
-            }
-        }
-        Ok(())
-    }
 }

@@ -1,9 +1,11 @@
 //! The vehicle in hover.
 
+use std::collections::BTreeSet;
+
 use mixer_compiler::airframe::GRAVITY;
 use mixer_compiler::{Compiled, Source, compile};
+use mixer_facts::Checked;
 use mixer_facts::hover::Hover;
-use mixer_facts::report::{Report, Summary};
 
 fn x8(vehicle: &str) -> Compiled {
     let text = format!("{}\n{vehicle}", include_str!("../../airframes/isae-x8.toml"));
@@ -46,21 +48,48 @@ fn hover_is_that_of_the_pair() {
         let roll = at.margins[0].torque_nm[1];
         assert!((0.7..1.0).contains(&(roll / (0.3182 * hover.weight_n))), "{roll}");
     }
-    let text = Report(&compiled).to_string();
-    assert!(
-        text.contains("\nhover           3.2 kg, 31.38 N; largest thrust over weight 3.1"),
-        "{text}"
-    );
-    assert!(text.contains("\n  at 12.8 V     throttle 0."), "{text}");
+    let text = Checked::new(compiled).verdict();
+    for line in [
+        "\nmass                3.2 kg, a weight of 31.38 N\n",
+        "\nhover               0.5",
+        "\nhover, lowest V     0.6",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
 }
 
 #[test]
 fn hover_is_only_there_with_a_mass() {
     let compiled = x8("");
     assert!(Hover::new(&compiled).is_none());
-    let json = serde_json::to_value(Summary::new(&compiled)).unwrap();
+    let json = Checked::new(compiled).json(());
     assert!(json["hover"].is_null());
-    let json = serde_json::to_value(Summary::new(&x8("[vehicle]\nmass_kg = 9\n"))).unwrap();
+    let json = Checked::new(x8("[vehicle]\nmass_kg = 9\n")).json(());
     assert!(json["hover"]["at"][0]["upper_throttle"].is_null(), "{json}");
     assert!(json["hover"]["at"][1]["upper_throttle"].is_number(), "{json}");
+}
+
+/// No name and no key is said twice, and facts that one airframe lacks move none of the others'.
+#[test]
+fn facts_stand_side_by_side() {
+    let all = [x8(""), x8("[vehicle]\nmass_kg = 3.2\n")].map(Checked::new);
+    for checked in &all {
+        let names: Vec<&str> = checked.facts.iter().map(|fact| fact.name).collect();
+        let keys: Vec<&str> = checked
+            .facts
+            .iter()
+            .flat_map(|fact| &fact.json)
+            .map(|(key, _)| *key)
+            .collect();
+        for said in [names, keys] {
+            assert_eq!(BTreeSet::from_iter(&said).len(), said.len(), "{said:?}");
+        }
+    }
+    let text = mixer_facts::compare(&all);
+    let row = |name: &str| -> Vec<&str> {
+        let line = text.lines().find_map(|line| line.strip_prefix(name));
+        line.unwrap_or_default().split_whitespace().collect()
+    };
+    assert_eq!(row("mass (kg)"), ["-", "3.2"], "{text}");
+    assert_eq!(row("tables (bytes)"), ["1660", "1660"], "{text}");
 }

@@ -88,12 +88,8 @@ impl BenchPoints {
             }
             _ => [1.0, 1.0],
         };
-        let list = if within {
-            &mut self.points
-        } else {
-            &mut self.outside
-        };
-        list.push(BenchPoint {
+        let lists = [&mut self.outside, &mut self.points];
+        lists[usize::from(within)].push(BenchPoint {
             file: self.files.len(),
             line,
             throttles,

@@ -9,7 +9,6 @@ use crate::level;
 use crate::maps::ERROR_SIDE;
 use crate::number::{cell, line, range};
 use crate::study::Study;
-use crate::table::comparison_text;
 
 /// Yaw commands of the comparison; the table shows every third.
 pub const YAW_COMMANDS: usize = 25;
@@ -51,32 +50,32 @@ impl Data {
         (
             Data::Level,
             "level",
-            "Mean throttles and electrical power in level flight against thrust, at the lowest, the reference and the highest voltage",
+            "Throttles and power in level flight, against thrust and voltage",
         ),
         (
             Data::Hover,
             "hover",
-            "Mean throttles in hover against voltage, with [vehicle] mass_kg and [voltage]",
+            "Throttles in hover against voltage; needs [vehicle] and [voltage]",
         ),
         (
             Data::Yaw,
             "yaw",
-            "What every unit gives over the yaw range at constant thrust, by the coaxial and by the conventional mixer",
+            "What every unit gives over yaw at constant thrust, by both mixers",
         ),
         (
             Data::Attainable,
             "attainable",
-            "Border of one unit's attainable set at the lowest, the reference and the highest voltage",
+            "Border of a unit's attainable set against voltage",
         ),
         (
             Data::Authority,
             "authority",
-            "Largest delivered torque about each served axis against thrust",
+            "Largest torque about each served axis against thrust",
         ),
         (
             Data::Forward,
             "forward",
-            "Thrust and torque of one unit over both throttles, with det J",
+            "Thrust, torque and det J of a unit over both throttles",
         ),
         (
             Data::Inverse,
@@ -100,28 +99,14 @@ impl Data {
 /// Points per side of the maps.
 const SIDE: usize = 41;
 
-/// The data of one figure.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sweep {
-    /// CSV with a header.
-    pub csv: String,
-    /// The static comparison of the yaw sweep as text; empty for other figures.
-    pub table: String,
-}
-
-/// The data of `figure`.
+/// The data of `figure` as CSV with a header.
 ///
 /// # Errors
 /// A yaw sweep of an airframe that does not serve yaw, or at a thrust that leaves no room for it;
 /// hover without a mass or without an effect of voltage.
-pub fn sweep(study: &Study<'_>, figure: Data) -> Result<Sweep, String> {
-    let mut table = String::new();
+pub fn sweep(study: &Study<'_>, figure: Data) -> Result<String, String> {
     let lines = match figure {
-        Data::Yaw => {
-            let comparison = Comparison::sweep(study, YAW_COMMANDS).ok_or_else(|| no_yaw(study))?;
-            table = comparison_text(&comparison);
-            yaw(&comparison)
-        }
+        Data::Yaw => yaw(&Comparison::sweep(study, YAW_COMMANDS).ok_or_else(|| no_yaw(study))?),
         Data::Layout => layout(study),
         Data::Level => level_lines(study),
         Data::Hover => hover(study)?,
@@ -131,9 +116,7 @@ pub fn sweep(study: &Study<'_>, figure: Data) -> Result<Sweep, String> {
         Data::Inverse => inverse(study),
         Data::Error => error(study),
     };
-    let mut csv = lines.join("\n");
-    csv.push('\n');
-    Ok(Sweep { csv, table })
+    Ok(lines.join("\n") + "\n")
 }
 
 fn no_yaw(study: &Study<'_>) -> String {
@@ -165,11 +148,10 @@ pub(crate) fn columns(csv: &str, names: &[&str]) -> String {
 }
 
 fn yaw(comparison: &Comparison) -> Vec<String> {
-    let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
     let mut header =
         "mixer,yaw_asked_nm,throttle_limited,roll_given_nm,pitch_given_nm,yaw_given_nm,thrust_given_n"
             .to_owned();
-    for unit in 0..units {
+    for unit in 0..comparison.share_n.len() {
         for quantity in ["upper_throttle", "lower_throttle", "thrust_n", "torque_nm"] {
             header.push_str(&format!(",unit_{unit}_{quantity}"));
         }
@@ -307,7 +289,7 @@ fn forward(study: &Study<'_>) -> Vec<String> {
 
 fn inverse(study: &Study<'_>) -> Vec<String> {
     let mut lines = vec!["thrust_n,torque_nm,upper_throttle,lower_throttle".to_owned()];
-    let border: Vec<[f64; 2]> = study.border().iter().map(|&t| study.pair.efforts(t)).collect();
+    let border = study.border_efforts();
     let extent = |k: usize| range(border.iter().map(|efforts| efforts[k]));
     let ranges = [extent(0), extent(1)];
     lines.extend(square(SIDE).filter_map(|point| {

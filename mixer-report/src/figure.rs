@@ -6,7 +6,6 @@
 
 mod bar;
 mod curves;
-mod hover;
 mod legend;
 mod mark;
 mod path;
@@ -15,7 +14,6 @@ mod reading;
 use std::fmt::Write as _;
 
 use self::bar::Bar;
-pub use self::hover::Hover;
 use self::path::Label;
 use crate::number::{Ticks, escaped, pixel};
 
@@ -48,7 +46,8 @@ pub struct Figure {
     above: String,
     legend: Vec<legend::Entry>,
     bar: Option<Bar>,
-    hover: Hover,
+    /// What it tells at the pointer, by the name that the page's script knows; empty for nothing.
+    hover: &'static str,
     /// Quantities of the read-out with their units.
     quantities: Vec<(String, String)>,
     /// Curves with names.
@@ -77,7 +76,7 @@ impl Figure {
             above: String::new(),
             legend: Vec::new(),
             bar: None,
-            hover: Hover::Nothing,
+            hover: "",
             quantities: Vec::new(),
             curves: Vec::new(),
             series: Vec::new(),
@@ -141,39 +140,29 @@ impl Figure {
 
     /// A curve whose name stands in the read-out only. With a name it is reached by the Tab key.
     pub fn unlisted_curve(&mut self, class: &str, name: &str, points: &[[f64; 2]]) {
-        let data = self.path(points, false);
-        self.line(class, name, &data);
-        self.keep(name, points);
+        self.line(class, name, points, false);
     }
 
     /// A closed line without filling.
     pub fn outline(&mut self, class: &str, name: &str, points: &[[f64; 2]]) {
-        let data = self.path(points, true);
-        self.line(class, name, &data);
+        self.line(class, name, points, true);
         self.entry(class, name);
-        self.keep(name, points);
     }
 
-    fn keep(&mut self, name: &str, points: &[[f64; 2]]) {
+    fn line(&mut self, class: &str, name: &str, points: &[[f64; 2]], closed: bool) {
+        let data = self.path(points, closed);
+        let mut named = String::new();
         if !name.is_empty() {
             self.series.push((name.to_owned(), points.to_vec()));
+            self.curves.push((class.to_owned(), name.to_owned()));
+            let focus = if self.is_along_curves() {
+                " tabindex=\"0\""
+            } else {
+                ""
+            };
+            let name = escaped(name);
+            named = format!(" data-name=\"{name}\"{focus} role=\"img\" aria-label=\"{name}\"");
         }
-    }
-
-    fn line(&mut self, class: &str, name: &str, data: &str) {
-        let named = match name {
-            "" => String::new(),
-            name => {
-                self.curves.push((class.to_owned(), name.to_owned()));
-                let focus = if self.hover.is_along_curves() {
-                    " tabindex=\"0\""
-                } else {
-                    ""
-                };
-                let name = escaped(name);
-                format!(" data-name=\"{name}\"{focus} role=\"img\" aria-label=\"{name}\"")
-            }
-        };
         let _ = writeln!(self.layers, "<path class=\"line {class}\"{named} d=\"{data}\"/>");
     }
 
@@ -304,11 +293,7 @@ impl Figure {
             svg,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 {full_width} {full_height}\" \
              role=\"{}\" aria-label=\"{}\"{}>",
-            if self.hover.is_along_curves() {
-                "group"
-            } else {
-                "img"
-            },
+            if self.is_along_curves() { "group" } else { "img" },
             escaped(&self.title),
             self.attributes()
         );
@@ -329,35 +314,26 @@ impl Figure {
         let [left, top] = [MARGIN[0], MARGIN[1]];
         let [width, height] = self.size;
         let (right, bottom) = (left + width, top + height);
-        let map = self.bar.is_some();
-        let mut grid = String::new();
-        let mut marks = String::new();
-        let mut words = String::new();
+        let (mut grid, mut marks, mut words) = (String::new(), String::new(), String::new());
         let ticks = Ticks::within(self.axes[0].range, (width / 62.0) as usize);
         for &value in &ticks.values {
             let [x, _] = self.at([value, self.axes[1].range[0]]);
+            let (y, text) = (bottom + 18.0, ticks.text(value));
             let _ = write!(grid, "M{x:.1} {top}V{bottom}");
             let _ = write!(marks, "M{x:.1} {bottom}v5");
-            let _ = writeln!(
-                words,
-                "<text class=\"tick\" x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                bottom + 18.0,
-                ticks.text(value)
-            );
+            let place = format!("x=\"{x:.1}\" y=\"{y}\" text-anchor=\"middle\"");
+            let _ = writeln!(words, "<text class=\"tick\" {place}>{text}</text>");
         }
         let ticks = Ticks::within(self.axes[1].range, (height / 42.0) as usize);
         for &value in &ticks.values {
             let [_, y] = self.at([self.axes[0].range[0], value]);
+            let (x, text) = (left - 8.0, ticks.text(value));
             let _ = write!(grid, "M{left} {y:.1}H{right}");
             let _ = write!(marks, "M{left} {y:.1}h-5");
-            let _ = writeln!(
-                words,
-                "<text class=\"tick\" x=\"{}\" y=\"{y:.1}\" dy=\".35em\" text-anchor=\"end\">{}</text>",
-                left - 8.0,
-                ticks.text(value)
-            );
+            let place = format!("x=\"{x}\" y=\"{y:.1}\" dy=\".35em\" text-anchor=\"end\"");
+            let _ = writeln!(words, "<text class=\"tick\" {place}>{text}</text>");
         }
-        if !map {
+        if self.bar.is_none() {
             let _ = writeln!(svg, "<path class=\"grid\" d=\"{grid}\"/>");
         }
         let _ = writeln!(

@@ -34,23 +34,19 @@ pub fn gallery(airframes: &[Compiled]) -> Files {
         let study = Study::new(compiled, None);
         let name = &compiled.airframe.name;
         let _ = writeln!(page, "\n## {name}\n\n{}\n", compiled.airframe.description);
-        let mut add = |picture: &str, text: &str, svg: String| {
-            let file = format!("{name}-{picture}.svg");
-            let _ = write!(page, "<img src=\"{file}\" width=\"32%\" alt=\"{text}\"> ");
-            files.insert(file, svg);
+        let mut add = |picture: &str, text: &str, figure: &Figure| {
+            let name = format!("{name}-{picture}.svg");
+            let _ = write!(page, "<img src=\"{name}\" width=\"32%\" alt=\"{text}\"> ");
+            files.insert(name, styled(&figure.svg()));
         };
-        add(
-            "layout",
-            "Layout from above",
-            file(&layout::layout(&compiled.airframe)),
-        );
+        add("layout", "Layout from above", &layout::layout(&compiled.airframe));
         if let Some(comparison) = Comparison::sweep(&study, YAW_COMMANDS) {
             let text = format!("Yaw at {} N by both mixers", number::shortest(study.thrust_n));
-            add("yaw", &text, file(&plots::yaw_plane(&study, &comparison)));
+            add("yaw", &text, &plots::yaw_plane(&study, &comparison));
         }
         let all = authority::against_thrust(&study, &study.reference(), THRUSTS);
         if let Some(figure) = plots::authority(&study, &all, &[], Axis::Yaw) {
-            add("authority", "Yaw authority against thrust", file(&figure));
+            add("authority", "Yaw authority against thrust", &figure);
         }
         page.push('\n');
     }
@@ -63,34 +59,30 @@ pub fn figures(compiled: &Compiled) -> Files {
     let study = Study::new(compiled, None);
     let name = &compiled.airframe.name;
     let mut files = Files::new();
-    let mut add = |picture: &str, svg: String| files.insert(format!("{name}-{picture}.svg"), svg);
+    let mut write = |picture: &str, svg: &str| files.insert(format!("{name}-{picture}.svg"), styled(svg));
     for (effort, word) in Effort::BOTH.into_iter().zip(["thrust", "torque"]) {
-        add(
+        write(
             &format!("surface-{word}"),
-            styled(&surface::surface(&study, effort, None)),
+            &surface::surface(&study, effort, None),
         );
-        add(
+        write(
             &format!("forward-{word}"),
-            file(&maps::forward(&study, effort, None)),
+            &maps::forward(&study, effort, None).svg(),
         );
         let field = maps::error_field(&study, effort);
-        add(
+        write(
             &format!("error-{word}"),
-            file(&maps::error(&study, effort, &field)),
+            &maps::error(&study, effort, &field).svg(),
         );
     }
-    add("inverse-upper", file(&maps::inverse(&study, 0)));
-    add("inverse-lower", file(&maps::inverse(&study, 1)));
-    add("attainable", file(&plots::attainable(&study)));
+    write("inverse-upper", &maps::inverse(&study, 0).svg());
+    write("inverse-lower", &maps::inverse(&study, 1).svg());
+    write("attainable", &plots::attainable(&study).svg());
     if let Some(comparison) = Comparison::sweep(&study, YAW_COMMANDS) {
-        add("yaw-thrust", file(&plots::yaw_thrust(&comparison)));
-        add("yaw-total", file(&plots::yaw_total(&comparison)));
+        write("yaw-thrust", &plots::yaw_thrust(&comparison).svg());
+        write("yaw-total", &plots::yaw_total(&comparison).svg());
     }
     files
-}
-
-fn file(figure: &Figure) -> String {
-    styled(&figure.svg())
 }
 
 /// A picture with the style that the page would give it, and a ground of its own: documents may be

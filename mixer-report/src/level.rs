@@ -30,13 +30,14 @@ pub fn against_thrust(study: &Study<'_>, voltage_v: Option<f64>, count: usize) -
 
 /// Hover over the voltage range; empty without a mass or without an effect of voltage.
 pub fn against_voltage(study: &Study<'_>) -> Vec<Level> {
-    let (Some(hover), Some(voltage)) = (&study.summary.hover, &study.compiled.airframe.voltage) else {
+    let airframe = &study.compiled.airframe;
+    let (Some(weight_n), Some(voltage)) = (airframe.weight_n(), &airframe.voltage) else {
         return Vec::new();
     };
     let [low, high] = voltage.range_v;
     let voltages = (0..VOLTAGES).map(|k| low + (high - low) * k as f64 / (VOLTAGES - 1) as f64);
     voltages
-        .map(|volts| level(study, volts, hover.weight_n, &study.at(Some(volts))))
+        .map(|volts| level(study, volts, weight_n, &study.at(Some(volts))))
         .collect()
 }
 

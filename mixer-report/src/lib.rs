@@ -21,7 +21,6 @@ pub mod authority;
 pub mod bench;
 pub mod colour;
 pub mod comparison;
-pub mod cost;
 pub mod data;
 pub mod effort;
 pub mod field;

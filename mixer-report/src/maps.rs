@@ -7,7 +7,7 @@ use crate::bench::{BenchPoint, BenchPoints};
 use crate::colour::Scale;
 use crate::effort::{EFFORTS, Effort, THRUST, TORQUE};
 use crate::field::{Field, Painting, paint};
-use crate::figure::{Figure, Hover};
+use crate::figure::Figure;
 use crate::number::{Ticks, fixed, range, significant, widened};
 use crate::study::Study;
 
@@ -35,20 +35,10 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
             widened(all, 0.025)
         }
     };
-    let title = [
-        "Thrust of one unit over both throttles",
-        "Torque of one unit over both throttles",
-    ];
-    let mut figure = Figure::new(
-        title[effort as usize],
-        (UPPER, throttles(0)),
-        (LOWER, throttles(1)),
-    )
-    .sized(300.0, 300.0)
-    .reading(
-        Hover::Forward,
-        &[(UPPER, ""), (LOWER, ""), EFFORTS[0], EFFORTS[1]],
-    );
+    let title = format!("{} of one unit over both throttles", effort.name());
+    let mut figure = Figure::new(title, (UPPER, throttles(0)), (LOWER, throttles(1)))
+        .sized(300.0, 300.0)
+        .reading("forward", &[(UPPER, ""), (LOWER, ""), EFFORTS[0], EFFORTS[1]]);
     let painting = Painting {
         scale: match effort {
             Effort::Thrust => Scale::sequential(values),
@@ -89,29 +79,26 @@ pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Opti
         let measured = all().map(|point| point.throttles[k]);
         widened(range(measured.chain(study.pair.range())), 0.05)
     };
-    let title = [
-        "Thrust by the model less thrust measured",
-        "Torque by the model less torque measured",
-    ];
-    let unit = effort.unit();
-    let mut figure = Figure::new(
-        title[effort as usize],
-        (UPPER, throttles(0)),
-        (LOWER, throttles(1)),
-    )
-    .sized(300.0, 300.0)
-    .reading(
-        Hover::Dots,
-        &[
-            ("", ""),
-            (UPPER, ""),
-            (LOWER, ""),
-            ("measured", unit),
-            ("model", unit),
-            ("difference", unit),
-            ("that is", "%"),
-        ],
+    let quantity = effort.name();
+    let title = format!(
+        "{quantity} by the model less {} measured",
+        quantity.to_lowercase()
     );
+    let unit = effort.unit();
+    let mut figure = Figure::new(title, (UPPER, throttles(0)), (LOWER, throttles(1)))
+        .sized(300.0, 300.0)
+        .reading(
+            "dots",
+            &[
+                ("", ""),
+                (UPPER, ""),
+                (LOWER, ""),
+                ("measured", unit),
+                ("model", unit),
+                ("difference", unit),
+                ("that is", "%"),
+            ],
+        );
     let [low, high] = study.pair.range();
     figure.outline(
         "border",
@@ -163,12 +150,12 @@ const RESIDUAL_BANDS: usize = 20;
 
 /// A plot over thrust and torque that has the whole attainable set in view.
 pub(super) fn over_efforts(study: &Study<'_>, title: &str, k: [f64; 2]) -> Figure {
-    let border = study.border();
+    let border = study.border_efforts();
     let extent = |index: usize| {
-        let values = border
-            .iter()
-            .map(|&throttles| study.pair.efforts(throttles)[index] * k[index]);
-        widened(range(values), 0.04)
+        widened(
+            range(border.iter().map(|efforts| efforts[index] * k[index])),
+            0.04,
+        )
     };
     Figure::new(title, (THRUST, extent(0)), (TORQUE, extent(1)))
 }
@@ -176,16 +163,10 @@ pub(super) fn over_efforts(study: &Study<'_>, title: &str, k: [f64; 2]) -> Figur
 /// The throttle of one rotor (0 upper, 1 lower) over the attainable set.
 pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
     let field = Field::new(SIDE, |square| study.throttles(square)[rotor]);
-    let title = [
-        "Upper throttle over the attainable set",
-        "Lower throttle over the attainable set",
-    ];
-    let mut figure = over_efforts(study, title[rotor], [1.0, 1.0])
+    let title = format!("{} throttle over the attainable set", ["Upper", "Lower"][rotor]);
+    let mut figure = over_efforts(study, &title, [1.0, 1.0])
         .sized(300.0, 260.0)
-        .reading(
-            Hover::Inverse,
-            &[EFFORTS[0], EFFORTS[1], (UPPER, ""), (LOWER, "")],
-        );
+        .reading("inverse", &[EFFORTS[0], EFFORTS[1], (UPPER, ""), (LOWER, "")]);
     let painting = Painting {
         scale: Scale::sequential(study.pair.range()),
         range: study.pair.range(),
@@ -197,9 +178,7 @@ pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
     };
     paint(&mut figure, &field, &painting, |square| study.efforts(square));
     outline(study, &mut figure);
-    let hover = study.hover_throttles().into_iter();
-    let hover: Vec<[f64; 2]> = hover.map(|throttles| study.pair.efforts(throttles)).collect();
-    figure.mark(&hover, "hover");
+    figure.mark(&study.hover_efforts(), "hover");
     figure
 }
 
@@ -212,11 +191,11 @@ pub fn error_field(study: &Study<'_>, effort: Effort) -> Field {
 
 /// The error of the emitted inverse over the attainable set, up to its bound.
 pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
-    let title = ["Thrust that the inverse misses", "Torque that the inverse misses"];
-    let mut figure = over_efforts(study, title[effort as usize], [1.0, 1.0])
+    let title = format!("{} that the inverse misses", effort.name());
+    let mut figure = over_efforts(study, &title, [1.0, 1.0])
         .sized(300.0, 260.0)
         .reading(
-            [Hover::ErrorThrust, Hover::ErrorTorque][effort as usize],
+            ["error-thrust", "error-torque"][effort as usize],
             &[EFFORTS[0], EFFORTS[1], ("error about", effort.unit())],
         );
     let bound = error_bound(study, effort);
@@ -266,11 +245,10 @@ fn log_ticks(bound: f64) -> Vec<(f64, String)> {
 
 /// The border of the attainable set around a map over it.
 fn outline(study: &Study<'_>, figure: &mut Figure) {
-    let border: Vec<[f64; 2]> = study.border().iter().map(|&t| study.pair.efforts(t)).collect();
-    figure.outline("border", "", &border);
+    figure.outline("border", "", &study.border_efforts());
 }
 
 /// The proven bound of the error at the reference voltage, N or N m.
 pub fn error_bound(study: &Study<'_>, effort: Effort) -> f64 {
-    study.summary.certificate.bound_at_reference[effort as usize]
+    study.compiled.certificate.reference[effort as usize]
 }

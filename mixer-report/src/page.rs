@@ -7,15 +7,14 @@ mod link;
 
 use maud::{Markup, PreEscaped, html};
 use mixer_compiler::airframe::Axis;
-use mixer_compiler::diagnostic::printable;
-use mixer_compiler::diagnostic::rounded_up;
+use mixer_compiler::diagnostic::{printable, rounded_up};
 use mixer_compiler::hover;
+use mixer_facts::Fact;
 use mixer_facts::cost::Cost;
 
 use crate::authority;
 use crate::bench::{BenchPoint, BenchPoints};
 use crate::comparison::Comparison;
-use crate::cost;
 use crate::data::{self, Data, THRUSTS, YAW_COMMANDS};
 use crate::effort::Effort;
 use crate::figure::Figure;
@@ -60,6 +59,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
+    let facts = mixer_facts::facts(compiled);
     let section = |anchor| match anchor {
         "layout" => layout_section(study),
         "bench-check" => table::bench_check(study),
@@ -70,8 +70,8 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
         "forward" => forward_section(study, bench),
         "inverse" => inverse_section(study),
         "error" => error_section(study, &errors),
-        "cost" => cost_section(study),
-        _ => table::matrices(study),
+        "cost" => cost_section(study, &facts),
+        _ => table::matrices(study, &facts),
     };
     let name = printable(&airframe.name);
     let title = html! { title { (name) ": coaxial mixer" } };
@@ -80,7 +80,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
         p.lead { (printable(&airframe.description)) }
         nav { @for (anchor, title) in SECTIONS { a href={ "#" (anchor) } { (title) } " " } }
         (warnings(study, bench))
-        (table::summary(study, origin))
+        (table::summary(study, &facts, origin))
         @for (anchor, title) in SECTIONS {
             section id=(anchor) { h2 { (title) } (section(anchor)) }
         }
@@ -129,17 +129,17 @@ fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
 
 /// A figure with its caption, the link to its data, and a place for the values under the pointer.
 fn shown(figure: &Figure, caption: &str, data: &Markup) -> Markup {
-    html! {
-        figure {
-            (figure.with_readout())
-            figcaption { (caption) " " (data) }
-        }
-    }
+    still(&figure.with_readout().into_string(), caption, data)
 }
 
 /// A picture without values under the pointer.
-fn still(svg: String, caption: &str, data: &Markup) -> Markup {
+fn still(svg: &str, caption: &str, data: &Markup) -> Markup {
     html! { figure { (PreEscaped(svg)) figcaption { (caption) " " (data) } } }
+}
+
+/// A figure whose data are its curves, in a file whose name ends in `word`.
+fn curves(study: &Study<'_>, figure: &Figure, caption: &str, word: &str) -> Markup {
+    shown(figure, caption, &link::curves(study, word, figure))
 }
 
 fn figures(figures: &[Markup]) -> Markup {
@@ -150,7 +150,7 @@ fn layout_section(study: &Study<'_>) -> Markup {
     let figure = layout::layout(&study.compiled.airframe);
     let caption = "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.";
     html! {
-        (figures(&[still(figure.svg(), caption, &link::sweep(study, Data::Layout)), table::units(study)]))
+        (figures(&[still(&figure.svg(), caption, &link::sweep(study, Data::Layout)), table::units(study)]))
     }
 }
 
@@ -159,33 +159,28 @@ fn level_section(study: &Study<'_>) -> Markup {
     let levels: Vec<_> = voltages
         .map(|(volts, _)| (volts, level::against_thrust(study, volts, THRUSTS)))
         .collect();
-    let reference_v = study.compiled.airframe.reference_v();
-    let reference = levels
-        .iter()
-        .find(|(volts, _)| volts.is_none_or(|volts| volts == reference_v));
-    let hover = level::against_voltage(study);
-    let throttles = [0, 1].map(|rotor| {
+    let mut plots: Vec<Markup> = Vec::new();
+    for (rotor, name) in ["upper", "lower"].into_iter().enumerate() {
         let figure = plots::throttle(study, &levels, rotor);
-        let name = ["upper", "lower"][rotor];
-        let data = link::curves(study, &format!("throttle-{name}"), &figure);
-        shown(&figure, &format!("Mean throttle of the {name} rotors."), &data)
-    });
-    let over_voltage = plots::hover_throttle(study, &hover).map(|figure| {
+        let caption = format!("Mean throttle of the {name} rotors.");
+        plots.push(curves(study, &figure, &caption, &format!("throttle-{name}")));
+    }
+    if let Some(figure) = plots::hover_throttle(study, &level::against_voltage(study)) {
         let data = link::sweep(study, Data::Hover);
-        shown(&figure, "Mean throttles in hover against voltage.", &data)
-    });
-    let power = reference.and_then(|(_, levels)| plots::power(study, levels));
-    let power = power.map(|figure| {
+        plots.push(shown(&figure, "Mean throttles in hover against voltage.", &data));
+    }
+    let reference_v = study.compiled.airframe.reference_v();
+    let is_reference = |volts: &Option<f64>| volts.is_none_or(|volts| volts == reference_v);
+    let reference = levels.iter().find(|(volts, _)| is_reference(volts));
+    if let Some(figure) = reference.and_then(|(_, levels)| plots::power(study, levels)) {
         let at = study.at_reference();
-        let alone = if at.is_empty() {
-            ""
-        } else {
-            " The map holds at this voltage alone: power against voltage is not known."
+        let alone = match at.as_str() {
+            "" => "",
+            _ => " The map holds at this voltage alone: power against voltage is not known.",
         };
         let caption = format!("Electrical power of all rotors{at}, by the file\u{2019}s map.{alone}");
-        shown(&figure, &caption, &link::curves(study, "power", &figure))
-    });
-    let plots: Vec<Markup> = throttles.into_iter().chain(over_voltage).chain(power).collect();
+        plots.push(curves(study, &figure, &caption, "power"));
+    }
     html! {
         p { "Level flight: thrust and no torque, as the mixer delivers it. A curve ends where the thrust is no longer delivered in full." }
         (figures(&plots))
@@ -202,7 +197,7 @@ fn comparison_section(study: &Study<'_>) -> Markup {
             }
         };
     };
-    let curves = |figure: Figure, caption, word| shown(&figure, caption, &link::curves(study, word, &figure));
+    let curves = |figure: Figure, caption, word| curves(study, &figure, caption, word);
     html! {
         p {
             "A total thrust of " (shortest(comparison.thrust_n)) " N"
@@ -231,22 +226,19 @@ fn authority_section(study: &Study<'_>) -> Markup {
     let all = authority::against_thrust(study, &study.reference(), THRUSTS);
     let voltage = study.compiled.airframe.voltage.as_ref();
     let lowest = voltage.map(|voltage| {
-        let lowest_v = voltage.range_v[0];
+        let at = study.at(Some(voltage.range_v[0]));
         (
-            lowest_v,
-            authority::against_thrust(study, &study.at(Some(lowest_v)), THRUSTS),
+            format!("{} V", voltage.range_v[0]),
+            authority::against_thrust(study, &at, THRUSTS),
         )
     });
     let rotor_out = authority::with_a_rotor_out(study, THRUSTS_ROTOR_OUT);
     let is_held = rotor_out
         .iter()
         .any(|at| at.torque_nm.iter().flatten().any(|torque| torque.abs() > 0.0));
-    let lowest_name = lowest
-        .as_ref()
-        .map_or_else(String::new, |(volts, _)| format!("{volts} V"));
     let mut cases: Vec<plots::Case<'_>> = Vec::new();
-    if let Some((_, all)) = &lowest {
-        cases.push((&lowest_name, "series-3", all));
+    if let Some((name, all)) = &lowest {
+        cases.push((name, "series-3", all));
     }
     if is_held {
         cases.push(("any one rotor out", "series-2", &rotor_out));
@@ -256,8 +248,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
         .filter_map(|axis| plots::authority(study, &all, &cases, axis).map(|figure| (axis, figure)))
         .map(|(axis, figure)| {
             let caption = format!("{} against thrust.", ["Roll", "Pitch", "Yaw"][axis as usize]);
-            let data = link::curves(study, &format!("authority-{}", axis.name()), &figure);
-            shown(&figure, &caption, &data)
+            curves(study, &figure, &caption, &format!("authority-{}", axis.name()))
         })
         .collect();
     let rotor_out = if is_held {
@@ -268,11 +259,11 @@ fn authority_section(study: &Study<'_>) -> Markup {
     } else {
         "With one rotor out, whichever it is, no thrust is held without a torque.".to_owned()
     };
-    let airframe = &study.compiled.airframe;
-    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
-    let off: Vec<String> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
+    let reference_v = voltage.map(|voltage| voltage.reference_v);
+    let served = [Axis::Roll, Axis::Pitch, Axis::Yaw]
         .into_iter()
-        .filter(|&axis| study.serves(axis))
+        .filter(|&axis| study.serves(axis));
+    let off: Vec<String> = served
         .filter_map(|axis| Some((axis, hover::band(study.compiled, axis, reference_v)?)))
         .map(|(axis, band)| format!("\u{b1} {} N m of {}", significant(band, 2), axis.name()))
         .collect();
@@ -281,7 +272,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
             "The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
              holds the thrust and no other torque is asked, found by asking the mixer itself. "
             (rotor_out)
-            @if let Some(uncertainty) = &airframe.pair.uncertainty {
+            @if let Some(uncertainty) = &study.compiled.airframe.pair.uncertainty {
                 " The pair is " (uncertainty.source()) ": by one standard deviation of its uncertainty the true torques are off by "
                 (off.join(", ")) "."
             }
@@ -315,12 +306,12 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     } else {
         ""
     };
-    let csv = link::csv(study, Data::Forward);
+    let csv = data::sweep(study, Data::Forward).unwrap_or_default();
     let maps = Effort::BOTH.map(|effort| {
         let quantity = effort.name();
         let (word, column) = column(effort);
         let surface = still(
-            surface::surface(study, effort, bench),
+            &surface::surface(study, effort, bench),
             &format!("{quantity} of one unit by the model.{points} (Fig. 3 of the paper)"),
             &html! {},
         );
@@ -339,14 +330,8 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
         let measured = quantity.to_lowercase();
         let (word, column) = column(effort);
         let [measured_column, model_column] = ["measured", "model"].map(|of| format!("{of}_{column}"));
-        let columns = [
-            "file_index",
-            "line",
-            "upper_throttle",
-            "lower_throttle",
-            &measured_column,
-            &model_column,
-        ];
+        let [u, l] = ["upper_throttle", "lower_throttle"];
+        let columns = ["file_index", "line", u, l, &measured_column, &model_column];
         let word = format!("bench-{word}");
         Some(shown(
             &figure,
@@ -398,7 +383,7 @@ fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
 }
 
 fn inverse_section(study: &Study<'_>) -> Markup {
-    let csv = link::csv(study, Data::Inverse);
+    let csv = data::sweep(study, Data::Inverse).unwrap_or_default();
     let maps = [0, 1].map(|rotor| {
         let name = ["upper", "lower"][rotor];
         let (word, column) = (format!("inverse-{name}"), format!("{name}_throttle"));
@@ -414,22 +399,21 @@ fn inverse_section(study: &Study<'_>) -> Markup {
 }
 
 fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2]) -> Markup {
-    let csv = link::csv(study, Data::Error);
+    let csv = data::sweep(study, Data::Error).unwrap_or_default();
     let plots: Vec<Markup> = Effort::BOTH
         .into_iter()
         .zip(fields)
         .map(|(effort, field)| {
-            let summary = &study.summary;
+            let observed = &study.compiled.residual;
             let at = match study.at_reference().as_str() {
                 "" => " with the pair\u{2019}s map".to_owned(),
                 at => at.to_owned(),
             };
-            let observed = [summary.observed_thrust_n, summary.observed_torque_nm][effort as usize];
             let caption = format!(
                 "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}, both{at}.",
                 rounded_up(maps::error_bound(study, effort)),
-                summary.observed_points,
-                rounded_up(observed),
+                observed.points,
+                rounded_up(observed.efforts[effort as usize]),
                 unit = effort.unit()
             );
             let word = column(effort).0;
@@ -450,8 +434,9 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2]) -> Markup
     }
 }
 
-fn cost_section(study: &Study<'_>) -> Markup {
+fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
     let costs = Cost::new(study.compiled);
+    let facts = facts.iter().filter(|fact| fact.is_cost());
     html! {
         p {
             (costs.target)
@@ -461,7 +446,7 @@ fn cost_section(study: &Study<'_>) -> Markup {
             (costs.desaturation.description())
             " take per unit and per mix beside it. Memory that makes the core wait is not in it."
         }
-        (cost::facts(&costs))
+        (table::facts(facts, &[]))
     }
 }
 

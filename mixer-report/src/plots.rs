@@ -6,7 +6,7 @@ use mixer_compiler::airframe::Axis;
 use crate::authority::Authority;
 use crate::comparison::{Answer, Comparison, Row};
 use crate::effort::EFFORTS;
-use crate::figure::{Figure, Hover};
+use crate::figure::Figure;
 use crate::level::Level;
 use crate::maps::over_efforts;
 use crate::number::{fixed, range, widened};
@@ -18,24 +18,17 @@ pub fn attainable(study: &Study<'_>) -> Figure {
     let largest = voltages
         .iter()
         .fold([1.0f64; 2], |size, (_, k)| [size[0].max(k[0]), size[1].max(k[1])]);
-    let mut figure = over_efforts(study, "Attainable thrust and torque of one unit", largest)
-        .reading(Hover::Plane, &EFFORTS);
-    let border = study.border();
+    let mut figure =
+        over_efforts(study, "Attainable thrust and torque of one unit", largest).reading("plane", &EFFORTS);
     for (index, (volts, k)) in voltages.iter().enumerate() {
-        let points: Vec<[f64; 2]> = border
-            .iter()
-            .map(|&throttles| study.pair.efforts(throttles))
-            .map(|[f, q]| [f * k[0], q * k[1]])
-            .collect();
+        let points = study
+            .border_efforts()
+            .into_iter()
+            .map(|[f, q]| [f * k[0], q * k[1]]);
         let name = volts.map_or("attainable set".to_owned(), |volts| format!("{volts} V"));
-        figure.outline(of_voltage(*volts, index), &name, &points);
+        figure.outline(of_voltage(*volts, index), &name, &points.collect::<Vec<_>>());
     }
-    let hover: Vec<[f64; 2]> = study
-        .hover_throttles()
-        .into_iter()
-        .map(|throttles| study.pair.efforts(throttles))
-        .collect();
-    figure.mark(&hover, "hover");
+    figure.mark(&study.hover_efforts(), "hover");
     figure
 }
 
@@ -62,7 +55,7 @@ pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
         [1.0, 1.0],
     )
     .reading(
-        Hover::Dots,
+        "dots",
         &[
             ("", ""),
             ("unit", ""),
@@ -71,11 +64,9 @@ pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
             EFFORTS[1],
         ],
     );
-    let border: Vec<[f64; 2]> = study.border().iter().map(|&t| study.pair.efforts(t)).collect();
-    figure.outline("border", "attainable set", &border);
+    figure.outline("border", "attainable set", &study.border_efforts());
     for (name, class, answer) in MIXERS {
-        let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
-        for unit in 0..units {
+        for unit in 0..comparison.share_n.len() {
             let points: Vec<[f64; 2]> = comparison
                 .rows
                 .iter()
@@ -100,41 +91,53 @@ pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
     figure
 }
 
+/// A plot over the yaw asked that has all `values` in view.
+fn over_yaw(
+    comparison: &Comparison,
+    title: &str,
+    label: &str,
+    values: impl IntoIterator<Item = f64>,
+) -> Figure {
+    let asked = range(comparison.rows.iter().map(|row| row.yaw_nm));
+    Figure::new(
+        title,
+        ("yaw asked (N m)", asked),
+        (label, widened(range(values), 0.08)),
+    )
+    .reading_curves()
+}
+
 /// The thrust of every unit over the yaw asked.
 pub fn yaw_thrust(comparison: &Comparison) -> Figure {
-    let thrusts = comparison
-        .rows
-        .iter()
-        .flat_map(|row| row.coaxial.efforts.iter().chain(&row.conventional.efforts))
-        .map(|efforts| efforts[0]);
+    let efforts = |row: &'_ Row| {
+        [&row.coaxial, &row.conventional]
+            .map(|answer| answer.efforts.clone())
+            .concat()
+    };
+    let thrusts = comparison.rows.iter().flat_map(efforts).map(|efforts| efforts[0]);
     // Units that share the thrust alike have one line.
     let mut shares = comparison.share_n.clone();
     shares.sort_by(f64::total_cmp);
     shares.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * comparison.thrust_n);
-    let [low, high] = yaw_range(comparison);
-    let mut figure = Figure::new(
-        "Thrust of every unit over the yaw asked",
-        ("yaw asked (N m)", [low, high]),
-        (
-            "thrust of a unit (N)",
-            widened(range(thrusts.chain(shares.iter().copied())), 0.08),
-        ),
-    )
-    .reading_curves();
+    let title = "Thrust of every unit over the yaw asked";
+    let all = thrusts.chain(shares.iter().copied());
+    let mut figure = over_yaw(comparison, title, "thrust of a unit (N)", all);
     for &share in &shares {
         let each = if shares.len() == 1 { " of each" } else { "" };
         figure.level("reference", &format!("share of the thrust{each}"), share);
     }
     for (name, class, answer) in MIXERS {
-        let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
-        for (count, (curve, of)) in distinct(comparison, units, answer).into_iter().enumerate() {
+        for (count, (curve, of)) in distinct(comparison, answer).into_iter().enumerate() {
             // Six dashes that are told apart without colour too.
             let dash = match class {
                 "series-1" => ["", " long", " long-dot"],
                 _ => [" dotted", " dashed", " dash-dot"],
             }[count % 3];
-            let name = format!("{name}, {}", listed(&of));
-            figure.curve(&format!("{class}{dash}"), &name, &curve);
+            figure.curve(
+                &format!("{class}{dash}"),
+                &format!("{name}, {}", listed(&of)),
+                &curve,
+            );
         }
     }
     figure
@@ -142,25 +145,16 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
 
 /// Curves of unit thrust that differ, each with the units that share it: symmetric units lie on one
 /// another.
-fn distinct(
-    comparison: &Comparison,
-    units: usize,
-    answer: fn(&Row) -> &Answer,
-) -> Vec<(Vec<[f64; 2]>, Vec<usize>)> {
+fn distinct(comparison: &Comparison, answer: fn(&Row) -> &Answer) -> Vec<(Vec<[f64; 2]>, Vec<usize>)> {
     let mut curves: Vec<(Vec<[f64; 2]>, Vec<usize>)> = Vec::new();
-    for unit in 0..units {
-        let curve: Vec<[f64; 2]> = comparison
-            .rows
-            .iter()
-            .map(|row| [row.yaw_nm, answer(row).efforts[unit][0]])
-            .collect();
-        let same = |other: &[[f64; 2]]| {
-            other
-                .iter()
-                .zip(&curve)
-                .all(|(a, b)| (a[1] - b[1]).abs() < 5e-4 * comparison.thrust_n)
-        };
-        match curves.iter_mut().find(|(other, _)| same(other)) {
+    for unit in 0..comparison.share_n.len() {
+        let of = |row: &Row| [row.yaw_nm, answer(row).efforts[unit][0]];
+        let curve: Vec<[f64; 2]> = comparison.rows.iter().map(of).collect();
+        let near = |(a, b): (&[f64; 2], &[f64; 2])| (a[1] - b[1]).abs() < 5e-4 * comparison.thrust_n;
+        match curves
+            .iter_mut()
+            .find(|(other, _)| other.iter().zip(&curve).all(near))
+        {
             Some((_, of)) => of.push(unit),
             None => curves.push((curve, vec![unit])),
         }
@@ -178,59 +172,43 @@ fn listed(units: &[usize]) -> String {
 
 /// The total thrust that is really given over the yaw asked.
 pub fn yaw_total(comparison: &Comparison) -> Figure {
-    let totals = comparison.rows.iter().flat_map(|row| {
-        [
-            row.coaxial.wrench[3],
-            row.conventional.wrench[3],
-            comparison.thrust_n,
-        ]
-    });
-    let mut figure = Figure::new(
-        "Total thrust given over the yaw asked",
-        ("yaw asked (N m)", yaw_range(comparison)),
-        ("total thrust given (N)", widened(range(totals), 0.08)),
-    )
-    .reading_curves();
-    figure.level("reference", "asked", comparison.thrust_n);
-    for (name, class, answer) in MIXERS {
-        let curve: Vec<[f64; 2]> = comparison
-            .rows
-            .iter()
-            .map(|row| [row.yaw_nm, answer(row).wrench[3]])
-            .collect();
-        figure.curve(class, name, &curve);
-    }
-    figure
+    let title = "Total thrust given over the yaw asked";
+    let level = ("asked", comparison.thrust_n);
+    of_both(comparison, title, "total thrust given (N)", level, |_, answer| {
+        answer.wrench[3]
+    })
 }
 
 /// How far the yaw that is really given is off the yaw asked.
 pub fn yaw_error(comparison: &Comparison) -> Figure {
-    let off = |row: &Row, answer: fn(&Row) -> &Answer| answer(row).wrench[2] - row.yaw_nm;
-    let errors = comparison
-        .rows
-        .iter()
-        .flat_map(|row| MIXERS.map(|(_, _, answer)| off(row, answer)))
-        .chain([0.0]);
-    let mut figure = Figure::new(
-        "Yaw given less yaw asked",
-        ("yaw asked (N m)", yaw_range(comparison)),
-        ("yaw given \u{2212} asked (N m)", widened(range(errors), 0.08)),
-    )
-    .reading_curves();
-    figure.level("reference", "", 0.0);
-    for (name, class, answer) in MIXERS {
-        let curve: Vec<[f64; 2]> = comparison
-            .rows
-            .iter()
-            .map(|row| [row.yaw_nm, off(row, answer)])
-            .collect();
-        figure.curve(class, name, &curve);
-    }
-    figure
+    let (title, label) = ("Yaw given less yaw asked", "yaw given \u{2212} asked (N m)");
+    let off = |row: &Row, answer: &Answer| answer.wrench[2] - row.yaw_nm;
+    of_both(comparison, title, label, ("", 0.0), off)
 }
 
-fn yaw_range(comparison: &Comparison) -> [f64; 2] {
-    range(comparison.rows.iter().map(|row| row.yaw_nm))
+/// A value of both mixers over the yaw asked, and what it should be.
+fn of_both(
+    comparison: &Comparison,
+    title: &str,
+    label: &str,
+    (name, level): (&str, f64),
+    value: impl Fn(&Row, &Answer) -> f64,
+) -> Figure {
+    let curve = |answer: fn(&Row) -> &Answer| -> Vec<[f64; 2]> {
+        let of = |row: &Row| [row.yaw_nm, value(row, answer(row))];
+        comparison.rows.iter().map(of).collect()
+    };
+    let curves = MIXERS.map(|(name, class, answer)| (name, class, curve(answer)));
+    let values = curves
+        .iter()
+        .flat_map(|(_, _, curve)| curve)
+        .map(|point| point[1]);
+    let mut figure = over_yaw(comparison, title, label, values.chain([level]));
+    figure.level("reference", name, level);
+    for (name, class, curve) in &curves {
+        figure.curve(class, name, curve);
+    }
+    figure
 }
 
 /// Authority in words, with its class and the curve.
@@ -243,27 +221,24 @@ pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis:
         return None;
     }
     let index = axis as usize;
-    let torques = || all.iter().flat_map(|at| at.torque_nm[index]);
+    let side = |all: &[Authority], side: usize| -> Vec<[f64; 2]> {
+        all.iter()
+            .map(|at| [at.thrust_n, at.torque_nm[index][side]])
+            .collect()
+    };
+    let (least, largest) = (side(all, 0), side(all, 1));
+    let torques = least.iter().chain(&largest).map(|point| point[1]);
+    let torques = widened(range(torques.chain([0.0])), 0.06);
     let mut figure = Figure::new(
         format!("Authority in {} against thrust", axis.name()),
         ("total thrust (N)", range(all.iter().map(|at| at.thrust_n))),
-        (
-            &format!("{} (N m)", axis.name()),
-            widened(range(torques().chain([0.0])), 0.06),
-        ),
+        (&format!("{} (N m)", axis.name()), torques),
     )
     .sized(300.0, 240.0)
     .reading_curves();
-    let side = |k: usize| -> Vec<[f64; 2]> {
-        all.iter()
-            .map(|at| [at.thrust_n, at.torque_nm[index][k]])
-            .collect()
-    };
-    let (least, largest) = (side(0), side(1));
     let voltage = study.compiled.airframe.voltage.as_ref();
     let volts = voltage.map_or_else(String::new, |voltage| format!("{} V, ", voltage.reference_v));
-    let mut ring = largest.clone();
-    ring.extend(least.iter().rev());
+    let ring: Vec<[f64; 2]> = largest.iter().chain(least.iter().rev()).copied().collect();
     let data = figure.path(&ring, true);
     figure.raw(&format!("<path class=\"fill-1\" d=\"{data}\"/>"));
     figure.level("axis-line", "", 0.0);
@@ -273,53 +248,47 @@ pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis:
         figure.mark_x(weight_n, "hover");
     }
     for (name, class, all) in cases {
-        for side in 0..2 {
-            // Where not even the thrust is held, there is nothing to draw.
-            let held = |at: &Authority| at.torque_nm[index] != [0.0; 2];
-            let torque = |at: &Authority| {
-                if held(at) {
-                    at.torque_nm[index][side]
-                } else {
-                    f64::NAN
-                }
-            };
-            let curve: Vec<[f64; 2]> = all.iter().map(|at| [at.thrust_n, torque(at)]).collect();
-            figure.unlisted_curve(class, &format!("{name}, {}", ["least", "largest"][side]), &curve);
+        // Where not even the thrust is held, there is nothing to draw.
+        let held: Vec<bool> = all.iter().map(|at| at.torque_nm[index] != [0.0; 2]).collect();
+        for (k, word) in ["least", "largest"].into_iter().enumerate() {
+            let points = side(all, k).into_iter().zip(&held);
+            let curve: Vec<[f64; 2]> = points
+                .map(|([thrust, torque], held)| [thrust, if *held { torque } else { f64::NAN }])
+                .collect();
+            figure.unlisted_curve(class, &format!("{name}, {word}"), &curve);
         }
     }
     Some(figure)
+}
+
+/// A plot of level flight against thrust, at which hover is marked.
+fn over_thrust(study: &Study<'_>, title: &str, levels: &[Level], y: (&str, [f64; 2])) -> Figure {
+    let x = ("total thrust (N)", range(levels.iter().map(|level| level.at)));
+    let mut figure = Figure::new(title, x, y).sized(372.0, 240.0).reading_curves();
+    if let Some(weight_n) = study.hover_n() {
+        figure.mark_x(weight_n, "hover");
+    }
+    figure
+}
+
+/// A curve of `value` over what the levels are at.
+fn curve(levels: &[Level], value: impl Fn(&Level) -> f64) -> Vec<[f64; 2]> {
+    levels.iter().map(|level| [level.at, value(level)]).collect()
 }
 
 /// Throttles in level flight against thrust at every voltage: of the upper (0) or of the lower (1)
 /// rotors.
 pub fn throttle(study: &Study<'_>, levels: &[(Option<f64>, Vec<Level>)], rotor: usize) -> Figure {
     let name = ["upper", "lower"][rotor];
-    let curve = |levels: &[Level]| -> Vec<[f64; 2]> {
-        levels
-            .iter()
-            .map(|level| [level.at, level.throttles[rotor]])
-            .collect()
-    };
-    let mut figure = Figure::new(
-        format!("Throttle of the {name} rotors in level flight against thrust"),
-        (
-            "total thrust (N)",
-            range(
-                levels
-                    .iter()
-                    .flat_map(|(_, all)| all.iter().map(|level| level.at)),
-            ),
-        ),
-        (&format!("throttle of the {name} rotors"), [0.0, 1.0]),
-    )
-    .sized(372.0, 240.0)
-    .reading_curves();
+    let title = format!("Throttle of the {name} rotors in level flight against thrust");
+    let label = format!("throttle of the {name} rotors");
+    // The thrusts are the same at every voltage.
+    let first = levels.first().map_or(&[][..], |(_, all)| all);
+    let mut figure = over_thrust(study, &title, first, (&label, [0.0, 1.0]));
     for (index, (volts, all)) in levels.iter().enumerate() {
         let name = volts.map_or_else(|| "throttle".to_owned(), |volts| format!("{volts} V"));
-        figure.curve(of_voltage(*volts, index), &name, &curve(all));
-    }
-    if let Some(weight_n) = study.hover_n() {
-        figure.mark_x(weight_n, "hover");
+        let curve = curve(all, |level| level.throttles[rotor]);
+        figure.curve(of_voltage(*volts, index), &name, &curve);
     }
     figure
 }
@@ -328,22 +297,14 @@ pub fn throttle(study: &Study<'_>, levels: &[(Option<f64>, Vec<Level>)], rotor: 
 /// voltage.
 pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
     let voltage = study.compiled.airframe.voltage.as_ref()?;
-    if levels.is_empty() {
-        return None;
-    }
-    let mut figure = Figure::new(
-        "Throttles in hover against voltage",
-        ("voltage (V)", range(levels.iter().map(|level| level.at))),
-        ("throttle in hover", [0.0, 1.0]),
-    )
-    .sized(372.0, 240.0)
-    .reading_curves();
+    levels.first()?;
+    let x = ("voltage (V)", range(levels.iter().map(|level| level.at)));
+    let title = "Throttles in hover against voltage";
+    let mut figure = Figure::new(title, x, ("throttle in hover", [0.0, 1.0]))
+        .sized(372.0, 240.0)
+        .reading_curves();
     for (rotor, name, class) in [(0, "upper rotors", "series-1"), (1, "lower rotors", "series-2")] {
-        let curve: Vec<[f64; 2]> = levels
-            .iter()
-            .map(|level| [level.at, level.throttles[rotor]])
-            .collect();
-        figure.curve(class, name, &curve);
+        figure.curve(class, name, &curve(levels, |level| level.throttles[rotor]));
     }
     figure.mark_x(voltage.reference_v, "reference");
     Some(figure)
@@ -352,24 +313,17 @@ pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
 /// Electrical power in level flight against thrust; `None` where the file has no power map.
 pub fn power(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
     study.compiled.airframe.pair.power.as_ref()?;
-    let powers = levels
+    let curve = curve(levels, |level| level.power_w);
+    let powers = curve
         .iter()
-        .map(|level| level.power_w)
+        .map(|point| point[1])
         .filter(|power| power.is_finite());
-    let mut figure = Figure::new(
-        "Electrical power in level flight against thrust",
-        ("total thrust (N)", range(levels.iter().map(|level| level.at))),
-        (
-            "power of all rotors (W)",
-            widened(range(powers.chain([0.0])), 0.04),
-        ),
-    )
-    .sized(372.0, 240.0)
-    .reading_curves();
-    let curve: Vec<[f64; 2]> = levels.iter().map(|level| [level.at, level.power_w]).collect();
+    let y = (
+        "power of all rotors (W)",
+        widened(range(powers.chain([0.0])), 0.04),
+    );
+    let title = "Electrical power in level flight against thrust";
+    let mut figure = over_thrust(study, title, levels, y);
     figure.curve("series-1", "power", &curve);
-    if let Some(weight_n) = study.hover_n() {
-        figure.mark_x(weight_n, "hover");
-    }
     Some(figure)
 }

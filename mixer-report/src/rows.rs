@@ -1,4 +1,4 @@
-//! The two forms of a table on the page.
+//! A table on the page.
 
 use maud::{Markup, Render, html};
 
@@ -19,15 +19,6 @@ pub(crate) fn table(caption: impl Render, header: &[impl Render], rows: &[Vec<im
                     }
                 }
             }
-        }
-    }
-}
-
-/// Names with values.
-pub(crate) fn facts_table(facts: &[(&str, impl Render)]) -> Markup {
-    html! {
-        table.facts {
-            tbody { @for (name, value) in facts { tr { th scope="row" { (name) } td { (value) } } } }
         }
     }
 }

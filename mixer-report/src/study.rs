@@ -3,7 +3,6 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::model::PairMap;
-use mixer_facts::report::Summary;
 use mixer_rt::{Health, Wrench, tables::Inverse};
 
 use crate::number::round_half_digit;
@@ -15,8 +14,6 @@ pub struct Study<'a> {
     pub compiled: &'a Compiled,
     /// Its forward map in f64.
     pub pair: PairMap,
-    /// What `check` prints of it.
-    pub summary: Summary,
     /// Total thrust of the comparisons at constant thrust, N.
     pub thrust_n: f64,
 }
@@ -40,7 +37,6 @@ impl<'a> Study<'a> {
         let mut study = Study {
             compiled,
             pair: compiled.pair.clone(),
-            summary: Summary::new(compiled),
             thrust_n: round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1])),
         };
         if let Some(thrust_n) = thrust_n.or_else(|| study.hover_n()) {
@@ -52,7 +48,7 @@ impl<'a> Study<'a> {
     /// The weight, N; `None` where the file has no mass, or the weight is not carried at the
     /// reference voltage.
     pub fn hover_n(&self) -> Option<f64> {
-        let weight_n = self.summary.hover.as_ref()?.weight_n;
+        let weight_n = self.compiled.airframe.weight_n()?;
         let (_, delivered) = self.mix([0.0, 0.0, 0.0, weight_n], &self.reference());
         delivered.then_some(weight_n)
     }
@@ -123,6 +119,21 @@ impl<'a> Study<'a> {
         let mut border = self.pair.border(48);
         border.extend(border.first().copied());
         border
+    }
+
+    /// The same as efforts `[f (N), Q (N m)]`.
+    pub fn border_efforts(&self) -> Vec<[f64; 2]> {
+        self.border()
+            .iter()
+            .map(|&throttles| self.pair.efforts(throttles))
+            .collect()
+    }
+
+    /// Efforts `[f (N), Q (N m)]` of the units in hover at the reference voltage, as
+    /// [`Study::hover_throttles`].
+    pub fn hover_efforts(&self) -> Vec<[f64; 2]> {
+        let throttles = self.hover_throttles().into_iter();
+        throttles.map(|throttles| self.pair.efforts(throttles)).collect()
     }
 
     /// The voltages to show with k_f and k_Q: lowest, reference, highest; `None` where voltage has

@@ -51,12 +51,8 @@ pub fn surface(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     let corner = |k: usize| k as f64 / PATCHES as f64;
     let nodes = (0..=PATCHES).flat_map(|i| (0..=PATCHES).map(move |j| [corner(i), corner(j)]));
     let model = range(nodes.map(|square| at(study.throttles(square))));
-    let quantity = range(
-        points
-            .iter()
-            .map(|point| point.measured[effort as usize])
-            .chain(model),
-    );
+    let measured = points.iter().map(|point| point.measured[effort as usize]);
+    let quantity = range(measured.chain(model));
     let view = View {
         throttle: study.pair.range(),
         quantity,
@@ -65,10 +61,7 @@ pub fn surface(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
         Effort::Thrust => Scale::sequential(model),
         Effort::Torque => Scale::signed(model),
     };
-    let title = [
-        "Thrust of one unit as a surface",
-        "Torque of one unit as a surface",
-    ][effort as usize];
+    let title = format!("{} of one unit as a surface", effort.name());
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 450 398\" role=\"img\" aria-label=\"{title}\">\n"
     );
@@ -85,20 +78,12 @@ pub fn surface(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
         };
         let middle =
             at(study.throttles([corner(i) + 0.5 / PATCHES as f64, corner(j) + 0.5 / PATCHES as f64]));
-        let [p, q, r, s] = [node(0, 0), node(1, 0), node(1, 1), node(0, 1)];
-        let _ = writeln!(
-            svg,
-            "<path class=\"surface\" fill=\"{}\" d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}Z\"/>",
+        let corners = [node(0, 0), node(1, 0), node(1, 1), node(0, 1)];
+        let (fill, ring) = (
             scale.hex(middle),
-            p[0],
-            p[1],
-            q[0],
-            q[1],
-            r[0],
-            r[1],
-            s[0],
-            s[1]
+            corners.map(|[x, y]| format!("{x:.1} {y:.1}")).join("L"),
         );
+        let _ = writeln!(svg, "<path class=\"surface\" fill=\"{fill}\" d=\"M{ring}Z\"/>");
     }
     for point in points {
         let (measured, model) = (point.measured[effort as usize], point.model[effort as usize]);

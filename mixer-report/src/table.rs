@@ -1,190 +1,51 @@
 //! Tables of the page: summary, units, M and M+, the static comparison, the bench.
 
-use std::fmt::Write as _;
-
 use maud::{Markup, html};
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::diagnostic::printable;
-use mixer_compiler::diagnostic::rounded_up;
-use mixer_compiler::power::LevelPower;
+use mixer_facts::Fact;
 use mixer_facts::checklist::{self, Checklist};
-use mixer_facts::hover::Hover;
-use mixer_facts::report::in_words;
 
 use crate::bench::BenchPoints;
 use crate::comparison::{Answer, Comparison};
 use crate::effort::Effort;
 use crate::number::{fixed, shortest, significant};
 use crate::origin::Origin;
-use crate::rows::{facts_table, table};
+use crate::rows::table;
 use crate::study::Study;
 
-/// Rows of the comparison that the page and the command show of the whole sweep.
+/// Rows of the comparison that the page shows of the whole sweep.
 const SHOWN_ROWS: usize = 9;
 
-/// Names with values, in the order in which an engineer asks for them: does it fly, what is left,
-/// what it costs, how true it is, from what it was made.
-pub fn summary(study: &Study<'_>, origin: &Origin) -> Markup {
-    let compiled = study.compiled;
-    let airframe = &compiled.airframe;
-    let summary = &study.summary;
-    let inverse = &airframe.inverse;
-    let [floor, ceiling] = compiled.thrust_range_n.map(f64::from);
-    let at = study.at_reference();
-    let mut facts = vec![(
-        "Bare thrust",
-        format!(
-            "{} to {} N in all without torque{at}",
-            fixed(floor, 1),
-            fixed(ceiling, 1)
-        ),
-    )];
-    match &summary.hover {
-        Some(vehicle) => facts.extend(hover(vehicle)),
-        None => facts.push((
-            "Hover",
-            "add [vehicle] mass_kg to see hover and its margins".to_owned(),
-        )),
-    }
-    facts.extend(summary.power.iter().map(|at| power(study, at)));
-    facts.push((
-        "Throttle",
-        format!(
-            "{:?} to {:?}; idle gives {} % of the largest thrust; the map is proven invertible from an idle of {}",
-            airframe.throttle.min,
-            airframe.throttle.max,
-            fixed(100.0 * floor / ceiling, 1),
-            summary.min_idle
-        ),
-    ));
-    facts.push((
-        "Voltage",
-        airframe
-            .voltage
-            .as_ref()
-            .map_or("no correction".to_owned(), |voltage| {
-                format!(
-                    "{} to {} V, reference {} V",
-                    voltage.range_v[0], voltage.range_v[1], voltage.reference_v
-                )
-            }),
-    ));
-    let uncertainty = airframe.pair.uncertainty.iter();
-    facts.extend(uncertainty.map(|u| ("Pair", in_words(u).replace("+-", "\u{b1}"))));
-    let at_every = if airframe.voltage.is_some() {
-        " at every voltage"
-    } else {
-        ""
+/// What an engineer asks first, and what the page was made from.
+pub fn summary(study: &Study<'_>, facts: &[Fact], origin: &Origin) -> Markup {
+    let file = ("Airframe file", printable(&study.compiled.source.file_name()));
+    let date = origin.date.iter().map(|date| ("Date", date.clone()));
+    let hash = origin
+        .sha256
+        .iter()
+        .map(|hash| ("SHA-256 of the file", hash.clone()));
+    let more: Vec<(&str, String)> = [file].into_iter().chain(date).chain(hash).collect();
+    self::facts(
+        facts.iter().filter(|fact| fact.in_verdict && !fact.is_cost()),
+        &more,
+    )
+}
+
+/// Facts, and more names with values, in a table.
+pub fn facts<'a>(facts: impl Iterator<Item = &'a Fact>, more: &[(&str, String)]) -> Markup {
+    let said = |fact: &Fact| {
+        let text = format!(" {}", fact.text()).replace(" -", " \u{2212}");
+        text.trim_start().replace("+-", "\u{b1}")
     };
-    facts.extend([
-        (
-            "Largest error of one unit",
-            format!(
-                "{} N, {} N m{at_every}, proven; allowed are {:?} N, {:?} N m",
-                rounded_up(summary.proven_thrust_n),
-                rounded_up(summary.proven_torque_nm),
-                inverse.thrust_tolerance_n,
-                inverse.torque_tolerance_nm
-            ),
-        ),
-        (
-            "Rotors",
-            format!("{} in {} coaxial units", summary.rotors, summary.units),
-        ),
-        (
-            "Served axes",
-            format!(
-                "{} (rank {}, condition of M {})",
-                summary.axes.join(", "),
-                summary.rank,
-                fixed(summary.condition, 2)
-            ),
-        ),
-        (
-            "Inverse map",
-            format!(
-                "{}, {} bytes of tables",
-                summary.evaluator_description, summary.table_bytes
-            ),
-        ),
-    ]);
-    let mut facts: Vec<(&str, Markup)> = facts
-        .into_iter()
-        .map(|(name, value)| (name, html! { (value) }))
-        .collect();
-    facts.push((
-        "Airframe file",
-        html! { code { (printable(&compiled.source.file_name())) } },
-    ));
-    facts.extend(origin.date.iter().map(|date| ("Date", html! { (date) })));
-    let hash = origin.sha256.iter();
-    facts.extend(hash.map(|hash| ("SHA-256 of the file", html! { code { (hash) } })));
-    facts_table(&facts)
-}
-
-/// The vehicle in hover.
-fn hover(hover: &Hover) -> Vec<(&'static str, String)> {
-    let carried = (
-        "Vehicle",
-        format!(
-            "{} kg, {} N; the largest bare thrust is {} times that",
-            shortest(hover.mass_kg),
-            fixed(hover.weight_n, 1),
-            fixed(hover.thrust_over_weight, 2)
-        ),
-    );
-    let at = hover.at.iter().map(|at| {
-        let volts = at
-            .voltage_v
-            .map_or_else(String::new, |volts| format!("At {} V: ", shortest(volts)));
-        let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
-            return ("Hover", format!("{volts}the weight is not carried"));
-        };
-        let margins: Vec<String> = at
-            .margins
-            .iter()
-            .map(|margin| {
-                let [least, largest] = margin.torque_nm.map(|torque| fixed(torque, 2));
-                let band = margin
-                    .band_nm
-                    .map_or_else(String::new, |band| format!(" \u{b1} {}", fixed(band, 2)));
-                format!("{} {least} to {largest}{band} N m", margin.axis)
-            })
-            .collect();
-        let mut throttles = format!("throttle {} upper, {} lower", fixed(upper, 3), fixed(lower, 3));
-        if let Some(band) = at.throttle_band {
-            let [[least_upper, least_lower], [upper, lower]] = band.map(|end| end.map(|x| fixed(x, 3)));
-            let _ = write!(
-                throttles,
-                " ({least_upper} to {upper}, {least_lower} to {lower} by the pair\u{2019}s uncertainty)"
-            );
+    html! {
+        table.facts {
+            tbody {
+                @for fact in facts { tr { th scope="row" { (fact.name) } td { (said(fact)) } } }
+                @for (name, value) in more { tr { th scope="row" { (name) } td { (value) } } }
+            }
         }
-        (
-            "Hover",
-            format!("{volts}{throttles}; left are {}", margins.join(", ")),
-        )
-    });
-    [carried].into_iter().chain(at).collect()
-}
-
-/// Electrical power in level flight.
-fn power(study: &Study<'_>, power: &LevelPower) -> (&'static str, String) {
-    let mut text = format!(
-        "{} W at {} N{}",
-        fixed(power.power_w, 1),
-        fixed(power.thrust_n, 1),
-        study.at_reference()
-    );
-    if power.power_w != power.without_bias_w {
-        let _ = write!(
-            text,
-            "; without the power bias {} W. It saves {} %, which is {} % of flight time",
-            fixed(power.without_bias_w, 1),
-            fixed(power.saving_percent, 2),
-            fixed(power.flight_time_percent, 2)
-        );
     }
-    ("Power", text)
 }
 
 /// Places, spins and outputs of the units.
@@ -211,41 +72,36 @@ pub fn units(study: &Study<'_>) -> Markup {
 }
 
 /// M and M+.
-pub fn matrices(study: &Study<'_>) -> Markup {
+pub fn matrices(study: &Study<'_>, facts: &[Fact]) -> Markup {
     let effectiveness = &study.compiled.effectiveness;
     let n = study.compiled.airframe.units.len();
     let efforts: Vec<Markup> = ["f", "Q"]
         .into_iter()
         .flat_map(|letter| (0..n).map(move |i| html! { (letter) sub { (i) } }))
         .collect();
-    let axes = ["roll", "pitch", "yaw", "thrust"].map(|axis| html! { (axis) });
-    let header = |columns: &[Markup]| [&[html! {}], columns].concat();
-    let rows = |names: &[Markup], value: &dyn Fn(usize, usize) -> f64, columns: usize| -> Vec<Vec<Markup>> {
-        let row = |(index, name): (usize, &Markup)| {
-            let values = (0..columns).map(|column| html! { (fixed(value(index, column), 4)) });
+    let header = ["", "roll", "pitch", "yaw", "thrust"];
+    // M transposed, as M+ is: four columns fit a phone whatever the number of units.
+    let rows = |value: &dyn Fn(usize, usize) -> f64| -> Vec<Vec<Markup>> {
+        let row = |(effort, name): (usize, &Markup)| {
+            let values = (0..4).map(|axis| html! { (fixed(value(effort, axis), 4)) });
             [name.clone()].into_iter().chain(values).collect()
         };
-        names.iter().enumerate().map(row).collect()
+        efforts.iter().enumerate().map(row).collect()
     };
-    // Transposed, as M+ is: four columns fit a phone whatever the number of units.
-    let m = rows(&efforts, &|effort, axis| effectiveness.matrix[(axis, effort)], 4);
-    let m_plus = rows(
-        &efforts,
-        &|row, column| effectiveness.pseudo_inverse[(row, column)],
-        4,
-    );
+    let m = rows(&|effort, axis| effectiveness.matrix[(axis, effort)]);
+    let m_plus = rows(&|effort, axis| effectiveness.pseudo_inverse[(effort, axis)]);
     let caption = html! { "M" sup { "T" } ": wrench (N m, N m, N m, N) = M \u{b7} efforts (f in N, Q in N m); a row is what one unit\u{2019}s thrust or torque adds" };
     let inverse_caption = html! { "M" sup { "+" } ": least-norm efforts = M" sup { "+" } " \u{b7} wrench" };
     html! {
-        (table(caption, &header(&axes), &m))
-        (table(inverse_caption, &header(&axes), &m_plus))
+        (table(caption, &header, &m))
+        (table(inverse_caption, &header, &m_plus))
+        (self::facts(facts.iter().filter(|fact| !fact.in_verdict && !fact.is_cost()), &[]))
     }
 }
 
 /// Units by what both mixers make of them: those that always give the same as one another share
 /// their columns.
 fn alike(comparison: &Comparison) -> Vec<Vec<usize>> {
-    let units = comparison.rows.first().map_or(0, |row| row.coaxial.efforts.len());
     let same = |a: usize, b: usize| {
         comparison.rows.iter().all(|row| {
             [&row.coaxial, &row.conventional].into_iter().all(|answer| {
@@ -255,7 +111,7 @@ fn alike(comparison: &Comparison) -> Vec<Vec<usize>> {
         })
     };
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for unit in 0..units {
+    for unit in 0..comparison.share_n.len() {
         match groups.iter_mut().find(|group| same(group[0], unit)) {
             Some(group) => group.push(unit),
             None => groups.push(vec![unit]),
@@ -269,77 +125,43 @@ fn rounded([f, q]: [f64; 2]) -> [String; 2] {
     [fixed(f, 2), fixed(q, 3)]
 }
 
-/// Columns of the comparison beside yaw and mixer.
-fn columns(comparison: &Comparison) -> Vec<String> {
+/// The static comparison; an asterisk marks a throttle at its limit.
+pub fn comparison(comparison: &Comparison) -> Markup {
+    let groups = alike(comparison);
     let mut columns = vec!["yaw asked (N m)".to_owned(), "mixer".to_owned()];
-    for group in alike(comparison) {
+    for group in &groups {
         let numbers: Vec<String> = group.iter().map(usize::to_string).collect();
         let numbers = numbers.join(", ");
         columns.extend([format!("f {numbers} (N)"), format!("Q {numbers} (N m)")]);
     }
     columns.extend(["yaw given (N m)", "thrust given (N)"].map(str::to_owned));
-    columns
-}
-
-/// Rows of both mixers; an asterisk marks a throttle at its limit.
-fn lines(comparison: &Comparison) -> Vec<Vec<String>> {
-    let groups = alike(comparison);
     let count = comparison.rows.len();
-    let mut lines = Vec::new();
     let shown = SHOWN_ROWS.min(count).max(2);
-    for k in 0..shown {
-        let Some(row) = comparison.rows.get(k * count.saturating_sub(1) / (shown - 1)) else {
-            continue;
-        };
-        for (name, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
-            let Answer { efforts, wrench, .. } = answer;
-            let limited = if answer.within { "" } else { "*" };
+    let mut lines = Vec::new();
+    for row in (0..shown).filter_map(|k| comparison.rows.get(k * count.saturating_sub(1) / (shown - 1))) {
+        for (
+            name,
+            Answer {
+                efforts,
+                wrench,
+                within,
+                ..
+            },
+        ) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)]
+        {
+            let limited = if *within { "" } else { "*" };
             let mut cells = vec![fixed(row.yaw_nm, 3), format!("{name}{limited}")];
             cells.extend(groups.iter().flat_map(|group| rounded(efforts[group[0]])));
             cells.extend([fixed(wrench[2], 3), fixed(wrench[3], 2)]);
             lines.push(cells);
         }
     }
-    lines
-}
-
-/// The static comparison as HTML.
-pub fn comparison(comparison: &Comparison) -> Markup {
     let caption = format!(
         "{} N asked in all; conventional: \u{3ba} = {} m. An asterisk: a throttle is at its limit",
         shortest(comparison.thrust_n),
         significant(comparison.kappa_m, 4)
     );
-    table(&caption, &columns(comparison), &lines(comparison))
-}
-
-/// The static comparison as text in columns.
-pub fn comparison_text(comparison: &Comparison) -> String {
-    let mut rows = vec![columns(comparison)];
-    rows.extend(lines(comparison));
-    let widths: Vec<usize> = (0..rows[0].len())
-        .map(|column| {
-            rows.iter()
-                .map(|row| row[column].chars().count())
-                .max()
-                .unwrap_or(0)
-        })
-        .collect();
-    let mut text = format!(
-        "{} N asked in all; conventional: kappa = {} m; *: a throttle is at its limit\n",
-        shortest(comparison.thrust_n),
-        significant(comparison.kappa_m, 4)
-    );
-    for row in rows {
-        let cells: Vec<String> = row
-            .iter()
-            .zip(&widths)
-            .map(|(cell, width)| format!("{cell:>width$}"))
-            .collect();
-        let _ = writeln!(text, "{}", cells.join("  "));
-    }
-    // A terminal and its tools know the hyphen.
-    text.replace('\u{2212}', "-")
+    table(&caption, &columns, &lines)
 }
 
 /// Model against bench; percent of the pair's largest thrust and torque.
@@ -352,8 +174,7 @@ pub fn bench(study: &Study<'_>, bench: &BenchPoints) -> Markup {
         "largest (%)",
         "of the row",
         "R\u{b2}",
-    ]
-    .map(str::to_owned);
+    ];
     let scale = study.pair.scale();
     let rows: Vec<Vec<String>> = Effort::BOTH
         .into_iter()

@@ -1,19 +1,15 @@
 //! `cargo mixer check`.
 
-mod verdict;
-
-use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use mixer_compiler::diagnostic::{Diagnostics, Record, Severity, printable};
+use mixer_compiler::diagnostic::{Diagnostics, printable};
+use mixer_facts::Checked;
 use mixer_facts::checklist::Checklist;
-use mixer_facts::cost::Cost;
-use mixer_facts::report::{Report, Summary};
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use self::verdict::Verdict;
 use crate::Refusal;
 use crate::stack::Stacks;
 
@@ -33,24 +29,13 @@ pub struct CheckArgs {
     deny_warnings: bool,
 }
 
-/// The JSON of a good file.
+/// What the JSON has beside the facts.
 #[derive(Serialize)]
-struct Success {
-    #[serde(flatten)]
-    summary: Summary,
-    /// What is plausibly a mistake and yet compiles.
-    warnings: Vec<Record>,
+struct More {
     #[serde(flatten)]
     stacks: Stacks,
     /// Time of the whole compilation, ms.
     compile_ms: f64,
-}
-
-/// The JSON of a refused file.
-#[derive(Serialize)]
-struct Failure {
-    errors: Vec<Record>,
-    warnings: Vec<Record>,
 }
 
 /// Runs the command.
@@ -59,58 +44,36 @@ pub fn run(args: &CheckArgs) -> ExitCode {
     let source = crate::read(&args.airframe);
     let result = source.and_then(|source| mixer_compiler::compile(&source).map_err(Refusal::Faulty));
     let compile_ms = start.elapsed().as_secs_f64() * 1e3;
-    let mut out = stdout().lock();
-    match result {
-        Ok(compiled) => {
-            let warnings = mixer_compiler::lint(&compiled);
-            tell(&warnings, args.verbose);
-            let written = if args.json {
-                let success = Success {
-                    summary: Summary::new(&compiled),
-                    stacks: Stacks::new(&compiled),
-                    warnings: warnings.records(),
-                    compile_ms,
-                };
-                json(&mut out, &success)
-            } else if !args.verbose {
-                let verdict = Verdict {
-                    compiled: &compiled,
-                    summary: &Summary::new(&compiled),
-                    warnings: &warnings,
-                    file: &args.airframe,
-                };
-                write!(out, "{verdict}")
-            } else {
-                let (report, cost) = (Report(&compiled), Cost::new(&compiled));
-                let (list, stacks) = (Checklist(&compiled), Stacks::new(&compiled));
-                writeln!(
-                    out,
-                    "{report}{cost}{stacks}{list}compiled in     {compile_ms:.0} ms"
-                )
-            };
-            match crate::output(written.and_then(|()| out.flush())) {
-                Err(status) => status,
-                Ok(()) if args.deny_warnings && !warnings.is_empty() => denied(&warnings),
-                Ok(()) => ExitCode::SUCCESS,
-            }
-        }
+    let checked = match result {
+        Ok(compiled) => Checked::new(compiled),
         Err(refusal) => {
             if args.json {
-                let failure = match &refusal {
-                    Refusal::Faulty(diagnostics) => Failure {
-                        errors: diagnostics.records_of(Severity::Error),
-                        warnings: diagnostics.records_of(Severity::Warning),
-                    },
-                    Refusal::Unreadable(message) => Failure {
-                        errors: vec![unreadable(&args.airframe, message)],
-                        warnings: Vec::new(),
-                    },
-                };
-                crate::finish(json(&mut out, &failure));
+                crate::print(&pretty(&match &refusal {
+                    Refusal::Faulty(faults) => mixer_facts::refusal(faults),
+                    Refusal::Unreadable(message) => unreadable(&args.airframe, message),
+                }));
             }
-            refusal.report()
+            return refusal.report();
         }
+    };
+    tell(&checked.warnings, args.verbose);
+    let stacks = Stacks::new(&checked.compiled);
+    let status = crate::print(&if args.json {
+        pretty(&checked.json(More { stacks, compile_ms }))
+    } else if args.verbose {
+        let (report, list) = (checked.report(), Checklist(&checked.compiled));
+        format!("{report}{stacks}{list}compiled in     {compile_ms:.0} ms\n")
+    } else {
+        let file = printable(&args.airframe.display().to_string());
+        format!(
+            "{}next                cargo mixer report {file} -o report.html (pictures), or check --verbose (every number)\n",
+            checked.verdict()
+        )
+    });
+    if status == ExitCode::SUCCESS && args.deny_warnings && !checked.warnings.is_empty() {
+        return denied(&checked.warnings);
     }
+    status
 }
 
 /// Warnings in full, several as a line each where the verdict is to stay on one screen.
@@ -133,21 +96,16 @@ fn denied(warnings: &Diagnostics) -> ExitCode {
     ))
 }
 
-/// The record of a file that cannot be read: it has no place and no code.
-fn unreadable(airframe: &Path, message: &str) -> Record {
-    Record {
-        code: String::new(),
-        file: printable(&airframe.display().to_string()),
-        line: None,
-        column: None,
-        key: String::new(),
-        message: message.to_owned(),
-        label: String::new(),
-        help: String::new(),
-    }
+/// The JSON of a file that cannot be read: the fault has no place and no code.
+fn unreadable(airframe: &Path, message: &str) -> Value {
+    let file = printable(&airframe.display().to_string());
+    json!({
+        "errors": [{ "code": "", "file": file, "key": "", "message": message, "label": "", "help": "",
+                     "line": null, "column": null }],
+        "warnings": [],
+    })
 }
 
-fn json(out: &mut impl Write, value: &impl Serialize) -> std::io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, value)?;
-    writeln!(out)
+fn pretty(value: &Value) -> String {
+    format!("{value:#}\n")
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
-use mixer_facts::report::Report;
+use mixer_facts::Checked;
 
 pub mod compare;
 pub mod table;
@@ -84,7 +84,7 @@ pub fn outputs(compiled: &Compiled) -> [(String, String); 5] {
     let file = |ending: &str| format!("{}.{ending}", compiled.airframe.name);
     [
         (file("rs"), compiled.rust()),
-        (file("report.txt"), Report(compiled).to_string()),
+        (file("report.txt"), Checked::new(compiled.clone()).report()),
         (file("vectors.csv"), table::csv(compiled, &vectors)),
         (
             file("rotors-out.csv"),

@@ -1,19 +1,16 @@
 //! `cargo mixer sweep`: the data of the figures as CSV.
 
-use std::io::{Write as _, stderr, stdout};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use mixer_report::data::{Data, Sweep, sweep};
+use mixer_report::data::{Data, sweep};
 use mixer_report::study::Study;
 
 use crate::commands::report::thrust;
 use crate::file;
 
 /// Writes the data of a figure as CSV, with units in the header
-///
-/// With the yaw sweep it prints a table of it as well, on stderr where the CSV goes to stdout.
 #[derive(clap::Args, Debug)]
 pub struct SweepArgs {
     /// The airframe file
@@ -53,18 +50,13 @@ pub fn run(args: &SweepArgs) -> ExitCode {
         Err(refusal) => return refusal.report(),
     };
     let study = Study::new(&compiled, args.thrust);
-    let Sweep { csv, table } = match sweep(&study, args.figure) {
-        Ok(sweep) => sweep,
+    let csv = match sweep(&study, args.figure) {
+        Ok(csv) => csv,
         Err(message) => return crate::print_error(message),
     };
-    match &args.output {
-        None => {
-            let _ = write!(stderr().lock(), "{table}");
-            crate::finish(stdout().lock().write_all(csv.as_bytes()))
-        }
-        Some(path) => match file::save(path, &csv) {
-            Ok(()) => crate::finish(write!(stdout().lock(), "{table}")),
-            Err(message) => crate::print_error(message),
-        },
+    match args.output.as_ref().map(|path| file::save(path, &csv)) {
+        None => crate::print(&csv),
+        Some(Ok(())) => ExitCode::SUCCESS,
+        Some(Err(message)) => crate::print_error(message),
     }
 }

@@ -17,13 +17,13 @@ pub(crate) fn assert_cost(page: Node<'_, '_>, compiled: &Compiled) {
     let cost = Cost::new(compiled);
     if let Some(bound) = cost.bound_instructions {
         assert!(
-            text.contains(&format!("at most {bound} instructions")),
+            text.contains(&format!("{bound} instructions at most")),
             "{name}: no {bound}"
         );
         assert!(cost.attainable_instructions < Some(bound), "{name}: {cost:?}");
         let with_rotors_out = cost.bound_with_rotors_out_instructions.unwrap();
         assert!(
-            text.contains(&format!("at most {with_rotors_out} instructions")),
+            text.contains(&format!("{with_rotors_out} instructions at most")),
             "{name}: no {with_rotors_out}"
         );
     }

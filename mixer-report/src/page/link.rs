@@ -19,14 +19,7 @@ pub(super) fn curves(study: &Study<'_>, word: &str, figure: &Figure) -> Markup {
 
 /// The file that `cargo mixer sweep` writes.
 pub(super) fn sweep(study: &Study<'_>, of: Data) -> Markup {
-    html! {
-        @if let Ok(sweep) = data::sweep(study, of) { (link(study, of.word(), &sweep.csv, OF_THE_FIGURE)) }
-    }
-}
-
-/// That file as text, of which figures take columns; empty where `sweep` refuses.
-pub(super) fn csv(study: &Study<'_>, of: Data) -> String {
-    data::sweep(study, of).map(|sweep| sweep.csv).unwrap_or_default()
+    html! { @if let Ok(csv) = data::sweep(study, of) { (link(study, of.word(), &csv, OF_THE_FIGURE)) } }
 }
 
 /// Some columns of `csv`.

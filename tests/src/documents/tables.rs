@@ -6,7 +6,6 @@ use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::spec::keys::{Key, Kind, Shape};
 use mixer_compiler::{Compiled, Source};
 use mixer_facts::hover;
-use mixer_facts::report::Summary;
 use mixer_report::comparison::{Answer, Comparison, throttles};
 use mixer_report::study::Study;
 use mixer_rt::Wrench;
@@ -160,14 +159,15 @@ pub(super) fn accuracy() -> Result<String, String> {
     let rows = names
         .iter()
         .map(|name| {
-            let summary = Summary::new(&golden::compile(name)?);
+            let compiled = golden::compile(name)?;
+            let (proven, observed) = (compiled.certificate.stated, compiled.residual.efforts);
             Ok(vec![
                 name.clone(),
-                summary.evaluator.clone(),
-                rounded_up(summary.proven_thrust_n),
-                rounded_up(summary.observed_thrust_n),
-                rounded_up(summary.proven_torque_nm),
-                rounded_up(summary.observed_torque_nm),
+                compiled.evaluator.name().to_owned(),
+                rounded_up(proven[0]),
+                rounded_up(observed[0]),
+                rounded_up(proven[1]),
+                rounded_up(observed[1]),
             ])
         })
         .collect::<Result<Vec<_>, String>>()?;

@@ -1,0 +1,437 @@
+//! What there is to say of a compiled airframe, once.
+
+use std::fmt;
+
+use mixer_compiler::Compiled;
+use mixer_compiler::diagnostic::rounded_up;
+use mixer_compiler::hover::HoverAt;
+use mixer_compiler::power::LevelPower;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::cost::Cost;
+use crate::hover::Hover;
+
+/// Share of the largest bare thrust at which the authority of any vehicle is looked at.
+const SHARE: f64 = 0.4;
+
+/// Border points per edge of the throttle box at which the largest efforts are looked for.
+const SAMPLES: usize = 64;
+
+/// Something to say of a compiled airframe: a number with its unit and the words to it.
+#[derive(Clone, Debug)]
+pub struct Fact {
+    /// What it is of. No other fact of the airframe has this name.
+    pub name: &'static str,
+    /// The number or the word, short enough to stand beside those of other airframes; empty where
+    /// there is none.
+    pub value: String,
+    /// The value's unit; empty where it has none.
+    pub unit: &'static str,
+    /// What else there is to say, to be read on after the unit.
+    pub words: String,
+    /// Keys and values of `cargo mixer check --json`.
+    pub json: Vec<(&'static str, Value)>,
+    /// Whether it is part of the verdict: what an engineer asks first.
+    pub in_verdict: bool,
+}
+
+/// Facts in the order in which they are said.
+struct List(Vec<Fact>);
+
+impl List {
+    fn say(
+        &mut self,
+        name: &'static str,
+        value: impl ToString,
+        unit: &'static str,
+        words: impl Into<String>,
+    ) -> &mut Fact {
+        let at = self.0.len();
+        let (value, words) = (value.to_string(), words.into());
+        let (json, in_verdict) = (Vec::new(), false);
+        self.0.push(Fact {
+            name,
+            value,
+            unit,
+            words,
+            json,
+            in_verdict,
+        });
+        &mut self.0[at]
+    }
+
+    fn count(&mut self, name: &'static str, count: Option<u32>, words: String) -> &mut Fact {
+        match count {
+            Some(count) => self.say(name, count, INSTRUCTIONS, words),
+            None => self.say(name, "", INSTRUCTIONS, "not counted"),
+        }
+    }
+}
+
+impl Fact {
+    /// For the verdict, if `so`.
+    fn first_if(&mut self, so: bool) -> &mut Self {
+        self.in_verdict = so;
+        self
+    }
+
+    /// For the verdict.
+    fn first(&mut self) -> &mut Self {
+        self.first_if(true)
+    }
+
+    fn json(&mut self, key: &'static str, value: impl Serialize) -> &mut Self {
+        // Numbers, words and lists have a value.
+        self.json
+            .push((key, serde_json::to_value(value).unwrap_or_default()));
+        self
+    }
+
+    /// Whether it is a count of what the target executes.
+    pub fn is_cost(&self) -> bool {
+        self.unit == INSTRUCTIONS
+    }
+
+    /// All but the name.
+    pub fn text(&self) -> String {
+        match (self.value.as_str(), self.unit) {
+            ("", _) | (_, "") => format!("{}{}", self.value, self.words),
+            (value, unit) => format!("{value} {unit}{}", self.words),
+        }
+    }
+}
+
+/// A line of `check`.
+impl fmt::Display for Fact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{:<18}  {}", self.name, self.text().trim_start())
+    }
+}
+
+/// All facts of an airframe: what it gives, what flying it leaves, how true it is, what it costs.
+pub fn facts(compiled: &Compiled) -> Vec<Fact> {
+    let mut list = List(Vec::new());
+    gives(&mut list, compiled);
+    hover(&mut list, compiled);
+    power(&mut list, compiled);
+    model(&mut list, compiled);
+    voltage(&mut list, compiled);
+    inverse(&mut list, compiled);
+    costs(&mut list, compiled);
+    let warnings = mixer_compiler::lint(compiled).faults().len();
+    list.say("warnings", warnings, "", "").first();
+    list.0
+}
+
+/// `text`, where there is a value to say it of.
+fn or_nothing<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
+    value.map_or_else(String::new, text)
+}
+
+/// What it is, its thrust and its authority.
+fn gives(list: &mut List, compiled: &Compiled) {
+    let (airframe, m) = (&compiled.airframe, &compiled.effectiveness);
+    let units = airframe.units.len();
+    let axes: Vec<&str> = airframe.allocation.axes.iter().map(|axis| axis.name()).collect();
+    let description = Some(&airframe.description).filter(|text| !text.is_empty());
+    let words = or_nothing(description, |text| format!(": {text}"));
+    list.say("airframe", &airframe.name, "", words)
+        .json("name", &airframe.name)
+        .first();
+    list.say(
+        "rotors",
+        airframe.rotors(),
+        "",
+        format!(" in {units} coaxial units"),
+    )
+    .json("units", units)
+    .json("rotors", airframe.rotors())
+    .first();
+    list.say("served axes", axes.join(", "), "", "")
+        .json("axes", &axes)
+        .first();
+    let words = format!("; rank {} of {} served axes", m.rank, axes.len());
+    list.say("condition of M", format!("{:.4}", m.condition), "", words)
+        .json("rank", m.rank)
+        .json("condition", m.condition);
+
+    let [floor, ceiling] = compiled.thrust_range_n.map(f64::from);
+    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
+    let at = or_nothing(reference_v, |volts| format!(" at {volts} V"));
+    let words = format!(" without torque{at}");
+    list.say("bare thrust", format!("{floor:.1} to {ceiling:.1}"), "N", words)
+        .json("thrust_range_n", [floor, ceiling])
+        .first();
+    let throttle = format!("{:?} to {:?}", airframe.throttle.min, airframe.throttle.max);
+    let (share, needed) = (100.0 * floor / ceiling, (1e3 * compiled.least_idle).ceil() / 1e3);
+    let words =
+        format!("; idle gives {share:.1} % of the largest thrust, the map needs {needed:.3} at least");
+    list.say("throttle", throttle, "", words)
+        .json("min_idle", compiled.least_idle)
+        .first();
+
+    for margin in HoverAt::new(compiled, SHARE * ceiling, reference_v).margins {
+        let name = match margin.axis {
+            "roll" => "roll authority",
+            "pitch" => "pitch authority",
+            _ => "yaw authority",
+        };
+        let [least, largest] = margin.torque_nm;
+        let words = format!(" beside {:.0} % of the largest thrust", 100.0 * SHARE);
+        list.say(name, format!("{least:.3} to {largest:.3}"), "N m", words);
+    }
+}
+
+/// The vehicle in hover.
+fn hover(list: &mut List, compiled: &Compiled) {
+    let hover = Hover::new(compiled);
+    match &hover {
+        None => list.say(
+            "mass",
+            "",
+            "",
+            "add [vehicle] mass_kg to see hover and its margins",
+        ),
+        Some(hover) => {
+            let words = format!(", a weight of {:.2} N", hover.weight_n);
+            list.say("mass", hover.mass_kg, "kg", words)
+        }
+    }
+    .json("hover", &hover)
+    .first();
+    let Some(hover) = hover else { return };
+    let over_weight = format!("{:.2}", hover.thrust_over_weight);
+    list.say("thrust over weight", over_weight, "", " at most")
+        .first();
+    for (at, name) in hover.at.iter().rev().zip(["hover", "hover, lowest V"]) {
+        let volts = or_nothing(at.voltage_v, |volts| format!(" at {volts:?} V"));
+        let (Some(upper), Some(lower)) = (at.upper_throttle, at.lower_throttle) else {
+            let words = format!("the weight is not carried{volts}");
+            list.say(name, "", "", words).first();
+            continue;
+        };
+        let left = at.margins.iter().map(|margin| {
+            let [least, largest] = margin.torque_nm;
+            let band = or_nothing(margin.band_nm, |band| format!(" +- {band:.3}"));
+            format!("{} {least:.3} to {largest:.3}{band}", margin.axis)
+        });
+        let left: Vec<String> = left.collect();
+        let left = Some(left.join(", ")).filter(|left| !left.is_empty());
+        let left = or_nothing(left, |left| format!("; left (N m): {left}"));
+        let band = or_nothing(at.throttle_band, |[[low_u, low_l], [u, l]]| {
+            format!("; by [pair.uncertainty] {low_u:.3} to {u:.3} upper, {low_l:.3} to {l:.3} lower")
+        });
+        let words = format!(" throttle of upper, lower rotors{volts}{left}{band}");
+        list.say(name, format!("{upper:.3}, {lower:.3}"), "", words)
+            .first();
+    }
+}
+
+/// A rotor out, and power in level flight.
+fn power(list: &mut List, compiled: &Compiled) {
+    let (airframe, pair) = (&compiled.airframe, &compiled.airframe.pair);
+    let idle = airframe.throttle.min;
+    let source = |is_declared: bool| match is_declared {
+        true => (json!({ "by": "declared" }), "as declared in the file".to_owned()),
+        false => (
+            json!({ "by": "extrapolated", "from_throttle": idle }),
+            format!("by the pair's polynomials, extrapolated from {idle:?} to 0"),
+        ),
+    };
+    let [lower, upper] = [&pair.lower_out, &pair.upper_out].map(|out| source(out.is_some()));
+    let words = match (&lower.1, &upper.1) {
+        (lower, upper) if lower == upper => format!("the other one {lower}"),
+        (lower, upper) => format!("of a lower one, the upper {lower}; of an upper one, the lower {upper}"),
+    };
+    list.say("rotor out", "", "", words)
+        .json("rotor_out", json!({ "lower_out": lower.0, "upper_out": upper.0 }));
+
+    let bias = airframe.allocation.power_bias_nm_per_n;
+    let share = 100.0 * airframe.power_bias_share();
+    let words = or_nothing(Some(bias).filter(|bias| *bias != 0.0), |_| {
+        format!(" of thrust, where torques start; {share:.0} % of a pair's saving is left to this frame")
+    });
+    let power = LevelPower::new(compiled);
+    list.say("power bias", format!("{bias:?}"), "N m per N", words)
+        .json("power_bias_nm_per_n", bias)
+        .json("power", power);
+    let Some(power) = power else { return };
+    let what = match power.is_hover {
+        true => "in hover",
+        false => "half of the largest bare thrust",
+    };
+    let without = Some(power.without_bias_w).filter(|without| *without != power.power_w);
+    let saving = or_nothing(without, |without| {
+        let (saving, time) = (power.saving_percent, power.flight_time_percent);
+        format!(", {without:.1} W at Q = 0: saves {saving:.2} %, flight time {time:+.2} %")
+    });
+    let words = format!(" at {:.2} N ({what}){saving}", power.thrust_n);
+    list.say("power", format!("{:.1}", power.power_w), "W", words);
+}
+
+/// The pair's map.
+fn model(list: &mut List, compiled: &Compiled) {
+    let (pair, det_j) = (&compiled.airframe.pair, compiled.injectivity.least_determinant);
+    let uncertainty = pair.uncertainty.as_ref().map(|uncertainty| {
+        json!({
+            "source": uncertainty.source(),
+            "thrust_percent": uncertainty.thrust_percent,
+            "torque_percent": uncertainty.torque_percent,
+        })
+    });
+    let words = or_nothing(pair.uncertainty.as_ref(), |uncertainty| {
+        let (source, f, q) = (
+            uncertainty.source(),
+            uncertainty.thrust_percent,
+            uncertainty.torque_percent,
+        );
+        format!(
+            ", {source}: +- {f} % of the largest thrust, {q} % of the largest torque (one standard deviation)"
+        )
+    });
+    list.say("pair", pair.basis.name(), "", words)
+        .first_if(uncertainty.is_some())
+        .json("uncertainty", uncertainty);
+    let border = compiled.pair.border(SAMPLES).into_iter();
+    let efforts: Vec<[f64; 2]> = border.map(|at| compiled.pair.efforts(at)).collect();
+    let extent = |k: usize| {
+        let values = || efforts.iter().map(|efforts| efforts[k]);
+        [
+            values().fold(f64::INFINITY, f64::min),
+            values().fold(f64::NEG_INFINITY, f64::max),
+        ]
+    };
+    let ([f_low, f_high], [q_low, q_high]) = (extent(0), extent(1));
+    list.say("thrust of a unit", format!("{f_low:.3} to {f_high:.3}"), "N", "");
+    list.say(
+        "torque of a unit",
+        format!("{q_low:.4} to {q_high:.4}"),
+        "N m",
+        "",
+    );
+    let words = format!(
+        " at least: proven invertible, with idles from {}",
+        compiled.least_idle
+    );
+    list.say("det J", format!("{det_j:.4e}"), "N N m", words)
+        .json("least_det_j", det_j);
+}
+
+/// The battery's voltage.
+fn voltage(list: &mut List, compiled: &Compiled) {
+    let Some(voltage) = &compiled.airframe.voltage else {
+        let words = "not corrected for: no [voltage]; a pack that falls by 20 % loses 32 % of thrust";
+        list.say("voltage", "", "", words).first();
+        return;
+    };
+    let [low, high] = voltage.range_v;
+    let [[f_low, q_low], [f_high, q_high]] = [low, high].map(|volts| voltage.factors(volts));
+    let words = format!("; k_f {f_low:.4} to {f_high:.4}, k_Q {q_low:.4} to {q_high:.4} over the range");
+    list.say("voltage", format!("{low} to {high}"), "V", " is corrected for")
+        .first();
+    list.say("reference voltage", voltage.reference_v, "V", words);
+}
+
+/// The inverse map: what is proven of it, and its tables.
+fn inverse(list: &mut List, compiled: &Compiled) {
+    let (airframe, certificate) = (&compiled.airframe, &compiled.certificate);
+    let (evaluator, residual) = (compiled.evaluator, &compiled.residual);
+    let words = format!(": {}", evaluator.description());
+    list.say("evaluator", evaluator.name(), "", words)
+        .json("evaluator", evaluator.name())
+        .json("evaluator_description", evaluator.description());
+    let every = or_nothing(airframe.voltage.as_ref(), |_| " at every voltage".to_owned());
+    let allowed = [
+        airframe.inverse.thrust_tolerance_n,
+        airframe.inverse.torque_tolerance_nm,
+    ];
+    for (effort, (name, unit, proven_key, observed_key)) in [
+        ("thrust error", "N", "proven_thrust_n", "observed_thrust_n"),
+        ("torque error", "N m", "proven_torque_nm", "observed_torque_nm"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let (proven, observed) = (certificate.stated[effort], residual.efforts[effort]);
+        let (allowed, seen) = (allowed[effort], rounded_up(observed));
+        let words = format!(" at most of a unit, proven{every}; allowed {allowed:?}, observed {seen}");
+        list.say(name, rounded_up(proven), unit, words)
+            .json(proven_key, proven)
+            .json(observed_key, observed)
+            .first();
+    }
+    let (left, points) = (100.0 * certificate.margin(), residual.points);
+    let words = format!("; {left:.1} % of the tolerance left, {points} efforts observed");
+    let certificate = json!({
+        "bound": certificate.stated,
+        "bound_at_reference": certificate.reference,
+        "over_observed": certificate.over_observed(residual),
+        "margin": certificate.margin(),
+        "cells": certificate.cells,
+    });
+    list.say("proof", compiled.certificate.cells, "cells", words)
+        .json("observed_points", points)
+        .json("certificate", certificate);
+    let lost = compiled.lost_between_sides;
+    let cells = compiled.tables.closed_form.as_ref();
+    let cells = cells.map_or(0, |table| table.border.cells.len().saturating_sub(1));
+    let words = match lost {
+        Err(reason) => format!("on the throttles, over the whole set: no closed form, as {reason}"),
+        Ok(lost) => format!(
+            "in closed form between sides of {cells} cells, which leave out {:.3} % of its area; rotors out on the throttles",
+            100.0 * lost
+        ),
+    };
+    list.say("desaturation", "", "", words)
+        .json("attainable_area_lost_in_closed_form", lost.ok());
+    let words = or_nothing(lost.ok(), |_| {
+        "; without `mix_with_health` only what the closed form reads is linked".to_owned()
+    });
+    list.say("tables", compiled.tables.bytes(), "bytes", words)
+        .json("table_bytes", compiled.tables.bytes())
+        .first();
+}
+
+/// What costs are counted in.
+const INSTRUCTIONS: &str = "instructions";
+
+/// What a mix costs on the target.
+fn costs(list: &mut List, compiled: &Compiled) {
+    let cost = Cost::new(compiled);
+    let inverses = cost
+        .inverse_cycles
+        .zip(cost.inverses_instructions.zip(cost.inverses_cycles));
+    let cycles = or_nothing(inverses, |(one, (all, all_cycles))| {
+        format!(" ({one} cycles), of all {all} ({all_cycles})")
+    });
+    let words = format!(
+        "{cycles}; {} bytes of constants; {}",
+        cost.inverse_bytes, cost.target
+    );
+    let estimated =
+        |error: Option<f64>| or_nothing(error, |error| format!(", estimated to {:.0} %", 100.0 * error));
+    let delivered = estimated(cost.delivered_error);
+    let attainable = format!(
+        " of a Cortex-M4F over attainable requests{}",
+        estimated(cost.attainable_error)
+    );
+    let desaturation = cost.desaturation.description();
+    let any = format!(" at most, desaturation {desaturation}: the sum of what the code does at most");
+    let (count, words) = match cost.inverse_instructions {
+        Some(count) => (count.to_string(), words),
+        None => (String::new(), format!("not counted{words}")),
+    };
+    list.say("inverse of a unit", count, INSTRUCTIONS, words)
+        .json("cost", &cost);
+    list.count("mix by least norm", cost.delivered_instructions, delivered);
+    // On the general path it depends on the frame too much.
+    if let Some(mean) = cost.attainable_instructions {
+        list.count("mix in the mean", Some(mean), attainable).first();
+    }
+    let bound = cost.bound_instructions;
+    list.count("mix of any request", bound, any)
+        .first_if(bound.is_some());
+    let out = " at most, however many".to_owned();
+    list.count("mix, rotors out", cost.bound_with_rotors_out_instructions, out);
+}
