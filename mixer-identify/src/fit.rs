@@ -15,7 +15,7 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use self::basis::{Centred, ThrottleBox, monomials};
-use self::statistics::{dot, extent, greatest, rms, times};
+use crate::statistics::{dot, extent, greatest, rms, times};
 
 pub mod basis;
 pub mod cross;
@@ -25,7 +25,6 @@ pub mod pair;
 pub mod polynomial;
 pub mod power;
 pub mod robust;
-pub(crate) mod statistics;
 pub mod uncertainty;
 pub mod voltage;
 pub mod wishes;

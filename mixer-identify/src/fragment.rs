@@ -175,14 +175,12 @@ pub fn of_prediction(predicted: &Predicted) -> String {
 
 /// The facts about a table.
 fn comments(facts: &[Fact], table: &str) -> String {
-    let facts = facts
-        .iter()
-        .filter(|fact| fact.table == table && fact.told != Told::Reported);
+    let is_told = |fact: &&Fact| fact.table == table && fact.told != Told::Reported;
     let line = |fact: &Fact| match fact.name {
         "" => comment("  ", &fact.text),
         name => comment("", &format!("{name}: {}", fact.text)),
     };
-    facts.map(line).collect()
+    facts.iter().filter(is_told).map(line).collect()
 }
 
 /// A comment with `mark` before its first line.

@@ -12,6 +12,7 @@ use crate::fit::wishes::Wishes;
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 use crate::rotor::alone;
+use crate::statistics::extent;
 
 /// Everything that decides an identification, besides the files.
 #[derive(Debug, Clone, Default)]
@@ -161,18 +162,18 @@ fn reference(
     if pair.is_some() && reference_v.is_none() && voltage.is_some() {
         warnings.push("the map's own voltage is not known: give --reference-voltage for [voltage]".into());
     }
-    if let (Some(reference), Some(v)) = (wished, voltage)
-        && !(v.range_v[0]..=v.range_v[1]).contains(&reference)
-    {
-        let [low, high] = v.range_v;
+    if let (Some(reference), Some([low, high])) = (wished, voltage.map(|v| v.range_v)) {
         if reference < low / FAR || reference > FAR * high {
             return Err(Refusal::general(
                 format!("--reference-voltage {reference}: the rows were measured at {low:.2} to {high:.2} V"),
                 "a voltage that the bench had, or nothing for the mean of the rows",
             ));
         }
-        let told = format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
-        warnings.push(told);
+        if !(low..=high).contains(&reference) {
+            let told =
+                format!("--reference-voltage {reference} is outside the measured {low:.2}..{high:.2} V");
+            warnings.push(told);
+        }
     }
     Ok(reference_v)
 }
@@ -278,7 +279,7 @@ const SAG: f64 = 0.03;
 fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
     let sag_of = |bench: &Bench| {
         let volts = bench.points.iter().map(|p| p.voltage).filter(|v| v.is_finite());
-        let (low, high) = volts.fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+        let [low, high] = extent(volts);
         if high > 0.0 { 1.0 - low / high } else { 0.0 }
     };
     let maps = benches.iter().filter(|b| b.kind == Kind::Pair);
@@ -287,9 +288,8 @@ fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
         return None;
     }
     let percent = 100.0 * sag;
-    let exponents = voltage.thrust.value().zip(voltage.torque.value());
-    Some(match exponents {
-        Some((thrust, torque)) => format!(
+    Some(match voltage.exponents() {
+        Some([thrust, torque]) => format!(
             "the supply sagged by {percent:.1} % within a map, and its rows are brought to one voltage: measure the voltage \
              of the flight under load where the bench did; at no load thrust errs by up to {:.0} %, torque by {:.0} %",
             100.0 * (1.0 - libm::pow(1.0 - sag, thrust)),

@@ -3,7 +3,8 @@
 //!
 //! text -> [`bench::read`] -> [`mod@bench`] (start and stop rows, plateaus, signs) ->
 //! [`fit::voltage`] exponents -> [`fit::pair`]: outliers ([`fit::robust`]), choice of the basis
-//! ([`fit::cross`]), least squares ([`mod@fit`]), [`fit::fold`] -> [`fragment`], [`report`]. Of one rotor: [`rotor::single`] -> [`rotor::predict`].
+//! ([`fit::cross`]), least squares ([`mod@fit`]), [`fit::fold`] -> [`fragment`], [`report`]. Of one
+//! rotor: [`rotor::single`] -> [`rotor::predict`].
 //!
 //! What there is to say of a result is one list of facts ([`fact`]): [`report`] prints it, and
 //! [`fragment`] has it as comments of the tables. [`texts`] is for front ends: text in, text out.
@@ -40,5 +41,6 @@ pub mod plan;
 pub mod refusal;
 pub mod report;
 pub mod rotor;
+mod statistics;
 mod table;
 pub mod texts;

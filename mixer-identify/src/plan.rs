@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use mixer_compiler::airframe::Basis;
 
 use crate::fit::basis::monomials;
-use crate::fit::statistics::dot;
+use crate::statistics::dot;
 
 /// The throttles `[u, l]` that correct a prediction (`identify --prior`): both rotors at half and at
 /// full thrust, and either one far above the other.

@@ -56,10 +56,7 @@ impl Turning {
 
     /// The sign of its torque in the airframe file.
     pub(crate) fn sign(self) -> f64 {
-        match self {
-            Turning::Upper => -1.0,
-            Turning::Lower => 1.0,
-        }
+        if self == Turning::Upper { -1.0 } else { 1.0 }
     }
 }
 

@@ -45,17 +45,13 @@ pub fn read(text: &Text, settings: &Settings) -> Result<Bench, Refusal> {
 }
 
 fn read_all(texts: &[Text], settings: &Settings) -> Result<Vec<Bench>, Vec<Refusal>> {
-    let (mut benches, mut refusals) = (Vec::new(), Vec::new());
-    for text in texts {
-        match read(text, settings) {
-            Ok(bench) => benches.push(bench),
-            Err(refusal) => refusals.push(refusal),
-        }
-    }
-    if refusals.is_empty() {
-        Ok(benches)
-    } else {
-        Err(refusals)
+    let (ready, refused): (Vec<_>, Vec<_>) = texts
+        .iter()
+        .map(|text| read(text, settings))
+        .partition(Result::is_ok);
+    match refused.is_empty() {
+        true => Ok(ready.into_iter().flatten().collect()),
+        false => Err(refused.into_iter().filter_map(Result::err).collect()),
     }
 }
 

@@ -5,11 +5,9 @@
 pub fn date_in(name: &str) -> Option<String> {
     let bytes = name.as_bytes();
     let number = |range: std::ops::Range<usize>| -> Option<u32> {
-        let digits = bytes.get(range)?;
-        digits
-            .iter()
-            .all(u8::is_ascii_digit)
-            .then(|| std::str::from_utf8(digits).ok()?.parse().ok())?
+        let digits = name.get(range)?;
+        let are_digits = digits.bytes().all(|byte| byte.is_ascii_digit());
+        digits.parse().ok().filter(|_| are_digits)
     };
     (0..bytes.len()).find_map(|at| {
         if at > 0 && bytes[at - 1].is_ascii_digit() {

@@ -265,12 +265,8 @@ fn scaled(
     role: &str,
     by_hand: &ByHand,
 ) -> Result<Column, Refusal> {
-    let given = by_hand
-        .units
-        .iter()
-        .find(|(r, _)| r == role)
-        .map(|(_, u)| u.clone());
-    let unit = given.or_else(|| name.unit.clone());
+    let given = by_hand.units.iter().find(|(r, _)| r == role);
+    let unit = given.map(|(_, unit)| unit.clone()).or_else(|| name.unit.clone());
     let scale = match (&unit, quantity) {
         (_, Quantity::Throttle) if by_hand.full_rpm.is_some() => {
             by_hand.full_rpm.map(|full| Scale::Factor(1.0 / full))
@@ -283,17 +279,12 @@ fn scaled(
         (None, _) => None,
     };
     let scale = scale.ok_or_else(|| {
+        let (raw, known) = (&name.raw, units::known(quantity));
         let reason = match &unit {
-            Some(unit) => format!(
-                "the unit {unit:?} of the column {:?} is unknown for the {role}",
-                name.raw
-            ),
-            None => format!("the column {:?} has no unit", name.raw),
+            Some(unit) => format!("the unit {unit:?} of the column {raw:?} is unknown for the {role}"),
+            None => format!("the column {raw:?} has no unit"),
         };
-        let needed = format!(
-            "a unit in the header, or --unit {role}=UNIT with one of: {}",
-            units::known(quantity)
-        );
+        let needed = format!("a unit in the header, or --unit {role}=UNIT with one of: {known}");
         Refusal::of(format!("{file}:1"), reason, needed)
     })?;
     Ok(Column {

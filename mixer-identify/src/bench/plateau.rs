@@ -16,10 +16,8 @@ const SAME_COMMAND: f64 = 1e-3;
 
 /// Whether most rows stand in plateaus.
 pub fn is_streaming(samples: &[Sample]) -> bool {
-    let in_plateaus: usize = runs(samples)
-        .map(<[Sample]>::len)
-        .filter(|&n| n >= PLATEAU_ROWS)
-        .sum();
+    let lengths = runs(samples).map(<[Sample]>::len);
+    let in_plateaus: usize = lengths.filter(|&n| n >= PLATEAU_ROWS).sum();
     2 * in_plateaus > samples.len()
 }
 

@@ -117,19 +117,12 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         builder.delimiter(separator).flexible(true).has_headers(false);
         builder.from_reader::<&[u8]>(input)
     };
-    let headers: Vec<String> = match csv_of(header).byte_records().next() {
-        Some(Ok(record)) => record
-            .iter()
-            .map(|cell| text::decode(cell).trim().to_string())
-            .collect(),
-        _ => {
-            return Err(Refusal::of(
-                name,
-                "the file is empty",
-                "a header line and rows of measurements",
-            ));
-        }
+    let Some(Ok(record)) = csv_of(header).byte_records().next() else {
+        let needed = "a header line and rows of measurements";
+        return Err(Refusal::of(name, "the file is empty", needed));
     };
+    let cells = record.iter().map(|cell| text::decode(cell).trim().to_string());
+    let headers: Vec<String> = cells.collect();
     let columns = Columns::find(name, &headers, &reading.by_hand)?;
     require(name, &columns, &headers)?;
 
@@ -147,10 +140,8 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         decimal_comma: separator == b';',
     };
     loop {
-        let more = rows
-            .read_byte_record(&mut record)
-            .map_err(|e| unreadable(name, &e.to_string()))?;
-        if !more {
+        let more = rows.read_byte_record(&mut record);
+        if !more.map_err(|error| unreadable(name, &error.to_string()))? {
             return Ok(log);
         }
         // The reader stands behind the row's line end (where the row begins it does not know: it
@@ -180,19 +171,17 @@ fn require(name: &str, columns: &Columns, headers: &[String]) -> Result<(), Refu
         _ => return Ok(()),
     };
     let is_number = |header: &String| header.trim().parse::<f64>().is_ok();
+    let (place, names) = (format!("{name}:1"), headers.join(", "));
     if headers.iter().all(is_number) {
         return Err(Refusal::of(
-            format!("{name}:1"),
-            format!(
-                "numbers where the names of the columns stand: {}",
-                headers.join(", ")
-            ),
+            place,
+            format!("numbers where the names of the columns stand: {names}"),
             "a first line with names and units, as upper,lower,thrust_n,torque_nm or throttle,thrust_n,torque_nm",
         ));
     }
     Err(Refusal::of(
-        format!("{name}:1"),
-        format!("no {what} column among: {}", headers.join(", ")),
+        place,
+        format!("no {what} column among: {names}"),
         format!("the column by hand: --column {roles}"),
     ))
 }

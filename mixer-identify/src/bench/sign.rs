@@ -20,6 +20,7 @@ use serde::Serialize;
 use crate::bench::header::{Column, Columns, Split};
 use crate::bench::read::Sample;
 use crate::refusal::Refusal;
+use crate::statistics::extent;
 
 /// How to find a sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,11 +62,8 @@ fn policy_word(choice: SignChoice) -> &'static str {
 
 /// +1 or -1, the sign of the sum of what is not NaN.
 fn sign_of_sum(values: impl Iterator<Item = f64>) -> f64 {
-    if values.filter(|x| !x.is_nan()).sum::<f64>() < 0.0 {
-        -1.0
-    } else {
-        1.0
-    }
+    let sum: f64 = values.filter(|x| !x.is_nan()).sum();
+    if sum < 0.0 { -1.0 } else { 1.0 }
 }
 
 /// A channel of a pair: what its columns measured.
@@ -280,20 +278,16 @@ pub fn single(
 }
 
 fn constant(file: &str, torque: &[f64]) -> Result<(), Refusal> {
-    let measured = || torque.iter().copied().filter(|q| !q.is_nan());
-    let (low, high) = measured().fold((f64::MAX, f64::MIN), |(a, b), q| (a.min(q), b.max(q)));
+    let [low, high] = extent(torque.iter().copied().filter(|q| !q.is_nan()));
     let needed = "torque measured at every point: without it yaw cannot be modelled";
-    if low > high {
-        return Err(Refusal::of(file, "the torque is empty in every row", needed));
-    }
-    if high - low <= 1e-6 * high.abs().max(low.abs()) {
-        return Err(Refusal::of(
-            file,
-            format!("the torque is constant at {low} N m in every row"),
-            needed,
-        ));
-    }
-    Ok(())
+    let reason = match low > high {
+        true => "the torque is empty in every row".to_owned(),
+        false if high - low <= 1e-6 * high.abs().max(low.abs()) => {
+            format!("the torque is constant at {low} N m in every row")
+        }
+        false => return Ok(()),
+    };
+    Err(Refusal::of(file, reason, needed))
 }
 
 /// [a, b] of the least-squares fit Q = a u2 + b l2.

@@ -49,11 +49,8 @@ pub fn separator(header: &[u8]) -> u8 {
         }
     }
     // On a tie the first of the list: max_by_key would give the last.
-    counts
-        .into_iter()
-        .rev()
-        .max_by_key(|&(_, count)| count)
-        .map_or(b',', |(mark, _)| mark)
+    let most = counts.into_iter().rev().max_by_key(|&(_, count)| count);
+    most.map_or(b',', |(mark, _)| mark)
 }
 
 #[cfg(test)]

@@ -46,11 +46,8 @@ pub fn spelled(text: &str) -> String {
             c => c,
         })
         .collect();
-    folded
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
-        .to_lowercase()
+    let words: Vec<&str> = folded.split_whitespace().collect();
+    words.join(" ").to_lowercase()
 }
 
 /// What a unit of a quantity is in SI units, the names of units as [`scale`] strips them.
@@ -83,10 +80,8 @@ const FACTORS: [(Quantity, &str, f64); 24] = [
 
 /// The scale of `unit` for this quantity, or nothing if the unit does not measure it.
 pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
-    let unit: String = spelled(unit)
-        .chars()
-        .filter(|c| !matches!(c, '·' | '*' | '-' | '.' | ' '))
-        .collect();
+    let is_mark = |c: &char| matches!(c, '·' | '*' | '-' | '.' | ' ');
+    let unit: String = spelled(unit).chars().filter(|c| !is_mark(c)).collect();
     match (quantity, unit.as_str()) {
         (Quantity::Throttle, "us" | "pwm") => Some(Scale::Pulse(1.0)),
         (Quantity::Throttle, "ms") => Some(Scale::Pulse(1000.0)),

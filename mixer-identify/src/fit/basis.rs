@@ -84,9 +84,8 @@ impl Centred {
         let px = legendre_values((u - self.centre[0]) / self.half[0]);
         let py = legendre_values((l - self.centre[1]) / self.half[1]);
         let terms = self.basis.exponents().iter().zip(&self.offset);
-        terms
-            .map(|(&(i, j), &o)| px[usize::from(i)] * py[usize::from(j)] - o)
-            .collect()
+        let phi = |(&(i, j), o): (&(u8, u8), &f64)| px[usize::from(i)] * py[usize::from(j)] - o;
+        terms.map(phi).collect()
     }
 
     /// `matrix[m][k]`: coefficient of monomial m in phi_k.
@@ -94,10 +93,8 @@ impl Centred {
         let one_variable = |d: usize| legendre_in_throttle(self.centre[d], self.half[d]);
         let (pu, pl) = (one_variable(0), one_variable(1));
         let exponents = || {
-            self.basis
-                .exponents()
-                .iter()
-                .map(|&(i, j)| (usize::from(i), usize::from(j)))
+            let exponents = self.basis.exponents().iter();
+            exponents.map(|&(i, j)| (usize::from(i), usize::from(j)))
         };
         let row = |(a, b): (usize, usize)| exponents().map(|(i, j)| pu[i][a] * pl[j][b]).collect();
         exponents().map(row).collect()

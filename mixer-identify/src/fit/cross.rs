@@ -8,6 +8,8 @@
 //! level error, thrust and torque added, is within one standard error of the least (Breiman's rule)
 //! or within a tenth of it.
 
+use std::collections::BTreeSet;
+
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
@@ -15,6 +17,7 @@ use serde::Serialize;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::fold;
 use crate::fit::polynomial::Polynomial;
+use crate::fit::uncertainty::Uncertainty;
 use crate::fit::{Deficient, Design, leave_one_out};
 
 /// One line of the table.
@@ -32,6 +35,20 @@ pub struct Candidate {
     pub refused: Option<String>,
     /// Whether this one was chosen.
     pub chosen: bool,
+}
+
+impl Candidate {
+    /// The error on throttle levels that were left out.
+    pub fn uncertainty(&self) -> Option<Uncertainty> {
+        let errors = self.errors?;
+        let (thrust, torque) = (errors.thrust_leave_level_out, errors.torque_leave_level_out);
+        Some(Uncertainty::rounded(thrust, torque))
+    }
+}
+
+/// The one that was chosen.
+pub fn chosen(candidates: &[Candidate]) -> Option<&Candidate> {
+    candidates.iter().find(|candidate| candidate.chosen)
 }
 
 /// Cross-validation errors, percent of full scale.
@@ -138,10 +155,8 @@ fn errors(
     }
     let count: usize = of_folds.iter().map(|(_, n)| n).sum();
     let rms = |c: usize| 100.0 * (of_folds.iter().map(|(s, _)| s[c]).sum::<f64>() / count as f64).sqrt();
-    let per_fold: Vec<f64> = of_folds
-        .iter()
-        .map(|(s, n)| 100.0 * s.iter().map(|s| (s / *n as f64).sqrt()).sum::<f64>())
-        .collect();
+    let of_fold = |(s, n): &([f64; 2], usize)| s.iter().map(|s| (s / *n as f64).sqrt()).sum::<f64>();
+    let per_fold: Vec<f64> = of_folds.iter().map(|fold| 100.0 * of_fold(fold)).collect();
     let m = per_fold.len() as f64;
     let mean = per_fold.iter().sum::<f64>() / m;
     let variance = per_fold.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / (m - 1.0).max(1.0);
@@ -161,15 +176,10 @@ fn folds(points: &[[f64; 2]]) -> Vec<Vec<bool>> {
     let mut folds = Vec::new();
     for rotor in [0, 1] {
         let level = |p: &[f64; 2]| (p[rotor] * 200.0).round() as i64;
-        let mut levels: Vec<i64> = points.iter().map(level).collect();
-        levels.sort_unstable();
-        levels.dedup();
+        let levels: BTreeSet<i64> = points.iter().map(level).collect();
         if levels.len() <= 20 && levels.len() * 3 <= points.len() {
-            folds.extend(
-                levels
-                    .iter()
-                    .map(|v| points.iter().map(|p| level(p) == *v).collect::<Vec<bool>>()),
-            );
+            let of_level = |v: &i64| points.iter().map(|p| level(p) == *v).collect::<Vec<bool>>();
+            folds.extend(levels.iter().map(of_level));
         } else {
             let mut order: Vec<usize> = (0..points.len()).collect();
             order.sort_by(|&a, &b| points[a][rotor].total_cmp(&points[b][rotor]));

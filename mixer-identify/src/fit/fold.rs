@@ -63,10 +63,9 @@ pub fn least_idle(map: &EnclosedPairMap, throttle_box: ThrottleBox) -> Option<f6
 pub fn round_idle(map: &EnclosedPairMap, least: f64, max: f64) -> Option<f64> {
     const PER_UNIT: f64 = 200.0;
     let first = (least * PER_UNIT - 1e-9).ceil();
-    (0..)
-        .map(|k| (first + f64::from(k)) / PER_UNIT)
-        .take_while(|min| *min < max)
-        .find(|&min| map.prove_injective(ThrottleBox { min, max }.into()).is_ok())
+    let idles = (0..).map(|k| (first + f64::from(k)) / PER_UNIT);
+    let is_proven = |min: &f64| map.prove_injective(ThrottleBox { min: *min, max }.into()).is_ok();
+    idles.take_while(|min| *min < max).find(is_proven)
 }
 
 /// Steps of the grid on which regions are sought.
@@ -126,9 +125,8 @@ pub fn examine(basis: Basis, thrust: &[f64], torque: &[f64], commanded: Throttle
     };
     let grid: Vec<f64> = commanded.grid(STEPS).collect();
     let values: Vec<f64> = commanded.square(STEPS).map(det).collect();
-    let least = (0..values.len())
-        .min_by(|&a, &b| values[a].total_cmp(&values[b]))
-        .unwrap_or(0);
+    let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+    let least = (0..values.len()).min_by(by_value).unwrap_or(0);
     let place = |k: usize| [grid[k / grid.len()], grid[k % grid.len()]];
     Fold {
         commanded,

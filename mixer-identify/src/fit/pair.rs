@@ -74,11 +74,9 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     let measured = range(&places(&points));
     let throttle_box = to_command(wishes.throttle, measured, &files, &mut warnings)?;
 
-    let Choice {
-        basis,
-        cross_validation,
-        outliers,
-    } = choose(&points, throttle_box, wishes).map_err(|reason| deficient(&files, reason))?;
+    let (cross_validation, outliers) =
+        choose(&points, throttle_box, wishes).map_err(|reason| deficient(&files, reason))?;
+    let basis = cross::chosen(&cross_validation).map_or(Basis::Biquadratic, |c| c.basis);
     if wishes.robust {
         points = without_outliers(&points, &outliers);
     } else if !outliers.is_empty() {
@@ -90,7 +88,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         Design::new(basis, &places(&points), throttle_box).map_err(|reason| deficient(&files, reason))?;
     let fits = channels(&points).map(|values| fit(&design, &values, throttle_box));
     one_pair(basis, &points, throttle_box, &fits, &mut warnings)?;
-    doubts::unexplained(&files, fits.each_ref())?;
+    doubts::unexplained(&files, fits.each_ref(), &mut warnings)?;
     let [thrust, torque] = fits.each_ref().map(|fit| fit.coefficients.as_slice());
     let fold = fold::examine(basis, thrust, torque, throttle_box);
     let idle = idle(basis, &fits, &fold, &files, &mut warnings)?;
@@ -99,7 +97,6 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     let sign_is_found = benches.iter().any(|bench| bench.signs.torque_policy == AUTO);
     doubts::exchanged(basis, &torque, throttle_box, sign_is_found, &mut warnings);
     doubts::tare(&points, &mut warnings);
-    judge_quality(&thrust, &torque, &mut warnings);
     Ok(Pair {
         basis,
         terms: basis.term_names(),
@@ -115,7 +112,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
             ..throttle_box
         },
         measured,
-        uncertainty: of_levels(&cross_validation),
+        uncertainty: cross::chosen(&cross_validation).and_then(Candidate::uncertainty),
         cross_validation,
         outliers_left_out: wishes.robust,
         outliers,
@@ -156,37 +153,22 @@ fn to_command(
     Ok(throttle)
 }
 
-/// The basis, and the rows that stand out of its fit.
-struct Choice {
-    basis: Basis,
-    cross_validation: Vec<Candidate>,
-    outliers: Vec<Outlier>,
-}
-
-/// Chooses the basis by cross-validation, among one where the user named it.
-fn choose(points: &[Placed], throttle_box: ThrottleBox, wishes: &Wishes) -> Result<Choice, Deficient> {
+/// Judges the bases by cross-validation, one where the user named it, and the rows that stand out of
+/// the fit of the chosen one.
+fn choose(
+    points: &[Placed],
+    throttle_box: ThrottleBox,
+    wishes: &Wishes,
+) -> Result<(Vec<Candidate>, Vec<Outlier>), Deficient> {
     let suspects = suspects(wishes.basis.unwrap_or(robust::JUDGING), points, throttle_box);
     let clean = without(points, &suspects);
     let chosen_on = if wishes.robust { &clean } else { points };
     let [thrust, torque] = channels(chosen_on);
     let bases = wishes.basis.map_or(Basis::ALL.to_vec(), |basis| vec![basis]);
-    let cross_validation = cross::choose(&bases, &places(chosen_on), &thrust, &torque, throttle_box)?;
-    let chosen = cross_validation.iter().find(|c| c.chosen);
-    let basis = chosen.map_or(Basis::Biquadratic, |c| c.basis);
-    Ok(Choice {
-        basis,
-        outliers: confirmed(basis, points, &suspects, &clean, throttle_box),
-        cross_validation,
-    })
-}
-
-/// The error of the chosen basis on throttle levels that were left out.
-fn of_levels(candidates: &[Candidate]) -> Option<Uncertainty> {
-    let errors = candidates.iter().find(|c| c.chosen)?.errors?;
-    Some(Uncertainty::rounded(
-        errors.thrust_leave_level_out,
-        errors.torque_leave_level_out,
-    ))
+    let candidates = cross::choose(&bases, &places(chosen_on), &thrust, &torque, throttle_box)?;
+    let basis = cross::chosen(&candidates).map_or(Basis::Biquadratic, |c| c.basis);
+    let outliers = confirmed(basis, points, &suspects, &clean, throttle_box);
+    Ok((candidates, outliers))
 }
 
 fn without_outliers<'a>(points: &[Placed<'a>], outliers: &[Outlier]) -> Vec<Placed<'a>> {
@@ -234,9 +216,11 @@ fn one_pair(
         sse += alone.residuals.iter().map(|e| e * e).sum::<f64>();
         n += own.len();
     }
-    let apart = (sse / n.max(1) as f64).sqrt();
-    let together = fits[0].residual_rms;
-    if n == points.len() && together > 2.0 * apart && together > 0.02 * fits[0].full_scale {
+    if n < points.len() {
+        return Ok(());
+    }
+    let (apart, together, full) = ((sse / n as f64).sqrt(), fits[0].residual_rms, fits[0].full_scale);
+    if together > 2.0 * apart && together > 0.02 * full {
         return Err(Refusal::general(
             format!(
                 "the files do not describe one pair: together their thrust leaves a residual of {together:.3} N \
@@ -246,9 +230,7 @@ fn one_pair(
             "files of one pair at one spacing; run each pair by itself",
         ));
     }
-    if n == points.len() {
-        doubts::joined_files(&files, [together, apart], fits[0].full_scale, warnings);
-    }
+    doubts::joined_files(&files, [together, apart], full, warnings);
     Ok(())
 }
 
@@ -302,12 +284,4 @@ fn idle(
         "throttle.min is raised from {from} to {min}: {why}, the least idle without {without} is {least:.4}"
     ));
     Ok(min)
-}
-
-fn judge_quality(thrust: &Fit, torque: &Fit, warnings: &mut Vec<String>) {
-    for (name, fit) in [("thrust", thrust), ("torque", torque)] {
-        if fit.r2 < 0.98 {
-            warnings.push(format!("{name} is poorly described: R2 = {:.4}", fit.r2));
-        }
-    }
 }

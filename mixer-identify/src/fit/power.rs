@@ -17,9 +17,9 @@ use serde::Serialize;
 use crate::bench::{Bench, Kind, Point};
 use crate::fit::basis::{ThrottleBox, monomials};
 use crate::fit::pair::Pair;
-use crate::fit::statistics::{dot, rms, times};
 use crate::fit::voltage::Voltage;
 use crate::fit::{distinct_pairs, ten_digits};
+use crate::statistics::{dot, rms, times};
 
 /// Shares of full thrust at which vehicles hover.
 const SHARES: [f64; 9] = [0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70];
@@ -287,8 +287,8 @@ impl<'a> Hover<'a> {
     fn best_bias(&self) -> f64 {
         let saving = |c: f64| self.saving(c);
         let step = self.most / 50.0;
-        let best = (-50..=50)
-            .map(|k| f64::from(k) * step)
+        let tried = (-50..=50).map(|k| f64::from(k) * step);
+        let best = tried
             .max_by(|a, b| saving(*a).total_cmp(&saving(*b)))
             .unwrap_or(0.0);
         // Next to the end of what is attainable the hill is cut off, and the search may end beyond.

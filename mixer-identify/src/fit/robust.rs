@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use crate::fit::Design;
 use crate::fit::polynomial::Polynomial;
-use crate::fit::statistics::greatest;
+use crate::statistics::greatest;
 
 /// Rows stand out from this many robust standard deviations on. A polynomial's lack of fit alone
 /// reaches five on clean bench maps; rows of a faulty run have ten to fifty.
@@ -76,29 +76,8 @@ pub fn against_the_others(clean: &Design, y_clean: &[f64], suspects: &[([f64; 2]
     suspects.iter().map(miss).collect()
 }
 
-/// Residuals of a robust fit of one channel, and their scale.
-pub struct Judged {
-    /// Measured less fitted.
-    pub residuals: Vec<f64>,
-    /// Robust standard deviation.
-    pub scale: f64,
-    full_scale: f64,
-}
-
-impl Judged {
-    /// Residual `i` in robust standard deviations.
-    pub fn deviations(&self, i: usize) -> f64 {
-        self.residuals[i] / self.scale
-    }
-
-    /// Whether row `i` stands out.
-    pub fn stands_out(&self, i: usize) -> bool {
-        stands_out(self.residuals[i], self.deviations(i), self.full_scale)
-    }
-}
-
-/// Fits `y` robustly on the design's orthonormal columns.
-pub fn judge(design: &Design, y: &[f64]) -> Judged {
+/// Which values stand out of a robust fit of `y` on the design's orthonormal columns.
+pub fn judge(design: &Design, y: &[f64]) -> Vec<bool> {
     let full_scale = greatest(y);
     let terms = design.centred.basis.exponents().len();
     let mut residuals = design.residuals(y, &design.coordinates(y));
@@ -123,11 +102,9 @@ pub fn judge(design: &Design, y: &[f64]) -> Judged {
             }
         }
     }
-    Judged {
-        scale: robust_scale(&residuals, terms, full_scale),
-        residuals,
-        full_scale,
-    }
+    let scale = robust_scale(&residuals, terms, full_scale);
+    let judged = residuals.iter().map(|e| stands_out(*e, e / scale, full_scale));
+    judged.collect()
 }
 
 /// 1.4826 times the median of the |e| beyond the p that a fit of p terms can make vanish.
@@ -177,7 +154,7 @@ mod tests {
         let design =
             Design::new(Basis::Cubic, &points, ThrottleBox { min: 0.1, max: 0.91 }).expect("a design");
         let judged = judge(&design, &y);
-        let found: Vec<usize> = (0..100).filter(|&i| judged.stands_out(i)).collect();
+        let found: Vec<usize> = (0..100).filter(|&i| judged[i]).collect();
         assert_eq!(found, wrong);
     }
 }

@@ -28,16 +28,6 @@ impl Uncertainty {
         }
     }
 
-    /// The same of a map that was predicted from one rotor.
-    pub fn of_prediction(self) -> Self {
-        Uncertainty {
-            is_predicted: true,
-            ..self
-        }
-    }
-}
-
-impl Uncertainty {
     /// The table of the airframe file.
     pub(crate) fn table(&self) -> Item {
         let mut entries = vec![

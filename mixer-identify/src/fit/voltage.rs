@@ -22,7 +22,7 @@ use self::profile::{Regressors, off_span, profile};
 use crate::bench::{Bench, Kind, Point};
 use crate::fit::basis::Centred;
 use crate::fit::range;
-use crate::fit::statistics::{dot, extent, rms};
+use crate::statistics::{dot, extent, rms};
 
 mod exponent;
 mod profile;
@@ -66,6 +66,11 @@ impl Voltage {
             }
             (thrust, torque) => vec![("thrust", thrust), ("torque", torque)],
         }
+    }
+
+    /// The exponents of thrust and of torque, where both are known.
+    pub fn exponents(&self) -> Option<[f64; 2]> {
+        Some([self.thrust.value()?, self.torque.value()?])
     }
 
     /// Whether voltages differ enough that exponents could be expected of the files.
@@ -153,9 +158,8 @@ fn exponent(rows: Vec<Row>, kind: Kind, reference: f64) -> Exponent {
     }
     let varied = |level: usize| of_level[level].1 >= LEAST_RATIO * of_level[level].0;
     let varied_rows: Vec<&Row> = rows.iter().filter(|r| varied(r.level)).collect();
-    let varied_levels = (0..count)
-        .filter(|&l| of_level[l].0 <= of_level[l].1 && varied(l))
-        .count();
+    let is_varied = |l: &usize| of_level[*l].0 <= of_level[*l].1 && varied(*l);
+    let varied_levels = (0..count).filter(is_varied).count();
     let throttles = varied_rows.iter().map(|r| r.throttle[0].max(r.throttle[1]));
     let [least, most] = extent(throttles);
     let estimate = if varied_levels >= LEAST_LEVELS && most - least >= LEAST_SPREAD {

@@ -12,11 +12,11 @@ use crate::bench::{Bench, Kind, Point, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::pair::Pair;
 use crate::fit::polynomial::Polynomial;
-use crate::fit::statistics::{extent, greatest, rms};
 use crate::fit::voltage::Voltage;
 use crate::fit::{distinct_pairs, ten_digits};
 use crate::refusal::Refusal;
 use crate::rotor::{Alone, AloneFit, Turning};
+use crate::statistics::{extent, greatest, rms};
 
 /// Distinct throttles that three terms take, to judge themselves as well.
 const FEWEST: usize = 6;
@@ -114,22 +114,17 @@ pub fn from_map(
     let [run_flag, rotor, other] = turning.words();
     let own = |p: &Point| turning.in_order([p.u, p.l]);
     let maps = || benches.iter().filter(|b| b.kind == Kind::Pair);
-    let level = maps()
-        .flat_map(|b| &b.points)
-        .map(|p| own(p)[1])
-        .fold(f64::MAX, f64::min);
+    let others = maps().flat_map(|b| &b.points).map(|p| own(p)[1]);
+    let [level, _] = extent(others);
     let map = maps().find(|b| b.points.iter().any(|p| own(p)[1] == level));
-    let needed = || {
-        format!(
-            "a map in which the {other} rotor goes down to {LOW} or lower while the {rotor} one takes {FEWEST} throttles; or a \
-             run of the {rotor} rotor alone ({run_flag})"
-        )
-    };
     let Some(map) = map.filter(|_| level <= LOW) else {
         return Err(Refusal::of(
             maps().map(|b| b.file.as_str()).collect::<Vec<_>>().join(", "),
             format!("{FLAG}: the lowest throttle of the {other} rotor is {level:.2}"),
-            needed(),
+            format!(
+                "a map in which the {other} rotor goes down to {LOW} or lower while the {rotor} one takes {FEWEST} throttles; or \
+                 a run of the {rotor} rotor alone ({run_flag})"
+            ),
         ));
     };
     let models = [&pair.thrust_n, &pair.torque_nm].map(|of| Polynomial::of(pair.basis, of));
@@ -137,10 +132,8 @@ pub fn from_map(
         let ([u, l], [u0, l0]) = (turning.in_order([x, level]), turning.throttles(x));
         models.each_ref().map(|model| model.at(u, l) - model.at(u0, l0))
     };
-    let points = map.points.iter().filter(|p| own(p)[1] <= level + SAME_LEVEL);
-    let points = points.map(|p| {
-        let [x, _] = own(p);
-        let [f, q] = of_other(x);
+    let of_rotor = |p: &Point| {
+        let ([x, _], [f, q]) = (own(p), of_other(own(p)[0]));
         Point {
             u: x,
             l: 0.0,
@@ -149,11 +142,12 @@ pub fn from_map(
             torque: turning.sign() * (p.torque - q),
             ..*p
         }
-    });
+    };
+    let points = map.points.iter().filter(|p| own(p)[1] <= level + SAME_LEVEL);
     let run = Bench {
         kind: Kind::SingleRotor,
         turning: None,
-        points: points.collect(),
+        points: points.map(of_rotor).collect(),
         ..map.clone()
     };
     let alone = identify(&run, turning, pair, voltage, warnings)?;
@@ -180,10 +174,8 @@ fn at_reference(
     warnings: &mut Vec<String>,
 ) -> Vec<Point> {
     let [flag, ..] = turning.words();
-    let volts = mean_voltage(&run.points)
-        .filter(|(_, all)| *all)
-        .map(|(mean, _)| mean);
-    let exponents = voltage.and_then(|v| Some([v.thrust.value()?, v.torque.value()?]));
+    let volts = mean_voltage(&run.points).and_then(|(mean, all)| all.then_some(mean));
+    let exponents = voltage.and_then(Voltage::exponents);
     let brought = pair.normalised_to_v.zip(exponents).filter(|_| volts.is_some());
     if let (None, Some(of_pair), Some(mean)) = (brought, pair.mean_v, volts)
         && (mean / of_pair - 1.0).abs() > OTHER_VOLTAGE
@@ -215,9 +207,8 @@ fn fit(x: &[f64], y: &[f64], of_the_pair: impl Fn(f64) -> f64) -> ([f64; 3], Alo
     let a2 = (z[1] - r[(1, 2)] * a3) / r[(1, 1)];
     let a1 = (z[0] - r[(0, 1)] * a2 - r[(0, 2)] * a3) / r[(0, 0)];
     let coefficients = [a1, a2, a3].map(ten_digits);
-    let (points, missed) = (0..y.len(), |i: usize| {
-        y[i] - ((a3 * x[i] + a2) * x[i] + a1) * x[i]
-    });
+    let points = 0..y.len();
+    let missed = |i: usize| y[i] - ((a3 * x[i] + a2) * x[i] + a1) * x[i];
     let leverage = |i: usize| (0..3).map(|k| q[(i, k)] * q[(i, k)]).sum::<f64>();
     let left_out = |i: usize| missed(i) / (1.0 - leverage(i)).max(1e-12);
     let statistics = AloneFit {

@@ -42,17 +42,11 @@ impl Curve {
         let mut best: Option<(f64, [f64; 3])> = None;
         for subset in 1..8_usize {
             let used: Vec<usize> = (0..3).filter(|k| subset >> k & 1 == 1).collect();
-            let rows: Vec<Vec<f64>> = points
-                .iter()
-                .map(|[x, _]| used.iter().map(|&k| increments(*x)[k]).collect())
-                .collect();
+            let row = |[x, _]: &[f64; 2]| used.iter().map(|&k| increments(*x)[k]).collect();
+            let rows: Vec<Vec<f64>> = points.iter().map(row).collect();
             let values: Vec<f64> = points.iter().map(|[_, y]| *y).collect();
-            let Some(found) = solve(&rows, &values) else {
-                continue;
-            };
-            if found.iter().any(|d| *d < 0.0) {
-                continue;
-            }
+            let found = solve(&rows, &values).filter(|found| found.iter().all(|d| *d >= 0.0));
+            let Some(found) = found else { continue };
             let mut increment = [0.0; 3];
             for (&k, d) in used.iter().zip(&found) {
                 increment[k] = *d;

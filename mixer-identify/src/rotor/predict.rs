@@ -13,7 +13,6 @@ use toml_edit::{DocumentMut, value};
 
 use crate::bench::{Bench, Kind, mean_voltage};
 use crate::fit::basis::ThrottleBox;
-use crate::fit::statistics::{greatest, rms};
 use crate::fit::uncertainty::Uncertainty;
 use crate::fit::{Design, ten_digits};
 use crate::refusal::Refusal;
@@ -21,6 +20,7 @@ use crate::rotor::curve::Rotor;
 use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
 use crate::rotor::posterior::{self, BETWEEN_SYSTEMS, Case, scaled};
 use crate::rotor::single::Single;
+use crate::statistics::{greatest, rms};
 use crate::table::{commented, numbers, table};
 
 /// z/D where the user does not say: spacing matters little (docs/no-bench.md).
@@ -286,7 +286,10 @@ fn uncertainty(runs: &[Single], rows_with_torque: usize) -> Uncertainty {
             adding.map(|(_, of)| of[k] * of[k]).sum::<f64>().sqrt()
         }
     };
-    Uncertainty::rounded(percent(0), percent(1)).of_prediction()
+    Uncertainty {
+        is_predicted: true,
+        ..Uncertainty::rounded(percent(0), percent(1))
+    }
 }
 
 /// The cubic of the map over the box whose idle the compiler takes: the least from the wished one
@@ -299,16 +302,14 @@ fn compiled(
     file: &str,
 ) -> Result<PredictedPair, Refusal> {
     let basis = Basis::Cubic;
+    let (from, needed) = (
+        wished.min,
+        "check the units of thrust and of torque; else a run of a rotor whose thrust and torque grow over the whole throttle, or a \
+         bench for the pair",
+    );
     let fault = || {
-        Refusal::of(
-            file,
-            format!(
-                "the predicted map cannot be inverted at any idle from {} to {MOST_IDLE}",
-                wished.min
-            ),
-            "check the units of thrust and of torque; else a run of a rotor whose thrust and torque grow over the whole throttle, or \
-             a bench for the pair",
-        )
+        let reason = format!("the predicted map cannot be inverted at any idle from {from} to {MOST_IDLE}");
+        Refusal::of(file, reason, needed)
     };
     let out = |rotor: Rotor, sign: f64| Out {
         thrust_n: rotor.thrust.0.map(ten_digits),

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::bench::{Bench, Kind, Point, mean_voltage};
 use crate::fit::distinct_pairs;
-use crate::fit::statistics::{extent, rms};
 use crate::refusal::Refusal;
 use crate::rotor::curve::{Curve, Rotor};
+use crate::statistics::{extent, rms};
 
 /// Distinct throttles that a curve of three terms takes, to be judged as well.
 const FEWEST: usize = 5;

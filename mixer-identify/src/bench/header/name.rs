@@ -73,47 +73,41 @@ impl Name {
         found.map(|(_, quantity)| *quantity)
     }
 
+    /// Words of the prefix and of the rest.
+    fn all_words(&self) -> impl Iterator<Item = &str> {
+        self.words().chain(self.prefix.iter().flat_map(|p| p.split(' ')))
+    }
+
     pub(super) fn says_upper_or_lower(&self) -> bool {
-        let both = self.prefix.iter().flat_map(|p| p.split(' ')).chain(self.words());
-        both.into_iter()
+        self.all_words()
             .any(|w| matches!(w, "upper" | "lower" | "top" | "bottom"))
     }
 
     /// 0 or 1 for a column of one rotor, nothing for the whole.
     pub(super) fn side(&self, prefixes: &[&str]) -> Option<usize> {
-        let of_word = |w: &str| match w {
+        let named = self.all_words().find_map(|w| match w {
             "upper" | "top" | "left" | "a" => Some(0),
             "lower" | "bottom" | "right" | "b" => Some(1),
             _ => None,
-        };
-        if let Some(side) = self
-            .words()
-            .chain(self.prefix.iter().flat_map(|p| p.split(' ')))
-            .find_map(of_word)
-        {
-            return Some(side);
-        }
-        let numbered = self.words().find_map(|w| match w {
-            "1" => Some(0),
-            "2" => Some(1),
-            _ => None,
         });
+        let numbered = || {
+            self.words()
+                .find_map(|w| ["1", "2"].iter().position(|number| *number == w))
+        };
         let prefixed = || match prefixes {
             [_] => None,
             _ => prefixes.iter().position(|p| Some(*p) == self.prefix.as_deref()),
         };
-        numbered.or_else(prefixed)
+        named.or_else(numbered).or_else(prefixed)
     }
 }
 
 /// Prefixes of the columns that matter, in order of appearance.
 pub(super) fn distinct_prefixes(names: &[Name]) -> Vec<&str> {
     let mut prefixes: Vec<&str> = Vec::new();
-    for name in names
-        .iter()
-        .filter(|n| !matches!(n.quantity(), None | Some(Quantity::Time | Quantity::Current)))
-    {
-        if let Some(prefix) = name.prefix.as_deref().filter(|p| !prefixes.contains(p)) {
+    let counts = |n: &&Name| !matches!(n.quantity(), None | Some(Quantity::Time | Quantity::Current));
+    for prefix in names.iter().filter(counts).filter_map(|n| n.prefix.as_deref()) {
+        if !prefixes.contains(&prefix) {
             prefixes.push(prefix);
         }
     }

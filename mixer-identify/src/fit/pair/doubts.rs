@@ -23,17 +23,16 @@ const LOW: f64 = 0.25;
 
 /// Throttles below and above those that were measured.
 pub(super) fn coverage(throttle: ThrottleBox, warnings: &mut Vec<String>) {
-    if throttle.min > LOW {
+    let ThrottleBox { min, max } = throttle;
+    if min > LOW {
         warnings.push(format!(
-            "throttle.min is {}: what is below is never commanded and its thrust always on; measure down to 0.05 to 0.15, then \
-             identify says the least idle",
-            throttle.min
+            "throttle.min is {min}: what is below is never commanded and its thrust always on; measure down to 0.05 to 0.15, then \
+             identify says the least idle"
         ));
     }
-    if throttle.max < FULL {
+    if max < FULL {
         warnings.push(format!(
-            "throttle.max is {}: what is above is never commanded; measure up to full throttle",
-            throttle.max
+            "throttle.max is {max}: what is above is never commanded; measure up to full throttle"
         ));
     }
 }
@@ -47,15 +46,13 @@ pub(super) fn joined_files(
     warnings: &mut Vec<String>,
 ) {
     let between = (together * together - apart * apart).max(0.0).sqrt();
-    if between <= APART * full_scale {
-        return;
+    let (percent, files) = (100.0 * between / full_scale, files.join(", "));
+    if between > APART * full_scale {
+        warnings.push(format!(
+            "the files differ from their common map by {between:.3} N rms, {percent:.1} % of the greatest thrust, beyond what each \
+             misses by itself: files of one pair at one spacing belong into one fit ({files})"
+        ));
     }
-    warnings.push(format!(
-        "the files differ from their common map by {between:.3} N rms, {:.1} % of the greatest thrust, beyond what each \
-         misses by itself: files of one pair at one spacing belong into one fit ({})",
-        100.0 * between / full_scale,
-        files.join(", ")
-    ));
 }
 
 /// The share of the variance of thrust or torque that the throttles must explain. Fits of 53 real
@@ -63,21 +60,27 @@ pub(super) fn joined_files(
 /// in disorder and two pairs in one file do not.
 const EXPLAINED: f64 = 0.9;
 
-/// Refuses points that the throttles do not explain.
-pub(super) fn unexplained(files: &str, [thrust, torque]: [&Fit; 2]) -> Result<(), Refusal> {
-    for (name, fit) in [("thrust", thrust), ("torque", torque)] {
-        if fit.r2 < EXPLAINED {
+/// Refuses points that the throttles do not explain; says so where they explain little.
+pub(super) fn unexplained(
+    files: &str,
+    [thrust, torque]: [&Fit; 2],
+    warnings: &mut Vec<String>,
+) -> Result<(), Refusal> {
+    for (name, r2) in [("thrust", thrust.r2), ("torque", torque.r2)] {
+        let percent = 100.0 * r2.max(0.0);
+        if r2 < EXPLAINED {
             return Err(Refusal::of(
                 files,
                 format!(
-                    "the throttles explain {:.0} % of the variance of {name} (R2 = {:.3}), in real maps 99 % and more: columns or \
-                     rows are in disorder, or there is more than one pair in it",
-                    100.0 * fit.r2.max(0.0),
-                    fit.r2
+                    "the throttles explain {percent:.0} % of the variance of {name} (R2 = {r2:.3}), in real maps 99 % and more: \
+                     columns or rows are in disorder, or there is more than one pair in it"
                 ),
                 "each command in one row with what it gave, columns by their names (--column), one pair per file; --robust leaves out \
                  single bad rows",
             ));
+        }
+        if r2 < 0.98 {
+            warnings.push(format!("{name} is poorly described: R2 = {r2:.4}"));
         }
     }
     Ok(())
@@ -94,19 +97,17 @@ pub(super) fn exchanged(
 ) {
     let torque = Polynomial::of(basis, &torque.coefficients);
     let mean = mean_torque(|[u, l]| torque.at(u, l), [throttle.min, throttle.max]);
+    let percent = 100.0 * mean;
     match Wake::told_by(mean) {
-        Wake::Below => {}
         Wake::Above => warnings.push(format!(
-            "upper and lower rotor look exchanged: at equal throttles the one taken as lower takes more torque (mean {:+.1} % of the \
-             largest), though the rotor in the wake takes less; --swap exchanges them",
-            100.0 * mean
+            "upper and lower rotor look exchanged: at equal throttles the one taken as lower takes more torque (mean {percent:+.1} % \
+             of the largest), though the rotor in the wake takes less; --swap exchanges them"
         )),
         Wake::Untold if sign_is_found => warnings.push(format!(
-            "the torque does not tell which rotor is the upper one (mean {:+.1} % of the largest): make sure that the columns are the \
-             right way round (--swap exchanges them)",
-            100.0 * mean
+            "the torque does not tell which rotor is the upper one (mean {percent:+.1} % of the largest): make sure that the columns \
+             are the right way round (--swap exchanges them)"
         )),
-        Wake::Untold => {}
+        Wake::Below | Wake::Untold => {}
     }
 }
 
@@ -122,15 +123,14 @@ const EQUAL: f64 = 0.01;
 
 /// A constant in the thrust: a load cell that was not set to zero.
 pub(super) fn tare(points: &[Placed], warnings: &mut Vec<String>) {
-    let equal = || {
-        let near = |p: &&Placed| (p.point.u - p.point.l).abs() < EQUAL;
-        points
-            .iter()
-            .filter(near)
-            .map(|p| (0.5 * (p.point.u + p.point.l), p.thrust))
-    };
+    let near = |p: &&Placed| (p.point.u - p.point.l).abs() < EQUAL;
+    let equal = points
+        .iter()
+        .filter(near)
+        .map(|p| (0.5 * (p.point.u + p.point.l), p.thrust));
     let by_throttle = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0);
-    let (Some((low, least)), Some((high, most))) = (equal().min_by(by_throttle), equal().max_by(by_throttle))
+    let (Some((low, least)), Some((high, most))) =
+        (equal.clone().min_by(by_throttle), equal.max_by(by_throttle))
     else {
         return;
     };

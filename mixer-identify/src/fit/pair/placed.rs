@@ -5,11 +5,11 @@ use mixer_compiler::airframe::Basis;
 use crate::bench::{Bench, Point, mean_voltage};
 use crate::fit::basis::ThrottleBox;
 use crate::fit::robust::{self, Outlier};
-use crate::fit::statistics::{extent, greatest};
 use crate::fit::voltage::Voltage;
 use crate::fit::wishes::Wishes;
 use crate::fit::{Design, hundredths};
 use crate::refusal::Refusal;
+use crate::statistics::{extent, greatest};
 
 /// A point and the file it comes from.
 #[derive(Clone, Copy)]
@@ -37,7 +37,7 @@ pub(super) fn at_reference<'a>(
     voltage: Option<&Voltage>,
     wishes: &Wishes,
 ) -> Result<(Vec<Placed<'a>>, Option<f64>), Refusal> {
-    let sound = voltage.and_then(|v| Some((v.thrust.value()?, v.torque.value()?)));
+    let sound = voltage.and_then(Voltage::exponents);
     let volts = |b: &Bench| mean_voltage(&b.points).and_then(|(mean, all)| all.then_some(mean));
     let means: Vec<f64> = benches.iter().filter_map(|b| volts(b)).collect();
     let all = means.len() == benches.len();
@@ -66,7 +66,7 @@ pub(super) fn at_reference<'a>(
     let bring = |y: f64, v: f64, exponent: f64| y / libm::pow(v / reference, exponent);
     let place = |bench: &&'a Bench, point: &'a Point| {
         let (thrust, torque) = match exponents {
-            Some((f, q)) => (
+            Some([f, q]) => (
                 bring(point.thrust, point.voltage, f),
                 bring(point.torque, point.voltage, q),
             ),
@@ -97,9 +97,7 @@ pub(super) fn suspects(basis: Basis, points: &[Placed], throttle_box: ThrottleBo
         return vec![false; points.len()];
     };
     let judged = channels(points).map(|y| robust::judge(&design, &y));
-    (0..points.len())
-        .map(|i| judged.iter().any(|j| j.stands_out(i)))
-        .collect()
+    (0..points.len()).map(|i| judged.iter().any(|j| j[i])).collect()
 }
 
 /// The suspects that also stand out of the fit of `basis` to the other rows, `clean`.

@@ -38,11 +38,8 @@ impl Exponent {
 
     /// This channel with the user's own exponent.
     #[must_use]
-    pub fn declared(self, exponent: f64) -> Exponent {
-        let measured = match self {
-            Exponent::Identified(estimate) => Some(estimate),
-            _ => None,
-        };
+    pub fn declared(&self, exponent: f64) -> Exponent {
+        let measured = self.estimate().cloned();
         Exponent::Declared { exponent, measured }
     }
 

@@ -1,6 +1,6 @@
 //! The exponent with the map profiled out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use faer::Mat;
 
@@ -20,12 +20,7 @@ impl Regressors {
     fn unknowns(&self, rows: &[&Row]) -> usize {
         match self {
             Regressors::Columns(columns) => columns.first().map_or(0, Vec::len),
-            Regressors::Levels => {
-                let mut used: Vec<usize> = rows.iter().map(|r| r.level).collect();
-                used.sort_unstable();
-                used.dedup();
-                used.len()
-            }
+            Regressors::Levels => rows.iter().map(|r| r.level).collect::<BTreeSet<usize>>().len(),
         }
     }
 
