@@ -12,7 +12,7 @@ use mixer_tests::counts::{self, Images, worst};
 use mixer_tests::firmware::{Toolchain, Variant};
 use mixer_tests::frames::{self, zoo};
 use mixer_tests::image::Image;
-use mixer_tests::{airframes, cost, digest, evaluators, golden};
+use mixer_tests::{airframes, cost, digest, golden};
 
 /// Below the caller's frame, [`REFERENCE`].
 const STACK_LIMIT_BYTES: u64 = 704;
@@ -155,36 +155,6 @@ fn mixers_are_small_and_cannot_panic() {
             assert!(
                 code + tables <= SIZE_LIMIT_BYTES,
                 "{airframe}: over {SIZE_LIMIT_BYTES} bytes"
-            );
-        }
-    }
-}
-
-/// The compiler sorts evaluators by numbers that were counted; where code has changed since, they
-/// must be counted anew.
-#[test]
-fn evaluators_cost_what_the_compiler_believes() {
-    let toolchain = toolchain();
-    let image = toolchain
-        .build("evaluators", &Variant::default())
-        .unwrap_or_else(|e| panic!("{e}"));
-    let image = Image::read(&image).unwrap_or_else(|e| panic!("{e}"));
-    let checks = |symbol: &&String| symbol.contains("panic_bounds_check");
-    assert_eq!(
-        image.symbols.iter().find(checks),
-        None,
-        "an evaluator checks an index"
-    );
-    let counted = evaluators::counted(&toolchain).unwrap_or_else(|e| panic!("{e}"));
-    let stated = mixer_compiler::evaluator::cost::INSTRUCTIONS;
-    assert_eq!(counted.len(), stated.len());
-    for ((name, counted), (stated_name, stated)) in counted.iter().zip(stated) {
-        assert_eq!(name, stated_name);
-        for (counted, stated) in counted.iter().zip(stated) {
-            assert!(
-                counted.abs_diff(stated) <= stated / 20,
-                "{name} takes {counted} instructions, mixer-compiler/src/inverse/evaluator/cost.rs says {stated}: run \
-                 `cargo xtask evaluators`"
             );
         }
     }

@@ -22,7 +22,6 @@ use toml::de::DeTable;
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::basis::Basis;
 pub(crate) use self::basis::{POWERS, value_of_terms};
-pub(crate) use self::inverse::METHODS;
 pub use self::inverse::{Inverse, Method};
 pub use self::pair::{Pair, Spin};
 pub use self::power::Power;

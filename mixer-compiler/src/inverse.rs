@@ -1,5 +1,6 @@
-//! The inverse map of one unit: the evaluators that can be emitted, and the fit of their
-//! coefficients.
+//! The inverse map of one unit: the forms that can be emitted, the fit of their coefficients, and the
+//! numbers.
 
 pub mod evaluator;
 pub(crate) mod fit;
+pub(crate) mod table;

@@ -7,8 +7,7 @@
 //! arithmetic.
 //!
 //! The box is cut into cells. On each, `cell.rs` bounds the residual; the worst cell is halved
-//! until the largest bound is close to the largest residual that was observed, or the work allowed
-//! is done.
+//! until the largest bound is as small as was asked, or the work allowed is done.
 
 mod bend;
 mod cell;
@@ -20,7 +19,6 @@ mod taylor;
 use std::collections::BinaryHeap;
 
 use crate::airframe::Airframe;
-use crate::model::PairMap;
 use crate::proof::residual::Residual;
 use crate::tables::UnitMap;
 use cell::{Subject, ThrottleCell};
@@ -78,58 +76,45 @@ const MOST_CELLS: usize = 1600;
 /// Largest number of cells while nothing can be said of one of them.
 const MOST_UNBOUNDED: usize = 300;
 
-/// Bounds within this factor of the largest observed residual are sharp enough.
-const SHARP: f64 = 1.15;
-
 /// Halvings in a row that improve a bound by less than 1 %, after which rounding is all that is
 /// left.
 const STALE: u8 = 6;
 
-/// Proves a bound of the errors of the emitted tables. Cells are halved until the bound is close to
-/// the largest `observed` residual, to which the centres of the worst cells are added. A residual
-/// above the tolerance ends the proof, unless `to_the_end` asks for the bound all the same.
+/// How long a proof tries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// Gives up early where nothing can be said of a cell.
+    Quick,
+    /// Uses all cells that are allowed.
+    Thorough,
+}
+
+/// Proves a bound of the errors of the emitted tables. Cells are halved until no bound at the reference
+/// voltage is above `aim` (`[N, N m]`), or the work allowed is done.
 pub(crate) fn prove(
     airframe: &Airframe,
-    pair: &PairMap,
     map: &UnitMap,
     correction: &CorrectionBounds,
-    observed: &mut Residual,
-    to_the_end: bool,
+    aim: [f64; 2],
+    effort: Effort,
 ) -> Certificate {
     let inverse = &airframe.inverse;
     let tolerance = [inverse.thrust_tolerance_n, inverse.torque_tolerance_nm];
     let subject = Subject::new(airframe, map, correction);
-    let aim = |observed: &Residual| {
-        [0, 1].map(|k| (SHARP * observed.efforts[k]).min(tolerance[k] / correction.largest[k]))
-    };
-    let mut goal = aim(observed);
     let whole = ThrottleCell::grid([airframe.throttle.min, airframe.throttle.max], START);
     let mut cells = whole.len();
     let mut open: BinaryHeap<Open> = whole
         .into_iter()
-        .map(|cell| Open::new(&subject, cell, goal))
+        .map(|cell| Open::new(&subject, cell, aim))
         .collect();
     while let Some(worst) = open.peek() {
-        let hopeless = cells >= MOST_UNBOUNDED && worst.excess.is_infinite() && !to_the_end;
+        let hopeless = cells >= MOST_UNBOUNDED && worst.excess.is_infinite() && effort == Effort::Quick;
         if worst.excess <= 1.0 || worst.stale >= STALE || cells >= MOST_CELLS || hopeless {
             break;
         }
         let Some(worst) = open.pop() else { break };
-        observed.look(pair, map, worst.cell.centre.map(|throttle| pair.clamp(throttle)));
-        let refuted = (0..2).any(|k| observed.efforts[k] * correction.largest[k] > tolerance[k]);
-        if refuted && !to_the_end {
-            open.push(worst);
-            break;
-        }
-        let new_goal = aim(observed);
-        if (0..2).any(|k| new_goal[k] > 1.02 * goal[k]) {
-            goal = new_goal;
-            open = open.into_iter().map(|cell| cell.towards(goal)).collect();
-            open.push(worst.towards(goal));
-            continue;
-        }
         for half in worst.cell.halves() {
-            let mut part = Open::new(&subject, half, goal);
+            let mut part = Open::new(&subject, half, aim);
             if part.excess > 0.99 * worst.excess && worst.excess.is_finite() {
                 part.stale = worst.stale + 1;
             }
@@ -178,26 +163,20 @@ pub(crate) fn rounding(airframe: &Airframe, map: &UnitMap, correction: &Correcti
 struct Open {
     cell: ThrottleCell,
     bound: [f64; 2],
-    /// The larger bound in units of its goal.
+    /// The larger bound in units of what is aimed at.
     excess: f64,
     stale: u8,
 }
 
 impl Open {
-    fn new(subject: &Subject<'_>, cell: ThrottleCell, goal: [f64; 2]) -> Self {
-        let open = Open {
+    fn new(subject: &Subject<'_>, cell: ThrottleCell, aim: [f64; 2]) -> Self {
+        let bound = subject.residual(&cell);
+        Open {
             cell,
-            bound: subject.residual(&cell),
-            excess: f64::INFINITY,
+            bound,
+            excess: (bound[0] / aim[0]).max(bound[1] / aim[1]),
             stale: 0,
-        };
-        open.towards(goal)
-    }
-
-    /// With its excess over other goals.
-    fn towards(self, goal: [f64; 2]) -> Self {
-        let excess = (self.bound[0] / goal[0]).max(self.bound[1] / goal[1]);
-        Open { excess, ..self }
+        }
     }
 
     /// The worst bound first, then by place: the same order on every machine.

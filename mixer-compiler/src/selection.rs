@@ -12,8 +12,8 @@ use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage;
 use crate::proof::residual::Residual;
-use crate::proof::{self, Certificate, CorrectionBounds};
-use crate::tables::{self, InverseTable, UnitMap, VoltageTable};
+use crate::proof::{self, Certificate, CorrectionBounds, Effort};
+use crate::tables::{self, UnitMap, VoltageTable};
 
 /// An evaluator with its table and what is known about it.
 #[derive(Clone, Debug)]
@@ -28,6 +28,17 @@ pub(crate) struct Selected {
     pub(crate) certificate: Certificate,
 }
 
+/// An evaluator that was fitted.
+struct Attempt {
+    evaluator: Evaluator,
+    map: UnitMap,
+    /// Largest error over a coarse grid, in units of the tolerance.
+    error: f64,
+}
+
+/// Bounds within this factor of the largest observed residual are sharp enough.
+const SHARP: f64 = 1.15;
+
 /// The cheapest evaluator that is proven to meet the file's tolerance at every voltage.
 ///
 /// # Errors
@@ -37,63 +48,81 @@ pub(crate) fn select(
     pair: &PairMap,
     voltage: Option<&VoltageTable>,
 ) -> Result<Selected, Vec<Diagnostic>> {
-    choose(airframe, pair, voltage).map_err(|best| {
-        let meets = |airframe: &Airframe| {
-            let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-            choose(airframe, &pair, voltage).is_ok()
-        };
-        vec![match best {
-            Some((evaluator, certificate)) => refusal::tolerance(airframe, evaluator, &certificate, meets),
-            None => refusal::name(airframe),
-        }]
-    })
+    let chosen = choose(airframe, pair, voltage);
+    if chosen.holds() {
+        return Ok(chosen);
+    }
+    let meets = |airframe: &Airframe| {
+        let pair = PairMap::new(&airframe.pair, &airframe.throttle);
+        choose(airframe, &pair, voltage).holds()
+    };
+    Err(vec![refusal::tolerance(
+        airframe,
+        chosen.evaluator,
+        &chosen.certificate,
+        meets,
+    )])
 }
 
-/// The evaluator that came closest, and what is proven of it; `None` where there is none of the
-/// name asked for.
-type Best = Option<(Evaluator, Certificate)>;
+impl Selected {
+    /// True where the tolerance is proven, and nothing was observed beyond what is proven.
+    fn holds(&self) -> bool {
+        self.certificate.holds() && self.certificate.agrees(&self.residual)
+    }
+}
 
-/// Tries the evaluators by their cost. Where none is proven at once, the one that came closest gets
-/// a thorough proof: others are given up where they take long.
-fn choose(airframe: &Airframe, pair: &PairMap, voltage: Option<&VoltageTable>) -> Result<Selected, Best> {
+/// The first evaluator, by cost, that holds. Where none does, the one that came closest, with a
+/// thorough proof: others are given up where they take long.
+fn choose(airframe: &Airframe, pair: &PairMap, voltage: Option<&VoltageTable>) -> Selected {
     let correction = CorrectionBounds::new(airframe, voltage);
     let tolerance = correction.tolerance_at_reference(airframe);
-    let accept = |evaluator: Evaluator, map: &UnitMap, mut residual: Residual, thorough: bool| {
-        let certificate = proof::prove(airframe, pair, map, &correction, &mut residual, thorough);
-        if !(certificate.holds() && certificate.agrees(&residual)) {
-            return Err(Some((evaluator, certificate)));
-        }
-        Ok(Selected {
+    let (cheapest, others) = Evaluator::candidates(airframe.inverse.method);
+    let mut inversion = Inversion::new(pair, tolerance, others.is_empty());
+    let mut attempt = |evaluator: Evaluator| {
+        let (inverse, fit_error) = inversion.fit(evaluator);
+        let map = UnitMap::new(airframe, inverse);
+        // The grid of the fit is part of the set: what fails there, fails.
+        let error = Residual::coarse_check(pair, &map).ratio(tolerance).max(fit_error);
+        Attempt {
             evaluator,
+            map,
+            error,
+        }
+    };
+    let proven = |attempt: &Attempt, effort: Effort| {
+        let map = &attempt.map;
+        let mut residual = Residual::over_set(pair, map);
+        let aim = [0, 1].map(|k| (SHARP * residual.efforts[k]).min(tolerance[k]));
+        let certificate = proof::prove(airframe, map, &correction, aim, effort);
+        // Where the proof found it hardest, more may be missed than on the grid.
+        for throttles in certificate.at {
+            residual.look(pair, map, throttles.map(|throttle| pair.clamp(throttle)));
+        }
+        Selected {
+            evaluator: attempt.evaluator,
             map: map.clone(),
             residual,
             certificate,
-        })
-    };
-    let candidates = Evaluator::candidates(&airframe.inverse.method);
-    let mut inversion = Inversion::new(pair, tolerance, candidates.len() == 1);
-    let mut best: Option<(Evaluator, UnitMap, f64)> = None;
-    for evaluator in candidates {
-        let (fitted, fit_error) = inversion.fit(evaluator);
-        let map = UnitMap::new(airframe, InverseTable::new(&fitted));
-        // The grid of the fit is part of the set: what fails there, fails.
-        let error = Residual::coarse_check(pair, &map).ratio(tolerance).max(fit_error);
-        if error <= 1.0 {
-            let residual = Residual::over_set(pair, &map);
-            if residual.within(tolerance)
-                && let Ok(selected) = accept(evaluator, &map, residual, false)
-            {
-                return Ok(selected);
-            }
         }
-        if best.as_ref().is_none_or(|(_, _, so_far)| error < *so_far) {
-            best = Some((evaluator, map, error));
+    };
+    let quick = |attempt: &Attempt| {
+        let selected = (attempt.error <= 1.0).then(|| proven(attempt, Effort::Quick));
+        selected.filter(Selected::holds)
+    };
+    let mut closest = attempt(cheapest);
+    if let Some(selected) = quick(&closest) {
+        return selected;
+    }
+    for &evaluator in others {
+        let next = attempt(evaluator);
+        if let Some(selected) = quick(&next) {
+            return selected;
+        }
+        if next.error < closest.error {
+            closest = next;
         }
     }
-    let Some((evaluator, map, _)) = best else {
-        return Err(None);
-    };
-    accept(evaluator, &map, Residual::over_set(pair, &map), true)
+    proven(&closest, Effort::Thorough)
 }
 
 /// What the mixer may miss where it delivers: what is proven, not what the file allows, so that

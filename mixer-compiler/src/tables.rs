@@ -7,7 +7,6 @@
 //! `mixer-rt` itself on them.
 
 mod border;
-mod inverse;
 mod part;
 mod quantity;
 mod rows;
@@ -22,12 +21,12 @@ use mixer_rt::{
 };
 
 use crate::airframe::Airframe;
+use crate::inverse::table::InverseTable;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage::TabulatedLaw;
 
 pub use border::BorderTable;
-pub use inverse::{InverseTable, PolynomialTable, SeedTable};
 pub(crate) use part::{Part, identifier};
 pub use quantity::QuantityTable;
 use rows::rows;
@@ -251,6 +250,12 @@ impl MixerTables {
         }
     }
 
+    /// Throttles `[u, l]` of a unit for its `efforts` (N, N m at the reference voltage), by the emitted
+    /// inverse.
+    pub fn throttles(&self, efforts: [f32; 2]) -> [f32; 2] {
+        (&self.inverse).throttles(&self.pair, &self.throttle, efforts)
+    }
+
     /// Mixes with `mixer-rt`, operation by operation as the generated mixer does.
     ///
     /// # Errors
@@ -291,7 +296,7 @@ impl MixerTables {
                 parts.map(|(share, asked)| share * asked).sum::<f32>() / factors[k] as f32
             };
             let wanted = [effort(0), effort(1)];
-            let throttles = (&self.inverse).throttles(&self.pair, &self.throttle, wanted);
+            let throttles = self.throttles(wanted);
             let given = self.pair.efforts(throttles);
             let gives = |k: usize| (given[k] - wanted[k]).abs() <= self.tolerance.efforts[k];
             (gives(0) && gives(1)).then_some(throttles)

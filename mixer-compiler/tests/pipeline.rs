@@ -3,9 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use mixer_compiler::airframe::Method;
 use mixer_compiler::diagnostic::{Code, Diagnostics};
-use mixer_compiler::evaluator::Evaluator;
 use mixer_compiler::{Compiled, Source};
 use mixer_rt::Wrench;
 
@@ -124,7 +122,6 @@ fn the_tolerance_decides_on_the_evaluator() {
 #[test]
 fn offered_tolerances_would_do() {
     for (thrust, torque, method, raised) in [
-        (1e-3, 1e-5, "bilinear-newton", [true, true]),
         (0.01, 1e-9, "auto", [false, true]),
         (1e-6, 1e-3, "auto", [true, false]),
         (1e-7, 1e-9, "auto", [true, true]),
@@ -185,19 +182,6 @@ fn voltage_points_are_joined() {
     ] {
         assert!((table.thrust.factor(volts) - factor).abs() < 1e-6, "{volts} V");
     }
-}
-
-/// The choice is the first of the candidates that the tolerance admits.
-#[test]
-fn the_choice_is_the_first_that_holds() {
-    let chosen = isae_x8(&[]).unwrap().evaluator;
-    let first = Evaluator::candidates(&Method::Auto)
-        .into_iter()
-        .find(|evaluator| {
-            let method = format!("[inverse]\nmethod = \"{}\"", evaluator.name());
-            isae_x8(&[("[inverse]", &method)]).is_ok()
-        });
-    assert_eq!(first, Some(chosen));
 }
 
 /// By the macro, a build script or the command line: what is emitted names the file and no folder.

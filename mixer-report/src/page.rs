@@ -440,7 +440,7 @@ fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
     html! {
         p {
             (costs.target)
-            ". The inverse map is counted on its own, evaluator by evaluator; its cycles are its instructions and 13 more \
+            ". The inverse map is counted on its own; its cycles are its instructions and 13 more \
              for every division and square root. The whole mix is estimated: the inverse map of all units, and for checks, \
              voltage and allocation what counted mixers that desaturate "
             (costs.desaturation.description())

@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
 use mixer_compiler::model::PairMap;
-use mixer_rt::{Health, Wrench, tables::Inverse};
+use mixer_rt::{Health, Wrench};
 
 use crate::number::round_half_digit;
 
@@ -92,9 +92,7 @@ impl<'a> Study<'a> {
     pub fn inverse(&self, efforts: [f64; 2]) -> Option<[f64; 2]> {
         let tables = &self.compiled.tables;
         let asked = efforts.map(|effort| effort as f32);
-        let found = (&tables.inverse)
-            .throttles(&tables.pair, &tables.throttle, asked)
-            .map(f64::from);
+        let found = tables.throttles(asked).map(f64::from);
         // Newton's method from there converges in the set; elsewhere it is stopped by the edge of
         // the box.
         let exact = (0..8).fold(found, |throttles, _| self.pair.newton(throttles, efforts));
@@ -109,7 +107,7 @@ impl<'a> Study<'a> {
         let tables = &self.compiled.tables;
         let efforts = self.pair.efforts(throttles);
         let asked = efforts.map(|effort| effort as f32);
-        let found = (&tables.inverse).throttles(&tables.pair, &tables.throttle, asked);
+        let found = tables.throttles(asked);
         let given = self.pair.efforts(found.map(f64::from));
         [given[0] - efforts[0], given[1] - efforts[1]]
     }

@@ -46,7 +46,7 @@ use unit::UnitState;
 /// which hold the rotors that turn. `factors` is `[k_f, k_Q]`. `is_whole` tells that all rotors turn. True
 /// where these are the throttles of least norm, with all rotors.
 #[inline(never)]
-pub(crate) fn allocate<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool>(
+pub(crate) fn allocate<P: Quantity, I: Inverse, S, const VERTICAL: bool>(
     tables: &Tables<'_, P, I, S>,
     wrench: &[f32; 4],
     factors: [f32; 2],

@@ -81,7 +81,7 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
 #[inline(always)]
-pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse<P>, S: AllocationMethod>(
+pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -100,7 +100,7 @@ pub fn mix_with_health<
     const UNITS: usize,
     const CHANNELS: usize,
     P: Quantity,
-    I: Inverse<P>,
+    I: Inverse,
     S: AllocationMethod,
 >(
     tables: &Tables<'_, P, I, S>,
@@ -132,7 +132,7 @@ pub fn mix_with_health<
 /// # Errors
 /// As [`mix`]; the buffers are then as they were.
 #[inline(always)]
-pub fn mix_into<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
+pub fn mix_into<P: Quantity, I: Inverse, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -151,7 +151,7 @@ type Mixed = Result<(Wrench, Saturation), SetpointError>;
 
 /// [`mix_into`] without a closed form, or with rotors out.
 #[inline(always)]
-fn mix_in_general<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
+fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -192,7 +192,7 @@ fn mix_in_general<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
 
 /// [`mix_into`] in closed form; `None` where there is none, or a rotor is out.
 #[inline(always)]
-fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
+fn mix_in_closed_form<P: Quantity, I: Inverse, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
     voltage_v: f32,
@@ -209,7 +209,7 @@ fn mix_in_closed_form<P: Quantity, I: Inverse<P>, S: AllocationMethod>(
 /// other efforts are attainable, so by the compiler's proof each unit gives them within the
 /// tolerance.
 #[inline(always)]
-fn mix_by<P: Quantity, I: Inverse<P>, S>(
+fn mix_by<P: Quantity, I: Inverse, S>(
     closed_form: &ClosedForm<'_>,
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,

@@ -8,8 +8,5 @@ mod single;
 
 pub(crate) use forward::Expansion;
 pub use forward::{Biquadratic, Cubic, Pair, Quantity, Quartic};
-pub use inverse::{
-    BilinearSeed, CubicSeed, Inverse, PolynomialInverse, QuadraticSeed, RootCoordinates, Seed, Seeded,
-    ThrottleRange, solve,
-};
+pub use inverse::{Coefficients, Inverse, PolynomialInverse, ThrottleRange, solve};
 pub use single::SingleRotor;

@@ -12,7 +12,7 @@ pub use crate::arithmetic::{Scalar, sqrt};
 pub use crate::layout::{Tables, Tolerance, Unit};
 pub use crate::mix::{mix, mix_into, mix_with_health};
 pub use crate::pair::{
-    BilinearSeed, Biquadratic, Cubic, CubicSeed, Inverse, Pair, PolynomialInverse, QuadraticSeed, Quantity,
-    Quartic, RootCoordinates, Seed, Seeded, SingleRotor, ThrottleRange, solve,
+    Biquadratic, Coefficients, Cubic, Inverse, Pair, PolynomialInverse, Quantity, Quartic, SingleRotor,
+    ThrottleRange, solve,
 };
 pub use crate::voltage::{Voltage, VoltageLaw};

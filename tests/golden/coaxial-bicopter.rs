@@ -7,10 +7,10 @@
 /// * unit 0 at (0.0, 0.45, 0.0) m, upper rotor cw: channel 0 upper, 1 lower
 /// * unit 1 at (0.0, -0.45, 0.0) m, upper rotor ccw: channel 2 upper, 3 lower
 ///
-/// Inverse map: bilinear seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00376 N and 4.84e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (237 cells).
-/// Largest residual observed over 5422 efforts at the reference voltage: 0.00269 N, 3.42e-5 N m.
+/// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
+/// Proven: each unit's thrust and torque are within 0.00368 N and 4.25e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (330 cells).
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00259 N, 2.99e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod coaxial_bicopter {
     use ::mixer_rt::{self as rt, tables};
@@ -137,15 +137,20 @@ pub mod coaxial_bicopter {
         },
     ];
     /// The inverse map of a unit.
-    const INVERSE: tables::Seeded<tables::BilinearSeed, 1> = tables::Seeded {
-        coordinates: tables::RootCoordinates {
-            x: [0.040342588, -2.504363, 0.04923412],
-            y: [0.040342588, 3.0840058, 0.07635191],
-        },
-        seed: tables::BilinearSeed {
-            upper: [-0.30525702, 1.168284, 0.3510913, -0.24720146],
-            lower: [-0.28038272, 0.16849099, 1.1532216, -0.09372988],
-        },
+    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
+        forms: [
+            [0.040342588, -2.504363, 0.04923412],
+            [0.040342588, 3.0840058, 0.07635191],
+        ],
+        upper: [
+            -0.00635949,
+            -0.25598532,
+            1.1790247,
+            0.012056016,
+            0.34172016,
+            -0.3036902,
+        ],
+        lower: [-0.018678555, -0.092187606, 0.19416437, -0.0368544, 1.1993, -0.29747206],
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::Some(tables::Voltage {
@@ -432,7 +437,7 @@ pub mod coaxial_bicopter {
     pub static TABLES: tables::Tables<
         'static,
         tables::Biquadratic,
-        tables::Seeded<tables::BilinearSeed, 1>,
+        tables::PolynomialInverse<[f32; 6], 1>,
         &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
@@ -446,7 +451,7 @@ pub mod coaxial_bicopter {
         voltage: VOLTAGE,
         rows: [0.0896502, 0.0, 4.595398, 0.040342588],
         spread: [443.2581, 0.14420184],
-        level_n: [1.2264531, 49.34858],
+        level_n: [1.2265872, 49.347454],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -455,8 +460,8 @@ pub mod coaxial_bicopter {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0030275749, 0.00003889632],
-            wrench: [0.0034936774, 0.0, 0.00009889527, 0.0077637276],
+            efforts: [0.0029621422, 0.000034129265],
+            wrench: [0.0034201634, 0.0, 0.00008699345, 0.007600363],
         },
     };
 }

@@ -6,10 +6,10 @@
 ///
 /// * unit 0 at (0.0, 0.0, 0.0) m, upper rotor cw: channel 0 upper, 1 lower
 ///
-/// Inverse map: bilinear seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00303 N and 3.87e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (236 cells).
-/// Largest residual observed over 5421 efforts at the reference voltage: 0.00269 N, 3.42e-5 N m.
+/// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
+/// Proven: each unit's thrust and torque are within 0.00294 N and 3.44e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (329 cells).
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00259 N, 2.99e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod single_pair {
     use ::mixer_rt::{self as rt, tables};
@@ -131,15 +131,20 @@ pub mod single_pair {
         },
     ];
     /// The inverse map of a unit.
-    const INVERSE: tables::Seeded<tables::BilinearSeed, 1> = tables::Seeded {
-        coordinates: tables::RootCoordinates {
-            x: [0.040342588, -2.504363, 0.04923412],
-            y: [0.040342588, 3.0840058, 0.07635191],
-        },
-        seed: tables::BilinearSeed {
-            upper: [-0.30525702, 1.168284, 0.3510913, -0.24720146],
-            lower: [-0.28038272, 0.16849099, 1.1532216, -0.09372988],
-        },
+    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
+        forms: [
+            [0.040342588, -2.504363, 0.04923412],
+            [0.040342588, 3.0840058, 0.07635191],
+        ],
+        upper: [
+            -0.00635949,
+            -0.25598532,
+            1.1790247,
+            0.012056016,
+            0.34172016,
+            -0.3036902,
+        ],
+        lower: [-0.018678555, -0.092187606, 0.19416437, -0.0368544, 1.1993, -0.29747206],
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
@@ -403,7 +408,7 @@ pub mod single_pair {
     pub static TABLES: tables::Tables<
         'static,
         tables::Biquadratic,
-        tables::Seeded<tables::BilinearSeed, 1>,
+        tables::PolynomialInverse<[f32; 6], 1>,
         &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
@@ -417,7 +422,7 @@ pub mod single_pair {
         voltage: VOLTAGE,
         rows: [0.0, 0.0, 4.595398, 0.040342588],
         spread: [443.2581, 0.14420184],
-        level_n: [0.61321706, 24.674278],
+        level_n: [0.61331594, 24.673765],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -426,8 +431,8 @@ pub mod single_pair {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0030334904, 0.00003878264],
-            wrench: [0.0, 0.0, 0.000039525836, 0.0031244555],
+            efforts: [0.0029479556, 0.0000344516],
+            wrench: [0.0, 0.0, 0.000035194797, 0.0030389205],
         },
     };
 }

@@ -9,10 +9,10 @@
 /// * unit 2 at (-0.2121320343559643, -0.21213203435596423, 0.0) m, upper rotor cw: channel 2 upper, 6 lower
 /// * unit 3 at (0.2121320343559642, -0.2121320343559643, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
-/// Inverse map: bilinear seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.0043 N and 8.26e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (148 cells).
-/// Largest residual observed over 5333 efforts at the reference voltage: 0.00375 N, 7.23e-5 N m.
+/// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
+/// Proven: each unit's thrust and torque are within 0.00165 N and 2.39e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (217 cells).
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00152 N, 2.08e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_11in_cubic {
     use ::mixer_rt::{self as rt, tables};
@@ -151,15 +151,27 @@ pub mod x8_11in_cubic {
         },
     ];
     /// The inverse map of a unit.
-    const INVERSE: tables::Seeded<tables::BilinearSeed, 1> = tables::Seeded {
-        coordinates: tables::RootCoordinates {
-            x: [0.055495482, -3.066655, 0.04458168],
-            y: [0.055495482, 2.6901805, 0.02081367],
-        },
-        seed: tables::BilinearSeed {
-            upper: [-0.21583787, 1.0371574, -0.029803185, 0.11372281],
-            lower: [-0.2398157, 0.19128792, 1.1141006, -0.09779831],
-        },
+    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
+        forms: [
+            [0.055495482, -3.066655, 0.04458168],
+            [0.055495482, 2.6901805, 0.02081367],
+        ],
+        upper: [
+            -0.06877278,
+            0.08591076,
+            1.1396166,
+            0.0068869186,
+            -0.02602645,
+            -0.24296393,
+        ],
+        lower: [
+            0.17963968,
+            -0.06500615,
+            -0.082979254,
+            0.010252928,
+            1.0797458,
+            -0.15099555,
+        ],
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
@@ -551,7 +563,7 @@ pub mod x8_11in_cubic {
     pub static TABLES: tables::Tables<
         'static,
         tables::Cubic,
-        tables::Seeded<tables::BilinearSeed, 1>,
+        tables::PolynomialInverse<[f32; 6], 1>,
         &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
@@ -565,7 +577,7 @@ pub mod x8_11in_cubic {
         voltage: VOLTAGE,
         rows: [0.2616082, 0.2616082, 4.76171, 0.055495482],
         spread: [227.60522, 0.11379245],
-        level_n: [2.198629, 69.14089],
+        level_n: [2.2240434, 69.13363],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -574,8 +586,8 @@ pub mod x8_11in_cubic {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.004298808, 0.00008263585],
-            wrench: [0.003703377, 0.003703377, 0.00033353912, 0.017457888],
+            efforts: [0.0016470867, 0.000023960583],
+            wrench: [0.0014533172, 0.0014533172, 0.00009883807, 0.006851003],
         },
     };
 }

@@ -9,10 +9,10 @@
 /// * unit 2 at (-0.2121320343559643, -0.21213203435596423, 0.0) m, upper rotor cw: channel 2 upper, 6 lower
 /// * unit 3 at (0.2121320343559642, -0.2121320343559643, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
-/// Inverse map: bilinear seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00409 N and 5.01e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (232 cells).
-/// Largest residual observed over 5417 efforts at the reference voltage: 0.0027 N, 3.27e-5 N m.
+/// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
+/// Proven: each unit's thrust and torque are within 0.00237 N and 1.96e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (593 cells).
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00155 N, 1.28e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_11in_least_power {
     use ::mixer_rt::{self as rt, tables};
@@ -151,15 +151,27 @@ pub mod x8_11in_least_power {
         },
     ];
     /// The inverse map of a unit.
-    const INVERSE: tables::Seeded<tables::BilinearSeed, 1> = tables::Seeded {
-        coordinates: tables::RootCoordinates {
-            x: [0.049894884, -2.9571145, -0.003234389],
-            y: [0.049894884, 2.3997736, 0.009475112],
-        },
-        seed: tables::BilinearSeed {
-            upper: [-0.09626213, 0.95408076, 0.02894279, 0.032468274],
-            lower: [-0.1820154, 0.1765113, 1.1832006, -0.19651966],
-        },
+    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
+        forms: [
+            [0.049894884, -2.9571145, -0.003234389],
+            [0.049894884, 2.3997736, 0.009475112],
+        ],
+        upper: [
+            -0.054592736,
+            0.025805416,
+            1.0307138,
+            0.011668271,
+            0.01972992,
+            -0.116693266,
+        ],
+        lower: [
+            0.05399328,
+            -0.18262497,
+            0.099465825,
+            -0.015757194,
+            1.1914887,
+            -0.16352606,
+        ],
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::Some(tables::Voltage {
@@ -489,7 +501,7 @@ pub mod x8_11in_least_power {
     pub static TABLES: tables::Tables<
         'static,
         tables::Cubic,
-        tables::Seeded<tables::BilinearSeed, 1>,
+        tables::PolynomialInverse<[f32; 6], 1>,
         &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
@@ -503,7 +515,7 @@ pub mod x8_11in_least_power {
         voltage: VOLTAGE,
         rows: [0.23520674, 0.23520674, 4.404444, 0.049894884],
         spread: [287.4635, 0.12583156],
-        level_n: [2.346654, 74.53513],
+        level_n: [2.351437, 74.526924],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -512,8 +524,8 @@ pub mod x8_11in_least_power {
         power_bias_nm_per_n: 0.00695,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0030757585, 0.00003767197],
-            wrench: [0.0035554972, 0.0035554972, 0.0002049678, 0.016760774],
+            efforts: [0.0017872729, 0.000014833874],
+            wrench: [0.0020977466, 0.0020977466, 0.000083164996, 0.009888872],
         },
     };
 }

@@ -9,10 +9,10 @@
 /// * unit 2 at (-0.3181980515339465, -0.31819805153394637, 0.0) m, upper rotor cw: channel 2 upper, 6 lower
 /// * unit 3 at (0.3181980515339463, -0.3181980515339465, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
-/// Inverse map: cubic seed in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00554 N and 5.87e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (554 cells).
-/// Largest residual observed over 5740 efforts at the reference voltage: 0.00489 N, 5.12e-5 N m.
+/// Inverse map: polynomial of degree 3 in root coordinates, one Newton step.
+/// Proven: each unit's thrust and torque are within 0.00549 N and 5.87e-5 N m of what is asked, at every
+/// voltage and everywhere in the attainable set, rounding in f32 included (559 cells).
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00479 N, 5.12e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_16in_biquadratic {
     use ::mixer_rt::{self as rt, tables};
@@ -149,37 +149,35 @@ pub mod x8_16in_biquadratic {
         },
     ];
     /// The inverse map of a unit.
-    const INVERSE: tables::Seeded<tables::CubicSeed, 1> = tables::Seeded {
-        coordinates: tables::RootCoordinates {
-            x: [0.023797631, -1.4680592, 0.19563453],
-            y: [0.023797631, 1.2310524, 0.14608589],
-        },
-        seed: tables::CubicSeed {
-            upper: [
-                -1.0302194,
-                2.2200458,
-                1.2622051,
-                -1.6622436,
-                -0.5854213,
-                -0.49337763,
-                0.57594967,
-                0.38758466,
-                0.066516794,
-                0.07321676,
-            ],
-            lower: [
-                -0.93106043,
-                1.3051378,
-                1.8884587,
-                -1.3505657,
-                -0.6023947,
-                -0.22347493,
-                0.38774604,
-                0.26403317,
-                0.15232214,
-                -0.0113897305,
-            ],
-        },
+    const INVERSE: tables::PolynomialInverse<[f32; 10], 1> = tables::PolynomialInverse {
+        forms: [
+            [0.023797631, -1.4680592, 0.19563453],
+            [0.023797631, 1.2310524, 0.14608589],
+        ],
+        upper: [
+            0.066516794,
+            0.57594967,
+            -0.5854213,
+            0.38758466,
+            -1.6622436,
+            2.2200458,
+            0.07321676,
+            -0.49337763,
+            1.2622051,
+            -1.0302194,
+        ],
+        lower: [
+            0.15232214,
+            0.38774604,
+            -0.6023947,
+            0.26403317,
+            -1.3505657,
+            1.3051378,
+            -0.011389731,
+            -0.22347493,
+            1.8884587,
+            -0.93106043,
+        ],
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
@@ -539,7 +537,7 @@ pub mod x8_16in_biquadratic {
     pub static TABLES: tables::Tables<
         'static,
         tables::Biquadratic,
-        tables::Seeded<tables::CubicSeed, 1>,
+        tables::PolynomialInverse<[f32; 10], 1>,
         &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,
@@ -562,8 +560,8 @@ pub mod x8_16in_biquadratic {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.005554171, 0.000058851205],
-            wrench: [0.0072575104, 0.0072575104, 0.00024327113, 0.022808155],
+            efforts: [0.005509647, 0.000058851205],
+            wrench: [0.007200841, 0.007200841, 0.00024327113, 0.022630058],
         },
     };
 }

@@ -9,10 +9,10 @@
 /// * unit 2 at (-0.3181980515339465, -0.31819805153394637, 0.0) m, upper rotor cw: channel 2 upper, 6 lower
 /// * unit 3 at (0.3181980515339463, -0.3181980515339465, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
-/// Inverse map: quadratic seed in root coordinates, one Newton step.
+/// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
 /// Proven: each unit's thrust and torque are within 0.00488 N and 9.55e-5 N m of what is asked, at every
 /// voltage and everywhere in the attainable set, rounding in f32 included (286 cells).
-/// Largest residual observed over 5471 efforts at the reference voltage: 0.00427 N, 8.3e-5 N m.
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00427 N, 8.3e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_16in_quartic {
     use ::mixer_rt::{self as rt, tables};
@@ -161,29 +161,27 @@ pub mod x8_16in_quartic {
         },
     ];
     /// The inverse map of a unit.
-    const INVERSE: tables::Seeded<tables::QuadraticSeed, 1> = tables::Seeded {
-        coordinates: tables::RootCoordinates {
-            x: [0.024828965, -1.5989246, 0.2026527],
-            y: [0.024828965, 1.1136725, 0.020582894],
-        },
-        seed: tables::QuadraticSeed {
-            upper: [
-                -0.38178024,
-                1.0379068,
-                0.10398068,
-                -0.08126983,
-                0.029871274,
-                0.11243699,
-            ],
-            lower: [
-                -0.023477925,
-                -0.013217936,
-                0.75390774,
-                -0.07650533,
-                0.14599212,
-                0.15530194,
-            ],
-        },
+    const INVERSE: tables::PolynomialInverse<[f32; 6], 1> = tables::PolynomialInverse {
+        forms: [
+            [0.024828965, -1.5989246, 0.2026527],
+            [0.024828965, 1.1136725, 0.020582894],
+        ],
+        upper: [
+            0.029871274,
+            -0.08126983,
+            1.0379068,
+            0.11243699,
+            0.10398068,
+            -0.38178024,
+        ],
+        lower: [
+            0.14599212,
+            -0.07650533,
+            -0.013217936,
+            0.15530194,
+            0.75390774,
+            -0.023477925,
+        ],
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
@@ -551,7 +549,7 @@ pub mod x8_16in_quartic {
     pub static TABLES: tables::Tables<
         'static,
         tables::Quartic,
-        tables::Seeded<tables::QuadraticSeed, 1>,
+        tables::PolynomialInverse<[f32; 6], 1>,
         &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,

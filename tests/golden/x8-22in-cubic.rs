@@ -9,10 +9,10 @@
 /// * unit 2 at (-0.4242640687119286, -0.42426406871192845, 0.0) m, upper rotor cw: channel 2 upper, 6 lower
 /// * unit 3 at (0.4242640687119284, -0.4242640687119286, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
-/// Inverse map: cubic seed in root coordinates, one Newton step.
+/// Inverse map: polynomial of degree 3 in root coordinates, one Newton step.
 /// Proven: each unit's thrust and torque are within 0.00407 N and 9.4e-5 N m of what is asked, at every
 /// voltage and everywhere in the attainable set, rounding in f32 included (419 cells).
-/// Largest residual observed over 5604 efforts at the reference voltage: 0.00357 N, 8.23e-5 N m.
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00357 N, 8.23e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_22in_cubic {
     use ::mixer_rt::{self as rt, tables};
@@ -151,37 +151,35 @@ pub mod x8_22in_cubic {
         },
     ];
     /// The inverse map of a unit.
-    const INVERSE: tables::Seeded<tables::CubicSeed, 1> = tables::Seeded {
-        coordinates: tables::RootCoordinates {
-            x: [0.01704014, -0.6866573, -0.041779503],
-            y: [0.01704014, 0.5040942, 0.037464034],
-        },
-        seed: tables::CubicSeed {
-            upper: [
-                0.10150873,
-                0.38433596,
-                0.014996112,
-                -0.016445901,
-                0.31740645,
-                0.16267537,
-                0.0630319,
-                -0.052719638,
-                0.010142898,
-                -0.084883966,
-            ],
-            lower: [
-                -0.039632052,
-                0.051548325,
-                0.91936976,
-                -0.08425413,
-                0.159384,
-                -0.3211559,
-                -0.07920923,
-                0.050170437,
-                -0.0042274417,
-                0.31566513,
-            ],
-        },
+    const INVERSE: tables::PolynomialInverse<[f32; 10], 1> = tables::PolynomialInverse {
+        forms: [
+            [0.01704014, -0.6866573, -0.041779503],
+            [0.01704014, 0.5040942, 0.037464034],
+        ],
+        upper: [
+            0.010142898,
+            0.0630319,
+            0.31740645,
+            -0.052719638,
+            -0.016445901,
+            0.38433596,
+            -0.084883966,
+            0.16267537,
+            0.014996112,
+            0.10150873,
+        ],
+        lower: [
+            -0.0042274417,
+            -0.07920923,
+            0.159384,
+            0.050170437,
+            -0.08425413,
+            0.051548325,
+            0.31566513,
+            -0.3211559,
+            0.91936976,
+            -0.039632052,
+        ],
     };
     /// The voltage correction.
     const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
@@ -549,7 +547,7 @@ pub mod x8_22in_cubic {
     pub static TABLES: tables::Tables<
         'static,
         tables::Cubic,
-        tables::Seeded<tables::CubicSeed, 1>,
+        tables::PolynomialInverse<[f32; 10], 1>,
         &tables::ClosedForm<'static>,
     > = tables::Tables {
         units: &UNIT_TABLES,

@@ -148,8 +148,7 @@ fn compare(name: &str, compiled: &Compiled) -> [Row; 4] {
                 let efforts = unit
                     .allocation
                     .map(|row| row.iter().zip(setpoint.to_array()).map(|(a, b)| a * b).sum());
-                mixer_rt::tables::Inverse::throttles(&view.inverse, &view.pair, &view.throttle, efforts)
-                    .map(f64::from)
+                compiled.tables.throttles(efforts).map(f64::from)
             })
             .collect();
         least_norm.count(request, wrench(&throttles), authority);

@@ -8,7 +8,6 @@ pub mod cost;
 pub mod counts;
 pub mod digest;
 pub mod documents;
-pub mod evaluators;
 pub mod firmware;
 pub mod frames;
 pub mod golden;

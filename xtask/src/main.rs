@@ -51,11 +51,6 @@ const TASKS: &[Task] = &[
         does: "counts instructions in QEMU; `counts --search` looks for requests that cost more, `counts --bless` writes tests/counts.csv, tests/worst.csv and docs/costs.md, `counts --page` docs/costs.md alone",
     },
     Task {
-        name: "evaluators",
-        program: tests!("--release" => "evaluators"),
-        does: "counts the instructions of every evaluator and prints them as mixer-compiler states them",
-    },
-    Task {
         name: "soak",
         program: tests!(=> "soak"),
         does: "draws frames and requests for `--minutes M` with `--seed S` and holds every answer to the physics; prints failures with what reproduces them",

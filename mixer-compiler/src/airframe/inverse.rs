@@ -7,17 +7,8 @@ use crate::spec::keys::{Kind, Range, keys};
 /// Highest degree of the paper's polynomial in (f, Q): 136 terms per throttle.
 const HIGHEST_INVERSE_DEGREE: usize = 15;
 
-/// What `method` can be: a choice, the paper's polynomials, then the seeded evaluators by their cost.
-pub(crate) const METHODS: [&str; 8] = [
-    "auto",
-    "polynomial",
-    "bilinear-newton",
-    "quadratic-newton",
-    "cubic-newton",
-    "bilinear-newton2",
-    "quadratic-newton2",
-    "cubic-newton2",
-];
+/// What `method` can be.
+const METHODS: [&str; 2] = ["auto", "polynomial"];
 
 keys! { TABLE = "[inverse]":
     THRUST_TOLERANCE_N "thrust_tolerance_n" = "0.01", Kind::Number(Range::Positive),
@@ -27,7 +18,7 @@ keys! { TABLE = "[inverse]":
         "What a unit's torque may miss at any voltage, N m.".default(TORQUE_TOLERANCE)
         .refusing("must be above 0", "the largest error that the mixer may make; 0.0001 N m is the default");
     METHOD "method" = "\"auto\"", Kind::Word(&METHODS),
-        "auto: the cheapest evaluator that is proven to meet the tolerances; polynomial: the paper's, with a degree; or one by name.";
+        "auto: the cheapest evaluator that is proven to meet the tolerances; polynomial: the paper's, with a degree.";
     DEGREE "degree" = "7", Kind::Count([1, HIGHEST_INVERSE_DEGREE]),
         "Total degree of method = \"polynomial\".";
 }
@@ -37,7 +28,7 @@ const THRUST_TOLERANCE: f64 = 0.01;
 const TORQUE_TOLERANCE: f64 = 1e-4;
 
 /// Which evaluator of the inverse to emit.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// The cheapest that meets the tolerances.
     Auto,
@@ -46,8 +37,6 @@ pub enum Method {
         /// Total degree, 1 to 15.
         degree: usize,
     },
-    /// One of the evaluators, by its name.
-    Named(String),
 }
 
 /// `[inverse]` with its defaults.
@@ -89,7 +78,6 @@ fn method(table: &mut Fields<'_, '_>) -> Option<Method> {
         None => "auto",
     };
     match (name, degree) {
-        ("auto", None) => Some(Method::Auto),
         ("polynomial", Some(degree)) if (1..=HIGHEST_INVERSE_DEGREE).contains(&degree) => {
             Some(Method::Polynomial { degree })
         }
@@ -112,6 +100,6 @@ fn method(table: &mut Fields<'_, '_>) -> Option<Method> {
             let help = "remove it, or set `method = \"polynomial\"`";
             table.refuse(&DEGREE, Code::Conflict, message, "only for the polynomial", help)
         }
-        (name, None) => Some(Method::Named(name.to_owned())),
+        (_, None) => Some(Method::Auto),
     }
 }

@@ -12,7 +12,8 @@ mod sample;
 
 pub(crate) use coordinates::Coordinates;
 
-use crate::inverse::evaluator::{Evaluator, SeedForm};
+use super::evaluator::Evaluator;
+use super::table::InverseTable;
 use crate::model::PairMap;
 use coordinates::Start;
 use lawson::Lawson;
@@ -32,33 +33,6 @@ const SEARCH_ROUNDS: usize = 3;
 
 /// Largest error on the coarse grid for which coordinates are searched for one form.
 const WORTH_A_SEARCH: f64 = 2.0;
-
-/// A fitted inverse, in f64.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum FittedInverse {
-    /// Coefficients of a polynomial in scaled (f, Q).
-    Polynomial {
-        /// Total degree.
-        degree: u8,
-        /// Scale and offset of f to [-1, 1].
-        thrust: [f64; 2],
-        /// Scale and offset of Q to [-1, 1].
-        torque: [f64; 2],
-        /// Coefficients of u and of l, in the order of `mixer_rt::tables::PolynomialInverse`.
-        coefficients: [Vec<f64>; 2],
-    },
-    /// Coefficients of a seed.
-    Seeded {
-        /// The seed's form.
-        seed: SeedForm,
-        /// Newton steps.
-        steps: u8,
-        /// The root coordinates.
-        coordinates: Coordinates,
-        /// Coefficients of u and of l.
-        coefficients: [Vec<f64>; 2],
-    },
-}
 
 /// Fits evaluators to one pair; the search for coordinates is shared.
 #[derive(Debug)]
@@ -91,38 +65,24 @@ impl<'a> Inversion<'a> {
 
     /// Fits an evaluator. Returns it with its largest error over the samples in units of the
     /// tolerance.
-    pub(crate) fn fit(&mut self, evaluator: Evaluator) -> (FittedInverse, f64) {
+    pub(crate) fn fit(&mut self, evaluator: Evaluator) -> (InverseTable, f64) {
         match evaluator {
-            Evaluator::Polynomial { degree } => self.fit_polynomial(degree),
-            Evaluator::Seeded { seed, steps } => self.fit_seed(seed, steps),
+            Evaluator::Polynomial { .. } => self.fit_polynomial(evaluator),
+            Evaluator::Seed { .. } => self.fit_seed(evaluator),
         }
     }
 
-    /// Fits a seed for Newton steps, in the best of the starts' coordinates; where not much is
+    /// Fits a seed for its Newton steps, in the best of the starts' coordinates; where not much is
     /// missing then, coordinates are searched for this very form.
-    fn fit_seed(&mut self, seed: SeedForm, steps: u8) -> (FittedInverse, f64) {
+    fn fit_seed(&mut self, seed: Evaluator) -> (InverseTable, f64) {
         let mut best = (self.start(0), Start::ALL[0], f64::INFINITY);
         for (index, start) in Start::ALL.into_iter().enumerate() {
             let coordinates = self.start(index);
             let error = self
-                .fit_over(
-                    &self.coarse,
-                    coordinates,
-                    seed,
-                    steps,
-                    lawson::PATIENCE,
-                    start.emphasis,
-                )
+                .fit_over(&self.coarse, coordinates, seed, lawson::PATIENCE, start.emphasis)
                 .1;
             if error <= 1.0 {
-                let fitted = self.fit_over(
-                    &self.fine,
-                    coordinates,
-                    seed,
-                    steps,
-                    lawson::ROUNDS,
-                    start.emphasis,
-                );
+                let fitted = self.fit_over(&self.fine, coordinates, seed, lawson::ROUNDS, start.emphasis);
                 if fitted.1 <= 1.0 {
                     return fitted;
                 }
@@ -134,14 +94,14 @@ impl<'a> Inversion<'a> {
         let (mut coordinates, Start { emphasis, .. }, error) = best;
         if error < WORTH_A_SEARCH {
             let of = |coordinates: &Coordinates| {
-                self.fit_over(&self.coarse, *coordinates, seed, steps, SEARCH_ROUNDS, emphasis)
+                self.fit_over(&self.coarse, *coordinates, seed, SEARCH_ROUNDS, emphasis)
                     .1
             };
             coordinates = coordinates.improved(self.pair, EVALUATIONS, of);
         } else if !self.thorough {
-            return self.fit_over(&self.coarse, coordinates, seed, steps, lawson::PATIENCE, emphasis);
+            return self.fit_over(&self.coarse, coordinates, seed, lawson::PATIENCE, emphasis);
         }
-        self.fit_over(&self.fine, coordinates, seed, steps, lawson::ROUNDS, emphasis)
+        self.fit_over(&self.fine, coordinates, seed, lawson::ROUNDS, emphasis)
     }
 
     /// Fits a seed in the given coordinates.
@@ -149,24 +109,18 @@ impl<'a> Inversion<'a> {
         &self,
         sampled: &Sampled,
         coordinates: Coordinates,
-        seed: SeedForm,
-        steps: u8,
+        seed: Evaluator,
         rounds: usize,
         emphasis: f64,
-    ) -> (FittedInverse, f64) {
+    ) -> (InverseTable, f64) {
         let row = |sample: &Sample| {
             let [x, y] = coordinates.at(sample.efforts);
-            seed.row(x, y)
+            monomials(seed.degree(), x, y)
         };
         let rows: Vec<Vec<f64>> = sampled.samples.iter().map(row).collect();
-        let (coefficients, error) = self.fit_throttles(sampled, &rows, steps, rounds, emphasis);
-        let fitted = FittedInverse::Seeded {
-            seed,
-            steps,
-            coordinates,
-            coefficients,
-        };
-        (fitted, error)
+        let (coefficients, error) = self.fit_throttles(sampled, &rows, seed.steps(), rounds, emphasis);
+        let Coordinates { x, y } = coordinates;
+        (InverseTable::new(seed, [x, y], coefficients), error)
     }
 
     /// The coordinates of a start, searched once.
@@ -175,7 +129,7 @@ impl<'a> Inversion<'a> {
         *self.coordinates[index].get_or_insert_with(|| Coordinates::search(pair, Start::ALL[index]))
     }
 
-    fn fit_polynomial(&self, degree: u8) -> (FittedInverse, f64) {
+    fn fit_polynomial(&self, polynomial: Evaluator) -> (InverseTable, f64) {
         let samples = &self.fine.samples;
         let range = |index: usize| {
             let values = samples.iter().map(|sample| sample.efforts[index]);
@@ -186,17 +140,16 @@ impl<'a> Inversion<'a> {
         let (thrust, torque) = (range(0), range(1));
         let row = |sample: &Sample| {
             let [f, q] = sample.efforts;
-            monomials(degree, thrust[0] * f + thrust[1], torque[0] * q + torque[1])
+            monomials(
+                polynomial.degree(),
+                thrust[0] * f + thrust[1],
+                torque[0] * q + torque[1],
+            )
         };
         let rows: Vec<Vec<f64>> = samples.iter().map(row).collect();
         let (coefficients, error) = self.fit_throttles(&self.fine, &rows, 0, lawson::ROUNDS, 0.0);
-        let polynomial = FittedInverse::Polynomial {
-            degree,
-            thrust,
-            torque,
-            coefficients,
-        };
-        (polynomial, error)
+        let forms = [[thrust[0], 0.0, thrust[1]], [0.0, torque[0], torque[1]]];
+        (InverseTable::new(polynomial, forms, coefficients), error)
     }
 
     /// The minimax fit of both throttles in the given terms, and its error after the Newton steps.
@@ -235,14 +188,26 @@ impl<'a> Inversion<'a> {
     }
 }
 
-/// The terms s^(d-i) t^(i-j) in the order of `mixer_rt::tables::PolynomialInverse`.
-fn monomials(degree: u8, s: f64, t: f64) -> Vec<f64> {
-    let power = |x: f64, exponent: u8| (0..exponent).fold(1.0, |product, _| product * x);
-    let mut terms = Vec::new();
-    for i in 0..=degree {
-        for j in 0..=i {
-            terms.push(power(s, degree - i) * power(t, i - j));
+/// The terms x^(d-i) y^(i-j) in the order of `mixer_rt::tables::PolynomialInverse`.
+fn monomials(degree: u8, x: f64, y: f64) -> Vec<f64> {
+    let d = usize::from(degree);
+    let (mut of_x, mut of_y) = (vec![1.0; d + 1], vec![1.0; d + 1]);
+    // Plain loops: the search runs through here thousands of times in builds without optimisation.
+    let mut k = 1;
+    while k <= d {
+        of_x[k] = of_x[k - 1] * x;
+        of_y[k] = of_y[k - 1] * y;
+        k += 1;
+    }
+    let mut terms = Vec::with_capacity((d + 1) * (d + 2) / 2);
+    let mut i = 0;
+    while i <= d {
+        let mut j = 0;
+        while j <= i {
+            terms.push(of_x[d - i] * of_y[i - j]);
+            j += 1;
         }
+        i += 1;
     }
     terms
 }

@@ -1,6 +1,6 @@
 //! Probes of the sides of the closed form, which wrenches alone reach only here and there.
 
-use mixer_rt::tables::{Border, Inverse};
+use mixer_rt::tables::Border;
 
 use crate::compiled::Compiled;
 
@@ -53,7 +53,7 @@ pub(super) fn check(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> 
 /// The efforts are attained by the emitted inverse; else the words for what they are of.
 fn check_attained(compiled: &Compiled, scale: [f64; 2], efforts: [f32; 2], of: &str) -> Result<(), String> {
     let tables = &compiled.tables;
-    let throttles = (&tables.inverse).throttles(&tables.view().pair, &tables.throttle, efforts);
+    let throttles = tables.throttles(efforts);
     let given = compiled.pair.efforts(throttles.map(f64::from));
     for k in 0..2 {
         let missed = (given[k] - f64::from(efforts[k])).abs();

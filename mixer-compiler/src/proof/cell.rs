@@ -19,7 +19,8 @@ use mixer_rt::tables::{Pair, ThrottleRange, solve};
 use super::bend::{Bend, squares};
 use super::expansion::{Expansion, Monomials};
 use super::taylor::Taylor;
-use crate::tables::{InverseTable, QuantityTable};
+use crate::inverse::table::InverseTable;
+use crate::tables::QuantityTable;
 
 /// What stays the same from cell to cell.
 #[derive(Debug)]
@@ -79,7 +80,7 @@ impl Subject<'_> {
         if !bounded(&deviation) {
             return [f64::INFINITY; 2];
         }
-        let steps = self.inverse.steps();
+        let steps = self.inverse.evaluator.steps();
         if steps == 0 {
             return local.bound(&deviation, &local.change(&deviation));
         }

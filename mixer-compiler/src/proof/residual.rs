@@ -68,11 +68,6 @@ impl Residual {
         }
     }
 
-    /// True where no residual is above `tolerance` (`[N, N m]`).
-    pub(crate) fn within(&self, tolerance: [f64; 2]) -> bool {
-        self.efforts[0] <= tolerance[0] && self.efforts[1] <= tolerance[1]
-    }
-
     /// The residual in units of the tolerance.
     pub(crate) fn ratio(&self, tolerance: [f64; 2]) -> f64 {
         (self.efforts[0] / tolerance[0]).max(self.efforts[1] / tolerance[1])

@@ -3,8 +3,6 @@
 use super::enclosure_tests::numbers;
 use super::*;
 use crate::diagnostic::source::Source;
-use crate::tables::{InverseTable, SeedTable};
-use mixer_rt::tables::Inverse;
 
 fn airframe_text(name: &str) -> String {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -17,16 +15,15 @@ fn compiled(text: String) -> crate::compiled::Compiled {
 }
 
 fn prove_again(compiled: &crate::compiled::Compiled, tables: &crate::tables::MixerTables) -> Certificate {
-    let pair = &compiled.pair;
     let correction = CorrectionBounds::new(&compiled.airframe, tables.voltage.as_ref());
-    let mut observed = compiled.residual;
+    let tolerance = correction.tolerance_at_reference(&compiled.airframe);
+    let aim = [0, 1].map(|k| (1.15 * compiled.residual.efforts[k]).min(tolerance[k]));
     prove(
         &compiled.airframe,
-        pair,
         &tables.map(),
         &correction,
-        &mut observed,
-        true,
+        aim,
+        Effort::Thorough,
     )
 }
 
@@ -43,11 +40,13 @@ fn nothing_is_observed_beyond_the_bound() {
                 &format!("torque_tolerance_nm = 0.0217\nmethod = {method}"),
             )
     };
-    let mut texts: Vec<(String, String)> = crate::airframe::METHODS[2..]
-        .iter()
-        .map(|name| ((*name).to_owned(), loose(&isae, &format!("\"{name}\""))))
-        .collect();
-    texts.push(("polynomial 5".into(), loose(&isae, "\"polynomial\"\ndegree = 5")));
+    let mut texts = vec![
+        ("isae-x8".to_owned(), isae.clone()),
+        (
+            "polynomial 5".to_owned(),
+            loose(&isae, "\"polynomial\"\ndegree = 5"),
+        ),
+    ];
     for fixture in ["cubic-tilted-x8", "polynomial-x10", "quartic-y6"] {
         texts.push((
             fixture.into(),
@@ -86,7 +85,7 @@ fn nothing_is_observed_beyond_the_bound() {
                 _ => ([1.0; 2], [1.0; 2]),
             };
             let asked = [0, 1].map(|m: usize| (k[m] * efforts[m]) as f32 * per[m]);
-            let found = (&tables.inverse).throttles(&tables.pair, &tables.throttle, asked);
+            let found = tables.throttles(asked);
             for throttle in found {
                 assert!(throttle >= tables.throttle.min && throttle <= tables.throttle.max);
             }
@@ -127,24 +126,17 @@ fn flipped_bits_are_refused_where_they_matter() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
     let pair = &compiled.pair;
     let (mut refused, mut harmless) = (0, 0);
-    for place in 0..14 {
+    for place in 0..18 {
         for bit in [30, 26, 23, 22, 20, 17, 8, 0] {
             let mut tables = compiled.tables.clone();
-            let InverseTable::Seeded {
-                coordinates,
-                seed: SeedTable::Bilinear(seed),
-                ..
-            } = &mut tables.inverse
-            else {
-                panic!("{:?}", tables.inverse)
+            let slot = {
+                let inverse = &mut tables.inverse;
+                let factors = inverse.forms.iter_mut().flatten();
+                factors
+                    .chain(inverse.coefficients.iter_mut().flatten())
+                    .nth(place)
+                    .unwrap()
             };
-            let slots = coordinates
-                .x
-                .iter_mut()
-                .chain(&mut coordinates.y)
-                .chain(&mut seed.upper)
-                .chain(&mut seed.lower);
-            let slot = slots.into_iter().nth(place).unwrap();
             *slot = f32::from_bits(slot.to_bits() ^ (1 << bit));
             let certificate = prove_again(&compiled, &tables);
             let observed = Residual::over_set(pair, &tables.map());
@@ -157,7 +149,8 @@ fn flipped_bits_are_refused_where_they_matter() {
             } else {
                 refused += 1;
             }
-            if bit >= 23 {
+            // Of the small coefficient of x2 some smaller flips are harmless.
+            if bit == 30 || bit >= 23 && place != 6 {
                 assert!(!certificate.holds(), "{place} {bit}: {certificate:?}");
             }
             if bit == 0 {
@@ -165,7 +158,7 @@ fn flipped_bits_are_refused_where_they_matter() {
             }
         }
     }
-    assert!(refused >= 14 * 3 && harmless >= 14, "{refused} {harmless}");
+    assert!(refused >= 18 * 3 && harmless >= 18, "{refused} {harmless}");
 }
 
 /// A Newton step corrects the seed whatever the forward table says of it: a wrong forward table

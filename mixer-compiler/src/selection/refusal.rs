@@ -1,5 +1,4 @@
-//! Refusals: of a method that does not exist, and of a tolerance that no evaluator meets. Every mend
-//! that they offer has been tried.
+//! The refusal of a tolerance that no evaluator meets. Every mend that it offers has been tried.
 
 use crate::airframe::{Airframe, Method};
 use crate::diagnostic::{Code, Diagnostic, number, rounded_up};
@@ -28,17 +27,6 @@ fn better_idle(airframe: &Airframe, meets: impl Fn(&Airframe) -> bool) -> Option
             other.throttle.min = idle;
             meets(&other)
         })
-}
-
-/// The refusal of an evaluator that does not exist.
-pub(super) fn name(airframe: &Airframe) -> Diagnostic {
-    airframe.diagnostic(
-        Code::Tolerance,
-        "inverse.method",
-        "no evaluator of this name",
-        "",
-        "use method = \"auto\"",
-    )
 }
 
 /// The refusal of a tolerance. `evaluator` came closest, with what is proven of it; `meets` tells
@@ -79,26 +67,26 @@ pub(super) fn tolerance(
     } else {
         key
     };
-    let works = |tolerance: [f64; 2], method: &Method| {
+    let works = |tolerance: [f64; 2], method: Method| {
         let mut other = airframe.clone();
         [
             other.inverse.thrust_tolerance_n,
             other.inverse.torque_tolerance_nm,
         ] = tolerance;
-        other.inverse.method = method.clone();
+        other.inverse.method = method;
         meets(&other)
     };
     let mut mends: Vec<String> = idle_mend.into_iter().collect();
     if idle.is_none() {
         // Where an idle does, the tolerance is not at fault.
         mends.extend(raised_tolerances(stated, reached, |offered| {
-            works(offered, &inverse.method)
+            works(offered, inverse.method)
         }));
     }
-    let message = match &inverse.method {
+    let message = match inverse.method {
         Method::Auto => format!("no evaluator meets a tolerance of {missed}"),
         _ => {
-            if works(stated, &Method::Auto) {
+            if works(stated, Method::Auto) {
                 mends.push("method = \"auto\" would do".to_owned());
             }
             format!("`inverse.method` does not meet a tolerance of {missed}")

@@ -2,15 +2,14 @@
 //! The fields of each type are named once, below.
 
 use mixer_rt::tables::{
-    Airmode, BilinearSeed, Border, Cell, ClosedForm, ClosedFormUnit, CubicSeed, Facets, Grid, Knot, Outline,
-    Pair, PolynomialInverse, Priorities, QuadraticSeed, RootCoordinates, SingleRotor, ThrottleRange,
-    Tolerance, Unit, Voltage, VoltageLaw,
+    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, Outline, Pair, Priorities,
+    SingleRotor, ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
 
-use super::inverse::{InverseTable, SeedTable};
 use super::quantity::QuantityTable;
+use crate::inverse::table::InverseTable;
 
 /// A part of the tables.
 pub(crate) trait Part {
@@ -105,11 +104,6 @@ parts! {
     Unit { allocation, effectiveness, channels };
     Pair<QuantityTable> { thrust, torque };
     SingleRotor { thrust, torque };
-    PolynomialInverse<'_> { thrust, torque, degree, upper, lower };
-    RootCoordinates { x, y };
-    BilinearSeed { upper, lower };
-    QuadraticSeed { upper, lower };
-    CubicSeed { upper, lower };
     ThrottleRange { min, max };
     Voltage<'_> { range_v, thrust, torque };
     Priorities { airmode, yaw_reserve_nm };
@@ -166,45 +160,20 @@ impl Part for VoltageLaw<'_> {
 
 impl Part for InverseTable {
     fn written(&self) -> (TokenStream, usize) {
-        match self {
-            InverseTable::Polynomial(polynomial) => {
-                let (polynomial, bytes) = polynomial.view().written();
-                // The degree is folded into the code.
-                (polynomial, bytes - 1)
-            }
-            InverseTable::Seeded {
-                coordinates, seed, ..
-            } => {
-                let (coordinates, of_coordinates) = coordinates.written();
-                let (seed, of_seed) = match seed {
-                    SeedTable::Bilinear(seed) => seed.written(),
-                    SeedTable::Quadratic(seed) => seed.written(),
-                    SeedTable::Cubic(seed) => seed.written(),
-                };
-                (
-                    quote!(tables::Seeded { coordinates: #coordinates, seed: #seed }),
-                    of_coordinates + of_seed,
-                )
-            }
-        }
+        let (forms, of_forms) = self.forms.written();
+        let [(upper, of_upper), (lower, of_lower)] =
+            self.coefficients.each_ref().map(|c| c.as_slice().written());
+        let inverse = quote!(tables::PolynomialInverse { forms: #forms, upper: #upper, lower: #lower });
+        (inverse, of_forms + of_upper + of_lower)
     }
 }
 
 impl InverseTable {
     /// The type in `mixer-rt`.
     pub(crate) fn type_tokens(&self) -> TokenStream {
-        match self {
-            InverseTable::Polynomial(_) => quote!(tables::PolynomialInverse<'static>),
-            InverseTable::Seeded { seed, steps, .. } => {
-                let steps = Literal::u8_unsuffixed(*steps);
-                let seed = match seed {
-                    SeedTable::Bilinear(_) => quote!(BilinearSeed),
-                    SeedTable::Quadratic(_) => quote!(QuadraticSeed),
-                    SeedTable::Cubic(_) => quote!(CubicSeed),
-                };
-                quote!(tables::Seeded<tables::#seed, #steps>)
-            }
-        }
+        let terms = Literal::usize_unsuffixed(self.coefficients[0].len());
+        let steps = Literal::u8_unsuffixed(self.evaluator.steps());
+        quote!(tables::PolynomialInverse<[f32; #terms], #steps>)
     }
 }
 

@@ -69,7 +69,7 @@ impl ClosedForm<'_> {
 /// [`ClosedForm::add_power_bias`] for any frame with all rotors, whose units are at the throttles of least
 /// norm for `wrench`. `factors` is `[k_f, k_Q]`.
 #[inline(never)]
-pub(crate) fn add_power_bias<P: Quantity, I: Inverse<P>, S>(
+pub(crate) fn add_power_bias<P: Quantity, I: Inverse, S>(
     tables: &Tables<'_, P, I, S>,
     wrench: &[f32; 4],
     factors: [f32; 2],
@@ -79,7 +79,7 @@ pub(crate) fn add_power_bias<P: Quantity, I: Inverse<P>, S>(
     Frame::<_, _, _, true>::new(black_box(tables), factors).add_power_bias(wrench, units);
 }
 
-impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     fn add_power_bias(&self, wrench: &[f32; 4], units: &mut [UnitState]) {
         let (tables, c) = (self.tables, self.tables.power_bias_nm_per_n);
         // What Q = c f would add to the wrench.

@@ -31,7 +31,7 @@ const LEAST_RISE: f32 = 1e-6;
 /// Least square of the root that extends a tangent to a parabola: a step back to a fifth of the slope.
 const LEAST_SQUARE: f32 = 0.04;
 
-impl<P: Quantity, I: Inverse<P>, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
+impl<P: Quantity, I: Inverse, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     /// Writes throttles that are nearest those of the whole frame; true where they give the wrench.
     #[inline(never)]
     pub(super) fn serve_with_rotors_out(&self, wrench: &[f32; 4], units: &mut [UnitState]) -> bool {

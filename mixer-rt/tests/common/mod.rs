@@ -113,7 +113,7 @@ fn common<P, I, S>(tables: &Tables<'static, P, I, S>) -> Tables<'static, (), (),
     }
 }
 
-fn invert<P: Quantity, I: Inverse<P>, S>(tables: &Tables<'_, P, I, S>, efforts: [f32; 2]) -> [[f32; 2]; 2] {
+fn invert<P: Quantity, I: Inverse, S>(tables: &Tables<'_, P, I, S>, efforts: [f32; 2]) -> [[f32; 2]; 2] {
     let throttles = tables.inverse.throttles(&tables.pair, &tables.throttle, efforts);
     [throttles, tables.pair.efforts(throttles)]
 }
