@@ -24,7 +24,7 @@ const PACKAGES: [(&str, usize); 10] = [
     ("mixer-identify", 30),
     ("mixer-facts", 4),
     ("mixer-report", 17),
-    ("mixer-c", 8),
+    ("mixer-c", 5),
     ("cargo-mixer", 25),
     ("simulation", 10),
 ];
