@@ -5,7 +5,6 @@
     oracle.py judge AIRFRAME SETPOINTS MIXED [FAILED,..]
                                                 judges what a mixer made of them, with the rotors of these channels out;
                                                 status 1 and a list if it is wrong
-    oracle.py conventional AIRFRAME SETPOINTS   the wrench that the conventional mixer's throttles really give, as CSV
     oracle.py isolated AIRFRAME METHOD SETPOINTS
                                                 throttles of isolated rotors as CSV; METHOD is `conventional` or an
                                                 airmode, then desaturated after PX4
@@ -443,18 +442,6 @@ def setpoints(airframe, path):
             yield [float(asked[column]) for column in COLUMNS], airframe.factors(volts)
 
 
-def conventional(airframe, setpoints_path):
-    """The mixer that the paper compares with (section V). Its throttles, put into the pair's map."""
-    n = airframe.units
-    isolated = Isolated(airframe)
-    yield COLUMNS + [f"given_{column}" for column in COLUMNS]
-    for request, k in setpoints(airframe, setpoints_path):
-        throttles = [airframe.isolated_throttle(f / k[0]) for f in isolated.thrusts(request)]
-        given = [airframe.efforts(throttles[i], throttles[n + i]) for i in range(n)]
-        wrench = airframe.wrench([k[0] * f for f, _ in given] + [k[1] * q for _, q in given])
-        yield [f"{value:.4g}" for value in request] + [f"{value:.4f}" for value in wrench]
-
-
 def isolated_throttles(airframe, method, setpoints_path):
     """Throttle per channel of a mixer that takes all rotors as isolated: `conventional` or, desaturated after PX4,
     an airmode."""
@@ -473,9 +460,6 @@ def isolated_throttles(airframe, method, setpoints_path):
 
 def main(arguments):
     match arguments:
-        case ["conventional", path, setpoints_path]:
-            csv.writer(sys.stdout, lineterminator="\n").writerows(conventional(Airframe(path), setpoints_path))
-            return 0
         case ["isolated", path, method, setpoints_path]:
             rows = isolated_throttles(Airframe(path), method, setpoints_path)
             csv.writer(sys.stdout, lineterminator="\n").writerows(rows)

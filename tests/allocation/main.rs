@@ -1,13 +1,14 @@
 //! Allocation: what is attainable is delivered, other requests are cut by priority.
 //!
+//! Every test here is without exceptions. How often drawn requests miss a promise - jumps, wrenches
+//! short of what throttles give, of the optimum, or of a smaller request - is counted by the soak,
+//! `tests/src/soak`, some seconds of which are `tests/soak.rs`.
+//!
 //! | file | holds the mixer to |
 //! |---|---|
 //! | `authority.rs` | an X12 against an X8 of the same real pair: as much yaw and thrust per unit |
-//! | `delivery.rs` | wrenches of throttles at their limits, on frames of the zoo: delivered |
-//! | `optimum.rs` | linear programmes: few requests short by 1 % of any axis' authority |
+//! | `optimum.rs` | linear programmes: frames in closed form reach the optimum |
 //! | `regressions.rs`, `.toml` | requests that an earlier mixer answered badly, as data |
-//! | `jumps.rs` | throttles and wrenches that jump from a request to its neighbour: one pair in 10,000 at most |
-//! | `rays.rs` | requests that grow along a ray with rotors out: roll, pitch and thrust do not fall |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound and truthful (proptest; `PROPTEST_CASES=1000` runs more) |
 //! | `rotors_out.rs` | one and two rotors out, real pairs: nothing is reversed or exceeded |
@@ -21,18 +22,15 @@
 
 mod authority;
 mod degenerate;
-mod delivery;
 mod failure;
 // On other hosts `cargo-mixer/tests/library/exceptions.c` alone watches the exceptions.
 #[cfg(target_arch = "x86_64")]
 mod finite;
 mod flags;
-mod jumps;
 mod layout;
 mod optimum;
 mod power_bias;
 mod properties;
-mod rays;
 mod regressions;
 mod rotors_out;
 mod shapes;
@@ -40,7 +38,6 @@ mod yaw_reserve;
 
 use mixer_rt::Health;
 use mixer_tests::frames::{self, Options, Place};
-use mixer_tests::optimum::Oracle;
 use mixer_tests::request::{Frame, Request};
 
 /// Of the frames' `[voltage]`.
@@ -58,15 +55,6 @@ fn number(variable: &str, default: u64) -> u64 {
 fn out(channels: &[u8]) -> Health {
     let channels = channels.iter();
     channels.fold(Health::GOOD, |health, channel| health.with_failed(*channel))
-}
-
-/// True where level flight at the thrust asked is attainable with the yaw asked or less. Elsewhere, with
-/// rotors out, yaw comes last.
-fn has_level(frame: &Frame, request: &Request) -> bool {
-    let factors = frame.physics.factors(request.volts);
-    let oracle = Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
-    let [.., yaw, thrust] = request.asked();
-    oracle.has_level(yaw, thrust).expect("solved")
 }
 
 fn place(position: [f64; 3], axis: [f64; 2], clockwise: bool) -> Place {

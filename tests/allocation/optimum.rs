@@ -1,17 +1,14 @@
-//! Answers against linear programmes over the physical attainable sets, at any voltage and with
-//! rotors out.
+//! Answers against linear programmes over the physical attainable sets: frames in closed form miss
+//! none. How often others do is the soak's.
 
 use mixer_rt::Health;
 use mixer_setpoints::Random;
-use mixer_tests::frames::{self, AIRMODES, Options};
+use mixer_tests::frames::{self, Options};
 use mixer_tests::optimum::Oracle;
 use mixer_tests::request::Frame;
 use mixer_tests::shortfall::{ALLOWED, Shortfall};
 
 use crate::{REFERENCE_V, number};
-
-/// Share of the authority by which few answers may be short of roll and pitch.
-const FAR: f64 = 0.02;
 
 #[derive(Default)]
 pub(crate) struct Judged {
@@ -20,8 +17,6 @@ pub(crate) struct Judged {
     void: usize,
     /// Requests on which the optimum is missed.
     pub(crate) missed: usize,
-    /// Requests that are short of roll and pitch by more than [`FAR`].
-    far: usize,
     worst: Shortfall,
 }
 
@@ -47,7 +42,6 @@ impl Judged {
                 continue;
             };
             self.requests += 1;
-            self.far += usize::from(shortfall.torque > FAR);
             self.worst = self.worst.max(shortfall);
             if shortfall.misses() {
                 self.missed += 1;
@@ -68,18 +62,7 @@ impl Judged {
         self.requests += other.requests;
         self.void += other.void;
         self.missed += other.missed;
-        self.far += other.far;
         self.worst = self.worst.max(other.worst);
-    }
-
-    /// At most one request in so many misses the optimum.
-    pub(crate) fn hold(&self, one_in: usize) {
-        assert!(
-            self.missed * one_in <= self.requests,
-            "{} of {}",
-            self.missed,
-            self.requests
-        );
     }
 
     pub(crate) fn print(&self, name: &str) {
@@ -130,74 +113,5 @@ fn vertical_frames_of_three_and_four_units_reach_the_optimum() {
             assert!(judged.requests >= 120);
             assert_eq!(judged.missed, 0);
         }
-    }
-}
-
-#[test]
-fn any_frame_reaches_the_optimum() {
-    let mut random = random(3);
-    let mut all = Judged::default();
-    for (kind, tilt) in [("vertical", 0.0), ("tilted", 0.08)] {
-        for n in 1..=8 {
-            let mut judged = Judged::default();
-            for airmode in AIRMODES {
-                for yaw_reserve_nm in [0.0, 0.03] {
-                    let options = Options {
-                        airmode,
-                        yaw_reserve_nm,
-                        ..Options::default()
-                    };
-                    let Some(frame) = irregular(&mut random, n, tilt, options) else {
-                        continue;
-                    };
-                    for volts in [REFERENCE_V, frame.draw_volts(&mut random)] {
-                        judged.judge(&frame, &mut random, (volts, Health::GOOD), 12);
-                    }
-                }
-            }
-            judged.print(&format!("{n} {kind} units"));
-            all.add(&judged);
-        }
-    }
-    all.print("all");
-    assert!(all.requests >= 1200);
-    all.hold(200);
-    // Roll and pitch come first; sets that are not convex have other local optima.
-    assert!(all.far * 1000 <= all.requests, "{} of {}", all.far, all.requests);
-}
-
-/// One or two rotors out, of different units or of the same.
-#[test]
-fn frames_with_rotors_out_reach_the_optimum() {
-    let mut random = random(8);
-    for (out, one_in) in [(1, 25), (2, 5)] {
-        let mut all = Judged::default();
-        for (kind, tilt) in [("vertical", 0.0), ("tilted", 0.08)] {
-            let mut judged = Judged::default();
-            for n in 3..=6 {
-                for airmode in AIRMODES {
-                    let options = Options {
-                        airmode,
-                        ..Options::default()
-                    };
-                    let Some(frame) = irregular(&mut random, n, tilt, options) else {
-                        continue;
-                    };
-                    for _ in 0..3 {
-                        let health = (0..out).fold(Health::GOOD, |health, _| {
-                            health.with_failed(random.below(2 * n) as u8)
-                        });
-                        let volts = frame.draw_volts(&mut random);
-                        judged.judge(&frame, &mut random, (volts, health), 4);
-                    }
-                }
-            }
-            judged.print(&format!("{out} out, {kind}"));
-            all.add(&judged);
-        }
-        all.print(&format!("{out} out"));
-        assert!(all.requests >= 100);
-        // Against convex hulls about the curves of single rotors, which nobody reaches.
-        all.hold(one_in);
     }
 }

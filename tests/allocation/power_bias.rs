@@ -149,12 +149,6 @@ fn the_bias_fades_before_yaw_saturates() {
                 let answers = [&plain, &frame].map(|frame| request.mix(frame).expect("finite"));
                 if let Some(last) = &last {
                     largest = [0, 1].map(|k| largest[k].max(answers[k].change(&last[k])));
-                    if answers[1].change(&last[1]) > 0.01 {
-                        println!(
-                            "DBG {name} {airmode} {request:?}\n {:?}\n {:?}\n plain {:?}",
-                            last[1], answers[1], answers[0]
-                        );
-                    }
                 }
                 let [without, with] = &answers;
                 if without.saturation.any_axis() {

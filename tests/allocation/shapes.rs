@@ -1,6 +1,6 @@
 //! Pairs whose attainable sets are not convex: made up ones, and the real maps of
 //! `MIXER_BENCH_DATA` in three bases. On an X8, where yaw may have several peaks along the null
-//! space of the thrusts, on a Y6, and on an X12.
+//! space of the thrusts, and on a Y6.
 
 #[path = "../../cargo-mixer/tests/maps/mod.rs"]
 mod maps;
@@ -12,18 +12,12 @@ use mixer_compiler::model::injectivity::EnclosedPairMap;
 use mixer_identify::fragment;
 use mixer_rt::Health;
 use mixer_setpoints::Random;
-use mixer_tests::frames::{self, AIRMODES, BENT, Options};
+use mixer_tests::frames::{self, BENT, Options};
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
 
-use crate::{compile_with_pair, number};
-
 /// Distance of the drawn throttles to the ends of their range, as a share of it.
 const MARGIN: f64 = 0.01;
-
-/// Relative change of a request, and what it may move a throttle by.
-const CHANGE: f32 = 1e-4;
-const MOST_MOVED: f32 = 0.02;
 
 /// Share of the attainable set's area that may be lost between the sides of the closed form.
 const LOST: f64 = 0.002;
@@ -43,10 +37,6 @@ struct Tally {
     saturated: usize,
     short: usize,
     shortest: f64,
-    /// Pairs of requests next to each other, of these the ones with a jump, and the largest.
-    pairs: usize,
-    jumps: usize,
-    jump: f32,
 }
 
 impl Tally {
@@ -57,9 +47,6 @@ impl Tally {
         self.saturated += other.saturated;
         self.short += other.short;
         self.shortest = self.shortest.max(other.shortest);
-        self.pairs += other.pairs;
-        self.jumps += other.jumps;
-        self.jump = self.jump.max(other.jump);
     }
 }
 
@@ -76,16 +63,7 @@ fn deliver(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) 
             health: Health::GOOD,
         };
         let answer = request.mix(frame).expect("finite");
-        // Without a closed form misses of a millionth may be flagged.
-        let most = if frame.compiled.tables.closed_form.is_some() {
-            0.0
-        } else {
-            SHORT
-        };
-        let is_near = |axis: usize| {
-            (request.asked()[axis] - answer.achieved[axis]).abs() <= most * frame.authority[axis]
-        };
-        let delivered = !answer.saturation.any_axis() || (0..4).all(is_near);
+        let delivered = !answer.saturation.any_axis();
         tally.delivered += usize::from(delivered);
         if !delivered && std::env::var_os("MIXER_MISSES").is_some() {
             println!("  {request:?} -> {:?}", answer.achieved);
@@ -130,7 +108,7 @@ fn best_yaw(frame: &Frame, answer: &Answer, direction: f64) -> f64 {
     best
 }
 
-/// Requests of which most are out of reach: sound, near the best, continuous.
+/// Requests of which most are out of reach: sound, near the best.
 fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) {
     for _ in 0..count {
         let request = frame.draw(random, 1.0, 0.0);
@@ -151,23 +129,6 @@ fn saturate(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally)
             if short > SHORT && std::env::var_os("MIXER_MISSES").is_some() {
                 println!("  short {short}: {request:?} -> {:?}", answer.achieved);
             }
-        }
-        let moved = random.below(5);
-        let mut near = request;
-        for (axis, value) in near.wrench.iter_mut().enumerate() {
-            if moved == 4 || moved == axis {
-                *value *= 1.0 + CHANGE;
-            }
-        }
-        let change = answer.change(&near.mix(frame).expect("finite"));
-        tally.pairs += 1;
-        tally.jumps += usize::from(change > MOST_MOVED);
-        tally.jump = tally.jump.max(change);
-        if change > MOST_MOVED && std::env::var_os("MIXER_MISSES").is_some() {
-            println!(
-                "  jump {change}: {request:?} moved {moved} -> {:?}",
-                answer.achieved
-            );
         }
     }
 }
@@ -236,11 +197,9 @@ fn judge(name: &str, pair: &str, count: usize) -> Tally {
 }
 
 fn hold(tally: &Tally) {
-    let missed = tally.attainable - tally.delivered;
-    assert!(1000 * missed <= tally.attainable, "{tally:?}");
+    assert_eq!(tally.delivered, tally.attainable, "{tally:?}");
     assert_eq!(tally.faults, 0, "{tally:?}");
-    assert!(100 * tally.short <= tally.saturated, "{tally:?}");
-    assert!(10_000 * tally.jumps <= tally.pairs, "{tally:?}");
+    assert_eq!(tally.short, 0, "{tally:?}");
 }
 
 #[test]
@@ -248,10 +207,6 @@ fn sets_that_bend_inwards_are_used() {
     for (name, pair) in BENT {
         hold(&judge(name, pair, 2000));
     }
-    hold(&on_x12(
-        BENT.into_iter().map(|(_, pair)| pair).cycle().take(6),
-        10_000,
-    ));
 }
 
 /// The real pairs in three bases, with their names; `None` without bench data.
@@ -296,30 +251,4 @@ fn sets_of_real_pairs_are_used() {
     }
     println!("{} pairs: {sum:?}", pairs.len());
     hold(&sum);
-}
-
-/// `count` requests of either kind, or `MIXER_COUNT`, to an X12 of each pair, which has no closed form.
-fn on_x12<'a>(pairs: impl Iterator<Item = &'a str>, count: u64) -> Tally {
-    let count = number("MIXER_COUNT", count) as usize;
-    let mut random = Random::new(22);
-    let mut sum = Tally::default();
-    for (pair, airmode) in pairs.zip(AIRMODES.into_iter().cycle()) {
-        let options = Options {
-            airmode,
-            ..Options::default()
-        };
-        let frame = compile_with_pair(pair, &frames::regular(6, 30.0), options);
-        deliver(&frame, &mut random, count, &mut sum);
-        saturate(&frame, &mut random, count, &mut sum);
-    }
-    println!("on an X12: {sum:?}");
-    sum
-}
-
-#[test]
-fn sets_of_real_pairs_are_used_on_an_x12() {
-    let Some(pairs) = real_pairs("sets_of_real_pairs_are_used_on_an_x12") else {
-        return;
-    };
-    hold(&on_x12(pairs.iter().map(|(_, pair)| pair.as_str()), 100));
 }

@@ -7,18 +7,23 @@ use mixer_tests::frames::{self, AIRMODES, Options};
 use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
 
-use crate::delivery::{PAIRS, pair_of};
 use crate::optimum::Judged;
-use crate::{has_level, number, out};
+use crate::{number, out};
+
+/// Pairs of the airframes: the paper's, and those identified from bench maps.
+const PAIRS: [&str; 5] = [
+    "isae-x8",
+    "x8-11in-cubic",
+    "x8-16in-biquadratic",
+    "x8-16in-quartic",
+    "x8-22in-cubic",
+];
 
 /// Share of the yaw of level flight at half of all thrust that is kept.
 const KEPT: f32 = 0.2;
 
 /// Share of its authority by which an axis may differ from what is expected.
 const ALLOWED: f64 = 0.01;
-
-/// One request in so many may differ by more, as it may be short of the optimum; none in closed form.
-const ONE_IN: usize = 200;
 
 /// A frame with a reserve and the same without.
 struct Pair {
@@ -134,63 +139,49 @@ fn fault(pair: &Pair, request: &Request) -> Option<String> {
     None
 }
 
-/// An answer with all rotors or one out is sound, and differs from that without the reserve by what the
-/// reserve takes only: thrust, where yaw has less than the reserve without.
+/// Answers with all rotors and with one out are sound. In closed form an answer differs from that
+/// without the reserve by what the reserve takes only: thrust, where yaw has less without.
 #[test]
 fn a_reserve_takes_neither_roll_nor_pitch_and_raises_no_thrust() {
     let mut random = Random::new(number("MIXER_SEED", 31));
-    let count = number("MIXER_REQUESTS", 200);
-    for is_whole in [true, false] {
-        let (mut bound, mut all, mut faults) = (0, 0, 0);
-        for pair in pairs(&mut random) {
-            let Pair {
-                name, kept, plain, ..
-            } = &pair;
-            for _ in 0..count {
-                let mut request = kept.draw(&mut random, 1.0, 0.0);
-                if !is_whole {
-                    request.health = out(&[random.below(2 * kept.physics.units()) as u8]);
-                }
-                let answer = request.mix(kept).expect("finite");
-                let unsound = soundness::fault(kept, &request, &answer).expect("solved");
-                assert_eq!(unsound, None, "{name}: {request:?} -> {answer:?}");
-                all += 1;
-                bound += usize::from(answer != request.mix(plain).expect("finite"));
-                if let Some(said) = fault(&pair, &request)
-                    && (is_whole || has_level(kept, &request))
-                {
-                    faults += 1;
-                    println!("{name}: {request:?}: {said}");
-                    let is_closed_form = is_whole && kept.compiled.tables.closed_form.is_some();
-                    assert!(!is_closed_form, "{name}: {request:?}: {said}");
-                }
+    let (mut bound, mut all) = (0, 0);
+    for pair in pairs(&mut random) {
+        let Pair {
+            name, kept, plain, ..
+        } = &pair;
+        for index in 0..number("MIXER_REQUESTS", 300) {
+            let mut request = kept.draw(&mut random, 1.0, 0.0);
+            let is_whole = index % 3 > 0;
+            if !is_whole {
+                request.health = out(&[random.below(2 * kept.physics.units()) as u8]);
+            }
+            let answer = request.mix(kept).expect("finite");
+            let unsound = soundness::fault(kept, &request, &answer).expect("solved");
+            assert_eq!(unsound, None, "{name}: {request:?} -> {answer:?}");
+            all += 1;
+            bound += usize::from(answer != request.mix(plain).expect("finite"));
+            if is_whole && kept.compiled.tables.closed_form.is_some() {
+                assert_eq!(fault(&pair, &request), None, "{name}: {request:?}");
             }
         }
-        println!("all rotors {is_whole}: the reserve binds on {bound} of {all} requests, {faults} faults");
-        assert!(bound * 20 >= all, "{bound} of {all}");
-        assert!(faults * ONE_IN <= all, "{faults} of {all}");
     }
+    assert!(bound * 20 >= all, "the reserve binds on {bound} of {all}");
 }
 
-/// The reserve comes before thrust, and after roll and pitch, by linear programmes.
+/// In closed form the reserve comes before thrust, and after roll and pitch, by linear programmes.
 #[test]
 fn answers_with_a_reserve_reach_the_optimum() {
     let mut random = Random::new(number("MIXER_SEED", 32));
     let count = number("MIXER_REQUESTS", 20) as usize;
-    let [mut whole, mut without] = [Judged::default(), Judged::default()];
-    for Pair { name, kept, .. } in pairs(&mut random) {
-        let mut judged = Judged::default();
-        judged.judge(&kept, &mut random, (0.0, Health::GOOD), count);
-        judged.print(&name);
-        whole.add(&judged);
-        let health = out(&[random.below(2 * kept.physics.units()) as u8]);
-        without.judge(&kept, &mut random, (0.0, health), count / 4);
+    let mut judged = Judged::default();
+    for Pair { kept, .. } in pairs(&mut random) {
+        if kept.compiled.tables.closed_form.is_some() {
+            judged.judge(&kept, &mut random, (0.0, Health::GOOD), count);
+        }
     }
-    whole.print("all rotors");
-    without.print("one out");
-    assert!(whole.requests >= 1000 || count < 20);
-    whole.hold(ONE_IN);
-    without.hold(25);
+    judged.print("in closed form");
+    assert!(judged.requests >= 500 || count < 20);
+    assert_eq!(judged.missed, 0);
 }
 
 /// Full thrust keeps the reserve; without it yaw would be gone.
@@ -211,4 +202,21 @@ fn a_reserve_is_kept_at_full_thrust() {
             );
         }
     }
+}
+
+/// `[throttle]` and `[pair]` of an airframe.
+fn pair_of(airframe: &str) -> String {
+    let file = mixer_tests::root().join(format!("airframes/{airframe}.toml"));
+    let text = std::fs::read_to_string(file).expect("an airframe");
+    section(&text, "throttle") + &section(&text, "pair")
+}
+
+/// A table of an airframe file with its header.
+fn section(text: &str, name: &str) -> String {
+    let header = format!("[{name}]");
+    let from = text.find(&header).unwrap_or_else(|| panic!("{header}"));
+    let length = text[from + 1..]
+        .find("\n[")
+        .map_or(text.len() - from, |end| end + 2);
+    text[from..from + length].to_owned()
 }

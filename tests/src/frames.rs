@@ -12,7 +12,7 @@ mod places;
 mod real;
 pub mod zoo;
 
-pub use real::{frames, real_pairs, zoo, zoo_with_bench_data};
+pub use real::{real_pairs, zoo, zoo_with_bench_data};
 
 /// The voltage of `airframes/isae-x8.toml` with exponents that differ, so that a test sees which
 /// factor is applied.

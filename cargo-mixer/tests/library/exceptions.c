@@ -1,6 +1,5 @@
 /* Mixes with traps on: a floating-point exception ends the program with the setpoint that raised it. `airframes.h` is
- * written by the test: the airframes' headers, and AIRFRAMES(X), which lists them. With HEALTH rotors are out in half of
- * the mixes. */
+ * written by the test: the airframes' headers, and AIRFRAMES(X), which lists them. Rotors are out in half of the mixes. */
 #define _GNU_SOURCE
 #include <fenv.h>
 #include <float.h>
@@ -93,7 +92,6 @@ static float voltage(float reference)
     }
 }
 
-#ifdef HEALTH
 /* Half of the setpoints have all rotors, a quarter one out, the rest up to two or any. */
 static uint64_t rotors_out(unsigned channels)
 {
@@ -110,15 +108,6 @@ static uint64_t rotors_out(unsigned channels)
 
 #define MIX(module) \
     (failed ? module##_mix_with_health(&setpoint, voltage_v, failed, &out) : module##_mix(&setpoint, voltage_v, &out))
-#else
-static uint64_t rotors_out(unsigned channels)
-{
-    (void)channels;
-    return 0;
-}
-
-#define MIX(module) module##_mix(&setpoint, voltage_v, &out)
-#endif
 
 /* Half of the setpoints are near what the vehicle gives, the rest of mixed kinds. */
 #define ALL(module, prefix)                                                            \

@@ -1,14 +1,10 @@
-//! The static comparison of both mixers, and the conventional one against an independent oracle.
+//! The static comparison of both mixers.
 
-use std::fs;
-use std::process::Command;
-
-use isolated_rotors::IsolatedTables;
-use mixer_report::comparison::{self, Comparison};
+use mixer_report::comparison::Comparison;
 use mixer_report::number::range;
 use mixer_report::study::Study;
 
-use super::{compiled, root, scratch, x8};
+use super::x8;
 
 /// The largest yaw that four units give at 10 N each, N m: twice Q_max - Q_min there (0.644).
 const YAW_AT_10_N: f64 = 0.643;
@@ -55,57 +51,4 @@ fn the_coaxial_mixer_keeps_every_unit_s_thrust_and_the_conventional_one_does_not
     }
     assert!(constant >= 30, "{constant}");
     assert!(spread > 1.5, "{spread}");
-}
-
-#[test]
-fn the_conventional_mixer_is_the_oracle_s() {
-    let asked = [
-        [0.0, 0.0, 0.0, 31.4],
-        [0.0, 0.0, 0.3, 31.4],
-        [0.5, 0.0, 0.0, 31.4],
-        [1.0, -0.5, 0.2, 40.0],
-        [0.2, 0.1, -0.4, 55.0],
-    ];
-    let mut rows = String::from("roll_nm,pitch_nm,yaw_nm,thrust_n\n");
-    for [roll, pitch, yaw, thrust] in asked {
-        rows.push_str(&format!("{roll},{pitch},{yaw},{thrust}\n"));
-    }
-    let setpoints = scratch("setpoints.csv");
-    fs::write(&setpoints, rows).unwrap();
-    for name in ["isae-x8", "px4-y6", "px4-x12", "coaxial-bicopter"] {
-        let airframe = root().join(format!("airframes/{name}.toml"));
-        let output = Command::new("python3")
-            .arg(root().join("tests/oracle.py"))
-            .arg("conventional")
-            .args([&airframe, &setpoints])
-            .output()
-            .unwrap_or_else(|error| panic!("the oracle needs python3 (3.11 or later): {error}"));
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        let compiled = compiled(&airframe);
-        let study = Study::new(&compiled, None);
-        let conventional = IsolatedTables::new(&compiled);
-        let text = String::from_utf8(output.stdout).unwrap();
-        let lines: Vec<&str> = text.lines().skip(1).collect();
-        assert_eq!(lines.len(), asked.len());
-        for (line, asked) in lines.iter().zip(asked) {
-            let expected: Vec<f64> = line
-                .split(',')
-                .skip(4)
-                .map(|cell| cell.parse().unwrap())
-                .collect();
-            let (throttles, _) = comparison::throttles(&study, &conventional, asked);
-            let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
-            for (given, expected) in study.wrench(&efforts).iter().zip(expected) {
-                // The oracle prints four decimals.
-                assert!(
-                    (given - expected).abs() < 6e-5,
-                    "{name}, {asked:?}: {given} is not {expected}"
-                );
-            }
-        }
-    }
 }

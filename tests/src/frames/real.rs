@@ -9,10 +9,8 @@ use clap::Parser;
 use mixer_compiler::Source;
 use mixer_identify::fragment;
 
-use super::compile_text;
 use super::pairs::Pair;
-use super::zoo::{Specimen, Zoo};
-use crate::request::Frame;
+use super::zoo::Zoo;
 use crate::{airframes, root};
 
 /// The zoo of `seed` with the pairs of `airframes/`.
@@ -41,15 +39,6 @@ pub fn real_pairs(data: Option<&Path>) -> Result<Vec<Pair>, String> {
         pairs.extend(identified(data)?);
     }
     Ok(pairs)
-}
-
-/// The frames of a zoo from the first on that the compiler takes.
-pub fn frames(zoo: &Zoo) -> impl Iterator<Item = (Specimen, Frame)> + '_ {
-    let specimens = (0..).map(|index| zoo.specimen(index));
-    specimens.filter_map(|specimen| {
-        let compiled = compile_text(&specimen.text).ok()?;
-        Some((specimen, Frame::new(compiled)))
-    })
 }
 
 fn shipped() -> Result<Vec<Pair>, String> {

@@ -18,6 +18,10 @@ use crate::soundness;
 const JUDGED: usize = 2;
 const JUDGED_FRAMES: u64 = 4;
 
+/// Rays of growing torques per state of health with rotors out, and requests along each.
+const RAYS: usize = 8;
+const STEPS: u8 = 20;
+
 /// Units beyond which they are not: a programme takes seconds.
 const MOST_JUDGED_UNITS: usize = 8;
 
@@ -149,6 +153,10 @@ impl<'a> Visit<'a> {
                 self.follow(frame, [&request, &next], [&answer, &after]);
             }
         }
+        for _ in 0..if self.rotors_out > 0 { RAYS } else { 0 } {
+            let request = draw.moderate();
+            self.grow(frame, &request)?;
+        }
         if self.index.is_multiple_of(JUDGED_FRAMES) && frame.physics.units() <= MOST_JUDGED_UNITS {
             for _ in 0..JUDGED {
                 let request = draw.moderate();
@@ -172,6 +180,35 @@ impl<'a> Visit<'a> {
         self.look(Check::Jump, f64::from(change), &pair, || {
             format!("throttles move by {change}")
         });
+    }
+
+    /// Torques that grow at one thrust: a smaller answer stays attainable, so that one that gives less
+    /// is no optimum, and no programme is needed to see it.
+    fn grow(&mut self, frame: &Frame, request: &Request) -> Result<(), Error> {
+        let [roll, pitch, ..] = request.asked();
+        let size = (roll * roll + pitch * pitch).sqrt() * frame.size(0).min(frame.size(1));
+        let mut best = (f64::NEG_INFINITY, *request);
+        for step in 1..=STEPS {
+            let mut larger = *request;
+            let torques = larger.wrench.iter_mut().take(3);
+            torques.for_each(|torque| *torque *= f32::from(step) / f32::from(STEPS));
+            let Some(answer) = self.answer(frame, &larger).filter(|_| size > 0.0) else {
+                return Ok(());
+            };
+            let given = (answer.achieved[0] * roll + answer.achieved[1] * pitch) / size;
+            let (most, smaller) = best;
+            if given >= most {
+                best = (given, larger);
+            }
+            let lost = most - given;
+            // Yaw comes last where level flight is not attainable with it.
+            let is_excused = lost > Check::Grown.limit().size && !has_level(frame, &smaller)?;
+            let lost = if is_excused { 0.0 } else { lost.max(0.0) };
+            self.look(Check::Grown, lost, &[smaller, larger], || {
+                format!("{lost} of the authority is lost")
+            });
+        }
+        Ok(())
     }
 
     /// Holds an answer to the linear programme.
@@ -219,6 +256,14 @@ fn missed(frame: &Frame, request: &Request, answer: &Answer) -> f64 {
             (missed - tolerance[axis]) / frame.size(axis)
         })
         .fold(0.0, f64::max)
+}
+
+/// True where level flight at the thrust asked is attainable with the yaw asked or less.
+fn has_level(frame: &Frame, request: &Request) -> Result<bool, Error> {
+    let factors = frame.physics.factors(request.volts);
+    let oracle = Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
+    let [.., yaw, thrust] = request.asked();
+    oracle.has_level(yaw, thrust)
 }
 
 /// True where roll, pitch and yaw can be zero without these rotors, at the middle of the voltage
