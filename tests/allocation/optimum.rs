@@ -17,7 +17,7 @@ pub(crate) struct Judged {
     void: usize,
     /// Requests on which the optimum is missed.
     pub(crate) missed: usize,
-    worst: Shortfall,
+    pub(crate) worst: Shortfall,
 }
 
 impl Judged {
@@ -56,13 +56,6 @@ impl Judged {
                 }
             }
         }
-    }
-
-    pub(crate) fn add(&mut self, other: &Judged) {
-        self.requests += other.requests;
-        self.void += other.void;
-        self.missed += other.missed;
-        self.worst = self.worst.max(other.worst);
     }
 
     pub(crate) fn print(&self, name: &str) {

@@ -76,7 +76,7 @@ const TASKS: &[Task] = &[
             "sh",
             "-c",
             ": \"${MIXER_BENCH_DATA:?names the folder of bench data}\" && \
-             MIXER_MEASUREMENTS=write exec cargo test --quiet --locked -p cargo-mixer --test identify --test flights -- \
+             MIXER_MEASUREMENTS=write exec cargo test --quiet --locked -p cargo-mixer --test commands -- \
              five_levels two_spacings logged_flights in_hover report_of_the_documents",
         ],
         does: "measures on MIXER_BENCH_DATA and writes levels.csv, spacings.csv, logged-saving.csv, logged-hover.csv and \

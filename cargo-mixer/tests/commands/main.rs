@@ -2,10 +2,21 @@
 //!
 //! `cases` has what is said and its status; code here is for what is not a sentence.
 
+mod bench_to_flight;
 #[cfg(target_os = "linux")]
 mod cases;
+mod flights;
+mod identify;
+mod library;
+#[path = "../maps/mod.rs"]
+mod maps;
+mod maps_compile;
+mod maps_warn;
+mod measured;
 mod mix;
 mod predict;
+mod report;
+mod schema;
 mod shell;
 mod stacks;
 

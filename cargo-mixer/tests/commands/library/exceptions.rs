@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::process::Command;
 
-use crate::program::{Golden, source};
-use crate::{Folder, library, root, run};
+use super::program::{Golden, source};
+use super::{Folder, library, root, run};
 
 /// Setpoints per airframe, over its airmodes.
 const SETPOINTS: usize = 500_000;

@@ -5,7 +5,7 @@ use mixer_identify::bench::Bench;
 use mixer_identify::fragment;
 use mixer_identify::identified::from_benches;
 
-use crate::sweep::{bench, plain, rows, settings};
+use super::sweep::{bench, plain, rows, settings};
 use mixer_identify::paper::{THRUST, TORQUE};
 
 /// The sweep at `volts`, sagging by `sag` V times the mean square of throttle, thrust following 1.7

@@ -4,8 +4,8 @@
 use std::fs;
 use std::process::Command;
 
-use crate::program::source;
-use crate::{Folder, library, root, run};
+use super::program::source;
+use super::{Folder, library, root, run};
 
 const WARNINGS: [&str; 3] = ["-Wall", "-Wextra", "-Werror"];
 

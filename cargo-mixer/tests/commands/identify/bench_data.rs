@@ -16,17 +16,8 @@ use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, from_benches};
 
-use crate::measured;
-use crate::sweep::settings;
-
-/// The folder, or a clear word that the test does not run.
-pub(crate) fn data(test: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("NOT RUN: {test} needs MIXER_BENCH_DATA, the folder of real bench files");
-    }
-    folder
-}
+use super::sweep::settings;
+use crate::{bench_data, measured};
 
 /// The files of a folder whose name holds `part`, in order.
 fn files(folder: &Path, part: &str) -> Vec<PathBuf> {
@@ -71,7 +62,7 @@ const REPEAT: &str = "data2021_08_17_11_11_55";
 
 #[test]
 fn eight_terms_agree_with_the_independent_fit() {
-    let Some(data) = data("eight_terms_agree_with_the_independent_fit") else {
+    let Some(data) = bench_data("eight_terms_agree_with_the_independent_fit") else {
         return;
     };
     let text = std::fs::read_to_string(data.join("newdexterity/reference_fit.json")).expect("the reference");
@@ -117,7 +108,7 @@ fn eight_terms_agree_with_the_independent_fit() {
 
 #[test]
 fn every_map_is_identified() {
-    let Some(data) = data("every_map_is_identified") else {
+    let Some(data) = bench_data("every_map_is_identified") else {
         return;
     };
     for path in files(&data.join("newdexterity"), "map10x10") {
@@ -178,7 +169,7 @@ fn every_map_is_identified() {
 
 #[test]
 fn nine_terms_more_than_halve_the_error_of_large_full_range_maps() {
-    let Some(data) = data("nine_terms_more_than_halve_the_error_of_large_full_range_maps") else {
+    let Some(data) = bench_data("nine_terms_more_than_halve_the_error_of_large_full_range_maps") else {
         return;
     };
     for path in files(&data.join("newdexterity"), "full_range") {
@@ -209,7 +200,7 @@ fn nine_terms_more_than_halve_the_error_of_large_full_range_maps() {
 
 #[test]
 fn the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats() {
-    let Some(data) = data("the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats") else {
+    let Some(data) = bench_data("the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats") else {
         return;
     };
     let path = coaxial(&data, CORRUPT);
@@ -255,7 +246,7 @@ fn the_corrupt_rows_are_named_and_the_fit_without_them_is_the_repeats() {
 
 #[test]
 fn exponents_of_the_pairs_at_two_voltages() {
-    let Some(data) = data("exponents_of_the_pairs_at_two_voltages") else {
+    let Some(data) = bench_data("exponents_of_the_pairs_at_two_voltages") else {
         return;
     };
     let folder = data.join("strawson");
@@ -301,7 +292,7 @@ fn exponents_of_the_pairs_at_two_voltages() {
 
 #[test]
 fn files_that_cannot_serve_are_refused() {
-    let Some(data) = data("files_that_cannot_serve_are_refused") else {
+    let Some(data) = bench_data("files_that_cannot_serve_are_refused") else {
         return;
     };
     let cases = [
@@ -326,7 +317,7 @@ fn files_that_cannot_serve_are_refused() {
 
 #[test]
 fn rotor_speeds_mapped_by_hand_are_still_one_line() {
-    let Some(data) = data("rotor_speeds_mapped_by_hand_are_still_one_line") else {
+    let Some(data) = bench_data("rotor_speeds_mapped_by_hand_are_still_one_line") else {
         return;
     };
     let mut settings = settings(None);
@@ -391,7 +382,7 @@ fn left_out(path: &Path, basis: Basis, count: usize) -> Option<[f64; 2]> {
 
 #[test]
 fn five_levels_suffice_as_the_page_says() {
-    let Some(data) = data("five_levels_suffice_as_the_page_says") else {
+    let Some(data) = bench_data("five_levels_suffice_as_the_page_says") else {
         return;
     };
     let maps = full_range_maps(&data);
@@ -420,7 +411,7 @@ fn five_levels_suffice_as_the_page_says() {
 
 #[test]
 fn torque_of_least_power_saves_on_every_full_range_map() {
-    let Some(data) = data("torque_of_least_power_saves_on_every_full_range_map") else {
+    let Some(data) = bench_data("torque_of_least_power_saves_on_every_full_range_map") else {
         return;
     };
     let maps = full_range_maps(&data);
@@ -458,7 +449,7 @@ fn torque_of_least_power_saves_on_every_full_range_map() {
 
 #[test]
 fn single_rotors_are_described_by_three_terms() {
-    let Some(data) = data("single_rotors_are_described_by_three_terms") else {
+    let Some(data) = bench_data("single_rotors_are_described_by_three_terms") else {
         return;
     };
     let coaxial = |part: &str| coaxial(&data, part);

@@ -9,7 +9,7 @@ use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fit::{Design, fit, student_t_975};
 use mixer_identify::identified::{Settings, from_benches};
 
-use crate::sweep::{FORMATS, Normal, bench, plain, rows, settings};
+use super::sweep::{FORMATS, Normal, bench, plain, rows, settings};
 use mixer_identify::paper::{THRUST, TORQUE};
 
 /// How many of the coefficients lie within their 95 % intervals.

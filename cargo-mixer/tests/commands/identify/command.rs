@@ -1,20 +1,12 @@
 //! The command itself: files, statuses, streams.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::bench_data::data;
-use crate::sweep::{bench, plain, rows, settings};
-
-/// A folder of this test's own, empty.
-pub(crate) fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("identify-{test}"));
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).expect("a folder");
-    path
-}
+use super::sweep::{bench, plain, rows, settings};
+use crate::{bench_data, folder};
 
 fn run(folder: &Path, args: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cargo-mixer"));
@@ -32,7 +24,7 @@ pub(crate) fn text(bytes: &[u8]) -> String {
 
 #[test]
 fn json_and_the_fragment_agree() {
-    let folder = folder("json");
+    let folder = folder("identify-json");
     fs::write(folder.join("map.csv"), plain(&rows(2))).expect("written");
     let output = run(
         &folder,
@@ -74,7 +66,7 @@ fn json_and_the_fragment_agree() {
 
 #[test]
 fn streams_that_nobody_reads_change_no_status() {
-    let folder = folder("unread");
+    let folder = folder("identify-unread");
     fs::write(folder.join("map.csv"), plain(&rows(3))).expect("written");
     fs::write(folder.join("bad.csv"), "a,b\n1,2\n").expect("written");
     for (args, status) in [
@@ -98,7 +90,7 @@ fn streams_that_nobody_reads_change_no_status() {
 
 #[test]
 fn columns_and_signs_by_hand() {
-    let folder = folder("by-hand");
+    let folder = folder("identify-by-hand");
     let mut file = "one;two;F;M\n".to_string();
     for r in rows(5) {
         let (f, q) = (r.thrust[0] + r.thrust[1], r.torque[0] + r.torque[1]);
@@ -176,7 +168,7 @@ fn sixteen_thousand_rows_are_read_in_well_under_a_second() {
 fn the_report_of_the_documents_is_that_of_the_bench() {
     const FILE: &str =
         "data2021_08_17_23_41_12_16p2in_prop_400kv_22V_MN4014_T_motor_map10x10_full_range_zD_025.csv";
-    let Some(data) = data("the_report_of_the_documents_is_that_of_the_bench") else {
+    let Some(data) = bench_data("the_report_of_the_documents_is_that_of_the_bench") else {
         return;
     };
     let arguments = ["--voltage-exponent", "1.75", "--cells", "6"];

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use crate::{Folder, root, run};
+use super::{Folder, root, run};
 
 /// A copy of the example.
 fn copy(test: &str) -> Folder {
@@ -31,7 +31,7 @@ fn make_builds_and_flies_the_example() {
 #[test]
 fn cmake_links_the_imported_target() {
     let folder = copy("example-cmake");
-    run(&mut crate::library(
+    run(&mut super::library(
         &["airframes/isae-x8.toml"],
         &folder.join("lib"),
     ));

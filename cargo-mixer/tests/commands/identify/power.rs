@@ -11,7 +11,7 @@ use mixer_identify::fit::power::Power;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, from_benches};
 
-use crate::sweep::{Normal, bench, settings};
+use super::sweep::{Normal, bench, settings};
 
 const A: f64 = 10.0;
 const B: f64 = 0.2;

@@ -1,17 +1,13 @@
 //! The schema of the airframe file says what the parser takes and refuses.
-#![allow(missing_docs)]
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use cargo_mixer::commands::schema;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
 use serde_json::{Value, json};
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
+use crate::root;
 
 /// What of `value` the schema does not allow, by its path; as much of draft 7 as the schema uses,
 /// and no more.

@@ -13,16 +13,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use crate::root;
 use program::{Golden, HOST_COMPILERS};
 
 /// Mean and worst instructions of the X8's golden vectors through the C interface: the goals for
 /// the whole mix.
 const MEAN_LIMIT: u32 = 2_000;
 const WORST_LIMIT: u32 = 5_000;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
 
 /// A folder of this test's own, empty; removed when dropped.
 struct Folder(PathBuf);

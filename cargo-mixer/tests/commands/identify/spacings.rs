@@ -8,9 +8,10 @@ use mixer_compiler::airframe::Basis;
 use mixer_identify::bench::Point;
 use mixer_identify::fit::polynomial::Polynomial;
 
-use crate::bench_data::{coaxial, data};
+use super::bench_data::coaxial;
+use super::sweep::settings;
+use crate::bench_data;
 use crate::measured;
-use crate::sweep::settings;
 
 /// The first is of another day than the other two, and begins at 0.40.
 const NEAR: (&str, f64) = ("07_23_08_27_27_11in", 0.2);
@@ -32,7 +33,7 @@ fn coefficients(file: &Path) -> [Vec<f64>; 2] {
 
 #[test]
 fn a_map_between_two_spacings_is_interpolated() {
-    let Some(data) = data("a_map_between_two_spacings_is_interpolated") else {
+    let Some(data) = bench_data("a_map_between_two_spacings_is_interpolated") else {
         return;
     };
     let [near, between, far] = [NEAR, BETWEEN, FAR].map(|(part, _)| coefficients(&coaxial(&data, part)));

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use crate::{Folder, library, root, run};
+use super::{Folder, library, root, run};
 
 /// What ends or begins comments, strings and lines in either language, and what they escape by.
 const DESCRIPTION: &str = "*/ /* // /// */ ??/ \\ \"#\" 'é' <b> [x] {} @M@ 飛 ends in a backslash \\";

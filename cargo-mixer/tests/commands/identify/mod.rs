@@ -5,8 +5,6 @@ mod alone;
 mod bench_data;
 mod command;
 mod formats;
-#[path = "../measured/mod.rs"]
-mod measured;
 mod power;
 mod saving;
 mod spacings;

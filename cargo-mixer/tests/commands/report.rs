@@ -13,20 +13,13 @@ use mixer_report::page::{SECTIONS, page};
 use mixer_report::study::Study;
 use roxmltree::{Document, Node, ParsingOptions};
 
-#[path = "report/browser.rs"]
-mod browser;
-#[path = "report/content.rs"]
-mod content;
-#[path = "report/cost.rs"]
-mod cost;
-#[path = "report/mixers.rs"]
-mod mixers;
-#[path = "report/pictures.rs"]
-mod pictures;
+use crate::{root, run};
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
+mod browser;
+mod content;
+mod cost;
+mod mixers;
+mod pictures;
 
 /// A place for a file that is not there yet.
 fn scratch(name: &str) -> PathBuf {
@@ -286,11 +279,6 @@ fn the_error_stays_below_its_bound() {
     }
 }
 
-fn cargo_mixer(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_cargo-mixer"));
-    command.args(arguments).current_dir(root()).output().unwrap()
-}
-
 #[track_caller]
 fn assert_status(output: &Output, status: i32, words: &str) {
     let text = String::from_utf8_lossy(&output.stderr);
@@ -319,7 +307,7 @@ fn bench_points_stand_beside_the_model() {
     fs::write(&file, bench).unwrap();
     let output = scratch("bench.html");
     let (file, output) = (file.display().to_string(), output.display().to_string());
-    let run = cargo_mixer(&[
+    let told = run(&[
         "report",
         "airframes/isae-x8.toml",
         "-o",
@@ -327,7 +315,7 @@ fn bench_points_stand_beside_the_model() {
         "--bench",
         &file,
     ]);
-    assert_status(&run, 0, "");
+    assert_status(&told, 0, "");
     let page = fs::read_to_string(&output).unwrap();
     let document = parsed(&page);
     let dots = document

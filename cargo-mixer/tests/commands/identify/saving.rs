@@ -10,9 +10,10 @@ use mixer_compiler::{Compiled, Source};
 use mixer_identify::fragment;
 use mixer_rt::Wrench;
 
-use crate::bench_data::{data, fitted, full_range_maps};
+use super::bench_data::{fitted, full_range_maps};
+use super::sweep::Normal;
+use crate::bench_data;
 use crate::measured;
-use crate::sweep::Normal;
 
 /// An X8 with the pairs of a map, and its mixer without the bias that was identified.
 struct X8 {
@@ -76,7 +77,7 @@ fn saving_percent([with, without]: [f64; 2]) -> f64 {
 #[test]
 fn the_mixer_saves_what_is_identified() {
     const BRISK: [f64; 2] = [0.05, 0.1];
-    let Some(data) = data("the_mixer_saves_what_is_identified") else {
+    let Some(data) = bench_data("the_mixer_saves_what_is_identified") else {
         return;
     };
     let (mut level, mut brisk) = (Vec::new(), [Vec::new(), Vec::new()]);
@@ -216,7 +217,7 @@ fn the_mixer_saves_over_logged_flights() {
         ("2024-06-21 10:38", "log_20240621_103807.csv"),
         ("2024-06-13 12:18", "log_20240613_121802.csv"),
     ];
-    let Some(data) = data("the_mixer_saves_over_logged_flights") else {
+    let Some(data) = bench_data("the_mixer_saves_over_logged_flights") else {
         return;
     };
     let logs = FLIGHTS.map(|(_, name)| rows(&data.join("acsl").join(name)));

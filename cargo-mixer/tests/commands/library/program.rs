@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::{library, root, run};
+use super::{library, root, run};
 
 /// Compilers of the host with their options.
 pub(crate) const HOST_COMPILERS: [&[&str]; 4] = [
@@ -42,7 +42,7 @@ const TARGET_LTO: &[&str] = &[
 
 /// A file of this test's folder.
 pub(crate) fn source(name: &str) -> PathBuf {
-    root().join("cargo-mixer/tests/library").join(name)
+    root().join("cargo-mixer/tests/commands/library").join(name)
 }
 
 /// The project's airframes.

@@ -6,14 +6,14 @@
 //! would really have given. The difference from what was asked is the error of the whole way: of
 //! the model, of the tables and of the inverse map.
 
-mod maps;
-
 use std::path::Path;
 
 use mixer_compiler::{Compiled, Source};
 use mixer_identify::fragment;
 use mixer_identify::identified::Identified;
 use mixer_rt::Wrench;
+
+use crate::maps;
 
 /// The fragment completed to a single pair on a stand, as its comments say.
 fn compiled(identified: &Identified) -> Compiled {

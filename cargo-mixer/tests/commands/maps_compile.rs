@@ -1,8 +1,6 @@
 //! Every coaxial map of `MIXER_BENCH_DATA` in every basis compiles close to its fold, within the
 //! default tolerance.
 
-mod maps;
-
 use std::time::Instant;
 
 use mixer_compiler::Source;
@@ -10,6 +8,8 @@ use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use mixer_identify::fragment;
 use mixer_identify::identified::Identified;
+
+use crate::maps;
 
 /// The idle over the least one at which the map can be inverted.
 const IDLE: f64 = 1.03;

@@ -1,8 +1,6 @@
 //! Fits of the coaxial maps of `MIXER_BENCH_DATA` are what a careful user has: none may raise a false
 //! alarm, and the mistakes that the rules on rotors are for must be told.
 
-mod maps;
-
 use cargo_mixer::bench_files::read_one;
 use cargo_mixer::commands::predict::PredictArgs;
 use std::collections::BTreeMap;
@@ -17,6 +15,8 @@ use mixer_identify::bench::Bench;
 use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, Settings, from_benches};
+
+use crate::maps;
 
 const BASES: [&str; 3] = ["biquadratic", "cubic", "quartic"];
 

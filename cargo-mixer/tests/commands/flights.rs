@@ -1,9 +1,9 @@
 //! Real flights of an X8 with an ordinary mixer: what its thrust command in hover is, over its
 //! weight. The logs are not part of the project: `MIXER_BENCH_DATA` names their folder.
 
-mod measured;
+use std::path::Path;
 
-use std::path::{Path, PathBuf};
+use crate::{bench_data, measured};
 
 /// Declared weight, N: 1.92 kg.
 const WEIGHT_N: f64 = 1.92 * 9.80665;
@@ -42,8 +42,7 @@ fn hover(log: &Path) -> (f64, f64, usize) {
 
 #[test]
 fn an_ordinary_mixer_asks_for_more_than_the_weight_in_hover() {
-    let Some(data) = std::env::var_os("MIXER_BENCH_DATA").map(PathBuf::from) else {
-        eprintln!("NOT RUN: an_ordinary_mixer_asks_for_more_than_the_weight_in_hover needs MIXER_BENCH_DATA");
+    let Some(data) = bench_data("an_ordinary_mixer_asks_for_more_than_the_weight_in_hover") else {
         return;
     };
     let mut text = String::from("flight,command_over_weight,deviation,rows\n");

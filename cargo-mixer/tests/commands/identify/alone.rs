@@ -8,7 +8,7 @@ use mixer_identify::bench::Bench;
 use mixer_identify::fragment;
 use mixer_identify::identified::with_runs;
 
-use crate::sweep::{Normal, bench, plain, rows, settings};
+use super::sweep::{Normal, bench, plain, rows, settings};
 
 const THRUST: [f64; 3] = [0.3, 14.0, -2.0];
 const TORQUE: [f64; 3] = [0.004, 0.16, -0.02];
