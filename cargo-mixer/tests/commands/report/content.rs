@@ -1,4 +1,5 @@
-//! What a page says of its origin, of a rotor out, of the bench, and how units are written.
+//! What a page has: curves of authority, marks, folded tables, data and the keyboard. Its words are in
+//! `cases/report`.
 
 use super::*;
 
@@ -13,81 +14,6 @@ fn section<'a, 'd>(document: &'d Document<'a>, id: &str) -> Node<'d, 'a> {
     named(document.root(), "section")
         .find(|section| section.attribute("id") == Some(id))
         .unwrap()
-}
-
-/// Headers of all tables of a page.
-fn headers(document: &Document) -> Vec<Vec<String>> {
-    named(document.root(), "thead")
-        .map(|head| named(head, "th").map(text_of).collect())
-        .collect()
-}
-
-#[test]
-fn pages_name_their_origin() {
-    let made = |epoch: &str| {
-        let output = scratch(&format!("origin-{epoch}.html")).display().to_string();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_cargo-mixer"));
-        command.args(["report", "airframes/single-pair.toml", "-o", &output]);
-        let run = command
-            .current_dir(root())
-            .env("SOURCE_DATE_EPOCH", epoch)
-            .output()
-            .unwrap();
-        assert_status(&run, 0, "");
-        fs::read_to_string(output).unwrap()
-    };
-    let page = made("951782400");
-    assert_eq!(page, made("951782401"), "of one day");
-    let summed = Command::new("sha256sum")
-        .arg(root().join("airframes/single-pair.toml"))
-        .output()
-        .unwrap();
-    let hash = String::from_utf8(summed.stdout).unwrap();
-    let hash = hash.split(' ').next().unwrap();
-    assert!(
-        page.contains(hash) && page.contains("<td>2000-02-29</td>"),
-        "{hash}"
-    );
-    // All coefficients, with all their digits.
-    let pair = compiled(&root().join("airframes/single-pair.toml")).airframe.pair;
-    for coefficient in pair.thrust_n.iter().chain(&pair.torque_nm) {
-        let cell = format!("<td>{}</td>", format!("{coefficient:?}").replace('-', "\u{2212}"));
-        assert!(page.contains(&cell), "{cell}");
-    }
-}
-
-#[test]
-fn the_yaw_table_of_many_units_is_narrow() {
-    let compiled = compiled(&root().join("airframes/px4-x12.toml"));
-    let page = page(&Study::new(&compiled, None), None, &Origin::default());
-    let document = parsed(&page);
-    let table = headers(&document)
-        .into_iter()
-        .find(|header| header[0] == "yaw asked (N m)")
-        .unwrap();
-    let groups = [
-        "f 0, 2, 5 (N)",
-        "Q 0, 2, 5 (N m)",
-        "f 1, 3, 4 (N)",
-        "Q 1, 3, 4 (N m)",
-    ];
-    assert_eq!(table[2..6], groups);
-    assert_eq!(table.len(), 8);
-}
-
-#[test]
-fn units_of_headers_stand_in_parentheses() {
-    for name in ["isae-x8", "px4-y6"] {
-        let compiled = compiled(&root().join(format!("airframes/{name}.toml")));
-        let page = page(&Study::new(&compiled, None), None, &Origin::default());
-        for header in headers(&parsed(&page)).concat() {
-            let bare = ["N", "m", "V", "kg", "instructions", "cycles", "bytes"]
-                .iter()
-                .any(|unit| header.split(' ').any(|word| word == *unit && header != *unit));
-            let in_parentheses = header.contains('(') && header.ends_with(')');
-            assert!(!bare || in_parentheses, "{header}");
-        }
-    }
 }
 
 #[test]
@@ -185,42 +111,6 @@ fn residuals_are_mapped() {
     }
 }
 
-/// Power, the saving and the flight time against Q = 0, of an airframe with a power map.
-#[test]
-fn power_and_its_saving_are_told() {
-    let file = "airframes/x8-11in-least-power.toml";
-    let told = |file: &str| {
-        let compiled = compiled(&root().join(file));
-        let page = page(&Study::new(&compiled, None), None, &Origin::default());
-        let document = parsed(&page);
-        let mut rows = named(document.root(), "tr").map(text_of);
-        rows.find(|row| row.starts_with("power") && !row.starts_with("power bias"))
-    };
-    let line = "power476.7 W at 35.30 N (in hover), 488.6 W at Q = 0: saves 2.44 %, flight time +2.50 %";
-    assert_eq!(told(file).as_deref(), Some(line));
-    assert_eq!(told("airframes/isae-x8.toml"), None, "it has no power map");
-}
-
-/// The page says that a pair was predicted, and by how much its hover and authority may be off.
-#[test]
-fn predictions_are_said_with_their_bands() {
-    let text = fs::read_to_string(root().join("airframes/single-pair.toml")).unwrap();
-    let uncertain = "\n[pair.uncertainty]\nthrust_percent = 2.0\ntorque_percent = 4.0\nsource = \"prediction\"\n\n\
-                     [vehicle]\nmass_kg = 1.0\n";
-    let page_of = |text: &str| {
-        let compiled = compile_text(text);
-        page(&Study::new(&compiled, None), None, &Origin::default())
-    };
-    let with = page_of(&(text.clone() + uncertain));
-    let document = parsed(&with);
-    let rows: Vec<String> = named(document.root(), "tr").map(text_of).collect();
-    let told = "pairbiquadratic, predicted: \u{b1} 2 % of the largest thrust, 4 % of the largest torque (one standard deviation)";
-    assert!(rows.iter().any(|row| row == told), "{rows:?}");
-    assert!(with.contains("by [pair.uncertainty] 0."));
-    assert!(with.contains("The pair is predicted: by one standard deviation of its uncertainty"));
-    assert!(!page_of(&text).contains("predicted"));
-}
-
 /// Every figure has the data of its own, and every plot that is read is reached by the Tab key:
 /// itself or each of its curves.
 #[test]
@@ -307,22 +197,4 @@ fn hover_is_marked_and_compared() {
     let unknown = x8();
     let page = super::page(&Study::new(&unknown, None), None, &Origin::default());
     assert!(page.contains("add [vehicle] mass_kg") && !page.contains("class=\"mark-point\""));
-}
-
-/// Without `[voltage]` no voltage is spoken of but that there is no correction.
-#[test]
-fn there_is_no_reference_voltage_without_one() {
-    let text = fs::read_to_string(root().join("airframes/isae-x8.toml")).unwrap();
-    let (before, rest) = text.split_once("[voltage]").unwrap();
-    let after = rest.split_once("\n[").unwrap().1;
-    let compiled = compile_text(&format!("{before}[{after}"));
-    let page = page(&Study::new(&compiled, None), None, &Origin::default());
-    let document = parsed(&page);
-    let told = text_of(named(document.root(), "body").next().unwrap());
-    for words in ["reference", "every voltage", " V,", " V."] {
-        let place = told
-            .find(words)
-            .map(|at| &told[at.saturating_sub(60)..at + words.len()]);
-        assert_eq!(place, None, "{words}");
-    }
 }
