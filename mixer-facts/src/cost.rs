@@ -5,14 +5,11 @@
 //! (`cost/typical.rs`); any request takes at most what the code does at most (`cost/bound.rs`).
 
 mod bound;
-mod kind;
 mod typical;
 
 use serde::Serialize;
 
 use mixer_compiler::Compiled;
-
-pub use kind::DesaturationKind;
 
 /// What counts are of.
 pub const TARGET: &str = "Cortex-M4F, counted in QEMU";
@@ -39,8 +36,8 @@ pub struct Cost {
     pub attainable_instructions: Option<u32>,
     /// Largest error of this estimate over counted frames, as a share.
     pub attainable_error: Option<f64>,
-    /// How the mixer desaturates.
-    pub desaturation: DesaturationKind,
+    /// How the mixer desaturates: `closed-form`, or `general`, an interior point method.
+    pub desaturation: &'static str,
     /// The most that any request takes, by what the code does at most; `None` where no bound is
     /// stated.
     pub bound_instructions: Option<u32>,
@@ -72,11 +69,22 @@ impl Cost {
             delivered_error: delivered.map(|estimate| estimate.error),
             attainable_instructions: attainable.map(|estimate| estimate.instructions),
             attainable_error: attainable.map(|estimate| estimate.error),
-            desaturation: DesaturationKind::of(compiled),
+            desaturation: match compiled.tables.closed_form {
+                Some(_) => "closed-form",
+                None => "general",
+            },
             bound_instructions: bound::bound(compiled),
             bound_with_rotors_out_instructions: bound::with_rotors_out(compiled),
             inverse_bytes: compiled.tables.inverse_bytes(),
             table_bytes: compiled.tables.bytes(),
+        }
+    }
+
+    /// How the mixer desaturates, for people.
+    pub fn desaturates(&self) -> &'static str {
+        match self.desaturation {
+            "closed-form" => "in closed form",
+            _ => "by a fixed number of iterations",
         }
     }
 }

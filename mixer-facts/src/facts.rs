@@ -416,7 +416,7 @@ fn costs(list: &mut List, compiled: &Compiled) {
         " of a Cortex-M4F over attainable requests{}",
         estimated(cost.attainable_error)
     );
-    let desaturation = cost.desaturation.description();
+    let desaturation = cost.desaturates();
     let any = format!(" at most, desaturation {desaturation}: the sum of what the code does at most");
     let (count, words) = match cost.inverse_instructions {
         Some(count) => (count.to_string(), words),

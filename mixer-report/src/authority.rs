@@ -24,7 +24,8 @@ const COARSE: Search = Search {
 
 /// Authority at `count` thrusts from the floor to the ceiling of the reference voltage.
 pub fn against_thrust(study: &Study<'_>, condition: &Condition, count: usize) -> Vec<Authority> {
-    thrusts(study, count)
+    study
+        .thrusts(count)
         .map(|thrust_n| at(study, condition, thrust_n))
         .collect()
 }
@@ -48,7 +49,8 @@ pub fn with_a_rotor_out(study: &Study<'_>, count: usize) -> Vec<Authority> {
             ..study.reference()
         })
         .collect();
-    thrusts(study, count)
+    study
+        .thrusts(count)
         .map(|thrust_n| Authority {
             thrust_n,
             torque_nm: about_axes(study, |axis, sign| {
@@ -59,11 +61,6 @@ pub fn with_a_rotor_out(study: &Study<'_>, count: usize) -> Vec<Authority> {
             }),
         })
         .collect()
-}
-
-fn thrusts(study: &Study<'_>, count: usize) -> impl Iterator<Item = f64> {
-    let [low, high] = study.compiled.thrust_range_n.map(f64::from);
-    (0..count).map(move |k| low + (high - low) * k as f64 / (count - 1) as f64)
 }
 
 /// `[least, largest]` about each torque axis.

@@ -61,6 +61,8 @@ impl Comparison {
             return None;
         }
         let conventional = IsolatedTables::new(study.compiled);
+        let m_plus = &study.compiled.effectiveness.pseudo_inverse;
+        let share = |unit: usize| m_plus[(unit, Axis::Thrust as usize)] * study.thrust_n;
         let rows = (0..count)
             .map(|k| {
                 // From both ends, so that a symmetric range has its zero exactly.
@@ -76,12 +78,7 @@ impl Comparison {
             .collect();
         Some(Comparison {
             thrust_n: study.thrust_n,
-            share_n: (0..study.compiled.airframe.units.len())
-                .map(|unit| {
-                    study.compiled.effectiveness.pseudo_inverse[(unit, Axis::Thrust as usize)]
-                        * study.thrust_n
-                })
-                .collect(),
+            share_n: (0..study.compiled.airframe.units.len()).map(share).collect(),
             kappa_m: conventional.kappa_m,
             rows,
         })
@@ -108,12 +105,8 @@ pub fn throttles(
             .map_or(f64::NAN, |&throttle| f64::from(throttle))
     };
     let units = airframe.units.iter();
-    (
-        units
-            .map(|unit| [throttle(unit.upper_channel), throttle(unit.lower_channel)])
-            .collect(),
-        within,
-    )
+    let units = units.map(|unit| [unit.upper_channel, unit.lower_channel].map(throttle));
+    (units.collect(), within)
 }
 
 fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> Answer {

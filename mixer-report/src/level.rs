@@ -20,10 +20,9 @@ pub struct Level {
 
 /// Level flight at `count` thrusts from the floor to the ceiling of the reference voltage.
 pub fn against_thrust(study: &Study<'_>, voltage_v: Option<f64>, count: usize) -> Vec<Level> {
-    let [low, high] = study.compiled.thrust_range_n.map(f64::from);
-    let thrusts = (0..count).map(|k| low + (high - low) * k as f64 / (count - 1) as f64);
     let condition = study.at(voltage_v);
-    thrusts
+    study
+        .thrusts(count)
         .map(|thrust_n| level(study, thrust_n, thrust_n, &condition))
         .collect()
 }

@@ -443,7 +443,7 @@ fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
             ". The inverse map is counted on its own; its cycles are its instructions and 13 more \
              for every division and square root. The whole mix is estimated: the inverse map of all units, and for checks, \
              voltage and allocation what counted mixers that desaturate "
-            (costs.desaturation.description())
+            (costs.desaturates())
             " take per unit and per mix beside it. Memory that makes the core wait is not in it."
         }
         (table::facts(facts, &[]))

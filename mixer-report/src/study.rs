@@ -158,6 +158,12 @@ impl<'a> Study<'a> {
         }
     }
 
+    /// `count` thrusts from the floor to the ceiling of the reference voltage, N.
+    pub fn thrusts(&self, count: usize) -> impl Iterator<Item = f64> {
+        let [low, high] = self.compiled.thrust_range_n.map(f64::from);
+        (0..count).map(move |k| low + (high - low) * k as f64 / (count - 1) as f64)
+    }
+
     /// Whether the airframe serves an axis.
     pub fn serves(&self, axis: Axis) -> bool {
         self.compiled.airframe.allocation.controls(axis)

@@ -8,7 +8,6 @@
 //! rounded from the counts of whole mixers in `docs/costs.md`; a test holds the sum to these counts,
 //! within the errors stated.
 
-use super::kind::DesaturationKind;
 use mixer_compiler::Compiled;
 
 /// Instructions beside the evaluators'.
@@ -52,19 +51,18 @@ pub(super) struct Estimate {
 
 /// A request that least norm delivers; `None` for an evaluator that has not been counted.
 pub(super) fn delivered(compiled: &Compiled) -> Option<Estimate> {
-    let overhead = match DesaturationKind::of(compiled) {
-        DesaturationKind::ClosedForm => CLOSED_FORM,
-        DesaturationKind::General => GENERAL,
+    let overhead = if compiled.tables.closed_form.is_some() {
+        CLOSED_FORM
+    } else {
+        GENERAL
     };
     overhead.estimate(compiled)
 }
 
 /// The mean over attainable requests; `None` where it depends on the frame too much.
 pub(super) fn attainable(compiled: &Compiled) -> Option<Estimate> {
-    match DesaturationKind::of(compiled) {
-        DesaturationKind::ClosedForm => CLOSED_FORM_MEAN.estimate(compiled),
-        DesaturationKind::General => None,
-    }
+    compiled.tables.closed_form.as_ref()?;
+    CLOSED_FORM_MEAN.estimate(compiled)
 }
 
 impl Overhead {
