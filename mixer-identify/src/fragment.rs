@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::iter::{once, repeat};
 
+use mixer_compiler::diagnostic::printable;
 use toml_edit::{DocumentMut, value};
 
 use super::fact::{Fact, Told, of_identified, of_predicted, runs};
@@ -183,9 +184,9 @@ fn comments(facts: &[Fact], table: &str) -> String {
     facts.iter().filter(is_told).map(line).collect()
 }
 
-/// A comment with `mark` before its first line.
+/// A comment with `mark` before its first line. TOML has no control characters in comments.
 fn comment(mark: &str, text: &str) -> String {
     let marks = once(mark).chain(repeat("  "));
-    let lines = marks.zip(wrapped(text, WIDTH));
+    let lines = marks.zip(wrapped(&printable(text), WIDTH));
     lines.map(|(mark, line)| format!("# {mark}{line}\n")).collect()
 }
