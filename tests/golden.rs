@@ -2,7 +2,9 @@
 #![allow(missing_docs)]
 
 use cargo_mixer::commands::golden::compare;
-use cargo_mixer::commands::golden::vectors::{self, Kind, Vector};
+use mixer_files::golden::outputs;
+use mixer_files::golden::vectors::{self, Kind, Vector};
+use mixer_rt::Wrench;
 use mixer_tests::physics::Physics;
 use mixer_tests::{airframes, golden};
 
@@ -22,9 +24,7 @@ fn airframes_compile_to_their_golden_outputs() {
 /// The same text gives the same bytes, also in one process and whatever was compiled before.
 #[test]
 fn compilation_is_deterministic() {
-    let outputs = |name| {
-        cargo_mixer::commands::golden::outputs(&golden::compile(name).unwrap_or_else(|e| panic!("{e}")))
-    };
+    let outputs = |name| outputs(&golden::compile(name).unwrap_or_else(|e| panic!("{e}")));
     let once = outputs("isae-x8");
     let _ = outputs("px4-y6");
     assert_eq!(once, outputs("isae-x8"));
@@ -32,22 +32,34 @@ fn compilation_is_deterministic() {
 
 mod isae_x8 {
     mixer_macros::airframe!("../airframes/isae-x8.toml");
-    include!("golden/isae-x8.vectors.rs");
     pub(super) use isae_x8::mix;
+}
+
+/// A row with another number in a cell.
+fn altered(row: &str, cell: usize) -> String {
+    let cells = row.split(',').enumerate();
+    let cells: Vec<&str> = cells
+        .map(|(k, value)| if k == cell { "0x3dcccccc" } else { value })
+        .collect();
+    cells.join(",")
 }
 
 /// The harness that users copy to the target counts every row whose bits differ.
 #[test]
 fn the_harness_for_the_target_counts_what_differs() {
-    assert_eq!(harness::differing(&isae_x8::VECTORS, isae_x8::mix), 0);
-    let mut altered = isae_x8::VECTORS;
-    let last = altered[0].len() - 1;
-    altered[3][5] ^= 1;
-    altered[200][last - 1] ^= 1;
-    altered[453][last] ^= 1;
-    assert_eq!(harness::differing(&altered, isae_x8::mix), 3);
-    let rotor_out = &isae_x8::ROTORS_OUT[2].1;
-    assert_eq!(harness::differing(rotor_out, isae_x8::mix), rotor_out.len());
+    let table = include_str!("golden/isae-x8.vectors.csv");
+    assert_eq!(harness::differing(table, isae_x8::mix), 0);
+    let mut rows: Vec<String> = table.lines().map(str::to_owned).collect();
+    let last = rows[0].split(',').count() - 1;
+    for (row, cell) in [(4, 5), (201, last - 1), (454, last)] {
+        rows[row] = altered(&rows[row], cell);
+    }
+    assert_eq!(harness::differing(&rows.join("\n"), isae_x8::mix), 3);
+
+    let table = include_str!("golden/isae-x8.rotors-out.csv");
+    let without = |setpoint: &Wrench, voltage_v, _| isae_x8::mix(setpoint, voltage_v);
+    let all = harness::rows(table).count();
+    assert_eq!(harness::differing_with_rotors_out(table, without), all);
 }
 
 /// Every kind of vector is what it says.

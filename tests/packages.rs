@@ -9,7 +9,7 @@ use std::process::Command;
 use mixer_tests::root;
 
 /// In the order of publication: each uses only those before it.
-const PUBLISHED: [&str; 9] = [
+const PUBLISHED: [&str; 10] = [
     "mixer-rt",
     "mixer-compiler",
     "mixer-macros",
@@ -18,6 +18,7 @@ const PUBLISHED: [&str; 9] = [
     "mixer-facts",
     "mixer-report",
     "mixer-c",
+    "mixer-files",
     "cargo-mixer",
 ];
 
@@ -113,6 +114,7 @@ fn firmware_builds_nothing_of_the_command_line() {
             "mixer-facts",
             "mixer-report",
             "mixer-c",
+            "mixer-files",
             "cargo-mixer",
             "faer",
             "csv",

@@ -43,11 +43,6 @@ enum Command {
     Completions(shell::CompletionsArgs),
 }
 
-/// The command line, for help texts and completions.
-pub fn command() -> clap::Command {
-    Arguments::command()
-}
-
 /// Runs the command that the program was called with.
 pub fn run() -> ExitCode {
     // Cargo passes the subcommand's own name to an installed `cargo-mixer`; the repository's alias
@@ -78,6 +73,6 @@ pub fn run() -> ExitCode {
         Command::Report(args) => report::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Sweep(args) => sweep::run(&args),
-        Command::Completions(args) => shell::run(&args, command()),
+        Command::Completions(args) => shell::run(&args, Arguments::command()),
     }
 }

@@ -1,5 +1,6 @@
 //! Values of arguments that the commands about benches share.
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_identify::bench::header::{ROLES, unknown_role};
 use mixer_identify::bench::sign::SignChoice;
 use mixer_identify::fit::basis::ThrottleBox;
@@ -80,4 +81,17 @@ pub(crate) fn sign_choice(text: &str) -> Result<SignChoice, String> {
         Some((upper, lower)) => Ok(SignChoice::Given([one(upper)?, one(lower)?])),
         None => one(text).map(|s| SignChoice::Given([s, s])),
     }
+}
+
+/// A parser of the words of `all`, each with its value and what it means.
+pub(crate) fn words<T: Copy + Send + Sync>(
+    all: &'static [(T, &'static str, &'static str)],
+) -> impl TypedValueParser<Value = T> {
+    let values = all
+        .iter()
+        .map(|(_, word, meaning)| PossibleValue::new(*word).help(*meaning));
+    PossibleValuesParser::new(values).try_map(move |given| {
+        let found = all.iter().find(|(_, word, _)| *word == given);
+        found.map(|(value, ..)| *value).ok_or("no such word")
+    })
 }

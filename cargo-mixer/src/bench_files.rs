@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use mixer_compiler::diagnostic::printable;
 use mixer_identify::bench::{Bench, read};
 use mixer_identify::identified::{Identified, Settings};
-use mixer_identify::pair_file::PairFile;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{self, Text};
 
@@ -51,12 +50,4 @@ pub fn identify_with_runs(
 /// A file that cannot be read or used.
 pub fn read_one(path: &Path, settings: &Settings) -> Result<Bench, Refusal> {
     texts::read(&text(path), settings)
-}
-
-/// Reads a file with the model of a pair.
-///
-/// # Errors
-/// A file that cannot be read, is no TOML, or has no `[pair]`.
-pub(crate) fn pair(path: &Path) -> Result<PairFile, String> {
-    PairFile::read(&path.display().to_string(), &crate::file::read_text(path)?)
 }

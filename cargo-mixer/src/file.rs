@@ -5,6 +5,7 @@ use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use mixer_compiler::Source;
 use tempfile::NamedTempFile;
 
 /// Largest bench file that is read, MB. A device without an end would fill the memory.
@@ -48,6 +49,14 @@ pub fn read_small(path: &Path) -> Result<Vec<u8>, String> {
 /// As [`read_small`]; what is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, String> {
     String::from_utf8(read_small(path)?).map_err(|_| format!("{}: is not UTF-8 text", path.display()))
+}
+
+/// [`read_text`] with its name.
+///
+/// # Errors
+/// As [`read_text`].
+pub(crate) fn source(path: &Path) -> Result<Source, String> {
+    Ok(Source::new(path.display().to_string(), read_text(path)?))
 }
 
 /// Refuses a file that is there already, unless `force` is given. A device or a pipe has nothing to

@@ -8,8 +8,9 @@ use std::io::{IsTerminal as _, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use mixer_compiler::diagnostic::{Diagnostics, printable};
+use mixer_compiler::diagnostic::Diagnostics;
 use mixer_compiler::{Compiled, Source};
+use mixer_files::plain::printable_lines;
 
 mod airframe_file;
 pub mod arguments;
@@ -17,11 +18,10 @@ pub mod bench_args;
 pub mod bench_files;
 pub mod commands;
 pub mod file;
-pub mod frame;
+pub mod frame_args;
 pub mod pack;
 mod place;
 pub mod setpoints;
-pub mod stack;
 mod today;
 
 /// The exit status for a bad input.
@@ -71,14 +71,11 @@ fn print_note(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", lines.collect::<Vec<_>>().join("\n"));
 }
 
-/// [`printable`] text, of which the ends of lines and tabs stay.
-fn printable_lines(text: &str) -> String {
-    let is_kept = |c| matches!(c, '\n' | '\t');
-    let parts = text.split_inclusive(is_kept).map(|part| {
-        let plain = part.trim_end_matches(is_kept);
-        printable(plain) + &part[plain.len()..]
-    });
-    parts.collect()
+/// Says on stderr what the user of an output has to know of it.
+fn print_notes(notes: &[String]) {
+    for note in notes {
+        print_note(format_args!("note: {note}"));
+    }
 }
 
 /// Shows faults or warnings on stderr; each begins with `error[..]` or `warning[..]` itself. In
@@ -116,6 +113,18 @@ fn read(path: &Path) -> Result<Source, Refusal> {
 /// Prints the only output of a command; its exit status.
 fn print(text: &str) -> ExitCode {
     finish(io::stdout().lock().write_all(text.as_bytes()))
+}
+
+/// Writes an output to its file, or prints it where there is none.
+fn deliver(output: Option<&Path>, force: bool, text: &str) -> ExitCode {
+    let Some(path) = output else {
+        return print(text);
+    };
+    let written = file::not_there(path, force).and_then(|()| file::save(path, text));
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => print_error(message),
+    }
 }
 
 /// The exit status after the last output.

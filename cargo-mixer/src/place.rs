@@ -5,10 +5,12 @@ use std::io::{Write as _, stdout};
 use std::path::Path;
 use std::process::ExitCode;
 
-use mixer_identify::pair_file::PairFile;
+use mixer_compiler::Source;
+use mixer_files::new::new;
+use mixer_files::plain::printable_lines;
 use mixer_identify::texts::Answer;
 
-use crate::frame::FrameArgs;
+use crate::frame_args::FrameArgs;
 use crate::{BAD_USAGE, output, print_error, print_note};
 
 /// Where the tables go, and in which form.
@@ -53,17 +55,15 @@ impl Place<'_> {
         let text = match self.frame {
             None => answer.tables.clone(),
             Some(frame) => {
-                let pair = PairFile::read("the tables", &answer.tables).map_err(print_error)?;
-                let (tables, power_bias) = pair.model();
-                let text = frame.airframe(self.file(), &tables, power_bias);
-                text.map_err(|message| {
-                    print_error(message);
+                let tables = Source::new("the tables", answer.tables.as_str());
+                new(&frame.frame(self.file()), Some(&tables)).map_err(|error| {
+                    print_error(error);
                     ExitCode::from(BAD_USAGE)
                 })?
             }
         };
         // Names, headers and cells of the bench files are in both.
-        let [report, text] = [report.as_str(), &text].map(crate::printable_lines);
+        let [report, text] = [report.as_str(), &text].map(printable_lines);
         let out = if self.to_stdout() {
             print_note(report.trim_end());
             text.trim_end()

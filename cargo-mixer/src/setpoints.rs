@@ -2,20 +2,17 @@
 //! row per line.
 //!
 //! A row never spans lines, although CSV allows it in quotes: so a stray quote spoils its own row
-//! and not all rows after it, every fault names its line, and a row can be answered as soon as its
-//! line has ended.
+//! and not all rows after it.
 
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, Read};
 
-use csv_core::ReadRecordResult;
+use csv::{ByteRecord, ReaderBuilder, Terminator};
 use mixer_rt::Wrench;
 
 /// The columns that must be there, in the order of [`Wrench::to_array`].
 const REQUIRED: [&str; 4] = ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n"];
 const VOLTAGE: &str = "voltage_v";
 pub(crate) const HEADER: &str = "roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v]";
-/// Columns that a header can have before it is refused for its first unknown or repeated one.
-const MOST_COLUMNS: usize = 64;
 
 /// One row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,19 +32,21 @@ pub struct BadLine {
     pub message: String,
 }
 
-/// Why there are no setpoints at all.
+/// Why reading and mixing ended before the input did.
 #[derive(Debug)]
-pub enum HeaderError {
+pub enum Stopped {
     /// The first line is not the header.
-    Bad(BadLine),
+    Header(BadLine),
     /// The input cannot be read.
-    Io(io::Error),
+    Input(io::Error),
+    /// The output failed.
+    Output(io::Error),
 }
 
 /// Reads setpoints row by row.
 #[derive(Debug)]
 pub struct Setpoints<R> {
-    lines: Lines<R>,
+    rows: Rows<R>,
     columns: Columns,
 }
 
@@ -57,20 +56,18 @@ impl<R: Read> Setpoints<R> {
     /// # Errors
     /// An input without one, a column that is missing, unknown or stands twice, or an input that
     /// fails.
-    pub fn new(input: R) -> Result<Self, HeaderError> {
-        let mut lines = Lines::new(input);
-        let there_is_one = lines.advance().map_err(HeaderError::Io)?;
-        let columns = if there_is_one {
-            lines.fields().and_then(|fields| Columns::new(&fields))
-        } else {
-            Err(format!(
+    pub fn new(input: R) -> Result<Self, Stopped> {
+        let mut rows = Rows::new(input);
+        let columns = match rows.next().map_err(Stopped::Input)? {
+            Some((_, row)) => fields(row).and_then(|fields| Columns::new(&fields)),
+            None => Err(format!(
                 "the input is empty; its first line is the header {HEADER}"
-            ))
+            )),
         };
         match columns {
-            Ok(columns) => Ok(Self { lines, columns }),
-            Err(message) => Err(HeaderError::Bad(BadLine {
-                line: lines.number.max(1),
+            Ok(columns) => Ok(Self { rows, columns }),
+            Err(message) => Err(Stopped::Header(BadLine {
+                line: rows.line(),
                 message,
             })),
         }
@@ -80,18 +77,91 @@ impl<R: Read> Setpoints<R> {
     ///
     /// # Errors
     /// An input that cannot be read any further.
-    pub fn read(&mut self) -> io::Result<Option<(usize, Result<Setpoint, BadLine>)>> {
-        if !self.lines.advance()? {
+    pub fn read(&mut self) -> Result<Option<(usize, Result<Setpoint, BadLine>)>, Stopped> {
+        let Some((line, row)) = self.rows.next().map_err(Stopped::Input)? else {
             return Ok(None);
-        }
-        let line = self.lines.number;
-        let row = self.lines.fields().and_then(|fields| self.columns.read(&fields));
+        };
+        let row = fields(row).and_then(|fields| self.columns.read(&fields));
         Ok(Some((line, row.map_err(|message| BadLine { line, message }))))
     }
+}
 
-    /// True where the next [`Setpoints::read`] may have to wait for input.
-    pub fn may_wait(&self) -> bool {
-        !self.lines.input.buffer().contains(&b'\n')
+/// Rows that are not blank.
+#[derive(Debug)]
+struct Rows<R> {
+    reader: csv::Reader<io::Chain<Lines<R>, &'static [u8]>>,
+    row: ByteRecord,
+}
+
+impl<R: Read> Rows<R> {
+    fn new(input: R) -> Self {
+        // A line feed alone ends a row: a carriage return within a line would hide what follows it.
+        // The last row has one, too.
+        let mut settings = ReaderBuilder::new();
+        settings.has_headers(false).flexible(true).quoting(false);
+        settings.terminator(Terminator::Any(b'\n'));
+        Rows {
+            reader: settings.from_reader(Lines { input, length: 0 }.chain(b"\n")),
+            row: ByteRecord::new(),
+        }
+    }
+
+    /// The next row and its line.
+    fn next(&mut self) -> io::Result<Option<(usize, &ByteRecord)>> {
+        let is_blank = |row: &ByteRecord| String::from_utf8_lossy(row.as_slice()).trim().is_empty();
+        while self.reader.read_byte_record(&mut self.row)? {
+            if self.row.len() > 1 || !is_blank(&self.row) {
+                return Ok(Some((self.line(), &self.row)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The line of the last row.
+    fn line(&self) -> usize {
+        let next = self.reader.position().line();
+        usize::try_from(next)
+            .unwrap_or(usize::MAX)
+            .saturating_sub(1)
+            .max(1)
+    }
+}
+
+/// The fields of a row, without quotes and the blanks around them.
+fn fields(row: &ByteRecord) -> Result<Vec<&str>, String> {
+    let field = |field| {
+        let text = str::from_utf8(field).map_err(|_| "not UTF-8".to_owned())?.trim();
+        let inner = text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
+        Ok(inner.map_or(text, str::trim))
+    };
+    row.iter().map(field).collect()
+}
+
+/// Longest line, bytes: six numbers take a hundred. A device without an end would fill the memory.
+const LONGEST_LINE: usize = 1 << 16;
+
+/// An input whose lines end.
+#[derive(Debug)]
+struct Lines<R> {
+    input: R,
+    /// Bytes of the last line so far.
+    length: usize,
+}
+
+impl<R: Read> Read for Lines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.input.read(buffer)?;
+        let read = buffer.get(..count).unwrap_or_default();
+        self.length = match read.iter().rposition(|byte| *byte == b'\n') {
+            Some(end) => count - end,
+            None => self.length + count,
+        };
+        if self.length > LONGEST_LINE {
+            return Err(io::Error::other(format!(
+                "a line has more than {LONGEST_LINE} bytes: setpoints are lines of numbers below {HEADER}"
+            )));
+        }
+        Ok(count)
     }
 }
 
@@ -162,87 +232,6 @@ impl Columns {
     }
 }
 
-/// Longest line, bytes: six numbers take a hundred. A device without an end would fill the memory.
-const LONGEST_LINE: usize = 1 << 16;
-
-/// Lines that are not blank, split at commas.
-#[derive(Debug)]
-struct Lines<R> {
-    input: BufReader<R>,
-    parser: csv_core::Reader,
-    /// Number of the present line, from 1; 0 before the first.
-    number: usize,
-    line: Vec<u8>,
-    unquoted: Vec<u8>,
-}
-
-impl<R: Read> Lines<R> {
-    fn new(input: R) -> Self {
-        Self {
-            input: BufReader::new(input),
-            // A carriage return within a line would otherwise end the row and hide what follows it.
-            parser: csv_core::ReaderBuilder::new()
-                .terminator(csv_core::Terminator::Any(b'\n'))
-                .build(),
-            number: 0,
-            line: Vec::new(),
-            unquoted: Vec::new(),
-        }
-    }
-
-    /// Goes to the next line that is not blank; false at the end.
-    fn advance(&mut self) -> io::Result<bool> {
-        const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
-        loop {
-            self.line.clear();
-            let mut input = self.input.by_ref().take(LONGEST_LINE as u64 + 1);
-            if input.read_until(b'\n', &mut self.line)? == 0 {
-                return Ok(false);
-            }
-            self.number += 1;
-            if self.line.len() > LONGEST_LINE {
-                return Err(io::Error::other(format!(
-                    "line {} has more than {LONGEST_LINE} bytes: setpoints are lines of numbers below {HEADER}",
-                    self.number
-                )));
-            }
-            if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
-                self.line.drain(..BYTE_ORDER_MARK.len());
-            }
-            if !String::from_utf8_lossy(&self.line).trim().is_empty() {
-                return Ok(true);
-            }
-        }
-    }
-
-    /// The fields of the present line, without quotes and the blanks around them.
-    fn fields(&mut self) -> Result<Vec<&str>, String> {
-        let line = str::from_utf8(&self.line).map_err(|_| "not UTF-8".to_owned())?;
-        // A line feed ends the record, whether the input's last line has one or not.
-        let record = format!("{}\n", line.trim());
-        self.unquoted.resize(record.len(), 0);
-        let mut ends = [0; MOST_COLUMNS];
-        self.parser.reset();
-        let (result, _, _, count) = self
-            .parser
-            .read_record(record.as_bytes(), &mut self.unquoted, &mut ends);
-        match result {
-            ReadRecordResult::Record => {}
-            ReadRecordResult::OutputEndsFull => return Err(format!("more than {MOST_COLUMNS} columns")),
-            _ => return Err("a quote is not closed on its line".to_owned()),
-        }
-        let mut start = 0;
-        let fields = ends.iter().take(count).map(|&end| {
-            let field = self.unquoted.get(start..end).unwrap_or_default();
-            start = end;
-            str::from_utf8(field).map(str::trim)
-        });
-        fields
-            .collect::<Result<_, _>>()
-            .map_err(|_| "not UTF-8".to_owned())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -252,8 +241,8 @@ mod tests {
         let (mut good, mut bad) = (Vec::new(), Vec::new());
         let mut setpoints = match Setpoints::new(text.as_ref()) {
             Ok(setpoints) => setpoints,
-            Err(HeaderError::Bad(BadLine { line, message })) => return (good, vec![(line, message)]),
-            Err(HeaderError::Io(error)) => panic!("{error}"),
+            Err(Stopped::Header(BadLine { line, message })) => return (good, vec![(line, message)]),
+            Err(stopped) => panic!("{stopped:?}"),
         };
         while let Some((_, row)) = setpoints.read().unwrap() {
             match row {
@@ -292,14 +281,16 @@ mod tests {
 
     #[test]
     fn a_line_without_end_is_refused() {
-        let fault = |text: String| match Setpoints::new(text.as_bytes()) {
-            Err(HeaderError::Io(error)) => error.to_string(),
-            Err(HeaderError::Bad(bad)) => panic!("{bad:?}"),
-            Ok(mut setpoints) => setpoints.read().unwrap_err().to_string(),
+        let fault = |text: String| {
+            let read = Setpoints::new(text.as_bytes()).and_then(|mut setpoints| setpoints.read());
+            match read.unwrap_err() {
+                Stopped::Input(error) => error.to_string(),
+                other => panic!("{other:?}"),
+            }
         };
         let long = "0".repeat(LONGEST_LINE + 1);
-        assert!(fault(long.clone()).starts_with("line 1 has more than 65536 bytes"));
-        assert!(fault(format!("roll_nm,pitch_nm,yaw_nm,thrust_n\n{long}")).starts_with("line 2 has"));
+        assert!(fault(long.clone()).starts_with("a line has more than 65536 bytes"));
+        assert!(fault(format!("roll_nm,pitch_nm,yaw_nm,thrust_n\n{long}")).starts_with("a line has"));
         let padded = format!(
             "{:<1$}\n1,2,3,4\n",
             "roll_nm,pitch_nm,yaw_nm,thrust_n",
@@ -325,7 +316,7 @@ mod tests {
         let (good, bad) = read(rows.join(&b'\n'));
         assert_eq!(good, [setpoint([1.0, 2.0, 3.0, 4.0], None)]);
         let expected = [
-            (2, "a quote is not closed on its line"),
+            (2, "roll_nm `\\\"1` is not a number"),
             (4, "3 columns where the header has 4"),
             (5, "5 columns where the header has 4"),
             (6, "pitch_nm `` is not a number"),
@@ -341,7 +332,7 @@ mod tests {
         let many = format!("roll_nm{}", ",roll_nm".repeat(100));
         let cases: [(&[u8], usize, &str); 8] = [
             (b"", 1, "the input is empty"),
-            (b"\n\n", 2, "the input is empty"),
+            (b"\n\n", 3, "the input is empty"),
             (
                 b"0,0,0,30\n",
                 1,
@@ -359,7 +350,7 @@ mod tests {
                 "column `yaw_nm` stands twice",
             ),
             (b"\xff\xfer\0o\0l\0l\0\n\0", 1, "not UTF-8"),
-            (many.as_bytes(), 1, "more than 64 columns"),
+            (many.as_bytes(), 1, "no column pitch_nm, yaw_nm, thrust_n"),
         ];
         for (text, line, message) in cases {
             let (good, bad) = read(text);
@@ -370,13 +361,5 @@ mod tests {
             assert_eq!(*bad_line, line, "{bad_message}");
             assert!(bad_message.starts_with(message), "{bad_message}");
         }
-    }
-
-    #[test]
-    fn waits_only_for_what_has_not_come() {
-        let mut setpoints = Setpoints::new(&b"roll_nm,pitch_nm,yaw_nm,thrust_n\n1,2,3,4\n5,6"[..]).unwrap();
-        assert!(!setpoints.may_wait());
-        setpoints.read().unwrap();
-        assert!(setpoints.may_wait());
     }
 }

@@ -39,7 +39,7 @@ pub fn text(name: &str) -> Result<String, String> {
 pub fn outputs() -> Result<BTreeMap<String, String>, String> {
     let mut outputs = BTreeMap::new();
     for name in airframes().map_err(|error| format!("airframes/: {error}"))? {
-        outputs.extend(cargo_mixer::commands::golden::outputs(&compile(&name)?));
+        outputs.extend(mixer_files::golden::outputs(&compile(&name)?));
     }
     Ok(outputs)
 }

@@ -11,7 +11,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::Refusal;
-use crate::stack::Stacks;
+use mixer_files::settings::Stacks;
 
 /// Validates and compiles an airframe file and says what came of it
 #[derive(clap::Args, Debug)]

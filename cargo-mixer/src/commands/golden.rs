@@ -1,19 +1,12 @@
 //! `cargo mixer golden`: what an airframe compiles to, held in files and compared.
-//!
-//! An airframe has five of them: `NAME.rs`, the generated Rust; `NAME.report.txt`, the report;
-//! `NAME.vectors.csv`, setpoints with the bits that the mixer gives; `NAME.rotors-out.csv`, the
-//! same with rotors out; `NAME.vectors.rs`, both as constants for a test on the target.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use mixer_compiler::Compiled;
-use mixer_facts::Checked;
+use mixer_files::golden;
 
 pub mod compare;
-pub mod table;
-pub mod vectors;
 
 /// Writes golden outputs of airframes, or compares them with those that were written
 ///
@@ -22,7 +15,6 @@ pub mod vectors;
 ///   NAME.report.txt      its summary
 ///   NAME.vectors.csv     setpoints with the bits of throttles, achieved wrench and saturation
 ///   NAME.rotors-out.csv  the same with rotors out
-///   NAME.vectors.rs      both as constants, for a test on the target
 ///
 /// Keep the folder under version control and run the command with --check in your tests.
 #[derive(clap::Args, Debug)]
@@ -71,27 +63,9 @@ fn all_outputs(airframes: &[PathBuf]) -> Result<BTreeMap<String, String>, ExitCo
                 path.display()
             )));
         }
-        outputs.extend(self::outputs(&compiled));
+        outputs.extend(golden::outputs(&compiled));
     }
     Ok(outputs)
-}
-
-/// The golden outputs of one airframe: file name and content.
-pub fn outputs(compiled: &Compiled) -> [(String, String); 5] {
-    let vectors = vectors::healthy(compiled);
-    let rotors_out = table::rotors_out(compiled, &vectors::rotors_out(compiled, &vectors));
-    let vectors = table::healthy(compiled, &vectors);
-    let file = |ending: &str| format!("{}.{ending}", compiled.airframe.name);
-    [
-        (file("rs"), compiled.rust()),
-        (file("report.txt"), Checked::new(compiled.clone()).report()),
-        (file("vectors.csv"), table::csv(compiled, &vectors)),
-        (
-            file("rotors-out.csv"),
-            table::rotors_out_csv(compiled, &rotors_out),
-        ),
-        (file("vectors.rs"), table::rust(compiled, &vectors, &rotors_out)),
-    ]
 }
 
 fn write(folder: &Path, outputs: &BTreeMap<String, String>, force: bool) -> Result<ExitCode, String> {

@@ -21,7 +21,7 @@ use mixer_identify::texts::{Prediction, identify};
 use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::{text, texts};
 use crate::commands::predict::{self, RotorArgs};
-use crate::frame::FrameArgs;
+use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
 use crate::place::Place;
 use crate::{BAD_USAGE, print_error, print_note};

@@ -1,25 +1,11 @@
 //! `cargo mixer import`: an airframe file from a flight stack's parameters.
-//!
-//! ```text
-//! PX4's CA_ROTOR*, ArduPilot's FRAME_*, PX4's geometry files           parameters.rs
-//!   -> rotors: channel, place, axis, spin                              px4.rs, ardupilot.rs, geometry.rs
-//!   -> units: two rotors in one place, which is on top                 pairs.rs
-//!   -> the airframe file, with what the parameters do not say named    text.rs
-//! ```
-
-mod ardupilot;
-mod geometry;
-mod pairs;
-mod parameters;
-mod px4;
-mod rotors;
-mod text;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use parameters::Parameters;
-use rotors::Imported;
+use mixer_files::import::{self, Options};
+
+use crate::file;
 
 /// Makes an airframe file of a flight stack's parameters
 ///
@@ -63,59 +49,26 @@ pub struct ImportArgs {
 /// Runs the command.
 pub fn run(args: &ImportArgs) -> ExitCode {
     let inputs = args.files.iter().chain(&args.pair).map(PathBuf::as_path);
-    if let Err(status) = crate::file::writable(&args.output, args.force, inputs) {
+    if let Err(status) = file::writable(&args.output, args.force, inputs) {
         return status;
     }
     match import(args) {
-        Ok(notes) => {
-            for note in notes {
-                crate::print_note(format_args!("note: {note}"));
-            }
-            ExitCode::SUCCESS
-        }
+        Ok(()) => ExitCode::SUCCESS,
         Err(message) => crate::print_error(message),
     }
 }
 
-/// Writes the airframe file; what its user has to know of it.
-fn import(args: &ImportArgs) -> Result<Vec<String>, String> {
-    let mut imported = read(args)?;
-    let units = pairs::pair(&imported.rotors, &args.upper)?;
-    let pair = args.pair.as_deref().map(crate::bench_files::pair).transpose()?;
-    let text = text::airframe(
-        args.name.as_deref(),
-        &args.files,
-        &mut imported,
-        &units,
-        pair.as_ref(),
-    );
-    crate::file::save(&args.output, &text)?;
-    Ok(imported.notes)
-}
-
-fn read(args: &ImportArgs) -> Result<Imported, String> {
-    let mut texts = Vec::new();
-    for path in &args.files {
-        texts.push((path.display().to_string(), crate::file::read_text(path)?));
-    }
-    if texts.iter().any(|(_, text)| geometry::is_geometry(text)) {
-        return geometry::read(&texts);
-    }
-    let [(name, text)] = &texts[..] else {
-        return Err(
-            "one parameter file makes one airframe; only PX4's geometry files come by layer".to_owned(),
-        );
+fn import(args: &ImportArgs) -> Result<(), String> {
+    let files = args.files.iter().map(|path| file::source(path));
+    let files = files.collect::<Result<Vec<_>, _>>()?;
+    let pair = args.pair.as_deref().map(file::source).transpose()?;
+    let options = Options {
+        arm_m: args.arm,
+        upper: &args.upper,
+        name: args.name.as_deref(),
     };
-    let parameters = Parameters::read(name, text)?;
-    if parameters.has("CA_ROTOR_COUNT") || parameters.has("CA_ROTOR0_PX") {
-        px4::read(&parameters)
-    } else if parameters.has("FRAME_CLASS") {
-        ardupilot::read(&parameters, args.arm)
-    } else {
-        Err(format!(
-            "{name}: no rotors: neither CA_ROTOR_COUNT and CA_ROTOR0_PX.. (PX4 1.13 or later) nor FRAME_CLASS (ArduPilot) \
-             among its {} parameters",
-            parameters.count()
-        ))
-    }
+    let made = import::import(&files, pair.as_ref(), &options)?;
+    file::save(&args.output, &made.text)?;
+    crate::print_notes(&made.notes);
+    Ok(())
 }

@@ -1,5 +1,6 @@
 //! `cargo mixer mix`: setpoints in, throttles out, on the very tables that the macro emits.
 
+use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal as _, Read, Write, stdin, stdout};
@@ -9,7 +10,7 @@ use std::process::ExitCode;
 use mixer_compiler::Compiled;
 use mixer_rt::Health;
 
-use crate::setpoints::{BadLine, HEADER, HeaderError, Setpoints};
+use crate::setpoints::{BadLine, HEADER, Setpoints, Stopped};
 
 /// Mixes setpoints: CSV to CSV, from stdin to stdout row by row
 ///
@@ -126,15 +127,19 @@ fn input(path: Option<&Path>) -> Result<(Box<dyn Read>, String), String> {
     }
 }
 
-/// Why mixing ended before the input did.
-#[derive(Debug)]
-pub enum Stopped {
-    /// The header is not one of setpoints.
-    Header(BadLine),
-    /// The input failed.
-    Input(io::Error),
-    /// The output failed.
-    Output(io::Error),
+/// An input that is read only once all that is written has been put out: whoever waits for an
+/// answer before the next setpoint gets it, and a file goes through in large pieces.
+struct Answering<'a, R, W> {
+    input: R,
+    output: &'a RefCell<W>,
+}
+
+impl<R: Read, W: Write> Read for Answering<'_, R, W> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        // Where it fails the next row does, too.
+        let _ = self.output.borrow_mut().flush();
+        self.input.read(buffer)
+    }
 }
 
 /// Mixes every row of `input` into `output` with the rotors that `health` leaves; bad rows go to
@@ -147,42 +152,42 @@ pub fn mix<T>(
     compiled: &Compiled,
     health: Health,
     input: impl Read,
-    mut output: impl Write,
+    output: impl Write,
     mut bad_line: impl FnMut(BadLine) -> T,
 ) -> Result<usize, Stopped> {
-    let mut setpoints = Setpoints::new(input).map_err(|error| match error {
-        HeaderError::Bad(line) => Stopped::Header(line),
-        HeaderError::Io(error) => Stopped::Input(error),
-    })?;
-    let reference_v = compiled.airframe.reference_v() as f32;
-
+    let output = RefCell::new(output);
     let mut bad = 0;
-    let mut text = String::new();
-    for channel in 0..compiled.airframe.rotors() {
-        let _ = write!(text, "throttle_{channel},");
+    let mixed = mix_rows(compiled, health, input, &output, |line| {
+        bad += 1;
+        bad_line(line);
+    });
+    match mixed.and_then(|()| output.borrow_mut().flush().map_err(Stopped::Output)) {
+        Err(Stopped::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bad),
+        Err(stopped) => Err(stopped),
+        Ok(()) => Ok(bad),
     }
-    text.push_str("achieved_roll_nm,achieved_pitch_nm,achieved_yaw_nm,achieved_thrust_n,saturation\n");
-    loop {
-        // Whoever waits for an answer before the next setpoint gets it; a file goes through in
-        // large pieces.
-        let written = output.write_all(text.as_bytes()).and_then(|()| {
-            if setpoints.may_wait() {
-                output.flush()
-            } else {
-                Ok(())
-            }
-        });
-        match written {
-            Ok(()) => text.clear(),
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(bad),
-            Err(error) => return Err(Stopped::Output(error)),
-        }
-        let Some((line, row)) = setpoints.read().map_err(Stopped::Input)? else {
-            return match output.flush() {
-                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Stopped::Output(error)),
-                _ => Ok(bad),
-            };
-        };
+}
+
+fn mix_rows(
+    compiled: &Compiled,
+    health: Health,
+    input: impl Read,
+    output: &RefCell<impl Write>,
+    mut bad_line: impl FnMut(BadLine),
+) -> Result<(), Stopped> {
+    let input = Answering { input, output };
+    let mut setpoints = Setpoints::new(input)?;
+    let reference_v = compiled.airframe.reference_v() as f32;
+    let write = |text: &str| {
+        let written = output.borrow_mut().write_all(text.as_bytes());
+        written.map_err(Stopped::Output)
+    };
+    for channel in 0..compiled.airframe.rotors() {
+        write(&format!("throttle_{channel},"))?;
+    }
+    write("achieved_roll_nm,achieved_pitch_nm,achieved_yaw_nm,achieved_thrust_n,saturation\n")?;
+    let mut text = String::new();
+    while let Some((line, row)) = setpoints.read()? {
         let mixed = row.and_then(|row| {
             let voltage_v = row.voltage_v.unwrap_or(reference_v);
             let mixed = compiled.tables.mix_with_health(&row.wrench, voltage_v, health);
@@ -193,16 +198,16 @@ pub fn mix<T>(
         });
         match mixed {
             Ok((throttles, achieved, saturation)) => {
+                text.clear();
                 for value in throttles.into_iter().chain(achieved.to_array()) {
                     // `{:?}` is the shortest text that reads back to the same bits.
                     let _ = write!(text, "{value:?},");
                 }
                 let _ = writeln!(text, "{}", saturation.bits());
+                write(&text)?;
             }
-            Err(line) => {
-                bad += 1;
-                bad_line(line);
-            }
+            Err(line) => bad_line(line),
         }
     }
+    Ok(())
 }

@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::airframe_file;
-use crate::frame::FrameArgs;
+use mixer_files::new::{Error, new};
+
+use crate::frame_args::FrameArgs;
+use crate::{BAD_USAGE, airframe_file, file, print_error};
 
 /// Writes a complete, commented airframe file of a regular frame
 ///
@@ -25,28 +27,22 @@ pub struct NewArgs {
     force: bool,
 }
 
-/// The pair that stands in for the user's own.
-const STAND_IN: &str = include_str!("new/stand-in.toml");
-
 /// Runs the command.
 pub fn run(args: &NewArgs) -> ExitCode {
     let inputs = args.pair.iter().map(PathBuf::as_path);
-    if let Err(status) = crate::file::writable(&args.output, args.force, inputs) {
+    if let Err(status) = file::writable(&args.output, args.force, inputs) {
         return status;
     }
-    let pair = match args.pair.as_deref().map(crate::bench_files::pair).transpose() {
+    let pair = match args.pair.as_deref().map(file::source).transpose() {
         Ok(pair) => pair,
-        Err(message) => return crate::print_error(message),
+        Err(message) => return print_error(message),
     };
-    let (tables, bias) = match &pair {
-        None => (STAND_IN.to_owned(), None),
-        Some(pair) => pair.model(),
-    };
-    match args.frame.airframe(Some(&args.output), &tables, bias) {
-        Ok(text) => airframe_file::write(&args.output, &crate::printable_lines(&text), args.pair.as_deref()),
-        Err(message) => {
-            crate::print_error(message);
-            ExitCode::from(2)
+    match new(&args.frame.frame(Some(&args.output)), pair.as_ref()) {
+        Ok(text) => airframe_file::write(&args.output, &text, args.pair.as_deref()),
+        Err(Error::Pair(message)) => print_error(message),
+        Err(Error::Frame(message)) => {
+            print_error(message);
+            ExitCode::from(BAD_USAGE)
         }
     }
 }

@@ -1,6 +1,5 @@
 //! `cargo mixer plan`: the throttle pairs that a bench has to run before `cargo mixer identify`.
 
-use std::io::{Write as _, stdout};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -74,12 +73,5 @@ pub fn run(args: &PlanArgs) -> ExitCode {
         Format::Rcbenchmark => rcbenchmark(&pairs, args.pwm_range.0),
         Format::FlightStand => flight_stand(&pairs, args.pwm_range.0),
     };
-    let Some(path) = &args.output else {
-        return crate::finish(stdout().lock().write_all(text.as_bytes()));
-    };
-    let written = crate::file::not_there(path, args.force).and_then(|()| crate::file::save(path, &text));
-    match written {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => crate::print_error(message),
-    }
+    crate::deliver(args.output.as_deref(), args.force, &text)
 }

@@ -18,7 +18,7 @@ use mixer_identify::texts::{self, Answer, Prediction, Text};
 use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::text;
 use crate::commands::identify::refused;
-use crate::frame::FrameArgs;
+use crate::frame_args::FrameArgs;
 use crate::place::Place;
 use crate::today::today;
 

@@ -1,14 +1,9 @@
-//! `cargo mixer schema`: the JSON schema of the airframe file, by which editors complete and check
-//! it.
+//! `cargo mixer schema`: the JSON schema of the airframe file.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mixer_compiler::airframe::KEYS;
-use mixer_compiler::spec::keys::{Key, Kind, Range, Shape};
-use serde_json::{Map, Value, json};
-
-use crate::file;
+use mixer_files::schema;
 
 /// Prints the JSON schema of the airframe file, by which editors complete and check it
 ///
@@ -25,97 +20,7 @@ pub struct SchemaArgs {
     force: bool,
 }
 
-/// The line by which an airframe file names its schema.
-pub const DIRECTIVE: &str = "#:schema ./airframe.schema.json";
-
 /// Runs the command.
 pub fn run(args: &SchemaArgs) -> ExitCode {
-    let text = text();
-    match &args.output {
-        None => crate::print(&text),
-        Some(path) => match file::not_there(path, args.force).and_then(|()| file::save(path, &text)) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(message) => crate::print_error(message),
-        },
-    }
-}
-
-/// The schema as text.
-pub fn text() -> String {
-    format!("{:#}\n", schema())
-}
-
-/// The schema, draft 7: what editors' language servers know.
-pub fn schema() -> Value {
-    let mut schema = table(KEYS);
-    let head = [
-        ("$schema", json!("http://json-schema.org/draft-07/schema#")),
-        ("title", json!("Airframe of a coaxial multirotor, version 1")),
-        // The parser asks for one of them.
-        (
-            "anyOf",
-            json!([{ "required": ["unit"] }, { "required": ["layout"] }]),
-        ),
-    ];
-    if let Some(schema) = schema.as_object_mut() {
-        schema.extend(head.map(|(key, value)| (key.to_owned(), value)));
-    }
-    schema
-}
-
-fn table(shape: &Shape) -> Value {
-    let properties: Map<String, Value> = shape
-        .keys
-        .iter()
-        .map(|key| (key.name.to_owned(), property(key)))
-        .collect();
-    let required: Vec<&str> = shape
-        .keys
-        .iter()
-        .filter(|key| key.required)
-        .map(|key| key.name)
-        .collect();
-    json!({
-        "type": "object",
-        "properties": properties,
-        "required": required,
-        "additionalProperties": false,
-    })
-}
-
-fn property(key: &Key) -> Value {
-    let array = |items: Value, [least, most]: [usize; 2]| json!({ "type": "array", "items": items, "minItems": least, "maxItems": most });
-    let number = || json!({ "type": "number" });
-    let channel = || json!({ "type": "integer", "minimum": 0 });
-    let mut property = match key.kind {
-        Kind::Text => json!({ "type": "string" }),
-        Kind::Name => json!({ "type": "string", "pattern": "^[a-z][a-z0-9]*([-_][a-z0-9]+)*$" }),
-        Kind::Word(words) => json!({ "type": "string", "enum": words }),
-        Kind::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words } }),
-        Kind::Number(Range::Positive) => json!({ "type": "number", "exclusiveMinimum": 0 }),
-        Kind::Number(Range::UpTo(most)) => {
-            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": bound(most) })
-        }
-        Kind::Number(Range::Within([least, most])) => {
-            json!({ "type": "number", "minimum": bound(least), "maximum": bound(most) })
-        }
-        Kind::Count([least, most]) => json!({ "type": "integer", "minimum": least, "maximum": most }),
-        Kind::Numbers(count) => array(number(), count),
-        Kind::Points => json!({ "type": "array", "items": array(number(), [2, 2]) }),
-        Kind::Channels => array(channel(), [2, 2]),
-        Kind::ListOfChannels => json!({ "type": "array", "items": array(channel(), [2, 2]) }),
-        Kind::Table(shape) => table(shape),
-        Kind::Tables(shape) => json!({ "type": "array", "items": table(shape), "minItems": 1 }),
-    };
-    property["description"] = json!(key.meaning());
-    property
-}
-
-/// A bound, without `.0` where it is whole.
-fn bound(x: f64) -> Value {
-    if x.fract() == 0.0 {
-        json!(x as i64)
-    } else {
-        json!(x)
-    }
+    crate::deliver(args.output.as_deref(), args.force, &schema::text())
 }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_report::data::{Data, sweep};
 use mixer_report::study::Study;
 
+use crate::bench_args::words;
 use crate::commands::report::thrust;
 use crate::file;
 
@@ -16,7 +16,7 @@ pub struct SweepArgs {
     /// The airframe file
     airframe: PathBuf,
     /// Which figure
-    #[arg(long, value_parser = figures())]
+    #[arg(long, value_parser = words(&Data::ALL))]
     figure: Data,
     /// The file to write, whole or not at all [default: standard output]
     #[arg(short, long, value_name = "FILE.csv")]
@@ -28,15 +28,6 @@ pub struct SweepArgs {
     /// largest bare thrust]
     #[arg(long, value_name = "NEWTON", value_parser = thrust, allow_negative_numbers = true)]
     thrust: Option<f64>,
-}
-
-/// The figures by their words, each with what its columns hold.
-fn figures() -> impl TypedValueParser<Value = Data> {
-    let words = Data::ALL.map(|(_, word, columns)| PossibleValue::new(word).help(columns));
-    PossibleValuesParser::new(words).map(|given| {
-        let figure = Data::ALL.into_iter().find(|(_, word, _)| *word == given);
-        figure.map_or(Data::Yaw, |(figure, _, _)| figure)
-    })
 }
 
 /// Runs the command.

@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use cargo_mixer::commands::schema;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
+use mixer_files::schema;
 use serde_json::{Value, json};
 
 use crate::root;
@@ -122,7 +122,7 @@ fn airframes_are_valid() {
 #[test]
 fn the_parser_agrees_key_by_key() {
     const UNIT: &str = "[[unit]]\nposition_m = [0.3, 0.0, 0.0]\nupper_spin = \"cw\"\nchannels = [0, 1]\naxis = [0.0, 0.0, -1.0]\n";
-    let pair = fs::read_to_string(root().join("cargo-mixer/src/commands/new/stand-in.toml")).expect("pair");
+    let pair = fs::read_to_string(root().join("mixer-files/src/new/stand-in.toml")).expect("pair");
     let other = "torque_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\nthrust_exponent = 1.8\n";
     let points = "thrust_points = [[12.8, 0.8], [14.8, 1.0], [16.8, 1.2]]\ntorque_exponent = 1.8\n";
     let layout = "[layout]\narm_m = 0.45\nunits = 4\nfirst_angle_deg = 45.0\nspins = [\"cw\", \"ccw\", \"cw\", \"ccw\"]\n\

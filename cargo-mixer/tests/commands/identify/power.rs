@@ -5,8 +5,8 @@
 
 use std::fmt::Write as _;
 
-use cargo_mixer::frame::{Frame, FrameArgs};
 use mixer_compiler::airframe::Basis;
+use mixer_files::frame::{Frame, NewFrame};
 use mixer_identify::fit::power::Power;
 use mixer_identify::fragment;
 use mixer_identify::identified::{Identified, from_benches};
@@ -89,13 +89,12 @@ fn one_supply_current_of_the_whole_serves() {
 fn an_airframe_has_the_bias_where_it_gains_by_it() {
     let found = identified(&BOTH, 0.0);
     let airframe = |frame| {
-        let frame = FrameArgs {
-            frame,
-            arm: Some(0.45),
-            name: Some("written".into()),
-            outputs: None,
+        let frame = NewFrame {
+            arm_m: Some(0.45),
+            name: Some("written"),
+            ..NewFrame::of(frame)
         };
-        let text = frame.airframe(None, &fragment::tables(&found), found.power_bias());
+        let text = frame.airframe(&fragment::tables(&found), found.power_bias());
         text.expect("an airframe")
     };
     let x8 = airframe(Frame::X8);

@@ -4,9 +4,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use cargo_mixer::frame::{Frame, FrameArgs};
 use mixer_compiler::tables::MixerTables;
 use mixer_compiler::{Compiled, Source};
+use mixer_files::frame::{Frame, NewFrame};
 use mixer_identify::fragment;
 use mixer_rt::Wrench;
 
@@ -28,13 +28,12 @@ struct X8 {
 impl X8 {
     fn of(map: &Path) -> Self {
         let found = fitted(map, None, false);
-        let frame = FrameArgs {
-            frame: Frame::X8,
-            arm: Some(0.45),
-            name: Some("x8".into()),
-            outputs: None,
+        let frame = NewFrame {
+            arm_m: Some(0.45),
+            name: Some("x8"),
+            ..NewFrame::of(Frame::X8)
         };
-        let text = frame.airframe(None, &fragment::tables(&found), found.power_bias());
+        let text = frame.airframe(&fragment::tables(&found), found.power_bias());
         let source = Source::new("x8.toml", text.expect("a frame"));
         let compiled = mixer_compiler::compile(&source).unwrap_or_else(|faults| panic!("{faults}"));
         assert!(compiled.tables.power_bias_nm_per_n > 0.0, "{}", map.display());

@@ -15,7 +15,7 @@ use core::mem::MaybeUninit;
 
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hprintln;
-use harness::{agrees, differing, request};
+use harness::{agrees, differing_with_rotors_out, request, rows};
 use mixer_rt::{Health, Mix, SetpointError, Wrench};
 use probe::{Counter, Mixer};
 
@@ -27,7 +27,7 @@ type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
 
 /// Checks the airframe whose module is `$module`, behind the C calling convention.
 macro_rules! check {
-    ($check:ident, $name:literal, $module:ident, $vectors:ident) => {{
+    ($check:ident, $name:literal, $module:ident, $vectors:expr, $rotors_out:expr) => {{
         /// # Safety
         ///
         /// `setpoint` is valid to read, `output` to write a [`Mixed`] of this airframe.
@@ -41,19 +41,16 @@ macro_rules! check {
         }
         let mut different = 0;
         let raised = probe::exceptions(|| {
-            for (failed, rows) in $vectors::ROTORS_OUT.iter() {
-                let health = Health::GOOD.with_failed(*failed);
-                different += differing(rows, |setpoint, voltage_v| {
-                    $module::mix_with_health(setpoint, voltage_v, health)
-                });
-            }
+            different = differing_with_rotors_out($rotors_out, |setpoint, voltage_v, failed| {
+                $module::mix_with_health(setpoint, voltage_v, Health::GOOD.with_failed(failed))
+            });
         });
         $check.rotors_out($name, different);
         // SAFETY: `mix` writes the result for as many channels as the vectors have.
         unsafe {
             $check.airframe::<{ $module::CHANNELS }>(
                 $name,
-                $vectors::VECTORS.iter().map(|row| &row[..]),
+                $vectors,
                 mix,
                 raised,
             )
@@ -89,11 +86,12 @@ impl Check {
     unsafe fn airframe<const CHANNELS: usize>(
         &mut self,
         name: &str,
-        vectors: impl ExactSizeIterator<Item = &'static [u32]> + Clone,
+        table: &str,
         mix: Mixer,
         raised_with_rotors_out: u32,
     ) {
-        let count = vectors.len();
+        let vectors = rows(table);
+        let count = vectors.clone().count();
         let (mut mismatches, mut sum, mut worst, mut stack) = (0, 0_u64, 0, 0);
         let raised = probe::exceptions(|| {
             for (row, vector) in vectors.clone().enumerate() {
@@ -152,10 +150,10 @@ impl Check {
     }
 }
 
-fn show<const CHANNELS: usize>(name: &str, row: usize, expected: &[u32], mixed: &Mixed<CHANNELS>) {
+fn show<const CHANNELS: usize>(name: &str, row: usize, expected: &str, mixed: &Mixed<CHANNELS>) {
     // Line 1 of the file is the header.
     hprintln!("{}.vectors.csv:{}: throttle, achieved, saturation", name, row + 2);
-    hprintln!("  host   {:08x?}", expected.get(5..).unwrap_or_default());
+    hprintln!("  host   {}", expected.splitn(6, ',').last().unwrap_or_default());
     match mixed {
         Ok(mix) => hprintln!(
             "  target {:08x?} {:08x?} {:08x}",
@@ -172,8 +170,8 @@ fn show<const CHANNELS: usize>(name: &str, row: usize, expected: &[u32], mixed: 
 /// # Safety
 ///
 /// `mix` must write a [`Mixed`] for `CHANNELS` channels.
-unsafe fn accepted_non_finite<const CHANNELS: usize>(
-    vectors: impl Iterator<Item = &'static [u32]>,
+unsafe fn accepted_non_finite<'a, const CHANNELS: usize>(
+    vectors: impl Iterator<Item = &'a str>,
     mix: Mixer,
 ) -> u32 {
     let mut accepted = 0;

@@ -1,36 +1,62 @@
-//! Golden vectors on the target. Copy this file, and the `NAME.vectors.rs` that `cargo mixer
-//! golden` writes.
+//! Golden vectors on the target: rows of the tables that `cargo mixer golden` writes. Copy this
+//! file.
 
 use mixer_rt::{Mix, SetpointError, Wrench};
 
-/// How many rows of a table `mix` gives other bits for.
-pub(crate) fn differing<const COLUMNS: usize, const CHANNELS: usize>(
-    rows: &[[u32; COLUMNS]],
-    mix: impl Fn(&Wrench, f32) -> Result<Mix<CHANNELS>, SetpointError>,
+/// What a mixer returns.
+type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
+
+/// How many rows of `NAME.vectors.csv` `mix` gives other bits for.
+pub(crate) fn differing<const CHANNELS: usize>(
+    table: &str,
+    mix: impl Fn(&Wrench, f32) -> Mixed<CHANNELS>,
 ) -> usize {
-    rows.iter()
-        .map(|row| row.as_slice())
-        .filter(|row| {
-            request(row).is_none_or(|(setpoint, voltage_v)| !agrees(row, &mix(&setpoint, voltage_v)))
-        })
-        .count()
+    let agrees = |row: &&str| {
+        request(row).is_some_and(|(setpoint, voltage_v)| agrees(row, &mix(&setpoint, voltage_v)))
+    };
+    rows(table).filter(|row| !agrees(row)).count()
 }
 
-/// The setpoint and the voltage of a row; `None` of a row that is too short.
-pub(crate) fn request(row: &[u32]) -> Option<(Wrench, f32)> {
-    let (input, _) = row.split_first_chunk::<5>()?;
-    let [roll, pitch, yaw, thrust, voltage_v] = input.map(f32::from_bits);
-    Some((Wrench::from_array([roll, pitch, yaw, thrust]), voltage_v))
+/// How many rows of `NAME.rotors-out.csv` `mix` gives other bits for with the rotor out that it is
+/// given.
+pub(crate) fn differing_with_rotors_out<const CHANNELS: usize>(
+    table: &str,
+    mix: impl Fn(&Wrench, f32, u8) -> Mixed<CHANNELS>,
+) -> usize {
+    let agrees = |row: &&str| {
+        let (failed, row) = row.split_once(',')?;
+        let (failed, (setpoint, voltage_v)) = (failed.parse().ok()?, request(row)?);
+        Some(agrees(row, &mix(&setpoint, voltage_v, failed)))
+    };
+    rows(table).filter(|row| agrees(row) != Some(true)).count()
+}
+
+/// The rows of a table, without its header.
+pub(crate) fn rows(table: &str) -> impl Iterator<Item = &str> + Clone {
+    table.lines().skip(1)
+}
+
+/// The setpoint and the voltage of a row; `None` of a row that has none.
+pub(crate) fn request(row: &str) -> Option<(Wrench, f32)> {
+    let mut cells = cells(row).map(|cell| cell.map(f32::from_bits));
+    let mut next = || cells.next().flatten();
+    let wrench = [next()?, next()?, next()?, next()?];
+    Some((Wrench::from_array(wrench), next()?))
 }
 
 /// Whether what a mixer gives has the bits of a row.
-pub(crate) fn agrees<const CHANNELS: usize>(
-    row: &[u32],
-    mixed: &Result<Mix<CHANNELS>, SetpointError>,
-) -> bool {
+pub(crate) fn agrees<const CHANNELS: usize>(row: &str, mixed: &Mixed<CHANNELS>) -> bool {
     mixed.as_ref().is_ok_and(|mix| {
         let floats = mix.throttle.into_iter().chain(mix.achieved.to_array());
         let given = floats.map(f32::to_bits).chain([mix.saturation.bits().into()]);
-        given.eq(row.iter().skip(5).copied())
+        given.map(Some).eq(cells(row).skip(5))
+    })
+}
+
+/// The numbers of a row: bits of floats, as `0x3dcccccd`, and counts.
+fn cells(row: &str) -> impl Iterator<Item = Option<u32>> {
+    row.split(',').map(|cell| match cell.strip_prefix("0x") {
+        Some(bits) => u32::from_str_radix(bits, 16).ok(),
+        None => cell.parse().ok(),
     })
 }

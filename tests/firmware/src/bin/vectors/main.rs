@@ -1,6 +1,6 @@
 //! One airframe's golden vectors on the target, with all rotors and with each of them out: one line
-//! of result, and QEMU's exit status. Copy it with `harness.rs`; the two paths and the airframe's
-//! module are yours.
+//! of result, and QEMU's exit status. Copy it with `harness.rs`; the paths and the airframe's module
+//! are yours.
 #![no_std]
 #![no_main]
 
@@ -10,23 +10,26 @@ use core::panic::PanicInfo;
 
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprintln};
-use harness::differing;
-use mixer_rt::Health;
+use harness::{differing, differing_with_rotors_out, rows};
+use mixer_rt::{Health, Wrench};
 
 mixer_macros::airframe!("../../airframes/isae-x8.toml");
-include!("../../../../golden/isae-x8.vectors.rs");
+
+/// All rotors turn.
+static VECTORS: &str = include_str!("../../../../golden/isae-x8.vectors.csv");
+
+/// One rotor is out.
+static ROTORS_OUT: &str = include_str!("../../../../golden/isae-x8.rotors-out.csv");
 
 #[entry]
 fn main() -> ! {
-    let (mut rows, mut differ) = (VECTORS.len(), differing(&VECTORS, isae_x8::mix));
-    for (failed, vectors) in &ROTORS_OUT {
-        let health = Health::GOOD.with_failed(*failed);
-        rows += vectors.len();
-        differ += differing(vectors, |setpoint, voltage_v| {
-            isae_x8::mix_with_health(setpoint, voltage_v, health)
-        });
-    }
-    hprintln!("isae-x8: {} vectors, {} differ", rows, differ);
+    let with_rotor_out = |setpoint: &Wrench, voltage_v, failed| {
+        isae_x8::mix_with_health(setpoint, voltage_v, Health::GOOD.with_failed(failed))
+    };
+    let differ =
+        differing(VECTORS, isae_x8::mix) + differing_with_rotors_out(ROTORS_OUT, with_rotor_out);
+    let count = rows(VECTORS).count() + rows(ROTORS_OUT).count();
+    hprintln!("isae-x8: {} vectors, {} differ", count, differ);
     exit(differ == 0)
 }
 

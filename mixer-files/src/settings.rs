@@ -1,38 +1,16 @@
-//! Parameters of flight stacks for an airframe, as `check --verbose` and `params` print them.
-
-pub mod ardupilot;
-pub(crate) mod frames;
-mod parameter;
-pub mod px4;
+//! What a flight stack's normalised setpoints are on an airframe, and the parameters that must fit
+//! it: what `check` prints and its JSON has.
 
 use std::fmt;
 
-use clap::ValueEnum;
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::GRAVITY;
 use mixer_rt::Wrench;
 use serde::Serialize;
 
-pub use parameter::{Parameter, Parameters, Value};
-
-/// A flight stack.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Stack {
-    /// PX4 Autopilot.
-    Px4,
-    /// ArduPilot's Copter.
-    Ardupilot,
-}
-
-impl Stack {
-    /// For people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Stack::Px4 => "PX4",
-            Stack::Ardupilot => "ArduPilot",
-        }
-    }
-}
+use crate::ardupilot;
+pub use crate::parameter::{Parameter, Value};
+use crate::px4::{self, Currents};
 
 /// Scales and parameters that keep a stack from correcting a second time for the rotors' curve and
 /// for the battery's voltage; the `Display` is what `check --verbose` prints.
@@ -85,7 +63,7 @@ impl Stacks {
         Stacks {
             normalised: Normalised::new(compiled.scale(), compiled.airframe.reference_v()),
             normalised_ardupilot: Normalised::new(compiled.ardupilot_scale(), compiled.highest_v()),
-            px4: px4::settings(compiled, px4::Currents::Measured).list,
+            px4: px4::settings(compiled, Currents::Measured).list,
             ardupilot: ardupilot::settings(compiled).list,
         }
     }

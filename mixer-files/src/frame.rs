@@ -2,19 +2,16 @@
 //! is to fill in.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
-use clap::ValueEnum;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Spin;
 use mixer_facts::hover;
 
-use crate::bench_args::quantity;
-use crate::commands::schema::DIRECTIVE;
+use crate::schema::DIRECTIVE;
 use crate::stack::Stack;
 
 /// A frame of coaxial pairs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
     /// Four pairs in an X.
     X8,
@@ -29,6 +26,19 @@ pub enum Frame {
 }
 
 impl Frame {
+    /// All, each with its word on the command line and what it is.
+    pub const ALL: [(Frame, &'static str, &'static str); 5] = [
+        (Frame::X8, "x8", "Four pairs in an X"),
+        (Frame::Y6, "y6", "Three pairs, two in front"),
+        (Frame::X12, "x12", "Six pairs, two in front"),
+        (
+            Frame::Bicopter,
+            "bicopter",
+            "Two pairs abreast; pitch is left to servos or a tail",
+        ),
+        (Frame::Single, "single", "One pair on a stand"),
+    ];
+
     /// Outputs of the upper and of the lower rotor of each unit, clockwise from the first, in a
     /// stack's motor order, and how the first upper rotor turns there: PX4's geometries octa_cox,
     /// hexa_cox, dodeca_top_cox and dodeca_bottom_cox; ArduPilot's octaquad X, Y6B and dodecahexa X.
@@ -47,28 +57,32 @@ impl Frame {
     }
 }
 
-/// `--frame`, `--arm`, `--name`, `--outputs`.
-#[derive(clap::Args, Clone, Debug)]
-pub struct FrameArgs {
-    /// The frame
-    // Not required by itself: `identify` writes the tables alone without it, `new` misses it all
-    // the same.
-    #[arg(long, value_enum, required = false)]
+/// A regular frame to write an airframe file of.
+#[derive(Clone, Debug)]
+pub struct NewFrame<'a> {
+    /// The frame.
     pub frame: Frame,
-    /// Distance of every pair from the centre of gravity, m; not for a single pair
-    #[arg(long, value_name = "METRE", value_parser = arm, requires = "frame")]
-    pub arm: Option<f64>,
-    /// Name of the airframe [default: that of the output file]
-    #[arg(long, requires = "frame")]
-    pub name: Option<String>,
-    /// Outputs in the motor order of a flight stack, which has this frame; else the upper rotors
-    /// first, clockwise
-    #[arg(long, value_enum, value_name = "STACK", requires = "frame")]
+    /// Distance of every pair from the centre of gravity, m; not for a single pair.
+    pub arm_m: Option<f64>,
+    /// Name of the airframe; without it that of the file, else that of the frame.
+    pub name: Option<&'a str>,
+    /// Name of the file that it will be, without folder and ending.
+    pub file: Option<&'a str>,
+    /// The stack in whose motor order the outputs are; else the upper rotors first, clockwise.
     pub outputs: Option<Stack>,
 }
 
-fn arm(text: &str) -> Result<f64, String> {
-    quantity(text, "metres")
+impl NewFrame<'_> {
+    /// A frame of which nothing else is known.
+    pub fn of(frame: Frame) -> Self {
+        NewFrame {
+            frame,
+            arm_m: None,
+            name: None,
+            file: None,
+            outputs: None,
+        }
+    }
 }
 
 /// Where the first pair is, how many there are, and what they serve.
@@ -147,19 +161,14 @@ fn rounded(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-impl FrameArgs {
+impl NewFrame<'_> {
     /// A whole airframe file around `tables`, which are `[throttle]`, `[pair]` and, if there is
     /// one, `[voltage]`. `power_bias` is the torque of least power, N m per N, if it is known; it
     /// is written where the frame gains by it.
     ///
     /// # Errors
     /// An arm that is missing, or one too many.
-    pub fn airframe(
-        &self,
-        output: Option<&Path>,
-        tables: &str,
-        power_bias: Option<f64>,
-    ) -> Result<String, String> {
+    pub fn airframe(&self, tables: &str, power_bias: Option<f64>) -> Result<String, String> {
         let Shape {
             description,
             axes,
@@ -168,7 +177,7 @@ impl FrameArgs {
         } = self.frame.shape();
         let mut text = format!(
             "{DIRECTIVE}\nname = \"{}\"\ndescription = \"{description}\"\n\n",
-            self.name(output)
+            self.name()
         );
         text.push_str(tables.trim());
         text.push_str("\n\n");
@@ -206,22 +215,17 @@ impl FrameArgs {
         Ok(text)
     }
 
-    /// The name that is given, or that of the output, or that of the frame.
-    fn name(&self, output: Option<&Path>) -> String {
-        let stem = output
-            .and_then(Path::file_stem)
-            .map(|stem| stem.to_string_lossy());
+    /// The name that is given, or that of the file, or that of the frame.
+    fn name(&self) -> String {
         let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
         let usable =
-            |stem: &str| stem.starts_with(|c: char| c.is_ascii_lowercase()) && stem.chars().all(plain);
-        match (&self.name, stem) {
-            (Some(name), _) => name.clone(),
-            (None, Some(stem)) if usable(&stem) => stem.into_owned(),
-            _ => {
-                let frame = self.frame.to_possible_value();
-                format!("my-{}", frame.as_ref().map_or("frame", |frame| frame.get_name()))
-            }
+            |name: &&str| name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(plain);
+        if let Some(name) = self.name.or(self.file.filter(usable)) {
+            return name.to_owned();
         }
+        let mut frames = Frame::ALL.into_iter();
+        let word = frames.find(|(frame, ..)| *frame == self.frame);
+        format!("my-{}", word.map_or("frame", |(_, word, _)| word))
     }
 
     /// `[layout]`, of a single pair its `[[unit]]`.
@@ -233,7 +237,7 @@ impl FrameArgs {
             spins,
             ..
         } = self.frame.shape();
-        let arm = match (units, self.arm) {
+        let arm = match (units, self.arm_m) {
             (1, Some(_)) => return Err("--arm: a single pair has none".to_owned()),
             (1, None) if self.outputs.is_some() => {
                 return Err("--outputs: no flight stack has a frame of one pair".to_owned());

@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use mixer_compiler::Source;
+
 /// The parameters of one file.
 #[derive(Debug)]
 pub(super) struct Parameters {
@@ -17,7 +19,8 @@ pub(super) struct Parameters {
 const LONGEST_PIECE: usize = 80;
 
 impl Parameters {
-    pub(super) fn read(file: &str, text: &str) -> Result<Self, String> {
+    pub(super) fn read(source: &Source) -> Result<Self, String> {
+        let Source { name: file, text } = source;
         let mut values = BTreeMap::new();
         for (line, number) in text.trim_start_matches('\u{feff}').lines().zip(1..) {
             let content = line.split('#').next().unwrap_or_default();
@@ -48,7 +51,7 @@ impl Parameters {
             }
         }
         Ok(Parameters {
-            file: file.to_owned(),
+            file: file.clone(),
             values,
         })
     }
@@ -94,7 +97,7 @@ mod tests {
     #[test]
     fn three_forms_are_read() {
         let text = "\u{feff}# a comment\r\nFRAME_CLASS,4\r\nMOT_SPIN_MIN\t0.15\n1\t1\tCA_ROTOR0_PX\t0.190500006079673767\t9\n";
-        let parameters = Parameters::read("a.params", text).unwrap();
+        let parameters = Parameters::read(&Source::new("a.params", text)).unwrap();
         assert_eq!(parameters.count(), 3);
         assert_eq!(parameters.whole("FRAME_CLASS"), Some(4));
         assert_eq!(parameters.get("CA_ROTOR0_PX"), Some(0.1905));
@@ -110,7 +113,9 @@ mod tests {
             ("A,nan", "a:1: A is NaN"),
         ] {
             assert!(
-                Parameters::read("a", text).unwrap_err().starts_with(message),
+                Parameters::read(&Source::new("a", text))
+                    .unwrap_err()
+                    .starts_with(message),
                 "{text}"
             );
         }

@@ -1,12 +1,14 @@
 //! The airframe file.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::Path;
 
+use mixer_compiler::Source;
 use mixer_identify::pair_file::PairFile;
 use toml::Value;
 
 use super::rotors::{Imported, Unit};
+use crate::plain::printable_lines;
 
 /// Idle where nothing says one.
 const IDLE: f64 = 0.1;
@@ -21,7 +23,7 @@ const TAKEN: &[&str] = &["pair", "voltage"];
 /// The text, and the notes on it in `imported`.
 pub(super) fn airframe(
     name: Option<&str>,
-    files: &[PathBuf],
+    files: &[Source],
     imported: &mut Imported,
     units: &[Unit],
     pair: Option<&PairFile>,
@@ -38,7 +40,7 @@ pub(super) fn airframe(
     let name = name.map_or_else(|| default_name(units.len()), str::to_owned);
     let files: Vec<String> = files
         .iter()
-        .filter_map(|file| Some(file.file_name()?.to_string_lossy().into_owned()))
+        .filter_map(|file| Some(Path::new(&file.name).file_name()?.to_string_lossy().into_owned()))
         .collect();
     // Writing to a String cannot fail; the results are dropped.
     let _ = writeln!(out, "name = {}", Value::String(name));
@@ -79,7 +81,7 @@ pub(super) fn airframe(
         }
     }
     // Names of files and comments of the pair's file are in it.
-    crate::printable_lines(&out)
+    printable_lines(&out)
 }
 
 /// Both files' ranges: the pair's model is known in its own alone.

@@ -1,5 +1,6 @@
 //! PX4's geometry files: `[[rotors]]` with `position`, `direction` and `axis`.
 
+use mixer_compiler::Source;
 use mixer_compiler::airframe::Spin;
 use toml::{Table, Value};
 
@@ -11,9 +12,9 @@ pub(super) fn is_geometry(text: &str) -> bool {
 }
 
 /// The rotors of all files in their order.
-pub(super) fn read(files: &[(String, String)]) -> Result<Imported, String> {
+pub(super) fn read(files: &[Source]) -> Result<Imported, String> {
     let mut imported = Imported::default();
-    for (file, text) in files {
+    for Source { name: file, text } in files {
         // The lines of the rotors' headers; values have no places of their own.
         let mut lines = text
             .lines()

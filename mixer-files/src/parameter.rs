@@ -35,7 +35,7 @@ impl fmt::Display for Value {
     }
 }
 
-pub(super) fn whole(name: impl Into<String>, value: i32, why: &str) -> Parameter {
+pub(crate) fn whole(name: impl Into<String>, value: i32, why: &str) -> Parameter {
     Parameter {
         name: name.into(),
         value: Value::Whole(value),
@@ -44,7 +44,7 @@ pub(super) fn whole(name: impl Into<String>, value: i32, why: &str) -> Parameter
 }
 
 /// With four significant digits and at least four decimals: more is not known of any of them.
-pub(super) fn real(name: impl Into<String>, value: f64, why: &str) -> Parameter {
+pub(crate) fn real(name: impl Into<String>, value: f64, why: &str) -> Parameter {
     let digits = 3.0 - libm::floor(libm::log10(value.abs().max(1e-12)));
     let unit = libm::pow(10.0, digits.max(4.0));
     Parameter {
@@ -56,7 +56,7 @@ pub(super) fn real(name: impl Into<String>, value: f64, why: &str) -> Parameter 
 
 /// Parameters, and what of them cannot be known or deserves a look.
 #[derive(Clone, Debug, Default)]
-pub struct Parameters {
+pub(crate) struct Parameters {
     /// In the order in which they are written.
     pub list: Vec<Parameter>,
     /// A sentence each.
@@ -65,14 +65,14 @@ pub struct Parameters {
 
 /// Slope in hover of the share of the largest thrust over the throttle, both rotors alike: what a
 /// stack's loop gain is multiplied by that takes the one for the other. `None` without a hover.
-pub(super) fn slope_in_hover(compiled: &Compiled) -> Option<f64> {
+pub(crate) fn slope_in_hover(compiled: &Compiled) -> Option<f64> {
     let h = compiled.equal_hover_throttle()?;
     let [[f_u, f_l], _] = compiled.pair.jacobian([h, h]);
     Some((f_u + f_l) / largest_thrust(compiled))
 }
 
 /// Of one unit at the reference voltage, N.
-pub(super) fn largest_thrust(compiled: &Compiled) -> f64 {
+pub(crate) fn largest_thrust(compiled: &Compiled) -> f64 {
     let [_, max] = compiled.pair.range();
     compiled.pair.efforts([max, max])[0]
 }
@@ -84,7 +84,7 @@ const POINTS: u32 = 50;
 /// both rotors give at the throttle t, least squares over the airframe's range; both stacks
 /// describe a rotor by this curve. `stretched` counts t from 0 at the least throttle to 1 at the
 /// largest.
-pub(super) fn curve(compiled: &Compiled, stretched: bool) -> f64 {
+pub(crate) fn curve(compiled: &Compiled, stretched: bool) -> f64 {
     let [min, max] = compiled.pair.range();
     let full = largest_thrust(compiled);
     let (mut products, mut squares) = (0.0, 0.0);
@@ -100,11 +100,11 @@ pub(super) fn curve(compiled: &Compiled, stretched: bool) -> f64 {
 }
 
 /// Value of such a curve.
-pub(super) fn on_curve(a: f64, t: f64) -> f64 {
+pub(crate) fn on_curve(a: f64, t: f64) -> f64 {
     a * t * t + (1.0 - a) * t
 }
 
 /// The note on a parameter that needs the vehicle's mass.
-pub(super) fn no_mass(name: &str) -> String {
+pub(crate) fn no_mass(name: &str) -> String {
     format!("{name} is missing: `[vehicle] mass_kg` of the airframe file gives it")
 }

@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Spin, Unit};
 
-use super::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
+use crate::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
 
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
@@ -18,7 +18,7 @@ const MOST_OFFSET: f64 = 30.0;
 
 /// Where the currents come from that PX4's failure detector compares with the outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Currents {
+pub(crate) enum Currents {
     /// From the ESCs.
     Measured,
     /// From PX4's simulator, which makes them up of the outputs.
@@ -26,7 +26,7 @@ pub enum Currents {
 }
 
 /// PX4's parameters where this mixer puts out the throttles.
-pub fn settings(compiled: &Compiled, currents: Currents) -> Parameters {
+pub(crate) fn settings(compiled: &Compiled, currents: Currents) -> Parameters {
     let airframe = &compiled.airframe;
     let mut notes = Vec::new();
     let mut list = vec![real(
@@ -75,7 +75,7 @@ pub fn settings(compiled: &Compiled, currents: Currents) -> Parameters {
 }
 
 /// PX4's parameters where its own allocator puts out the throttles.
-pub fn own(compiled: &Compiled, currents: Currents) -> Parameters {
+pub(crate) fn own(compiled: &Compiled, currents: Currents) -> Parameters {
     let mut notes = Vec::new();
     let factor = round2(curve(compiled, false));
     let mut list = vec![real(
@@ -100,18 +100,17 @@ pub fn own(compiled: &Compiled, currents: Currents) -> Parameters {
     Parameters { list, notes }
 }
 
-/// The rotors for PX4's own allocator, which takes each as isolated. `slopes` gives the two of a
-/// pair different constants, of the map's slopes in hover; otherwise they are alike.
+/// The rotors for PX4's own allocator, which takes each as isolated and both of a pair as alike.
 ///
 /// # Errors
-/// Outputs that are not PX4's motors; slopes without a hover.
-pub fn geometry(compiled: &Compiled, slopes: bool) -> Result<Vec<Parameter>, String> {
+/// Outputs that are not PX4's motors.
+pub(crate) fn geometry(compiled: &Compiled) -> Result<Vec<Parameter>, String> {
     let airframe = &compiled.airframe;
     let count = airframe.rotors();
     if count > MOST_ROTORS {
         return Err(format!("{count} rotors: PX4 has parameters for {MOST_ROTORS}"));
     }
-    let constants = constants(compiled, slopes)?;
+    let [thrust, torque] = compiled.per_rotor();
     let mut list = vec![
         whole("CA_AIRFRAME", 0, "A multirotor."),
         whole(
@@ -135,7 +134,6 @@ pub fn geometry(compiled: &Compiled, slopes: bool) -> Result<Vec<Parameter>, Str
         } else {
             unit.upper_spin.reversed()
         };
-        let [thrust, torque] = constants[usize::from(!is_upper)];
         let sign = if spin == Spin::Ccw { 1.0 } else { -1.0 };
         let why = format!(
             "Motor {}: {} rotor, turns {}.",
@@ -156,20 +154,8 @@ pub fn geometry(compiled: &Compiled, slopes: bool) -> Result<Vec<Parameter>, Str
     Ok(list)
 }
 
-/// Thrust and torque of the upper and of the lower rotor per unit of PX4's output.
-fn constants(compiled: &Compiled, slopes: bool) -> Result<[[f64; 2]; 2], String> {
-    if !slopes {
-        return Ok([compiled.per_rotor(); 2]);
-    }
-    let throttle = compiled
-        .equal_hover_throttle()
-        .ok_or("--slopes: they are those in hover, which `[vehicle] mass_kg` of the airframe file gives")?;
-    let [[f_u, f_l], [q_u, q_l]] = compiled.pair.jacobian([throttle, throttle]);
-    Ok([[f_u, -q_u], [f_l, q_l]])
-}
-
 /// Which output drives which motor, as PX4's simulator needs it.
-pub fn simulated_outputs(compiled: &Compiled) -> Vec<Parameter> {
+pub(crate) fn simulated_outputs(compiled: &Compiled) -> Vec<Parameter> {
     (1..=compiled.airframe.rotors())
         .map(|motor| {
             let function = 100 + i32::try_from(motor).unwrap_or_default();
@@ -183,7 +169,7 @@ pub fn simulated_outputs(compiled: &Compiled) -> Vec<Parameter> {
 }
 
 /// PX4's parameters for a simulator that sends the battery, too.
-pub fn simulated_surroundings() -> Vec<Parameter> {
+pub(crate) fn simulated_surroundings() -> Vec<Parameter> {
     vec![
         whole(
             "SYS_FAILURE_EN",
@@ -199,7 +185,7 @@ pub fn simulated_surroundings() -> Vec<Parameter> {
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds.
-pub fn pulses(compiled: &Compiled, [low, high]: [f64; 2]) -> Vec<Parameter> {
+pub(crate) fn pulses(compiled: &Compiled, [low, high]: [f64; 2]) -> Vec<Parameter> {
     let why = "Pulse widths of throttle 0 and 1 on the bench; a board whose motors are on AUX has PWM_AUX_..";
     let pulse =
         |name: &str, motor: usize, width: f64| whole(format!("PWM_MAIN_{name}{motor}"), width as i32, why);

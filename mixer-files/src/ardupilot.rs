@@ -3,8 +3,8 @@
 use mixer_compiler::airframe::Airmode;
 use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
-use super::frames;
-use super::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
+use crate::frames;
+use crate::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
 
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
@@ -16,7 +16,7 @@ const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 const MONITOR: &str = "BATT_MONITOR is your board's; 0 measures no voltage, the simulator has 4";
 
 /// ArduPilot's parameters where this mixer puts out the throttles.
-pub fn settings(compiled: &Compiled) -> Parameters {
+pub(crate) fn settings(compiled: &Compiled) -> Parameters {
     let airframe = &compiled.airframe;
     let mut notes = Vec::new();
     let mut list = vec![real(
@@ -57,7 +57,7 @@ pub fn settings(compiled: &Compiled) -> Parameters {
 }
 
 /// ArduPilot's parameters where its own mixer puts out the throttles.
-pub fn own(compiled: &Compiled) -> Parameters {
+pub(crate) fn own(compiled: &Compiled) -> Parameters {
     let mut notes = Vec::new();
     let expo = (100.0 * curve(compiled, true)).round() / 100.0;
     let mut list = vec![real(
@@ -81,7 +81,7 @@ pub fn own(compiled: &Compiled) -> Parameters {
 }
 
 /// `FRAME_CLASS` and `FRAME_TYPE`, if a frame has these rotors on these outputs.
-pub fn geometry(compiled: &Compiled) -> Parameters {
+pub(crate) fn geometry(compiled: &Compiled) -> Parameters {
     match frames::find(compiled) {
         Some((class, kind, name)) => {
             let why = format!("ArduPilot's {name}: channel 0 of the airframe is motor 1.");
@@ -106,7 +106,7 @@ pub fn geometry(compiled: &Compiled) -> Parameters {
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds.
-pub fn pulses([low, high]: [f64; 2]) -> Vec<Parameter> {
+pub(crate) fn pulses([low, high]: [f64; 2]) -> Vec<Parameter> {
     let why = "Pulse widths of throttle 0 and 1 on the bench.";
     vec![
         whole("MOT_PWM_MIN", low as i32, why),

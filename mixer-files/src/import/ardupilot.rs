@@ -2,7 +2,7 @@
 
 use super::parameters::Parameters;
 use super::rotors::{Imported, Rotor};
-use crate::stack::frames::{Layer, motors};
+use crate::frames::{Layer, motors};
 
 /// ArduPilot's defaults.
 const SPIN_MIN: f64 = 0.15;

@@ -1,0 +1,31 @@
+//! Files about an airframe, as texts: new ones of regular frames, ones from a flight stack's
+//! parameters, parameters for a flight stack, the JSON schema, golden outputs.
+//!
+//! Texts in, texts and notes out. Nothing here reads or writes files.
+//!
+//! ```
+//! use mixer_compiler::Source;
+//! use mixer_files::frame::{Frame, NewFrame};
+//! use mixer_files::params::{Options, params};
+//! use mixer_files::stack::Stack;
+//!
+//! let frame = NewFrame { arm_m: Some(0.45), ..NewFrame::of(Frame::X8) };
+//! let text = mixer_files::new::new(&frame, None).unwrap();
+//! let compiled = mixer_compiler::compile(&Source::new("my-x8.toml", text)).unwrap();
+//! let made = params(&compiled, "my-x8.toml", &Options::of(Stack::Px4)).unwrap();
+//! assert!(made.text.contains("CA_ROTOR_COUNT\t8"));
+//! ```
+
+mod ardupilot;
+pub mod frame;
+mod frames;
+pub mod golden;
+pub mod import;
+pub mod new;
+mod parameter;
+pub mod params;
+pub mod plain;
+mod px4;
+pub mod schema;
+pub mod settings;
+pub mod stack;
