@@ -1,14 +1,13 @@
 //! An airframe file from a flight stack's parameters.
 //!
 //! ```text
-//! PX4's CA_ROTOR*, ArduPilot's FRAME_*, PX4's geometry files           parameters.rs
-//!   -> rotors: channel, place, axis, spin                              px4.rs, ardupilot.rs, geometry.rs
+//! PX4's CA_ROTOR*, ArduPilot's FRAME_*                                 parameters.rs
+//!   -> rotors: channel, place, axis, spin                              px4.rs, ardupilot.rs
 //!   -> units: two rotors in one place, which is on top                 pairs.rs
 //!   -> the airframe file, with what the parameters do not say named    text.rs
 //! ```
 
 mod ardupilot;
-mod geometry;
 mod pairs;
 mod parameters;
 mod px4;
@@ -41,33 +40,25 @@ pub struct Import {
     pub notes: Vec<String>,
 }
 
-/// Makes an airframe file of one parameter file of PX4 or ArduPilot, or of PX4's geometry files.
-/// `pair` is a file with the pair's model.
+/// Makes an airframe file of a parameter file of PX4 or ArduPilot. `pair` is a file with the pair's
+/// model.
 ///
 /// # Errors
-/// Files that do not describe coaxial pairs: file, line, and what would serve.
-pub fn import(files: &[Source], pair: Option<&Source>, options: &Options<'_>) -> Result<Import, String> {
-    let mut imported = read(files, options.arm_m)?;
+/// A file that does not describe coaxial pairs: file, line, and what would serve.
+pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Result<Import, String> {
+    let mut imported = read(file, options.arm_m)?;
     let units = pairs::pair(&imported.rotors, options.upper)?;
     let pair = pair
         .map(|pair| PairFile::read(&pair.name, &pair.text))
         .transpose()?;
-    let text = text::airframe(options.name, files, &mut imported, &units, pair.as_ref());
+    let text = text::airframe(options.name, file, &mut imported, &units, pair.as_ref());
     Ok(Import {
         text,
         notes: imported.notes,
     })
 }
 
-fn read(files: &[Source], arm_m: Option<f64>) -> Result<Imported, String> {
-    if files.iter().any(|file| geometry::is_geometry(&file.text)) {
-        return geometry::read(files);
-    }
-    let [file] = files else {
-        return Err(
-            "one parameter file makes one airframe; only PX4's geometry files come by layer".to_owned(),
-        );
-    };
+fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
     let parameters = Parameters::read(file)?;
     if parameters.has("CA_ROTOR_COUNT") || parameters.has("CA_ROTOR0_PX") {
         px4::read(&parameters)

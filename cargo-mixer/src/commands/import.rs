@@ -10,8 +10,7 @@ use crate::file;
 /// Makes an airframe file of a flight stack's parameters
 ///
 /// FILE is a parameter file of PX4 1.13 or later (CA_ROTOR*, as QGroundControl saves it) or of
-/// ArduPilot (FRAME_CLASS, FRAME_TYPE, MOT_*), or PX4's geometry files (tables `rotors`; those of
-/// two layers together, the upper one first).
+/// ArduPilot (FRAME_CLASS, FRAME_TYPE, MOT_*).
 ///
 /// PX4:       two rotors in one place are a unit, the one with the smaller z is the upper;
 ///            KM > 0 turns counter-clockwise; tilted axes are kept.
@@ -22,9 +21,8 @@ use crate::file;
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
 pub struct ImportArgs {
-    /// The parameter file, or geometry files
-    #[arg(required = true, value_name = "FILE")]
-    files: Vec<PathBuf>,
+    /// The parameter file
+    file: PathBuf,
     /// The pair's model: what `cargo mixer identify` writes, or another airframe file
     #[arg(long, value_name = "FILE")]
     pair: Option<PathBuf>,
@@ -48,7 +46,8 @@ pub struct ImportArgs {
 
 /// Runs the command.
 pub fn run(args: &ImportArgs) -> ExitCode {
-    let inputs = args.files.iter().chain(&args.pair).map(PathBuf::as_path);
+    let inputs = [Some(&args.file), args.pair.as_ref()];
+    let inputs = inputs.into_iter().flatten().map(PathBuf::as_path);
     if let Err(status) = file::writable(&args.output, args.force, inputs) {
         return status;
     }
@@ -59,15 +58,14 @@ pub fn run(args: &ImportArgs) -> ExitCode {
 }
 
 fn import(args: &ImportArgs) -> Result<(), String> {
-    let files = args.files.iter().map(|path| file::source(path));
-    let files = files.collect::<Result<Vec<_>, _>>()?;
+    let parameters = file::source(&args.file)?;
     let pair = args.pair.as_deref().map(file::source).transpose()?;
     let options = Options {
         arm_m: args.arm,
         upper: &args.upper,
         name: args.name.as_deref(),
     };
-    let made = import::import(&files, pair.as_ref(), &options)?;
+    let made = import::import(&parameters, pair.as_ref(), &options)?;
     file::save(&args.output, &made.text)?;
     crate::print_notes(&made.notes);
     Ok(())

@@ -141,10 +141,9 @@ fn px4_files_give_their_frames() {
     for (unit, expected) in units.iter().zip(expected) {
         assert_eq!(unit.position_m[..2], expected);
     }
-    let (units, _) = import(&folder, &[&file("octa_cox.toml")], &[]);
-    assert_eq!(outline(&units), octa_cox());
-    let layers = [file("dodeca_top_cox.toml"), file("dodeca_bottom_cox.toml")];
-    let (units, _) = import(&folder, &layers.each_ref().map(PathBuf::as_path), &[]);
+    let geometry = |names: &[&str]| import(&folder, &[&parameters(&folder, &data, names)], &[]).0;
+    assert_eq!(outline(&geometry(&["octa_cox.toml"])), octa_cox());
+    let units = geometry(&["dodeca_top_cox.toml", "dodeca_bottom_cox.toml"]);
     let spins = ["cw", "ccw", "cw", "ccw", "ccw", "cw"];
     let expected: Vec<_> = spins
         .into_iter()
@@ -256,6 +255,33 @@ fn new_frame(folder: &Path, frame: &str, stack: &str) -> (PathBuf, String) {
     (file, text)
 }
 
+/// PX4's geometry files, a layer each, as its parameters.
+fn parameters(folder: &Path, data: &Path, names: &[&str]) -> PathBuf {
+    let mut rotors = Vec::new();
+    for name in names {
+        let text = fs::read_to_string(data.join("px4").join(name)).unwrap();
+        rotors.extend(
+            text.parse::<Table>().unwrap()["rotors"]
+                .as_array()
+                .unwrap()
+                .clone(),
+        );
+    }
+    let mut text = format!("CA_ROTOR_COUNT,{}\n", rotors.len());
+    for (k, rotor) in rotors.iter().enumerate() {
+        for (key, x) in ["PX", "PY", "PZ"].iter().zip(floats(&rotor["position"])) {
+            text += &format!("CA_ROTOR{k}_{key},{x}\n");
+        }
+        let sign = if rotor["direction"].as_str() == Some("CCW") {
+            ""
+        } else {
+            "-"
+        };
+        text += &format!("CA_ROTOR{k}_KM,{sign}0.05\n");
+    }
+    write(folder, "geometry.params", &text)
+}
+
 /// The units of a frame that `new` writes, as `params` has them for PX4.
 fn of_px4(folder: &Path, airframe: &Path, upper: &str) -> Vec<Unit> {
     let text = printed(&["params", airframe.to_str().unwrap(), "--stack", "px4"]);
@@ -270,11 +296,7 @@ fn new_frames_are_those_of_the_stacks_tables() {
     };
     let folder = folder("new-outputs");
     // PX4: place, spin and outputs of every unit are those of its own geometry files.
-    let geometry = |names: &[&str]| {
-        let files: Vec<PathBuf> = names.iter().map(|name| data.join("px4").join(name)).collect();
-        let files: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-        import(&folder, &files, &[]).0
-    };
+    let geometry = |names: &[&str]| import(&folder, &[&parameters(&folder, &data, names)], &[]).0;
     let octa = geometry(&["octa_cox.toml"]);
     let dodeca = geometry(&["dodeca_top_cox.toml", "dodeca_bottom_cox.toml"]);
     for (frame, upper, expected) in [("x8", "0,1,2,3", octa), ("x12", "0,1,2,3,4,5", dodeca)] {
@@ -374,9 +396,7 @@ fn px4_units_are_those_of_its_geometries() {
         &["octa_cox.toml"][..],
         &["dodeca_top_cox.toml", "dodeca_bottom_cox.toml"],
     ] {
-        let files: Vec<PathBuf> = names.iter().map(|name| data.join("px4").join(name)).collect();
-        let files: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-        let (units, _) = import(&folder, &files, &[]);
+        let (units, _) = import(&folder, &[&parameters(&folder, &data, names)], &[]);
         assert_units_of_px4(names[0], &units, airframe.to_str().unwrap());
     }
 }

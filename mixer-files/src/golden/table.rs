@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use mixer_compiler::Compiled;
 use mixer_rt::{Health, Wrench};
 
-use super::vectors::{RotorsOut, Vector};
+use super::vectors::Vector;
 
 /// A row per vector, with all rotors.
 pub(super) fn healthy(compiled: &Compiled, vectors: &[Vector]) -> String {
@@ -18,14 +18,9 @@ pub(super) fn healthy(compiled: &Compiled, vectors: &[Vector]) -> String {
 }
 
 /// A row per vector; `failed` is the output of the rotor that is out.
-pub(super) fn rotors_out(compiled: &Compiled, vectors: &[RotorsOut]) -> String {
+pub(super) fn rotors_out(compiled: &Compiled, vectors: &[(u8, Vector)]) -> String {
     let mut table = format!("failed,{}", header(compiled));
-    for RotorsOut {
-        failed,
-        setpoint,
-        voltage_v,
-    } in vectors
-    {
+    for (failed, (setpoint, voltage_v)) in vectors {
         let _ = write!(table, "{failed},");
         let health = Health::GOOD.with_failed(*failed);
         push_row(&mut table, compiled, setpoint, *voltage_v, health);

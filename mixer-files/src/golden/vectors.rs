@@ -28,17 +28,6 @@ pub enum Kind {
     Faint,
 }
 
-/// A setpoint with a rotor out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RotorsOut {
-    /// The output of the rotor that is out.
-    pub failed: u8,
-    /// What is asked.
-    pub setpoint: Wrench,
-    /// Supply voltage, V.
-    pub voltage_v: f32,
-}
-
 /// Wrenches of random throttles.
 const ATTAINABLE: usize = 120;
 
@@ -88,27 +77,16 @@ pub fn healthy(compiled: &Compiled) -> Vec<Vector> {
     by_kind(compiled).into_iter().flat_map(|(_, list)| list).collect()
 }
 
-/// For every output its rotor out, a choice of the setpoints each.
-pub fn rotors_out(compiled: &Compiled, vectors: &[Vector]) -> Vec<RotorsOut> {
+/// For every output its rotor out, a choice of the setpoints each: another one for every rotor.
+pub fn rotors_out(compiled: &Compiled, vectors: &[Vector]) -> Vec<(u8, Vector)> {
     let rotors = compiled.airframe.rotors();
-    let mut list = Vec::new();
-    for channel in 0..rotors {
-        let Ok(failed) = u8::try_from(channel) else {
-            continue;
-        };
-        // Another choice for every rotor.
-        let chosen = (0..ROTORS_OUT).map(|k| (k * rotors + channel) * vectors.len() / (ROTORS_OUT * rotors));
-        list.extend(
-            chosen
-                .filter_map(|k| vectors.get(k))
-                .map(|&(setpoint, voltage_v)| RotorsOut {
-                    failed,
-                    setpoint,
-                    voltage_v,
-                }),
-        );
-    }
-    list
+    let choice = |channel: usize, k: usize| {
+        let index = (k * rotors + channel) * vectors.len() / (ROTORS_OUT * rotors);
+        Some((u8::try_from(channel).ok()?, *vectors.get(index)?))
+    };
+    (0..rotors)
+        .flat_map(|channel| (0..ROTORS_OUT).filter_map(move |k| choice(channel, k)))
+        .collect()
 }
 
 /// Random setpoints of one airframe.

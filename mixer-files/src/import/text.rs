@@ -23,7 +23,7 @@ const TAKEN: &[&str] = &["pair", "voltage"];
 /// The text, and the notes on it in `imported`.
 pub(super) fn airframe(
     name: Option<&str>,
-    files: &[Source],
+    file: &Source,
     imported: &mut Imported,
     units: &[Unit],
     pair: Option<&PairFile>,
@@ -38,10 +38,6 @@ pub(super) fn airframe(
 
     let mut out = String::new();
     let name = name.map_or_else(|| default_name(units.len()), str::to_owned);
-    let files: Vec<String> = files
-        .iter()
-        .filter_map(|file| Some(Path::new(&file.name).file_name()?.to_string_lossy().into_owned()))
-        .collect();
     // Writing to a String cannot fail; the results are dropped.
     let _ = writeln!(out, "name = {}", Value::String(name));
     let _ = writeln!(out, "description = {}\n", Value::String(imported.origin.clone()));
@@ -49,7 +45,7 @@ pub(super) fn airframe(
         out,
         "# Imported by cargo mixer {} from {}.",
         env!("CARGO_PKG_VERSION"),
-        files.join(", ")
+        Path::new(&file.name).file_name().unwrap_or_default().display()
     );
     for note in &imported.notes {
         let _ = writeln!(out, "# * {note}.");
