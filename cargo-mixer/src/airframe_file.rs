@@ -1,15 +1,14 @@
 //! An airframe file that a command writes.
 
 use std::path::Path;
-use std::process::ExitCode;
 
 use mixer_compiler::Source;
 
-use crate::Refusal;
+use crate::{Done, Refusal};
 
 /// Writes an airframe file that compiles; one that does not is refused with its faults, and nothing
 /// is written: they then name the file with the pair's model, if there is one.
-pub(crate) fn write(path: &Path, text: &str, model: Option<&Path>) -> ExitCode {
+pub(crate) fn write(path: &Path, text: &str, model: Option<&Path>) -> Done {
     let compile = |name: String| mixer_compiler::compile(&Source::new(name, text));
     match compile(path.display().to_string()) {
         Err(_) => {
@@ -23,22 +22,18 @@ pub(crate) fn write(path: &Path, text: &str, model: Option<&Path>) -> ExitCode {
             };
             // The same faults again, of the file that there is not.
             if let Err(faults) = compile(name) {
-                return Refusal::Faulty(faults).report();
+                return Err(Refusal::Faulty(faults).report());
             }
         }
         Ok(compiled) => crate::warn(&mixer_compiler::lint(&compiled)),
     }
-    match crate::file::save(path, text) {
-        Ok(()) => {
-            let schema = path.with_file_name("airframe.schema.json");
-            if !schema.exists() {
-                crate::print_note(format_args!(
-                    "your editor completes and checks it with its schema beside it: cargo mixer schema -o {}",
-                    schema.display()
-                ));
-            }
-            ExitCode::SUCCESS
-        }
-        Err(message) => crate::print_error(message),
+    crate::file::save(path, text).map_err(crate::print_error)?;
+    let schema = path.with_file_name("airframe.schema.json");
+    if !schema.exists() {
+        crate::print_note(format_args!(
+            "your editor completes and checks it with its schema beside it: cargo mixer schema -o {}",
+            schema.display()
+        ));
     }
+    Ok(())
 }

@@ -8,7 +8,7 @@ use crate::commands::{
     check, compare, expand, golden, identify, import, library, mix, new, params, plan, predict, report,
     schema, shell, sweep,
 };
-use crate::finish;
+use crate::{Done, output};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
 #[derive(Parser)]
@@ -55,9 +55,9 @@ pub fn run() -> ExitCode {
         Ok(arguments) => arguments,
         // Help and the version go to stdout, bad usage to stderr.
         Err(said) if said.use_stderr() => said.exit(),
-        Err(said) => return finish(said.print()),
+        Err(said) => return status(output(said.print())),
     };
-    match arguments.command {
+    status(match arguments.command {
         Command::Check(args) => check::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Mix(args) => mix::run(&args),
@@ -74,5 +74,9 @@ pub fn run() -> ExitCode {
         Command::Schema(args) => schema::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Completions(args) => shell::run(&args, Arguments::command()),
-    }
+    })
+}
+
+fn status(done: Done) -> ExitCode {
+    done.err().unwrap_or(ExitCode::SUCCESS)
 }

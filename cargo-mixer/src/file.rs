@@ -89,11 +89,10 @@ pub(crate) fn writable<'a>(
         _ => input == output,
     };
     if inputs.into_iter().any(same) {
-        crate::print_error(format_args!(
+        return Err(crate::bad_usage(format_args!(
             "{} is an input and would be overwritten",
             output.display()
-        ));
-        return Err(ExitCode::from(crate::BAD_USAGE));
+        )));
     }
     not_there(output, force).map_err(crate::print_error)
 }

@@ -52,6 +52,15 @@ impl Refusal {
     }
 }
 
+/// What a command comes to; the exit status where it failed and has said why.
+pub type Done = Result<(), ExitCode>;
+
+/// Says on stderr what is wrong with the arguments; the exit status for it.
+fn bad_usage(message: impl Display) -> ExitCode {
+    print_error(message);
+    ExitCode::from(BAD_USAGE)
+}
+
 /// Says on stderr what is wrong; the exit status for a bad input.
 fn print_error(message: impl Display) -> ExitCode {
     print_note(format_args!("error: {message}"));
@@ -97,8 +106,9 @@ fn warn(warnings: &Diagnostics) {
 }
 
 /// Reads and compiles an airframe file; its warnings go to stderr.
-fn compile(path: &Path) -> Result<Compiled, Refusal> {
-    let compiled = mixer_compiler::compile(&read(path)?).map_err(Refusal::Faulty)?;
+fn compile(path: &Path) -> Result<Compiled, ExitCode> {
+    let compile = |source: Source| mixer_compiler::compile(&source).map_err(Refusal::Faulty);
+    let compiled = read(path).and_then(compile).map_err(|refusal| refusal.report())?;
     warn(&mixer_compiler::lint(&compiled));
     Ok(compiled)
 }
@@ -110,31 +120,22 @@ fn read(path: &Path) -> Result<Source, Refusal> {
     Source::from_bytes(name, bytes).map_err(Refusal::Faulty)
 }
 
-/// Prints the only output of a command; its exit status.
-fn print(text: &str) -> ExitCode {
-    finish(io::stdout().lock().write_all(text.as_bytes()))
+/// Prints the only output of a command.
+fn print(text: &str) -> Done {
+    output(io::stdout().lock().write_all(text.as_bytes()))
 }
 
 /// Writes an output to its file, or prints it where there is none.
-fn deliver(output: Option<&Path>, force: bool, text: &str) -> ExitCode {
+fn deliver(output: Option<&Path>, force: bool, text: &str) -> Done {
     let Some(path) = output else {
         return print(text);
     };
     let written = file::not_there(path, force).and_then(|()| file::save(path, text));
-    match written {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => print_error(message),
-    }
+    written.map_err(print_error)
 }
 
-/// The exit status after the last output.
-pub fn finish(written: io::Result<()>) -> ExitCode {
-    output(written).err().unwrap_or(ExitCode::SUCCESS)
-}
-
-/// Result of an output; the exit status where it failed. A reader that has seen enough (`|
-/// head`) is no fault.
-fn output(written: io::Result<()>) -> Result<(), ExitCode> {
+/// Result of an output. A reader that has seen enough (`| head`) is no fault.
+fn output(written: io::Result<()>) -> Done {
     match written.and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(print_error(format_args!("stdout: {error}")))

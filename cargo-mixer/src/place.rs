@@ -3,7 +3,6 @@
 
 use std::io::{Write as _, stdout};
 use std::path::Path;
-use std::process::ExitCode;
 
 use mixer_compiler::Source;
 use mixer_files::new::new;
@@ -11,7 +10,7 @@ use mixer_files::plain::printable_lines;
 use mixer_identify::texts::Answer;
 
 use crate::frame_args::FrameArgs;
-use crate::{BAD_USAGE, output, print_error, print_note};
+use crate::{Done, bad_usage, output, print_error, print_note};
 
 /// Where the tables go, and in which form.
 pub(crate) struct Place<'a> {
@@ -34,10 +33,9 @@ impl Place<'_> {
     }
 
     /// Refuses a place that cannot be written, before there is anything to write.
-    pub(crate) fn check(&self, inputs: &[&Path]) -> Result<(), ExitCode> {
+    pub(crate) fn check(&self, inputs: &[&Path]) -> Done {
         if self.json && self.to_stdout() {
-            print_error("--json and -o - would both write to standard output");
-            return Err(ExitCode::from(BAD_USAGE));
+            return Err(bad_usage("--json and -o - would both write to standard output"));
         }
         match self.file() {
             Some(path) => crate::file::writable(path, self.force, inputs.iter().copied()),
@@ -46,7 +44,7 @@ impl Place<'_> {
     }
 
     /// Writes report and tables, and says what comes next.
-    pub(crate) fn write<T>(&self, answer: &Answer<T>, verbose: bool) -> Result<(), ExitCode> {
+    pub(crate) fn write<T>(&self, answer: &Answer<T>, verbose: bool) -> Done {
         let report = match (self.json, verbose) {
             (true, _) => &answer.json,
             (_, true) => &answer.details,
@@ -56,10 +54,7 @@ impl Place<'_> {
             None => answer.tables.clone(),
             Some(frame) => {
                 let tables = Source::new("the tables", answer.tables.as_str());
-                new(&frame.frame(self.file()), Some(&tables)).map_err(|error| {
-                    print_error(error);
-                    ExitCode::from(BAD_USAGE)
-                })?
+                new(&frame.frame(self.file()), Some(&tables)).map_err(bad_usage)?
             }
         };
         // Names, headers and cells of the bench files are in both.
@@ -73,10 +68,7 @@ impl Place<'_> {
         output(writeln!(stdout().lock(), "{out}"))?;
         match self.file() {
             Some(path) if self.frame.is_some() => {
-                let status = crate::airframe_file::write(path, &text, None);
-                if status != ExitCode::SUCCESS {
-                    return Err(status);
-                }
+                crate::airframe_file::write(path, &text, None)?;
                 self.next(format_args!("cargo mixer check {}", path.display()));
             }
             Some(path) => {

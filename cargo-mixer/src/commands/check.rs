@@ -1,17 +1,16 @@
 //! `cargo mixer check`.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 use mixer_compiler::diagnostic::{Diagnostics, printable};
 use mixer_facts::Checked;
 use mixer_facts::checklist::Checklist;
+use mixer_files::settings::Stacks;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::Refusal;
-use mixer_files::settings::Stacks;
+use crate::{Done, Refusal};
 
 /// Validates and compiles an airframe file and says what came of it
 #[derive(clap::Args, Debug)]
@@ -39,7 +38,7 @@ struct More {
 }
 
 /// Runs the command.
-pub fn run(args: &CheckArgs) -> ExitCode {
+pub fn run(args: &CheckArgs) -> Done {
     let start = Instant::now();
     let source = crate::read(&args.airframe);
     let result = source.and_then(|source| mixer_compiler::compile(&source).map_err(Refusal::Faulty));
@@ -48,17 +47,17 @@ pub fn run(args: &CheckArgs) -> ExitCode {
         Ok(compiled) => Checked::new(compiled),
         Err(refusal) => {
             if args.json {
-                crate::print(&pretty(&match &refusal {
+                let _ = crate::print(&pretty(&match &refusal {
                     Refusal::Faulty(faults) => mixer_facts::refusal(faults),
                     Refusal::Unreadable(message) => unreadable(&args.airframe, message),
                 }));
             }
-            return refusal.report();
+            return Err(refusal.report());
         }
     };
     tell(&checked.warnings, args.verbose);
     let stacks = Stacks::new(&checked.compiled);
-    let status = crate::print(&if args.json {
+    crate::print(&if args.json {
         pretty(&checked.json(More { stacks, compile_ms }))
     } else if args.verbose {
         let (report, list) = (checked.report(), Checklist(&checked.compiled));
@@ -69,11 +68,15 @@ pub fn run(args: &CheckArgs) -> ExitCode {
             "{}next                cargo mixer report {file} -o report.html (pictures), or check --verbose (every number)\n",
             checked.verdict()
         )
-    });
-    if status == ExitCode::SUCCESS && args.deny_warnings && !checked.warnings.is_empty() {
-        return denied(&checked.warnings);
+    })?;
+    match checked.warnings.faults().len() {
+        count if args.deny_warnings && count > 0 => Err(crate::print_error(format_args!(
+            "{}: {count} {}, and --deny-warnings is given",
+            checked.warnings.source().name,
+            if count == 1 { "warning" } else { "warnings" }
+        ))),
+        _ => Ok(()),
     }
-    status
 }
 
 /// Warnings in full, several as a line each where the verdict is to stay on one screen.
@@ -84,16 +87,6 @@ fn tell(warnings: &Diagnostics, in_full: bool) {
         _ if in_full => crate::show(warnings),
         _ => crate::print_note(warnings.lines().join("\n")),
     }
-}
-
-/// Refuses a good file for its warnings.
-fn denied(warnings: &Diagnostics) -> ExitCode {
-    let count = warnings.faults().len();
-    crate::print_error(format_args!(
-        "{}: {count} {}, and --deny-warnings is given",
-        warnings.source().name,
-        if count == 1 { "warning" } else { "warnings" }
-    ))
 }
 
 /// The JSON of a file that cannot be read: the fault has no place and no code.

@@ -1,9 +1,10 @@
 //! `cargo mixer compare`: airframes side by side.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use mixer_facts::Checked;
+
+use crate::Done;
 
 /// Prints airframes side by side: thrust, authority, hover, evaluator, cost
 #[derive(clap::Args, Debug)]
@@ -14,13 +15,10 @@ pub struct CompareArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &CompareArgs) -> ExitCode {
-    let mut all = Vec::new();
-    for path in &args.airframes {
-        match crate::compile(path) {
-            Ok(compiled) => all.push(Checked::new(compiled)),
-            Err(refusal) => return refusal.report(),
-        }
-    }
-    crate::print(&mixer_facts::compare(&all))
+pub fn run(args: &CompareArgs) -> Done {
+    let all = args
+        .airframes
+        .iter()
+        .map(|path| crate::compile(path).map(Checked::new));
+    crate::print(&mixer_facts::compare(&all.collect::<Result<Vec<_>, _>>()?))
 }

@@ -1,7 +1,8 @@
 //! `cargo mixer expand`.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
+
+use crate::Done;
 
 /// Prints the Rust that the macro and the build-script helper generate from an airframe file
 #[derive(clap::Args, Debug)]
@@ -11,9 +12,6 @@ pub struct ExpandArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &ExpandArgs) -> ExitCode {
-    match crate::compile(&args.airframe) {
-        Ok(compiled) => crate::print(&compiled.rust()),
-        Err(refusal) => refusal.report(),
-    }
+pub fn run(args: &ExpandArgs) -> Done {
+    crate::print(&crate::compile(&args.airframe)?.rust())
 }

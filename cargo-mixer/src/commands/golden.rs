@@ -6,6 +6,8 @@ use std::process::ExitCode;
 
 use mixer_files::golden;
 
+use crate::Done;
+
 pub mod compare;
 
 /// Writes golden outputs of airframes, or compares them with those that were written
@@ -36,17 +38,14 @@ pub struct GoldenArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &GoldenArgs) -> ExitCode {
-    let outputs = match all_outputs(&args.airframes) {
-        Ok(outputs) => outputs,
-        Err(status) => return status,
-    };
+pub fn run(args: &GoldenArgs) -> Done {
+    let outputs = all_outputs(&args.airframes)?;
     let done = if args.check {
         check(&args.output, &outputs)
     } else {
         write(&args.output, &outputs, args.force)
     };
-    done.unwrap_or_else(crate::print_error)
+    done.map_err(crate::print_error)
 }
 
 /// The outputs of all airframes by file name. Everything is compiled before anything is written.
@@ -54,7 +53,7 @@ fn all_outputs(airframes: &[PathBuf]) -> Result<BTreeMap<String, String>, ExitCo
     let mut outputs = BTreeMap::new();
     let mut of_name: BTreeMap<String, &PathBuf> = BTreeMap::new();
     for path in airframes {
-        let compiled = crate::compile(path).map_err(|refusal| refusal.report())?;
+        let compiled = crate::compile(path)?;
         let name = &compiled.airframe.name;
         if let Some(other) = of_name.insert(name.clone(), path) {
             return Err(crate::print_error(format_args!(
@@ -68,7 +67,7 @@ fn all_outputs(airframes: &[PathBuf]) -> Result<BTreeMap<String, String>, ExitCo
     Ok(outputs)
 }
 
-fn write(folder: &Path, outputs: &BTreeMap<String, String>, force: bool) -> Result<ExitCode, String> {
+fn write(folder: &Path, outputs: &BTreeMap<String, String>, force: bool) -> Result<(), String> {
     let files = outputs
         .iter()
         .map(|(name, text)| (name.as_str(), text.as_bytes()));
@@ -79,13 +78,13 @@ fn write(folder: &Path, outputs: &BTreeMap<String, String>, force: bool) -> Resu
             folder.join(orphan).display()
         ));
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(())
 }
 
-fn check(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<ExitCode, String> {
+fn check(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<(), String> {
     let differences = compare::differences(folder, outputs)?;
     if differences.is_empty() {
-        return Ok(ExitCode::SUCCESS);
+        return Ok(());
     }
     for difference in &differences {
         crate::print_note(format_args!("{}", folder.join(difference).display()));

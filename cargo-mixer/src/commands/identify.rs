@@ -2,7 +2,6 @@
 //! of an airframe file.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -15,16 +14,15 @@ use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
-use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{Prediction, identify};
 
 use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choice, throttle_box};
-use crate::bench_files::{text, texts};
+use crate::bench_files::{refused, text, texts};
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
 use crate::place::Place;
-use crate::{BAD_USAGE, print_error, print_note};
+use crate::{Done, bad_usage, print_note};
 
 /// Identify a pair's thrust and torque, and their dependence on voltage, from bench files.
 ///
@@ -188,14 +186,10 @@ impl IdentifyArgs {
 }
 
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
-pub fn run(args: &IdentifyArgs) -> ExitCode {
-    attempt(args).err().unwrap_or(ExitCode::SUCCESS)
-}
-
-fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
+pub fn run(args: &IdentifyArgs) -> Done {
     if args.prior.is_none() && args.rotors.is_given() {
-        print_error("what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given");
-        return Err(ExitCode::from(BAD_USAGE));
+        let message = "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given";
+        return Err(bad_usage(message));
     }
     let place = Place {
         output: args.output.as_deref(),
@@ -231,14 +225,6 @@ fn attempt(args: &IdentifyArgs) -> Result<(), ExitCode> {
         print_note(format_args!("refused: {more} rows more"));
     }
     place.write(&answer, args.verbose)
-}
-
-/// Says what is wrong with the files.
-pub(crate) fn refused(refusals: Vec<Refusal>) -> ExitCode {
-    for refusal in refusals {
-        print_error(refusal);
-    }
-    ExitCode::FAILURE
 }
 
 /// Largest exponent that is taken: a propeller has 2.5 at most.

@@ -1,11 +1,10 @@
 //! `cargo mixer import`: an airframe file from a flight stack's parameters.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use mixer_files::import::{self, Options};
 
-use crate::file;
+use crate::{Done, file};
 
 /// Makes an airframe file of a flight stack's parameters
 ///
@@ -45,16 +44,11 @@ pub struct ImportArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &ImportArgs) -> ExitCode {
+pub fn run(args: &ImportArgs) -> Done {
     let inputs = [Some(&args.file), args.pair.as_ref()];
     let inputs = inputs.into_iter().flatten().map(PathBuf::as_path);
-    if let Err(status) = file::writable(&args.output, args.force, inputs) {
-        return status;
-    }
-    match import(args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => crate::print_error(message),
-    }
+    file::writable(&args.output, args.force, inputs)?;
+    import(args).map_err(crate::print_error)
 }
 
 fn import(args: &ImportArgs) -> Result<(), String> {

@@ -2,11 +2,10 @@
 
 use std::io::{IsTerminal as _, stderr};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use mixer_c::{Airframe, Options};
 
-use crate::{Refusal, file, print_error, print_note};
+use crate::{Done, Refusal, file, print_error, print_note};
 
 /// Writes a C library of one or more airframes: an archive, headers, CMake and a self-test
 ///
@@ -44,28 +43,11 @@ pub struct LibraryArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &LibraryArgs) -> ExitCode {
-    let mut airframes = Vec::new();
-    for path in &args.airframes {
-        match airframe(path) {
-            Ok(airframe) => airframes.push(airframe),
-            Err(refusal) => return refusal.report(),
-        }
-    }
-    match library(args, &airframes) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => print_error(message),
-    }
-}
-
-fn airframe(path: &Path) -> Result<Airframe, Refusal> {
-    let airframe = Airframe::new(&crate::read(path)?).map_err(Refusal::Faulty)?;
-    crate::warn(&airframe.warnings());
-    Ok(airframe)
-}
-
-fn library(args: &LibraryArgs, airframes: &[Airframe]) -> Result<(), String> {
-    file::check_folder(&args.output)?;
+pub fn run(args: &LibraryArgs) -> Done {
+    let airframes = args.airframes.iter().map(|path| airframe(path));
+    let airframes = airframes.collect::<Result<Vec<_>, _>>();
+    let airframes = airframes.map_err(|refusal| refusal.report())?;
+    file::check_folder(&args.output).map_err(print_error)?;
     let options = Options {
         target: args.target.as_deref(),
         health: args.health,
@@ -75,9 +57,15 @@ fn library(args: &LibraryArgs, airframes: &[Airframe]) -> Result<(), String> {
             print_note(note);
         }
     };
-    let files = mixer_c::library(airframes, &options, note).map_err(|error| error.to_string())?;
+    let files = mixer_c::library(&airframes, &options, note).map_err(print_error)?;
     let files = files
         .iter()
         .map(|file| (file.name.as_str(), file.bytes.as_slice()));
-    file::save_all(&args.output, files, args.force)
+    file::save_all(&args.output, files, args.force).map_err(print_error)
+}
+
+fn airframe(path: &Path) -> Result<Airframe, Refusal> {
+    let airframe = Airframe::new(&crate::read(path)?).map_err(Refusal::Faulty)?;
+    crate::warn(&airframe.warnings());
+    Ok(airframe)
 }

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal as _, Read, Write, stdin, stdout};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
 use mixer_rt::Health;
 
 use crate::setpoints::{BadLine, HEADER, Setpoints, Stopped};
+use crate::{Done, file, print_error};
 
 /// Mixes setpoints: CSV to CSV, from stdin to stdout row by row
 ///
@@ -43,66 +43,49 @@ pub struct MixArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &MixArgs) -> ExitCode {
+pub fn run(args: &MixArgs) -> Done {
     let inputs = [Some(&args.airframe), args.setpoints.as_ref()];
     let inputs = inputs.into_iter().flatten().map(PathBuf::as_path);
-    let place = |output: &PathBuf| crate::file::writable(output, args.force, inputs);
-    if let Some(Err(status)) = args.output.as_ref().map(place) {
-        return status;
+    if let Some(output) = &args.output {
+        file::writable(output, args.force, inputs)?;
     }
-    let compiled = match crate::compile(&args.airframe) {
-        Ok(compiled) => compiled,
-        Err(refusal) => return refusal.report(),
-    };
+    let compiled = crate::compile(&args.airframe)?;
     let rotors = compiled.airframe.rotors();
     if let Some(channel) = args
         .failed
         .iter()
         .find(|channel| usize::from(**channel) >= rotors)
     {
-        crate::print_error(format_args!(
+        return Err(crate::bad_usage(format_args!(
             "--failed {channel}: the channels of {} are 0 to {}",
             compiled.airframe.name,
             rotors - 1
-        ));
-        return ExitCode::from(2);
+        )));
     }
-    let health = args
-        .failed
-        .iter()
-        .fold(Health::GOOD, |health, channel| health.with_failed(*channel));
-    let (input, name) = match input(args.setpoints.as_deref()) {
-        Ok(input) => input,
-        Err(message) => return crate::print_error(message),
-    };
-    let bad_line = |BadLine { line, message }| crate::print_error(format_args!("{name}:{line}: {message}"));
+    let failed = args.failed.iter().copied();
+    let health = failed.fold(Health::GOOD, Health::with_failed);
+    let (input, name) = input(args.setpoints.as_deref()).map_err(print_error)?;
+    let bad_line = |BadLine { line, message }| print_error(format_args!("{name}:{line}: {message}"));
+    let mut rows = Vec::new();
     let mixed = match &args.output {
-        None => mix(
-            &compiled,
-            health,
-            input,
-            BufWriter::new(stdout().lock()),
-            bad_line,
-        ),
-        Some(path) => {
-            let mut rows = Vec::new();
-            let mixed = mix(&compiled, health, input, &mut rows, bad_line);
-            if mixed.is_ok()
-                && let Err(message) = crate::file::save(path, &String::from_utf8_lossy(&rows))
-            {
-                return crate::print_error(message);
-            }
-            mixed
+        None => {
+            let output = BufWriter::new(stdout().lock());
+            mix(&compiled, health, input, output, bad_line)
         }
+        Some(_) => mix(&compiled, health, input, &mut rows, bad_line),
     };
-    match mixed {
-        Ok(0) if args.output.is_none() => crate::finish(Ok(())),
-        Ok(0) => ExitCode::SUCCESS,
-        Ok(1) => crate::print_error("1 bad row is left out"),
-        Ok(bad) => crate::print_error(format_args!("{bad} bad rows are left out")),
-        Err(Stopped::Header(bad)) => bad_line(bad),
-        Err(Stopped::Input(error)) => crate::print_error(format_args!("{name}: {error}")),
-        Err(Stopped::Output(error)) => crate::finish(Err(error)),
+    let bad = mixed.map_err(|stopped| match stopped {
+        Stopped::Header(bad) => bad_line(bad),
+        Stopped::Input(error) => print_error(format_args!("{name}: {error}")),
+        Stopped::Output(error) => print_error(format_args!("stdout: {error}")),
+    })?;
+    if let Some(path) = &args.output {
+        file::save(path, &String::from_utf8_lossy(&rows)).map_err(print_error)?;
+    }
+    match bad {
+        0 => Ok(()),
+        1 => Err(print_error("1 bad row is left out")),
+        bad => Err(print_error(format_args!("{bad} bad rows are left out"))),
     }
 }
 

@@ -1,12 +1,11 @@
 //! `cargo mixer new`: a complete airframe file to begin with.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use mixer_files::new::{Error, new};
 
 use crate::frame_args::FrameArgs;
-use crate::{BAD_USAGE, airframe_file, file, print_error};
+use crate::{Done, airframe_file, bad_usage, file, print_error};
 
 /// Writes a complete, commented airframe file of a regular frame
 ///
@@ -28,21 +27,15 @@ pub struct NewArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &NewArgs) -> ExitCode {
+pub fn run(args: &NewArgs) -> Done {
     let inputs = args.pair.iter().map(PathBuf::as_path);
-    if let Err(status) = file::writable(&args.output, args.force, inputs) {
-        return status;
-    }
-    let pair = match args.pair.as_deref().map(file::source).transpose() {
-        Ok(pair) => pair,
-        Err(message) => return print_error(message),
-    };
-    match new(&args.frame.frame(Some(&args.output)), pair.as_ref()) {
-        Ok(text) => airframe_file::write(&args.output, &text, args.pair.as_deref()),
-        Err(Error::Pair(message)) => print_error(message),
-        Err(Error::Frame(message)) => {
-            print_error(message);
-            ExitCode::from(BAD_USAGE)
-        }
-    }
+    file::writable(&args.output, args.force, inputs)?;
+    let pair = args.pair.as_deref().map(file::source).transpose();
+    let pair = pair.map_err(print_error)?;
+    let made = new(&args.frame.frame(Some(&args.output)), pair.as_ref());
+    let text = made.map_err(|error| match error {
+        Error::Pair(message) => print_error(message),
+        Error::Frame(message) => bad_usage(message),
+    })?;
+    airframe_file::write(&args.output, &text, args.pair.as_deref())
 }

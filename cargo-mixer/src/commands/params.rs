@@ -1,13 +1,12 @@
 //! `cargo mixer params`: an airframe's parameters as files that a flight stack loads.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
-use mixer_files::params::{Format, Options, Params, params};
+use mixer_files::params::{Format, Options, params};
 use mixer_files::stack::Stack;
 
 use crate::bench_args::{PulseRange, pwm_range, words};
-use crate::{file, print_error};
+use crate::{Done, file, print_error};
 
 /// Writes an airframe's parameters for a flight stack, each with its reason
 ///
@@ -46,11 +45,8 @@ pub struct ParamsArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &ParamsArgs) -> ExitCode {
-    let compiled = match crate::compile(&args.airframe) {
-        Ok(compiled) => compiled,
-        Err(refusal) => return refusal.report(),
-    };
+pub fn run(args: &ParamsArgs) -> Done {
+    let compiled = crate::compile(&args.airframe)?;
     let options = Options {
         stack: args.stack,
         format: args.format,
@@ -58,19 +54,12 @@ pub fn run(args: &ParamsArgs) -> ExitCode {
         pulses_us: args.pwm_range.map(|range| range.0),
     };
     let name = args.airframe.file_name().unwrap_or_default().to_string_lossy();
-    match params(&compiled, &name, &options) {
-        Ok(made) => write(args, &made).unwrap_or_else(|status| status),
-        Err(message) => print_error(message),
-    }
-}
-
-fn write(args: &ParamsArgs, made: &Params) -> Result<ExitCode, ExitCode> {
-    let status = match (&args.output, made.post) {
-        (None, None) => crate::print(&made.text),
+    let made = params(&compiled, &name, &options).map_err(print_error)?;
+    match (&args.output, made.post) {
+        (None, None) => crate::print(&made.text)?,
         (None, Some(_)) => {
-            return Err(print_error(
-                "--format airframe writes two files: -o FILE names the first",
-            ));
+            let message = "--format airframe writes two files: -o FILE names the first";
+            return Err(print_error(message));
         }
         (Some(path), post) => {
             let mut beside = path.clone().into_os_string();
@@ -84,9 +73,8 @@ fn write(args: &ParamsArgs, made: &Params) -> Result<ExitCode, ExitCode> {
             for (path, text) in files {
                 file::save(path, text).map_err(print_error)?;
             }
-            ExitCode::SUCCESS
         }
-    };
+    }
     crate::print_notes(&made.notes);
-    Ok(status)
+    Ok(())
 }

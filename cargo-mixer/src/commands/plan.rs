@@ -1,10 +1,11 @@
 //! `cargo mixer plan`: the throttle pairs that a bench has to run before `cargo mixer identify`.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::ValueEnum;
 use mixer_identify::plan::{CORRECTING, flight_stand, plan, rcbenchmark, template};
+
+use crate::Done;
 
 /// Writes the throttle pairs to run on the bench, in an order that averages temperature and sag
 ///
@@ -58,12 +59,12 @@ fn throttle(text: &str) -> Result<f64, String> {
 }
 
 /// Runs the command.
-pub fn run(args: &PlanArgs) -> ExitCode {
+pub fn run(args: &PlanArgs) -> Done {
     let pairs = match args.min {
         Some(min) if min < args.max => plan(usize::from(args.levels), min, args.max),
         Some(min) => {
-            crate::print_error(format_args!("--min {min} is not below --max {}", args.max));
-            return ExitCode::from(2);
+            let message = format_args!("--min {min} is not below --max {}", args.max);
+            return Err(crate::bad_usage(message));
         }
         // clap asks for one of the two.
         None => CORRECTING.to_vec(),

@@ -1,7 +1,6 @@
 //! `cargo mixer predict`: a pair's tables from a run of one rotor alone.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use mixer_identify::bench::Preparation;
@@ -15,9 +14,9 @@ use mixer_identify::rotor::predict::{Predicted, Wishes};
 use mixer_identify::rotor::single::Known;
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
+use crate::Done;
 use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
-use crate::bench_files::text;
-use crate::commands::identify::refused;
+use crate::bench_files::{refused, text};
 use crate::frame_args::FrameArgs;
 use crate::place::Place;
 use crate::today::today;
@@ -206,7 +205,7 @@ pub(crate) fn of_one_rotor() -> Settings {
 }
 
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
-pub fn run(args: &PredictArgs) -> ExitCode {
+pub fn run(args: &PredictArgs) -> Done {
     let place = Place {
         output: args.output.as_deref(),
         force: args.force,
@@ -215,9 +214,7 @@ pub fn run(args: &PredictArgs) -> ExitCode {
     };
     let inputs = [Some(&args.single), args.rotors.lower_single.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    let done = place.check(&inputs).and_then(|()| {
-        let answer = args.predicted().map_err(refused)?;
-        place.write(&answer, false)
-    });
-    done.err().unwrap_or(ExitCode::SUCCESS)
+    place.check(&inputs)?;
+    let answer = args.predicted().map_err(refused)?;
+    place.write(&answer, false)
 }

@@ -3,7 +3,6 @@
 mod bench;
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use mixer_report::origin::Origin;
 use mixer_report::page;
@@ -11,8 +10,8 @@ use mixer_report::study::Study;
 use sha2::{Digest as _, Sha256};
 
 use crate::bench_args::quantity;
-use crate::file;
 use crate::today::today;
+use crate::{Done, file, print_error};
 
 /// Writes one self-contained page about an airframe: its layout, maps, authority, comparison and
 /// tables
@@ -38,31 +37,20 @@ pub struct ReportArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &ReportArgs) -> ExitCode {
+pub fn run(args: &ReportArgs) -> Done {
     let inputs = args.bench.iter().chain([&args.airframe]);
-    if let Err(status) = file::writable(&args.output, args.force, inputs.map(PathBuf::as_path)) {
-        return status;
-    }
-    let compiled = match crate::compile(&args.airframe) {
-        Ok(compiled) => compiled,
-        Err(refusal) => return refusal.report(),
-    };
+    file::writable(&args.output, args.force, inputs.map(PathBuf::as_path))?;
+    let compiled = crate::compile(&args.airframe)?;
     let bench = match args.bench.as_slice() {
         [] => None,
-        files => match bench::read(&compiled, files) {
-            Ok(bench) => Some(bench),
-            Err(refusal) => return crate::print_error(refusal),
-        },
+        files => Some(bench::read(&compiled, files).map_err(print_error)?),
     };
     for doubt in bench.iter().flat_map(|bench| bench.doubts(&compiled)) {
         crate::print_note(format_args!("warning: {doubt}"));
     }
     let study = Study::new(&compiled, args.thrust);
     let page = page::page(&study, bench.as_ref(), &origin(&args.airframe));
-    match file::save(&args.output, &page) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => crate::print_error(message),
-    }
+    file::save(&args.output, &page).map_err(print_error)
 }
 
 /// The origin of a page that is made now of this file.

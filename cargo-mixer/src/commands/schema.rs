@@ -1,9 +1,10 @@
 //! `cargo mixer schema`: the JSON schema of the airframe file.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use mixer_files::schema;
+
+use crate::Done;
 
 /// Prints the JSON schema of the airframe file, by which editors complete and check it
 ///
@@ -21,6 +22,6 @@ pub struct SchemaArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &SchemaArgs) -> ExitCode {
+pub fn run(args: &SchemaArgs) -> Done {
     crate::deliver(args.output.as_deref(), args.force, &schema::text())
 }

@@ -1,10 +1,9 @@
 //! `cargo mixer completions`: what shells know of the command line.
 
-use std::io::{Write, stdout};
-use std::process::ExitCode;
-
 use clap::Command;
 use clap_complete::Shell;
+
+use crate::Done;
 
 /// Prints a script that completes commands and options in a shell
 ///
@@ -25,7 +24,7 @@ pub struct CompletionsArgs {
 const PROGRAM: &str = "cargo-mixer";
 
 /// Prints the completions of `command`.
-pub fn run(args: &CompletionsArgs, command: Command) -> ExitCode {
+pub fn run(args: &CompletionsArgs, command: Command) -> Done {
     let mut script = Vec::new();
     // clap_complete's script for bash loses the subcommands of a program whose name has a hyphen.
     let name = match args.shell {
@@ -34,7 +33,7 @@ pub fn run(args: &CompletionsArgs, command: Command) -> ExitCode {
     };
     clap_complete::generate(args.shell, &mut command.name(name), name, &mut script);
     script.extend_from_slice(as_subcommand(args.shell).as_bytes());
-    crate::finish(stdout().lock().write_all(&script))
+    crate::print(&String::from_utf8_lossy(&script))
 }
 
 /// The script that completes `cargo mixer` by the completions of `cargo-mixer`. In zsh cargo's own completion

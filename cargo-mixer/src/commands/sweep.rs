@@ -1,14 +1,13 @@
 //! `cargo mixer sweep`: the data of the figures as CSV.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use mixer_report::data::{Data, sweep};
 use mixer_report::study::Study;
 
 use crate::bench_args::words;
 use crate::commands::report::thrust;
-use crate::file;
+use crate::{Done, file, print_error};
 
 /// Writes the data of a figure as CSV, with units in the header
 #[derive(clap::Args, Debug)]
@@ -31,23 +30,12 @@ pub struct SweepArgs {
 }
 
 /// Runs the command.
-pub fn run(args: &SweepArgs) -> ExitCode {
-    let place = |output: &PathBuf| file::writable(output, args.force, [args.airframe.as_path()]);
-    if let Some(Err(status)) = args.output.as_ref().map(place) {
-        return status;
+pub fn run(args: &SweepArgs) -> Done {
+    if let Some(output) = &args.output {
+        file::writable(output, args.force, [args.airframe.as_path()])?;
     }
-    let compiled = match crate::compile(&args.airframe) {
-        Ok(compiled) => compiled,
-        Err(refusal) => return refusal.report(),
-    };
+    let compiled = crate::compile(&args.airframe)?;
     let study = Study::new(&compiled, args.thrust);
-    let csv = match sweep(&study, args.figure) {
-        Ok(csv) => csv,
-        Err(message) => return crate::print_error(message),
-    };
-    match args.output.as_ref().map(|path| file::save(path, &csv)) {
-        None => crate::print(&csv),
-        Some(Ok(())) => ExitCode::SUCCESS,
-        Some(Err(message)) => crate::print_error(message),
-    }
+    let csv = sweep(&study, args.figure).map_err(print_error)?;
+    crate::deliver(args.output.as_deref(), args.force, &csv)
 }
