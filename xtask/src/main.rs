@@ -11,15 +11,15 @@ struct Task {
     does: &'static str,
 }
 
-/// Runs a program of `mixer-tests`, with flags of cargo.
+/// Runs a program of `mixer-tests`, compiled as for the tests.
 macro_rules! tests {
-    ($($flag:literal)? => $binary:literal) => {
+    ($binary:literal) => {
         &[
             "cargo",
             "run",
             "--quiet",
             "--locked",
-            $($flag,)?
+            "--profile=test",
             "-p",
             "mixer-tests",
             "--bin",
@@ -40,34 +40,34 @@ const TASKS: &[Task] = &[
         program: &[
             "sh",
             "-c",
-            "exec cargo run --quiet --locked -p cargo-mixer -- golden airframes/*.toml -o tests/golden --force \"$@\"",
+            "exec cargo run --quiet --locked --profile=test -p cargo-mixer -- golden airframes/*.toml -o tests/golden --force \"$@\"",
             "sh",
         ],
         does: "writes the golden outputs of airframes/ to tests/golden/",
     },
     Task {
         name: "counts",
-        program: tests!(=> "counts"),
+        program: tests!("counts"),
         does: "counts instructions in QEMU; `counts --search` looks for requests that cost more, `counts --bless` writes tests/counts.csv, tests/worst.csv and docs/costs.md, `counts --page` docs/costs.md alone",
     },
     Task {
         name: "soak",
-        program: tests!(=> "soak"),
+        program: tests!("soak"),
         does: "draws frames and requests for `--minutes M` with `--seed S` and holds every answer to the physics; prints failures with what reproduces them",
     },
     Task {
         name: "allocators",
-        program: tests!("--release" => "allocators"),
+        program: tests!("allocators"),
         does: "compares allocators and writes tests/measurements/allocators.csv",
     },
     Task {
         name: "bases",
-        program: tests!("--release" => "bases"),
+        program: tests!("bases"),
         does: "compares bases on MIXER_BENCH_DATA and writes tests/measurements/bases.csv",
     },
     Task {
         name: "interaction",
-        program: tests!(=> "interaction"),
+        program: tests!("interaction"),
         does: "fits the constants of the interaction on MIXER_BENCH_DATA, leaves systems out and writes interaction.csv and interaction-constants.csv of tests/measurements/",
     },
     Task {
@@ -102,7 +102,7 @@ const TASKS: &[Task] = &[
     },
     Task {
         name: "tables",
-        program: tests!(=> "tables"),
+        program: tests!("tables"),
         does: "writes the tables of README.md and docs/ from what the tasks above have measured",
     },
     Task {
@@ -112,6 +112,7 @@ const TASKS: &[Task] = &[
             "run",
             "--quiet",
             "--locked",
+            "--profile=test",
             "-p",
             "mixer-report",
             "--example",
