@@ -31,9 +31,10 @@ use model::PairMap;
 use model::effectiveness::Effectiveness;
 use model::injectivity::{self, Injectivity};
 use model::voltage;
+use model::voltage::VoltageTable;
 use proc_macro2::TokenStream;
 use selection::Selected;
-use tables::{MixerTables, Parts, VoltageTable};
+use tables::{MixerTables, Parts};
 
 pub use compiled::Compiled;
 pub use diagnostic::source::Source;
@@ -105,11 +106,10 @@ impl Model {
             Ok(effectiveness)
         });
         let invertible = injectivity::prove(&airframe);
-        let laws = voltage::tabulate(&airframe);
+        let voltage = voltage::tabulate(&airframe);
         let tolerances = plausible::check_tolerances(&airframe, &pair);
-        let (effectiveness, (injectivity, least_idle), laws, ()) =
-            gather(effectiveness, invertible, laws, tolerances)?;
-        let voltage = VoltageTable::new(&airframe, laws.as_ref());
+        let (effectiveness, (injectivity, least_idle), voltage, ()) =
+            gather(effectiveness, invertible, voltage, tolerances)?;
         Ok(Model {
             airframe,
             pair,

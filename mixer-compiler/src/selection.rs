@@ -10,10 +10,10 @@ use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::Inversion;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
-use crate::model::voltage;
+use crate::model::voltage::{self, VoltageTable};
 use crate::proof::residual::Residual;
 use crate::proof::{self, Certificate, CorrectionBounds, Effort};
-use crate::tables::{self, UnitMap, VoltageTable};
+use crate::tables::{self, UnitMap};
 
 /// An evaluator with its table and what is known about it.
 #[derive(Clone, Debug)]

@@ -6,7 +6,6 @@
 //! generated Rust holds the same numbers in `mixer-rt`'s static types. [`MixerTables::mix`] runs
 //! `mixer-rt` itself on them.
 
-mod border;
 mod part;
 mod quantity;
 mod rows;
@@ -15,8 +14,8 @@ mod single;
 use mixer_rt::{
     Health, Saturation, SetpointError, Wrench,
     tables::{
-        ClosedForm, ClosedFormUnit, Facets, Inverse, Pair, Priorities, SingleRotor, Tables, ThrottleRange,
-        Tolerance, Unit, UnitState, Voltage, VoltageLaw,
+        Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Pair, Priorities, SingleRotor, Tables,
+        ThrottleRange, Tolerance, Unit, UnitState,
     },
 };
 
@@ -24,9 +23,8 @@ use crate::airframe::Airframe;
 use crate::inverse::table::InverseTable;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
-use crate::model::voltage::TabulatedLaw;
+use crate::model::voltage::VoltageTable;
 
-pub use border::BorderTable;
 pub(crate) use part::{Part, identifier};
 pub use quantity::QuantityTable;
 use rows::rows;
@@ -108,73 +106,36 @@ pub(crate) struct Parts<'a> {
     pub(crate) tolerance: Tolerance,
 }
 
-/// The closed form for vertical axes.
+/// The closed form for vertical axes, with the lists that it refers to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedFormTable {
+    /// All but the lists, which are empty here: [`ClosedFormTable::view`] has them.
+    pub(crate) numbers: ClosedForm<'static>,
     /// Shares of C and C+.
     pub units: Vec<ClosedFormUnit>,
-    /// True where the airframe serves all axes.
-    pub complete: bool,
-    /// Least and largest thrust of a unit, N.
-    pub thrust_n: [f32; 2],
-    /// The attainable torques of a unit.
-    pub border: BorderTable,
+    /// Cells of the border of a unit's attainable torques.
+    pub cells: Vec<Cell>,
     /// Facets of the attainable (roll, pitch, thrust) whose normals have the thrust component 1.
     pub slopes: Vec<Facets>,
     /// Facets whose normals have no thrust component.
     pub walls: Vec<Facets>,
-    /// Least thrust without torque, N.
-    pub thrust_floor_n: f32,
-    /// A thrust well inside, N.
-    pub thrust_middle_n: f32,
-    /// Yaw that counts as none, N m.
-    pub yaw_rounding_nm: f32,
 }
 
 impl ClosedFormTable {
     /// The table as `mixer-rt` reads it.
     pub fn view(&self) -> ClosedForm<'_> {
+        let border = Border {
+            cells: &self.cells,
+            ..self.numbers.border
+        };
         ClosedForm {
             units: &self.units,
-            complete: self.complete,
-            thrust_n: self.thrust_n,
-            border: self.border.view(),
+            border,
             slopes: &self.slopes,
             walls: &self.walls,
-            torque_share: self.torque_share(),
-            thrust_floor_n: self.thrust_floor_n,
-            thrust_middle_n: self.thrust_middle_n,
-            yaw_rounding_nm: self.yaw_rounding_nm,
+            ..self.numbers
         }
     }
-
-    /// 1 / n.
-    pub(crate) fn torque_share(&self) -> f32 {
-        1.0 / self.units.len() as f32
-    }
-}
-
-/// The voltage correction.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VoltageTable {
-    /// The declared range, V.
-    pub range_v: [f32; 2],
-    /// k_f and k_Q.
-    pub laws: [LawTable; 2],
-}
-
-/// One voltage law.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LawTable {
-    /// [`VoltageLaw::Polynomial`].
-    Polynomial {
-        /// Scale and offset of the variable.
-        variable: [f32; 2],
-        /// Coefficients in descending powers.
-        coefficients: Vec<f32>,
-    },
-    /// [`VoltageLaw::Points`].
-    Points(Vec<[f32; 2]>),
 }
 
 /// What [`MixerTables::mix`] gives: throttle per channel, achieved wrench, saturation.
@@ -328,53 +289,6 @@ impl MixerTables {
     /// Bytes of the inverse map's own constants.
     pub fn inverse_bytes(&self) -> usize {
         self.inverse.bytes()
-    }
-}
-
-impl VoltageTable {
-    /// Rounds tabulated laws over the airframe's range; `None` without a correction.
-    pub fn new(airframe: &Airframe, laws: Option<&[TabulatedLaw; 2]>) -> Option<Self> {
-        let [low, high] = airframe.voltage.as_ref()?.range_v;
-        let laws = laws?;
-        let variable = [2.0 / (high - low), -(high + low) / (high - low)].map(|x| x as f32);
-        let law = |law: &TabulatedLaw| match law {
-            TabulatedLaw::Polynomial(coefficients) => LawTable::Polynomial {
-                variable,
-                coefficients: coefficients.iter().map(|&c| c as f32).collect(),
-            },
-            TabulatedLaw::Points(points) => {
-                LawTable::Points(points.iter().map(|point| point.map(|x| x as f32)).collect())
-            }
-        };
-        Some(VoltageTable {
-            range_v: [low as f32, high as f32],
-            laws: [law(&laws[0]), law(&laws[1])],
-        })
-    }
-
-    /// The correction as `mixer-rt` reads it.
-    pub fn view(&self) -> Voltage<'_> {
-        let [thrust, torque] = &self.laws;
-        Voltage {
-            range_v: self.range_v,
-            thrust: thrust.view(),
-            torque: torque.view(),
-        }
-    }
-}
-
-impl LawTable {
-    fn view(&self) -> VoltageLaw<'_> {
-        match self {
-            LawTable::Polynomial {
-                variable,
-                coefficients,
-            } => VoltageLaw::Polynomial {
-                variable: *variable,
-                coefficients,
-            },
-            LawTable::Points(points) => VoltageLaw::Points(points),
-        }
     }
 }
 

@@ -375,7 +375,7 @@ fn inverse(list: &mut List, compiled: &Compiled) {
         .json("certificate", certificate);
     let lost = compiled.lost_between_sides;
     let cells = compiled.tables.closed_form.as_ref();
-    let cells = cells.map_or(0, |table| table.border.cells.len().saturating_sub(1));
+    let cells = cells.map_or(0, |table| table.cells.len().saturating_sub(1));
     let words = match lost {
         Err(reason) => format!("on the throttles, over the whole set: no closed form, as {reason}"),
         Ok(lost) => format!(

@@ -5,7 +5,6 @@ use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::effectiveness::Effectiveness;
 use mixer_compiler::model::voltage;
-use mixer_compiler::tables::VoltageTable;
 use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 
@@ -51,8 +50,7 @@ impl ConventionalMixer {
         if airframe.rotors() != ROTORS {
             return Err(Unsuited::Rotors);
         }
-        let laws = voltage::tabulate(airframe).map_err(|_| Unsuited::Voltage)?;
-        let voltage = VoltageTable::new(airframe, laws.as_ref());
+        let voltage = voltage::tabulate(airframe).map_err(|_| Unsuited::Voltage)?;
         Ok(ConventionalMixer {
             tables: IsolatedTables::of(airframe, effectiveness, voltage),
             thrust_factor: 1.0,

@@ -5,7 +5,7 @@ mod outline;
 
 use mixer_rt::{
     Axis,
-    tables::{Airmode, ClosedFormUnit, Facets},
+    tables::{Airmode, ClosedForm, ClosedFormUnit, Facets},
 };
 use nalgebra::Vector3;
 
@@ -76,37 +76,44 @@ pub(crate) fn table(
     let ends = [pair.efforts([low, low]), pair.efforts([high, high])];
     // f32 rounding, inwards.
     let thrust_n = [(ends[0][0] as f32).next_up(), (ends[1][0] as f32).next_down()];
-    let (border, lost) =
+    let (border, cells, lost) =
         border::border(pair).ok_or("sides of the attainable set would leave out much of it")?;
     let (slopes, walls) = facets(&columns, &free, thrust_n.map(f64::from));
+    let n = airframe.units.len();
     let mut table = ClosedFormTable {
+        numbers: ClosedForm {
+            units: &[],
+            complete: free.is_empty(),
+            thrust_n,
+            border,
+            slopes: &[],
+            walls: &[],
+            torque_share: 1.0 / n as f32,
+            thrust_floor_n: 0.0,
+            thrust_middle_n: 0.0,
+            yaw_rounding_nm: (YAW_ROUNDING * n as f64 * pair.scale()[1]) as f32,
+        },
         units: units(airframe, effectiveness, &null_vector(&columns, &free), thrust_n),
-        complete: free.is_empty(),
-        thrust_n,
-        border,
+        cells,
         slopes,
         walls,
-        thrust_floor_n: 0.0,
-        thrust_middle_n: 0.0,
-        yaw_rounding_nm: (YAW_ROUNDING * airframe.units.len() as f64 * pair.scale()[1]) as f32,
     };
-    let [floor, ceiling] = level_range(&table).ok_or("no thrust leaves yaw at zero")?;
+    let [floor, ceiling] = level_range(&table.view()).ok_or("no thrust leaves yaw at zero")?;
     // At least what the facets allow without roll and pitch, with rounding.
     let least_level = table
         .slopes
         .iter()
         .map(|facets| facets.bounds[0])
         .fold(floor, f32::max);
-    table.thrust_floor_n = least_level * (1.0 + ROUNDING);
-    table.thrust_middle_n = 0.5 * (floor + ceiling);
+    table.numbers.thrust_floor_n = least_level * (1.0 + ROUNDING);
+    table.numbers.thrust_middle_n = 0.5 * (floor + ceiling);
     Ok((table, lost))
 }
 
 /// The least and the largest thrust in all (N) without roll and pitch, z as near zero as can be,
 /// that can leave yaw at zero.
-fn level_range(table: &ClosedFormTable) -> Option<[f32; 2]> {
+fn level_range(table: &ClosedForm<'_>) -> Option<[f32; 2]> {
     const STEPS: usize = 4000;
-    let view = table.view();
     let [idle, full] = table.thrust_n;
     let is_level = |thrust_n: f32| {
         let least_norm = |unit: &ClosedFormUnit| unit.allocation[2] * thrust_n;
@@ -117,12 +124,12 @@ fn level_range(table: &ClosedFormTable) -> Option<[f32; 2]> {
         }
         let z = if low <= high { 0.0f32.clamp(low, high) } else { 0.0 };
         let mut yaw = [0.0, 0.0];
-        for unit in &table.units {
+        for unit in table.units {
             let f = least_norm(unit) + z * unit.null;
             if f < idle - ROUNDING * full || f > full + ROUNDING * full {
                 return false;
             }
-            let [middle, half] = view.border.torques(f.clamp(idle, full));
+            let [middle, half] = table.border.torques(f.clamp(idle, full));
             yaw = [
                 yaw[0] + unit.spin * middle - half,
                 yaw[1] + unit.spin * middle + half,

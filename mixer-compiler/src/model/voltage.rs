@@ -3,16 +3,59 @@
 //! Points are taken over; an exponent law k = (V / Vref)^e is fitted over the range by Chebyshev
 //! interpolation, since there is no power function in a mixer.
 
+use mixer_rt::tables;
+
 use crate::airframe::{Airframe, Voltage, VoltageLaw};
 use crate::diagnostic::{Code, Diagnostic};
 
-/// A law as the runtime evaluates it, in f64.
+/// The voltage correction.
 #[derive(Clone, Debug, PartialEq)]
-pub enum TabulatedLaw {
-    /// Coefficients in descending powers of a variable that runs through [-1, 1] over the range.
-    Polynomial(Vec<f64>),
-    /// Points `[volts, k]`, ascending.
-    Points(Vec<[f64; 2]>),
+pub struct VoltageTable {
+    /// The declared range, V.
+    pub range_v: [f32; 2],
+    /// k_f and k_Q.
+    pub laws: [LawTable; 2],
+}
+
+/// One voltage law.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LawTable {
+    /// [`tables::VoltageLaw::Polynomial`].
+    Polynomial {
+        /// Scale and offset of the variable.
+        variable: [f32; 2],
+        /// Coefficients in descending powers.
+        coefficients: Vec<f32>,
+    },
+    /// [`tables::VoltageLaw::Points`].
+    Points(Vec<[f32; 2]>),
+}
+
+impl VoltageTable {
+    /// The correction as `mixer-rt` reads it.
+    pub fn view(&self) -> tables::Voltage<'_> {
+        let [thrust, torque] = &self.laws;
+        tables::Voltage {
+            range_v: self.range_v,
+            thrust: thrust.view(),
+            torque: torque.view(),
+        }
+    }
+}
+
+impl LawTable {
+    fn view(&self) -> tables::VoltageLaw<'_> {
+        match self {
+            LawTable::Polynomial {
+                variable,
+                coefficients,
+            } => tables::VoltageLaw::Polynomial {
+                variable: *variable,
+                coefficients,
+            },
+            LawTable::Points(points) => tables::VoltageLaw::Points(points),
+        }
+    }
 }
 
 /// Largest relative error of a fitted law: 2.5 uN of 25 N, about what f32 rounds off.
@@ -44,11 +87,11 @@ pub(crate) fn largest_factors(airframe: &Airframe) -> [f64; 2] {
     })
 }
 
-/// The laws of thrust and torque, tabulated; `None` without a correction.
+/// The correction, tabulated and rounded; `None` without one.
 ///
 /// # Errors
 /// A range over which no polynomial of moderate degree follows a law.
-pub fn tabulate(airframe: &Airframe) -> Result<Option<[TabulatedLaw; 2]>, Vec<Diagnostic>> {
+pub fn tabulate(airframe: &Airframe) -> Result<Option<VoltageTable>, Vec<Diagnostic>> {
     let Some(voltage) = &airframe.voltage else {
         return Ok(None);
     };
@@ -62,7 +105,10 @@ pub fn tabulate(airframe: &Airframe) -> Result<Option<[TabulatedLaw; 2]>, Vec<Di
         )
     };
     match [&voltage.thrust, &voltage.torque].map(|law| tabulate_law(law, voltage)) {
-        [Ok(thrust), Ok(torque)] => Ok(Some([thrust, torque])),
+        [Ok(thrust), Ok(torque)] => Ok(Some(VoltageTable {
+            range_v: voltage.range_v.map(|v| v as f32),
+            laws: [thrust, torque],
+        })),
         laws => {
             let keys = ["voltage.thrust_exponent", "voltage.torque_exponent"].into_iter();
             let faults = keys
@@ -74,9 +120,10 @@ pub fn tabulate(airframe: &Airframe) -> Result<Option<[TabulatedLaw; 2]>, Vec<Di
 }
 
 /// One law, or the relative error of the best polynomial.
-fn tabulate_law(law: &VoltageLaw, voltage: &Voltage) -> Result<TabulatedLaw, f64> {
+fn tabulate_law(law: &VoltageLaw, voltage: &Voltage) -> Result<LawTable, f64> {
     if let VoltageLaw::Points(points) = law {
-        return Ok(TabulatedLaw::Points(points.clone()));
+        let rounded = points.iter().map(|point| point.map(|x| x as f32));
+        return Ok(LawTable::Points(rounded.collect()));
     }
     let [low, high] = voltage.range_v;
     let factor = |x: f64| law.factor(0.5 * (low + high) + 0.5 * (high - low) * x, voltage.reference_v);
@@ -89,7 +136,10 @@ fn tabulate_law(law: &VoltageLaw, voltage: &Voltage) -> Result<TabulatedLaw, f64
             .fold(0.0, f64::max);
         best = best.min(error);
         if error <= FIT_TOLERANCE {
-            return Ok(TabulatedLaw::Polynomial(coefficients));
+            return Ok(LawTable::Polynomial {
+                variable: [2.0 / (high - low), -(high + low) / (high - low)].map(|x| x as f32),
+                coefficients: coefficients.into_iter().map(|c| c as f32).collect(),
+            });
         }
     }
     Err(best)

@@ -1,6 +1,6 @@
 //! Probes of the sides of the closed form, which wrenches alone reach only here and there.
 
-use mixer_rt::tables::Border;
+use mixer_rt::tables::ClosedForm;
 
 use crate::compiled::Compiled;
 
@@ -24,8 +24,11 @@ pub(super) fn check(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> 
         return Ok(());
     };
     let area = twice_area(&compiled.pair.scaled_border(SAMPLES));
-    let border: Border<'_> = table.border.view();
-    let [least, most] = table.thrust_n;
+    let ClosedForm {
+        border,
+        thrust_n: [least, most],
+        ..
+    } = table.view();
     let step = (most - least) / SECTIONS as f32;
     let mut between = 0.0;
     for k in 0..SECTIONS {

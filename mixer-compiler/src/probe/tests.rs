@@ -68,9 +68,9 @@ fn planted_sides_are_refused() {
     let sides = |by: f32| {
         move |tables: &mut MixerTables| {
             let closed_form = tables.closed_form.as_mut().unwrap();
-            let middle = closed_form.border.cells.len() / 2;
+            let middle = closed_form.cells.len() / 2;
             for k in [middle, middle + 1, middle + 2] {
-                closed_form.border.cells[k].half = closed_form.border.cells[k].half.map(|half| by * half);
+                closed_form.cells[k].half = closed_form.cells[k].half.map(|half| by * half);
             }
         }
     };

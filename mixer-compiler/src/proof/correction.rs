@@ -8,7 +8,7 @@ use mixer_rt::tables::VoltageLaw as Law;
 
 use super::taylor::Taylor;
 use crate::airframe::{Airframe, VoltageLaw};
-use crate::tables::{LawTable, VoltageTable};
+use crate::model::voltage::{LawTable, VoltageTable};
 
 /// Bounds over the voltage range, of thrust and of torque.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -185,7 +185,7 @@ fn a_wrong_voltage_table_is_refused() {
     let compiled = compiled(airframe_text("airframes/isae-x8.toml"));
     let bound = |factor: f32| {
         let mut tables = compiled.tables.clone();
-        let Some(crate::tables::LawTable::Polynomial { coefficients, .. }) =
+        let Some(crate::model::voltage::LawTable::Polynomial { coefficients, .. }) =
             tables.voltage.as_mut().map(|voltage| &mut voltage.laws[0])
         else {
             panic!("{:?}", tables.voltage)

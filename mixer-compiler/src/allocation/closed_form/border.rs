@@ -7,11 +7,10 @@
 //! reaches further, behind a gap: that is given up.) Both sides are drawn by chords in equal cells
 //! of thrust, lowered where a side bends inwards by what its chords would be outside.
 
-use mixer_rt::tables::{Cell, Grid};
+use mixer_rt::tables::{Border, Cell, Grid};
 
 use super::outline::outline;
 use crate::model::PairMap;
-use crate::tables::BorderTable;
 
 /// Border points per edge of the throttle box.
 const SAMPLES: usize = 1024;
@@ -50,9 +49,10 @@ struct Sides {
 /// A thrust, Q_max and -Q_min there.
 type Section = [f64; 3];
 
-/// The border, and the share of the attainable set's area that is outside its cells; `None` where
+/// The border without its cells, these, and the share of the attainable set's area that is outside
+/// them; `None` where
 /// thrust does not grow along the diagonal, or the cells lose much.
-pub(super) fn border(pair: &PairMap) -> Option<(BorderTable, f64)> {
+pub(super) fn border(pair: &PairMap) -> Option<(Border<'static>, Vec<Cell>, f64)> {
     let scale = pair.scale();
     let sides = Sides::new(pair)?;
     let mut sections: Vec<Section> = Vec::new();
@@ -91,14 +91,15 @@ pub(super) fn border(pair: &PairMap) -> Option<(BorderTable, f64)> {
         .windows(2)
         .map(|ends| 0.5 * (ends[1][0] - ends[0][0]) * (ends[0][1] + ends[0][2] + ends[1][1] + ends[1][2]))
         .sum();
-    let table = BorderTable {
+    let border = Border {
         corners_n: [1, 2].map(|k| (scale[0] * sides.corners[k]) as f32),
         grids,
-        cells: cells(&sections, scale[1]),
+        cells: &[],
         outlines: [0, 1].map(|k| outline(&sides.thrusts, &sides.torques[k], scale)),
         lost_nm: (lost * scale[1]) as f32,
     };
-    Some((table, 1.0 - area / whole_area(pair)))
+    let cells = cells(&sections, scale[1]);
+    Some((border, cells, 1.0 - area / whole_area(pair)))
 }
 
 /// The sections as `mixer-rt` reads them. The last cell goes on as the one before it, so that half
