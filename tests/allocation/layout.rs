@@ -247,20 +247,6 @@ pub(crate) fn any_request(out_most: usize) -> impl Strategy<Value = Draw> {
     (asked, -0.2..1.2, out(out_most)).prop_map(|(asked, volts, out)| Draw { asked, volts, out })
 }
 
-/// Requests as a controller in trouble sends them: up to three times the authority.
-pub(crate) fn moderate_request() -> impl Strategy<Value = Draw> {
-    let asked = prop_oneof![
-        2 => scaled(0.3),
-        1 => scaled(3.0),
-        1 => (shares(0.0), 0.8..1.3).prop_map(|(shares, factor)| Asked::Throttles(shares, factor)),
-    ];
-    (asked, 0.0..1.0).prop_map(|(asked, volts)| Draw {
-        asked,
-        volts,
-        out: Vec::new(),
-    })
-}
-
 /// Wrenches of throttles with a distance of `margin` to the ends of their range.
 pub(crate) fn attainable_request(margin: f64) -> impl Strategy<Value = Draw> {
     (shares(margin), 0.0..1.0).prop_map(|(shares, volts)| Draw {

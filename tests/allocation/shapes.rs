@@ -85,7 +85,7 @@ fn best_yaw(frame: &Frame, answer: &Answer, direction: f64) -> f64 {
             by_roll * roll + by_pitch * pitch + by_thrust * thrust
         })
         .collect();
-    let [low, high] = table.thrust_n.map(f64::from);
+    let [low, high] = view.thrust_n.map(f64::from);
     let size = high - low;
     let mut best = f64::NEG_INFINITY;
     for step in 0..=2 * STEPS {
@@ -177,7 +177,7 @@ fn judge(name: &str, pair: &str, count: usize) -> Tally {
             let lost = lost.unwrap_or_else(|reason| panic!("{name}, {frame_name}: {reason}"));
             assert!(lost <= LOST, "{name}, {frame_name}: {lost}");
             let table = frame.compiled.tables.closed_form.as_ref().expect("closed form");
-            let floor = f64::from(table.thrust_floor_n);
+            let floor = f64::from(table.view().thrust_floor_n);
             if airmode == "disabled" {
                 let above = floor - least_level_thrust(&frame, floor);
                 assert!(
