@@ -4,7 +4,7 @@ use mixer_compiler::airframe::Airmode;
 use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
 
 use crate::frames;
-use crate::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
+use crate::parameter::{Parameters, curve, hundredths, on_curve, slope_in_hover};
 
 /// ArduPilot's own `MOT_SPIN_ARM`.
 const SPIN_ARM: f64 = 0.1;
@@ -16,137 +16,105 @@ const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 const MONITOR: &str = "BATT_MONITOR is your board's; 0 measures no voltage, the simulator has 4";
 
 /// ArduPilot's parameters where this mixer puts out the throttles.
-pub(crate) fn settings(compiled: &Compiled) -> Parameters {
+pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
     let airframe = &compiled.airframe;
-    let mut notes = Vec::new();
-    let mut list = vec![real(
-        "MOT_THST_EXPO",
-        0.0,
-        "The mixer inverts the rotors' curve; all else that reads this is linear then.",
-    )];
-    list.extend(spin(compiled, &mut notes));
+    all.because("The mixer inverts the rotors' curve; all else that reads this is linear then.")
+        .real("MOT_THST_EXPO", 0.0);
+    spin(compiled, all);
     if airframe.voltage.is_some() {
-        let why = "The mixer follows the battery's voltage.";
-        list.push(real("MOT_BAT_VOLT_MAX", 0.0, why));
-        list.push(real("MOT_BAT_VOLT_MIN", 0.0, why));
-        notes.push(MONITOR.to_owned());
+        all.because("The mixer follows the battery's voltage.")
+            .real("MOT_BAT_VOLT_MAX", 0.0)
+            .real("MOT_BAT_VOLT_MIN", 0.0);
+        all.note(MONITOR);
     }
-    let why = "The rotors of a pair would slew apart.";
-    list.push(real("MOT_SLEW_UP_TIME", 0.0, why));
-    list.push(real("MOT_SLEW_DN_TIME", 0.0, why));
-    let hover = airframe
-        .weight_n()
-        .map(|weight| weight / f64::from(compiled.ardupilot_scale().thrust_n));
-    let why = match &airframe.voltage {
-        Some(voltage) => format!(
-            "Weight over the thrust of all rotors at full throttle and {:?} V.",
-            voltage.range_v[1]
-        ),
-        None => "Weight over the thrust of all rotors at full throttle.".to_owned(),
-    };
-    hover_throttle(hover, &why, &mut list, &mut notes);
-    notes.push(gains(compiled));
+    all.because("The rotors of a pair would slew apart.")
+        .real("MOT_SLEW_UP_TIME", 0.0)
+        .real("MOT_SLEW_DN_TIME", 0.0);
+    let full_n = f64::from(compiled.ardupilot_scale().thrust_n);
+    let hover = airframe.weight_n().map(|weight| weight / full_n);
+    let at = airframe
+        .voltage
+        .as_ref()
+        .map_or_else(String::new, |voltage| format!(" and {:?} V", voltage.range_v[1]));
+    let why = format!("Weight over the thrust of all rotors at full throttle{at}.");
+    hover_throttle(hover, &why, all);
+    all.note(gains(compiled));
     if airframe.allocation.airmode == Airmode::Disabled {
-        notes.push(
+        all.note(
             "the airmode is \"disabled\", which gives no roll and pitch at throttle 0; ArduPilot counts on them: \
-             `airmode = \"roll-pitch\"` in the airframe file"
-                .to_owned(),
+             `airmode = \"roll-pitch\"` in the airframe file",
         );
     }
-    Parameters { list, notes }
 }
 
 /// ArduPilot's parameters where its own mixer puts out the throttles.
-pub(crate) fn own(compiled: &Compiled) -> Parameters {
-    let mut notes = Vec::new();
-    let expo = (100.0 * curve(compiled, true)).round() / 100.0;
-    let mut list = vec![real(
-        "MOT_THST_EXPO",
-        expo,
-        "Fitted to the thrust of the pair with both rotors alike.",
-    )];
-    list.extend(spin(compiled, &mut notes));
+pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
+    let expo = hundredths(curve(compiled, true));
+    all.because("Fitted to the thrust of the pair with both rotors alike.")
+        .real("MOT_THST_EXPO", expo);
+    spin(compiled, all);
     if let Some(voltage) = &compiled.airframe.voltage {
-        let why = "Range of the battery.";
-        list.push(real("MOT_BAT_VOLT_MAX", voltage.range_v[1], why));
-        list.push(real("MOT_BAT_VOLT_MIN", voltage.range_v[0], why));
-        notes.push(MONITOR.to_owned());
+        all.because("Range of the battery.")
+            .real("MOT_BAT_VOLT_MAX", voltage.range_v[1])
+            .real("MOT_BAT_VOLT_MIN", voltage.range_v[0]);
+        all.note(MONITOR);
     }
     let [min, max] = compiled.pair.range();
     let throttle = compiled.equal_hover_throttle();
     let hover = throttle.map(|throttle| on_curve(expo, (throttle - min) / (max - min)));
     let why = "MOT_THST_EXPO's curve at the throttle that carries the weight at the reference voltage.";
-    hover_throttle(hover, why, &mut list, &mut notes);
-    Parameters { list, notes }
+    hover_throttle(hover, why, all);
 }
 
 /// `FRAME_CLASS` and `FRAME_TYPE`, if a frame has these rotors on these outputs.
-pub(crate) fn geometry(compiled: &Compiled) -> Parameters {
-    match frames::find(compiled) {
-        Some((class, kind, name)) => {
-            let why = format!("ArduPilot's {name}: channel 0 of the airframe is motor 1.");
-            let number = |value: usize| i32::try_from(value).unwrap_or_default();
-            Parameters {
-                list: vec![
-                    whole("FRAME_CLASS", number(class), &why),
-                    whole("FRAME_TYPE", number(kind), &why),
-                ],
-                notes: Vec::new(),
-            }
-        }
-        None => Parameters {
-            list: Vec::new(),
-            notes: vec![
-                "no FRAME_CLASS has these rotors on these outputs: `cargo mixer new --outputs ardupilot` writes an airframe \
-                 whose `channels` and spins are one's"
-                    .to_owned(),
-            ],
-        },
-    }
+pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) {
+    let Some((class, kind, name)) = frames::find(compiled) else {
+        return all.note(
+            "no FRAME_CLASS has these rotors on these outputs: `cargo mixer new --outputs ardupilot` writes an airframe \
+             whose `channels` and spins are one's",
+        );
+    };
+    let [class, kind] = [class, kind].map(|value| i32::try_from(value).unwrap_or_default());
+    all.because(format!(
+        "ArduPilot's {name}: channel 0 of the airframe is motor 1."
+    ))
+    .whole("FRAME_CLASS", class)
+    .whole("FRAME_TYPE", kind);
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds.
-pub(crate) fn pulses([low, high]: [f64; 2]) -> Vec<Parameter> {
-    let why = "Pulse widths of throttle 0 and 1 on the bench.";
-    vec![
-        whole("MOT_PWM_MIN", low as i32, why),
-        whole("MOT_PWM_MAX", high as i32, why),
-    ]
+pub(crate) fn pulses([low, high]: [f64; 2], all: &mut Parameters) {
+    all.because("Pulse widths of throttle 0 and 1 on the bench.")
+        .whole("MOT_PWM_MIN", low as i32)
+        .whole("MOT_PWM_MAX", high as i32);
 }
 
-fn spin(compiled: &Compiled, notes: &mut Vec<String>) -> [Parameter; 3] {
+fn spin(compiled: &Compiled, all: &mut Parameters) {
     let throttle = &compiled.airframe.throttle;
     let least = throttle.min.min(MOST_SPIN_MIN);
     if least < throttle.min {
-        notes.push(format!(
+        all.note(format!(
             "throttle.min is {:?}, and ArduPilot does not arm with MOT_SPIN_MIN above {MOST_SPIN_MIN}: it is {MOST_SPIN_MIN}, \
              and the motors step up by the rest at take-off",
             throttle.min
         ));
     }
-    [
-        real("MOT_SPIN_MIN", least, "Idle of the airframe, throttle.min."),
-        real(
-            "MOT_SPIN_MAX",
-            throttle.max,
-            "Largest throttle of the airframe, throttle.max.",
-        ),
-        real("MOT_SPIN_ARM", least.min(SPIN_ARM), "At most MOT_SPIN_MIN."),
-    ]
+    all.because("Idle of the airframe, throttle.min.")
+        .real("MOT_SPIN_MIN", least);
+    all.because("Largest throttle of the airframe, throttle.max.")
+        .real("MOT_SPIN_MAX", throttle.max);
+    all.because("At most MOT_SPIN_MIN.")
+        .real("MOT_SPIN_ARM", least.min(SPIN_ARM));
 }
 
-fn hover_throttle(hover: Option<f64>, why: &str, list: &mut Vec<Parameter>, notes: &mut Vec<String>) {
-    let Some(hover) = hover else {
-        notes.push(no_mass("MOT_THST_HOVER"));
-        return;
-    };
+fn hover_throttle(hover: Option<f64>, why: &str, all: &mut Parameters) {
     let [least, most] = HOVER_RANGE;
-    if !(least..=most).contains(&hover) {
-        notes.push(format!(
+    if let Some(hover) = hover.filter(|hover| !(least..=most).contains(hover)) {
+        all.note(format!(
             "MOT_THST_HOVER {hover:.3} is outside {least} to {most}, which ArduPilot limits it to"
         ));
     }
-    list.push(real("MOT_THST_HOVER", hover, why));
+    all.hover("MOT_THST_HOVER", hover, why);
 }
 
 /// The note on gains of a vehicle that was tuned with ArduPilot's mixer.

@@ -76,18 +76,9 @@ pub(crate) fn motors(class: usize, kind: usize) -> Option<(&'static str, Vec<Mot
 }
 
 /// `FRAME_CLASS` and `FRAME_TYPE` of all frames that differ for a mixer, the usual ones first.
+#[rustfmt::skip]
 const FRAMES: &[(usize, usize)] = &[
-    (4, 1),
-    (4, 0),
-    (4, 3),
-    (4, 12),
-    (4, 14),
-    (4, 18),
-    (5, 10),
-    (5, 1),
-    (5, 11),
-    (12, 1),
-    (12, 0),
+    (4, 1), (4, 0), (4, 3), (4, 12), (4, 14), (4, 18), (5, 10), (5, 1), (5, 11), (12, 1), (12, 0),
 ];
 
 /// Factors that differ by less are one: a motor that is a few degrees off.
@@ -106,17 +97,13 @@ pub(crate) fn find(compiled: &Compiled) -> Option<(usize, usize, &'static str)> 
     FRAMES.iter().find_map(|&(class, kind)| {
         let (name, motors) = motors(class, kind)?;
         let factors = factors(&motors);
-        let is_same = motors.len() == rotors.len()
-            && rotors
-                .iter()
-                .zip(&motors)
-                .zip(0..)
-                .all(|((rotor, motor), channel)| *rotor == (channel, motor.spin, motor.layer))
-            && own.iter().zip(&factors).all(|(own, factors)| {
-                own.iter()
-                    .zip(factors)
-                    .all(|(own, factor)| (own - factor).abs() < SAME_FACTOR)
-            });
+        let of_frame = motors.iter().zip(0..);
+        let of_frame = of_frame.map(|(motor, channel)| (channel, motor.spin, motor.layer));
+        let mut differences = own
+            .iter()
+            .zip(&factors)
+            .flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]]);
+        let is_same = of_frame.eq(rotors.iter().copied()) && differences.all(|x| x.abs() < SAME_FACTOR);
         is_same.then_some((class, kind, name))
     })
 }
@@ -128,11 +115,10 @@ fn factors(motors: &[Motor]) -> Vec<[f64; 2]> {
         [-libm::sin(angle), libm::cos(angle)]
     });
     let raw: Vec<[f64; 2]> = raw.collect();
-    let largest = |axis: usize| {
+    let largest = [0, 1].map(|axis| {
         raw.iter()
             .fold(0.0, |most: f64, factors| most.max(factors[axis].abs()))
-    };
-    let largest = [largest(0), largest(1)];
+    });
     raw.iter()
         .map(|factors| [0, 1].map(|axis| 0.5 * factors[axis] / largest[axis]))
         .collect()

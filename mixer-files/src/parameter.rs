@@ -35,25 +35,6 @@ impl fmt::Display for Value {
     }
 }
 
-pub(crate) fn whole(name: impl Into<String>, value: i32, why: &str) -> Parameter {
-    Parameter {
-        name: name.into(),
-        value: Value::Whole(value),
-        why: why.to_owned(),
-    }
-}
-
-/// With four significant digits and at least four decimals: more is not known of any of them.
-pub(crate) fn real(name: impl Into<String>, value: f64, why: &str) -> Parameter {
-    let digits = 3.0 - libm::floor(libm::log10(value.abs().max(1e-12)));
-    let unit = libm::pow(10.0, digits.max(4.0));
-    Parameter {
-        name: name.into(),
-        value: Value::Real((value * unit).round() / unit + 0.0),
-        why: why.to_owned(),
-    }
-}
-
 /// Parameters, and what of them cannot be known or deserves a look.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Parameters {
@@ -61,6 +42,61 @@ pub(crate) struct Parameters {
     pub list: Vec<Parameter>,
     /// A sentence each.
     pub notes: Vec<String>,
+}
+
+/// Where parameters of one reason are added.
+pub(crate) struct Reason<'a> {
+    list: &'a mut Vec<Parameter>,
+    why: String,
+}
+
+impl Parameters {
+    /// The reason of the parameters that follow.
+    pub(crate) fn because(&mut self, why: impl Into<String>) -> Reason<'_> {
+        Reason {
+            list: &mut self.list,
+            why: why.into(),
+        }
+    }
+
+    pub(crate) fn note(&mut self, sentence: impl Into<String>) {
+        self.notes.push(sentence.into());
+    }
+
+    /// The throttle in hover, which needs the vehicle's mass.
+    pub(crate) fn hover(&mut self, name: &str, hover: Option<f64>, why: &str) {
+        if let Some(hover) = hover {
+            self.because(why).real(name, hover);
+        } else {
+            self.note(format!(
+                "{name} is missing: `[vehicle] mass_kg` of the airframe file gives it"
+            ));
+        }
+    }
+}
+
+impl Reason<'_> {
+    fn add(&mut self, name: impl Into<String>, value: Value) -> &mut Self {
+        let (name, why) = (name.into(), self.why.clone());
+        self.list.push(Parameter { name, value, why });
+        self
+    }
+
+    pub(crate) fn whole(&mut self, name: impl Into<String>, value: i32) -> &mut Self {
+        self.add(name, Value::Whole(value))
+    }
+
+    /// With four significant digits and at least four decimals: more is not known of any of them.
+    pub(crate) fn real(&mut self, name: impl Into<String>, value: f64) -> &mut Self {
+        let digits = 3.0 - libm::floor(libm::log10(value.abs().max(1e-12)));
+        let unit = libm::pow(10.0, digits.max(4.0));
+        self.add(name, Value::Real((value * unit).round() / unit + 0.0))
+    }
+}
+
+/// To two decimals.
+pub(crate) fn hundredths(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0
 }
 
 /// Slope in hover of the share of the largest thrust over the throttle, both rotors alike: what a
@@ -102,9 +138,4 @@ pub(crate) fn curve(compiled: &Compiled, stretched: bool) -> f64 {
 /// Value of such a curve.
 pub(crate) fn on_curve(a: f64, t: f64) -> f64 {
     a * t * t + (1.0 - a) * t
-}
-
-/// The note on a parameter that needs the vehicle's mass.
-pub(crate) fn no_mass(name: &str) -> String {
-    format!("{name} is missing: `[vehicle] mass_kg` of the airframe file gives it")
 }

@@ -47,12 +47,9 @@ pub enum Format {
 
 impl Format {
     /// All, each with its word on the command line and what it is.
+    #[rustfmt::skip]
     pub const ALL: [(Format, &'static str, &'static str); 2] = [
-        (
-            Format::GroundStation,
-            "parameters",
-            "A file for a ground station: QGroundControl's .params, ArduPilot's .parm",
-        ),
+        (Format::GroundStation, "parameters", "A file for a ground station: QGroundControl's .params, ArduPilot's .parm"),
         (Format::Simulator, "airframe", "A start script of PX4's simulator"),
     ];
 }
@@ -106,54 +103,34 @@ pub fn params(compiled: &Compiled, file: &str, options: &Options) -> Result<Para
 
 fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, String> {
     let mut all = Parameters::default();
-    let mut add = |more: Parameters| {
-        all.list.extend(more.list);
-        all.notes.extend(more.notes);
+    let currents = match options.format {
+        Format::GroundStation => Currents::Measured,
+        Format::Simulator => Currents::Simulated,
     };
-    let only = |list| Parameters {
-        list,
-        notes: Vec::new(),
-    };
+    match options.stack {
+        Stack::Px4 => px4::geometry(compiled, &mut all)?,
+        Stack::Ardupilot => ardupilot::geometry(compiled, &mut all),
+    }
     match (options.stack, options.own) {
-        (Stack::Px4, own) => {
-            let currents = match options.format {
-                Format::GroundStation => Currents::Measured,
-                Format::Simulator => Currents::Simulated,
-            };
-            add(only(px4::geometry(compiled)?));
-            add(if own {
-                px4::own(compiled, currents)
-            } else {
-                px4::settings(compiled, currents)
-            });
-        }
-        (Stack::Ardupilot, own) => {
-            add(ardupilot::geometry(compiled));
-            add(if own {
-                ardupilot::own(compiled)
-            } else {
-                ardupilot::settings(compiled)
-            });
-        }
+        (Stack::Px4, true) => px4::own(compiled, currents, &mut all),
+        (Stack::Px4, false) => px4::settings(compiled, currents, &mut all),
+        (Stack::Ardupilot, true) => ardupilot::own(compiled, &mut all),
+        (Stack::Ardupilot, false) => ardupilot::settings(compiled, &mut all),
     }
     match (options.format, options.pulses_us, options.stack) {
         // The simulator's outputs have no pulse widths.
-        (Format::Simulator, ..) => {
-            add(only(px4::simulated_outputs(compiled)));
-            add(only(px4::simulated_surroundings()));
+        (Format::Simulator, ..) => px4::simulated(compiled, &mut all),
+        (_, Some(pulses), Stack::Px4) => px4::pulses(compiled, pulses, &mut all),
+        (_, Some(pulses), Stack::Ardupilot) => ardupilot::pulses(pulses, &mut all),
+        (_, None, stack) => {
+            let names = match stack {
+                Stack::Px4 => "PWM_MAIN_MINn and PWM_MAIN_MAXn (or PWM_AUX_)",
+                Stack::Ardupilot => "MOT_PWM_MIN and MOT_PWM_MAX",
+            };
+            all.note(format!(
+                "{names} are missing: --pwm-range gives them, the pulse widths of throttle 0 and 1 on the bench"
+            ));
         }
-        (_, Some(pulses), Stack::Px4) => add(only(px4::pulses(compiled, pulses))),
-        (_, Some(pulses), Stack::Ardupilot) => add(only(ardupilot::pulses(pulses))),
-        (_, None, stack) => add(Parameters {
-            list: Vec::new(),
-            notes: vec![format!(
-                "{} are missing: --pwm-range gives them, the pulse widths of throttle 0 and 1 on the bench",
-                match stack {
-                    Stack::Px4 => "PWM_MAIN_MINn and PWM_MAIN_MAXn (or PWM_AUX_)",
-                    Stack::Ardupilot => "MOT_PWM_MIN and MOT_PWM_MAX",
-                }
-            )],
-        }),
     }
     Ok(all)
 }

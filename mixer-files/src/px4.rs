@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Spin, Unit};
 
-use crate::parameter::{Parameter, Parameters, curve, no_mass, on_curve, real, slope_in_hover, whole};
+use crate::parameter::{Parameters, curve, hundredths, on_curve, slope_in_hover};
 
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
@@ -26,36 +26,21 @@ pub(crate) enum Currents {
 }
 
 /// PX4's parameters where this mixer puts out the throttles.
-pub(crate) fn settings(compiled: &Compiled, currents: Currents) -> Parameters {
+pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
     let airframe = &compiled.airframe;
-    let mut notes = Vec::new();
-    let mut list = vec![real(
-        "THR_MDL_FAC",
-        0.0,
-        "The mixer inverts the rotors' curve; the outputs would bend the throttles once more.",
-    )];
+    all.because("The mixer inverts the rotors' curve; the outputs would bend the throttles once more.")
+        .real("THR_MDL_FAC", 0.0);
     if airframe.voltage.is_some() {
-        list.push(whole(
-            "MC_BAT_SCALE_EN",
-            0,
+        all.because(
             "The mixer follows the battery's voltage; the rate controller would scale by it once more.",
-        ));
+        )
+        .whole("MC_BAT_SCALE_EN", 0);
     }
     let full_n = f64::from(compiled.scale().thrust_n);
     let hover = airframe.weight_n().map(|weight| weight / full_n);
-    match hover {
-        Some(hover) => list.push(real(
-            "MPC_THR_HOVER",
-            hover,
-            "Weight over the thrust of all rotors at full throttle.",
-        )),
-        None => notes.push(no_mass("MPC_THR_HOVER")),
-    }
-    list.push(whole(
-        "MPC_THR_CURVE",
-        0,
-        "Throttle stick in the middle is hover thrust.",
-    ));
+    let why = "Weight over the thrust of all rotors at full throttle.";
+    all.hover("MPC_THR_HOVER", hover, why);
+    all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
     // Idle lifts most at the highest voltage.
     let rise = airframe
         .voltage
@@ -63,63 +48,47 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents) -> Parameters {
         .map_or(1.0, |voltage| voltage.thrust_factor(voltage.range_v[1]));
     let idle = rise * f64::from(compiled.thrust_range_n[0].max(0.0)) / full_n;
     let idle = libm::ceil(100.0 * idle) / 100.0;
-    let why = "Thrust of all rotors at idle, or PX4's default where that is more: less is not to be had.";
-    list.push(real("MPC_THR_MIN", idle.max(LEAST_THRUST), why));
-    list.push(real("MPC_MANTHR_MIN", idle.max(LEAST_MANUAL_THRUST), why));
+    all.because("Thrust of all rotors at idle, or PX4's default where that is more: less is not to be had.")
+        .real("MPC_THR_MIN", idle.max(LEAST_THRUST))
+        .real("MPC_MANTHR_MIN", idle.max(LEAST_MANUAL_THRUST));
     if hover.is_some_and(|hover| idle >= hover) {
-        notes.push("all rotors at idle lift the vehicle: MPC_THR_MIN is above MPC_THR_HOVER".to_owned());
+        all.note("all rotors at idle lift the vehicle: MPC_THR_MIN is above MPC_THR_HOVER");
     }
-    failure_detection(compiled, currents, &mut list, &mut notes);
-    notes.push(gains(compiled));
-    Parameters { list, notes }
+    failure_detection(compiled, currents, all);
+    all.note(gains(compiled));
 }
 
+/// Why PX4's throttle curve is straight.
+const MIDDLE: &str = "Throttle stick in the middle is hover thrust.";
+
 /// PX4's parameters where its own allocator puts out the throttles.
-pub(crate) fn own(compiled: &Compiled, currents: Currents) -> Parameters {
-    let mut notes = Vec::new();
-    let factor = round2(curve(compiled, false));
-    let mut list = vec![real(
-        "THR_MDL_FAC",
-        factor,
-        "Fitted to the thrust of the pair with both rotors alike.",
-    )];
-    match compiled.equal_hover_throttle() {
-        Some(throttle) => list.push(real(
-            "MPC_THR_HOVER",
-            on_curve(factor, throttle),
-            "THR_MDL_FAC's curve at the throttle that carries the weight at the reference voltage.",
-        )),
-        None => notes.push(no_mass("MPC_THR_HOVER")),
-    }
-    list.push(whole(
-        "MPC_THR_CURVE",
-        0,
-        "Throttle stick in the middle is hover thrust.",
-    ));
-    failure_detection(compiled, currents, &mut list, &mut notes);
-    Parameters { list, notes }
+pub(crate) fn own(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
+    let factor = hundredths(curve(compiled, false));
+    all.because("Fitted to the thrust of the pair with both rotors alike.")
+        .real("THR_MDL_FAC", factor);
+    let throttle = compiled.equal_hover_throttle();
+    let hover = throttle.map(|throttle| on_curve(factor, throttle));
+    let why = "THR_MDL_FAC's curve at the throttle that carries the weight at the reference voltage.";
+    all.hover("MPC_THR_HOVER", hover, why);
+    all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
+    failure_detection(compiled, currents, all);
 }
 
 /// The rotors for PX4's own allocator, which takes each as isolated and both of a pair as alike.
 ///
 /// # Errors
 /// Outputs that are not PX4's motors.
-pub(crate) fn geometry(compiled: &Compiled) -> Result<Vec<Parameter>, String> {
+pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
     let airframe = &compiled.airframe;
     let count = airframe.rotors();
     if count > MOST_ROTORS {
         return Err(format!("{count} rotors: PX4 has parameters for {MOST_ROTORS}"));
     }
     let [thrust, torque] = compiled.per_rotor();
-    let mut list = vec![
-        whole("CA_AIRFRAME", 0, "A multirotor."),
-        whole(
-            "CA_ROTOR_COUNT",
-            i32::try_from(count).unwrap_or_default(),
-            "A multirotor.",
-        ),
-        whole("CA_R_REV", 0, "No rotor turns backwards."),
-    ];
+    all.because("A multirotor.")
+        .whole("CA_AIRFRAME", 0)
+        .whole("CA_ROTOR_COUNT", i32::try_from(count).unwrap_or_default());
+    all.because("No rotor turns backwards.").whole("CA_R_REV", 0);
     for channel in 0..count {
         let is_on = |unit: &&Unit| unit.upper_channel == channel || unit.lower_channel == channel;
         let Some(unit) = airframe.units.iter().find(is_on) else {
@@ -128,122 +97,82 @@ pub(crate) fn geometry(compiled: &Compiled) -> Result<Vec<Parameter>, String> {
                  file gives their outputs, from 0"
             ));
         };
-        let is_upper = unit.upper_channel == channel;
-        let spin = if is_upper {
-            unit.upper_spin
-        } else {
-            unit.upper_spin.reversed()
+        let (rotor, spin) = match unit.upper_channel == channel {
+            true => ("upper", unit.upper_spin),
+            false => ("lower", unit.upper_spin.reversed()),
         };
         let sign = if spin == Spin::Ccw { 1.0 } else { -1.0 };
-        let why = format!(
-            "Motor {}: {} rotor, turns {}.",
-            channel + 1,
-            if is_upper { "upper" } else { "lower" },
-            spin.name()
-        );
-        let mut add = |key: &str, value| list.push(real(format!("CA_ROTOR{channel}_{key}"), value, &why));
-        for (key, value) in ["PX", "PY", "PZ"].iter().zip(unit.position_m) {
-            add(key, value);
+        let motor = channel + 1;
+        let why = format!("Motor {motor}: {rotor} rotor, turns {}.", spin.name());
+        let ([px, py, pz], [ax, ay, az]) = (unit.position_m, unit.axis);
+        let values = [px, py, pz, ax, ay, az, thrust, sign * torque / thrust];
+        for (key, value) in ["PX", "PY", "PZ", "AX", "AY", "AZ", "CT", "KM"]
+            .iter()
+            .zip(values)
+        {
+            all.because(&why).real(format!("CA_ROTOR{channel}_{key}"), value);
         }
-        for (key, value) in ["AX", "AY", "AZ"].iter().zip(unit.axis) {
-            add(key, value);
-        }
-        add("CT", thrust);
-        add("KM", sign * torque / thrust);
     }
-    Ok(list)
+    Ok(())
 }
 
-/// Which output drives which motor, as PX4's simulator needs it.
-pub(crate) fn simulated_outputs(compiled: &Compiled) -> Vec<Parameter> {
-    (1..=compiled.airframe.rotors())
-        .map(|motor| {
-            let function = 100 + i32::try_from(motor).unwrap_or_default();
-            whole(
-                format!("PWM_MAIN_FUNC{motor}"),
-                function,
-                "Motor n on the simulator's output n.",
-            )
-        })
-        .collect()
-}
-
-/// PX4's parameters for a simulator that sends the battery, too.
-pub(crate) fn simulated_surroundings() -> Vec<Parameter> {
-    vec![
-        whole(
-            "SYS_FAILURE_EN",
-            1,
-            "Failures can be injected: `failure motor stuck -i 1` takes away motor 1's telemetry, and the detector finds it dead.",
-        ),
-        whole(
-            "SIM_BAT_ENABLE",
-            0,
-            "The simulator sends the battery's state; 1 where it does not.",
-        ),
-    ]
+/// PX4's parameters for a simulator that sends the battery, too: which output drives which motor,
+/// and what it can fail.
+pub(crate) fn simulated(compiled: &Compiled, all: &mut Parameters) {
+    for motor in 1..=compiled.airframe.rotors() {
+        let function = 100 + i32::try_from(motor).unwrap_or_default();
+        all.because("Motor n on the simulator's output n.")
+            .whole(format!("PWM_MAIN_FUNC{motor}"), function);
+    }
+    all.because(
+        "Failures can be injected: `failure motor stuck -i 1` takes away motor 1's telemetry, and the detector finds it dead.",
+    )
+    .whole("SYS_FAILURE_EN", 1);
+    all.because("The simulator sends the battery's state; 1 where it does not.")
+        .whole("SIM_BAT_ENABLE", 0);
 }
 
 /// Pulse widths of throttle 0 and 1, microseconds.
-pub(crate) fn pulses(compiled: &Compiled, [low, high]: [f64; 2]) -> Vec<Parameter> {
+pub(crate) fn pulses(compiled: &Compiled, [low, high]: [f64; 2], all: &mut Parameters) {
     let why = "Pulse widths of throttle 0 and 1 on the bench; a board whose motors are on AUX has PWM_AUX_..";
-    let pulse =
-        |name: &str, motor: usize, width: f64| whole(format!("PWM_MAIN_{name}{motor}"), width as i32, why);
-    let motors = 1..=compiled.airframe.rotors();
-    motors
-        .flat_map(|motor| [pulse("MIN", motor, low), pulse("MAX", motor, high)])
-        .collect()
+    for motor in 1..=compiled.airframe.rotors() {
+        all.because(why)
+            .whole(format!("PWM_MAIN_MIN{motor}"), low as i32)
+            .whole(format!("PWM_MAIN_MAX{motor}"), high as i32);
+    }
 }
 
 /// A motor is found out where it draws too little current for its throttle: below `FD_ACT_MOT_C2T`
 /// times throttle less `FD_ACT_LOW_OFF`. Half of the tangent to the current in hover lies below the
 /// current everywhere, as that is convex in the throttle, and above zero around hover.
-fn failure_detection(
-    compiled: &Compiled,
-    currents: Currents,
-    list: &mut Vec<Parameter>,
-    notes: &mut Vec<String>,
-) {
-    list.push(whole(
-        "CA_FAILURE_MODE",
-        1,
-        "Motors that the failure detector finds out are left out of the mix.",
-    ));
+fn failure_detection(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
+    all.because("Motors that the failure detector finds out are left out of the mix.")
+        .whole("CA_FAILURE_MODE", 1);
     if currents == Currents::Simulated {
-        let why = "PX4's simulator reports 1 A + 15 A x output of every motor, failed or not.";
-        list.push(whole("FD_ACT_EN", 1, why));
-        list.push(real("FD_ACT_MOT_C2T", 15.0, why));
-        list.push(real("FD_ACT_LOW_OFF", 3.0, why));
-        list.push(real("FD_ACT_HIGH_OFF", MOST_OFFSET, why));
+        all.because("PX4's simulator reports 1 A + 15 A x output of every motor, failed or not.")
+            .whole("FD_ACT_EN", 1)
+            .real("FD_ACT_MOT_C2T", 15.0)
+            .real("FD_ACT_LOW_OFF", 3.0)
+            .real("FD_ACT_HIGH_OFF", MOST_OFFSET);
         return;
     }
     let Some([slope, offset]) = current_tangent(compiled) else {
-        list.push(whole(
-            "FD_ACT_EN",
-            0,
-            "Without the motors' currents a healthy motor would be found out.",
-        ));
-        notes.push(
+        all.because("Without the motors' currents a healthy motor would be found out.")
+            .whole("FD_ACT_EN", 0);
+        all.note(
             "FD_ACT_EN is off: `[pair.power]`, `[voltage]` and `[vehicle] mass_kg` of the airframe file would give \
-             FD_ACT_MOT_C2T and FD_ACT_LOW_OFF"
-                .to_owned(),
+             FD_ACT_MOT_C2T and FD_ACT_LOW_OFF",
         );
         return;
     };
     let why = "Half of the tangent to a motor's current over its throttle in hover, from [pair.power]; needs ESCs that \
                report their current.";
-    list.push(whole("FD_ACT_EN", 1, why));
-    list.push(real("FD_ACT_MOT_C2T", (0.5 * slope).min(MOST_SLOPE), why));
-    list.push(real(
-        "FD_ACT_LOW_OFF",
-        (0.5 * offset).clamp(0.0, MOST_OFFSET),
-        why,
-    ));
-    list.push(real(
-        "FD_ACT_HIGH_OFF",
-        MOST_OFFSET,
-        "As far as PX4 allows: a blocked motor is not looked for.",
-    ));
+    all.because(why)
+        .whole("FD_ACT_EN", 1)
+        .real("FD_ACT_MOT_C2T", (0.5 * slope).min(MOST_SLOPE))
+        .real("FD_ACT_LOW_OFF", (0.5 * offset).clamp(0.0, MOST_OFFSET));
+    all.because("As far as PX4 allows: a blocked motor is not looked for.")
+        .real("FD_ACT_HIGH_OFF", MOST_OFFSET);
 }
 
 /// Step of the throttle for a slope.
@@ -278,8 +207,4 @@ fn gains(compiled: &Compiled) -> String {
                  mass_kg` in the airframe file; one unit of yaw is then the pair's slope in hover"
             .to_owned(),
     }
-}
-
-fn round2(value: f64) -> f64 {
-    (100.0 * value).round() / 100.0
 }

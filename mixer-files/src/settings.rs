@@ -9,6 +9,7 @@ use mixer_rt::Wrench;
 use serde::Serialize;
 
 use crate::ardupilot;
+use crate::parameter::Parameters;
 pub use crate::parameter::{Parameter, Value};
 use crate::px4::{self, Currents};
 
@@ -60,11 +61,14 @@ impl Normalised {
 impl Stacks {
     /// What follows from an airframe.
     pub fn new(compiled: &Compiled) -> Self {
+        let (mut px4, mut ardupilot) = (Parameters::default(), Parameters::default());
+        px4::settings(compiled, Currents::Measured, &mut px4);
+        ardupilot::settings(compiled, &mut ardupilot);
         Stacks {
             normalised: Normalised::new(compiled.scale(), compiled.airframe.reference_v()),
             normalised_ardupilot: Normalised::new(compiled.ardupilot_scale(), compiled.highest_v()),
-            px4: px4::settings(compiled, Currents::Measured).list,
-            ardupilot: ardupilot::settings(compiled).list,
+            px4: px4.list,
+            ardupilot: ardupilot.list,
         }
     }
 }
@@ -92,11 +96,7 @@ impl fmt::Display for Stacks {
             writeln!(f, "                {}", words.join(", "))
         };
         stack("PX4", &self.normalised, &self.px4, "MPC_THR_HOVER")?;
-        stack(
-            "ArduPilot",
-            &self.normalised_ardupilot,
-            &self.ardupilot,
-            "MOT_THST_HOVER",
-        )
+        let ardupilot = &self.normalised_ardupilot;
+        stack("ArduPilot", ardupilot, &self.ardupilot, "MOT_THST_HOVER")
     }
 }
