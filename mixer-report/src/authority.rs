@@ -89,15 +89,10 @@ fn reach(
         wrench[axis as usize] = sign * torque;
         study.mix(wrench, condition).1
     };
-    search.largest(largest_torque(study, axis), delivered)
-}
-
-/// A torque that no throttles exceed: all units at their largest thrust and torque.
-fn largest_torque(study: &Study<'_>, axis: Axis) -> f64 {
-    let [f, q] = study.pair.scale();
-    let row = study.compiled.effectiveness.matrix.row(axis as usize);
-    let n = row.len() / 2;
-    (0..n).map(|i| row[i].abs() * f + row[n + i].abs() * q).sum()
+    // No throttles exceed the torque of all units at their largest thrust and torque.
+    let scale = study.pair.scale();
+    let most = study.compiled.effectiveness.largest(axis as usize, scale);
+    search.largest(most, delivered)
 }
 
 #[cfg(test)]

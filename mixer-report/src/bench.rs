@@ -112,7 +112,7 @@ impl BenchPoints {
                 doubts.push(format!(
                     "the model misses the bench\u{2019}s {} by {} {} rms, {:.0} % of its largest: the bench is of another \
                      pair, or upper and lower are exchanged",
-                    ["thrust", "torque"][effort as usize],
+                    effort.word(),
                     significant(misfit.rms, 3),
                     effort.unit(),
                     100.0 * share
@@ -161,11 +161,8 @@ impl BenchPoints {
         let measured = || self.points.iter().map(|point| point.measured[effort as usize]);
         let mean = measured().sum::<f64>() / count;
         let variance: f64 = measured().map(|x| (x - mean) * (x - mean)).sum();
-        let squares: f64 = self
-            .points
-            .iter()
-            .map(|point| point.residual(effort) * point.residual(effort))
-            .sum();
+        let residuals = self.points.iter().map(|point| point.residual(effort));
+        let squares: f64 = residuals.map(|x| x * x).sum();
         Some(Misfit {
             rms: (squares / count).sqrt(),
             largest: size(&at),

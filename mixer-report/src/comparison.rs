@@ -92,21 +92,13 @@ pub fn throttles(
     conventional: &IsolatedTables,
     wrench: [f64; 4],
 ) -> (Vec<[f64; 2]>, bool) {
-    let airframe = &study.compiled.airframe;
-    let reference_v = airframe.reference_v() as f32;
+    let reference_v = study.compiled.airframe.reference_v() as f32;
     let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
     // A study's wrenches are finite.
     let (channels, within) = conventional
         .conventional(&setpoint, reference_v)
         .unwrap_or_default();
-    let throttle = |channel: usize| {
-        channels
-            .get(channel)
-            .map_or(f64::NAN, |&throttle| f64::from(throttle))
-    };
-    let units = airframe.units.iter();
-    let units = units.map(|unit| [unit.upper_channel, unit.lower_channel].map(throttle));
-    (units.collect(), within)
+    (study.by_unit(&channels), within)
 }
 
 fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> Answer {

@@ -41,52 +41,17 @@ pub enum Data {
 
 impl Data {
     /// Every figure with its word and with what its columns hold.
+    #[rustfmt::skip]
     pub const ALL: [(Data, &str, &str); 9] = [
-        (
-            Data::Layout,
-            "layout",
-            "Place, spin and output channels of every unit",
-        ),
-        (
-            Data::Level,
-            "level",
-            "Throttles and power in level flight, against thrust and voltage",
-        ),
-        (
-            Data::Hover,
-            "hover",
-            "Throttles in hover against voltage; needs [vehicle] and [voltage]",
-        ),
-        (
-            Data::Yaw,
-            "yaw",
-            "What every unit gives over yaw at constant thrust, by both mixers",
-        ),
-        (
-            Data::Attainable,
-            "attainable",
-            "Border of a unit's attainable set against voltage",
-        ),
-        (
-            Data::Authority,
-            "authority",
-            "Largest torque about each served axis against thrust",
-        ),
-        (
-            Data::Forward,
-            "forward",
-            "Thrust, torque and det J of a unit over both throttles",
-        ),
-        (
-            Data::Inverse,
-            "inverse",
-            "Throttles over the attainable set, by the emitted tables",
-        ),
-        (
-            Data::Error,
-            "error",
-            "What the emitted inverse misses over the attainable set",
-        ),
+        (Data::Layout, "layout", "Place, spin and output channels of every unit"),
+        (Data::Level, "level", "Throttles and power in level flight, against thrust and voltage"),
+        (Data::Hover, "hover", "Throttles in hover against voltage; needs [vehicle] and [voltage]"),
+        (Data::Yaw, "yaw", "What every unit gives over yaw at constant thrust, by both mixers"),
+        (Data::Attainable, "attainable", "Border of a unit's attainable set against voltage"),
+        (Data::Authority, "authority", "Largest torque about each served axis against thrust"),
+        (Data::Forward, "forward", "Thrust, torque and det J of a unit over both throttles"),
+        (Data::Inverse, "inverse", "Throttles over the attainable set, by the emitted tables"),
+        (Data::Error, "error", "What the emitted inverse misses over the attainable set"),
     ];
 
     /// Its word on the command line.
@@ -122,10 +87,9 @@ pub fn sweep(study: &Study<'_>, figure: Data) -> Result<String, String> {
 fn no_yaw(study: &Study<'_>) -> String {
     let name = &study.compiled.airframe.name;
     if study.serves(Axis::Yaw) {
-        let [floor, ceiling] = study.compiled.thrust_range_n;
+        let ([floor, ceiling], thrust_n) = (study.compiled.thrust_range_n, study.thrust_n);
         format!(
-            "at {:?} N {name} has no yaw to sweep; its bare thrust is {:.1} to {:.1} N",
-            study.thrust_n, floor, ceiling
+            "at {thrust_n:?} N {name} has no yaw to sweep; its bare thrust is {floor:.1} to {ceiling:.1} N"
         )
     } else {
         format!("{name} does not serve yaw (allocation.axes)")
@@ -148,9 +112,8 @@ pub(crate) fn columns(csv: &str, names: &[&str]) -> String {
 }
 
 fn yaw(comparison: &Comparison) -> Vec<String> {
-    let mut header =
-        "mixer,yaw_asked_nm,throttle_limited,roll_given_nm,pitch_given_nm,yaw_given_nm,thrust_given_n"
-            .to_owned();
+    let given = "roll_given_nm,pitch_given_nm,yaw_given_nm,thrust_given_n";
+    let mut header = format!("mixer,yaw_asked_nm,throttle_limited,{given}");
     for unit in 0..comparison.share_n.len() {
         for quantity in ["upper_throttle", "lower_throttle", "thrust_n", "torque_nm"] {
             header.push_str(&format!(",unit_{unit}_{quantity}"));
@@ -160,10 +123,8 @@ fn yaw(comparison: &Comparison) -> Vec<String> {
     for row in &comparison.rows {
         for (mixer, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
             let units = answer.throttles.iter().zip(&answer.efforts);
-            let values = answer
-                .wrench
-                .into_iter()
-                .chain(units.flat_map(|(&[u, l], &[f, q])| [u, l, f, q]));
+            let units = units.flat_map(|(&[u, l], &[f, q])| [u, l, f, q]);
+            let values = answer.wrench.into_iter().chain(units);
             let limited = u8::from(!answer.within);
             lines.push(format!("{mixer},{},{limited},{}", cell(row.yaw_nm), line(values)));
         }
@@ -199,12 +160,8 @@ fn level_lines(study: &Study<'_>) -> Vec<String> {
         for level in level::against_thrust(study, volts, THRUSTS) {
             let [upper, lower] = level.throttles.map(or_empty);
             // The file's map of power holds at the reference voltage.
-            let at_reference = volts.is_none_or(|volts| volts == reference_v);
-            let power = if at_reference {
-                or_empty(level.power_w)
-            } else {
-                String::new()
-            };
+            let holds = volts.is_none_or(|volts| volts == reference_v);
+            let power = or_empty(if holds { level.power_w } else { f64::NAN });
             lines.push(format!("{text},{},{upper},{lower},{power}", cell(level.at)));
         }
     }
@@ -232,12 +189,8 @@ pub fn bench(bench: &BenchPoints) -> String {
     let mut csv = "file_index,line,upper_throttle,lower_throttle,measured_thrust_n,measured_torque_nm,model_thrust_n,model_torque_nm\n".to_owned();
     for point in bench.points.iter().chain(&bench.outside) {
         let values = [point.throttles, point.measured, point.model];
-        csv.push_str(&format!(
-            "{},{},{}\n",
-            point.file,
-            point.line,
-            line(values.into_iter().flatten())
-        ));
+        let values = line(values.into_iter().flatten());
+        csv.push_str(&format!("{},{},{values}\n", point.file, point.line));
     }
     csv
 }
@@ -255,10 +208,7 @@ fn attainable(study: &Study<'_>) -> Vec<String> {
 }
 
 fn authority_lines(study: &Study<'_>) -> Vec<String> {
-    let axes: Vec<Axis> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
-        .into_iter()
-        .filter(|&axis| study.serves(axis))
-        .collect();
+    let axes = study.torque_axes();
     let columns = axes
         .iter()
         .map(|axis| format!(",{0}_least_nm,{0}_largest_nm", axis.name()));

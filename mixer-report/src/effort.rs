@@ -21,9 +21,14 @@ impl Effort {
     /// Both.
     pub const BOTH: [Effort; 2] = [Effort::Thrust, Effort::Torque];
 
-    /// The word.
+    /// The word at the beginning of a sentence.
     pub(crate) fn name(self) -> &'static str {
         ["Thrust", "Torque"][self as usize]
+    }
+
+    /// The word within a sentence, in names of files and columns.
+    pub(crate) fn word(self) -> &'static str {
+        ["thrust", "torque"][self as usize]
     }
 
     pub(crate) fn label(self) -> &'static str {

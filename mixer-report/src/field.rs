@@ -60,14 +60,8 @@ impl Field {
             return Vec::new();
         };
         let rings = lines.into_iter().flat_map(|line| line.into_inner().0.0);
-        rings
-            .map(|ring| {
-                ring.0
-                    .iter()
-                    .map(|point| [cell(point.x), cell(point.y)])
-                    .collect()
-            })
-            .collect()
+        let clamped = rings.map(|ring| ring.0.iter().map(|at| [cell(at.x), cell(at.y)]).collect());
+        clamped.collect()
     }
 
     /// The parts of the rings that are not the square's border.
@@ -157,14 +151,7 @@ pub fn paint(
         }
         bands.push((pair[0], pair[1], colour));
     }
-    let ticks = match &painting.ticks {
-        Some(ticks) => ticks.clone(),
-        None => levels
-            .values
-            .iter()
-            .map(|&value| (value, levels.text(value)))
-            .collect(),
-    };
+    let ticks = painting.ticks.clone().unwrap_or_else(|| levels.texts());
     figure.colour_bar(painting.label, bands, ticks);
     let curves = levels.values.iter().filter(|_| painting.iso_curves);
     for &level in curves {
@@ -174,9 +161,9 @@ pub fn paint(
 }
 
 fn project_all(lines: &Lines, project: impl Fn([f64; 2]) -> [f64; 2]) -> Lines {
+    let lines = lines.iter();
     lines
-        .iter()
-        .map(|line| line.iter().map(|&point| project(point)).collect())
+        .map(|line| line.iter().map(|&at| project(at)).collect())
         .collect()
 }
 

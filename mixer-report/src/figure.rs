@@ -27,7 +27,7 @@ const LABEL_ROOM: f64 = 15.0;
 const LABEL_PLACES: [f64; 9] = [0.5, 0.45, 0.55, 0.4, 0.6, 0.33, 0.67, 0.25, 0.75];
 
 /// One axis.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
@@ -36,7 +36,7 @@ pub struct Axis {
 }
 
 /// A plot under construction.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Figure {
     title: String,
     axes: [Axis; 2],
@@ -71,17 +71,7 @@ impl Figure {
             title: title.into(),
             axes: [axis(x), axis(y)],
             size: [372.0, 290.0],
-            below: String::new(),
-            layers: String::new(),
-            above: String::new(),
-            legend: Vec::new(),
-            bar: None,
-            hover: "",
-            quantities: Vec::new(),
-            curves: Vec::new(),
-            series: Vec::new(),
-            start: None,
-            labels: Vec::new(),
+            ..Figure::default()
         }
     }
 
@@ -155,10 +145,9 @@ impl Figure {
         if !name.is_empty() {
             self.series.push((name.to_owned(), points.to_vec()));
             self.curves.push((class.to_owned(), name.to_owned()));
-            let focus = if self.is_along_curves() {
-                " tabindex=\"0\""
-            } else {
-                ""
+            let focus = match self.is_along_curves() {
+                true => " tabindex=\"0\"",
+                false => "",
             };
             let name = escaped(name);
             named = format!(" data-name=\"{name}\"{focus} role=\"img\" aria-label=\"{name}\"");
@@ -193,14 +182,12 @@ impl Figure {
             return;
         };
         let pixels: Vec<[f64; 2]> = longest.iter().map(|&p| self.at(p)).collect();
-        let is_free = |label: &Label| {
-            let far =
-                |other: &[f64; 2]| libm::hypot(other[0] - label.at[0], other[1] - label.at[1]) >= LABEL_ROOM;
+        let is_free = |Label { at: [x, y], .. }: &Label| {
+            let far = |other: &[f64; 2]| libm::hypot(other[0] - x, other[1] - y) >= LABEL_ROOM;
             self.labels.iter().all(far)
         };
-        let mut places = LABEL_PLACES
-            .iter()
-            .filter_map(|share| Label::along(&pixels, *share));
+        let places = LABEL_PLACES.iter();
+        let mut places = places.filter_map(|share| Label::along(&pixels, *share));
         let Some(label) = places.find(is_free) else {
             return;
         };

@@ -60,20 +60,14 @@ pub fn figures(compiled: &Compiled) -> Files {
     let name = &compiled.airframe.name;
     let mut files = Files::new();
     let mut write = |picture: &str, svg: &str| files.insert(format!("{name}-{picture}.svg"), styled(svg));
-    for (effort, word) in Effort::BOTH.into_iter().zip(["thrust", "torque"]) {
-        write(
-            &format!("surface-{word}"),
-            &surface::surface(&study, effort, None),
-        );
-        write(
-            &format!("forward-{word}"),
-            &maps::forward(&study, effort, None).svg(),
-        );
-        let field = maps::error_field(&study, effort);
-        write(
-            &format!("error-{word}"),
-            &maps::error(&study, effort, &field).svg(),
-        );
+    for effort in Effort::BOTH {
+        let word = effort.word();
+        let surface = surface::surface(&study, effort, None);
+        let forward = maps::forward(&study, effort, None).svg();
+        let error = maps::error(&study, effort, &maps::error_field(&study, effort)).svg();
+        for (picture, svg) in [("surface", surface), ("forward", forward), ("error", error)] {
+            write(&format!("{picture}-{word}"), &svg);
+        }
     }
     write("inverse-upper", &maps::inverse(&study, 0).svg());
     write("inverse-lower", &maps::inverse(&study, 1).svg());

@@ -27,13 +27,9 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     let points = bench.map_or(&[][..], |bench| &bench.points);
     let throttles = |k: usize| {
         let measured = points.iter().map(|point| point.throttles[k]);
-        let all = range(measured.chain(study.pair.range()));
         // Markers stay within the frame.
-        if points.is_empty() {
-            all
-        } else {
-            widened(all, 0.025)
-        }
+        let room = if points.is_empty() { 0.0 } else { 0.025 };
+        widened(range(measured.chain(study.pair.range())), room)
     };
     let title = format!("{} of one unit over both throttles", effort.name());
     let mut figure = Figure::new(title, (UPPER, throttles(0)), (LOWER, throttles(1)))
@@ -67,10 +63,8 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
 pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Option<Figure> {
     let scale = study.pair.scale()[effort as usize];
     let percent = |point: &BenchPoint| 100.0 * point.residual(effort) / scale;
-    let largest = bench
-        .points
-        .iter()
-        .fold(0.0f64, |largest, point| largest.max(percent(point).abs()));
+    let sizes = bench.points.iter().map(|point| percent(point).abs());
+    let largest = sizes.fold(0.0, f64::max);
     if largest <= 0.0 {
         return None;
     }
@@ -80,39 +74,26 @@ pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Opti
         widened(range(measured.chain(study.pair.range())), 0.05)
     };
     let quantity = effort.name();
-    let title = format!(
-        "{quantity} by the model less {} measured",
-        quantity.to_lowercase()
-    );
+    let title = format!("{quantity} by the model less {} measured", effort.word());
     let unit = effort.unit();
+    let [place, upper, lower] = ["", UPPER, LOWER].map(|name| (name, ""));
+    let [measured, model, difference] = ["measured", "model", "difference"].map(|name| (name, unit));
+    let quantities = [place, upper, lower, measured, model, difference, ("that is", "%")];
     let mut figure = Figure::new(title, (UPPER, throttles(0)), (LOWER, throttles(1)))
         .sized(300.0, 300.0)
-        .reading(
-            "dots",
-            &[
-                ("", ""),
-                (UPPER, ""),
-                (LOWER, ""),
-                ("measured", unit),
-                ("model", unit),
-                ("difference", unit),
-                ("that is", "%"),
-            ],
-        );
+        .reading("dots", &quantities);
     let [low, high] = study.pair.range();
-    figure.outline(
-        "border",
-        "throttle range",
-        &[[low, low], [high, low], [high, high], [low, high]],
-    );
+    let corners = [[low, low], [high, low], [high, high], [low, high]];
+    figure.outline("border", "throttle range", &corners);
     let colours = Scale::signed([-largest, largest]);
     for point in all() {
-        let within = point
-            .throttles
-            .iter()
-            .all(|t| (low - 1e-9..=high + 1e-9).contains(t));
+        let is_within = |t: &f64| (low - 1e-9..=high + 1e-9).contains(t);
         let value = percent(point).clamp(-largest, largest);
-        let radius = if within { 6.0 } else { 3.5 };
+        let radius = if point.throttles.iter().all(is_within) {
+            6.0
+        } else {
+            3.5
+        };
         let [u, l] = point.throttles;
         let [measured, model] = [point.measured, point.model].map(|efforts| efforts[effort as usize]);
         let values = [
@@ -133,15 +114,8 @@ pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Opti
         (edge(k), edge(k + 1), colours.hex(0.5 * (edge(k) + edge(k + 1))))
     });
     let ticks = Ticks::within([-largest, largest], 6);
-    figure.colour_bar(
-        &format!("model \u{2212} measured (% of {} {unit})", significant(scale, 3)),
-        bands.collect(),
-        ticks
-            .values
-            .iter()
-            .map(|&value| (value, ticks.text(value)))
-            .collect(),
-    );
+    let label = format!("model \u{2212} measured (% of {} {unit})", significant(scale, 3));
+    figure.colour_bar(&label, bands.collect(), ticks.texts());
     Some(figure)
 }
 
@@ -152,10 +126,8 @@ const RESIDUAL_BANDS: usize = 20;
 pub(super) fn over_efforts(study: &Study<'_>, title: &str, k: [f64; 2]) -> Figure {
     let border = study.border_efforts();
     let extent = |index: usize| {
-        widened(
-            range(border.iter().map(|efforts| efforts[index] * k[index])),
-            0.04,
-        )
+        let values = border.iter().map(|efforts| efforts[index] * k[index]);
+        widened(range(values), 0.04)
     };
     Figure::new(title, (THRUST, extent(0)), (TORQUE, extent(1)))
 }
@@ -192,12 +164,11 @@ pub fn error_field(study: &Study<'_>, effort: Effort) -> Field {
 /// The error of the emitted inverse over the attainable set, up to its bound.
 pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
     let title = format!("{} that the inverse misses", effort.name());
+    let hover = ["error-thrust", "error-torque"][effort as usize];
+    let quantities = [EFFORTS[0], EFFORTS[1], ("error about", effort.unit())];
     let mut figure = over_efforts(study, &title, [1.0, 1.0])
         .sized(300.0, 260.0)
-        .reading(
-            ["error-thrust", "error-torque"][effort as usize],
-            &[EFFORTS[0], EFFORTS[1], ("error about", effort.unit())],
-        );
+        .reading(hover, &quantities);
     let bound = error_bound(study, effort);
     let decades = |x: f64| libm::log10(x / bound).max(-DECADES);
     let mut values = field.values().iter();
@@ -210,15 +181,10 @@ pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
         bands: 3,
         iso_curves: false,
         ticks: Some(log_ticks(bound)),
-        label: &format!(
-            "|error of {}| ({})",
-            ["thrust", "torque"][effort as usize],
-            effort.unit()
-        ),
+        label: &format!("|error of {}| ({})", effort.word(), effort.unit()),
     };
-    paint(&mut figure, &logarithms, &painting, |square| {
-        study.efforts(square)
-    });
+    let project = |square| study.efforts(square);
+    paint(&mut figure, &logarithms, &painting, project);
     outline(study, &mut figure);
     figure
 }

@@ -47,7 +47,7 @@ pub fn round_half_digit(x: f64) -> f64 {
 }
 
 /// Round values 1, 2 or 5 times a power of ten apart within a range.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ticks {
     /// The values, ascending.
     pub values: Vec<f64>,
@@ -59,10 +59,7 @@ impl Ticks {
     pub fn within([low, high]: [f64; 2], count: usize) -> Self {
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) || count == 0 {
-            return Ticks {
-                values: Vec::new(),
-                decimals: 0,
-            };
+            return Ticks::default();
         }
         let rough = span / count as f64;
         let exponent = libm::floor(libm::log10(rough));
@@ -89,6 +86,14 @@ impl Ticks {
     /// A value as it stands beside its tick.
     pub fn text(&self, value: f64) -> String {
         fixed(value, self.decimals)
+    }
+
+    /// All values with their texts.
+    pub fn texts(&self) -> Vec<(f64, String)> {
+        self.values
+            .iter()
+            .map(|&value| (value, self.text(value)))
+            .collect()
     }
 
     /// Distance of neighbours; 0 where there are none.

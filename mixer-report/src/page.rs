@@ -156,9 +156,8 @@ fn layout_section(study: &Study<'_>) -> Markup {
 
 fn level_section(study: &Study<'_>) -> Markup {
     let voltages = study.voltages().into_iter();
-    let levels: Vec<_> = voltages
-        .map(|(volts, _)| (volts, level::against_thrust(study, volts, THRUSTS)))
-        .collect();
+    let levels = voltages.map(|(volts, _)| (volts, level::against_thrust(study, volts, THRUSTS)));
+    let levels: Vec<_> = levels.collect();
     let mut plots: Vec<Markup> = Vec::new();
     for (rotor, name) in ["upper", "lower"].into_iter().enumerate() {
         let figure = plots::throttle(study, &levels, rotor);
@@ -226,11 +225,9 @@ fn authority_section(study: &Study<'_>) -> Markup {
     let all = authority::against_thrust(study, &study.reference(), THRUSTS);
     let voltage = study.compiled.airframe.voltage.as_ref();
     let lowest = voltage.map(|voltage| {
-        let at = study.at(Some(voltage.range_v[0]));
-        (
-            format!("{} V", voltage.range_v[0]),
-            authority::against_thrust(study, &at, THRUSTS),
-        )
+        let [lowest_v, _] = voltage.range_v;
+        let all = authority::against_thrust(study, &study.at(Some(lowest_v)), THRUSTS);
+        (format!("{lowest_v} V"), all)
     });
     let rotor_out = authority::with_a_rotor_out(study, THRUSTS_ROTOR_OUT);
     let is_held = rotor_out
@@ -251,18 +248,13 @@ fn authority_section(study: &Study<'_>) -> Markup {
             curves(study, &figure, &caption, &format!("authority-{}", axis.name()))
         })
         .collect();
-    let rotor_out = if is_held {
-        format!(
-            "With any one rotor out: what is left whichever it is{}.",
-            study.at_reference()
-        )
-    } else {
-        "With one rotor out, whichever it is, no thrust is held without a torque.".to_owned()
+    let at = study.at_reference();
+    let rotor_out = match is_held {
+        true => format!("With any one rotor out: what is left whichever it is{at}."),
+        false => "With one rotor out, whichever it is, no thrust is held without a torque.".to_owned(),
     };
     let reference_v = voltage.map(|voltage| voltage.reference_v);
-    let served = [Axis::Roll, Axis::Pitch, Axis::Yaw]
-        .into_iter()
-        .filter(|&axis| study.serves(axis));
+    let served = study.torque_axes().into_iter();
     let off: Vec<String> = served
         .filter_map(|axis| Some((axis, hover::band(study.compiled, axis, reference_v)?)))
         .map(|(axis, band)| format!("\u{b1} {} N m of {}", significant(band, 2), axis.name()))
@@ -292,31 +284,23 @@ fn attainable_section(study: &Study<'_>) -> Markup {
     }
 }
 
-/// The word and the column of an effort in files.
-fn column(effort: Effort) -> (&'static str, &'static str) {
-    match effort {
-        Effort::Thrust => ("thrust", "thrust_n"),
-        Effort::Torque => ("torque", "torque_nm"),
-    }
+/// The column of an effort in files.
+fn column(effort: Effort) -> &'static str {
+    ["thrust_n", "torque_nm"][effort as usize]
 }
 
 fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
-    let points = if bench.is_some() {
-        " Bench points with their distance from it."
-    } else {
-        ""
-    };
+    let points = bench.map_or("", |_| " Bench points with their distance from it.");
     let csv = data::sweep(study, Data::Forward).unwrap_or_default();
     let maps = Effort::BOTH.map(|effort| {
-        let quantity = effort.name();
-        let (word, column) = column(effort);
+        let (quantity, column) = (effort.name(), column(effort));
         let surface = still(
             &surface::surface(study, effort, bench),
             &format!("{quantity} of one unit by the model.{points} (Fig. 3 of the paper)"),
             &html! {},
         );
         let columns = ["upper_throttle", "lower_throttle", column];
-        let word = format!("forward-{word}");
+        let word = format!("forward-{}", effort.word());
         let map = shown(
             &maps::forward(study, effort, bench),
             &format!("{quantity} with iso-curves. (Fig. 4)"),
@@ -326,20 +310,16 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     });
     let residual = |effort: Effort| {
         let figure = maps::residuals(study, effort, bench?)?;
-        let quantity = effort.name();
-        let measured = quantity.to_lowercase();
-        let (word, column) = column(effort);
+        let (quantity, measured, column) = (effort.name(), effort.word(), column(effort));
         let [measured_column, model_column] = ["measured", "model"].map(|of| format!("{of}_{column}"));
         let [u, l] = ["upper_throttle", "lower_throttle"];
         let columns = ["file_index", "line", u, l, &measured_column, &model_column];
-        let word = format!("bench-{word}");
-        Some(shown(
-            &figure,
-            &format!(
-                "{quantity} by the model less {measured} measured, in % of the pair\u{2019}s largest; + is too much by the model."
-            ),
-            &link::columns(study, &word, &data::bench(bench?), &columns, link::OF_THE_FIGURE),
-        ))
+        let caption = format!(
+            "{quantity} by the model less {measured} measured, in % of the pair\u{2019}s largest; + is too much by the model."
+        );
+        let word = format!("bench-{measured}");
+        let data = link::columns(study, &word, &data::bench(bench?), &columns, link::OF_THE_FIGURE);
+        Some(shown(&figure, &caption, &data))
     };
     let residuals: Vec<Markup> = Effort::BOTH.into_iter().filter_map(residual).collect();
     html! {
@@ -352,10 +332,9 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
 
 /// What bench points there are, and how well the model meets them.
 fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
-    let voltage = if bench.corrected {
-        "brought to the model\u{2019}s voltage"
-    } else {
-        "as measured"
+    let voltage = match bench.corrected {
+        true => "brought to the model\u{2019}s voltage",
+        false => "as measured",
     };
     let [low, _] = study.pair.range();
     let is_below = |point: &&BenchPoint| point.throttles.iter().any(|t| *t < low);
@@ -416,10 +395,9 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2]) -> Markup
                 rounded_up(observed.efforts[effort as usize]),
                 unit = effort.unit()
             );
-            let word = column(effort).0;
             let column = ["thrust_error_n", "torque_error_nm"][effort as usize];
             let columns = ["thrust_n", "torque_nm", column];
-            let word = format!("error-{word}");
+            let word = format!("error-{}", effort.word());
             let data = link::columns(study, &word, &csv, &columns, link::OF_THE_FIGURE);
             shown(&maps::error(study, effort, field), &caption, &data)
         })
@@ -462,14 +440,9 @@ fn model(study: &Study<'_>, errors: &[crate::field::Field; 2]) -> serde_json::Va
         .map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]))
         .collect();
     let grids = errors.each_ref().map(|field| {
-        let largest = field.values().iter().fold(0.0f64, |largest, &x| largest.max(x));
-        let share = |x: &f64| {
-            if largest > 0.0 {
-                (1e3 * x / largest).round() as u16
-            } else {
-                0
-            }
-        };
+        let largest = field.values().iter().copied().fold(0.0, f64::max);
+        // Where nothing is missed, 0 / 0 is NaN, which becomes 0.
+        let share = |x: &f64| (1e3 * x / largest).round() as u16;
         let thousandths: Vec<u16> = field.rows(HOVER_STRIDE).flatten().map(share).collect();
         let side = (field.side() - 1) / HOVER_STRIDE + 1;
         serde_json::json!({ "side": side, "largest": largest, "thousandths": thousandths })

@@ -49,30 +49,15 @@ const MIXERS: [Mixer; 2] = [
 
 /// Fig. 6: what every unit gives over the yaw range, in the plane of thrust and torque.
 pub fn yaw_plane(study: &Study<'_>, comparison: &Comparison) -> Figure {
-    let mut figure = over_efforts(
-        study,
-        "Yaw commands in the attainable set of each unit",
-        [1.0, 1.0],
-    )
-    .reading(
-        "dots",
-        &[
-            ("", ""),
-            ("unit", ""),
-            ("yaw asked", "N m"),
-            EFFORTS[0],
-            EFFORTS[1],
-        ],
-    );
+    let title = "Yaw commands in the attainable set of each unit";
+    let [thrust, torque] = EFFORTS;
+    let quantities = [("", ""), ("unit", ""), ("yaw asked", "N m"), thrust, torque];
+    let mut figure = over_efforts(study, title, [1.0, 1.0]).reading("dots", &quantities);
     figure.outline("border", "attainable set", &study.border_efforts());
     for (name, class, answer) in MIXERS {
         for unit in 0..comparison.share_n.len() {
-            let points: Vec<[f64; 2]> = comparison
-                .rows
-                .iter()
-                .map(|row| answer(row).efforts[unit])
-                .collect();
-            figure.curve(&format!("{class} thin"), "", &points);
+            let points = comparison.rows.iter().map(|row| answer(row).efforts[unit]);
+            figure.curve(&format!("{class} thin"), "", &points.collect::<Vec<_>>());
         }
         for row in &comparison.rows {
             for (unit, &efforts) in answer(row).efforts.iter().enumerate() {
@@ -99,12 +84,8 @@ fn over_yaw(
     values: impl IntoIterator<Item = f64>,
 ) -> Figure {
     let asked = range(comparison.rows.iter().map(|row| row.yaw_nm));
-    Figure::new(
-        title,
-        ("yaw asked (N m)", asked),
-        (label, widened(range(values), 0.08)),
-    )
-    .reading_curves()
+    let values = widened(range(values), 0.08);
+    Figure::new(title, ("yaw asked (N m)", asked), (label, values)).reading_curves()
 }
 
 /// The thrust of every unit over the yaw asked.
@@ -133,11 +114,8 @@ pub fn yaw_thrust(comparison: &Comparison) -> Figure {
                 "series-1" => ["", " long", " long-dot"],
                 _ => [" dotted", " dashed", " dash-dot"],
             }[count % 3];
-            figure.curve(
-                &format!("{class}{dash}"),
-                &format!("{name}, {}", listed(&of)),
-                &curve,
-            );
+            let name = format!("{name}, {}", listed(&of));
+            figure.curve(&format!("{class}{dash}"), &name, &curve);
         }
     }
     figure
@@ -151,10 +129,8 @@ fn distinct(comparison: &Comparison, answer: fn(&Row) -> &Answer) -> Vec<(Vec<[f
         let of = |row: &Row| [row.yaw_nm, answer(row).efforts[unit][0]];
         let curve: Vec<[f64; 2]> = comparison.rows.iter().map(of).collect();
         let near = |(a, b): (&[f64; 2], &[f64; 2])| (a[1] - b[1]).abs() < 5e-4 * comparison.thrust_n;
-        match curves
-            .iter_mut()
-            .find(|(other, _)| other.iter().zip(&curve).all(near))
-        {
+        let mut known = curves.iter_mut();
+        match known.find(|(other, _)| other.iter().zip(&curve).all(near)) {
             Some((_, of)) => of.push(unit),
             None => curves.push((curve, vec![unit])),
         }
@@ -199,10 +175,8 @@ fn of_both(
         comparison.rows.iter().map(of).collect()
     };
     let curves = MIXERS.map(|(name, class, answer)| (name, class, curve(answer)));
-    let values = curves
-        .iter()
-        .flat_map(|(_, _, curve)| curve)
-        .map(|point| point[1]);
+    let points = curves.iter().flat_map(|(_, _, curve)| curve);
+    let values = points.map(|point| point[1]);
     let mut figure = over_yaw(comparison, title, label, values.chain([level]));
     figure.level("reference", name, level);
     for (name, class, curve) in &curves {
@@ -314,16 +288,11 @@ pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
 pub fn power(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
     study.compiled.airframe.pair.power.as_ref()?;
     let curve = curve(levels, |level| level.power_w);
-    let powers = curve
-        .iter()
-        .map(|point| point[1])
-        .filter(|power| power.is_finite());
-    let y = (
-        "power of all rotors (W)",
-        widened(range(powers.chain([0.0])), 0.04),
-    );
+    // The range is that of the finite ones.
+    let powers = curve.iter().map(|point| point[1]);
+    let powers = widened(range(powers.chain([0.0])), 0.04);
     let title = "Electrical power in level flight against thrust";
-    let mut figure = over_thrust(study, title, levels, y);
+    let mut figure = over_thrust(study, title, levels, ("power of all rotors (W)", powers));
     figure.curve("series-1", "power", &curve);
     Some(figure)
 }

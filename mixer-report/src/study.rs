@@ -164,6 +164,13 @@ impl<'a> Study<'a> {
         (0..count).map(move |k| low + (high - low) * k as f64 / (count - 1) as f64)
     }
 
+    /// The served axes of roll, pitch and yaw.
+    pub fn torque_axes(&self) -> Vec<Axis> {
+        let mut axes = vec![Axis::Roll, Axis::Pitch, Axis::Yaw];
+        axes.retain(|&axis| self.serves(axis));
+        axes
+    }
+
     /// Whether the airframe serves an axis.
     pub fn serves(&self, axis: Axis) -> bool {
         self.compiled.airframe.allocation.controls(axis)
@@ -175,18 +182,18 @@ impl<'a> Study<'a> {
         let tables = &self.compiled.tables;
         let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
         match tables.mix_with_health(&setpoint, condition.voltage_v, condition.health) {
-            Ok((throttle, _, saturation)) => {
-                let of = |channel: u8| {
-                    throttle
-                        .get(usize::from(channel))
-                        .map_or(f64::NAN, |&x| f64::from(x))
-                };
-                let throttles = tables.units.iter().map(|unit| unit.channels.map(of)).collect();
-                (throttles, !saturation.any_axis())
-            }
+            Ok((throttle, _, saturation)) => (self.by_unit(&throttle), !saturation.any_axis()),
             // No figure asks for what is not finite.
             Err(_) => (vec![[f64::NAN; 2]; tables.units.len()], false),
         }
+    }
+
+    /// Throttles `[u, l]` of every unit from those of the channels; NaN where there is no channel.
+    pub fn by_unit(&self, channels: &[f32]) -> Vec<[f64; 2]> {
+        let of = |channel: usize| channels.get(channel).map_or(f64::NAN, |&x| f64::from(x));
+        let units = self.compiled.airframe.units.iter();
+        let units = units.map(|unit| [unit.upper_channel, unit.lower_channel].map(of));
+        units.collect()
     }
 
     /// The wrench `[roll, pitch, yaw (N m), thrust (N)]` of all units' efforts.

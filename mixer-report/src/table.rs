@@ -1,7 +1,7 @@
 //! Tables of the page: summary, units, M and M+, the static comparison, the bench.
 
 use maud::{Markup, html};
-use mixer_compiler::airframe::Axis;
+use mixer_compiler::airframe::{Axis, Spin};
 use mixer_compiler::diagnostic::printable;
 use mixer_facts::Fact;
 use mixer_facts::checklist::{self, Checklist};
@@ -21,15 +21,11 @@ const SHOWN_ROWS: usize = 9;
 pub fn summary(study: &Study<'_>, facts: &[Fact], origin: &Origin) -> Markup {
     let file = ("Airframe file", printable(&study.compiled.source.file_name()));
     let date = origin.date.iter().map(|date| ("Date", date.clone()));
-    let hash = origin
-        .sha256
-        .iter()
-        .map(|hash| ("SHA-256 of the file", hash.clone()));
+    let hash = origin.sha256.iter();
+    let hash = hash.map(|hash| ("SHA-256 of the file", hash.clone()));
     let more: Vec<(&str, String)> = [file].into_iter().chain(date).chain(hash).collect();
-    self::facts(
-        facts.iter().filter(|fact| fact.in_verdict && !fact.is_cost()),
-        &more,
-    )
+    let asked_first = facts.iter().filter(|fact| fact.in_verdict && !fact.is_cost());
+    self::facts(asked_first, &more)
 }
 
 /// Facts, and more names with values, in a table.
@@ -55,20 +51,14 @@ pub fn units(study: &Study<'_>) -> Markup {
     let rows: Vec<Vec<String>> = units
         .map(|(index, unit)| {
             let [x, y, z] = unit.position_m.map(|x| fixed(x, 4));
-            let upper = format!("{}, output {}", unit.upper_spin.name(), unit.upper_channel);
-            let lower = format!(
-                "{}, output {}",
-                unit.upper_spin.reversed().name(),
-                unit.lower_channel
-            );
+            let rotor = |spin: Spin, channel| format!("{}, output {channel}", spin.name());
+            let upper = rotor(unit.upper_spin, unit.upper_channel);
+            let lower = rotor(unit.upper_spin.reversed(), unit.lower_channel);
             vec![index.to_string(), x, y, z, upper, lower]
         })
         .collect();
-    table(
-        "From the centre of gravity: x forward, y right, z down",
-        &header,
-        &rows,
-    )
+    let caption = "From the centre of gravity: x forward, y right, z down";
+    table(caption, &header, &rows)
 }
 
 /// M and M+.
@@ -139,17 +129,9 @@ pub fn comparison(comparison: &Comparison) -> Markup {
     let shown = SHOWN_ROWS.min(count).max(2);
     let mut lines = Vec::new();
     for row in (0..shown).filter_map(|k| comparison.rows.get(k * count.saturating_sub(1) / (shown - 1))) {
-        for (
-            name,
-            Answer {
-                efforts,
-                wrench,
-                within,
-                ..
-            },
-        ) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)]
-        {
-            let limited = if *within { "" } else { "*" };
+        for (name, answer) in [("coaxial", &row.coaxial), ("conventional", &row.conventional)] {
+            let Answer { efforts, wrench, .. } = answer;
+            let limited = if answer.within { "" } else { "*" };
             let mut cells = vec![fixed(row.yaw_nm, 3), format!("{name}{limited}")];
             cells.extend(groups.iter().flat_map(|group| rounded(efforts[group[0]])));
             cells.extend([fixed(wrench[2], 3), fixed(wrench[3], 2)]);
@@ -166,15 +148,8 @@ pub fn comparison(comparison: &Comparison) -> Markup {
 
 /// Model against bench; percent of the pair's largest thrust and torque.
 pub fn bench(study: &Study<'_>, bench: &BenchPoints) -> Markup {
-    let header = [
-        "",
-        "rms",
-        "rms (%)",
-        "largest",
-        "largest (%)",
-        "of the row",
-        "R\u{b2}",
-    ];
+    #[rustfmt::skip]
+    let header = ["", "rms", "rms (%)", "largest", "largest (%)", "of the row", "R\u{b2}"];
     let scale = study.pair.scale();
     let rows: Vec<Vec<String>> = Effort::BOTH
         .into_iter()
@@ -213,15 +188,7 @@ pub fn bench_check(study: &Study<'_>) -> Markup {
         for (channel, rotor, spin) in rotors {
             let place = checklist.place(unit);
             let words = format!("unit {index}, {place}: {rotor} rotor");
-            outputs.push((
-                channel,
-                vec![
-                    channel.to_string(),
-                    words,
-                    spin.in_words().to_owned(),
-                    BOX.to_owned(),
-                ],
-            ));
+            outputs.push((channel, to_tick([&channel.to_string(), &words, spin.in_words()])));
         }
     }
     outputs.sort_by_key(|(channel, _)| *channel);
@@ -231,12 +198,7 @@ pub fn bench_check(study: &Study<'_>) -> Markup {
         .filter_map(|axis| {
             let rises = checklist.rises_in_words(axis)?;
             let command = format!("+{}", axis.name());
-            Some(vec![
-                command,
-                rises,
-                checklist::motion(axis).to_owned(),
-                BOX.to_owned(),
-            ])
+            Some(to_tick([&command, &rises, checklist::motion(axis)]))
         })
         .collect();
     html! {
@@ -248,8 +210,10 @@ pub fn bench_check(study: &Study<'_>) -> Markup {
     }
 }
 
-/// To be ticked on paper.
-const BOX: &str = "\u{2610}";
+/// A row with a box to be ticked on paper.
+fn to_tick([a, b, c]: [&str; 3]) -> Vec<String> {
+    [a, b, c, "\u{2610}"].map(str::to_owned).to_vec()
+}
 
 /// The pair's coefficients, as the file has them.
 pub fn coefficients(study: &Study<'_>) -> Markup {

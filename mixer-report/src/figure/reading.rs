@@ -51,10 +51,9 @@ impl Figure {
         }
         let [[left, right], [bottom, top]] = [&self.axes[0].range, &self.axes[1].range];
         let [x, y] = self.start.unwrap_or([0.5 * (left + right), 0.5 * (bottom + top)]);
-        let focus = if self.is_along_curves() {
-            ""
-        } else {
-            " tabindex=\"0\""
+        let focus = match self.is_along_curves() {
+            true => "",
+            false => " tabindex=\"0\"",
         };
         format!(
             "{focus} data-hover=\"{}\" data-x=\"{left:?} {right:?}\" data-y=\"{bottom:?} {top:?}\" \
