@@ -12,14 +12,10 @@ pub(crate) fn write(path: &Path, text: &str, model: Option<&Path>) -> Done {
     let compile = |name: String| mixer_compiler::compile(&Source::new(name, text));
     match compile(path.display().to_string()) {
         Err(_) => {
-            let name = match model {
-                Some(model) => format!(
-                    "{} (with the pair of {}, not written)",
-                    path.display(),
-                    model.display()
-                ),
-                None => format!("{} (not written)", path.display()),
-            };
+            let pair = model.map_or_else(String::new, |model| {
+                format!("with the pair of {}, ", model.display())
+            });
+            let name = format!("{} ({pair}not written)", path.display());
             // The same faults again, of the file that there is not.
             if let Err(faults) = compile(name) {
                 return Err(Refusal::Faulty(faults).report());

@@ -5,26 +5,21 @@ use mixer_identify::bench::header::{ROLES, unknown_role};
 use mixer_identify::bench::sign::SignChoice;
 use mixer_identify::fit::basis::ThrottleBox;
 
-/// `--pwm-range`, microseconds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PulseRange(pub [f64; 2]);
-
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
-    text.trim()
-        .parse::<f64>()
-        .ok()
-        .filter(|x| x.is_finite())
-        .ok_or_else(|| format!("{text:?} is not a number"))
+    let value = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    value.ok_or_else(|| format!("{text:?} is not a number"))
+}
+
+/// A finite number for which `holds`; `otherwise` is what is said of another one.
+pub(crate) fn number(text: &str, holds: impl Fn(f64) -> bool, otherwise: &str) -> Result<f64, String> {
+    match finite(text)? {
+        x if holds(x) => Ok(x),
+        x => Err(format!("{x} {otherwise}")),
+    }
 }
 
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    finite(text).and_then(|x| {
-        if x > 0.0 {
-            Ok(x)
-        } else {
-            Err(format!("{x} is not positive"))
-        }
-    })
+    number(text, |x| x > 0.0, "is not positive")
 }
 
 /// A number above 0 of `units`, as `metres`.
@@ -48,11 +43,11 @@ pub(crate) fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
     }
 }
 
-/// `LOW,HIGH`, increasing.
-pub(crate) fn pwm_range(text: &str) -> Result<PulseRange, String> {
+/// `LOW,HIGH`, increasing, microseconds.
+pub(crate) fn pwm_range(text: &str) -> Result<[f64; 2], String> {
     let [low, high] = two(text)?;
     if low < high {
-        Ok(PulseRange([low, high]))
+        Ok([low, high])
     } else {
         Err(format!("{low} is not below {high}"))
     }

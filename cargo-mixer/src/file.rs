@@ -28,9 +28,8 @@ fn up_to(path: &Path, most_mb: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
-        return Err(io::Error::other(format!(
-            "it is above {most_mb} MB; name a smaller file"
-        )));
+        let message = format!("it is above {most_mb} MB; name a smaller file");
+        return Err(io::Error::other(message));
     }
     Ok(bytes)
 }
@@ -79,16 +78,16 @@ pub fn not_there(path: &Path, force: bool) -> Result<(), String> {
 ///
 /// # Errors
 /// The exit status; what is wrong is told.
-pub(crate) fn writable<'a>(
+pub(crate) fn writable(
     output: &Path,
     force: bool,
-    inputs: impl IntoIterator<Item = &'a Path>,
+    inputs: impl IntoIterator<Item = impl AsRef<Path>>,
 ) -> Result<(), ExitCode> {
     let same = |input: &Path| match (input.canonicalize(), output.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
         _ => input == output,
     };
-    if inputs.into_iter().any(same) {
+    if inputs.into_iter().any(|input| same(input.as_ref())) {
         return Err(crate::bad_usage(format_args!(
             "{} is an input and would be overwritten",
             output.display()

@@ -33,12 +33,12 @@ impl Place<'_> {
     }
 
     /// Refuses a place that cannot be written, before there is anything to write.
-    pub(crate) fn check(&self, inputs: &[&Path]) -> Done {
+    pub(crate) fn check(&self, inputs: impl IntoIterator<Item = impl AsRef<Path>>) -> Done {
         if self.json && self.to_stdout() {
             return Err(bad_usage("--json and -o - would both write to standard output"));
         }
         match self.file() {
-            Some(path) => crate::file::writable(path, self.force, inputs.iter().copied()),
+            Some(path) => crate::file::writable(path, self.force, inputs),
             None => Ok(()),
         }
     }
@@ -78,10 +78,8 @@ impl Place<'_> {
                     path.display()
                 ));
             }
-            None if !self.to_stdout() => {
-                self.next("-o PAIR.toml writes the tables; nothing is written without it");
-            }
-            None => {}
+            None if self.to_stdout() => {}
+            None => self.next("-o PAIR.toml writes the tables; nothing is written without it"),
         }
         Ok(())
     }

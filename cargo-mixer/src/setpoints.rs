@@ -120,10 +120,7 @@ impl<R: Read> Rows<R> {
     /// The line of the last row.
     fn line(&self) -> usize {
         let next = self.reader.position().line();
-        usize::try_from(next)
-            .unwrap_or(usize::MAX)
-            .saturating_sub(1)
-            .max(1)
+        usize::try_from(next.saturating_sub(1).max(1)).unwrap_or(usize::MAX)
     }
 }
 
@@ -177,27 +174,17 @@ impl Columns {
     fn new(header: &[&str]) -> Result<Self, String> {
         let place = |name: &str| header.iter().position(|column| *column == name);
         let known = |name: &str| REQUIRED.contains(&name) || name == VOLTAGE;
-        let missing: Vec<&str> = REQUIRED
-            .into_iter()
-            .filter(|name| place(name).is_none())
-            .collect();
+        let missing = REQUIRED.into_iter().filter(|name| place(name).is_none());
+        let missing = missing.collect::<Vec<_>>().join(", ");
         if !missing.is_empty() {
-            return Err(format!(
-                "no column {}; the header is {HEADER}",
-                missing.join(", ")
-            ));
+            return Err(format!("no column {missing}; the header is {HEADER}"));
         }
         if let Some(unknown) = header.iter().find(|name| !known(name)) {
-            return Err(format!(
-                "unknown column `{}`; the header is {HEADER}",
-                unknown.escape_debug()
-            ));
+            let unknown = unknown.escape_debug();
+            return Err(format!("unknown column `{unknown}`; the header is {HEADER}"));
         }
-        let repeated = header
-            .iter()
-            .enumerate()
-            .find(|(i, name)| place(name) != Some(*i));
-        if let Some((_, name)) = repeated {
+        let mut columns = header.iter().enumerate();
+        if let Some((_, name)) = columns.find(|(i, name)| place(name) != Some(*i)) {
             return Err(format!("column `{name}` stands twice"));
         }
         Ok(Columns {
@@ -208,13 +195,10 @@ impl Columns {
     }
 
     fn read(&self, fields: &[&str]) -> Result<Setpoint, String> {
-        if fields.len() != self.count {
-            let columns = if fields.len() == 1 { "column" } else { "columns" };
-            return Err(format!(
-                "{} {columns} where the header has {}",
-                fields.len(),
-                self.count
-            ));
+        let (count, expected) = (fields.len(), self.count);
+        if count != expected {
+            let columns = if count == 1 { "column" } else { "columns" };
+            return Err(format!("{count} {columns} where the header has {expected}"));
         }
         let number = |index: usize, name: &str| {
             let text = fields.get(index).copied().unwrap_or_default();

@@ -6,9 +6,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 /// Today as `YYYY-MM-DD`. `SOURCE_DATE_EPOCH`, seconds since 1970, stands for now
 /// (reproducible-builds.org).
 pub(crate) fn today() -> Option<String> {
-    let stated = env::var("SOURCE_DATE_EPOCH")
-        .ok()
-        .and_then(|text| text.parse().ok());
+    let stated = env::var("SOURCE_DATE_EPOCH").ok();
+    let stated = stated.and_then(|text| text.parse().ok());
     let seconds = stated.or_else(|| {
         let passed = SystemTime::now().duration_since(UNIX_EPOCH);
         passed.ok().map(|passed| passed.as_secs())

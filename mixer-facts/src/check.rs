@@ -51,11 +51,8 @@ impl Checked {
         let mut text: String = lines(self.facts.iter().filter(|fact| fact.in_verdict));
         for axis in Axis::ALL {
             if let Some(rises) = Checklist(&self.compiled).rises_in_words(axis) {
-                let _ = writeln!(
-                    text,
-                    "{:<18}  raises outputs {rises}",
-                    format!("+{}", axis.name())
-                );
+                let command = format!("+{}", axis.name());
+                let _ = writeln!(text, "{command:<18}  raises outputs {rises}");
             }
         }
         text
@@ -149,10 +146,8 @@ fn matrices(compiled: &Compiled) -> String {
         .flat_map(|letter| (0..n).map(move |i| format!("{letter}{i}")))
         .collect();
     let axes = Axis::ALL.map(|axis| axis.name().to_owned());
-    let (m, inverse) = (
-        &compiled.effectiveness.matrix,
-        &compiled.effectiveness.pseudo_inverse,
-    );
+    let effectiveness = &compiled.effectiveness;
+    let (m, inverse) = (&effectiveness.matrix, &effectiveness.pseudo_inverse);
     format!(
         "\nM: wrench (N m, N m, N m, N) = M efforts (f in N, Q in N m)\n{}\nM+: least-norm efforts = M+ wrench\n{}\n",
         matrix(&axes, &efforts, |row, column| m[(row, column)]),

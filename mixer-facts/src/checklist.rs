@@ -25,10 +25,7 @@ pub struct Checklist<'a>(pub &'a Compiled);
 
 impl fmt::Display for Checklist<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "on the bench    propellers off, outputs one by one; spins as seen from above"
-        )?;
+        f.write_str("on the bench    propellers off, outputs one by one; spins as seen from above\n")?;
         let units = &self.0.airframe.units;
         for (index, unit) in units.iter().enumerate() {
             writeln!(
@@ -43,12 +40,8 @@ impl fmt::Display for Checklist<'_> {
         }
         for axis in Axis::ALL {
             if let Some(rises) = self.rises_in_words(axis) {
-                writeln!(
-                    f,
-                    "  {:<14} raises outputs {rises} ({})",
-                    format!("+{}", axis.name()),
-                    motion(axis)
-                )?;
+                let (command, motion) = (format!("+{}", axis.name()), motion(axis));
+                writeln!(f, "  {command:<14} raises outputs {rises} ({motion})")?;
             }
         }
         Ok(())
@@ -100,15 +93,9 @@ impl Checklist<'_> {
         asked[axis as usize] += (ASKED * size(compiled, axis)) as f32;
         let [before, after] = [base, Wrench::from_array(asked)].map(|wrench| throttles(compiled, &wrench));
         let (before, after) = (before?, after?);
-        let mut changes: Vec<(usize, f32)> = after
-            .iter()
-            .zip(&before)
-            .map(|(a, b)| a - b)
-            .enumerate()
-            .collect();
-        let largest = changes
-            .iter()
-            .fold(0.0f32, |largest, (_, change)| largest.max(*change));
+        let changes = after.iter().zip(&before).map(|(a, b)| a - b);
+        let largest = changes.clone().fold(0.0, f32::max);
+        let mut changes: Vec<(usize, f32)> = changes.enumerate().collect();
         changes.retain(|(_, change)| *change > COUNTS * largest);
         Some(changes)
     }
@@ -117,36 +104,24 @@ impl Checklist<'_> {
 /// The mixer's throttles at the reference voltage.
 fn throttles(compiled: &Compiled, wrench: &Wrench) -> Option<Vec<f32>> {
     let volts = compiled.airframe.reference_v() as f32;
-    compiled
-        .tables
-        .mix(wrench, volts)
-        .ok()
-        .map(|(throttle, ..)| throttle)
+    let mixed = compiled.tables.mix(wrench, volts).ok();
+    mixed.map(|(throttle, ..)| throttle)
 }
 
 /// The largest thrust, or a torque in proportion to what the units' efforts make of the axis.
 fn size(compiled: &Compiled, axis: Axis) -> f64 {
-    compiled
-        .effectiveness
-        .largest(axis as usize, compiled.pair.scale())
+    let scale = compiled.pair.scale();
+    compiled.effectiveness.largest(axis as usize, scale)
 }
 
 /// Where a unit is among the others: `front right`.
 fn place(unit: &Unit, units: &[Unit]) -> String {
-    let longest = units.iter().fold(0.0f64, |longest, unit| {
-        longest
-            .max(unit.position_m[0].abs())
-            .max(unit.position_m[1].abs())
-    });
+    let offsets = units.iter().map(|unit| unit.position_m);
+    let longest = offsets.fold(0.0f64, |longest, [x, y, _]| longest.max(x.abs()).max(y.abs()));
     let [x, y, _] = unit.position_m;
-    let side = |offset: f64, positive: &'static str, negative: &'static str| {
-        if offset.abs() <= ON_AXIS * longest {
-            None
-        } else if offset > 0.0 {
-            Some(positive)
-        } else {
-            Some(negative)
-        }
+    let side = |offset: f64, positive, negative| match offset {
+        x if x.abs() <= ON_AXIS * longest => None,
+        x => Some(if x > 0.0 { positive } else { negative }),
     };
     match (side(x, "front", "rear"), side(y, "right", "left")) {
         (Some(along), Some(across)) => format!("{along} {across}"),

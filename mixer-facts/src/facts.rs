@@ -139,15 +139,11 @@ fn gives(list: &mut List, compiled: &Compiled) {
     list.say("airframe", &airframe.name, "", words)
         .json("name", &airframe.name)
         .first();
-    list.say(
-        "rotors",
-        airframe.rotors(),
-        "",
-        format!(" in {units} coaxial units"),
-    )
-    .json("units", units)
-    .json("rotors", airframe.rotors())
-    .first();
+    let words = format!(" in {units} coaxial units");
+    list.say("rotors", airframe.rotors(), "", words)
+        .json("units", units)
+        .json("rotors", airframe.rotors())
+        .first();
     list.say("served axes", axes.join(", "), "", "")
         .json("axes", &axes)
         .first();
@@ -186,13 +182,9 @@ fn gives(list: &mut List, compiled: &Compiled) {
 /// The vehicle in hover.
 fn hover(list: &mut List, compiled: &Compiled) {
     let hover = Hover::new(compiled);
+    let missing = "add [vehicle] mass_kg to see hover and its margins";
     match &hover {
-        None => list.say(
-            "mass",
-            "",
-            "",
-            "add [vehicle] mass_kg to see hover and its margins",
-        ),
+        None => list.say("mass", "", "", missing),
         Some(hover) => {
             let words = format!(", a weight of {:.2} N", hover.weight_n);
             list.say("mass", hover.mass_kg, "kg", words)
@@ -274,46 +266,32 @@ fn power(list: &mut List, compiled: &Compiled) {
 fn model(list: &mut List, compiled: &Compiled) {
     let (pair, det_j) = (&compiled.airframe.pair, compiled.injectivity.least_determinant);
     let uncertainty = pair.uncertainty.as_ref().map(|uncertainty| {
-        json!({
-            "source": uncertainty.source(),
-            "thrust_percent": uncertainty.thrust_percent,
-            "torque_percent": uncertainty.torque_percent,
-        })
+        let (f, q) = (uncertainty.thrust_percent, uncertainty.torque_percent);
+        (uncertainty.source(), f, q)
     });
-    let words = or_nothing(pair.uncertainty.as_ref(), |uncertainty| {
-        let (source, f, q) = (
-            uncertainty.source(),
-            uncertainty.thrust_percent,
-            uncertainty.torque_percent,
-        );
+    let words = or_nothing(uncertainty, |(source, f, q)| {
         format!(
             ", {source}: +- {f} % of the largest thrust, {q} % of the largest torque (one standard deviation)"
         )
     });
+    let uncertainty = uncertainty
+        .map(|(source, f, q)| json!({ "source": source, "thrust_percent": f, "torque_percent": q }));
     list.say("pair", pair.basis.name(), "", words)
         .first_if(uncertainty.is_some())
         .json("uncertainty", uncertainty);
     let border = compiled.pair.border(SAMPLES).into_iter();
     let efforts: Vec<[f64; 2]> = border.map(|at| compiled.pair.efforts(at)).collect();
     let extent = |k: usize| {
-        let values = || efforts.iter().map(|efforts| efforts[k]);
-        [
-            values().fold(f64::INFINITY, f64::min),
-            values().fold(f64::NEG_INFINITY, f64::max),
-        ]
+        let values = efforts.iter().map(|efforts| efforts[k]);
+        let widen = |[low, high]: [f64; 2], x| [low.min(x), high.max(x)];
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], widen)
     };
     let ([f_low, f_high], [q_low, q_high]) = (extent(0), extent(1));
     list.say("thrust of a unit", format!("{f_low:.3} to {f_high:.3}"), "N", "");
-    list.say(
-        "torque of a unit",
-        format!("{q_low:.4} to {q_high:.4}"),
-        "N m",
-        "",
-    );
-    let words = format!(
-        " at least: proven invertible, with idles from {}",
-        compiled.least_idle
-    );
+    let torque = format!("{q_low:.4} to {q_high:.4}");
+    list.say("torque of a unit", torque, "N m", "");
+    let idle = compiled.least_idle;
+    let words = format!(" at least: proven invertible, with idles from {idle}");
     list.say("det J", format!("{det_j:.4e}"), "N N m", words)
         .json("least_det_j", det_j);
 }
@@ -399,23 +377,18 @@ const INSTRUCTIONS: &str = "instructions";
 /// What a mix costs on the target.
 fn costs(list: &mut List, compiled: &Compiled) {
     let cost = Cost::new(compiled);
-    let inverses = cost
-        .inverse_cycles
-        .zip(cost.inverses_instructions.zip(cost.inverses_cycles));
+    let inverses = cost.inverses_instructions.zip(cost.inverses_cycles);
+    let inverses = cost.inverse_cycles.zip(inverses);
     let cycles = or_nothing(inverses, |(one, (all, all_cycles))| {
         format!(" ({one} cycles), of all {all} ({all_cycles})")
     });
-    let words = format!(
-        "{cycles}; {} bytes of constants; {}",
-        cost.inverse_bytes, cost.target
-    );
+    let (bytes, target) = (cost.inverse_bytes, cost.target);
+    let words = format!("{cycles}; {bytes} bytes of constants; {target}");
     let estimated =
         |error: Option<f64>| or_nothing(error, |error| format!(", estimated to {:.0} %", 100.0 * error));
     let delivered = estimated(cost.delivered_error);
-    let attainable = format!(
-        " of a Cortex-M4F over attainable requests{}",
-        estimated(cost.attainable_error)
-    );
+    let attainable = estimated(cost.attainable_error);
+    let attainable = format!(" of a Cortex-M4F over attainable requests{attainable}");
     let desaturation = cost.desaturates();
     let any = format!(" at most, desaturation {desaturation}: the sum of what the code does at most");
     let (count, words) = match cost.inverse_instructions {

@@ -31,14 +31,12 @@ impl Hover {
                 volts.into_iter().map(Some).collect()
             }
         };
+        let at = volts.into_iter();
         Some(Hover {
             mass_kg,
             weight_n,
             thrust_over_weight: f64::from(compiled.thrust_range_n[1]) / weight_n,
-            at: volts
-                .into_iter()
-                .map(|volts| HoverAt::new(compiled, weight_n, volts))
-                .collect(),
+            at: at.map(|volts| HoverAt::new(compiled, weight_n, volts)).collect(),
         })
     }
 }
@@ -51,15 +49,12 @@ const KEPT_YAW: f64 = 0.2;
 /// where nothing is left or yaw is not served.
 pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let airframe = &compiled.airframe;
-    let weight_n = airframe
-        .weight_n()
-        .unwrap_or(0.5 * f64::from(compiled.thrust_range_n[1]));
+    let half_n = 0.5 * f64::from(compiled.thrust_range_n[1]);
+    let weight_n = airframe.weight_n().unwrap_or(half_n);
     let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
     let hover = HoverAt::new(compiled, weight_n, reference_v);
-    let yaw = hover
-        .margins
-        .iter()
-        .find(|margin| margin.axis == Axis::Yaw.name())?;
+    let mut margins = hover.margins.iter();
+    let yaw = margins.find(|margin| margin.axis == Axis::Yaw.name())?;
     let [least, most] = yaw.torque_nm;
     let reserve = KEPT_YAW * most.min(-least);
     (reserve > 0.0).then_some(reserve)

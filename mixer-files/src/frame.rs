@@ -27,15 +27,12 @@ pub enum Frame {
 
 impl Frame {
     /// All, each with its word on the command line and what it is.
+    #[rustfmt::skip]
     pub const ALL: [(Frame, &'static str, &'static str); 5] = [
         (Frame::X8, "x8", "Four pairs in an X"),
         (Frame::Y6, "y6", "Three pairs, two in front"),
         (Frame::X12, "x12", "Six pairs, two in front"),
-        (
-            Frame::Bicopter,
-            "bicopter",
-            "Two pairs abreast; pitch is left to servos or a tail",
-        ),
+        (Frame::Bicopter, "bicopter", "Two pairs abreast; pitch is left to servos or a tail"),
         (Frame::Single, "single", "One pair on a stand"),
     ];
 
@@ -118,22 +115,15 @@ impl Frame {
             Frame::X8 => shape(4, 45.0, "front right", Alternate, None, "X8: four coaxial pairs"),
             Frame::Y6 => shape(3, 60.0, "front right", Alike, None, "Y6: three coaxial pairs"),
             Frame::X12 => shape(6, 30.0, "front right", Alternate, None, "X12: six coaxial pairs"),
-            Frame::Bicopter => shape(
-                2,
-                90.0,
-                "right",
-                Alternate,
-                Some("axes = [\"roll\", \"yaw\", \"thrust\"]  # two units have no lever arm in pitch"),
-                "Two coaxial pairs abreast, pitch left to servos or a tail",
-            ),
-            Frame::Single => shape(
-                1,
-                0.0,
-                "",
-                Alike,
-                Some("axes = [\"yaw\", \"thrust\"]          # one unit has no lever arms"),
-                "One coaxial pair on a stand",
-            ),
+            Frame::Bicopter => {
+                let axes = "axes = [\"roll\", \"yaw\", \"thrust\"]  # two units have no lever arm in pitch";
+                let description = "Two coaxial pairs abreast, pitch left to servos or a tail";
+                shape(2, 90.0, "right", Alternate, Some(axes), description)
+            }
+            Frame::Single => {
+                let axes = "axes = [\"yaw\", \"thrust\"]          # one unit has no lever arms";
+                shape(1, 0.0, "", Alike, Some(axes), "One coaxial pair on a stand")
+            }
         }
     }
 }
@@ -202,13 +192,12 @@ impl NewFrame<'_> {
         }
         if let Some(bias) = power_bias {
             let line = format!("power_bias_nm_per_n = {bias:?}");
-            let _ = if spins == Spins::Alternate {
-                writeln!(text, "{line:<38} # least power: torque per thrust of every unit")
-            } else {
-                writeln!(
-                    text,
-                    "# no power_bias_nm_per_n: it saves nothing where no upper rotors turn against each other"
-                )
+            text += &match spins {
+                Spins::Alternate => format!("{line:<38} # least power: torque per thrust of every unit\n"),
+                Spins::Alike => {
+                    "# no power_bias_nm_per_n: it saves nothing where no upper rotors turn against each other\n"
+                        .to_owned()
+                }
             };
         }
         text.push_str(&yaw_reserve(&text));
@@ -250,19 +239,16 @@ impl NewFrame<'_> {
                     .to_owned());
             }
             (_, None) => {
-                return Err(
-                    "--arm METRE is missing: the distance of every pair from the centre of gravity"
-                        .to_owned(),
-                );
+                let missing = "--arm METRE is missing: the distance of every pair from the centre of gravity";
+                return Err(missing.to_owned());
             }
             (_, Some(arm)) => arm,
         };
         let (channels, spin, order) = match self.outputs {
-            None => (
-                (0..units).map(|k| [k, units + k]).collect(),
-                Spin::Cw,
-                String::new(),
-            ),
+            None => {
+                let channels = (0..units).map(|k| [k, units + k]).collect();
+                (channels, Spin::Cw, String::new())
+            }
             Some(stack) => {
                 let name = stack.name();
                 let (channels, spin) = self

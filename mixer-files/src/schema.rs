@@ -32,17 +32,10 @@ pub fn schema() -> Value {
 }
 
 fn table(shape: &Shape) -> Value {
-    let properties: Map<String, Value> = shape
-        .keys
-        .iter()
-        .map(|key| (key.name.to_owned(), property(key)))
-        .collect();
-    let required: Vec<&str> = shape
-        .keys
-        .iter()
-        .filter(|key| key.required)
-        .map(|key| key.name)
-        .collect();
+    let properties = shape.keys.iter().map(|key| (key.name.to_owned(), property(key)));
+    let properties: Map<String, Value> = properties.collect();
+    let required = shape.keys.iter().filter(|key| key.required);
+    let required: Vec<&str> = required.map(|key| key.name).collect();
     json!({
         "type": "object",
         "properties": properties,

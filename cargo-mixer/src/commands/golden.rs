@@ -68,9 +68,8 @@ fn all_outputs(airframes: &[PathBuf]) -> Result<BTreeMap<String, String>, ExitCo
 }
 
 fn write(folder: &Path, outputs: &BTreeMap<String, String>, force: bool) -> Result<(), String> {
-    let files = outputs
-        .iter()
-        .map(|(name, text)| (name.as_str(), text.as_bytes()));
+    let files = outputs.iter();
+    let files = files.map(|(name, text)| (name.as_str(), text.as_bytes()));
     crate::file::save_all(folder, files, force)?;
     for orphan in compare::orphans(folder, outputs)? {
         crate::print_note(format_args!(

@@ -1,7 +1,7 @@
 //! `cargo mixer identify`: from bench sweeps to the `[throttle]`, `[pair]` and `[voltage]` tables
 //! of an airframe file.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -16,7 +16,7 @@ use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
 use mixer_identify::texts::{Prediction, identify};
 
-use crate::bench_args::{PulseRange, finite, positive, pwm_range, role, sign_choice, throttle_box};
+use crate::bench_args::{finite, number, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::{refused, text, texts};
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame_args::FrameArgs;
@@ -62,7 +62,7 @@ pub struct IdentifyArgs {
     pub throttle: Option<ThrottleBox>,
     /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
-    pub pwm_range: Option<PulseRange>,
+    pub pwm_range: Option<[f64; 2]>,
     /// A rotor at or below this throttle stands still: a start or stop row; a negative value keeps
     /// all rows.
     #[arg(long, value_name = "THROTTLE", default_value_t = STOP_THROTTLE, value_parser = finite, allow_negative_numbers = true)]
@@ -105,7 +105,7 @@ pub struct IdentifyArgs {
     /// the reference voltage and writes `[voltage]` where the files cannot tell one. 1.75 is the
     /// median of 104 motors with propellers.
     #[arg(long, value_name = "K[,K]", value_parser = exponents)]
-    pub voltage_exponent: Option<DeclaredExponents>,
+    pub voltage_exponent: Option<[f64; 2]>,
     /// The battery of the vehicle
     #[command(flatten)]
     pub pack: PackArgs,
@@ -143,10 +143,6 @@ fn bases() -> impl TypedValueParser<Value = BasisChoice> {
     })
 }
 
-/// `--voltage-exponent`, of thrust and of torque.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DeclaredExponents(pub [f64; 2]);
-
 impl IdentifyArgs {
     /// The settings that the arguments ask for.
     pub fn settings(&self) -> Settings {
@@ -159,7 +155,7 @@ impl IdentifyArgs {
         Settings {
             reading: Reading {
                 by_hand,
-                pwm_range: self.pwm_range.map(|r| r.0),
+                pwm_range: self.pwm_range,
             },
             preparation: Preparation {
                 stop_throttle: self.stop_throttle,
@@ -177,7 +173,7 @@ impl IdentifyArgs {
                 robust: self.robust,
                 throttle: self.throttle,
                 reference_v: self.reference_voltage,
-                voltage_exponent: self.voltage_exponent.map(|e| e.0),
+                voltage_exponent: self.voltage_exponent,
                 pack_v: self.pack.range_v(),
                 rotor_out_from_map: self.rotor_out_from_map,
             },
@@ -198,9 +194,7 @@ pub fn run(args: &IdentifyArgs) -> Done {
         json: args.json,
     };
     let runs = [&args.prior, &args.lower_out, &args.upper_out];
-    let inputs = args.files.iter().chain(runs.into_iter().flatten());
-    let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
-    place.check(&inputs)?;
+    place.check(args.files.iter().chain(runs.into_iter().flatten()))?;
     let maps = texts(&args.files);
     let [prior, upper, lower] = runs.map(|run| run.as_deref().map(text));
     let settings = args.settings();
@@ -230,7 +224,8 @@ pub fn run(args: &IdentifyArgs) -> Done {
 /// Largest exponent that is taken: a propeller has 2.5 at most.
 const LARGEST_EXPONENT: f64 = 4.0;
 
-fn exponents(text: &str) -> Result<DeclaredExponents, String> {
+/// Of thrust and of torque.
+fn exponents(text: &str) -> Result<[f64; 2], String> {
     let (thrust, torque) = text.split_once(',').unwrap_or((text, text));
     let exponent = |text| match positive(text)? {
         x if x > LARGEST_EXPONENT => Err(format!(
@@ -238,20 +233,14 @@ fn exponents(text: &str) -> Result<DeclaredExponents, String> {
         )),
         x => Ok(x),
     };
-    Ok(DeclaredExponents([exponent(thrust)?, exponent(torque)?]))
+    Ok([exponent(thrust)?, exponent(torque)?])
 }
 
 fn part(text: &str) -> Result<f64, String> {
-    let within = |x: &f64| (0.0..1.0).contains(x);
-    finite(text).and_then(|x| {
-        Some(x)
-            .filter(within)
-            .ok_or_else(|| format!("{x} is not in [0, 1)"))
-    })
+    number(text, |x| (0.0..1.0).contains(&x), "is not in [0, 1)")
 }
 
 fn date_given(text: &str) -> Result<String, String> {
-    date::date_in(text)
-        .filter(|d| d == text)
-        .ok_or_else(|| format!("{text:?} is not a date YYYY-MM-DD"))
+    let date = date::date_in(text).filter(|date| date == text);
+    date.ok_or_else(|| format!("{text:?} is not a date YYYY-MM-DD"))
 }

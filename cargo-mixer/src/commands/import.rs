@@ -45,9 +45,7 @@ pub struct ImportArgs {
 
 /// Runs the command.
 pub fn run(args: &ImportArgs) -> Done {
-    let inputs = [Some(&args.file), args.pair.as_ref()];
-    let inputs = inputs.into_iter().flatten().map(PathBuf::as_path);
-    file::writable(&args.output, args.force, inputs)?;
+    file::writable(&args.output, args.force, args.pair.iter().chain([&args.file]))?;
     import(args).map_err(crate::print_error)
 }
 

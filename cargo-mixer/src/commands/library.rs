@@ -58,9 +58,8 @@ pub fn run(args: &LibraryArgs) -> Done {
         }
     };
     let files = mixer_c::library(&airframes, &options, note).map_err(print_error)?;
-    let files = files
-        .iter()
-        .map(|file| (file.name.as_str(), file.bytes.as_slice()));
+    let files = files.iter();
+    let files = files.map(|file| (file.name.as_str(), file.bytes.as_slice()));
     file::save_all(&args.output, files, args.force).map_err(print_error)
 }
 

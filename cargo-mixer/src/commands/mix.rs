@@ -44,18 +44,14 @@ pub struct MixArgs {
 
 /// Runs the command.
 pub fn run(args: &MixArgs) -> Done {
-    let inputs = [Some(&args.airframe), args.setpoints.as_ref()];
-    let inputs = inputs.into_iter().flatten().map(PathBuf::as_path);
     if let Some(output) = &args.output {
+        let inputs = args.setpoints.iter().chain([&args.airframe]);
         file::writable(output, args.force, inputs)?;
     }
     let compiled = crate::compile(&args.airframe)?;
     let rotors = compiled.airframe.rotors();
-    if let Some(channel) = args
-        .failed
-        .iter()
-        .find(|channel| usize::from(**channel) >= rotors)
-    {
+    let mut failed = args.failed.iter();
+    if let Some(channel) = failed.find(|channel| usize::from(**channel) >= rotors) {
         return Err(crate::bad_usage(format_args!(
             "--failed {channel}: the channels of {} are 0 to {}",
             compiled.airframe.name,
@@ -102,10 +98,8 @@ fn input(path: Option<&Path>) -> Result<(Box<dyn Read>, String), String> {
         }
         Some(path) => {
             let name = path.display().to_string();
-            match File::open(path) {
-                Ok(file) => Ok((Box::new(file), name)),
-                Err(error) => Err(format!("{name}: {error}")),
-            }
+            let file = File::open(path).map_err(|error| format!("{name}: {error}"))?;
+            Ok((Box::new(file), name))
         }
     }
 }

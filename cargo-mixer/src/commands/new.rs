@@ -28,8 +28,7 @@ pub struct NewArgs {
 
 /// Runs the command.
 pub fn run(args: &NewArgs) -> Done {
-    let inputs = args.pair.iter().map(PathBuf::as_path);
-    file::writable(&args.output, args.force, inputs)?;
+    file::writable(&args.output, args.force, &args.pair)?;
     let pair = args.pair.as_deref().map(file::source).transpose();
     let pair = pair.map_err(print_error)?;
     let made = new(&args.frame.frame(Some(&args.output)), pair.as_ref());

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use mixer_files::params::{Format, Options, params};
 use mixer_files::stack::Stack;
 
-use crate::bench_args::{PulseRange, pwm_range, words};
+use crate::bench_args::{pwm_range, words};
 use crate::{Done, file, print_error};
 
 /// Writes an airframe's parameters for a flight stack, each with its reason
@@ -35,7 +35,7 @@ pub struct ParamsArgs {
     own: bool,
     /// Pulse widths of throttle 0 and 1 on the bench, microseconds, as `1000,2000`
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
-    pwm_range: Option<PulseRange>,
+    pwm_range: Option<[f64; 2]>,
     /// The file to write; without it stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -51,7 +51,7 @@ pub fn run(args: &ParamsArgs) -> Done {
         stack: args.stack,
         format: args.format,
         own: args.own,
-        pulses_us: args.pwm_range.map(|range| range.0),
+        pulses_us: args.pwm_range,
     };
     let name = args.airframe.file_name().unwrap_or_default().to_string_lossy();
     let made = params(&compiled, &name, &options).map_err(print_error)?;
@@ -68,7 +68,7 @@ pub fn run(args: &ParamsArgs) -> Done {
             let files = [(path, Some(made.text.as_str())), (&beside, post)];
             let files = files.iter().filter_map(|(path, text)| Some((path, (*text)?)));
             for (path, _) in files.clone() {
-                file::writable(path, args.force, [args.airframe.as_path()])?;
+                file::writable(path, args.force, [&args.airframe])?;
             }
             for (path, text) in files {
                 file::save(path, text).map_err(print_error)?;

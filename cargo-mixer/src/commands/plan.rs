@@ -31,7 +31,7 @@ pub struct PlanArgs {
     format: Format,
     /// Pulse widths of throttle 0 and 1 in a script, microseconds
     #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = crate::bench_args::pwm_range)]
-    pwm_range: crate::bench_args::PulseRange,
+    pwm_range: [f64; 2],
     /// The file to write, whole or not at all [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -71,8 +71,8 @@ pub fn run(args: &PlanArgs) -> Done {
     };
     let text = match args.format {
         Format::Template => template(&pairs),
-        Format::Rcbenchmark => rcbenchmark(&pairs, args.pwm_range.0),
-        Format::FlightStand => flight_stand(&pairs, args.pwm_range.0),
+        Format::Rcbenchmark => rcbenchmark(&pairs, args.pwm_range),
+        Format::FlightStand => flight_stand(&pairs, args.pwm_range),
     };
     crate::deliver(args.output.as_deref(), args.force, &text)
 }

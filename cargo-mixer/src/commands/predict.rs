@@ -1,6 +1,6 @@
 //! `cargo mixer predict`: a pair's tables from a run of one rotor alone.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use mixer_identify::bench::Preparation;
@@ -15,7 +15,7 @@ use mixer_identify::rotor::single::Known;
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
-use crate::bench_args::{PulseRange, positive, pwm_range, role, sign_choice, throttle_box};
+use crate::bench_args::{positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::{refused, text};
 use crate::frame_args::FrameArgs;
 use crate::place::Place;
@@ -59,7 +59,7 @@ pub struct PredictArgs {
     pub json: bool,
     /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
-    pub pwm_range: Option<PulseRange>,
+    pub pwm_range: Option<[f64; 2]>,
     /// A column by hand, as throttle="ESC" or thrust=#2 (number from 1).
     #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = single_role)]
     pub columns: Vec<(String, String)>,
@@ -134,11 +134,8 @@ impl RotorArgs {
 
     /// Whether anything is given.
     pub(crate) fn is_given(&self) -> bool {
-        self.lower_single.is_some()
-            || self.ratio().is_some()
-            || [self.diameter, self.kappa, self.run_voltage]
-                .iter()
-                .any(Option::is_some)
+        let numbers = [self.ratio(), self.diameter, self.kappa, self.run_voltage];
+        self.lower_single.is_some() || numbers.iter().any(Option::is_some)
     }
 }
 
@@ -164,7 +161,7 @@ impl PredictArgs {
                     full_rpm: self.rpm_at_full,
                     swap: false,
                 },
-                pwm_range: self.pwm_range.map(|range| range.0),
+                pwm_range: self.pwm_range,
             },
             preparation: Preparation {
                 own_columns: true,
@@ -212,9 +209,7 @@ pub fn run(args: &PredictArgs) -> Done {
         frame: args.frame.as_ref(),
         json: args.json,
     };
-    let inputs = [Some(&args.single), args.rotors.lower_single.as_ref()];
-    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    place.check(&inputs)?;
+    place.check(args.rotors.lower_single.iter().chain([&args.single]))?;
     let answer = args.predicted().map_err(refused)?;
     place.write(&answer, false)
 }

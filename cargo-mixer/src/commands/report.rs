@@ -39,7 +39,7 @@ pub struct ReportArgs {
 /// Runs the command.
 pub fn run(args: &ReportArgs) -> Done {
     let inputs = args.bench.iter().chain([&args.airframe]);
-    file::writable(&args.output, args.force, inputs.map(PathBuf::as_path))?;
+    file::writable(&args.output, args.force, inputs)?;
     let compiled = crate::compile(&args.airframe)?;
     let bench = match args.bench.as_slice() {
         [] => None,

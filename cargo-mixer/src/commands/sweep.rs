@@ -32,7 +32,7 @@ pub struct SweepArgs {
 /// Runs the command.
 pub fn run(args: &SweepArgs) -> Done {
     if let Some(output) = &args.output {
-        file::writable(output, args.force, [args.airframe.as_path()])?;
+        file::writable(output, args.force, [&args.airframe])?;
     }
     let compiled = crate::compile(&args.airframe)?;
     let study = Study::new(&compiled, args.thrust);

@@ -40,13 +40,9 @@ fn header(compiled: &Compiled) -> String {
 fn push_row(table: &mut String, compiled: &Compiled, setpoint: &Wrench, voltage_v: f32, health: Health) {
     let mixed = compiled.tables.mix_with_health(setpoint, voltage_v, health);
     // Vectors are finite, so the mixer takes them; one that it refused would show as zeros.
-    let (throttle, achieved, saturation) = mixed.unwrap_or_else(|_| {
-        (
-            vec![0.0; compiled.airframe.rotors()],
-            Wrench::default(),
-            Default::default(),
-        )
-    });
+    let zeros = vec![0.0; compiled.airframe.rotors()];
+    let refused = (zeros, Wrench::default(), Default::default());
+    let (throttle, achieved, saturation) = mixed.unwrap_or(refused);
     let inputs = setpoint.to_array().into_iter().chain([voltage_v]);
     for value in inputs.chain(throttle).chain(achieved.to_array()) {
         let _ = write!(table, "0x{:08x},", value.to_bits());

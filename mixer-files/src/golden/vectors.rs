@@ -57,16 +57,13 @@ const ROTORS_OUT: usize = 12;
 /// Setpoints with all rotors, kind by kind.
 pub fn by_kind(compiled: &Compiled) -> Vec<(Kind, Vec<Vector>)> {
     let mut draw = Draw::new(compiled);
+    let by_hand = draw.by_hand();
+    let attainable = (0..ATTAINABLE).map(|index| draw.attainable(index)).collect();
+    let border = (0..DIRECTIONS).flat_map(|_| draw.corner()).collect();
     vec![
-        (Kind::ByHand, draw.by_hand()),
-        (
-            Kind::Attainable,
-            (0..ATTAINABLE).map(|index| draw.attainable(index)).collect(),
-        ),
-        (
-            Kind::Border,
-            (0..DIRECTIONS).flat_map(|_| draw.corner()).collect(),
-        ),
+        (Kind::ByHand, by_hand),
+        (Kind::Attainable, attainable),
+        (Kind::Border, border),
         (Kind::Saturated, draw.saturated()),
         (Kind::Faint, draw.faint()),
     ]
@@ -106,24 +103,16 @@ impl<'a> Draw<'a> {
     fn new(compiled: &'a Compiled) -> Self {
         let airframe = &compiled.airframe;
         let pair = &compiled.pair;
-        let [f, q] = pair.scale();
-        let n = airframe.units.len();
-        let matrix = &compiled.effectiveness.matrix;
-        let size = Axis::ALL.map(|axis| {
-            let row = matrix.row(axis as usize);
-            (0..n).map(|i| row[i].abs() * f + row[n + i].abs() * q).sum()
-        });
+        let largest = |axis| compiled.effectiveness.largest(axis as usize, pair.scale());
+        let size = Axis::ALL.map(largest);
         let volts = airframe.voltage.as_ref().map_or([12.0, 14.0, 16.0], |voltage| {
             let [low, high] = voltage.range_v;
             [low, voltage.reference_v, high]
         });
-        let border = pair.border(BORDER_POINTS);
+        let border = pair.border(BORDER_POINTS).into_iter();
         Draw {
             compiled,
-            border: border
-                .into_iter()
-                .map(|throttles| pair.efforts(throttles))
-                .collect(),
+            border: border.map(|throttles| pair.efforts(throttles)).collect(),
             pair,
             size,
             volts,
@@ -212,9 +201,8 @@ impl<'a> Draw<'a> {
             low + (high - low) * self.between(from, to)
         };
         let throttles: Vec<[f64; 2]> = (0..units).map(|_| [throttle(), throttle()]).collect();
-        let efforts = throttles
-            .into_iter()
-            .map(|throttles| self.pair.efforts(throttles));
+        let throttles = throttles.into_iter();
+        let efforts = throttles.map(|throttles| self.pair.efforts(throttles));
         let wrench = self.wrench(efforts, self.factors(volts));
         (Wrench::from_array(wrench.map(|x| x as f32)), volts as f32)
     }
@@ -227,11 +215,8 @@ impl<'a> Draw<'a> {
         let factors = self.factors(volts);
         let direction = Axis::ALL.map(|axis| {
             let part = self.between(-1.0, 1.0);
-            if self.compiled.airframe.allocation.controls(axis) {
-                part
-            } else {
-                0.0
-            }
+            let is_served = self.compiled.airframe.allocation.controls(axis);
+            if is_served { part } else { 0.0 }
         });
         let matrix = &self.compiled.effectiveness.matrix;
         let gain = |column: usize| -> f64 {

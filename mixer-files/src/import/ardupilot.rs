@@ -78,12 +78,9 @@ fn place(arm: f64, angle_deg: f64, layer: Layer) -> [f64; 3] {
     let angle = angle_deg.to_radians();
     // To a tenth of a millimetre; nobody measures an arm better.
     let rounded = |x: f64| (x * 1e4).round() / 1e4 + 0.0;
+    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
     let down = if layer == Layer::Upper { -LAYER_M } else { LAYER_M };
-    [
-        rounded(arm * libm::cos(angle)),
-        rounded(arm * libm::sin(angle)),
-        down,
-    ]
+    [rounded(arm * cos), rounded(arm * sin), down]
 }
 
 /// The range that ArduPilot corrects for; 0 switches it off.

@@ -13,22 +13,16 @@ const SAME_LAYER_M: f64 = 1e-4;
 
 /// The units by their upper rotors' channels. `upper` names the upper rotors where it is not empty.
 pub(super) fn pair(rotors: &[Rotor], upper: &[usize]) -> Result<Vec<Unit>, String> {
-    if let Some(channel) = upper
-        .iter()
-        .find(|channel| !rotors.iter().any(|rotor| rotor.channel == **channel))
-    {
-        return Err(format!(
-            "--upper {channel}: the outputs are 0 to {}",
-            rotors.len().max(1) - 1
-        ));
+    let is_known = |channel: usize| rotors.iter().any(|rotor| rotor.channel == channel);
+    if let Some(channel) = upper.iter().find(|channel| !is_known(**channel)) {
+        let last = rotors.len().max(1) - 1;
+        return Err(format!("--upper {channel}: the outputs are 0 to {last}"));
     }
     let mut units = Vec::new();
     let mut paired = vec![false; rotors.len()];
     for (index, rotor) in rotors.iter().enumerate() {
-        let mut partners = rotors
-            .iter()
-            .enumerate()
-            .filter(|(other, rotor2)| *other != index && is_on_axis(rotor, rotor2));
+        let others = rotors.iter().enumerate().filter(|(other, _)| *other != index);
+        let mut partners = others.filter(|(_, other)| is_on_axis(rotor, other));
         let partner = match (partners.next(), partners.next()) {
             (Some(partner), None) => partner,
             (None, _) => {
@@ -103,10 +97,9 @@ fn unit(rotor: &Rotor, other: &Rotor, upper: &[usize]) -> Result<Unit, String> {
             rotor.spin.name()
         ));
     }
-    let (upper, lower) = if other_is_upper {
-        (other, rotor)
-    } else {
-        (rotor, other)
+    let (upper, lower) = match other_is_upper {
+        true => (other, rotor),
+        false => (rotor, other),
     };
     Ok(Unit {
         // To a hundredth of a millimetre: the middle of two numbers in single precision.

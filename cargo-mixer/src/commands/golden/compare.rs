@@ -19,12 +19,8 @@ pub fn differences(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<
             Err(error) => found.push(format!("{file}: {error}")),
         }
     }
-    let orphans = orphans(folder, outputs)?;
-    found.extend(
-        orphans
-            .iter()
-            .map(|file| format!("{file}: belongs to none of these airframes")),
-    );
+    let orphans = orphans(folder, outputs)?.into_iter();
+    found.extend(orphans.map(|file| format!("{file}: belongs to none of these airframes")));
     Ok(found)
 }
 
@@ -36,11 +32,8 @@ pub fn orphans(folder: &Path, outputs: &BTreeMap<String, String>) -> Result<Vec<
     let unreadable = |error: std::io::Error| format!("{}: {error}", folder.display());
     let mut orphans = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
-        let file = entry
-            .map_err(unreadable)?
-            .file_name()
-            .to_string_lossy()
-            .into_owned();
+        let file = entry.map_err(unreadable)?.file_name();
+        let file = file.to_string_lossy().into_owned();
         if !outputs.contains_key(&file) && !file.starts_with('.') {
             orphans.push(file);
         }

@@ -33,18 +33,12 @@ fn add(points: &mut BenchPoints, compiled: &Compiled, file: &Path) -> Result<(),
     }
     for point in &bench.points {
         let voltage_v = Some(point.voltage).filter(|volts| volts.is_finite());
-        points.add(
-            compiled,
-            point.line,
-            [point.u, point.l],
-            [point.thrust, point.torque],
-            voltage_v,
-        );
+        let (throttles, measured) = ([point.u, point.l], [point.thrust, point.torque]);
+        points.add(compiled, point.line, throttles, measured, voltage_v);
     }
     let refused = bench.refused_rows.iter();
-    points
-        .refused
-        .extend(refused.map(|row| format!("{}:{}: {}", row.file, row.line, row.reason)));
+    let refused = refused.map(|row| format!("{}:{}: {}", row.file, row.line, row.reason));
+    points.refused.extend(refused);
     points.files.push(bench.file);
     Ok(())
 }
