@@ -95,7 +95,8 @@ impl Room {
     }
 }
 
-fn normal(source: &mut Pcg64Mcg) -> f64 {
+/// A number of the standard normal distribution.
+pub fn normal(source: &mut Pcg64Mcg) -> f64 {
     StandardNormal.sample(source)
 }
 

@@ -18,39 +18,16 @@ pub struct ConventionalMixer {
     thrust_factor: f64,
 }
 
-/// Why there is no conventional mixer for an airframe.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unsuited {
-    /// It has not eight rotors.
-    Rotors,
-    /// Its voltage law cannot be tabulated.
-    Voltage,
-    /// The rotors cannot produce all four axes.
-    Rank,
-}
-
-impl std::fmt::Display for Unsuited {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Unsuited::Rotors => "the airframe has not eight rotors",
-            Unsuited::Voltage => "the voltage law cannot be tabulated",
-            Unsuited::Rank => "the rotors cannot produce all four axes",
-        })
-    }
-}
-
-impl std::error::Error for Unsuited {}
-
 impl ConventionalMixer {
     /// The conventional mixer of `airframe` with effectiveness M.
     ///
     /// # Errors
-    /// See [`Unsuited`].
-    pub fn new(airframe: &Airframe, effectiveness: &Effectiveness) -> Result<Self, Unsuited> {
+    /// An airframe of other than eight rotors, or a voltage law that cannot be tabulated.
+    pub fn new(airframe: &Airframe, effectiveness: &Effectiveness) -> Result<Self, &'static str> {
         if airframe.rotors() != ROTORS {
-            return Err(Unsuited::Rotors);
+            return Err("the airframe has not eight rotors");
         }
-        let voltage = voltage::tabulate(airframe).map_err(|_| Unsuited::Voltage)?;
+        let voltage = voltage::tabulate(airframe).map_err(|_| "the voltage law cannot be tabulated")?;
         Ok(ConventionalMixer {
             tables: IsolatedTables::of(airframe, effectiveness, voltage),
             thrust_factor: 1.0,
@@ -80,9 +57,7 @@ impl ConventionalMixer {
         wrench[3] *= self.thrust_factor;
         let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
         let (throttle, within) = self.tables.conventional(&setpoint, voltage_v as f32)?;
-        Ok((
-            SVector::from_fn(|channel, _| f64::from(throttle[channel])),
-            !within,
-        ))
+        let throttle = SVector::from_fn(|channel, _| f64::from(throttle[channel]));
+        Ok((throttle, !within))
     }
 }

@@ -16,7 +16,7 @@ use mixer_compiler::tables::MixerTables;
 
 use crate::air::Room;
 use crate::controller::PERIOD_S;
-use crate::flight::{Flight, Scenario, fly};
+use crate::flight::{Flight, Sample, Scenario, fly};
 use crate::mixer::Mixer;
 
 /// The airframe file.
@@ -86,9 +86,8 @@ impl Rotors {
 
     fn energy_j(&self, flight: &Flight) -> Result<f64, Box<dyn Error>> {
         let samples = flight.samples.iter();
-        let energy: Option<f64> = samples
-            .map(|sample| Some(self.airframe.power_w(sample.throttle.as_slice())? * PERIOD_S))
-            .sum();
+        let power = |sample: &Sample| self.airframe.power_w(sample.throttle.as_slice());
+        let energy: Option<f64> = samples.map(|sample| Some(power(sample)? * PERIOD_S)).sum();
         energy.ok_or_else(|| "the airframe has no [pair.power]".into())
     }
 }
@@ -104,9 +103,8 @@ pub struct Saving {
 
 impl fmt::Display for Saving {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mean = |of: fn(&Energy) -> f64| {
-            self.flights.iter().map(of).sum::<f64>() / self.flights.len().max(1) as f64
-        };
+        let count = self.flights.len().max(1) as f64;
+        let mean = |of: fn(&Energy) -> f64| self.flights.iter().map(of).sum::<f64>() / count;
         write!(
             f,
             "  {:<30} {:>9.0} J with the power bias, {:>9.0} J without: {:.2} % less",
@@ -128,15 +126,10 @@ pub fn write(savings: &[Saving], to: impl Write) -> csv::Result<()> {
     for Saving { scenario, flights } in savings {
         for energy in flights {
             for (mixer, joules) in [("bias", energy.with_j), ("none", energy.without_j)] {
-                writer.write_record([
-                    scenario.to_string(),
-                    energy.seed.to_string(),
-                    mixer.to_owned(),
-                    format!("{joules:.1}"),
-                ])?;
+                let [scenario, seed] = [scenario.to_string(), energy.seed.to_string()];
+                writer.write_record([scenario, seed, mixer.to_owned(), format!("{joules:.1}")])?;
             }
         }
     }
-    writer.flush()?;
-    Ok(())
+    Ok(writer.flush()?)
 }

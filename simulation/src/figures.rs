@@ -28,20 +28,11 @@ const EVERY: usize = 20;
 /// Left and right column.
 const COLUMNS: [Method; 2] = [Method::Conventional, Method::Coaxial];
 
-/// A line of a panel.
-struct Line {
-    label: &'static str,
-    colour: RGBColor,
-    value: fn(&Sample) -> f64,
-}
+/// A line of a panel: its label, its colour, what it shows.
+type Line = (&'static str, RGBColor, fn(&Sample) -> f64);
 
-/// One row of panels: what both columns show.
-struct Row {
-    label: &'static str,
-    range: Range<f64>,
-    /// In the order of drawing.
-    lines: Vec<Line>,
-}
+/// One row of panels: what both columns show. Lines in the order of drawing.
+type Row = (&'static str, Range<f64>, Vec<Line>);
 
 /// File names and texts of the three figures of a pair of flights. Axes are the same for all
 /// scenarios.
@@ -49,61 +40,27 @@ struct Row {
 /// # Errors
 /// What the drawing library cannot draw.
 pub fn draw(scenario: &Scenario, pair: &FlightPair) -> Result<[(String, String); 3], Box<dyn Error>> {
-    let reference = |value| Line {
-        label: "reference",
-        colour: REFERENCE,
-        value,
-    };
-    let flown = |value| Line {
-        label: "flown",
-        colour: FLOWN,
-        value,
-    };
-    let altitude = || Row {
-        label: "altitude, m",
-        range: 0.8..2.0,
-        lines: vec![
-            flown(|sample| -sample.position.z),
-            reference(|sample| -sample.reference.position.z),
-        ],
-    };
-    let horizontal = |label, position, aim| Row {
-        label,
-        range: -0.2..0.2,
-        lines: vec![flown(position), reference(aim)],
-    };
+    let reference = |value: fn(&Sample) -> f64| ("reference", REFERENCE, value);
+    let flown = |value: fn(&Sample) -> f64| ("flown", FLOWN, value);
+    let horizontal =
+        |label, position, aim| -> Row { (label, -0.2..0.2, vec![flown(position), reference(aim)]) };
+    let heights = vec![flown(|s| -s.position.z), reference(|s| -s.reference.position.z)];
+    let altitude: Row = ("altitude, m", 0.8..2.0, heights);
     let position = [
         horizontal("x, m", |s| s.position.x, |s| s.reference.position.x),
         horizontal("y, m", |s| s.position.y, |s| s.reference.position.y),
-        altitude(),
+        altitude.clone(),
     ];
-    let yaw = [Row {
-        label: "yaw, degrees",
-        range: -110.0..110.0,
-        lines: vec![
-            reference(|sample| sample.reference.yaw.to_degrees()),
-            flown(|sample| sample.yaw.to_degrees()),
-        ],
-    }];
-    let thrust = [
-        altitude(),
-        Row {
-            label: "thrust, N",
-            range: 15.0..55.0,
-            lines: vec![
-                Line {
-                    label: "command",
-                    colour: FLOWN,
-                    value: |sample| sample.command.w,
-                },
-                Line {
-                    label: "weight",
-                    colour: GIVEN,
-                    value: |_| WEIGHT_N,
-                },
-            ],
-        },
+    let yaws = vec![
+        reference(|s| s.reference.yaw.to_degrees()),
+        flown(|s| s.yaw.to_degrees()),
     ];
+    let yaw: [Row; 1] = [("yaw, degrees", -110.0..110.0, yaws)];
+    let thrusts: Vec<Line> = vec![
+        ("command", FLOWN, |s| s.command.w),
+        ("weight", GIVEN, |_| WEIGHT_N),
+    ];
+    let thrust = [altitude, ("thrust, N", 15.0..55.0, thrusts)];
     let name = |figure: &str| format!("{figure}-{}.svg", scenario.slug());
     let subject = format!("simulated flight, {scenario}, seed {}", pair.seed);
     let draw = |title: &str, rows: &[Row]| figure(pair, &format!("{title}: {subject}"), rows);
@@ -133,7 +90,7 @@ fn figure(pair: &FlightPair, title: &str, rows: &[Row]) -> Result<String, Box<dy
 
 fn draw_panel(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
-    row: &Row,
+    (label, range, lines): &Row,
     method: Method,
     flight: &Flight,
 ) -> Result<(), Box<dyn Error>> {
@@ -143,11 +100,11 @@ fn draw_panel(
         .margin_right(24)
         .x_label_area_size(38)
         .y_label_area_size(58)
-        .build_cartesian_2d(0.0..END_S, row.range.clone())?;
+        .build_cartesian_2d(0.0..END_S, range.clone())?;
     chart
         .configure_mesh()
         .x_desc("time, s")
-        .y_desc(row.label)
+        .y_desc(*label)
         .x_labels(11)
         .x_label_formatter(&|time| format!("{time:.0}"))
         .y_labels(6)
@@ -156,13 +113,12 @@ fn draw_panel(
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.12))
         .draw()?;
-    for line in &row.lines {
+    for &(label, colour, value) in lines {
         let points = flight.samples.iter().step_by(EVERY);
-        let points = points.map(|sample| (sample.time_s, (line.value)(sample)));
-        let colour = line.colour;
+        let points = points.map(|sample| (sample.time_s, value(sample)));
         chart
             .draw_series(LineSeries::new(points, colour.stroke_width(2)))?
-            .label(line.label)
+            .label(label)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
     }
     chart

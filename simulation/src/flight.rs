@@ -5,7 +5,6 @@ use std::error::Error;
 use std::fmt;
 
 use mixer_compiler::airframe::Airframe;
-use mixer_rt::SetpointError;
 use nalgebra::{SVector, Vector3, Vector4};
 
 use crate::air::{Air, Room};
@@ -50,23 +49,6 @@ pub struct Sample {
     pub saturated: bool,
 }
 
-/// A flight that could not go on: the loop has diverged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lost {
-    /// Time of the manoeuvre, s.
-    pub time_s: f64,
-    /// What the mixer said.
-    pub reason: SetpointError,
-}
-
-impl fmt::Display for Lost {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "lost at {:.2} s: {}", self.time_s, self.reason)
-    }
-}
-
-impl Error for Lost {}
-
 /// A flown manoeuvre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flight {
@@ -77,8 +59,8 @@ pub struct Flight {
 /// Flies the manoeuvre with `mixer` in `room`, the controller's tilt by `tilt`.
 ///
 /// # Errors
-/// A command that is not finite: see [`Lost`].
-pub fn fly(airframe: &Airframe, mixer: &Mixer, tilt: Tilt, mut room: Room) -> Result<Flight, Lost> {
+/// A command that is not finite: the loop has diverged.
+pub fn fly(airframe: &Airframe, mixer: &Mixer, tilt: Tilt, mut room: Room) -> Result<Flight, String> {
     let plant = Plant::new(airframe, BODY, battery::PAPER, room.mismatch());
     let start = reference(-SETTLING_S);
     let mut state = State::level(start.position, START_THROTTLE);
@@ -100,7 +82,7 @@ pub fn fly(airframe: &Airframe, mixer: &Mixer, tilt: Tilt, mut room: Room) -> Re
         let voltage_v = plant.voltage_v(&state);
         let (throttle, saturated) = mixer
             .mix(&command, voltage_v)
-            .map_err(|reason| Lost { time_s, reason })?;
+            .map_err(|reason| format!("lost at {time_s:.2} s: {reason}"))?;
         if period >= 0 {
             samples.push(Sample {
                 time_s,

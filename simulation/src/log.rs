@@ -6,9 +6,31 @@ use crate::flight::Flight;
 use crate::mixer::Method;
 use crate::table::Comparison;
 use crate::tracking::TrackingError;
+use crate::vehicle::ROTORS;
 
 /// Periods from one row of a flight's log to the next: 20 ms.
 const EVERY: usize = 4;
+
+/// Writes `names` and a throttle per rotor as a header, then rows of numbers; NaN is an empty field.
+///
+/// # Errors
+/// What `to` cannot take.
+pub fn write_rows(
+    names: &str,
+    rotors: usize,
+    decimals: usize,
+    rows: impl Iterator<Item = Vec<f64>>,
+    to: impl Write,
+) -> csv::Result<()> {
+    let mut writer = csv::Writer::from_writer(to);
+    let throttles = (0..rotors).map(|rotor| format!("throttle_{rotor}"));
+    writer.write_record(names.split(',').map(str::to_owned).chain(throttles))?;
+    for row in rows {
+        let text = |value: f64| (!value.is_nan()).then(|| format!("{value:.decimals$}"));
+        writer.write_record(row.into_iter().map(|value| text(value).unwrap_or_default()))?;
+    }
+    Ok(writer.flush()?)
+}
 
 /// Writes a flight: reference, what was flown, command, throttles, voltage; every 20 ms, SI units,
 /// yaw in degrees.
@@ -16,43 +38,21 @@ const EVERY: usize = 4;
 /// # Errors
 /// What `to` cannot take.
 pub fn write_flight(flight: &Flight, to: impl Write) -> csv::Result<()> {
-    let mut writer = csv::Writer::from_writer(to);
-    let mut header = vec![
-        "time_s",
-        "reference_x_m",
-        "reference_y_m",
-        "reference_z_m",
-        "reference_yaw_deg",
-        "x_m",
-        "y_m",
-        "z_m",
-        "yaw_deg",
-        "roll_nm",
-        "pitch_nm",
-        "yaw_nm",
-        "thrust_n",
-        "voltage_v",
-    ]
-    .into_iter()
-    .map(String::from)
-    .collect::<Vec<_>>();
-    let rotors = flight.samples.first().map_or(0, |sample| sample.throttle.len());
-    header.extend((0..rotors).map(|channel| format!("throttle_{channel}")));
-    writer.write_record(&header)?;
-    for sample in flight.samples.iter().step_by(EVERY) {
-        let reference = sample.reference.position.iter().copied();
-        let values = std::iter::once(sample.time_s)
-            .chain(reference)
-            .chain([sample.reference.yaw.to_degrees()])
-            .chain(sample.position.iter().copied())
-            .chain([sample.yaw.to_degrees()])
-            .chain(sample.command.iter().copied())
-            .chain([sample.voltage_v])
-            .chain(sample.throttle.iter().copied());
-        writer.write_record(values.map(|value| format!("{value:.6}")))?;
-    }
-    writer.flush()?;
-    Ok(())
+    let names = "time_s,reference_x_m,reference_y_m,reference_z_m,reference_yaw_deg,x_m,y_m,z_m,yaw_deg,\
+                 roll_nm,pitch_nm,yaw_nm,thrust_n,voltage_v";
+    let rows = flight.samples.iter().step_by(EVERY).map(|sample| {
+        let parts: [&[f64]; 7] = [
+            &[sample.time_s],
+            sample.reference.position.as_slice(),
+            &[sample.reference.yaw.to_degrees()],
+            sample.position.as_slice(),
+            &[sample.yaw.to_degrees()],
+            sample.command.as_slice(),
+            &[sample.voltage_v],
+        ];
+        [&parts.concat(), sample.throttle.as_slice()].concat()
+    });
+    write_rows(names, ROTORS, 6, rows, to)
 }
 
 /// Writes the figures of Table II and the hover thrust of every flight.
@@ -78,13 +78,12 @@ pub fn write_tracking(comparisons: &[Comparison], to: impl Write) -> csv::Result
                 ];
                 let rows = flight.tracking_error().rows();
                 record.extend(rows.iter().flatten().map(|value| format!("{value:.6e}")));
-                record.push(format!("{:.6}", flight.hover_thrust()));
-                record.push(format!("{:.6}", flight.yaw_error().to_degrees()));
+                let means = [flight.hover_thrust(), flight.yaw_error().to_degrees()];
+                record.extend(means.map(|value| format!("{value:.6}")));
                 record.push(flight.saturated().to_string());
                 writer.write_record(&record)?;
             }
         }
     }
-    writer.flush()?;
-    Ok(())
+    Ok(writer.flush()?)
 }

@@ -65,66 +65,44 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         comparisons.push(comparison);
     }
     write!(out, "{NOTES}")?;
-    let savings = savings(arguments.seeds)?;
     writeln!(
         out,
         "\nEnergy of the manoeuvre with the rotors of airframes/x8-11in-least-power.toml"
     )?;
-    for saving in &savings {
+    let rotors = Rotors::new()?;
+    let mut savings = Vec::new();
+    for scenario in Scenario::ALL {
+        let flights = (1..=arguments.seeds)
+            .map(|seed| rotors.fly(&scenario, seed))
+            .collect::<Result<_, _>>()?;
+        let saving = Saving { scenario, flights };
         writeln!(out, "{saving}")?;
+        savings.push(saving);
     }
     if let Some(path) = &arguments.energy {
-        let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        energy::write(&savings, file)?;
+        energy::write(&savings, create(path)?)?;
     }
-    if let Some(folder) = &arguments.plots {
-        write_figures(&comparisons, folder)?;
-    }
-    if let Some(folder) = &arguments.csv {
-        write_logs(&comparisons, folder)?;
-    }
-    if let Some(path) = &arguments.errors {
-        let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        log::write_tracking(&comparisons, file)?;
-    }
-    Ok(())
-}
-
-/// The energy of every scenario with and without a power bias.
-fn savings(seeds: u64) -> Result<Vec<Saving>, Box<dyn Error>> {
-    let rotors = Rotors::new()?;
-    let fly = |scenario: &Scenario| -> Result<Saving, Box<dyn Error>> {
-        let flights = (1..=seeds).map(|seed| rotors.fly(scenario, seed));
-        Ok(Saving {
-            scenario: *scenario,
-            flights: flights.collect::<Result<_, _>>()?,
-        })
-    };
-    Scenario::ALL.iter().map(fly).collect()
-}
-
-/// The figures of the first seed of every scenario.
-fn write_figures(comparisons: &[Comparison], folder: &Path) -> Result<(), Box<dyn Error>> {
-    for Comparison { scenario, flights } in comparisons {
-        if let Some(pair) = flights.first() {
-            for (name, svg) in figures::draw(scenario, pair)? {
+    for Comparison { scenario, flights } in &comparisons {
+        let Some(first) = flights.first() else { continue };
+        if let Some(folder) = &arguments.plots {
+            for (name, svg) in figures::draw(scenario, first)? {
                 fs::write(folder.join(name), svg)?;
             }
         }
+        if let Some(folder) = &arguments.csv {
+            for method in [Method::Coaxial, Method::Conventional] {
+                let path = folder.join(format!("{}-{method}.csv", scenario.slug()));
+                log::write_flight(first.with(method), create(&path)?)?;
+            }
+        }
+    }
+    let tracking = arguments.csv.as_ref().map(|folder| folder.join("tracking.csv"));
+    for path in tracking.iter().chain(&arguments.errors) {
+        log::write_tracking(&comparisons, create(path)?)?;
     }
     Ok(())
 }
 
-/// The flights of the first seed of every scenario, and the figures of Table II of all.
-fn write_logs(comparisons: &[Comparison], folder: &Path) -> Result<(), Box<dyn Error>> {
-    for Comparison { scenario, flights } in comparisons {
-        if let Some(pair) = flights.first() {
-            for method in [Method::Coaxial, Method::Conventional] {
-                let path = folder.join(format!("{}-{method}.csv", scenario.slug()));
-                log::write_flight(pair.with(method), File::create(path)?)?;
-            }
-        }
-    }
-    log::write_tracking(comparisons, File::create(folder.join("tracking.csv"))?)?;
-    Ok(())
+fn create(path: &Path) -> Result<File, String> {
+    File::create(path).map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -8,7 +8,7 @@ use mixer_compiler::tables::MixerTables;
 use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 
-use crate::conventional::{ConventionalMixer, Unsuited};
+use crate::conventional::ConventionalMixer;
 use crate::vehicle::{ROTORS, isae_x8};
 
 /// Name of a mixer, as Table II has it.
@@ -44,12 +44,14 @@ impl Mixer {
     /// The mixer of `airframe` by name.
     ///
     /// # Errors
-    /// A conventional mixer that does not exist: see [`Unsuited`].
-    pub fn new(method: Method, airframe: &Airframe) -> Result<Self, Unsuited> {
+    /// A conventional mixer that does not exist: see [`ConventionalMixer::new`]; rotors that cannot
+    /// produce all four axes.
+    pub fn new(method: Method, airframe: &Airframe) -> Result<Self, &'static str> {
         Ok(match method {
             Method::Coaxial => Mixer::Coaxial,
             Method::Conventional => {
-                let effectiveness = Effectiveness::new(airframe).map_err(|_| Unsuited::Rank)?;
+                let effectiveness =
+                    Effectiveness::new(airframe).map_err(|_| "the rotors cannot produce all four axes")?;
                 Mixer::Conventional(Box::new(ConventionalMixer::new(airframe, &effectiveness)?))
             }
         })
@@ -65,16 +67,15 @@ impl Mixer {
         wrench: &Vector4<f64>,
         voltage_v: f64,
     ) -> Result<(SVector<f64, ROTORS>, bool), SetpointError> {
+        let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
         match self {
             Mixer::Coaxial => {
-                let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
                 let mix = isae_x8::mix(&setpoint, voltage_v as f32)?;
                 let throttle = SVector::from(mix.throttle).map(f64::from);
                 Ok((throttle, mix.saturation.any_axis()))
             }
             Mixer::Conventional(mixer) => mixer.mix(wrench, voltage_v),
             Mixer::Compiled(tables) => {
-                let setpoint = Wrench::from_array(wrench.map(|x| x as f32).into());
                 let (throttle, _, saturation) = tables.mix(&setpoint, voltage_v as f32)?;
                 let rotors = throttle.into_iter().map(f64::from).chain([0.0; ROTORS]);
                 Ok((SVector::from_iterator(rotors.take(ROTORS)), saturation.any_axis()))

@@ -121,7 +121,7 @@ impl<const R: usize> Plant<R> {
         step: f64,
     ) -> State<R> {
         let target = command + command.component_mul(&self.mismatch);
-        let mut next = runge_kutta(*state, step, |state| self.derivative(state, &target, disturbance));
+        let mut next = runge_kutta(state, step, |state| self.derivative(state, &target, disturbance));
         next.attitude = next.rotation().into_inner();
         next
     }

@@ -38,13 +38,10 @@ const PX4_LINK: u16 = 14540;
 const ARDUPILOT_LINK: u16 = 5760;
 
 /// Says where a stack is waited for.
-fn say(stack: Stack, address: std::io::Result<SocketAddr>) {
-    let Ok(address) = address else { return };
-    let (name, transport) = match stack {
-        Stack::Px4 => ("PX4", "TCP"),
-        Stack::Ardupilot => ("ArduPilot", "UDP"),
-    };
-    eprintln!("waiting for {name} on {transport} port {}", address.port());
+fn say(stack: &str, address: std::io::Result<SocketAddr>) {
+    if let Ok(address) = address {
+        eprintln!("waiting for {stack} port {}", address.port());
+    }
 }
 
 /// The file of `--output`, made before the flight, so that nothing flown is lost, and after
@@ -61,8 +58,8 @@ fn file(arguments: &Arguments) -> Result<Option<File>, String> {
             path.display()
         ));
     }
-    let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    Ok(Some(file))
+    let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()));
+    file.map(Some)
 }
 
 /// Serves a stack and writes what was flown.
@@ -88,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         let link = Link::udp(arguments.link.unwrap_or(PX4_LINK))?;
         let listener = px4::listen(arguments.port.unwrap_or(px4::PORT))?;
         output = file(arguments)?;
-        say(Stack::Px4, listener.local_addr());
+        say("PX4 on TCP", listener.local_addr());
         // Without a manoeuvre, too: PX4 has its battery by this link.
         let pilot = Pilot::new(Stack::Px4, link, arguments);
         let mut flight = Flight::new(vehicle, Some(pilot), arguments);
@@ -97,11 +94,10 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     } else {
         let socket = ardupilot::listen(arguments.port.unwrap_or(ardupilot::PORT))?;
         output = file(arguments)?;
-        say(Stack::Ardupilot, socket.local_addr());
-        let link = || Link::tcp(arguments.link.unwrap_or(ARDUPILOT_LINK));
-        let pilot = arguments
-            .fly
-            .map(|_| Pilot::new(Stack::Ardupilot, link(), arguments));
+        say("ArduPilot on UDP", socket.local_addr());
+        let link = Link::tcp(arguments.link.unwrap_or(ARDUPILOT_LINK));
+        let pilot = Pilot::new(Stack::Ardupilot, link, arguments);
+        let pilot = arguments.fly.map(|_| pilot);
         let mut flight = Flight::new(vehicle, pilot, arguments);
         let end = ardupilot::serve(&socket, &mut flight, &mut sensors, arguments.pwm_range);
         (flight, end)

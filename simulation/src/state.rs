@@ -1,7 +1,5 @@
 //! State of the vehicle, and its derivative: the same fields.
 
-use std::ops::{Add, Mul};
-
 use nalgebra::{Quaternion, SVector, UnitQuaternion, Vector3};
 
 /// State of a vehicle of `R` channels. World axes north, east, down; body axes forward, right, down.
@@ -34,6 +32,18 @@ impl<const R: usize> State<R> {
         }
     }
 
+    /// This state and `factor` times another, or a derivative.
+    pub fn plus(&self, factor: f64, other: &State<R>) -> Self {
+        State {
+            position: self.position + other.position * factor,
+            velocity: self.velocity + other.velocity * factor,
+            attitude: self.attitude + other.attitude * factor,
+            rate: self.rate + other.rate * factor,
+            throttle: self.throttle + other.throttle * factor,
+            charge_ah: self.charge_ah + other.charge_ah * factor,
+        }
+    }
+
     /// The attitude as a rotation from body to world.
     pub fn rotation(&self) -> UnitQuaternion<f64> {
         UnitQuaternion::new_normalize(self.attitude)
@@ -43,36 +53,6 @@ impl<const R: usize> State<R> {
     pub fn yaw(&self) -> f64 {
         let forward = self.rotation() * Vector3::x();
         libm::atan2(forward.y, forward.x)
-    }
-}
-
-impl<const R: usize> Add for State<R> {
-    type Output = State<R>;
-
-    fn add(self, other: State<R>) -> State<R> {
-        State {
-            position: self.position + other.position,
-            velocity: self.velocity + other.velocity,
-            attitude: self.attitude + other.attitude,
-            rate: self.rate + other.rate,
-            throttle: self.throttle + other.throttle,
-            charge_ah: self.charge_ah + other.charge_ah,
-        }
-    }
-}
-
-impl<const R: usize> Mul<f64> for State<R> {
-    type Output = State<R>;
-
-    fn mul(self, factor: f64) -> State<R> {
-        State {
-            position: self.position * factor,
-            velocity: self.velocity * factor,
-            attitude: self.attitude * factor,
-            rate: self.rate * factor,
-            throttle: self.throttle * factor,
-            charge_ah: self.charge_ah * factor,
-        }
     }
 }
 

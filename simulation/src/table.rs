@@ -32,22 +32,16 @@ that knows its hover thrust, estimated or measured, takes away nearly all of the
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let flights = &self.flights;
-        writeln!(
-            f,
-            "{}, {} seeds (mean ± standard deviation)",
-            self.scenario,
-            flights.len()
-        )?;
-        writeln!(f)?;
+        let (scenario, seeds) = (self.scenario, flights.len());
+        writeln!(f, "{scenario}, {seeds} seeds (mean ± standard deviation)\n")?;
         writeln!(
             f,
             "  {:<12} {:^21} {:^21} {:^15} | paper {:>8} {:>12} {:>6}",
             "Table II", "coaxial", "conventional", "ratio", "coaxial", "conventional", "ratio"
         )?;
         for (row, name) in TrackingError::NAMES.into_iter().enumerate() {
-            let unit = if row == 0 { "mm2" } else { "mm" };
             // Metres to millimetres, squared in the first row.
-            let scale = if row == 0 { 1e6 } else { 1e3 };
+            let (unit, scale) = if row == 0 { ("mm2", 1e6) } else { ("mm", 1e3) };
             for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                 let of = |method| scaled(figure(flights, method, row, axis), scale);
                 let [coaxial, conventional] =

@@ -50,12 +50,8 @@ impl Flight {
         let (mut mse, mut mae, mut max) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
         for axis in 0..3 {
             let counts = |sample: &&Sample| axis < 2 || HIGH_PHASE_S.contains(&sample.time_s);
-            let errors: Vec<f64> = self
-                .samples
-                .iter()
-                .filter(counts)
-                .map(|sample| (sample.reference.position - sample.position)[axis])
-                .collect();
+            let error = |sample: &Sample| (sample.reference.position - sample.position)[axis];
+            let errors: Vec<f64> = self.samples.iter().filter(counts).map(error).collect();
             mse[axis] = mean(errors.iter().map(|e| e * e));
             mae[axis] = mean(errors.iter().map(|e| e.abs()));
             max[axis] = errors.iter().fold(0.0, |max: f64, e| max.max(e.abs()));
@@ -65,19 +61,15 @@ impl Flight {
 
     /// Mean absolute yaw error over the manoeuvre, rad.
     pub fn yaw_error(&self) -> f64 {
-        mean(self.samples.iter().map(|sample| {
-            let error = sample.reference.yaw - sample.yaw;
-            wrapped(error).abs()
-        }))
+        let error = |sample: &Sample| wrapped(sample.reference.yaw - sample.yaw).abs();
+        mean(self.samples.iter().map(error))
     }
 
     /// Mean commanded thrust over weight in the first hover (Fig. 10): 1 if the mixer delivers what
     /// is asked.
     pub fn hover_thrust(&self) -> f64 {
-        let hover = self
-            .samples
-            .iter()
-            .filter(|sample| HOVER_S.contains(&sample.time_s));
+        let is_hover = |sample: &&Sample| HOVER_S.contains(&sample.time_s);
+        let hover = self.samples.iter().filter(is_hover);
         mean(hover.map(|sample| sample.command.w / WEIGHT_N))
     }
 
@@ -117,21 +109,17 @@ impl Spread {
 
 /// One figure of Table II over the seeds: `row` as in [`TrackingError::NAMES`], `axis` 0 to 2.
 pub fn figure(flights: &[FlightPair], method: Method, row: usize, axis: usize) -> Spread {
-    Spread::of(
-        flights
-            .iter()
-            .map(|pair| pair.with(method).tracking_error().rows()[row][axis]),
-    )
+    let of = |pair: &FlightPair| pair.with(method).tracking_error().rows()[row][axis];
+    Spread::of(flights.iter().map(of))
 }
 
 /// The ratio coaxial over conventional of one figure: taken seed by seed, then averaged.
 pub fn ratio(flights: &[FlightPair], row: usize, axis: usize) -> Spread {
     let of = |flight: &Flight| flight.tracking_error().rows()[row][axis];
-    Spread::of(
-        flights
-            .iter()
-            .map(|pair| of(&pair.coaxial) / of(&pair.conventional)),
-    )
+    let ratios = flights
+        .iter()
+        .map(|pair| of(&pair.coaxial) / of(&pair.conventional));
+    Spread::of(ratios)
 }
 
 #[cfg(test)]

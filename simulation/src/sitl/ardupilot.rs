@@ -4,15 +4,14 @@
 //! without one it sends the packet again, with the number that it had: it gets the same answer, and
 //! no time passes. A number that goes back is an ArduPilot that has started anew.
 
-use std::fmt::Write as _;
 use std::io::ErrorKind;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
 
-use super::arguments::Pulses;
 use super::flight::{End, Flight};
+use super::link::is_silence;
 use super::sensors::Sensors;
 use super::vehicle::{MOST_ROTORS, Throttles};
 use super::world::World;
@@ -66,7 +65,7 @@ pub fn serve(
     socket: &UdpSocket,
     flight: &mut Flight,
     sensors: &mut Sensors,
-    Pulses(pulses): Pulses,
+    pulses: [f64; 2],
 ) -> Result<End, String> {
     let mut malformed = 0;
     let end = fly(socket, flight, sensors, pulses, &mut malformed);
@@ -87,7 +86,8 @@ fn fly(
     loop {
         let (count, from) = match socket.recv_from(&mut bytes) {
             Ok(received) => received,
-            Err(error) if is_silence(&error) => {
+            // A refused connection is that of the answer before: ArduPilot has gone, or will come back.
+            Err(error) if is_silence(&error) || error.kind() == ErrorKind::ConnectionRefused => {
                 if let Some(pilot) = &mut flight.pilot {
                     // ArduPilot does not start before somebody has connected.
                     pilot.connect();
@@ -133,14 +133,6 @@ fn fly(
     }
 }
 
-fn is_silence(error: &std::io::Error) -> bool {
-    // A refused connection is that of the answer before: ArduPilot has gone, or will come back.
-    matches!(
-        error.kind(),
-        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted | ErrorKind::ConnectionRefused
-    )
-}
-
 /// `None` of anything else.
 fn packet(bytes: &[u8], [low, high]: [f64; 2]) -> Option<Packet> {
     let word = |at: usize| Some(u16::from_le_bytes(bytes.get(at..at + 2)?.try_into().ok()?));
@@ -172,13 +164,10 @@ fn answer(world: &World, sensors: &mut Sensors) -> String {
     let inertial = sensors.inertial(world);
     let q = state.attitude;
     let list = |vector: &Vector3<f64>| format!("[{:.9},{:.9},{:.9}]", vector.x, vector.y, vector.z);
-    let mut line = String::with_capacity(512);
-    // Writing to a String cannot fail.
-    let _ = writeln!(
-        line,
+    format!(
         "\n{{\"timestamp\":{:.6},\"imu\":{{\"gyro\":{},\"accel_body\":{}}},\"position\":{},\
          \"quaternion\":[{:.9},{:.9},{:.9},{:.9}],\"velocity\":{},\"battery\":{{\"voltage\":{:.4},\"current\":{:.4}}},\
-         \"no_time_sync\":1}}",
+         \"no_time_sync\":1}}\n",
         world.time_s(),
         list(&inertial.rate),
         list(&inertial.acceleration),
@@ -190,6 +179,5 @@ fn answer(world: &World, sensors: &mut Sensors) -> String {
         list(&state.velocity),
         world.voltage_v(),
         world.current_a(),
-    );
-    line
+    )
 }

@@ -59,7 +59,7 @@ pub struct Arguments {
     pub mass_kg: Option<f64>,
     /// Moments of inertia, kg m2, instead of the file's
     #[arg(long, value_name = "X,Y,Z", value_parser = inertia)]
-    pub inertia: Option<Inertia>,
+    pub inertia: Option<[f64; 3]>,
     /// Time constant of the rotors' lag, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.05, value_parser = positive)]
     pub rotor_lag: f64,
@@ -68,7 +68,7 @@ pub struct Arguments {
     pub height: f64,
     /// Pulse widths of throttle 0 and 1 in ArduPilot, MOT_PWM_MIN and MOT_PWM_MAX
     #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = pulses)]
-    pub pwm_range: Pulses,
+    pub pwm_range: [f64; 2],
     /// Port to serve: 4560 plus PX4's instance, 9002 for ArduPilot; 0 takes a free one
     #[arg(long)]
     pub port: Option<u16>,
@@ -92,16 +92,8 @@ pub struct Failure {
     pub time_s: f64,
 }
 
-/// Three moments of inertia, kg m2.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inertia(pub [f64; 3]);
-
-/// Pulse widths, microseconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pulses(pub [f64; 2]);
-
 fn number(text: &str) -> Result<f64, String> {
-    let value: f64 = text.trim().parse().map_err(|_| "not a number".to_owned())?;
+    let value: f64 = text.trim().parse().map_err(|_| "not a number")?;
     if value.is_finite() {
         Ok(value)
     } else {
@@ -110,17 +102,17 @@ fn number(text: &str) -> Result<f64, String> {
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value >= 0.0 => Ok(value),
-        _ => Err("must be 0 or more".to_owned()),
-    }
+    let value = number(text)?;
+    (value >= 0.0)
+        .then_some(value)
+        .ok_or_else(|| "must be 0 or more".to_owned())
 }
 
 fn positive(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value > 0.0 => Ok(value),
-        _ => Err("must be above 0".to_owned()),
-    }
+    let value = number(text)?;
+    (value > 0.0)
+        .then_some(value)
+        .ok_or_else(|| "must be above 0".to_owned())
 }
 
 fn failure(text: &str) -> Result<Failure, String> {
@@ -132,18 +124,17 @@ fn failure(text: &str) -> Result<Failure, String> {
     })
 }
 
-fn inertia(text: &str) -> Result<Inertia, String> {
+fn inertia(text: &str) -> Result<[f64; 3], String> {
     let moments: Vec<f64> = text.split(',').map(positive).collect::<Result<_, _>>()?;
-    let moments = moments
+    moments
         .try_into()
-        .map_err(|_| "expected three numbers, like 0.08,0.087,0.16")?;
-    Ok(Inertia(moments))
+        .map_err(|_| "expected three numbers, like 0.08,0.087,0.16".to_owned())
 }
 
-fn pulses(text: &str) -> Result<Pulses, String> {
+fn pulses(text: &str) -> Result<[f64; 2], String> {
     let widths: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
     match widths[..] {
-        [low, high] if 500.0 <= low && low + 100.0 <= high && high <= 2500.0 => Ok(Pulses([low, high])),
+        [low, high] if 500.0 <= low && low + 100.0 <= high && high <= 2500.0 => Ok([low, high]),
         _ => Err("expected two widths from 500 to 2500, like 1000,2000".to_owned()),
     }
 }

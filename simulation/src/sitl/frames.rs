@@ -1,7 +1,7 @@
 //! MAVLink frames out of a stream of bytes.
 
 use mavlink::dialects::common::MavMessage;
-use mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
+use mavlink::{MAVLinkMessageRaw, MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, Message};
 
 const V1: u8 = 0xfe;
 const V2: u8 = 0xfd;
@@ -88,42 +88,26 @@ impl Iterator for Frames {
 
 /// `None` of bytes that are no frame; otherwise its message, where the dialect has it.
 fn parse(bytes: &[u8]) -> Option<Option<(MavHeader, MavMessage)>> {
-    if bytes[0] == V1 {
+    let (raw, is_whole) = if bytes[0] == V1 {
         let mut raw = MAVLinkV1MessageRaw::new();
         raw.as_mut_slice()[..bytes.len()].copy_from_slice(bytes);
-        let id = u32::from(raw.message_id());
-        let header = MavHeader {
-            system_id: raw.system_id().into(),
-            component_id: raw.component_id(),
-            sequence: raw.sequence(),
-        };
-        let is_whole = raw.has_valid_crc::<MavMessage>();
-        return message(is_whole, MavlinkVersion::V1, id, header, raw.payload());
-    }
-    let mut raw = MAVLinkV2MessageRaw::new();
-    raw.as_mut_slice()[..bytes.len()].copy_from_slice(bytes);
+        (MAVLinkMessageRaw::V1(raw), raw.has_valid_crc::<MavMessage>())
+    } else {
+        let mut raw = MAVLinkV2MessageRaw::new();
+        raw.as_mut_slice()[..bytes.len()].copy_from_slice(bytes);
+        (MAVLinkMessageRaw::V2(raw), raw.has_valid_crc::<MavMessage>())
+    };
     let id = raw.message_id();
+    if !is_whole && MavMessage::default_message_from_id(id).is_some() {
+        return None;
+    }
     let header = MavHeader {
         system_id: raw.system_id(),
         component_id: raw.component_id(),
         sequence: raw.sequence(),
     };
-    let is_whole = raw.has_valid_crc::<MavMessage>();
-    message(is_whole, MavlinkVersion::V2, id, header, raw.payload())
-}
-
-fn message(
-    is_whole: bool,
-    version: MavlinkVersion,
-    id: u32,
-    header: MavHeader,
-    payload: &[u8],
-) -> Option<Option<(MavHeader, MavMessage)>> {
-    if !is_whole && MavMessage::default_message_from_id(id).is_some() {
-        return None;
-    }
     // A value that the dialect does not have, say a command, makes a message unreadable.
-    let message = is_whole.then(|| MavMessage::parse(version, id, payload).ok());
+    let message = is_whole.then(|| MavMessage::parse(raw.version(), id, raw.payload()).ok());
     Some(message.flatten().map(|message| (header, message)))
 }
 

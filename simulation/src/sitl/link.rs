@@ -15,6 +15,14 @@ const STATION: [u8; 2] = [255, 190];
 /// Longest wait for ArduPilot's port to open, per try.
 const CONNECT: Duration = Duration::from_millis(100);
 
+/// Whether nothing has come, so far.
+pub fn is_silence(error: &std::io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
+}
+
 /// A link, connected or not yet.
 #[derive(Debug)]
 pub struct Link {

@@ -49,29 +49,22 @@ pub fn heartbeat() -> MavMessage {
 /// Asks for a position and a heading.
 pub fn position(target: Target, height_m: f64, [system, component]: [u8; 2], time_s: f64) -> MavMessage {
     use PositionTargetTypemask as Mask;
-    let velocity = Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE
-        | Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE
-        | Mask::POSITION_TARGET_TYPEMASK_VZ_IGNORE;
-    let acceleration = Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE
-        | Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE
-        | Mask::POSITION_TARGET_TYPEMASK_AZ_IGNORE;
+    let wanted = Mask::POSITION_TARGET_TYPEMASK_X_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_Y_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_Z_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_YAW_IGNORE
+        | Mask::POSITION_TARGET_TYPEMASK_FORCE_SET;
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
         time_boot_ms: (time_s * 1e3) as u32,
         x: target.offset.x as f32,
         y: target.offset.y as f32,
         z: -(height_m + target.offset.z) as f32,
-        vx: 0.0,
-        vy: 0.0,
-        vz: 0.0,
-        afx: 0.0,
-        afy: 0.0,
-        afz: 0.0,
         yaw: target.yaw_deg.to_radians() as f32,
-        yaw_rate: 0.0,
-        type_mask: velocity | acceleration | Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE,
+        type_mask: Mask::all().difference(wanted),
         target_system: system,
         target_component: component,
         coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+        ..SET_POSITION_TARGET_LOCAL_NED_DATA::DEFAULT
     })
 }
 
@@ -89,10 +82,8 @@ pub fn battery(world: &World) -> MavMessage {
     let cells = cells(world.vehicle.battery.full_v);
     let mut voltages = [u16::MAX; 10];
     voltages[..cells].fill((1e3 * volts / cells as f64).round() as u16);
-    let left = world
-        .vehicle
-        .capacity_ah
-        .map_or(1.0, |capacity_ah| (1.0 - charge_ah / capacity_ah).max(0.0));
+    let left = |capacity_ah: f64| (1.0 - charge_ah / capacity_ah).max(0.0);
+    let left = world.vehicle.capacity_ah.map_or(1.0, left);
     MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
         current_consumed: (1e3 * charge_ah) as i32,
         energy_consumed: -1,

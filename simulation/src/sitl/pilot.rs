@@ -53,6 +53,16 @@ const OFFBOARD: u32 = 6;
 const MOTOR: f32 = 101.0;
 const STUCK: f32 = 2.0;
 
+impl Stack {
+    /// The mode in which it takes targets.
+    fn guided(self) -> u32 {
+        match self {
+            Stack::Px4 => OFFBOARD,
+            Stack::Ardupilot => GUIDED,
+        }
+    }
+}
+
 /// Where the flight is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -77,29 +87,23 @@ pub struct Pilot {
     armed: bool,
     uses_gps: bool,
     mode: u32,
-    heartbeat: Clock,
-    command: Clock,
-    battery: Clock,
-    target: Clock,
+    /// When something periodic is due next, s.
+    heartbeat_s: f64,
+    command_s: f64,
+    battery_s: f64,
+    target_s: f64,
     thrust_setpoint: f64,
     texts: Texts,
     told: String,
 }
 
-/// Tells when something that is periodic is due.
-#[derive(Clone, Copy, Debug, Default)]
-struct Clock {
-    next_s: f64,
-}
-
-impl Clock {
-    fn is_due(&mut self, time_s: f64, period_s: f64) -> bool {
-        let is_due = time_s >= self.next_s;
-        if is_due {
-            self.next_s = time_s + period_s;
-        }
-        is_due
+/// Whether something periodic is due, next at `next_s`.
+fn is_due(next_s: &mut f64, time_s: f64, period_s: f64) -> bool {
+    let is_due = time_s >= *next_s;
+    if is_due {
+        *next_s = time_s + period_s;
     }
+    is_due
 }
 
 impl Pilot {
@@ -115,10 +119,10 @@ impl Pilot {
             armed: false,
             uses_gps: false,
             mode: 0,
-            heartbeat: Clock::default(),
-            command: Clock::default(),
-            battery: Clock::default(),
-            target: Clock::default(),
+            heartbeat_s: 0.0,
+            command_s: 0.0,
+            battery_s: 0.0,
+            target_s: 0.0,
             thrust_setpoint: f64::NAN,
             texts: Texts::default(),
             told: String::new(),
@@ -175,15 +179,12 @@ impl Pilot {
         let Some((peer, since_s)) = self.peer else {
             return Ok(());
         };
-        if self.heartbeat.is_due(time_s, HEARTBEAT_S) {
+        if is_due(&mut self.heartbeat_s, time_s, HEARTBEAT_S) {
             self.link.send(&heartbeat());
-            self.command(
-                peer,
-                MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
-                [ATTITUDE_TARGET, ATTITUDE_TARGET_US],
-            );
+            let parameters = [ATTITUDE_TARGET, ATTITUDE_TARGET_US];
+            self.command(peer, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, parameters);
         }
-        if self.stack == Stack::Px4 && self.battery.is_due(time_s, BATTERY_S) {
+        if self.stack == Stack::Px4 && is_due(&mut self.battery_s, time_s, BATTERY_S) {
             self.link.send_as([peer[0], BATTERY], &battery(world));
         }
         if self.plan.is_none() {
@@ -233,11 +234,7 @@ impl Pilot {
     pub fn inject(&mut self, output: usize) {
         if let (Stack::Px4, Some((peer, _))) = (self.stack, self.peer) {
             let motor = output as f32 + 1.0;
-            self.long(
-                peer,
-                MavCmd::MAV_CMD_INJECT_FAILURE,
-                [MOTOR, STUCK, motor, 0.0, 0.0, 0.0, 0.0],
-            );
+            self.command(peer, MavCmd::MAV_CMD_INJECT_FAILURE, [MOTOR, STUCK, motor]);
         }
     }
 
@@ -249,9 +246,9 @@ impl Pilot {
         };
         match self.phase {
             Phase::Arming => {
-                if self.armed && self.is_guided() {
+                if self.armed && self.mode == self.stack.guided() {
                     self.phase = Phase::Climbing(None);
-                } else if time_s > since_s + wait_s && self.command.is_due(time_s, COMMAND_S) {
+                } else if time_s > since_s + wait_s && is_due(&mut self.command_s, time_s, COMMAND_S) {
                     self.arm(peer);
                 }
             }
@@ -262,18 +259,15 @@ impl Pilot {
                 if still_since_s.is_some_and(|since_s| time_s - since_s > STILL_S) {
                     eprintln!("{time_s:8.2} s  hovers at {height_m:.2} m");
                     self.phase = Phase::Flying(time_s);
-                } else if world.on_ground && self.command.is_due(time_s, COMMAND_S) {
+                } else if world.on_ground && is_due(&mut self.command_s, time_s, COMMAND_S) {
                     match self.stack {
-                        Stack::Ardupilot if self.armed => {
-                            let height = self.height_m as f32;
-                            self.long(
-                                peer,
-                                MavCmd::MAV_CMD_NAV_TAKEOFF,
-                                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height],
-                            );
-                        }
                         _ if !self.armed => self.phase = Phase::Arming,
-                        _ => {}
+                        Stack::Ardupilot => {
+                            let height = self.height_m as f32;
+                            let parameters = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height];
+                            self.command(peer, MavCmd::MAV_CMD_NAV_TAKEOFF, parameters);
+                        }
+                        Stack::Px4 => {}
                     }
                 }
             }
@@ -291,41 +285,30 @@ impl Pilot {
         }
         // ArduPilot's take-off ends with the first of them.
         let takes_targets = self.stack == Stack::Px4 || matches!(self.phase, Phase::Flying(_));
-        if takes_targets && self.target.is_due(time_s, TARGET_S) {
+        if takes_targets && is_due(&mut self.target_s, time_s, TARGET_S) {
             let target = self.wanted(time_s).unwrap_or_default();
             self.link.send(&position(target, self.height_m, peer, time_s));
         }
         Ok(())
     }
 
-    fn is_guided(&self) -> bool {
-        self.mode
-            == match self.stack {
-                Stack::Px4 => OFFBOARD,
-                Stack::Ardupilot => GUIDED,
-            }
-    }
-
     /// Asks for the mode, then for armed motors.
     fn arm(&mut self, peer: [u8; 2]) {
-        if self.is_guided() {
-            self.command(peer, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0]);
+        let mode = self.stack.guided();
+        if self.mode == mode {
+            self.command(peer, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0]);
         } else {
-            let mode = match self.stack {
-                Stack::Px4 => OFFBOARD,
-                Stack::Ardupilot => GUIDED,
-            };
             // 1: the mode is one of the stack's own.
             self.command(peer, MavCmd::MAV_CMD_DO_SET_MODE, [1.0, mode as f32]);
         }
     }
 
-    fn command(&mut self, peer: [u8; 2], command: MavCmd, [a, b]: [f32; 2]) {
-        self.long(peer, command, [a, b, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    }
-
-    fn long(&mut self, [system, component]: [u8; 2], command: MavCmd, parameters: [f32; 7]) {
-        let [param1, param2, param3, param4, param5, param6, param7] = parameters;
+    /// Sends a command; parameters that are not given are 0.
+    fn command<const P: usize>(&mut self, peer: [u8; 2], command: MavCmd, given: [f32; P]) {
+        let [target_system, target_component] = peer;
+        let mut all = [0.0; 7];
+        all[..P].copy_from_slice(&given);
+        let [param1, param2, param3, param4, param5, param6, param7] = all;
         self.link.send(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
             param1,
             param2,
@@ -335,8 +318,8 @@ impl Pilot {
             param6,
             param7,
             command,
-            target_system: system,
-            target_component: component,
+            target_system,
+            target_component,
             confirmation: 0,
         }));
     }

@@ -39,54 +39,40 @@ pub struct Plan {
 /// Time of the first step, s: before it the hover is measured.
 pub const FIRST_S: f64 = 5.0;
 
+/// End of a manoeuvre without steps, s.
+const HOVER_S: f64 = 30.0;
+
 /// Time from one step to the next, s.
 pub const BETWEEN_S: f64 = 8.0;
 
 impl Manoeuvre {
     /// When what is asked for.
     pub fn plan(self) -> Plan {
+        const HOME: [f64; 4] = [0.0; 4];
+        let yaw = |degrees| [0.0, 0.0, 0.0, degrees];
         let targets: &[[f64; 4]] = match self {
-            Manoeuvre::Hover => {
-                return Plan {
-                    steps: Vec::new(),
-                    end_s: 30.0,
-                };
-            }
-            Manoeuvre::Steps => &[
-                [0.0, 0.0, 3.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0],
-                [4.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0],
-            ],
-            Manoeuvre::Yaw => &[
-                [0.0, 0.0, 0.0, 90.0],
-                [0.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, -90.0],
-                [0.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 175.0],
-                [0.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, -175.0],
-                [0.0, 0.0, 0.0, 0.0],
-            ],
-            Manoeuvre::Sidestep => &[
-                [0.0, 6.0, 0.0, 90.0],
-                [0.0, 0.0, 0.0, 0.0],
-                [0.0, 6.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0],
-            ],
+            Manoeuvre::Hover => &[],
+            Manoeuvre::Steps => &[[0.0, 0.0, 3.0, 0.0], HOME, [4.0, 0.0, 0.0, 0.0], HOME],
+            Manoeuvre::Yaw => &[90.0, 0.0, -90.0, 0.0, 175.0, 0.0, -175.0, 0.0].map(yaw),
+            Manoeuvre::Sidestep => &[[0.0, 6.0, 0.0, 90.0], HOME, [0.0, 6.0, 0.0, 0.0], HOME],
             // The rotor stops at the first time.
-            Manoeuvre::Failure => &[[0.0; 4], [0.0, 0.0, 0.0, 90.0], [0.0; 4]],
+            Manoeuvre::Failure => &[HOME, yaw(90.0), HOME],
         };
+        let begin_s = |k: usize| FIRST_S + BETWEEN_S * k as f64;
         let steps = targets
             .iter()
-            .zip(0u32..)
-            .map(|(&[north, east, up, yaw_deg], k)| {
+            .enumerate()
+            .map(|(k, &[north, east, up, yaw_deg])| {
                 let offset = Vector3::new(north, east, up);
-                (FIRST_S + BETWEEN_S * f64::from(k), Target { offset, yaw_deg })
+                (begin_s(k), Target { offset, yaw_deg })
             });
         Plan {
             steps: steps.collect(),
-            end_s: FIRST_S + BETWEEN_S * targets.len() as f64,
+            end_s: if targets.is_empty() {
+                HOVER_S
+            } else {
+                begin_s(targets.len())
+            },
         }
     }
 }

@@ -4,7 +4,8 @@
 //! `HIL_ACTUATOR_CONTROLS` once all of its modules have run. The first frames go without an answer:
 //! PX4 gives none before its modules are up.
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{Read, Write};
+use std::iter::repeat;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
@@ -17,9 +18,10 @@ use nalgebra::Vector3;
 
 use super::flight::{End, Flight};
 use super::frames::{Frames, frame};
+use super::link::is_silence;
 use super::messages::heartbeat;
 use super::sensors::{Sensors, place};
-use super::vehicle::Throttles;
+use super::vehicle::{MOST_ROTORS, Throttles};
 use super::world::World;
 
 /// Time between samples, microseconds: PX4's start scripts count on 250 per second, and with more it
@@ -36,8 +38,10 @@ const PATIENCE: Duration = Duration::from_secs(2);
 const DISARMED: Duration = Duration::from_millis(100);
 const PERIOD: Duration = Duration::from_micros(PERIOD_US);
 
-/// Outputs in a message.
-const OUTPUTS: usize = 16;
+/// Bits of the fields of `HIL_SENSOR`: of acceleration and rates; of field, pressure, altitude and
+/// temperature.
+const INERTIAL_FIELDS: u32 = 0b11_1111;
+const SLOW_FIELDS: u32 = 0b1_1011_1100_0000;
 
 /// PX4's port of a simulator for instance 0.
 pub const PORT: u16 = 4560;
@@ -62,8 +66,6 @@ struct Px4 {
     answers: bool,
     armed: bool,
     unanswered: u64,
-    /// Whether malformed bytes have been told of.
-    has_complained: bool,
 }
 
 /// Serves PX4 until the flight ends.
@@ -85,13 +87,11 @@ pub fn serve(listener: &TcpListener, flight: &mut Flight, sensors: &mut Sensors)
         answers: false,
         armed: false,
         unanswered: 0,
-        has_complained: false,
     };
     let end = px4.fly(flight, sensors);
-    flight
-        .record
-        .note("armed steps without an answer", px4.unanswered);
-    flight.record.note("malformed pieces", px4.frames.malformed);
+    let record = &mut flight.record;
+    record.note("armed steps without an answer", px4.unanswered);
+    record.note("malformed pieces", px4.frames.malformed);
     end
 }
 
@@ -104,12 +104,10 @@ impl Px4 {
             }
             let world = &flight.world;
             if sample.is_multiple_of(FIX) {
-                let message = fix(world, sensors);
-                self.send(&message)?;
+                self.send(&fix(world, sensors))?;
             }
             self.send(&truth(world))?;
-            let message = measured(world, sensors, sample.is_multiple_of(SLOW));
-            self.send(&message)?;
+            self.send(&measured(world, sensors, sample.is_multiple_of(SLOW)))?;
             self.answer(world.time_us)?;
         }
         Ok(End::Done)
@@ -136,6 +134,7 @@ impl Px4 {
         let deadline = Instant::now() + patience;
         let mut bytes = [0; 4096];
         loop {
+            let malformed = self.frames.malformed;
             for (_, message) in self.frames.by_ref() {
                 if let MavMessage::HIL_ACTUATOR_CONTROLS(controls) = message {
                     self.armed = is_armed(&controls);
@@ -146,8 +145,7 @@ impl Px4 {
                     }
                 }
             }
-            if self.frames.malformed > 0 && !self.has_complained {
-                self.has_complained = true;
+            if malformed == 0 && self.frames.malformed > 0 {
                 eprintln!("PX4 sends what is no MAVLink: passed over");
             }
             let left = deadline.saturating_duration_since(Instant::now());
@@ -164,11 +162,7 @@ impl Px4 {
             match self.stream.read(&mut bytes) {
                 Ok(0) => return Err("PX4 has closed the connection".to_owned()),
                 Ok(count) => self.frames.push(&bytes[..count]),
-                Err(error)
-                    if matches!(
-                        error.kind(),
-                        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
-                    ) => {}
+                Err(error) if is_silence(&error) => {}
                 Err(error) => return Err(vanished(error)),
             }
         }
@@ -185,38 +179,25 @@ fn is_armed(controls: &HIL_ACTUATOR_CONTROLS_DATA) -> bool {
 
 /// PX4's outputs, all at rest unless it is armed.
 fn throttles(controls: &HIL_ACTUATOR_CONTROLS_DATA) -> Throttles {
-    Throttles::from_fn(|output, _| {
-        if is_armed(controls) && output < OUTPUTS {
-            f64::from(controls.controls[output])
-        } else {
-            0.0
-        }
-    })
+    let outputs = controls.controls.iter().filter(|_| is_armed(controls));
+    Throttles::from_iterator(
+        outputs
+            .map(|output| f64::from(*output))
+            .chain(repeat(0.0))
+            .take(MOST_ROTORS),
+    )
 }
 
 fn floats(vector: &Vector3<f64>) -> [f32; 3] {
-    [vector.x as f32, vector.y as f32, vector.z as f32]
+    vector.map(|value| value as f32).into()
 }
 
 fn measured(world: &World, sensors: &mut Sensors, slow: bool) -> MavMessage {
-    use HilSensorUpdatedFlags as Updated;
     let inertial = sensors.inertial(world);
     let [xacc, yacc, zacc] = floats(&inertial.acceleration);
     let [xgyro, ygyro, zgyro] = floats(&inertial.rate);
-    let mut fields_updated = Updated::HIL_SENSOR_UPDATED_XACC
-        | Updated::HIL_SENSOR_UPDATED_YACC
-        | Updated::HIL_SENSOR_UPDATED_ZACC
-        | Updated::HIL_SENSOR_UPDATED_XGYRO
-        | Updated::HIL_SENSOR_UPDATED_YGYRO
-        | Updated::HIL_SENSOR_UPDATED_ZGYRO;
-    if slow {
-        fields_updated |= Updated::HIL_SENSOR_UPDATED_XMAG
-            | Updated::HIL_SENSOR_UPDATED_YMAG
-            | Updated::HIL_SENSOR_UPDATED_ZMAG
-            | Updated::HIL_SENSOR_UPDATED_ABS_PRESSURE
-            | Updated::HIL_SENSOR_UPDATED_PRESSURE_ALT
-            | Updated::HIL_SENSOR_UPDATED_TEMPERATURE;
-    }
+    let slow = if slow { SLOW_FIELDS } else { 0 };
+    let fields_updated = HilSensorUpdatedFlags::from_bits_truncate(INERTIAL_FIELDS | slow);
     let [xmag, ymag, zmag] = floats(&sensors.field(world));
     let air = sensors.air(world);
     MavMessage::HIL_SENSOR(HIL_SENSOR_DATA {
@@ -231,11 +212,10 @@ fn measured(world: &World, sensors: &mut Sensors, slow: bool) -> MavMessage {
         ymag,
         zmag,
         abs_pressure: air.pressure_hpa as f32,
-        diff_pressure: 0.0,
         pressure_alt: air.altitude_m as f32,
         temperature: air.temperature_c as f32,
         fields_updated,
-        id: 0,
+        ..HIL_SENSOR_DATA::DEFAULT
     })
 }
 
@@ -245,7 +225,7 @@ fn scaled([latitude, longitude, altitude]: [f64; 3]) -> [i32; 3] {
 }
 
 fn centimetres(velocity: &Vector3<f64>) -> [i16; 3] {
-    [velocity.x, velocity.y, velocity.z].map(|speed| (100.0 * speed).round() as i16)
+    velocity.map(|speed| (100.0 * speed).round() as i16).into()
 }
 
 fn fix(world: &World, sensors: &mut Sensors) -> MavMessage {
@@ -267,9 +247,8 @@ fn fix(world: &World, sensors: &mut Sensors) -> MavMessage {
         cog: (100.0 * course.rem_euclid(360.0)) as u16 % 36_000,
         fix_type: 3,
         satellites_visible: 10,
-        id: 0,
-        // Not known.
-        yaw: 0,
+        // Its yaw, 0, is not known.
+        ..HIL_GPS_DATA::DEFAULT
     })
 }
 
@@ -293,10 +272,9 @@ fn truth(world: &World) -> MavMessage {
         vx,
         vy,
         vz,
-        ind_airspeed: 0,
-        true_airspeed: 0,
         xacc,
         yacc,
         zacc,
+        ..HIL_STATE_QUATERNION_DATA::DEFAULT
     })
 }

@@ -8,6 +8,7 @@ use super::pilot::Pilot;
 use super::plan::Target;
 use super::vehicle::Throttles;
 use super::world::World;
+use crate::log::write_rows;
 
 /// Time between samples, microseconds, and samples per row of the CSV.
 const PERIOD_US: u64 = 4000;
@@ -88,42 +89,26 @@ impl Record {
     /// # Errors
     /// What `to` cannot take.
     pub fn write(&self, to: impl Write) -> csv::Result<()> {
-        let mut writer = csv::Writer::from_writer(to);
         let names = "time_s,manoeuvre_s,target_x_m,target_y_m,target_up_m,target_yaw_deg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,\
                      roll_deg,pitch_deg,yaw_deg,p_rad_s,q_rad_s,r_rad_s,thrust_n,voltage_v,current_a,thrust_setpoint";
-        let mut header: Vec<String> = names.split(',').map(str::to_owned).collect();
         let rotors = self.samples.first().map_or(0, |sample| sample.throttles.len());
-        header.extend((0..rotors).map(|output| format!("throttle_{output}")));
-        writer.write_record(&header)?;
-        for sample in self.samples.iter().step_by(EVERY) {
-            let none = f64::NAN;
-            let target = sample.target.map_or([none; 4], |Target { offset, yaw_deg }| {
-                [offset.x, offset.y, offset.z, yaw_deg]
-            });
-            let values = [sample.time_s, sample.manoeuvre_s.unwrap_or(none)]
-                .into_iter()
-                .chain(target)
-                .chain(sample.position.iter().copied())
-                .chain(sample.velocity.iter().copied())
-                .chain(sample.euler.iter().map(|angle| angle.to_degrees()))
-                .chain(sample.rate.iter().copied())
-                .chain([
-                    sample.thrust_n,
-                    sample.voltage_v,
-                    sample.current_a,
-                    sample.thrust_setpoint,
-                ])
-                .chain(sample.throttles.iter().copied());
-            let field = |value: f64| {
-                if value.is_nan() {
-                    String::new()
-                } else {
-                    format!("{value:.5}")
-                }
-            };
-            writer.write_record(values.map(field))?;
-        }
-        writer.flush()?;
-        Ok(())
+        let rows = self.samples.iter().step_by(EVERY).map(|sample| {
+            let target = sample
+                .target
+                .map(|target| [target.offset.as_slice(), &[target.yaw_deg]].concat());
+            let parts: [&[f64]; 9] = [
+                &[sample.time_s, sample.manoeuvre_s.unwrap_or(f64::NAN)],
+                target.as_deref().unwrap_or(&[f64::NAN; 4]),
+                sample.position.as_slice(),
+                sample.velocity.as_slice(),
+                &<[f64; 3]>::from(sample.euler.map(f64::to_degrees)),
+                sample.rate.as_slice(),
+                &[sample.thrust_n, sample.voltage_v, sample.current_a],
+                &[sample.thrust_setpoint],
+                &sample.throttles,
+            ];
+            parts.concat()
+        });
+        write_rows(names, rotors, 5, rows, to)
     }
 }

@@ -18,33 +18,23 @@ const RMS_S: f64 = 3.0;
 /// Time before the first step that counts as hover, s.
 const HOVER_S: f64 = 3.0;
 
-/// Steps of one kind.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// Kind: size of the step.
-    pub name: String,
-    /// What was measured of each.
-    pub steps: Vec<Step>,
-}
+/// Steps of one kind: the kind, and what was measured of each.
+pub type Row = (String, Vec<Step>);
 
-/// What is measured of a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Step {
-    /// Time to 90 % of the step, s; of the largest part where there are more. NaN if never.
-    pub rise_s: f64,
-    /// Overshoot, percent of the step.
-    pub overshoot_percent: f64,
-    /// Height error, m: the largest, and rms over 3 s. NaN where the height is to change.
-    pub height_most_m: f64,
-    /// See `height_most_m`.
-    pub height_rms_m: f64,
-    /// Largest and least thrust over weight.
-    pub thrust_most: f64,
-    /// See `thrust_most`.
-    pub thrust_least: f64,
-    /// Largest roll or pitch, degrees.
-    pub tilt_deg: f64,
-}
+/// What is measured of a step, in the order of [`COLUMNS`]. The time is that of the largest part where there are
+/// more, NaN if never; errors of the height are NaN where it is to change.
+pub type Step = [f64; 7];
+
+/// The table's columns after the kind and the number of its steps, and their decimals.
+pub const COLUMNS: [(&str, usize); 7] = [
+    ("time to 90 %, s", 3),
+    ("overshoot, %", 1),
+    ("height error, most, m", 3),
+    ("rms over 3 s, m", 3),
+    ("thrust over weight, most", 3),
+    ("least", 3),
+    ("roll or pitch, most, deg", 2),
+];
 
 /// The hover before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,32 +86,19 @@ impl Score {
         let Some(plan) = flight.pilot.as_ref().and_then(Pilot::plan) else {
             return score;
         };
-        let hover_end_s = plan.steps.first().map_or(plan.end_s, |_| FIRST_S);
         let flown = Flown(&flight.record);
-        let hover_begin_s = if plan.steps.is_empty() {
-            0.0
-        } else {
-            hover_end_s - HOVER_S
+        score.hover = match plan.steps.is_empty() {
+            true => flown.hover(0.0, plan.end_s),
+            false => flown.hover(FIRST_S - HOVER_S, FIRST_S),
         };
-        score.hover = flown.hover(hover_begin_s, hover_end_s);
-        for (k, (begin_s, target)) in plan.steps.iter().enumerate() {
-            let before = if k == 0 {
-                Target::default()
-            } else {
-                plan.steps[k - 1].1
-            };
-            let Some(name) = name(&before, target) else {
-                continue;
-            };
-            let Some(step) = flown.step(*begin_s, &before, target, vehicle.weight_n()) else {
-                continue;
-            };
-            match score.rows.iter_mut().find(|row| row.name == name) {
-                Some(row) => row.steps.push(step),
-                None => score.rows.push(Row {
-                    name,
-                    steps: vec![step],
-                }),
+        let mut before = Target::default();
+        for (begin_s, target) in &plan.steps {
+            let from = std::mem::replace(&mut before, *target);
+            let measured = name(&from, target).zip(flown.step(*begin_s, &from, target, vehicle.weight_n()));
+            let Some((name, step)) = measured else { continue };
+            match score.rows.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, steps)) => steps.push(step),
+                None => score.rows.push((name, vec![step])),
             }
         }
         score.failure = flight
@@ -160,9 +137,13 @@ impl Flown<'_> {
         timed.filter(move |(time_s, _)| (begin_s..end_s).contains(time_s))
     }
 
+    /// The mean of a quantity; `None` of no samples.
+    fn mean(&self, begin_s: f64, end_s: f64, of: impl Fn(&Sample) -> f64) -> Option<f64> {
+        mean(self.between(begin_s, end_s).map(|(_, sample)| of(sample)))
+    }
+
     fn hover(&self, begin_s: f64, end_s: f64) -> Option<Hover> {
-        let over =
-            |of: &dyn Fn(&Sample) -> f64| mean(self.between(begin_s, end_s).map(|(_, sample)| of(sample)));
+        let over = |of: &dyn Fn(&Sample) -> f64| self.mean(begin_s, end_s, of);
         let height_m = over(&height)?;
         let square = |sample: &Sample| (height(sample) - height_m) * (height(sample) - height_m);
         Some(Hover {
@@ -175,41 +156,24 @@ impl Flown<'_> {
 
     fn step(&self, begin_s: f64, from: &Target, to: &Target, weight_n: f64) -> Option<Step> {
         let end_s = begin_s + BETWEEN_S;
-        let is_flown = self.between(end_s - 0.1, end_s).next().is_some();
-        let before = self.between(begin_s - BEFORE_S, begin_s);
-        let over = |of: &dyn Fn(&Sample) -> f64| mean(before.clone().map(|(_, sample)| of(sample)));
-        if !is_flown {
-            return None;
-        }
+        self.between(end_s - 0.1, end_s).next()?;
+        let over = |of: &dyn Fn(&Sample) -> f64| self.mean(begin_s - BEFORE_S, begin_s, of);
         let height_m = over(&height)?;
         let window = || self.between(begin_s, end_s);
+        let largest = |of: &dyn Fn(&Sample) -> f64| most(window().map(|(_, sample)| of(sample)));
         let error = |sample: &Sample| (height(sample) - height_m).abs();
         let offset = to.offset - from.offset;
         let is_level = offset.z == 0.0;
-        let soon = self
-            .between(begin_s, begin_s + RMS_S)
-            .map(|(_, sample)| error(sample) * error(sample));
-        let share = |sample: &Sample| sample.thrust_n / weight_n;
-        let mut step = Step {
-            rise_s: f64::NAN,
-            overshoot_percent: 0.0,
-            height_most_m: if is_level {
-                most(window().map(|(_, sample)| error(sample)))
-            } else {
-                f64::NAN
-            },
-            height_rms_m: if is_level { mean(soon)?.sqrt() } else { f64::NAN },
-            thrust_most: most(window().map(|(_, sample)| share(sample))),
-            thrust_least: -most(window().map(|(_, sample)| -share(sample))),
-            tilt_deg: most(window().map(|(_, sample)| tilt_deg(sample, [0.0; 2]))),
-        };
+        let square = |sample: &Sample| error(sample) * error(sample);
+        let rms = self.mean(begin_s, begin_s + RMS_S, square)?.sqrt();
         let turn = to.yaw_deg - from.yaw_deg;
-        let (north, east) = (
-            over(&|sample| sample.position.x)?,
-            over(&|sample| sample.position.y)?,
+        let (x, y) = (
+            |sample: &Sample| sample.position.x,
+            |sample: &Sample| sample.position.y,
         );
-        let yaw =
-            over(&|sample| wrapped(sample.euler.z - from.yaw_deg.to_radians()))? + from.yaw_deg.to_radians();
+        let [north, east] = [over(&x)?, over(&y)?];
+        let aimed = from.yaw_deg.to_radians();
+        let yaw = over(&|sample| wrapped(sample.euler.z - aimed))? + aimed;
         let progress = |sample: &Sample, last: f64| {
             if offset.xy().norm() > 0.0 {
                 let moved = [sample.position.x - north, sample.position.y - east];
@@ -223,39 +187,44 @@ impl Flown<'_> {
                 turned + round * ((last - turned) / round).round()
             }
         };
-        let mut last = 0.0;
-        let mut furthest = 0.0f64;
+        let (mut last, mut furthest, mut rise_s) = (0.0, 0.0f64, f64::NAN);
         for (time_s, sample) in window() {
             last = progress(sample, last);
             furthest = furthest.max(last);
-            if last >= 0.9 && step.rise_s.is_nan() {
-                step.rise_s = time_s - begin_s;
+            if last >= 0.9 && rise_s.is_nan() {
+                rise_s = time_s - begin_s;
             }
         }
-        step.overshoot_percent = 100.0 * (furthest - 1.0).max(0.0);
-        Some(step)
+        let heights = if is_level {
+            [largest(&error), rms]
+        } else {
+            [f64::NAN; 2]
+        };
+        Some([
+            rise_s,
+            100.0 * (furthest - 1.0).max(0.0),
+            heights[0],
+            heights[1],
+            largest(&|sample| sample.thrust_n / weight_n),
+            -largest(&|sample| -(sample.thrust_n / weight_n)),
+            largest(&|sample| tilt_deg(sample, [0.0; 2])),
+        ])
     }
 
     fn after_failure(&self, failed_s: f64, plan: &Plan) -> Option<AfterFailure> {
-        let next = plan
-            .steps
-            .iter()
-            .map(|(begin_s, _)| *begin_s)
-            .find(|begin_s| *begin_s > failed_s + 0.1);
+        let mut begins = plan.steps.iter().map(|(begin_s, _)| *begin_s);
+        let next = begins.find(|begin_s| *begin_s > failed_s + 0.1);
         let end_s = next.unwrap_or(plan.end_s);
-        let before = self.between(failed_s - BEFORE_S, failed_s);
-        let over = |of: &dyn Fn(&Sample) -> f64| mean(before.clone().map(|(_, sample)| of(sample)));
-        let (height_m, roll, pitch) = (
-            over(&height)?,
-            over(&|sample| sample.euler.x)?,
-            over(&|sample| sample.euler.y)?,
-        );
-        let first = before.clone().next()?.1.euler.z;
+        let before_s = failed_s - BEFORE_S;
+        let over = |of: &dyn Fn(&Sample) -> f64| self.mean(before_s, failed_s, of);
+        let height_m = over(&height)?;
+        let was = [over(&|sample| sample.euler.x)?, over(&|sample| sample.euler.y)?];
+        let first = self.between(before_s, failed_s).next()?.1.euler.z;
         let yaw = first + over(&|sample| wrapped(sample.euler.z - first))?;
         let window = || self.between(failed_s, end_s).map(|(_, sample)| sample);
         window().next()?;
         Some(AfterFailure {
-            tilt_deg: most(window().map(|sample| tilt_deg(sample, [roll, pitch]))),
+            tilt_deg: most(window().map(|sample| tilt_deg(sample, was))),
             yaw_deg: most(window().map(|sample| wrapped(sample.euler.z - yaw).to_degrees().abs())),
             height_m: most(window().map(|sample| (height(sample) - height_m).abs())),
         })
@@ -301,42 +270,20 @@ impl fmt::Display for Score {
         if self.rows.is_empty() {
             return Ok(());
         }
-        writeln!(f)?;
-        writeln!(
-            f,
-            "| step, mean of n | n | time to 90 %, s | overshoot, % | height error, most, m | rms over 3 s, m \
-             | thrust over weight, most | least | roll or pitch, most, deg |"
-        )?;
+        let titles = COLUMNS.map(|(title, _)| title).join(" | ");
+        writeln!(f, "\n| step, mean of n | n | {titles} |")?;
         writeln!(f, "|---|---:|---:|---:|---:|---:|---:|---:|---:|")?;
-        for Row { name, steps } in &self.rows {
-            let over = |of: fn(&Step) -> f64| mean(steps.iter().map(of)).unwrap_or(f64::NAN);
-            writeln!(
-                f,
-                "| {name} | {} | {} | {} | {} | {} | {} | {} | {} |",
-                steps.len(),
-                Cell(over(|step| step.rise_s), 3),
-                Cell(over(|step| step.overshoot_percent), 1),
-                Cell(over(|step| step.height_most_m), 3),
-                Cell(over(|step| step.height_rms_m), 3),
-                Cell(over(|step| step.thrust_most), 3),
-                Cell(over(|step| step.thrust_least), 3),
-                Cell(over(|step| step.tilt_deg), 2),
-            )?;
+        for (name, steps) in &self.rows {
+            write!(f, "| {name} | {} |", steps.len())?;
+            for (column, (_, decimals)) in COLUMNS.into_iter().enumerate() {
+                match mean(steps.iter().map(|step| step[column])) {
+                    Some(value) if !value.is_nan() => write!(f, " {value:.decimals$} |")?,
+                    _ => write!(f, " - |")?,
+                }
+            }
+            writeln!(f)?;
         }
         Ok(())
-    }
-}
-
-/// A number with so many decimals, or nothing.
-struct Cell(f64, usize);
-
-impl fmt::Display for Cell {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.0.is_nan() {
-            f.write_str("-")
-        } else {
-            write!(f, "{:.*}", self.1, self.0)
-        }
     }
 }
 
@@ -391,12 +338,21 @@ mod tests {
         let step = Flown(&record)
             .step(FIRST_S, &turn(0.0), &turn(175.0), 10.0)
             .unwrap();
-        assert!((step.rise_s - 0.9).abs() < 0.005, "{step:?}");
-        assert!((step.overshoot_percent - 6.0).abs() < 0.01, "{step:?}");
-        assert!((step.height_most_m - 0.2).abs() < 1e-9, "{step:?}");
+        let [
+            rise_s,
+            overshoot_percent,
+            height_most_m,
+            height_rms_m,
+            thrust_most,
+            thrust_least,
+            _,
+        ] = step;
+        assert!((rise_s - 0.9).abs() < 0.005, "{step:?}");
+        assert!((overshoot_percent - 6.0).abs() < 0.01, "{step:?}");
+        assert!((height_most_m - 0.2).abs() < 1e-9, "{step:?}");
         // One of three seconds.
-        assert!((step.height_rms_m - 0.2 / 3f64.sqrt()).abs() < 1e-3, "{step:?}");
-        assert_eq!((step.thrust_most, step.thrust_least), (1.0, 1.0));
+        assert!((height_rms_m - 0.2 / 3f64.sqrt()).abs() < 1e-3, "{step:?}");
+        assert_eq!((thrust_most, thrust_least), (1.0, 1.0));
     }
 
     #[test]
@@ -405,7 +361,7 @@ mod tests {
         let step = Flown(&record)
             .step(FIRST_S, &turn(0.0), &turn(90.0), 10.0)
             .unwrap();
-        assert!(step.rise_s.is_nan() && step.overshoot_percent == 0.0, "{step:?}");
+        assert!(step[0].is_nan() && step[1] == 0.0, "{step:?}");
         assert_eq!(
             Flown(&record).step(FIRST_S + BETWEEN_S, &turn(0.0), &turn(90.0), 10.0),
             None

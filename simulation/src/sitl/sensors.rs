@@ -3,11 +3,11 @@
 //! Sizes of the noise are those of PX4's jMAVSim, rounded; biases are left out.
 
 use nalgebra::Vector3;
-use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
 use super::world::World;
+use crate::air::normal;
 
 /// Standard deviations at a share of 1.
 const ACCELERATION_M_S2: f64 = 0.05;
@@ -123,8 +123,4 @@ pub fn place(position: &Vector3<f64>) -> [f64; 3] {
         longitude + east.to_degrees(),
         altitude - position.z,
     ]
-}
-
-fn normal(source: &mut Pcg64Mcg) -> f64 {
-    StandardNormal.sample(source)
 }

@@ -5,11 +5,11 @@ use std::path::Path;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
 use nalgebra::{SVector, Vector3};
-use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
 use super::arguments::Arguments;
+use crate::air::normal;
 use crate::battery::Battery;
 use crate::plant::Plant;
 use crate::state::State;
@@ -72,9 +72,8 @@ impl Vehicle {
         }
         let rotors = own.rotors();
         if rotors > MOST_ROTORS {
-            return Err(format!(
-                "{rotors} rotors: the stacks have outputs for {MOST_ROTORS}"
-            ));
+            let most = MOST_ROTORS;
+            return Err(format!("{rotors} rotors: the stacks have outputs for {most}"));
         }
         let path = arguments.airframe.display();
         let mass_kg = arguments
@@ -82,11 +81,8 @@ impl Vehicle {
             .or(own.vehicle.as_ref().map(|vehicle| vehicle.mass_kg))
             .ok_or_else(|| format!("{path} has no [vehicle] mass_kg: add it, or give --mass-kg"))?;
         let stated = own.vehicle.as_ref().and_then(|vehicle| vehicle.inertia_kg_m2);
-        let inertia_kg_m2 = match (arguments.inertia, stated) {
-            (Some(inertia), _) => Vector3::from(inertia.0),
-            (None, Some(inertia)) => Vector3::from(inertia),
-            (None, None) => inertia(&own, mass_kg),
-        };
+        let stated = arguments.inertia.or(stated).map(Vector3::from);
+        let inertia_kg_m2 = stated.unwrap_or_else(|| inertia(&own, mass_kg));
         let body = Body {
             mass_kg,
             inertia_kg_m2,
@@ -94,18 +90,20 @@ impl Vehicle {
         };
         let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference_v);
         let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
+        let fall_v = FALL_OVER_CAPACITY * full_v;
         let mut battery = Battery {
             full_v,
-            slope_v_per_ah: arguments
-                .capacity
-                .map_or(0.0, |capacity| FALL_OVER_CAPACITY * full_v / capacity),
+            slope_v_per_ah: arguments.capacity.map_or(0.0, |capacity| fall_v / capacity),
             resistance_ohm: 0.0,
             full_throttle_a: 0.0,
         };
         let mismatch = spread(arguments.spread, arguments.seed, rotors);
         // Without resistance first: the throttle in hover sets the current.
         let rough = Plant::new(&flown, body, battery, mismatch);
-        let hover_throttle = hover(&rough, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))?;
+        let hover = |plant: &Plant<MOST_ROTORS>| {
+            hover(plant, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))
+        };
+        let hover_throttle = hover(&rough)?;
         let power_w = own
             .power_w(&vec![hover_throttle; rotors])
             .unwrap_or(HOVER_W_PER_KG * mass_kg);
@@ -113,7 +111,7 @@ impl Vehicle {
         battery.full_throttle_a = power_w / (full_v * rotors as f64 * cube);
         battery.resistance_ohm = arguments.resistance;
         let plant = Plant::new(&flown, body, battery, mismatch);
-        let hover_throttle = hover(&plant, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))?;
+        let hover_throttle = hover(&plant)?;
         Ok(Vehicle {
             name: own.name,
             rotors,
@@ -151,7 +149,7 @@ fn inertia(airframe: &Airframe, mass_kg: f64) -> Vector3<f64> {
 fn spread(size: f64, seed: u64, rotors: usize) -> Throttles {
     let mut source = Pcg64Mcg::seed_from_u64(seed);
     Throttles::from_fn(|rotor, _| {
-        let deviate: f64 = StandardNormal.sample(&mut source);
+        let deviate = normal(&mut source);
         if rotor < rotors { size * deviate } else { 0.0 }
     })
 }

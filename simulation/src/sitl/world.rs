@@ -97,11 +97,8 @@ impl World {
         let command = Throttles::from_fn(|rotor, _| {
             let turns = rotor < rotors && !self.stopped[rotor];
             // NaN, and what is below 0, is a rotor at rest.
-            if turns && command[rotor] > 0.0 {
-                command[rotor].min(1.0)
-            } else {
-                0.0
-            }
+            let is_driven = turns && command[rotor] > 0.0;
+            if is_driven { command[rotor].min(1.0) } else { 0.0 }
         });
         for _ in 0..steps as u32 {
             self.step(&command, duration_s / steps);
@@ -114,10 +111,8 @@ impl World {
     }
 
     fn step(&mut self, command: &Throttles, step_s: f64) {
-        self.state = self
-            .vehicle
-            .plant
-            .step(&self.state, command, &Disturbance::default(), step_s);
+        let plant = &self.vehicle.plant;
+        self.state = plant.step(&self.state, command, &Disturbance::default(), step_s);
         let force = self.rotor_force();
         self.specific_force = force / self.vehicle.mass_kg;
         self.on_ground = false;
