@@ -48,12 +48,8 @@ impl<'a> Build<'a> {
             build.core(core)?;
         }
         build.extract(&mixer_rt::SOURCES)?;
-        build.compile(
-            "mixer_rt",
-            &build.path().join("mixer-rt/lib.rs"),
-            "rlib",
-            &["link"],
-        )?;
+        let runtime = build.path().join("mixer-rt/lib.rs");
+        build.compile("mixer_rt", &runtime, "rlib", &["link"])?;
         Ok(build)
     }
 
@@ -119,11 +115,8 @@ impl<'a> Build<'a> {
         command.args(["--crate-name", name, "--crate-type", kind]);
         command.arg(format!("--emit={}", emit.join(",")));
         command.arg("--target").arg(self.target());
-        command
-            .arg("-L")
-            .arg(self.path())
-            .arg("--out-dir")
-            .arg(self.path());
+        let path = self.path();
+        command.arg("-L").arg(path).arg("--out-dir").arg(path);
         // Wherever it was compiled, the same bytes.
         let mut remapped = self.path().as_os_str().to_owned();
         remapped.push("=.");

@@ -11,12 +11,6 @@ pub(crate) fn function(module: &str, health: bool) -> String {
     }
 }
 
-/// Names of the functions in the order of the archive's objects.
-pub(crate) fn functions(module: &str, health: bool) -> Vec<String> {
-    let all = [false, true].into_iter().take(if health { 2 } else { 1 });
-    all.map(|health| function(module, health)).collect()
-}
-
 /// A crate that exports this function alone.
 pub(crate) fn rust(airframe: &Airframe, health: bool) -> String {
     let Airframe { compiled, module, .. } = airframe;

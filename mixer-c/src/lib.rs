@@ -10,7 +10,7 @@
 //!   -> one object: runtime, tables, interface, link-time optimised   build.rs
 //!   -> again with what it would call of the C compiler's library     support.rs
 //!   -> the object looked into, wrapped in an archive                 object.rs
-//!   -> headers, CMake, self-test                                     header.rs, selftest.rs
+//!   -> headers, CMake, self-test                                     header.rs, selftest.rs, templates/
 //! ```
 //!
 //! ```no_run
@@ -92,11 +92,11 @@ fn files(
     let mut files = vec![text("coaxial_mixer.h".to_owned(), header::shared())];
     for airframe in airframes {
         let module = &airframe.module;
-        let mut members = vec![(format!("{module}.o"), member(&build, airframe, false)?)];
-        if health {
-            members.push((format!("{module}_health.o"), member(&build, airframe, true)?));
+        let (mut members, mut functions) = (Vec::new(), Vec::new());
+        for is_second in [false, true].into_iter().take(1 + usize::from(health)) {
+            members.push(member(&build, airframe, is_second)?);
+            functions.push(interface::function(module, is_second));
         }
-        let functions = interface::functions(module, health);
         let header = Header {
             airframe,
             target: &toolchain.target,
@@ -116,8 +116,8 @@ fn files(
     Ok(files)
 }
 
-/// The object of one function, looked into.
-fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<Vec<u8>, String> {
+/// The object of one function, looked into, with its name in the archive.
+fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<(String, Vec<u8>), String> {
     let name = if health {
         format!("{}_health", airframe.module)
     } else {
@@ -136,10 +136,9 @@ fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<Vec<u8
         calls.extend(found);
         if calls.len() == known {
             let is_linked = |name: &str| support::is_linked(build.target(), name);
-            symbols
-                .check(&interface::function(&airframe.module, health), is_linked)
-                .map_err(fault)?;
-            return Ok(bytes);
+            let function = interface::function(&airframe.module, health);
+            symbols.check(&function, is_linked).map_err(fault)?;
+            return Ok((format!("{name}.o"), bytes));
         }
     }
 }

@@ -37,10 +37,8 @@ impl Symbols {
             return Err(format!("needs {}", needed.join(", ")));
         }
         if self.global != [function] {
-            return Err(format!(
-                "defines {}, not {function} alone",
-                self.global.join(", ")
-            ));
+            let global = self.global.join(", ");
+            return Err(format!("defines {global}, not {function} alone"));
         }
         Ok(())
     }
@@ -49,48 +47,40 @@ impl Symbols {
 /// A static library as GNU's and LLVM's linkers read it, its index of `functions` (one per member)
 /// included. Without times, owners or folders: the same objects give the same bytes.
 pub(crate) fn archive(members: &[(String, Vec<u8>)], functions: &[String]) -> Result<Vec<u8>, String> {
-    let too_large = |_| "the library is over 4 GB".to_owned();
     // Names that do not fit a member's header stand in a member of their own, by their places in
     // it.
-    let mut long_names = String::new();
-    let names: Vec<String> = members
-        .iter()
-        .map(|(name, _)| {
-            if name.len() < NAME {
-                return format!("{name}/");
-            }
-            let place = long_names.len();
+    let (mut long_names, mut names) = (String::new(), Vec::new());
+    for (name, _) in members {
+        if name.len() < NAME {
+            names.push(format!("{name}/"));
+        } else {
+            names.push(format!("/{}", long_names.len()));
             long_names += &format!("{name}/\n");
-            format!("/{place}")
-        })
-        .collect();
-
-    let index_bytes = 4 + functions.iter().map(|name| 4 + name.len() + 1).sum::<usize>();
-    let mut offset = MAGIC.len() + member_bytes(index_bytes);
+        }
+    }
+    let (mut rest, mut places) = (Vec::new(), Vec::new());
     if !long_names.is_empty() {
-        offset += member_bytes(long_names.len());
-    }
-    let mut index = u32::try_from(functions.len())
-        .map_err(too_large)?
-        .to_be_bytes()
-        .to_vec();
-    for (_, bytes) in members {
-        index.extend(u32::try_from(offset).map_err(too_large)?.to_be_bytes());
-        offset += member_bytes(bytes.len());
-    }
-    for name in functions {
-        index.extend(name.bytes());
-        index.push(0);
-    }
-
-    let mut archive = MAGIC.to_vec();
-    append(&mut archive, "/", &index);
-    if !long_names.is_empty() {
-        append(&mut archive, "//", long_names.as_bytes());
+        append(&mut rest, "//", long_names.as_bytes());
     }
     for ((_, bytes), name) in members.iter().zip(&names) {
-        append(&mut archive, name, bytes);
+        places.push(rest.len());
+        append(&mut rest, name, bytes);
     }
+    let functions: Vec<u8> = functions
+        .iter()
+        .flat_map(|name| name.bytes().chain([0]))
+        .collect();
+    let index_bytes = 4 + 4 * places.len() + functions.len();
+    let first = MAGIC.len() + HEADER + index_bytes.next_multiple_of(2);
+    let mut index = Vec::new();
+    for number in std::iter::once(places.len()).chain(places.iter().map(|place| first + place)) {
+        let number = u32::try_from(number).map_err(|_| "the library is over 4 GB")?;
+        index.extend(number.to_be_bytes());
+    }
+    index.extend(functions);
+    let mut archive = MAGIC.to_vec();
+    append(&mut archive, "/", &index);
+    archive.extend(rest);
     Ok(archive)
 }
 
@@ -101,10 +91,6 @@ const HEADER: usize = 60;
 const NAME: usize = 16;
 
 /// A member with its header and padding.
-fn member_bytes(bytes: usize) -> usize {
-    HEADER + bytes.next_multiple_of(2)
-}
-
 fn append(archive: &mut Vec<u8>, name: &str, bytes: &[u8]) {
     let size = bytes.len();
     archive.extend(format!("{name:<16}{:<12}{:<6}{:<6}{:<8}{size:<10}`\n", 0, 0, 0, 644).bytes());

@@ -47,11 +47,8 @@ pub(crate) fn rust(target: &str, calls: &[String]) -> String {
         return String::new();
     }
     // An alias of a Thumb function says so, or a call would switch to Arm instructions.
-    let set = if target.starts_with("thumb") {
-        ".thumb_set"
-    } else {
-        ".set"
-    };
+    let is_thumb = target.starts_with("thumb");
+    let set = if is_thumb { ".thumb_set" } else { ".set" };
     let called = MEMORY
         .iter()
         .filter(|(name, _)| calls.iter().any(|call| call == name));
@@ -60,8 +57,6 @@ pub(crate) fn rust(target: &str, calls: &[String]) -> String {
             format!("core::arch::global_asm!(\"{set} {name}, {{function}}\", function = sym {function});\n")
         })
         .collect();
-    format!(
-        "mod memory {{\n{}}}\n{aliases}",
-        include_str!("support/memory.rs")
-    )
+    let memory = include_str!("support/memory.rs");
+    format!("mod memory {{\n{memory}}}\n{aliases}")
 }

@@ -60,17 +60,13 @@ impl Toolchain {
             ));
         }
         let target = target.unwrap_or(&first.host);
-        if !recent.iter().any(|compiler| compiler.knows(target)) {
+        let Some(os) = recent.iter().find_map(|compiler| compiler.os(target)) else {
             return Err(format!(
                 "rustc knows no target `{target}`; `rustc --print target-list` lists them, among them \
                  thumbv7em-none-eabihf (Cortex-M4F, M7), thumbv7em-none-eabi, thumbv7m-none-eabi, \
                  thumbv6m-none-eabi, aarch64-unknown-linux-gnu, x86_64-unknown-linux-gnu"
             ));
-        }
-        let os = recent
-            .iter()
-            .find_map(|compiler| compiler.os(target))
-            .unwrap_or_default();
+        };
         if !["none", "linux", "nuttx"].contains(&os.as_str()) {
             return Err(format!(
                 "{target} is for {os}: libraries are made for bare metal (..-none-eabihf) and Linux; name a --target"
@@ -84,11 +80,9 @@ impl Toolchain {
         if let Some(compiler) = recent.iter().find(|compiler| compiler.has(target)) {
             return Ok(found(compiler, Core::Installed));
         }
-        let with_sources = recent.iter().filter(|compiler| compiler.knows(target));
+        let mut with_sources = recent.iter().filter(|compiler| compiler.os(target).is_some());
         with_sources
-            .filter_map(|compiler| Some((compiler, compiler.core_sources()?)))
-            .map(|(compiler, sources)| found(compiler, Core::Sources(sources)))
-            .next()
+            .find_map(|compiler| Some(found(compiler, Core::Sources(compiler.core_sources()?))))
             .ok_or_else(|| {
                 format!(
                     "{} has no `core` for {target}: `rustup target add {target}`, or its sources: `rustup component add \
@@ -131,22 +125,13 @@ impl Compiler {
         }
     }
 
-    fn knows(&self, target: &str) -> bool {
-        answer(&self.rustc, &["--print", "target-list"])
-            .is_some_and(|list| list.lines().any(|known| known == target))
-    }
-
-    /// The target's operating system.
+    /// The target's operating system; `None` of a target that it does not know, or a file's.
     fn os(&self, target: &str) -> Option<String> {
-        let settings = answer(&self.rustc, &["--print", "cfg", "--target", target])?;
+        let is_file = target.ends_with(".json");
+        let settings = (!is_file).then(|| answer(&self.rustc, &["--print", "cfg", "--target", target]))??;
         let mut lines = settings.lines();
-        lines.find_map(|line| {
-            Some(
-                line.strip_prefix("target_os=\"")?
-                    .trim_end_matches('"')
-                    .to_owned(),
-            )
-        })
+        let os = lines.find_map(|line| line.strip_prefix("target_os=\"")?.strip_suffix('"'));
+        os.map(str::to_owned)
     }
 
     /// Whether `core` is installed for the target.
