@@ -42,10 +42,8 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
     all.hover("MPC_THR_HOVER", hover, why);
     all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
     // Idle lifts most at the highest voltage.
-    let rise = airframe
-        .voltage
-        .as_ref()
-        .map_or(1.0, |voltage| voltage.thrust_factor(voltage.range_v[1]));
+    let voltage = airframe.voltage.as_ref();
+    let rise = voltage.map_or(1.0, |voltage| voltage.thrust_factor(voltage.range_v[1]));
     let idle = rise * f64::from(compiled.thrust_range_n[0].max(0.0)) / full_n;
     let idle = libm::ceil(100.0 * idle) / 100.0;
     all.because("Thrust of all rotors at idle, or PX4's default where that is more: less is not to be had.")
@@ -183,11 +181,11 @@ fn current_tangent(compiled: &Compiled) -> Option<[f64; 2]> {
     let airframe = &compiled.airframe;
     let throttle = compiled.equal_hover_throttle()?;
     let voltage_v = airframe.voltage.as_ref()?.reference_v;
-    let channels = airframe
-        .units
-        .iter()
-        .flat_map(|unit| [unit.upper_channel, unit.lower_channel]);
-    let most = channels.max()? + 1;
+    let units = airframe.units.iter();
+    let most = units
+        .map(|unit| unit.upper_channel.max(unit.lower_channel))
+        .max()?
+        + 1;
     let current = |throttle: f64| {
         let power_w = airframe.power_w(&vec![throttle; most])?;
         Some(power_w / (airframe.rotors() as f64 * voltage_v))

@@ -24,10 +24,8 @@ const COARSE: Search = Search {
 
 /// Authority at `count` thrusts from the floor to the ceiling of the reference voltage.
 pub fn against_thrust(study: &Study<'_>, condition: &Condition, count: usize) -> Vec<Authority> {
-    study
-        .thrusts(count)
-        .map(|thrust_n| at(study, condition, thrust_n))
-        .collect()
+    let thrusts = study.thrusts(count);
+    thrusts.map(|thrust_n| at(study, condition, thrust_n)).collect()
 }
 
 /// Authority at one thrust.
@@ -43,24 +41,19 @@ pub fn at(study: &Study<'_>, condition: &Condition, thrust_n: f64) -> Authority 
 /// Authority that is left with any one rotor out, at `count` thrusts and the reference voltage.
 pub fn with_a_rotor_out(study: &Study<'_>, count: usize) -> Vec<Authority> {
     let rotors = study.compiled.airframe.rotors() as u8;
-    let conditions: Vec<Condition> = (0..rotors)
-        .map(|channel| Condition {
-            health: Health::GOOD.with_failed(channel),
-            ..study.reference()
-        })
-        .collect();
-    study
-        .thrusts(count)
-        .map(|thrust_n| Authority {
-            thrust_n,
-            torque_nm: about_axes(study, |axis, sign| {
-                let reaches = conditions
-                    .iter()
-                    .map(|condition| reach(study, condition, COARSE, axis, sign, thrust_n));
-                reaches.fold(f64::INFINITY, f64::min)
-            }),
-        })
-        .collect()
+    let without = |channel| Condition {
+        health: Health::GOOD.with_failed(channel),
+        ..study.reference()
+    };
+    let conditions: Vec<Condition> = (0..rotors).map(without).collect();
+    let at = |thrust_n| Authority {
+        thrust_n,
+        torque_nm: about_axes(study, |axis, sign| {
+            let reach = |condition| reach(study, condition, COARSE, axis, sign, thrust_n);
+            conditions.iter().map(reach).fold(f64::INFINITY, f64::min)
+        }),
+    };
+    study.thrusts(count).map(at).collect()
 }
 
 /// `[least, largest]` about each torque axis.

@@ -10,11 +10,11 @@ use crate::number::fixed;
 /// The airframe seen from above, forward up.
 pub fn layout(airframe: &Airframe) -> Figure {
     // Body y (right) runs to the right, body x (forward) upwards.
-    let places: Vec<[f64; 2]> = airframe
+    let places = airframe
         .units
         .iter()
-        .map(|unit| [unit.position_m[1], unit.position_m[0]])
-        .collect();
+        .map(|unit| [unit.position_m[1], unit.position_m[0]]);
+    let places: Vec<[f64; 2]> = places.collect();
     let radius = disk_radius(&places);
     let extent = |k: usize| {
         // The centre of gravity is always in view.
@@ -84,6 +84,7 @@ fn disk_radius(places: &[[f64; 2]]) -> f64 {
 /// drawn between them.
 fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool) -> String {
     let gap = if crowded { 7.0 } else { 0.0 };
+    let (upper_spin, lower_spin) = (unit.upper_spin, unit.upper_spin.reversed());
     let mut svg = String::new();
     let [px, py, pz] = unit.position_m;
     let _ = write!(
@@ -93,18 +94,13 @@ fn drawn(unit: &Unit, index: usize, [x, y]: [f64; 2], radius: f64, crowded: bool
         fixed(px, 4),
         fixed(py, 4),
         fixed(pz, 4),
-        unit.upper_spin.name(),
+        upper_spin.name(),
         unit.upper_channel,
-        unit.upper_spin.reversed().name(),
+        lower_spin.name(),
         unit.lower_channel
     );
-    svg.push_str(&spin_arc("upper-spin", unit.upper_spin, [x, y], radius));
-    svg.push_str(&spin_arc(
-        "lower-spin",
-        unit.upper_spin.reversed(),
-        [x, y],
-        0.78 * radius,
-    ));
+    svg.push_str(&spin_arc("upper-spin", upper_spin, [x, y], radius));
+    svg.push_str(&spin_arc("lower-spin", lower_spin, [x, y], 0.78 * radius));
     let [ax, ay, _] = unit.axis;
     if tilted(unit) {
         // The horizontal part of a unit thrust, at the drawing's scale of one radius.

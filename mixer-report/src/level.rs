@@ -21,8 +21,8 @@ pub struct Level {
 /// Level flight at `count` thrusts from the floor to the ceiling of the reference voltage.
 pub fn against_thrust(study: &Study<'_>, voltage_v: Option<f64>, count: usize) -> Vec<Level> {
     let condition = study.at(voltage_v);
-    study
-        .thrusts(count)
+    let thrusts = study.thrusts(count);
+    thrusts
         .map(|thrust_n| level(study, thrust_n, thrust_n, &condition))
         .collect()
 }

@@ -240,14 +240,13 @@ fn authority_section(study: &Study<'_>) -> Markup {
     if is_held {
         cases.push(("any one rotor out", "series-2", &rotor_out));
     }
-    let plots: Vec<Markup> = [Axis::Roll, Axis::Pitch, Axis::Yaw]
-        .into_iter()
-        .filter_map(|axis| plots::authority(study, &all, &cases, axis).map(|figure| (axis, figure)))
-        .map(|(axis, figure)| {
-            let caption = format!("{} against thrust.", ["Roll", "Pitch", "Yaw"][axis as usize]);
-            curves(study, &figure, &caption, &format!("authority-{}", axis.name()))
-        })
-        .collect();
+    let plot = |axis: Axis| {
+        let figure = plots::authority(study, &all, &cases, axis)?;
+        let caption = format!("{} against thrust.", ["Roll", "Pitch", "Yaw"][axis as usize]);
+        let word = format!("authority-{}", axis.name());
+        Some(curves(study, &figure, &caption, &word))
+    };
+    let plots: Vec<Markup> = study.torque_axes().into_iter().filter_map(plot).collect();
     let at = study.at_reference();
     let rotor_out = match is_held {
         true => format!("With any one rotor out: what is left whichever it is{at}."),
@@ -379,29 +378,26 @@ fn inverse_section(study: &Study<'_>) -> Markup {
 
 fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2]) -> Markup {
     let csv = data::sweep(study, Data::Error).unwrap_or_default();
-    let plots: Vec<Markup> = Effort::BOTH
-        .into_iter()
-        .zip(fields)
-        .map(|(effort, field)| {
-            let observed = &study.compiled.residual;
-            let at = match study.at_reference().as_str() {
-                "" => " with the pair\u{2019}s map".to_owned(),
-                at => at.to_owned(),
-            };
-            let caption = format!(
-                "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}, both{at}.",
-                rounded_up(maps::error_bound(study, effort)),
-                observed.points,
-                rounded_up(observed.efforts[effort as usize]),
-                unit = effort.unit()
-            );
-            let column = ["thrust_error_n", "torque_error_nm"][effort as usize];
-            let columns = ["thrust_n", "torque_nm", column];
-            let word = format!("error-{}", effort.word());
-            let data = link::columns(study, &word, &csv, &columns, link::OF_THE_FIGURE);
-            shown(&maps::error(study, effort, field), &caption, &data)
-        })
-        .collect();
+    let observed = &study.compiled.residual;
+    let at = match study.at_reference().as_str() {
+        "" => " with the pair\u{2019}s map".to_owned(),
+        at => at.to_owned(),
+    };
+    let plot = |(effort, field)| {
+        let caption = format!(
+            "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}, both{at}.",
+            rounded_up(maps::error_bound(study, effort)),
+            observed.points,
+            rounded_up(observed.efforts[effort as usize]),
+            unit = effort.unit()
+        );
+        let column = ["thrust_error_n", "torque_error_nm"][effort as usize];
+        let columns = ["thrust_n", "torque_nm", column];
+        let word = format!("error-{}", effort.word());
+        let data = link::columns(study, &word, &csv, &columns, link::OF_THE_FIGURE);
+        shown(&maps::error(study, effort, field), &caption, &data)
+    };
+    let plots: Vec<Markup> = Effort::BOTH.into_iter().zip(fields).map(plot).collect();
     html! {
         p {
             "What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
@@ -432,13 +428,9 @@ fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
 fn model(study: &Study<'_>, errors: &[crate::field::Field; 2]) -> serde_json::Value {
     let pair = &study.compiled.airframe.pair;
     let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
-    let terms: Vec<_> = pair
-        .basis
-        .exponents()
-        .iter()
-        .zip(coefficients)
-        .map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]))
-        .collect();
+    let terms = pair.basis.exponents().iter().zip(coefficients);
+    let terms = terms.map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]));
+    let terms: Vec<_> = terms.collect();
     let grids = errors.each_ref().map(|field| {
         let largest = field.values().iter().copied().fold(0.0, f64::max);
         // Where nothing is missed, 0 / 0 is NaN, which becomes 0.

@@ -121,10 +121,8 @@ impl<'a> Study<'a> {
 
     /// The same as efforts `[f (N), Q (N m)]`.
     pub fn border_efforts(&self) -> Vec<[f64; 2]> {
-        self.border()
-            .iter()
-            .map(|&throttles| self.pair.efforts(throttles))
-            .collect()
+        let border = self.border().into_iter();
+        border.map(|throttles| self.pair.efforts(throttles)).collect()
     }
 
     /// Efforts `[f (N), Q (N m)]` of the units in hover at the reference voltage, as
@@ -201,9 +199,8 @@ impl<'a> Study<'a> {
         let m = &self.compiled.effectiveness.matrix;
         let n = efforts.len();
         std::array::from_fn(|axis| {
-            efforts
-                .iter()
-                .enumerate()
+            let units = efforts.iter().enumerate();
+            units
                 .map(|(i, [f, q])| m[(axis, i)] * f + m[(axis, n + i)] * q)
                 .sum()
         })

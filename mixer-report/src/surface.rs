@@ -53,10 +53,8 @@ pub fn surface(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     let model = range(nodes.map(|square| at(study.throttles(square))));
     let measured = points.iter().map(|point| point.measured[effort as usize]);
     let quantity = range(measured.chain(model));
-    let view = View {
-        throttle: study.pair.range(),
-        quantity,
-    };
+    let throttle = study.pair.range();
+    let view = View { throttle, quantity };
     let scale = match effort {
         Effort::Thrust => Scale::sequential(model),
         Effort::Torque => Scale::signed(model),
@@ -67,30 +65,23 @@ pub fn surface(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     );
     axes(&mut svg, &view, effort);
 
-    let mut patches: Vec<[usize; 2]> = (0..PATCHES)
-        .flat_map(|i| (0..PATCHES).map(move |j| [i, j]))
-        .collect();
+    let patches = (0..PATCHES).flat_map(|i| (0..PATCHES).map(move |j| [i, j]));
+    let mut patches: Vec<[usize; 2]> = patches.collect();
     patches.sort_by_key(|[i, j]| std::cmp::Reverse(i + j));
     for [i, j] in patches {
         let node = |di: usize, dj: usize| {
             let throttles = study.throttles([corner(i + di), corner(j + dj)]);
             view.at(throttles, at(throttles))
         };
-        let middle =
-            at(study.throttles([corner(i) + 0.5 / PATCHES as f64, corner(j) + 0.5 / PATCHES as f64]));
+        let middle = [i, j].map(|k| corner(k) + 0.5 / PATCHES as f64);
+        let fill = scale.hex(at(study.throttles(middle)));
         let corners = [node(0, 0), node(1, 0), node(1, 1), node(0, 1)];
-        let (fill, ring) = (
-            scale.hex(middle),
-            corners.map(|[x, y]| format!("{x:.1} {y:.1}")).join("L"),
-        );
+        let ring = corners.map(|[x, y]| format!("{x:.1} {y:.1}")).join("L");
         let _ = writeln!(svg, "<path class=\"surface\" fill=\"{fill}\" d=\"M{ring}Z\"/>");
     }
     for point in points {
         let (measured, model) = (point.measured[effort as usize], point.model[effort as usize]);
-        let ([x, y], [_, foot]) = (
-            view.at(point.throttles, measured),
-            view.at(point.throttles, model),
-        );
+        let [[x, y], [_, foot]] = [measured, model].map(|effort| view.at(point.throttles, effort));
         let _ = writeln!(
             svg,
             "<path class=\"stem\" d=\"M{x:.1} {y:.1}V{foot:.1}\"/><circle class=\"bench-dot\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.2\">\

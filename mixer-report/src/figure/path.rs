@@ -14,23 +14,16 @@ pub(super) fn simplified(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     kept[last] = true;
     let mut open = vec![(0, last)];
     while let Some((start, end)) = open.pop() {
-        let farthest = (start + 1..end)
-            .map(|k| (k, distance(points[k], points[start], points[end])))
-            .fold(
-                (start, UNSEEN),
-                |best, next| if next.1 > best.1 { next } else { best },
-            );
+        let between = (start + 1..end).map(|k| (k, distance(points[k], points[start], points[end])));
+        let farther = |best: (usize, f64), next: (usize, f64)| if next.1 > best.1 { next } else { best };
+        let farthest = between.fold((start, UNSEEN), farther);
         if farthest.0 != start {
             kept[farthest.0] = true;
             open.extend([(start, farthest.0), (farthest.0, end)]);
         }
     }
-    points
-        .iter()
-        .zip(kept)
-        .filter(|(_, kept)| *kept)
-        .map(|(point, _)| *point)
-        .collect()
+    let points = points.iter().zip(kept).filter(|(_, kept)| *kept);
+    points.map(|(point, _)| *point).collect()
 }
 
 /// From a point to the chord from `a` to `b`.
@@ -73,17 +66,13 @@ impl Label {
                 let from = pixels[index.saturating_sub(2)];
                 let to = pixels[(index + 3).min(pixels.len() - 1)];
                 let degrees = libm::atan2(to[1] - from[1], to[0] - from[0]).to_degrees();
-                let upright = if degrees > 90.0 {
-                    degrees - 180.0
-                } else if degrees <= -90.0 {
-                    degrees + 180.0
-                } else {
-                    degrees
+                let degrees = match degrees {
+                    d if d > 90.0 => d - 180.0,
+                    d if d <= -90.0 => d + 180.0,
+                    d => d,
                 };
-                return Some(Label {
-                    at: pair[1],
-                    degrees: upright,
-                });
+                let at = pair[1];
+                return Some(Label { at, degrees });
             }
         }
         None
