@@ -4,7 +4,7 @@
 //! per mix + n (per unit + evaluator) + PER_VOLTAGE where the airframe has a voltage correction
 //! ```
 //!
-//! The evaluators are counted on their own ([`mixer_compiler::evaluator::cost`]). The overheads are
+//! The inverse maps are counted on their own ([`mixer_compiler::evaluator::Evaluator::instructions`]). The overheads are
 //! rounded from the counts of whole mixers in `docs/costs.md`; a test holds the sum to these counts,
 //! within the errors stated.
 
