@@ -43,6 +43,9 @@ pub enum Stopped {
     Output(io::Error),
 }
 
+/// A row with its line, from 1.
+pub type Row = (usize, Result<Setpoint, BadLine>);
+
 /// Reads setpoints row by row.
 #[derive(Debug)]
 pub struct Setpoints<R> {
@@ -77,7 +80,7 @@ impl<R: Read> Setpoints<R> {
     ///
     /// # Errors
     /// An input that cannot be read any further.
-    pub fn read(&mut self) -> Result<Option<(usize, Result<Setpoint, BadLine>)>, Stopped> {
+    pub fn read(&mut self) -> Result<Option<Row>, Stopped> {
         let Some((line, row)) = self.rows.next().map_err(Stopped::Input)? else {
             return Ok(None);
         };
