@@ -7,7 +7,7 @@ use mixer_rt::tables::Tolerance;
 use crate::airframe::Airframe;
 use crate::diagnostic::Diagnostic;
 use crate::inverse::evaluator::Evaluator;
-use crate::inverse::fit::Inversion;
+use crate::inverse::fit::{Inversion, Samples};
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::voltage::{self, VoltageTable};
@@ -71,13 +71,28 @@ impl Selected {
     }
 }
 
+/// The first evaluator, by cost, that holds, fitted to finer samples where none does; else the one that
+/// came closest.
+fn choose(airframe: &Airframe, pair: &PairMap, voltage: Option<&VoltageTable>) -> Selected {
+    let usual = choose_by(Samples::Usual, airframe, pair, voltage);
+    if usual.holds() {
+        return usual;
+    }
+    choose_by(Samples::Fine, airframe, pair, voltage)
+}
+
 /// The first evaluator, by cost, that holds. Where none does, the one that came closest, with a
 /// thorough proof: others are given up where they take long.
-fn choose(airframe: &Airframe, pair: &PairMap, voltage: Option<&VoltageTable>) -> Selected {
+fn choose_by(
+    samples: Samples,
+    airframe: &Airframe,
+    pair: &PairMap,
+    voltage: Option<&VoltageTable>,
+) -> Selected {
     let correction = CorrectionBounds::new(airframe, voltage);
     let tolerance = correction.tolerance_at_reference(airframe);
     let (cheapest, others) = Evaluator::candidates(airframe.inverse.method);
-    let mut inversion = Inversion::new(pair, tolerance, others.is_empty());
+    let mut inversion = Inversion::new(pair, tolerance, samples, others.is_empty());
     let mut attempt = |evaluator: Evaluator| {
         let (inverse, fit_error) = inversion.fit(evaluator);
         let map = UnitMap::new(airframe, inverse);

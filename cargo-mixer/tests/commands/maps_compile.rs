@@ -46,7 +46,9 @@ fn every_map_compiles_close_to_its_fold() {
                 let name = map.file_name().unwrap_or_default().to_string_lossy();
                 let what = format!("{} {basis:<11} {max:>4}", &name[4..23]);
                 let least = EnclosedPairMap::new(&own.pair).least_idle(max);
-                let min = IDLE * least.unwrap_or_else(|| panic!("{what}: folds at every idle"));
+                let least = least.unwrap_or_else(|| panic!("{what}: folds at every idle"));
+                // Upwards to 1e-4, as the compiler offers it.
+                let min = (1e4 * IDLE * least).ceil() / 1e4;
                 let started = Instant::now();
                 let compiled = match mixer_compiler::compile(&source(&identified, [min, max])) {
                     Ok(compiled) => compiled,

@@ -19,8 +19,14 @@ use coordinates::Start;
 use lawson::Lawson;
 use sample::{Sample, Sampled, next_to_a_fold};
 
-/// Points per side of the sample grid.
-const GRID: usize = 21;
+/// How densely the attainable set is sampled: points per side of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Samples {
+    /// Enough for most maps.
+    Usual = 21,
+    /// For fits that miss more between the samples than they may.
+    Fine = 41,
+}
 
 /// Points per side of the grid on which coordinates are judged for one form.
 const COARSE_GRID: usize = 9;
@@ -51,13 +57,13 @@ pub(crate) struct Inversion<'a> {
 impl<'a> Inversion<'a> {
     /// Inversion of `pair` to `tolerance` `[N, N m]`. Unless it is to be `thorough`, a fit that
     /// cannot meet the tolerance is given up early.
-    pub(crate) fn new(pair: &'a PairMap, tolerance: [f64; 2], thorough: bool) -> Self {
+    pub(crate) fn new(pair: &'a PairMap, tolerance: [f64; 2], samples: Samples, thorough: bool) -> Self {
         let fold = next_to_a_fold(pair);
         Inversion {
             pair,
             tolerance,
             thorough,
-            fine: Sampled::new(pair, GRID, fold),
+            fine: Sampled::new(pair, samples as usize, fold),
             coarse: Sampled::new(pair, COARSE_GRID, fold),
             coordinates: [None; Start::ALL.len()],
         }

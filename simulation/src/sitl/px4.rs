@@ -66,6 +66,8 @@ struct Px4 {
     answers: bool,
     armed: bool,
     unanswered: u64,
+    /// Whether malformed bytes have been told of.
+    has_complained: bool,
 }
 
 /// Serves PX4 until the flight ends.
@@ -87,6 +89,7 @@ pub fn serve(listener: &TcpListener, flight: &mut Flight, sensors: &mut Sensors)
         answers: false,
         armed: false,
         unanswered: 0,
+        has_complained: false,
     };
     let end = px4.fly(flight, sensors);
     let record = &mut flight.record;
@@ -134,7 +137,6 @@ impl Px4 {
         let deadline = Instant::now() + patience;
         let mut bytes = [0; 4096];
         loop {
-            let malformed = self.frames.malformed;
             for (_, message) in self.frames.by_ref() {
                 if let MavMessage::HIL_ACTUATOR_CONTROLS(controls) = message {
                     self.armed = is_armed(&controls);
@@ -145,7 +147,8 @@ impl Px4 {
                     }
                 }
             }
-            if malformed == 0 && self.frames.malformed > 0 {
+            if self.frames.malformed > 0 && !self.has_complained {
+                self.has_complained = true;
                 eprintln!("PX4 sends what is no MAVLink: passed over");
             }
             let left = deadline.saturating_duration_since(Instant::now());
