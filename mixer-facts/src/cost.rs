@@ -1,7 +1,7 @@
 //! What a mix costs on a Cortex-M4F.
 //!
 //! The inverse map is counted on its own, evaluator by evaluator
-//! ([`mixer_compiler::evaluator::cost`]). What a mix takes that delivers its request is estimated
+//! ([`mixer_compiler::evaluator::Evaluator::instructions`]). What a mix takes that delivers its request is estimated
 //! (`cost/typical.rs`); any request takes at most what the code does at most (`cost/bound.rs`).
 
 mod bound;

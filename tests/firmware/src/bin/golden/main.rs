@@ -47,14 +47,7 @@ macro_rules! check {
         });
         $check.rotors_out($name, different);
         // SAFETY: `mix` writes the result for as many channels as the vectors have.
-        unsafe {
-            $check.airframe::<{ $module::CHANNELS }>(
-                $name,
-                $vectors,
-                mix,
-                raised,
-            )
-        };
+        unsafe { $check.airframe::<{ $module::CHANNELS }>($name, $vectors, mix, raised) };
     }};
 }
 

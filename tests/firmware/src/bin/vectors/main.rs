@@ -26,8 +26,7 @@ fn main() -> ! {
     let with_rotor_out = |setpoint: &Wrench, voltage_v, failed| {
         isae_x8::mix_with_health(setpoint, voltage_v, Health::GOOD.with_failed(failed))
     };
-    let differ =
-        differing(VECTORS, isae_x8::mix) + differing_with_rotors_out(ROTORS_OUT, with_rotor_out);
+    let differ = differing(VECTORS, isae_x8::mix) + differing_with_rotors_out(ROTORS_OUT, with_rotor_out);
     let count = rows(VECTORS).count() + rows(ROTORS_OUT).count();
     hprintln!("isae-x8: {} vectors, {} differ", count, differ);
     exit(differ == 0)
