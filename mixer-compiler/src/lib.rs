@@ -69,7 +69,7 @@ fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec
         pair: model.pair,
         injectivity: model.injectivity,
         least_idle: model.least_idle,
-        evaluator: selected.evaluator,
+        evaluator: selected.map.inverse.evaluator,
         residual: selected.residual,
         thrust_range_n,
         certificate: selected.certificate,

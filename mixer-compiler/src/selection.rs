@@ -18,8 +18,6 @@ use crate::tables::{self, UnitMap};
 /// An evaluator with its table and what is known about it.
 #[derive(Clone, Debug)]
 pub(crate) struct Selected {
-    /// The evaluator.
-    pub(crate) evaluator: Evaluator,
     /// The map of a unit with the evaluator's inverse.
     pub(crate) map: UnitMap,
     /// What was observed.
@@ -30,7 +28,6 @@ pub(crate) struct Selected {
 
 /// An evaluator that was fitted.
 struct Attempt {
-    evaluator: Evaluator,
     map: UnitMap,
     /// Largest error over a coarse grid, in units of the tolerance.
     error: f64,
@@ -58,7 +55,7 @@ pub(crate) fn select(
     };
     Err(vec![refusal::tolerance(
         airframe,
-        chosen.evaluator,
+        chosen.map.inverse.evaluator,
         &chosen.certificate,
         meets,
     )])
@@ -98,11 +95,7 @@ fn choose_by(
         let map = UnitMap::new(airframe, inverse);
         // The grid of the fit is part of the set: what fails there, fails.
         let error = Residual::coarse_check(pair, &map).ratio(tolerance).max(fit_error);
-        Attempt {
-            evaluator,
-            map,
-            error,
-        }
+        Attempt { map, error }
     };
     let proven = |attempt: &Attempt, effort: Effort| {
         let map = &attempt.map;
@@ -114,7 +107,6 @@ fn choose_by(
             residual.look(pair, map, throttles.map(|throttle| pair.clamp(throttle)));
         }
         Selected {
-            evaluator: attempt.evaluator,
             map: map.clone(),
             residual,
             certificate,

@@ -96,3 +96,21 @@ impl Evaluator {
         Some(self.instructions(basis)? + LONG * (2 + u32::from(self.steps())))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn candidates_stand_in_the_order_of_their_cost() {
+        for basis in Basis::ALL {
+            let (cheapest, others) = Evaluator::candidates(Method::Auto);
+            let candidates = std::iter::once(&cheapest).chain(others);
+            let costs: Vec<u32> = candidates
+                .map(|evaluator| evaluator.cost(basis).unwrap_or_else(|| panic!("{evaluator:?}")))
+                .collect();
+            assert!(costs.is_sorted(), "{costs:?}");
+        }
+        assert_eq!(Evaluator::Polynomial { degree: 9 }.cost(Basis::Cubic), None);
+    }
+}

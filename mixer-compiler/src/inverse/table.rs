@@ -25,11 +25,6 @@ impl InverseTable {
         }
     }
 
-    /// Bytes of its numbers in flash.
-    pub fn bytes(&self) -> usize {
-        4 * (6 + self.coefficients.iter().map(Vec::len).sum::<usize>())
-    }
-
     /// The inverse as `mixer-rt` reads it, of `STEPS` Newton steps.
     fn with<const STEPS: usize>(&self) -> PolynomialInverse<&[f32], STEPS> {
         let [upper, lower] = &self.coefficients;
