@@ -114,7 +114,7 @@ fn no_folder(path: &Path, folder: &Path) -> String {
 /// Writes a file and says so: what every command does with its output.
 ///
 /// # Errors
-/// What cannot be written, by its path, and why.
+/// The path that cannot be written, and why.
 pub(crate) fn save(path: &Path, text: &str) -> Result<(), String> {
     stage(path, text.as_bytes())?.publish()
 }

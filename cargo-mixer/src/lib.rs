@@ -52,7 +52,7 @@ impl Refusal {
     }
 }
 
-/// What a command comes to; the exit status where it failed and has said why.
+/// The result of a command: the exit status where it failed and has said why.
 pub type Done = Result<(), ExitCode>;
 
 /// Says on stderr what is wrong with the arguments; the exit status for it.

@@ -28,7 +28,7 @@ pub struct CheckArgs {
     deny_warnings: bool,
 }
 
-/// What the JSON has beside the facts.
+/// Keys of the JSON beside the facts.
 #[derive(Serialize)]
 struct More {
     #[serde(flatten)]
