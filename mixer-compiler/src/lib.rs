@@ -6,6 +6,7 @@
 
 pub mod airframe;
 mod allocation;
+pub mod atmosphere;
 mod bounds;
 #[cfg(feature = "format")]
 pub mod build_script;
