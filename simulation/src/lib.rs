@@ -21,6 +21,7 @@
 //! reservations.
 
 pub mod air;
+pub mod atmosphere;
 pub mod battery;
 pub mod controller;
 pub mod conventional;
@@ -31,6 +32,7 @@ pub mod integrator;
 pub mod log;
 pub mod manoeuvre;
 pub mod mixer;
+pub mod motor;
 pub mod pair;
 pub mod plant;
 pub mod sitl;

@@ -11,6 +11,9 @@
 //! f_i = (1 + flutter_i) k_f(V) f(e_upper, e_lower),   Q_i = k_Q(V) Q(e_upper, e_lower)
 //! ```
 //!
+//! k_f and k_Q are the file's laws of the voltage. In [the air of an altitude](Plant::in_air) they and the throttles
+//! of the map are those of a [`motor`](crate::motor) instead, so that the mixer's laws are put to the test.
+//!
 //! f and Q are eq. (1) with the f64 coefficients of the file: the map that the coaxial mixer
 //! inverts. Unlike the mixer it has no f32 tables, and its rotors lag and differ. Left out, since
 //! the paper gives nothing to model them by: drag, ground effect, wake between units, the rotors'
@@ -19,11 +22,16 @@
 use mixer_compiler::airframe::{Airframe, Voltage};
 use nalgebra::{Quaternion, SVector, Vector3};
 
+use crate::atmosphere;
 use crate::battery::Battery;
 use crate::integrator::runge_kutta;
+use crate::motor::Motor;
 use crate::pair::Pair;
 use crate::state::State;
 use crate::vehicle::{Body, GRAVITY_M_S2};
+
+/// Exponent of the voltage where the file has none.
+const USUAL_EXPONENT: f64 = 1.75;
 
 /// One unit as the plant sees it.
 #[derive(Clone, Debug)]
@@ -58,6 +66,7 @@ pub struct Plant<const R: usize> {
     units: Vec<Unit>,
     pair: Pair,
     voltage: Option<Voltage>,
+    motor: Option<Motor>,
     body: Body,
     battery: Battery,
     mismatch: SVector<f64, R>,
@@ -78,10 +87,30 @@ impl<const R: usize> Plant<R> {
             units: units.collect(),
             pair: Pair::new(&airframe.pair, &airframe.throttle),
             voltage: airframe.voltage.clone(),
+            motor: None,
             body,
             battery,
             mismatch,
         }
+    }
+
+    /// The same vehicle in air of a density, kg/m3, its rotors on motors with a no-load current (over
+    /// that of full throttle). The ohmic share is that of the thrust's exponent in the file.
+    ///
+    /// # Errors
+    /// An exponent that is not a motor's.
+    pub fn in_air(self, density_kg_m3: f64, no_load: f64) -> Result<Self, String> {
+        let voltage = self.voltage.as_ref();
+        let exponent = voltage.map_or(USUAL_EXPONENT, exponent);
+        let reference_v = voltage.map(|voltage| voltage.reference_v);
+        let sigma = density_kg_m3 / atmosphere::SEA_LEVEL_KG_M3;
+        let motor = Motor::new(exponent, no_load, reference_v, sigma).ok_or_else(|| {
+            format!("thrust follows the voltage by the power {exponent:.2}: motors have 1 to 2")
+        })?;
+        Ok(Plant {
+            motor: Some(motor),
+            ..self
+        })
     }
 
     /// Current of the battery, A.
@@ -104,7 +133,15 @@ impl<const R: usize> Plant<R> {
         let effective = |channel: usize| state.throttle.get(channel).copied().unwrap_or(0.0);
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         for (unit, flutter) in self.units.iter().zip(flutter) {
-            let [f, q] = self.pair.efforts(unit.channels.map(effective));
+            let throttles = unit.channels.map(effective);
+            let ([k_f, k_q], throttles) = match &self.motor {
+                None => ([k_f, k_q], throttles),
+                Some(motor) => {
+                    let (factor, throttles) = motor.at_reference(throttles, volts);
+                    ([factor; 2], throttles)
+                }
+            };
+            let [f, q] = self.pair.efforts(throttles);
             let thrust = unit.axis * ((1.0 + flutter) * k_f * f);
             force += thrust;
             torque += unit.position_m.cross(&thrust) - unit.axis * (unit.spin_sign * k_q * q);
@@ -149,4 +186,10 @@ impl<const R: usize> Plant<R> {
             charge_ah: self.current_a(state) / 3600.0,
         }
     }
+}
+
+/// Exponent of the thrust between the ends of the range.
+fn exponent(voltage: &Voltage) -> f64 {
+    let [low, high] = voltage.range_v.map(|volts| (volts, voltage.thrust_factor(volts)));
+    libm::log(high.1 / low.1) / libm::log(high.0 / low.0)
 }

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Parser};
 
 use super::plan::Manoeuvre;
+use crate::atmosphere;
+use crate::motor;
 
 /// One vehicle for the simulators of PX4 and ArduPilot
 ///
@@ -54,6 +56,16 @@ pub struct Arguments {
     /// Capacity of the battery, A h; without it the voltage does not fall with the charge
     #[arg(long, value_name = "AH", value_parser = positive)]
     pub capacity: Option<f64>,
+    /// Home at this altitude of the standard atmosphere, m: thrust follows voltage and density by a model of the
+    /// motors, barometer and satellite receiver are there
+    #[arg(long, value_name = "M", value_parser = altitude, allow_negative_numbers = true)]
+    pub altitude: Option<f64>,
+    /// Home at the altitude of this density, kg/m3
+    #[arg(long, value_name = "KG_M3", value_parser = density, conflicts_with = "altitude")]
+    pub density: Option<f64>,
+    /// No-load current of the motors over that of full throttle, for --altitude and --density
+    #[arg(long, value_name = "SHARE", default_value_t = motor::NO_LOAD, value_parser = no_load)]
+    pub no_load: f64,
     /// Mass, kg, instead of the file's
     #[arg(long, value_parser = positive)]
     pub mass_kg: Option<f64>,
@@ -113,6 +125,30 @@ fn positive(text: &str) -> Result<f64, String> {
     (value > 0.0)
         .then_some(value)
         .ok_or_else(|| "must be above 0".to_owned())
+}
+
+fn altitude(text: &str) -> Result<f64, String> {
+    let (value, [low, high]) = (number(text)?, atmosphere::ALTITUDES_M);
+    (low..=high)
+        .contains(&value)
+        .then_some(value)
+        .ok_or_else(|| format!("must be from {low} to {high} m"))
+}
+
+fn density(text: &str) -> Result<f64, String> {
+    let [most, least] = atmosphere::ALTITUDES_M.map(atmosphere::density_kg_m3);
+    let value = number(text)?;
+    (least..=most)
+        .contains(&value)
+        .then_some(value)
+        .ok_or_else(|| format!("must be from {least:.3} to {most:.3} kg/m3"))
+}
+
+fn no_load(text: &str) -> Result<f64, String> {
+    let value = not_negative(text)?;
+    (value < 1.0)
+        .then_some(value)
+        .ok_or_else(|| "must be below 1".to_owned())
 }
 
 fn failure(text: &str) -> Result<Failure, String> {

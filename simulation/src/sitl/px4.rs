@@ -38,10 +38,11 @@ const PATIENCE: Duration = Duration::from_secs(2);
 const DISARMED: Duration = Duration::from_millis(100);
 const PERIOD: Duration = Duration::from_micros(PERIOD_US);
 
-/// Bits of the fields of `HIL_SENSOR`: of acceleration and rates; of field, pressure, altitude and
-/// temperature.
+/// Bits of the fields of `HIL_SENSOR`: of acceleration and rates; of field, pressures, altitude and
+/// temperature. The differential pressure, 0, is that of a sensor whose temperature PX4 takes for
+/// the air's: it would take 15 degrees Celsius.
 const INERTIAL_FIELDS: u32 = 0b11_1111;
-const SLOW_FIELDS: u32 = 0b1_1011_1100_0000;
+const SLOW_FIELDS: u32 = 0b1_1111_1100_0000;
 
 /// PX4's port of a simulator for instance 0.
 pub const PORT: u16 = 4560;
@@ -259,7 +260,7 @@ fn truth(world: &World) -> MavMessage {
     let state = &world.state;
     let q = state.attitude;
     let [rollspeed, pitchspeed, yawspeed] = floats(&state.rate);
-    let [lat, lon, alt] = scaled(place(&state.position));
+    let [lat, lon, alt] = scaled(place(&state.position, world.vehicle.altitude_m));
     let [vx, vy, vz] = centimetres(&state.velocity);
     // In thousandths of the standard gravity.
     let [xacc, yacc, zacc] = floats(&(world.specific_force * (1e3 / 9.806_65))).map(|a| a as i16);

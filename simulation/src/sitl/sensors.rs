@@ -8,6 +8,7 @@ use rand_pcg::rand_core::SeedableRng;
 
 use super::world::World;
 use crate::air::normal;
+use crate::atmosphere;
 
 /// Standard deviations at a share of 1.
 const ACCELERATION_M_S2: f64 = 0.05;
@@ -20,8 +21,8 @@ const VELOCITY_M_S: f64 = 0.05;
 /// Least share for magnetometer and barometer: PX4 takes readings for stale that do not change.
 const LEAST_SHARE: f64 = 0.02;
 
-/// Home: latitude and longitude, degrees, and altitude over the sea, m.
-pub const HOME: [f64; 3] = [47.397_742, 8.545_594, 488.0];
+/// Home: latitude and longitude, degrees.
+const HOME: [f64; 2] = [47.397_742, 8.545_594];
 
 /// The earth's field there, gauss, north, east, down.
 const FIELD: Vector3<f64> = Vector3::new(0.214_75, 0.007_97, 0.428_17);
@@ -94,13 +95,13 @@ impl Sensors {
 
     /// Barometer, by the standard atmosphere.
     pub fn air(&mut self, world: &World) -> Air {
-        let altitude = HOME[2] - world.state.position.z;
-        let pressure_hpa = 1013.25 * libm::pow(1.0 - 2.255_77e-5 * altitude, 5.255_88)
+        let altitude = world.vehicle.altitude_m - world.state.position.z;
+        let pressure_hpa = atmosphere::pressure_hpa(altitude)
             + self.share.max(LEAST_SHARE) * PRESSURE_HPA * normal(&mut self.source);
         Air {
             pressure_hpa,
-            altitude_m: (1.0 - libm::pow(pressure_hpa / 1013.25, 1.0 / 5.255_88)) / 2.255_77e-5,
-            temperature_c: 15.0 - 0.0065 * altitude,
+            altitude_m: atmosphere::altitude_of_pressure_m(pressure_hpa),
+            temperature_c: atmosphere::temperature_c(altitude),
         }
     }
 
@@ -108,19 +109,19 @@ impl Sensors {
     pub fn fix(&mut self, world: &World) -> Fix {
         let position = world.state.position + self.noise(self.share * POSITION_M);
         Fix {
-            place: place(&position),
+            place: place(&position, world.vehicle.altitude_m),
             velocity: world.state.velocity + self.noise(self.share * VELOCITY_M_S),
         }
     }
 }
 
-/// Latitude and longitude in degrees and altitude in m of a position north, east, down of home.
-pub fn place(position: &Vector3<f64>) -> [f64; 3] {
-    let [latitude, longitude, altitude] = HOME;
+/// Latitude and longitude in degrees and altitude in m of a position north, east, down of home, which is at an altitude.
+pub fn place(position: &Vector3<f64>, altitude_m: f64) -> [f64; 3] {
+    let [latitude, longitude] = HOME;
     let east = position.y / (EARTH_M * libm::cos(latitude.to_radians()));
     [
         latitude + (position.x / EARTH_M).to_degrees(),
         longitude + east.to_degrees(),
-        altitude - position.z,
+        altitude_m - position.z,
     ]
 }

@@ -10,6 +10,7 @@ use rand_pcg::rand_core::SeedableRng;
 
 use super::arguments::Arguments;
 use crate::air::normal;
+use crate::atmosphere;
 use crate::battery::Battery;
 use crate::plant::Plant;
 use crate::state::State;
@@ -35,6 +36,9 @@ const HOVER_W_PER_KG: f64 = 80.0;
 /// cell.
 const FALL_OVER_CAPACITY: f64 = 0.157;
 
+/// Altitude of home over the sea, m, where no flag has one.
+const HOME_M: f64 = 488.0;
+
 /// Voltage where neither the file nor a flag has one, V.
 const ANY_VOLTAGE_V: f64 = 16.0;
 
@@ -53,6 +57,8 @@ pub struct Vehicle {
     pub battery: Battery,
     /// Charge of the full pack, A h; `None` where its voltage does not fall.
     pub capacity_ah: Option<f64>,
+    /// Altitude of home over the sea, m.
+    pub altitude_m: f64,
     /// Throttle of all rotors that carries the weight, by the map that is flown at the voltage of the start.
     pub hover_throttle: f64,
 }
@@ -98,8 +104,18 @@ impl Vehicle {
             full_throttle_a: 0.0,
         };
         let mismatch = spread(arguments.spread, arguments.seed, rotors);
+        let thin = arguments.density.map(atmosphere::altitude_of_density_m);
+        let thin = thin.or(arguments.altitude);
+        let plant = |battery: Battery| {
+            let plant = Plant::new(&flown, body, battery, mismatch);
+            let Some(altitude_m) = thin else { return Ok(plant) };
+            let density = atmosphere::density_kg_m3(altitude_m);
+            plant
+                .in_air(density, arguments.no_load)
+                .map_err(|reason| format!("{path}: {reason}"))
+        };
         // Without resistance first: the throttle in hover sets the current.
-        let rough = Plant::new(&flown, body, battery, mismatch);
+        let rough = plant(battery)?;
         let hover = |plant: &Plant<MOST_ROTORS>| {
             hover(plant, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))
         };
@@ -110,7 +126,7 @@ impl Vehicle {
         let cube = hover_throttle * hover_throttle * hover_throttle;
         battery.full_throttle_a = power_w / (full_v * rotors as f64 * cube);
         battery.resistance_ohm = arguments.resistance;
-        let plant = Plant::new(&flown, body, battery, mismatch);
+        let plant = plant(battery)?;
         let hover_throttle = hover(&plant)?;
         Ok(Vehicle {
             name: own.name,
@@ -119,6 +135,7 @@ impl Vehicle {
             mass_kg,
             battery,
             capacity_ah: arguments.capacity,
+            altitude_m: thin.unwrap_or(HOME_M),
             hover_throttle,
         })
     }
@@ -221,6 +238,27 @@ mod tests {
             assert!(level < 1e-3, "{file:?}: {torque}");
         }
         assert!(airframes().count() >= 10);
+    }
+
+    #[test]
+    fn thin_air_takes_more_throttle() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/simulator/x8.toml");
+        let at = |flags: &[&str]| vehicle(Path::new(file), flags).unwrap();
+        let (plain, sea) = (at(&[]), at(&["--altitude", "0"]));
+        assert_eq!((plain.altitude_m, sea.altitude_m), (488.0, 0.0));
+        // At the reference the motors' model is the map.
+        assert_eq!(plain.hover_throttle, sea.hover_throttle);
+        let thin = [["--altitude", "3000"], ["--density", "0.9091"]].map(|flags| at(&flags));
+        for vehicle in &thin {
+            assert!(
+                (vehicle.altitude_m - 3000.0).abs() < 2.0,
+                "{}",
+                vehicle.altitude_m
+            );
+            // Thrust falls by sigma^0.8 and goes with the throttle's power 1.9.
+            let more = vehicle.hover_throttle / sea.hover_throttle;
+            assert!((1.10..1.17).contains(&more), "{more}");
+        }
     }
 
     #[test]

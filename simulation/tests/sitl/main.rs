@@ -374,7 +374,13 @@ fn what_cannot_be_done_is_said() {
         let text = String::from_utf8_lossy(&run.stderr).into_owned();
         assert!(text.contains(said), "{said}: {text}");
     }
-    for arguments in [&[][..], &["--px4", "--ardupilot"], &["--px4", "--inertia", "1,2"]] {
+    for arguments in [
+        &[][..],
+        &["--px4", "--ardupilot"],
+        &["--px4", "--inertia", "1,2"],
+        &["--px4", "--density", "5"],
+        &["--px4", "--density", "0.9", "--altitude", "3000"],
+    ] {
         assert_eq!(server::run(arguments).status.code(), Some(2), "{arguments:?}");
     }
 }
