@@ -1,10 +1,12 @@
 //! Messages of the pilot's link.
 
 use mavlink::dialects::common::{
-    BATTERY_STATUS_DATA, HEARTBEAT_DATA, MavAutopilot, MavBatteryFunction, MavBatteryType, MavFrame,
-    MavMessage, MavModeFlag, MavState, MavType, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
-    STATUSTEXT_DATA,
+    AttitudeTargetTypemask, BATTERY_STATUS_DATA, HEARTBEAT_DATA, MavAutopilot, MavBatteryFunction,
+    MavBatteryType, MavFrame, MavMessage, MavModeFlag, MavState, MavType, PositionTargetTypemask,
+    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA,
 };
+
+use nalgebra::UnitQuaternion;
 
 use super::plan::Target;
 use super::world::World;
@@ -65,6 +67,24 @@ pub fn position(target: Target, height_m: f64, [system, component]: [u8; 2], tim
         target_component: component,
         coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
         ..SET_POSITION_TARGET_LOCAL_NED_DATA::DEFAULT
+    })
+}
+
+/// Asks for roll and heading, at a thrust from 0 to 1.
+pub fn attitude(target: Target, thrust: f32, [system, component]: [u8; 2], time_s: f64) -> MavMessage {
+    use AttitudeTargetTypemask as Mask;
+    let [roll, yaw] = [target.roll_deg, target.yaw_deg].map(f64::to_radians);
+    let q = UnitQuaternion::from_euler_angles(roll, 0.0, yaw);
+    MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+        time_boot_ms: (time_s * 1e3) as u32,
+        q: [q.w as f32, q.i as f32, q.j as f32, q.k as f32],
+        thrust,
+        type_mask: Mask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
+            | Mask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE
+            | Mask::ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE,
+        target_system: system,
+        target_component: component,
+        ..SET_ATTITUDE_TARGET_DATA::DEFAULT
     })
 }
 

@@ -7,7 +7,7 @@ use mavlink::dialects::common::{
 
 use super::arguments::Arguments;
 use super::link::Link;
-use super::messages::{BATTERY, Texts, battery, heartbeat, position};
+use super::messages::{BATTERY, Texts, attitude, battery, heartbeat, position};
 use super::plan::{Manoeuvre, Plan, Target};
 use super::world::World;
 
@@ -287,7 +287,16 @@ impl Pilot {
         let takes_targets = self.stack == Stack::Px4 || matches!(self.phase, Phase::Flying(_));
         if takes_targets && is_due(&mut self.target_s, time_s, TARGET_S) {
             let target = self.wanted(time_s).unwrap_or_default();
-            self.link.send(&position(target, self.height_m, peer, time_s));
+            // In roll PX4 keeps the thrust of the hover; ArduPilot's 0.5 is no climb.
+            let thrust = match self.stack {
+                Stack::Px4 => self.thrust_setpoint as f32,
+                Stack::Ardupilot => 0.5,
+            };
+            self.link.send(&if target.roll_deg == 0.0 {
+                position(target, self.height_m, peer, time_s)
+            } else {
+                attitude(target, thrust, peer, time_s)
+            });
         }
         Ok(())
     }

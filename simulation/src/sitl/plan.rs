@@ -14,6 +14,8 @@ pub enum Manoeuvre {
     Yaw,
     /// Four sidesteps of 6 m, the first two with a step of 90 degrees in heading
     Sidestep,
+    /// Four steps of 15 degrees in roll, a second each, and back to the place
+    Roll,
     /// Output 0 stops, or that of --fail; then a step of 90 degrees in heading, there and back
     Failure,
 }
@@ -25,6 +27,8 @@ pub struct Target {
     pub offset: Vector3<f64>,
     /// Heading, degrees.
     pub yaw_deg: f64,
+    /// Roll, degrees; unless it is 0, the attitude is asked for and no place.
+    pub roll_deg: f64,
 }
 
 /// Targets from a time of the manoeuvre on, and its end.
@@ -42,37 +46,41 @@ pub const FIRST_S: f64 = 5.0;
 /// End of a manoeuvre without steps, s.
 const HOVER_S: f64 = 30.0;
 
-/// Time from one step to the next, s.
-pub const BETWEEN_S: f64 = 8.0;
+/// Time from one step to the next, s, and from one in roll: the vehicle gathers speed.
+const BETWEEN_S: f64 = 8.0;
+const ROLL_S: f64 = 1.0;
 
 impl Manoeuvre {
     /// When what is asked for.
     pub fn plan(self) -> Plan {
-        const HOME: [f64; 4] = [0.0; 4];
-        let yaw = |degrees| [0.0, 0.0, 0.0, degrees];
-        let targets: &[[f64; 4]] = match self {
+        const HOME: [f64; 5] = [0.0; 5];
+        let yaw = |degrees| [0.0, 0.0, 0.0, degrees, 0.0];
+        let roll = |degrees| [0.0, 0.0, 0.0, 0.0, degrees];
+        let targets: &[[f64; 5]] = match self {
             Manoeuvre::Hover => &[],
-            Manoeuvre::Steps => &[[0.0, 0.0, 3.0, 0.0], HOME, [4.0, 0.0, 0.0, 0.0], HOME],
+            Manoeuvre::Steps => &[[0.0, 0.0, 3.0, 0.0, 0.0], HOME, [4.0, 0.0, 0.0, 0.0, 0.0], HOME],
             Manoeuvre::Yaw => &[90.0, 0.0, -90.0, 0.0, 175.0, 0.0, -175.0, 0.0].map(yaw),
-            Manoeuvre::Sidestep => &[[0.0, 6.0, 0.0, 90.0], HOME, [0.0, 6.0, 0.0, 0.0], HOME],
+            Manoeuvre::Sidestep => &[[0.0, 6.0, 0.0, 90.0, 0.0], HOME, [0.0, 6.0, 0.0, 0.0, 0.0], HOME],
+            Manoeuvre::Roll => &[15.0, 0.0, -15.0, 0.0, 15.0, 0.0, -15.0, 0.0].map(roll),
             // The rotor stops at the first time.
             Manoeuvre::Failure => &[HOME, yaw(90.0), HOME],
         };
-        let begin_s = |k: usize| FIRST_S + BETWEEN_S * k as f64;
-        let steps = targets
-            .iter()
-            .enumerate()
-            .map(|(k, &[north, east, up, yaw_deg])| {
-                let offset = Vector3::new(north, east, up);
-                (begin_s(k), Target { offset, yaw_deg })
-            });
+        let mut end_s = FIRST_S;
+        let steps = targets.iter().map(|&[north, east, up, yaw_deg, roll_deg]| {
+            let begin_s = end_s;
+            end_s += if roll_deg == 0.0 { BETWEEN_S } else { ROLL_S };
+            let offset = Vector3::new(north, east, up);
+            let target = Target {
+                offset,
+                yaw_deg,
+                roll_deg,
+            };
+            (begin_s, target)
+        });
+        let steps: Vec<_> = steps.collect();
         Plan {
-            steps: steps.collect(),
-            end_s: if targets.is_empty() {
-                HOVER_S
-            } else {
-                begin_s(targets.len())
-            },
+            end_s: if steps.is_empty() { HOVER_S } else { end_s },
+            steps,
         }
     }
 }

@@ -7,7 +7,7 @@ use std::fmt;
 
 use super::flight::Flight;
 use super::pilot::Pilot;
-use super::plan::{BETWEEN_S, FIRST_S, Plan, Target};
+use super::plan::{FIRST_S, Plan, Target};
 use super::record::{Record, Sample};
 use crate::state::wrapped;
 
@@ -92,9 +92,11 @@ impl Score {
             false => flown.hover(FIRST_S - HOVER_S, FIRST_S),
         };
         let mut before = Target::default();
-        for (begin_s, target) in &plan.steps {
+        let ends = plan.steps.iter().skip(1).map(|(begin_s, _)| *begin_s);
+        for ((begin_s, target), end_s) in plan.steps.iter().zip(ends.chain([plan.end_s])) {
             let from = std::mem::replace(&mut before, *target);
-            let measured = name(&from, target).zip(flown.step(*begin_s, &from, target, vehicle.weight_n()));
+            let measured =
+                name(&from, target).zip(flown.step([*begin_s, end_s], &from, target, vehicle.weight_n()));
             let Some((name, step)) = measured else { continue };
             match score.rows.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, steps)) => steps.push(step),
@@ -120,6 +122,9 @@ fn name(from: &Target, to: &Target) -> Option<String> {
     }
     if to.yaw_deg != from.yaw_deg {
         parts.push(format!("{} deg in yaw", (to.yaw_deg - from.yaw_deg).abs()));
+    }
+    if to.roll_deg != 0.0 {
+        parts.push(format!("{} deg in roll", to.roll_deg.abs()));
     }
     (!parts.is_empty()).then(|| parts.join(", "))
 }
@@ -154,8 +159,7 @@ impl Flown<'_> {
         })
     }
 
-    fn step(&self, begin_s: f64, from: &Target, to: &Target, weight_n: f64) -> Option<Step> {
-        let end_s = begin_s + BETWEEN_S;
+    fn step(&self, [begin_s, end_s]: [f64; 2], from: &Target, to: &Target, weight_n: f64) -> Option<Step> {
         self.between(end_s - 0.1, end_s).next()?;
         let over = |of: &dyn Fn(&Sample) -> f64| self.mean(begin_s - BEFORE_S, begin_s, of);
         let height_m = over(&height)?;
@@ -163,7 +167,7 @@ impl Flown<'_> {
         let largest = |of: &dyn Fn(&Sample) -> f64| most(window().map(|(_, sample)| of(sample)));
         let error = |sample: &Sample| (height(sample) - height_m).abs();
         let offset = to.offset - from.offset;
-        let is_level = offset.z == 0.0;
+        let holds_height = offset.z == 0.0 && to.roll_deg == 0.0;
         let square = |sample: &Sample| error(sample) * error(sample);
         let rms = self.mean(begin_s, begin_s + RMS_S, square)?.sqrt();
         let turn = to.yaw_deg - from.yaw_deg;
@@ -172,13 +176,16 @@ impl Flown<'_> {
             |sample: &Sample| sample.position.y,
         );
         let [north, east] = [over(&x)?, over(&y)?];
+        let roll = over(&|sample| sample.euler.x)?;
         let aimed = from.yaw_deg.to_radians();
         let yaw = over(&|sample| wrapped(sample.euler.z - aimed))? + aimed;
         let progress = |sample: &Sample, last: f64| {
-            if offset.xy().norm() > 0.0 {
+            if to.roll_deg != 0.0 {
+                (sample.euler.x - roll).to_degrees() / to.roll_deg
+            } else if offset.xy().norm() > 0.0 {
                 let moved = [sample.position.x - north, sample.position.y - east];
                 (moved[0] * offset.x + moved[1] * offset.y) / offset.xy().norm_squared()
-            } else if !is_level {
+            } else if !holds_height {
                 (height(sample) - height_m) / offset.z
             } else {
                 // Continuous: a step of 175 degrees may overshoot 180.
@@ -195,7 +202,7 @@ impl Flown<'_> {
                 rise_s = time_s - begin_s;
             }
         }
-        let heights = if is_level {
+        let heights = if holds_height {
             [largest(&error), rms]
         } else {
             [f64::NAN; 2]
@@ -336,7 +343,7 @@ mod tests {
             [2.0 + yaw, if (0.0..1.0).contains(&t) { 4.8 } else { 5.0 }, 0.0]
         });
         let step = Flown(&record)
-            .step(FIRST_S, &turn(0.0), &turn(175.0), 10.0)
+            .step([FIRST_S, FIRST_S + 8.0], &turn(0.0), &turn(175.0), 10.0)
             .unwrap();
         let [
             rise_s,
@@ -359,13 +366,38 @@ mod tests {
     fn steps_that_do_not_arrive_or_end_have_no_time() {
         let record = flown(|_| [0.0, 5.0, 0.0]);
         let step = Flown(&record)
-            .step(FIRST_S, &turn(0.0), &turn(90.0), 10.0)
+            .step([FIRST_S, FIRST_S + 8.0], &turn(0.0), &turn(90.0), 10.0)
             .unwrap();
         assert!(step[0].is_nan() && step[1] == 0.0, "{step:?}");
         assert_eq!(
-            Flown(&record).step(FIRST_S + BETWEEN_S, &turn(0.0), &turn(90.0), 10.0),
+            Flown(&record).step([13.0, 21.0], &turn(0.0), &turn(90.0), 10.0),
             None
         );
+    }
+
+    #[test]
+    fn a_step_in_roll_is_measured_within_its_second() {
+        // To 16.5 degrees within half a second; then back, which is none of it.
+        let record = flown(|t| {
+            let t = t - FIRST_S;
+            let roll = if t < 1.0 {
+                (33.0 * t).clamp(0.0, 16.5)
+            } else {
+                -40.0
+            };
+            [0.0, 5.0, 0.2 + roll]
+        });
+        let plan = Manoeuvre::Roll.plan();
+        assert_eq!(plan.steps.len(), 8);
+        assert_eq!((plan.steps[1].0, plan.steps[2].0, plan.end_s), (6.0, 14.0, 41.0));
+        let to = plan.steps[0].1;
+        let name = name(&Target::default(), &to);
+        assert_eq!(name.as_deref(), Some("15 deg in roll"));
+        let step = Flown(&record)
+            .step([5.0, 6.0], &Target::default(), &to, 10.0)
+            .unwrap();
+        assert!((step[0] - 13.5 / 33.0).abs() < 0.005, "{step:?}");
+        assert!((step[1] - 10.0).abs() < 1e-6 && step[2].is_nan(), "{step:?}");
     }
 
     #[test]
