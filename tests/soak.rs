@@ -97,7 +97,7 @@ fn planted_faults_are_found() {
     assert!(wrong_range.contains(&Check::Throttle), "{wrong_range:?}");
     let wrong_flag = found(|compiled| {
         let voltage = compiled.airframe.voltage.as_mut().expect("a law");
-        voltage.range_v[0] -= 1.0;
+        voltage.range[0] -= 1.0;
     });
     assert!(wrong_flag.contains(&Check::Flag), "{wrong_flag:?}");
 }

@@ -1,5 +1,5 @@
-//! Setpoints as CSV: a header `roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v]` in any order, then one
-//! row per line.
+//! Setpoints as CSV: a header `roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v][,density_kg_m3]` in any
+//! order, then one row per line.
 //!
 //! A row never spans lines, although CSV allows it in quotes: so a stray quote spoils its own row
 //! and not all rows after it.
@@ -12,7 +12,8 @@ use mixer_rt::Wrench;
 /// The columns that must be there, in the order of [`Wrench::to_array`].
 const REQUIRED: [&str; 4] = ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n"];
 const VOLTAGE: &str = "voltage_v";
-pub(crate) const HEADER: &str = "roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v]";
+const DENSITY: &str = "density_kg_m3";
+pub(crate) const HEADER: &str = "roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v][,density_kg_m3]";
 
 /// One row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub struct Setpoint {
     pub wrench: Wrench,
     /// The battery's voltage, V, if there is such a column.
     pub voltage_v: Option<f32>,
+    /// The air's density, kg/m3, if there is such a column.
+    pub density_kg_m3: Option<f32>,
 }
 
 /// A line that is no setpoint.
@@ -171,12 +174,13 @@ struct Columns {
     count: usize,
     wrench: [usize; 4],
     voltage: Option<usize>,
+    density: Option<usize>,
 }
 
 impl Columns {
     fn new(header: &[&str]) -> Result<Self, String> {
         let place = |name: &str| header.iter().position(|column| *column == name);
-        let known = |name: &str| REQUIRED.contains(&name) || name == VOLTAGE;
+        let known = |name: &str| REQUIRED.contains(&name) || [VOLTAGE, DENSITY].contains(&name);
         let missing = REQUIRED.into_iter().filter(|name| place(name).is_none());
         let missing = missing.collect::<Vec<_>>().join(", ");
         if !missing.is_empty() {
@@ -194,6 +198,7 @@ impl Columns {
             count: header.len(),
             wrench: REQUIRED.map(|name| place(name).unwrap_or_default()),
             voltage: place(VOLTAGE),
+            density: place(DENSITY),
         })
     }
 
@@ -215,6 +220,7 @@ impl Columns {
         Ok(Setpoint {
             wrench: Wrench::from_array(wrench),
             voltage_v: self.voltage.map(|index| number(index, VOLTAGE)).transpose()?,
+            density_kg_m3: self.density.map(|index| number(index, DENSITY)).transpose()?,
         })
     }
 }
@@ -244,6 +250,7 @@ mod tests {
         Setpoint {
             wrench: Wrench::from_array(wrench),
             voltage_v,
+            density_kg_m3: None,
         }
     }
 

@@ -10,7 +10,7 @@
 //! [`IsolatedRotors::conventional`] is the paper's comparison (section V): F = B+ u, every throttle
 //! clipped. [`IsolatedRotors::sequential`] desaturates F as PX4 does before it clips.
 
-use mixer_rt::tables::{Airmode, ThrottleRange, Voltage, sqrt};
+use mixer_rt::tables::{Airmode, Law, ThrottleRange, sqrt};
 use mixer_rt::{Axis, SetpointError, Wrench};
 
 /// One rotor's share of the allocation.
@@ -79,7 +79,7 @@ pub struct IsolatedRotors<'a> {
     /// The allowed throttles.
     pub throttle: ThrottleRange,
     /// The voltage correction; its torque factor is not used, since kappa is one number.
-    pub voltage: Option<Voltage<'a>>,
+    pub voltage: Option<Law<'a>>,
 }
 
 /// Rotors with a smaller share than this are left alone by desaturation (PX4: "weak
@@ -159,7 +159,7 @@ impl IsolatedRotors<'_> {
         let factor = match &self.voltage {
             None => 1.0,
             Some(_) if !voltage_v.is_finite() => return Err(SetpointError::NonFiniteVoltage),
-            Some(voltage) => voltage.thrust.factor(limited(voltage_v, voltage.range_v)),
+            Some(law) => law.factors(limited(voltage_v, law.range))[0],
         };
         let per_factor = 1.0 / factor;
         Ok(request.map(|value| value * per_factor))

@@ -10,8 +10,8 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::PairMap;
 use mixer_compiler::model::effectiveness::Effectiveness;
+use mixer_compiler::model::law::LawTable;
 use mixer_compiler::model::pseudo_inverse::PseudoInverse;
-use mixer_compiler::model::voltage::VoltageTable;
 use mixer_compiler::tables;
 use mixer_rt::tables::{Airmode, ThrottleRange};
 use mixer_rt::{SetpointError, Wrench};
@@ -37,7 +37,7 @@ pub struct IsolatedTables {
     /// The allowed throttles.
     pub throttle: ThrottleRange,
     /// The voltage correction.
-    pub voltage: Option<VoltageTable>,
+    pub voltage: Option<LawTable>,
     /// kappa = Q / f of one rotor, m.
     pub kappa_m: f64,
     /// B, 4 x 2n: `[roll, pitch, yaw, thrust]` per N of the rotor at an output channel. Axes that
@@ -54,11 +54,11 @@ impl IsolatedTables {
             tables,
             ..
         } = compiled;
-        IsolatedTables::of(airframe, effectiveness, tables.voltage.clone())
+        IsolatedTables::of(airframe, effectiveness, tables.corrections.voltage.clone())
     }
 
     /// The tables of `airframe` with effectiveness M.
-    pub fn of(airframe: &Airframe, effectiveness: &Effectiveness, voltage: Option<VoltageTable>) -> Self {
+    pub fn of(airframe: &Airframe, effectiveness: &Effectiveness, voltage: Option<LawTable>) -> Self {
         let map = PairMap::new(&airframe.pair, &airframe.throttle);
         let kappa_m = torque_per_thrust(&map);
         let columns = rotor_columns(airframe, effectiveness, kappa_m);
@@ -90,7 +90,7 @@ impl IsolatedTables {
             curve: self.curve,
             thrust_n: self.thrust_n,
             throttle: self.throttle,
-            voltage: self.voltage.as_ref().map(VoltageTable::view),
+            voltage: self.voltage.as_ref().map(LawTable::view),
         }
     }
 

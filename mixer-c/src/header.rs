@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use mixer_compiler::airframe::Voltage;
+use mixer_compiler::airframe::Correction;
 use mixer_compiler::diagnostic::is_plain;
 use mixer_rt::Wrench;
 
@@ -45,9 +45,16 @@ impl Header<'_> {
         let voltage = match &airframe.voltage {
             Some(voltage) => format!(
                 "`voltage_v` is the battery's present voltage, V: outside {:?} to {:?} it is clamped and flagged",
-                voltage.range_v[0], voltage.range_v[1]
+                voltage.range[0], voltage.range[1]
             ),
             None => "`voltage_v` is ignored: the airframe has no voltage correction".to_owned(),
+        };
+        let density = match &airframe.air {
+            Some(air) => format!(
+                "outside {:?} to {:?} `density_kg_m3` is clamped and flagged; NaN, infinite, 0 or less means {prefix}_REFERENCE_DENSITY_KG_M3, flagged",
+                air.range[0], air.range[1]
+            ),
+            None => "`density_kg_m3` is ignored: the airframe has no [air]".to_owned(),
         };
         let scales = |stack: &str, scale: Wrench| -> String {
             let names = ["ROLL_NM", "PITCH_NM", "YAW_NM", "THRUST_N"];
@@ -61,7 +68,7 @@ impl Header<'_> {
             .iter()
             .map(|factors| format!("{{{}}}", factors.map(|factor| float(factor as f32)).join(", ")))
             .collect();
-        let at = |words: fn(&Voltage) -> String| airframe.voltage.as_ref().map(words).unwrap_or_default();
+        let at = |words: fn(&Correction) -> String| airframe.voltage.as_ref().map(words).unwrap_or_default();
         fill(
             include_str!("templates/airframe.h"),
             &[
@@ -79,18 +86,20 @@ impl Header<'_> {
                 ("MIN", &float(airframe.throttle.min as f32)),
                 ("MAX", &float(airframe.throttle.max as f32)),
                 ("REFERENCE_V", &float(airframe.reference_v() as f32)),
+                ("REFERENCE_DENSITY", &float(airframe.reference_density() as f32)),
                 ("PX4", &scales("", compiled.scale())),
                 ("ARDUPILOT", &scales("ARDUPILOT_", compiled.ardupilot_scale())),
                 ("FACTORS", &factors.join(", \\\n    ")),
                 (
                     "REFERENCE",
-                    &at(|voltage| format!(" at {:?} V", voltage.reference_v)),
+                    &at(|voltage| format!(" at {:?} V", voltage.reference)),
                 ),
                 (
                     "HIGHEST",
-                    &at(|voltage| format!(" at {:?} V, which MOT_BAT_VOLT_MAX would be", voltage.range_v[1])),
+                    &at(|voltage| format!(" at {:?} V, which MOT_BAT_VOLT_MAX would be", voltage.range[1])),
                 ),
                 ("VOLTAGE", &voltage),
+                ("DENSITY", &density),
                 ("HEALTH", &self.health()),
             ],
         )
@@ -136,7 +145,9 @@ impl Header<'_> {
             "/* The same with rotors out: bit k of `failed` is the rotor at channel k, whose throttle is 0. An object of its\n \
              * own in lib{module}.a: who does not call it does not link it. */\n\
              int {module}_mix_with_health(const mixer_wrench_t *setpoint, float voltage_v, uint64_t failed,\n    \
-             {module}_mix_t *out);\n\n"
+             {module}_mix_t *out);\n\
+             int {module}_mix_in_with_health(const mixer_wrench_t *setpoint, const mixer_conditions_t *conditions,\n    \
+             uint64_t failed, {module}_mix_t *out);\n\n"
         )
     }
 

@@ -1,28 +1,28 @@
-//! The Rust of the C interface: one function around the generated module.
+//! The Rust of the C interface: the mixer at the bench's air density and in air of a measured one, around the
+//! generated module.
 
 use crate::airframe::Airframe;
 
-/// Name of the C function.
-pub(crate) fn function(module: &str, health: bool) -> String {
-    if health {
-        format!("{module}_mix_with_health")
-    } else {
-        format!("{module}_mix")
-    }
+/// Names of the C functions: at the bench's density, and under conditions.
+pub(crate) fn functions(module: &str, health: bool) -> [String; 2] {
+    let health = if health { "_with_health" } else { "" };
+    ["mix", "mix_in"].map(|mix| format!("{module}_{mix}{health}"))
 }
 
-/// A crate that exports this function alone.
+/// A crate that exports these functions alone. Both jump to a third, so that the mixer is there once.
 pub(crate) fn rust(airframe: &Airframe, health: bool) -> String {
     let Airframe { compiled, module, .. } = airframe;
-    let function = function(module, health);
-    let (parameter, call) = if health {
+    let [mix, mix_in] = functions(module, health);
+    let (parameter, argument, call) = if health {
         (
             "failed: u64, ",
-            "airframe::mix_with_health(&setpoint, voltage_v, health(failed))",
+            "failed, ",
+            "airframe::mix_in_with_health(&setpoint, &conditions, health(failed))",
         )
     } else {
-        ("", "airframe::mix(&setpoint, voltage_v)")
+        ("", "", "airframe::mix_in(&setpoint, &conditions)")
     };
+    let density = compiled.airframe.reference_density() as f32;
     let generated = compiled.rust();
     let health = if health { HEALTH } else { "" };
     format!(
@@ -41,9 +41,23 @@ pub struct Mix {{
 /// # Safety
 /// `setpoint` and `out` point to their types.
 #[unsafe(no_mangle)]
-pub unsafe extern \"C\" fn {function}(setpoint: *const Wrench, voltage_v: f32, {parameter}out: *mut Mix) -> c_int {{
+pub unsafe extern \"C\" fn {mix}(setpoint: *const Wrench, voltage_v: f32, {parameter}out: *mut Mix) -> c_int {{
+    unsafe {{ mix(setpoint, voltage_v, {density:?}, {argument}out) }}
+}}
+
+/// # Safety
+/// `setpoint`, `conditions` and `out` point to their types.
+#[unsafe(no_mangle)]
+pub unsafe extern \"C\" fn {mix_in}(setpoint: *const Wrench, conditions: *const Conditions, {parameter}out: *mut Mix) -> c_int {{
+    let Conditions {{ voltage_v, density_kg_m3 }} = unsafe {{ conditions.read() }};
+    unsafe {{ mix(setpoint, voltage_v, density_kg_m3, {argument}out) }}
+}}
+
+#[inline(never)]
+unsafe extern \"C\" fn mix(setpoint: *const Wrench, voltage_v: f32, density_kg_m3: f32, {parameter}out: *mut Mix) -> c_int {{
     let Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }} = unsafe {{ setpoint.read() }};
     let setpoint = mixer_rt::Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }};
+    let conditions = mixer_rt::Conditions {{ voltage_v, density_kg_m3 }};
     match {call} {{
         Ok(mix) => {{
             let mixer_rt::Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }} = mix.achieved;
@@ -88,6 +102,12 @@ pub struct Wrench {
     pitch_nm: f32,
     yaw_nm: f32,
     thrust_n: f32,
+}
+
+#[repr(C)]
+pub struct Conditions {
+    voltage_v: f32,
+    density_kg_m3: f32,
 }
 
 ";

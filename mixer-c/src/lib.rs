@@ -41,7 +41,7 @@ pub use error::Error;
 
 use build::Build;
 use header::Header;
-use object::Symbols;
+use object::{Member, Symbols};
 use toolchain::Toolchain;
 
 /// What a library is made for.
@@ -92,10 +92,9 @@ fn files(
     let mut files = vec![text("coaxial_mixer.h".to_owned(), header::shared())];
     for airframe in airframes {
         let module = &airframe.module;
-        let (mut members, mut functions) = (Vec::new(), Vec::new());
+        let mut members = Vec::new();
         for is_second in [false, true].into_iter().take(1 + usize::from(health)) {
             members.push(member(&build, airframe, is_second)?);
-            functions.push(interface::function(module, is_second));
         }
         let header = Header {
             airframe,
@@ -104,7 +103,7 @@ fn files(
         };
         files.push(File {
             name: format!("lib{module}.a"),
-            bytes: object::archive(&members, &functions)?,
+            bytes: object::archive(&members)?,
         });
         files.push(text(format!("{module}.h"), header.text()));
         files.push(text(format!("{module}.cmake"), header.cmake()));
@@ -116,8 +115,8 @@ fn files(
     Ok(files)
 }
 
-/// The object of one function, looked into, with its name in the archive.
-fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<(String, Vec<u8>), String> {
+/// The object of the mixer, looked into.
+fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<Member, String> {
     let name = if health {
         format!("{}_health", airframe.module)
     } else {
@@ -136,9 +135,13 @@ fn member(build: &Build<'_>, airframe: &Airframe, health: bool) -> Result<(Strin
         calls.extend(found);
         if calls.len() == known {
             let is_linked = |name: &str| support::is_linked(build.target(), name);
-            let function = interface::function(&airframe.module, health);
-            symbols.check(&function, is_linked).map_err(fault)?;
-            return Ok((format!("{name}.o"), bytes));
+            let functions = interface::functions(&airframe.module, health).to_vec();
+            symbols.check(&functions, is_linked).map_err(fault)?;
+            return Ok(Member {
+                name: format!("{name}.o"),
+                bytes,
+                functions,
+            });
         }
     }
 }

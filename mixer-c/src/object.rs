@@ -28,29 +28,39 @@ impl Symbols {
         Ok(symbols)
     }
 
-    /// Whether the object has `function` as its only global symbol and needs nothing but what
+    /// Whether the object has `functions` as its only global symbols and needs nothing but what
     /// `is_linked` with it.
-    pub(crate) fn check(&self, function: &str, is_linked: impl Fn(&str) -> bool) -> Result<(), String> {
+    pub(crate) fn check(&self, functions: &[String], is_linked: impl Fn(&str) -> bool) -> Result<(), String> {
         let needed = self.undefined.iter().map(String::as_str);
         let needed: Vec<&str> = needed.filter(|name| !is_linked(name)).collect();
         if !needed.is_empty() {
             return Err(format!("needs {}", needed.join(", ")));
         }
-        if self.global != [function] {
-            let global = self.global.join(", ");
-            return Err(format!("defines {global}, not {function} alone"));
+        let is_one = |name: &String| functions.contains(name);
+        if self.global.len() != functions.len() || !self.global.iter().all(is_one) {
+            let [global, functions] = [&self.global, functions].map(|names| names.join(", "));
+            return Err(format!("defines {global}, not {functions} alone"));
         }
         Ok(())
     }
 }
 
-/// A static library as GNU's and LLVM's linkers read it, its index of `functions` (one per member)
+/// An object of a library.
+pub(crate) struct Member {
+    /// Its name in the archive.
+    pub(crate) name: String,
+    pub(crate) bytes: Vec<u8>,
+    /// The functions that it defines.
+    pub(crate) functions: Vec<String>,
+}
+
+/// A static library as GNU's and LLVM's linkers read it, its index of the members' functions
 /// included. Without times, owners or folders: the same objects give the same bytes.
-pub(crate) fn archive(members: &[(String, Vec<u8>)], functions: &[String]) -> Result<Vec<u8>, String> {
+pub(crate) fn archive(members: &[Member]) -> Result<Vec<u8>, String> {
     // Names that do not fit a member's header stand in a member of their own, by their places in
     // it.
     let (mut long_names, mut names) = (String::new(), Vec::new());
-    for (name, _) in members {
+    for Member { name, .. } in members {
         if name.len() < NAME {
             names.push(format!("{name}/"));
         } else {
@@ -62,14 +72,12 @@ pub(crate) fn archive(members: &[(String, Vec<u8>)], functions: &[String]) -> Re
     if !long_names.is_empty() {
         append(&mut rest, "//", long_names.as_bytes());
     }
-    for ((_, bytes), name) in members.iter().zip(&names) {
-        places.push(rest.len());
+    for (Member { bytes, functions, .. }, name) in members.iter().zip(&names) {
+        places.extend(functions.iter().map(|_| rest.len()));
         append(&mut rest, name, bytes);
     }
-    let functions: Vec<u8> = functions
-        .iter()
-        .flat_map(|name| name.bytes().chain([0]))
-        .collect();
+    let functions = members.iter().flat_map(|member| &member.functions);
+    let functions: Vec<u8> = functions.flat_map(|name| name.bytes().chain([0])).collect();
     let index_bytes = 4 + 4 * places.len() + functions.len();
     let first = MAGIC.len() + HEADER + index_bytes.next_multiple_of(2);
     let mut index = Vec::new();
@@ -104,18 +112,27 @@ fn append(archive: &mut Vec<u8>, name: &str, bytes: &[u8]) {
 mod tests {
     use super::*;
 
+    fn member(name: &str, bytes: &[u8], functions: &[&str]) -> Member {
+        Member {
+            name: name.to_owned(),
+            bytes: bytes.to_vec(),
+            functions: functions.iter().map(|&name| name.to_owned()).collect(),
+        }
+    }
+
     #[test]
     fn archives_have_an_index_and_long_names() {
         let members = [
-            ("a.o".to_owned(), vec![1, 2, 3]),
-            ("a_name_beyond_fifteen.o".to_owned(), vec![4, 5]),
+            member("a.o", &[1, 2, 3], &["a_mix", "b"]),
+            member("a_name_beyond_fifteen.o", &[4, 5], &["c"]),
         ];
-        let functions = ["a_mix".to_owned(), "b".to_owned()];
-        let bytes = archive(&members, &functions).unwrap();
+        let bytes = archive(&members).unwrap();
         assert!(bytes.starts_with(b"!<arch>\n/               0 "));
-        // Magic; index of 20 bytes; names of 25; the members.
-        let first = 8 + (60 + 20) + (60 + 26);
-        assert_eq!(bytes[68..80], [0, 0, 0, 2, 0, 0, 0, first, 0, 0, 0, first + 64]);
+        // Magic; index of 26 bytes; names of 25; the members.
+        let first = 8 + (60 + 26) + (60 + 26);
+        let places = [0, 0, 0, 3, 0, 0, 0, first, 0, 0, 0, first, 0, 0, 0, first + 64];
+        assert_eq!(bytes[68..84], places);
+        assert_eq!(&bytes[84..94], b"a_mix\0b\0c\0");
         assert!(bytes[usize::from(first)..].starts_with(b"a.o/ "));
         assert!(bytes[usize::from(first) + 64..].starts_with(b"/0 "));
         assert_eq!(bytes.len(), usize::from(first) + 64 + 62);
@@ -127,7 +144,7 @@ mod tests {
         let symbols = Symbols::of(&this_test).unwrap();
         assert!(
             symbols
-                .check("x_mix", |_| false)
+                .check(&["x_mix".to_owned()], |_| false)
                 .unwrap_err()
                 .starts_with("needs ")
         );

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use mixer_compiler::Compiled;
-use mixer_rt::{Health, SetpointError, Wrench};
+use mixer_compiler::airframe::Correction;
+use mixer_rt::{Conditions, Health, SetpointError, Wrench};
 
 use crate::airframe::Airframe;
 use crate::header::{VERSION, fill};
@@ -21,14 +22,18 @@ pub(crate) fn text(airframe: &Airframe, health: bool) -> String {
     let Airframe { compiled, module, .. } = airframe;
     let rows = setpoints(compiled);
     let mut table = String::new();
-    for (index, (wrench, voltage_v)) in rows.iter().enumerate() {
+    for (index, (wrench, conditions)) in rows.iter().enumerate() {
         let failed = health.then(|| mask(index, compiled.airframe.rotors()));
-        row(&mut table, compiled, wrench, *voltage_v, failed);
+        row(&mut table, compiled, wrench, *conditions, failed);
     }
-    let mix = format!("{module}_mix(&setpoint, in[4], &out)");
+    // At the bench's density by the function that takes none.
+    let mix = format!(
+        "in[5] == {}_REFERENCE_DENSITY_KG_M3\n            ? {module}_mix(&setpoint, in[4], &out)\n            : {module}_mix_in(&setpoint, &conditions, &out)",
+        airframe.prefix()
+    );
     let call = if health {
         format!(
-            "rows[i].failed != 0u\n            ? {module}_mix_with_health(&setpoint, in[4], rows[i].failed, &out)\n            : {mix}"
+            "rows[i].failed != 0u\n            ? {module}_mix_in_with_health(&setpoint, &conditions, rows[i].failed, &out)\n            : {mix}"
         )
     } else {
         mix
@@ -48,11 +53,17 @@ pub(crate) fn text(airframe: &Airframe, health: bool) -> String {
 }
 
 /// One row of the table. A `health` row has a mask.
-fn row(table: &mut String, compiled: &Compiled, wrench: &Wrench, voltage_v: f32, failed: Option<u64>) {
+fn row(
+    table: &mut String,
+    compiled: &Compiled,
+    wrench: &Wrench,
+    conditions: Conditions,
+    failed: Option<u64>,
+) {
     let health = (0..64u8)
         .filter(|channel| (failed.unwrap_or(0) >> channel) & 1 != 0)
         .fold(Health::GOOD, Health::with_failed);
-    let (status, out) = match compiled.tables.mix_with_health(wrench, voltage_v, health) {
+    let (status, out) = match compiled.tables.mix_in(wrench, conditions, health) {
         Ok((throttles, achieved, saturation)) => {
             let floats = throttles.into_iter().chain(achieved.to_array());
             let mut bits: Vec<u32> = floats.map(f32::to_bits).collect();
@@ -67,7 +78,8 @@ fn row(table: &mut String, compiled: &Compiled, wrench: &Wrench, voltage_v: f32,
         words.join(", ")
     };
     let [roll, pitch, yaw, thrust] = wrench.to_array().map(f32::to_bits);
-    let input = list(&[roll, pitch, yaw, thrust, voltage_v.to_bits()]);
+    let [volts, density] = [conditions.voltage_v, conditions.density_kg_m3].map(f32::to_bits);
+    let input = list(&[roll, pitch, yaw, thrust, volts, density]);
     let failed = failed.map_or(String::new(), |mask| format!("{mask:#x}u, "));
     let output = list(&out);
     let _ = writeln!(table, "    {{{{{input}}}, {failed}{status}, {{{output}}}}},");
@@ -82,20 +94,35 @@ fn mask(index: usize, rotors: usize) -> u64 {
     }
 }
 
-/// Setpoints and voltages: every axis alone, at once, in and far out of what is attainable, and not
+/// Setpoints and conditions: every axis alone, at once, in and far out of what is attainable, and not
 /// finite.
-fn setpoints(compiled: &Compiled) -> Vec<(Wrench, f32)> {
+fn setpoints(compiled: &Compiled) -> Vec<(Wrench, Conditions)> {
     let unit = compiled.scale();
-    let voltages = compiled.airframe.voltage.as_ref().map_or([12.0; 5], |voltage| {
-        let [reference, low, high] =
-            [voltage.reference_v, voltage.range_v[0], voltage.range_v[1]].map(|v| v as f32);
-        [reference, low, high, low - 1.0, high + 1.0]
+    let airframe = &compiled.airframe;
+    // At the reference, at both ends and beyond; one that is not there is ignored.
+    let values = |correction: &Option<Correction>| match correction {
+        Some(correction) => {
+            let [low, high] = correction.range.map(|x| x as f32);
+            vec![correction.reference as f32, low, high, 0.9 * low, 1.1 * high]
+        }
+        None => vec![12.0],
+    };
+    let mut densities = values(&airframe.air);
+    densities.extend([f32::NAN, f32::INFINITY, 0.0, -1.0]);
+    let (mut voltages, mut densities) = (
+        values(&airframe.voltage).into_iter().cycle(),
+        densities.into_iter().cycle(),
+    );
+    let mut conditions = std::iter::from_fn(move || {
+        Some(Conditions {
+            voltage_v: voltages.next()?,
+            density_kg_m3: densities.next()?,
+        })
     });
-    let mut voltages = voltages.into_iter().cycle();
     let mut rows = Vec::new();
     let mut push = |normalised: [f32; 4]| {
-        let voltage = voltages.next();
-        rows.extend(voltage.map(|voltage| (Wrench::from_normalised(normalised, &unit), voltage)));
+        let setpoint = Wrench::from_normalised(normalised, &unit);
+        rows.extend(conditions.next().map(|conditions| (setpoint, conditions)));
     };
     for thrust in THRUSTS {
         push([0.0, 0.0, 0.0, thrust]);
@@ -114,15 +141,16 @@ fn setpoints(compiled: &Compiled) -> Vec<(Wrench, f32)> {
         let [roll, pitch, yaw] = [torques(), torques(), torques()];
         push([roll, pitch, yaw, 1.2 * random.below_one()]);
     }
+    let at = |voltage_v| compiled.tables.view().at_reference_density(voltage_v);
     let finite = Wrench::from_normalised([0.1, 0.1, 0.1, 0.4], &unit);
     for axis in 0..4 {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let mut wrench = finite.to_array();
             wrench[axis] = bad;
-            rows.push((Wrench::from_array(wrench), 12.0));
+            rows.push((Wrench::from_array(wrench), at(12.0)));
         }
     }
-    rows.extend([f32::NAN, f32::INFINITY].map(|voltage| (finite, voltage)));
+    rows.extend([f32::NAN, f32::INFINITY].map(|voltage| (finite, at(voltage))));
     rows
 }
 

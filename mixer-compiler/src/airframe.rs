@@ -2,6 +2,7 @@
 
 mod allocation;
 mod basis;
+mod correction;
 mod inverse;
 mod layout;
 mod limits;
@@ -13,7 +14,6 @@ mod throttle;
 mod uncertainty;
 mod unit;
 mod vehicle;
-mod voltage;
 
 use std::ops::Range;
 
@@ -22,6 +22,7 @@ use toml::de::DeTable;
 pub use self::allocation::{Airmode, Allocation, Axis};
 pub use self::basis::Basis;
 pub(crate) use self::basis::{POWERS, value_of_terms};
+pub use self::correction::{Correction, Law};
 pub use self::inverse::{Inverse, Method};
 pub use self::pair::{Pair, Spin};
 pub use self::power::Power;
@@ -30,7 +31,6 @@ pub use self::throttle::Throttle;
 pub use self::uncertainty::Uncertainty;
 pub use self::unit::Unit;
 pub use self::vehicle::{GRAVITY, Vehicle};
-pub use self::voltage::{Voltage, VoltageLaw};
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::spec::keys::{Kind, Shape, keys};
@@ -45,8 +45,10 @@ keys! { FILE = "":
         "The range of every rotor's throttle.".required();
     PAIR "pair" = "", Kind::Table(&pair::TABLE),
         "Total thrust and torque of one unit at the reference voltage, from the bench.".required();
-    VOLTAGE "voltage" = "", Kind::Table(&voltage::TABLE),
+    VOLTAGE "voltage" = "", Kind::Table(&correction::VOLTAGE_TABLE),
         "How thrust and torque follow the battery's voltage; without it they do not.";
+    AIR "air" = "", Kind::Table(&correction::AIR_TABLE),
+        "How thrust and torque follow the air's density; without it they do not.";
     LAYOUT "layout" = "", Kind::Table(&layout::TABLE),
         "A regular frame, instead of [[unit]].";
     UNIT "unit" = "", Kind::Tables(&unit::TABLE),
@@ -75,8 +77,10 @@ pub struct Airframe {
     pub throttle: Throttle,
     /// Model of one pair at the reference voltage.
     pub pair: Pair,
-    /// Supply voltage; `None` where thrust and torque do not depend on it.
-    pub voltage: Option<Voltage>,
+    /// Correction for the battery's voltage, V; `None` where thrust and torque do not depend on it.
+    pub voltage: Option<Correction>,
+    /// Correction for the air's density, kg/m3; `None` where they do not depend on it.
+    pub air: Option<Correction>,
     /// The units in the order of the file: 1 to 32, no two in one place, their channels 0 to 2n - 1
     /// each once.
     pub units: Vec<Unit>,
@@ -131,14 +135,42 @@ impl Airframe {
 
     /// The reference voltage, V; 0 without `[voltage]`, as mixers then ignore it.
     pub fn reference_v(&self) -> f64 {
-        self.voltage.as_ref().map_or(0.0, |voltage| voltage.reference_v)
+        self.voltage.as_ref().map_or(0.0, |voltage| voltage.reference)
     }
 
-    /// `[k_f, k_Q]` at a voltage, V; 1 at any without `[voltage]`.
+    /// `[k_f, k_Q]` at a voltage, V, and the bench's density; 1 at any without `[voltage]`.
     pub fn voltage_factors(&self, volts: f64) -> [f64; 2] {
         self.voltage
             .as_ref()
             .map_or([1.0; 2], |voltage| voltage.factors(volts))
+    }
+
+    /// `[k_f, k_Q]` at a voltage, V, and a density, kg/m3; 1 of either without its table.
+    pub fn factors(&self, volts: f64, density: f64) -> [f64; 2] {
+        let air = self.air.as_ref().map_or([1.0; 2], |air| air.factors(density));
+        let voltage = self.voltage_factors(volts);
+        [0, 1].map(|k| voltage[k] * air[k])
+    }
+
+    /// The bench's density, kg/m3; 0 without `[air]`, as mixers then ignore it.
+    pub fn reference_density(&self) -> f64 {
+        self.air.as_ref().map_or(0.0, |air| air.reference)
+    }
+
+    /// Voltages (V) and densities (kg/m3), `[volts, density]`: the ends of both ranges and the references, each
+    /// with each; 0 for what the file has no table of.
+    pub(crate) fn conditions(&self) -> Vec<[f64; 2]> {
+        let values = |correction: &Option<Correction>| match correction {
+            Some(Correction {
+                reference,
+                range: [low, high],
+                ..
+            }) => vec![*low, *reference, *high],
+            None => vec![0.0],
+        };
+        let densities = values(&self.air);
+        let with = |volts: f64| densities.iter().map(move |density| [volts, *density]);
+        values(&self.voltage).into_iter().flat_map(with).collect()
     }
 
     /// The vehicle's weight, N; `None` without `[vehicle]`.
@@ -212,7 +244,9 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
     let (pair, bench_spin) = file
         .table(&PAIR, |table| pair::read(table, throttle.as_ref()))
         .unwrap_or_default();
-    let voltage = file.table(&VOLTAGE, voltage::read);
+    let voltage = file.table(&VOLTAGE, correction::read_voltage);
+    let of_voltage = voltage.as_ref().map(Option::as_ref);
+    let air = file.table(&AIR, |table| correction::read_air(table, of_voltage));
     let layout = file.table(&LAYOUT, |table| layout::read(table, bench_spin));
     let units = file.tables(&UNIT, unit::read);
     let inverse = file.table(&INVERSE, inverse::read);
@@ -269,6 +303,7 @@ fn read(table: &DeTable<'_>, faults: &mut Vec<Diagnostic>) -> Option<Airframe> {
         throttle: throttle?,
         pair: pair?,
         voltage: voltage.flatten(),
+        air: air.flatten(),
         inverse: inverse.flatten().unwrap_or_default(),
         allocation: allocation.flatten().unwrap_or_default(),
         vehicle: vehicle.flatten(),

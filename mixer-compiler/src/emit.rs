@@ -21,7 +21,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let ardupilot_doc = doc(&[match &compiled.airframe.voltage {
         Some(voltage) => format!(
             " The same for ArduPilot's inputs, at {:?} V as `MOT_BAT_VOLT_MAX`.",
-            voltage.range_v[1]
+            voltage.range[1]
         ),
         None => " The same for ArduPilot's inputs.".to_owned(),
     }]);
@@ -83,6 +83,21 @@ fn mixer_type(compiled: &Compiled) -> TokenStream {
             ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
                 mix_with_health(setpoint, voltage_v, health)
             }
+            #[inline]
+            fn mix_in(
+                setpoint: &rt::Wrench,
+                conditions: &rt::Conditions,
+            ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+                mix_in(setpoint, conditions)
+            }
+            #[inline]
+            fn mix_in_with_health(
+                setpoint: &rt::Wrench,
+                conditions: &rt::Conditions,
+                health: rt::Health,
+            ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+                mix_in_with_health(setpoint, conditions, health)
+            }
         }
     }
 }
@@ -91,7 +106,7 @@ fn mixer_type(compiled: &Compiled) -> TokenStream {
 fn functions() -> TokenStream {
     quote! {
         /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
-        /// (V).
+        /// (V) and the bench's air density.
         ///
         /// # Errors
         /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
@@ -101,7 +116,7 @@ fn functions() -> TokenStream {
             setpoint: &rt::Wrench,
             voltage_v: f32,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, TABLES.at_reference_density(voltage_v))
         }
 
         /// [`mix`] with the rotors out that `health` names by channel.
@@ -114,7 +129,33 @@ fn functions() -> TokenStream {
             voltage_v: f32,
             health: rt::Health,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v, health)
+            let conditions = TABLES.at_reference_density(voltage_v);
+            tables::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions, health)
+        }
+
+        /// [`mix`] under the present conditions: the battery's voltage and the air's density.
+        ///
+        /// # Errors
+        /// As [`mix`].
+        #[inline]
+        pub fn mix_in(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+        ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions)
+        }
+
+        /// [`mix_in`] with the rotors out that `health` names by channel.
+        ///
+        /// # Errors
+        /// As [`mix`].
+        #[inline]
+        pub fn mix_in_with_health(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+            health: rt::Health,
+        ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+            tables::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions, health)
         }
     }
 }
@@ -152,7 +193,7 @@ fn module_lines(compiled: &Compiled) -> Vec<String> {
         " Proven: each unit's thrust and torque are within {f} N and {q} N m of what is asked, at every"
     ));
     lines.push(format!(
-        " voltage and everywhere in the attainable set, rounding in f32 included ({} cells).",
+        " voltage and density and everywhere in the attainable set, rounding in f32 included ({} cells).",
         compiled.certificate.cells
     ));
     let [f, q] = compiled.residual.efforts.map(crate::diagnostic::rounded_up);
@@ -168,7 +209,8 @@ fn tables(tables: &MixerTables) -> TokenStream {
     let view = tables.view();
     let units = (*view.units).tokens();
     let (pair, singles, inverse) = (view.pair.tokens(), view.singles.tokens(), view.inverse.tokens());
-    let (throttle, voltage, rows) = (view.throttle.tokens(), view.voltage.tokens(), view.rows.tokens());
+    let (throttle, rows) = (view.throttle.tokens(), view.rows.tokens());
+    let (voltage, air) = (view.voltage.tokens(), view.air.tokens());
     let (spread, level) = (view.spread.tokens(), view.level_n.tokens());
     let (priorities, is_vertical) = (view.priorities.tokens(), view.is_vertical);
     let (power_bias, tolerance) = (view.power_bias_nm_per_n.tokens(), view.tolerance.tokens());
@@ -186,8 +228,10 @@ fn tables(tables: &MixerTables) -> TokenStream {
         const ROTORS_ALONE: [tables::SingleRotor; 2] = #singles;
         /// The inverse map of a unit.
         const INVERSE: #inverse_type = #inverse;
-        /// The voltage correction.
-        const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = #voltage;
+        /// How thrust and torque follow the battery's voltage, V.
+        const VOLTAGE: ::core::option::Option<tables::Law<'static>> = #voltage;
+        /// How they follow the air's density, kg/m3.
+        const AIR: ::core::option::Option<tables::Law<'static>> = #air;
         /// The closed form of allocation, where there is one.
         const CLOSED_FORM: #closed_form_type = #closed_form;
 
@@ -200,6 +244,7 @@ fn tables(tables: &MixerTables) -> TokenStream {
             inverse: INVERSE,
             throttle: #throttle,
             voltage: VOLTAGE,
+            air: AIR,
             rows: #rows,
             spread: #spread,
             level_n: #level,

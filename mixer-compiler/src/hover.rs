@@ -86,7 +86,7 @@ pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
     let (Some(weight_n), Some(_)) = (airframe.weight_n(), &airframe.pair.uncertainty) else {
         return Vec::new();
     };
-    let lowest_v = airframe.voltage.as_ref().map(|voltage| voltage.range_v[0]);
+    let lowest_v = airframe.voltage.as_ref().map(|voltage| voltage.range[0]);
     let at = HoverAt::new(compiled, weight_n, lowest_v);
     let warning = |margin: &Margin| {
         let [least, largest] = margin.torque_nm;
@@ -181,7 +181,7 @@ impl HoverAt {
 /// A torque that no throttles exceed: all units at their largest thrust and torque.
 fn largest_torque(compiled: &Compiled, axis: Axis) -> f64 {
     let [f, q] = compiled.pair.scale();
-    let [k_f, k_q] = crate::model::voltage::largest_factors(&compiled.airframe);
+    let [k_f, k_q] = crate::model::law::largest_factors(&compiled.airframe);
     compiled.effectiveness.largest(axis as usize, [f * k_f, q * k_q])
 }
 

@@ -31,8 +31,7 @@ use diagnostic::{Diagnostic, Diagnostics};
 use model::PairMap;
 use model::effectiveness::Effectiveness;
 use model::injectivity::{self, Injectivity};
-use model::voltage;
-use model::voltage::VoltageTable;
+use model::law::CorrectionTables;
 use proc_macro2::TokenStream;
 use selection::Selected;
 use tables::{MixerTables, Parts};
@@ -44,7 +43,7 @@ pub use plausible::ARDUPILOT_MOST_SPIN_MIN;
 pub use proof::Certificate;
 pub use proof::residual::Residual;
 
-/// Compiles an airframe file: source -> airframe -> model (effectiveness, injectivity, voltage) ->
+/// Compiles an airframe file: source -> airframe -> model (effectiveness, injectivity, corrections) ->
 /// proven inverse -> tables with the closed form -> range of thrust -> probes.
 ///
 /// # Errors
@@ -60,7 +59,7 @@ pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
 
 fn compile_airframe(source: &Source, airframe: Airframe) -> Result<Compiled, Vec<Diagnostic>> {
     let model = Model::new(airframe)?;
-    let selected = selection::select(&model.airframe, &model.pair, model.voltage.as_ref())?;
+    let selected = selection::select(&model.airframe, &model.pair, &model.corrections)?;
     let (tables, lost_between_sides) = model.tables(&selected);
     let thrust_range_n = thrust_range::thrust_range(&model.airframe, &tables)?;
     let compiled = Compiled {
@@ -96,7 +95,7 @@ struct Model {
     effectiveness: Effectiveness,
     injectivity: Injectivity,
     least_idle: f64,
-    voltage: Option<VoltageTable>,
+    corrections: CorrectionTables,
 }
 
 impl Model {
@@ -107,17 +106,15 @@ impl Model {
             Ok(effectiveness)
         });
         let invertible = injectivity::prove(&airframe);
-        let voltage = voltage::tabulate(&airframe);
         let tolerances = plausible::check_tolerances(&airframe, &pair);
-        let (effectiveness, (injectivity, least_idle), voltage, ()) =
-            gather(effectiveness, invertible, voltage, tolerances)?;
+        let (effectiveness, (injectivity, least_idle), ()) = gather(effectiveness, invertible, tolerances)?;
         Ok(Model {
+            corrections: CorrectionTables::new(&airframe),
             airframe,
             pair,
             effectiveness,
             injectivity,
             least_idle,
-            voltage,
         })
     }
 
@@ -128,16 +125,16 @@ impl Model {
             airframe,
             pair,
             effectiveness,
+            corrections,
             ..
         } = self;
-        let voltage = self.voltage.as_ref();
         let parts = Parts {
             airframe,
             effectiveness,
             pair,
-            voltage,
+            corrections,
             map: &selected.map,
-            tolerance: selection::tolerance(airframe, effectiveness, pair, voltage, selected),
+            tolerance: selection::tolerance(airframe, effectiveness, pair, corrections, selected),
         };
         let (closed_form, lost_between_sides) = match closed_form::table(airframe, effectiveness, pair) {
             Ok((table, lost)) => (Some(table), Ok(lost)),
@@ -149,17 +146,16 @@ impl Model {
     }
 }
 
-/// All four values, or the faults of all.
-fn gather<A, B, C, D>(
+/// All three values, or the faults of all.
+fn gather<A, B, C>(
     a: Result<A, Vec<Diagnostic>>,
     b: Result<B, Vec<Diagnostic>>,
     c: Result<C, Vec<Diagnostic>>,
-    d: Result<D, Vec<Diagnostic>>,
-) -> Result<(A, B, C, D), Vec<Diagnostic>> {
-    match (a, b, c, d) {
-        (Ok(a), Ok(b), Ok(c), Ok(d)) => Ok((a, b, c, d)),
-        (a, b, c, d) => {
-            let faults = [a.err(), b.err(), c.err(), d.err()];
+) -> Result<(A, B, C), Vec<Diagnostic>> {
+    match (a, b, c) {
+        (Ok(a), Ok(b), Ok(c)) => Ok((a, b, c)),
+        (a, b, c) => {
+            let faults = [a.err(), b.err(), c.err()];
             Err(faults.into_iter().flatten().flatten().collect())
         }
     }
@@ -191,7 +187,7 @@ impl Compiled {
     /// The highest voltage of the range, V; 0 where the airframe has no correction.
     pub fn highest_v(&self) -> f64 {
         let voltage = self.airframe.voltage.as_ref();
-        voltage.map_or(0.0, |voltage| voltage.range_v[1])
+        voltage.map_or(0.0, |voltage| voltage.range[1])
     }
 
     /// Thrust (N) and torque (N m) of one rotor per unit of its share of the largest thrust, as

@@ -24,7 +24,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::PairMap;
 
 /// The rules of one part of an airframe, those that may be the reason of others before these.
-const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 14] = [
+const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 15] = [
     pair::units,
     rotors::order,
     pair::thrust,
@@ -35,6 +35,7 @@ const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 14] = [
     geometry::centre_of_gravity,
     geometry::outputs,
     supply::voltage,
+    supply::air,
     limits::wide_tolerances,
     allocation::yaw,
     allocation::power_bias,

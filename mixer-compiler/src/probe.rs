@@ -8,7 +8,7 @@
 //! ```text
 //! sides       points on the sides of the closed form are attainable; no more area is lost than stated
 //! wrenches    each axis both ways and mixtures, small and large, at three thrusts, and at the ends of
-//!             the voltage range
+//!             the ranges of voltage and density
 //! rotors out  every rotor alone, and pairs of rotors: level flight and torques from there
 //! ```
 //!
@@ -21,15 +21,16 @@ mod physics;
 mod sides;
 
 use mixer_rt::tables::Airmode;
-use mixer_rt::{Axis, Health, Saturation, Wrench};
+use mixer_rt::{Axis, Conditions, Health, Saturation, Wrench};
 
+use crate::airframe::Correction;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic};
 use physics::Physics;
 
 /// Share of an axis' authority by which a flagged wrench may be exceeded, reversed or off its
 /// direction. Faults of the tables are off by more. Curves of single rotors, and level flight of tilted
-/// axes at voltages beside the reference, are met to a few tenths of a percent.
+/// axes under conditions beside the bench's, are met to a few tenths of a percent.
 const SOUND: f64 = 1e-2;
 
 /// Thrusts that are probed, as shares of the range of level flight.
@@ -86,17 +87,17 @@ pub(crate) fn run(compiled: &Compiled) -> Result<(), Vec<Diagnostic>> {
 
 /// Wrenches with all rotors of units of this scale (largest thrust and torque, N and N m).
 fn probe_whole(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> {
-    // All thrusts in the middle of the voltage range, one at its ends.
-    let points = match &compiled.airframe.voltage {
-        None => vec![(0.0, &THRUSTS[..])],
-        Some(voltage) => {
-            let [low, high] = voltage.range_v;
-            let middle = &THRUSTS[1..2];
-            vec![(low, middle), (0.5 * (low + high), &THRUSTS), (high, middle)]
-        }
+    // All thrusts in the middle of the ranges of voltage and density, one at their ends.
+    let between = |correction: &Option<Correction>, share: f64| match correction {
+        Some(Correction {
+            range: [low, high], ..
+        }) => low + share * (high - low),
+        None => 0.0,
     };
-    for (volts, thrusts) in points {
-        let at = At::new(compiled, scale, volts, Health::GOOD);
+    let airframe = &compiled.airframe;
+    for (share, thrusts) in [(0.0, &THRUSTS[1..2]), (0.5, &THRUSTS[..]), (1.0, &THRUSTS[1..2])] {
+        let conditions = [&airframe.voltage, &airframe.air].map(|correction| between(correction, share));
+        let at = At::new(compiled, scale, conditions, Health::GOOD);
         for &share in thrusts {
             let thrust = at.thrust(share);
             at.probe([0.0, 0.0, 0.0, thrust])?;
@@ -118,8 +119,12 @@ fn probe_rotors_out(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> 
         .map(|(first, second)| Health::GOOD.with_failed(first).with_failed(second))
         .collect();
     let step = pairs.len().div_ceil(MOST_PAIRS).max(1);
+    let reference = [
+        compiled.airframe.reference_v(),
+        compiled.airframe.reference_density(),
+    ];
     for health in singles.chain(pairs.into_iter().step_by(step)) {
-        let at = At::new(compiled, scale, compiled.airframe.reference_v(), health);
+        let at = At::new(compiled, scale, reference, health);
         let level = [0.0, 0.0, 0.0, at.thrust(0.4)];
         if !at.probe(level)? {
             continue;
@@ -132,10 +137,11 @@ fn probe_rotors_out(compiled: &Compiled, scale: [f64; 2]) -> Result<(), String> 
     Ok(())
 }
 
-/// The mixer at one voltage with some rotors out.
+/// The mixer under some conditions with some rotors out.
 struct At<'a> {
     compiled: &'a Compiled,
-    volts: f64,
+    /// Voltage, V, and density, kg/m3.
+    conditions: [f64; 2],
     health: Health,
     /// `[k_f, k_Q]`.
     factors: [f64; 2],
@@ -168,12 +174,12 @@ const JUDGES: [Judge; 5] = [
 ];
 
 impl<'a> At<'a> {
-    fn new(compiled: &'a Compiled, scale: [f64; 2], volts: f64, health: Health) -> Self {
-        let factors = compiled.airframe.voltage_factors(volts);
+    fn new(compiled: &'a Compiled, scale: [f64; 2], [volts, density]: [f64; 2], health: Health) -> Self {
+        let factors = compiled.airframe.factors(volts, density);
         let efforts = [0, 1].map(|k| factors[k] * scale[k]);
         At {
             compiled,
-            volts,
+            conditions: [volts, density],
             health,
             factors,
             authority: [0, 1, 2, 3].map(|axis| compiled.effectiveness.largest(axis, efforts)),
@@ -203,12 +209,13 @@ impl<'a> At<'a> {
             .failed()
             .map(|channel| format!(", rotor {channel} out"))
             .collect();
-        let volts = match &self.compiled.airframe.voltage {
-            Some(_) => format!(" at {:.2} V", self.volts),
-            None => String::new(),
-        };
+        let [volts, density] = self.conditions;
+        let airframe = &self.compiled.airframe;
+        let of_voltage = airframe.voltage.as_ref().map(|_| format!(" at {volts:.2} V"));
+        let of_air = airframe.air.as_ref().map(|_| format!(" at {density:.3} kg/m3"));
+        let conditions: String = of_voltage.into_iter().chain(of_air).collect();
         Err(format!(
-            "the emitted mixer fails a probe: asked {}{volts}{out}, {fault}",
+            "the emitted mixer fails a probe: asked {}{conditions}{out}, {fault}",
             words(&asked)
         ))
     }
@@ -220,8 +227,13 @@ impl<'a> At<'a> {
             tables,
             ..
         } = self.compiled;
+        let [voltage_v, density_kg_m3] = self.conditions.map(|x| x as f32);
+        let conditions = Conditions {
+            voltage_v,
+            density_kg_m3,
+        };
         let (throttle, achieved, saturation) = tables
-            .mix_with_health(&Wrench::from_array(asked), self.volts as f32, self.health)
+            .mix_in(&Wrench::from_array(asked), conditions, self.health)
             .map_err(|error| error.to_string())?;
         Ok(Answer {
             at: self,

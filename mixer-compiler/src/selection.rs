@@ -10,7 +10,7 @@ use crate::inverse::evaluator::Evaluator;
 use crate::inverse::fit::{Inversion, Samples};
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
-use crate::model::voltage::{self, VoltageTable};
+use crate::model::law::{self, CorrectionTables};
 use crate::proof::residual::Residual;
 use crate::proof::{self, Certificate, CorrectionBounds, Effort};
 use crate::tables::{self, UnitMap};
@@ -43,15 +43,15 @@ const SHARP: f64 = 1.15;
 pub(crate) fn select(
     airframe: &Airframe,
     pair: &PairMap,
-    voltage: Option<&VoltageTable>,
+    corrections: &CorrectionTables,
 ) -> Result<Selected, Vec<Diagnostic>> {
-    let chosen = choose(airframe, pair, voltage);
+    let chosen = choose(airframe, pair, corrections);
     if chosen.holds() {
         return Ok(chosen);
     }
     let meets = |airframe: &Airframe| {
         let pair = PairMap::new(&airframe.pair, &airframe.throttle);
-        choose(airframe, &pair, voltage).holds()
+        choose(airframe, &pair, corrections).holds()
     };
     Err(vec![refusal::tolerance(
         airframe,
@@ -70,12 +70,12 @@ impl Selected {
 
 /// The first evaluator, by cost, that holds, fitted to finer samples where none does; else the one that
 /// came closest.
-fn choose(airframe: &Airframe, pair: &PairMap, voltage: Option<&VoltageTable>) -> Selected {
-    let usual = choose_by(Samples::Usual, airframe, pair, voltage);
+fn choose(airframe: &Airframe, pair: &PairMap, corrections: &CorrectionTables) -> Selected {
+    let usual = choose_by(Samples::Usual, airframe, pair, corrections);
     if usual.holds() {
         return usual;
     }
-    choose_by(Samples::Fine, airframe, pair, voltage)
+    choose_by(Samples::Fine, airframe, pair, corrections)
 }
 
 /// The first evaluator, by cost, that holds. Where none does, the one that came closest, with a
@@ -84,9 +84,9 @@ fn choose_by(
     samples: Samples,
     airframe: &Airframe,
     pair: &PairMap,
-    voltage: Option<&VoltageTable>,
+    corrections: &CorrectionTables,
 ) -> Selected {
-    let correction = CorrectionBounds::new(airframe, voltage);
+    let correction = CorrectionBounds::new(airframe, corrections);
     let tolerance = correction.tolerance_at_reference(airframe);
     let (cheapest, others) = Evaluator::candidates(airframe.inverse.method);
     let mut inversion = Inversion::new(pair, tolerance, samples, others.is_empty());
@@ -138,13 +138,13 @@ pub(crate) fn tolerance(
     airframe: &Airframe,
     effectiveness: &Effectiveness,
     pair: &PairMap,
-    voltage: Option<&VoltageTable>,
+    corrections: &CorrectionTables,
     selected: &Selected,
 ) -> Tolerance {
     let certificate = &selected.certificate;
     // The mixer compares what it computes, not what is: a request that is delivered must not look
     // missed.
-    let correction = CorrectionBounds::new(airframe, voltage);
+    let correction = CorrectionBounds::new(airframe, corrections);
     let rounding = proof::rounding(airframe, &selected.map, &correction);
     tables::tolerance_table(
         [0, 1].map(|k| certificate.reference[k] + rounding[k]),
@@ -161,7 +161,7 @@ fn wrench_tolerance(
     stated: [f64; 2],
 ) -> [f64; 4] {
     const ROUNDING: f64 = 4e-6;
-    let (scale, factors) = (pair.scale(), voltage::largest_factors(airframe));
+    let (scale, factors) = (pair.scale(), law::largest_factors(airframe));
     let allowed: [f64; 2] = std::array::from_fn(|k| stated[k] + ROUNDING * scale[k] * factors[k]);
     std::array::from_fn(|axis| effectiveness.largest(axis, allowed))
 }

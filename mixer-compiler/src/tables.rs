@@ -12,7 +12,7 @@ mod rows;
 mod single;
 
 use mixer_rt::{
-    Health, Saturation, SetpointError, Wrench,
+    Conditions, Health, Saturation, SetpointError, Wrench,
     tables::{
         Border, Cell, ClosedForm, ClosedFormUnit, Facets, Inverse, Pair, Priorities, SingleRotor, Tables,
         ThrottleRange, Tolerance, Unit, UnitState,
@@ -23,7 +23,7 @@ use crate::airframe::Airframe;
 use crate::inverse::table::InverseTable;
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
-use crate::model::voltage::VoltageTable;
+use crate::model::law::{CorrectionTables, LawTable};
 
 pub(crate) use part::{Part, identifier};
 pub use quantity::QuantityTable;
@@ -43,8 +43,8 @@ pub struct MixerTables {
     pub inverse: InverseTable,
     /// The allowed throttles.
     pub throttle: ThrottleRange,
-    /// The voltage correction.
-    pub voltage: Option<VoltageTable>,
+    /// The corrections of voltage and density.
+    pub corrections: CorrectionTables,
     /// Rows per N m and N: [`mixer_rt::tables::Tables::rows`].
     pub rows: [f32; 4],
     /// [`mixer_rt::tables::Tables::spread`].
@@ -98,8 +98,8 @@ pub(crate) struct Parts<'a> {
     pub(crate) effectiveness: &'a Effectiveness,
     /// The forward map in f64.
     pub(crate) pair: &'a PairMap,
-    /// The voltage correction.
-    pub(crate) voltage: Option<&'a VoltageTable>,
+    /// The corrections of voltage and density.
+    pub(crate) corrections: &'a CorrectionTables,
     /// The map of a unit and its inverse.
     pub(crate) map: &'a UnitMap,
     /// What the mixer may miss.
@@ -159,7 +159,7 @@ impl MixerTables {
             singles: single_tables(airframe),
             inverse: map.inverse.clone(),
             throttle: map.throttle,
-            voltage: parts.voltage.cloned(),
+            corrections: parts.corrections.clone(),
             rows: rows(airframe, effectiveness, parts.pair),
             spread: parts.pair.spread().map(|spread| spread as f32),
             level_n: [0.0; 2],
@@ -191,7 +191,8 @@ impl MixerTables {
             singles: self.singles,
             inverse: &self.inverse,
             throttle: self.throttle,
-            voltage: self.voltage.as_ref().map(VoltageTable::view),
+            voltage: self.corrections.voltage.as_ref().map(LawTable::view),
+            air: self.corrections.air.as_ref().map(LawTable::view),
             rows: self.rows,
             spread: self.spread,
             level_n: self.level_n,
@@ -217,7 +218,7 @@ impl MixerTables {
         (&self.inverse).throttles(&self.pair, &self.throttle, efforts)
     }
 
-    /// Mixes with `mixer-rt`, operation by operation as the generated mixer does.
+    /// Mixes at the bench's density with `mixer-rt`, operation by operation as the generated mixer does.
     ///
     /// # Errors
     /// As [`mixer_rt::tables::mix`].
@@ -235,12 +236,26 @@ impl MixerTables {
         voltage_v: f32,
         health: Health,
     ) -> Result<AnyMix, SetpointError> {
+        let conditions = self.view().at_reference_density(voltage_v);
+        self.mix_in(setpoint, conditions, health)
+    }
+
+    /// Mixes under the present conditions with some rotors out.
+    ///
+    /// # Errors
+    /// As [`mixer_rt::tables::mix`].
+    pub fn mix_in(
+        &self,
+        setpoint: &Wrench,
+        conditions: Conditions,
+        health: Health,
+    ) -> Result<AnyMix, SetpointError> {
         let mut states = vec![UnitState::default(); self.units.len()];
         let mut throttle = vec![self.throttle.min; 2 * self.units.len()];
         let (achieved, saturation) = mixer_rt::tables::mix_into(
             &self.view(),
             setpoint,
-            voltage_v,
+            conditions,
             health,
             &mut states,
             &mut throttle,
@@ -268,13 +283,14 @@ impl MixerTables {
     /// Bytes of the tables in flash.
     pub fn bytes(&self) -> usize {
         let view = self.view();
-        let parts: [&dyn Part; 13] = [
+        let parts: [&dyn Part; 14] = [
             &view.units,
             &view.pair,
             &view.singles,
             &view.inverse,
             &view.throttle,
             &view.voltage,
+            &view.air,
             &view.rows,
             &view.spread,
             &view.level_n,

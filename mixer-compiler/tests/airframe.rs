@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use mixer_compiler::Source;
-use mixer_compiler::airframe::{Airframe, Airmode, Axis, Basis, Method, Spin, VoltageLaw};
+use mixer_compiler::airframe::{Airframe, Airmode, Axis, Basis, Law, Method, Spin};
 use mixer_compiler::diagnostic::{Code, Diagnostics};
 
 fn workspace() -> &'static Path {
@@ -73,7 +73,7 @@ fn isae_x8_is_as_in_the_paper() {
         (3, 7)
     );
     let voltage = airframe.voltage.unwrap();
-    assert_eq!(voltage.thrust, VoltageLaw::Exponent(1.75));
+    assert_eq!(voltage.thrust, Law::Exponent(1.75));
     assert_eq!(voltage.thrust_factor(14.8), 1.0);
     assert!((voltage.torque_factor(16.8) - libm::pow(16.8 / 14.8, 1.75)).abs() < 1e-15);
     assert_eq!(airframe.inverse.method, Method::Auto);

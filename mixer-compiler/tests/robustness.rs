@@ -34,7 +34,7 @@ fn read(text: &str) -> Result<(), TestCaseError> {
             );
             if let Some(voltage) = &airframe.voltage {
                 for step in 0..=32 {
-                    let [low, high] = voltage.range_v;
+                    let [low, high] = voltage.range;
                     let volts = low + (high - low) * (f64::from(step) / 32.0);
                     // Rounding of a sum of nine terms, no more.
                     prop_assert!(

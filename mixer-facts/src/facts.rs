@@ -153,7 +153,7 @@ fn gives(list: &mut List, compiled: &Compiled) {
         .json("condition", m.condition);
 
     let [floor, ceiling] = compiled.thrust_range_n.map(f64::from);
-    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
+    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
     let at = or_nothing(reference_v, |volts| format!(" at {volts} V"));
     let words = format!(" without torque{at}");
     list.say("bare thrust", format!("{floor:.1} to {ceiling:.1}"), "N", words)
@@ -303,12 +303,12 @@ fn voltage(list: &mut List, compiled: &Compiled) {
         list.say("voltage", "", "", words).first();
         return;
     };
-    let [low, high] = voltage.range_v;
+    let [low, high] = voltage.range;
     let [[f_low, q_low], [f_high, q_high]] = [low, high].map(|volts| voltage.factors(volts));
     let words = format!("; k_f {f_low:.4} to {f_high:.4}, k_Q {q_low:.4} to {q_high:.4} over the range");
     list.say("voltage", format!("{low} to {high}"), "V", " is corrected for")
         .first();
-    list.say("reference voltage", voltage.reference_v, "V", words);
+    list.say("reference voltage", voltage.reference, "V", words);
 }
 
 /// The inverse map: what is proven of it, and its tables.

@@ -26,7 +26,7 @@ impl Hover {
         let volts = match &compiled.airframe.voltage {
             None => vec![None],
             Some(voltage) => {
-                let mut volts = vec![voltage.range_v[0], voltage.reference_v];
+                let mut volts = vec![voltage.range[0], voltage.reference];
                 volts.dedup();
                 volts.into_iter().map(Some).collect()
             }
@@ -51,7 +51,7 @@ pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let airframe = &compiled.airframe;
     let half_n = 0.5 * f64::from(compiled.thrust_range_n[1]);
     let weight_n = airframe.weight_n().unwrap_or(half_n);
-    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference_v);
+    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
     let hover = HoverAt::new(compiled, weight_n, reference_v);
     let mut margins = hover.margins.iter();
     let yaw = margins.find(|margin| margin.axis == Axis::Yaw.name())?;

@@ -35,7 +35,7 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
     let at = airframe
         .voltage
         .as_ref()
-        .map_or_else(String::new, |voltage| format!(" and {:?} V", voltage.range_v[1]));
+        .map_or_else(String::new, |voltage| format!(" and {:?} V", voltage.range[1]));
     let why = format!("Weight over the thrust of all rotors at full throttle{at}.");
     hover_throttle(hover, &why, all);
     all.note(gains(compiled));
@@ -55,8 +55,8 @@ pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
     spin(compiled, all);
     if let Some(voltage) = &compiled.airframe.voltage {
         all.because("Range of the battery.")
-            .real("MOT_BAT_VOLT_MAX", voltage.range_v[1])
-            .real("MOT_BAT_VOLT_MIN", voltage.range_v[0]);
+            .real("MOT_BAT_VOLT_MAX", voltage.range[1])
+            .real("MOT_BAT_VOLT_MIN", voltage.range[0]);
         all.note(MONITOR);
     }
     let [min, max] = compiled.pair.range();
@@ -127,9 +127,9 @@ fn gains(compiled: &Compiled) -> String {
     let voltage = match &compiled.airframe.voltage {
         Some(voltage) => format!(
             "; those tuned with MOT_BAT_VOLT_MAX 0 by {:.3} more, the thrust at {:?} V over that at {:?} V",
-            1.0 / voltage.thrust_factor(voltage.range_v[1]),
-            voltage.reference_v,
-            voltage.range_v[1]
+            1.0 / voltage.thrust_factor(voltage.range[1]),
+            voltage.reference,
+            voltage.range[1]
         ),
         None => String::new(),
     };

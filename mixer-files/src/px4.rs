@@ -43,7 +43,7 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
     all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
     // Idle lifts most at the highest voltage.
     let voltage = airframe.voltage.as_ref();
-    let rise = voltage.map_or(1.0, |voltage| voltage.thrust_factor(voltage.range_v[1]));
+    let rise = voltage.map_or(1.0, |voltage| voltage.thrust_factor(voltage.range[1]));
     let idle = rise * f64::from(compiled.thrust_range_n[0].max(0.0)) / full_n;
     let idle = libm::ceil(100.0 * idle) / 100.0;
     all.because("Thrust of all rotors at idle, or PX4's default where that is more: less is not to be had.")
@@ -180,7 +180,7 @@ const STEP: f64 = 1e-3;
 fn current_tangent(compiled: &Compiled) -> Option<[f64; 2]> {
     let airframe = &compiled.airframe;
     let throttle = compiled.equal_hover_throttle()?;
-    let voltage_v = airframe.voltage.as_ref()?.reference_v;
+    let voltage_v = airframe.voltage.as_ref()?.reference;
     let units = airframe.units.iter();
     let most = units
         .map(|unit| unit.upper_channel.max(unit.lower_channel))

@@ -80,7 +80,7 @@ impl BenchPoints {
         let k = match (&airframe.voltage, voltage_v) {
             (Some(voltage), Some(volts)) => {
                 self.corrected = true;
-                let [lowest, highest] = voltage.range_v;
+                let [lowest, highest] = voltage.range;
                 if within && !(lowest..=highest).contains(&volts) {
                     self.outside_voltage += 1;
                 }
@@ -120,7 +120,7 @@ impl BenchPoints {
             }
         }
         if let (true, Some(voltage)) = (self.outside_voltage > 0, &airframe.voltage) {
-            let [low, high] = voltage.range_v;
+            let [low, high] = voltage.range;
             doubts.push(format!(
                 "{} of {} bench points were measured outside the airframe\u{2019}s {low} to {high} V",
                 self.outside_voltage,

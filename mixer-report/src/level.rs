@@ -33,7 +33,7 @@ pub fn against_voltage(study: &Study<'_>) -> Vec<Level> {
     let (Some(weight_n), Some(voltage)) = (airframe.weight_n(), &airframe.voltage) else {
         return Vec::new();
     };
-    let [low, high] = voltage.range_v;
+    let [low, high] = voltage.range;
     let voltages = (0..VOLTAGES).map(|k| low + (high - low) * k as f64 / (VOLTAGES - 1) as f64);
     voltages
         .map(|volts| level(study, volts, weight_n, &study.at(Some(volts))))

@@ -225,7 +225,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
     let all = authority::against_thrust(study, &study.reference(), THRUSTS);
     let voltage = study.compiled.airframe.voltage.as_ref();
     let lowest = voltage.map(|voltage| {
-        let [lowest_v, _] = voltage.range_v;
+        let [lowest_v, _] = voltage.range;
         let all = authority::against_thrust(study, &study.at(Some(lowest_v)), THRUSTS);
         (format!("{lowest_v} V"), all)
     });
@@ -252,7 +252,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
         true => format!("With any one rotor out: what is left whichever it is{at}."),
         false => "With one rotor out, whichever it is, no thrust is held without a torque.".to_owned(),
     };
-    let reference_v = voltage.map(|voltage| voltage.reference_v);
+    let reference_v = voltage.map(|voltage| voltage.reference);
     let served = study.torque_axes().into_iter();
     let off: Vec<String> = served
         .filter_map(|axis| Some((axis, hover::band(study.compiled, axis, reference_v)?)))

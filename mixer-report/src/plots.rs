@@ -211,7 +211,7 @@ pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis:
     .sized(300.0, 240.0)
     .reading_curves();
     let voltage = study.compiled.airframe.voltage.as_ref();
-    let volts = voltage.map_or_else(String::new, |voltage| format!("{} V, ", voltage.reference_v));
+    let volts = voltage.map_or_else(String::new, |voltage| format!("{} V, ", voltage.reference));
     let ring: Vec<[f64; 2]> = largest.iter().chain(least.iter().rev()).copied().collect();
     let data = figure.path(&ring, true);
     figure.raw(&format!("<path class=\"fill-1\" d=\"{data}\"/>"));
@@ -280,7 +280,7 @@ pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
     for (rotor, name, class) in [(0, "upper rotors", "series-1"), (1, "lower rotors", "series-2")] {
         figure.curve(class, name, &curve(levels, |level| level.throttles[rotor]));
     }
-    figure.mark_x(voltage.reference_v, "reference");
+    figure.mark_x(voltage.reference, "reference");
     Some(figure)
 }
 

@@ -73,7 +73,7 @@ impl<'a> Study<'a> {
     /// The words ` at 14.8 V` with the reference voltage; none where voltage has no effect.
     pub fn at_reference(&self) -> String {
         let voltage = self.compiled.airframe.voltage.as_ref();
-        voltage.map_or_else(String::new, |voltage| format!(" at {} V", voltage.reference_v))
+        voltage.map_or_else(String::new, |voltage| format!(" at {} V", voltage.reference))
     }
 
     /// Throttles `[u, l]` from `[s, t]` in the unit square.
@@ -138,7 +138,7 @@ impl<'a> Study<'a> {
         let Some(voltage) = &self.compiled.airframe.voltage else {
             return vec![(None, [1.0, 1.0])];
         };
-        let mut volts = vec![voltage.range_v[0], voltage.reference_v, voltage.range_v[1]];
+        let mut volts = vec![voltage.range[0], voltage.reference, voltage.range[1]];
         volts.dedup();
         volts.into_iter().map(|v| (Some(v), voltage.factors(v))).collect()
     }

@@ -2,8 +2,8 @@
 
 use crate::allocate::closed_form::NoClosedForm;
 use crate::allocate::priorities::Priorities;
+use crate::conditions::{Conditions, Law};
 use crate::pair::{Pair, SingleRotor, ThrottleRange};
-use crate::voltage::Voltage;
 
 /// One coaxial unit's share of M and M+.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +28,8 @@ impl Unit {
         })
     }
 
-    /// Adds what `efforts` `[f, Q]` give to a wrench `[roll, pitch, yaw, thrust]` at the voltage's
-    /// `[k_f, k_Q]`.
+    /// Adds what `efforts` `[f, Q]` give to a wrench `[roll, pitch, yaw, thrust]` times the
+    /// correction's `factors`.
     #[inline(always)]
     pub(crate) fn add_wrench(&self, efforts: [f32; 2], factors: [f32; 2], wrench: &mut [f32; 4]) {
         for ((effect, factor), effort) in self.effectiveness.iter().zip(factors).zip(efforts) {
@@ -64,8 +64,10 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub inverse: I,
     /// The allowed throttles.
     pub throttle: ThrottleRange,
-    /// The voltage correction; without one k = 1.
-    pub voltage: Option<Voltage<'a>>,
+    /// How thrust and torque follow the battery's voltage, V; without it they do not.
+    pub voltage: Option<Law<'a>>,
+    /// How they follow the air's density, kg/m3; without it they do not.
+    pub air: Option<Law<'a>>,
     /// Factors from roll, pitch, yaw (N m) and thrust (N) to the rows of the interior point method:
     /// number of units over the vehicle's authority on the axis at the reference voltage; 0 on axes
     /// that the airframe does not serve.
@@ -85,4 +87,15 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub closed_form: S,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
+}
+
+impl<P, I, S> Tables<'_, P, I, S> {
+    /// The conditions of a voltage, V, at the bench's density.
+    #[inline(always)]
+    pub fn at_reference_density(&self, voltage_v: f32) -> Conditions {
+        Conditions {
+            voltage_v,
+            density_kg_m3: self.air.as_ref().map_or(0.0, |law| law.reference),
+        }
+    }
 }

@@ -10,7 +10,7 @@
 //!
 //! ```text
 //! setpoint u = [roll, pitch, yaw, thrust]                                           wrench.rs
-//!   -> factors k_f(V), k_Q(V)                                                            voltage.rs
+//!   -> factors of voltage and density                                                    conditions.rs
 //!   -> throttles                   of least norm, else of the request cut by priority   allocate.rs
 //!        of every unit                 inverse of (f, Q)(u, l)                              pair/inverse.rs
 //!   -> achieved wrench             M (k_f f(u, l), k_Q Q(u, l))                          mix.rs
@@ -26,16 +26,17 @@
 
 mod allocate;
 mod arithmetic;
+mod conditions;
 mod health;
 mod layout;
 mod mix;
 mod pair;
 mod saturation;
 pub mod tables;
-mod voltage;
 mod wrench;
 
 pub(crate) use arithmetic::{clamp, divided, divisor, larger, quotient, rolled, smaller, sqrt};
+pub use conditions::Conditions;
 pub use health::Health;
 pub use mix::{Airframe, Mix, Outputs};
 pub use saturation::{Direction, Saturation};

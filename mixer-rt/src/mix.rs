@@ -1,14 +1,14 @@
-//! From setpoint and voltage to throttles and the achieved wrench.
+//! From setpoint and conditions to throttles and the achieved wrench.
 
 use crate::allocate::allocate;
 use crate::allocate::closed_form::{AllocationMethod, Attained, ClosedForm, Efforts, Request};
 use crate::allocate::power_bias::add_power_bias;
 use crate::allocate::priorities::{REQUEST_LIMIT, is_bounded, limited};
 use crate::allocate::unit::UnitState;
+use crate::conditions::{Conditions, Correction};
 use crate::layout::Tables;
 use crate::pair::rotors::Rotors;
 use crate::pair::{Inverse, Quantity};
-use crate::voltage::Correction;
 use crate::{Axis, Health, Saturation, SetpointError, Wrench};
 use crate::{divided, rolled};
 
@@ -27,7 +27,7 @@ use crate::{divided, rolled};
 pub struct Mix<const CHANNELS: usize> {
     /// Throttle per output channel, each within the airframe's range; 0 for a failed rotor.
     pub throttle: [f32; CHANNELS],
-    /// The wrench that these throttles give, by the airframe's model at the given voltage.
+    /// The wrench that these throttles give, by the airframe's model under the given conditions.
     pub achieved: Wrench,
     /// What could not be delivered.
     pub saturation: Saturation,
@@ -74,9 +74,8 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
 }
 
 /// Mixes for an airframe of n units: `CHANNELS` = 2 n rotors, `UNITS` = n.
-/// `voltage_v` is the battery's present voltage, V: outside the airframe's range it is taken as the
-/// nearest within and flagged, zero as well; an airframe without `[voltage]` ignores it. Any finite
-/// setpoint is mixed.
+/// Any finite setpoint is mixed; what conditions are outside the airframe's ranges is said at
+/// [`Conditions`].
 ///
 /// # Errors
 /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
@@ -84,9 +83,9 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
 pub fn mix<const UNITS: usize, const CHANNELS: usize, P: Quantity, I: Inverse, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
-    voltage_v: f32,
+    conditions: Conditions,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
-    mix_with_health::<UNITS, CHANNELS, P, I, S>(tables, setpoint, voltage_v, Health::GOOD)
+    mix_with_health::<UNITS, CHANNELS, P, I, S>(tables, setpoint, conditions, Health::GOOD)
 }
 
 /// [`mix`] with some rotors out: the others give what can be given, and the achieved wrench tells
@@ -105,16 +104,16 @@ pub fn mix_with_health<
 >(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
-    voltage_v: f32,
+    conditions: Conditions,
     health: Health,
 ) -> Result<Mix<CHANNELS>, SetpointError> {
     let mut throttle = [tables.throttle.min; CHANNELS];
-    let mixed = match mix_in_closed_form(tables, setpoint, voltage_v, health, &mut throttle) {
+    let mixed = match mix_in_closed_form(tables, setpoint, conditions, health, &mut throttle) {
         Some(mixed) => mixed,
         None => {
             // Not before: the closed form needs no workspace.
             let mut states = [UnitState::default(); UNITS];
-            mix_in_general(tables, setpoint, voltage_v, health, &mut states, &mut throttle)
+            mix_in_general(tables, setpoint, conditions, health, &mut states, &mut throttle)
         }
     };
     let (achieved, saturation) = mixed?;
@@ -135,14 +134,14 @@ pub fn mix_with_health<
 pub fn mix_into<P: Quantity, I: Inverse, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
-    voltage_v: f32,
+    conditions: Conditions,
     health: Health,
     states: &mut [UnitState],
     throttle: &mut [f32],
 ) -> Result<(Wrench, Saturation), SetpointError> {
-    match mix_in_closed_form(tables, setpoint, voltage_v, health, throttle) {
+    match mix_in_closed_form(tables, setpoint, conditions, health, throttle) {
         Some(mixed) => mixed,
-        None => mix_in_general(tables, setpoint, voltage_v, health, states, throttle),
+        None => mix_in_general(tables, setpoint, conditions, health, states, throttle),
     }
 }
 
@@ -154,13 +153,14 @@ type Mixed = Result<(Wrench, Saturation), SetpointError>;
 fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
-    voltage_v: f32,
+    conditions: Conditions,
     health: Health,
     states: &mut [UnitState],
     throttle: &mut [f32],
 ) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
-    let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
+    let Correction { factors, clamped } =
+        Correction::at(tables.voltage.as_ref(), tables.air.as_ref(), conditions)?;
     let units = tables.units.get(..states.len()).unwrap_or(tables.units);
     let states = states.get_mut(..units.len()).unwrap_or_default();
     // With a closed form, rotors are out. So the compiler leaves out what only whole frames need.
@@ -184,10 +184,7 @@ fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod>(
         unit.add_wrench(state.efforts, factors, &mut achieved);
     }
     let saturation = Saturation::between(&request, &achieved, &tables.tolerance.wrench);
-    Ok((
-        Wrench::from_array(achieved),
-        saturation.with_voltage_clamped(clamped),
-    ))
+    Ok((Wrench::from_array(achieved), saturation.with(clamped)))
 }
 
 /// [`mix_into`] in closed form; `None` where there is none, or a rotor is out.
@@ -195,13 +192,13 @@ fn mix_in_general<P: Quantity, I: Inverse, S: AllocationMethod>(
 fn mix_in_closed_form<P: Quantity, I: Inverse, S: AllocationMethod>(
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
-    voltage_v: f32,
+    conditions: Conditions,
     health: Health,
     throttle: &mut [f32],
 ) -> Option<Mixed> {
     let is_good = health.is_good_below(2 * tables.units.len());
     let closed_form = tables.closed_form.closed_form().filter(|_| is_good)?;
-    Some(mix_by(closed_form, tables, setpoint, voltage_v, throttle))
+    Some(mix_by(closed_form, tables, setpoint, conditions, throttle))
 }
 
 /// Mixes in closed form, with all rotors. Efforts next to the border ([`Attained::Perhaps`])
@@ -213,12 +210,13 @@ fn mix_by<P: Quantity, I: Inverse, S>(
     closed_form: &ClosedForm<'_>,
     tables: &Tables<'_, P, I, S>,
     setpoint: &Wrench,
-    voltage_v: f32,
+    conditions: Conditions,
     throttle: &mut [f32],
 ) -> Mixed {
     let (request, bounded) = bounded(setpoint)?;
-    let Correction { factors, clamped } = Correction::at(tables.voltage.as_ref(), voltage_v)?;
-    // Factors are positive, which the compiler has proven for every voltage within the range.
+    let Correction { factors, clamped } =
+        Correction::at(tables.voltage.as_ref(), tables.air.as_ref(), conditions)?;
+    // Factors are positive, which the compiler has proven for all conditions within the ranges.
     let per_factor = factors.map(|factor| divided(1.0, factor));
     let at_reference = at_reference(bounded, per_factor);
     let airmode = tables.priorities.airmode;
@@ -260,7 +258,7 @@ fn mix_by<P: Quantity, I: Inverse, S>(
     if attained == Attained::No || !closed_form.complete {
         saturation = Saturation::between(&request, &achieved.to_array(), &tables.tolerance.wrench);
     }
-    Ok((achieved, saturation.with_voltage_clamped(clamped)))
+    Ok((achieved, saturation.with(clamped)))
 }
 
 /// The setpoint as `[roll, pitch, yaw, thrust]`, and the same limited so that no product overflows.
@@ -377,16 +375,32 @@ pub trait Airframe {
     /// [`Mix`] for the airframe's number of channels.
     type Mix: Outputs;
 
-    /// As [`mix`].
+    /// As [`mix_in`](Self::mix_in) at the bench's density, with the battery's present voltage, V.
     ///
     /// # Errors
-    /// As [`mix`].
+    /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
     fn mix(setpoint: &Wrench, voltage_v: f32) -> Result<Self::Mix, SetpointError>;
 
-    /// As [`mix_with_health`].
+    /// [`mix`](Self::mix) with the rotors out that `health` names.
     ///
     /// # Errors
-    /// As [`mix`].
+    /// As [`mix`](Self::mix).
     fn mix_with_health(setpoint: &Wrench, voltage_v: f32, health: Health)
     -> Result<Self::Mix, SetpointError>;
+
+    /// Throttles of all channels for a setpoint under the present conditions.
+    ///
+    /// # Errors
+    /// As [`mix`](Self::mix).
+    fn mix_in(setpoint: &Wrench, conditions: &Conditions) -> Result<Self::Mix, SetpointError>;
+
+    /// [`mix_in`](Self::mix_in) with the rotors out that `health` names.
+    ///
+    /// # Errors
+    /// As [`mix`](Self::mix).
+    fn mix_in_with_health(
+        setpoint: &Wrench,
+        conditions: &Conditions,
+        health: Health,
+    ) -> Result<Self::Mix, SetpointError>;
 }

@@ -29,7 +29,7 @@ pub enum Direction {
 
 /// What could not be delivered. Bit `2 * axis` is [`Direction::Positive`], bit `2 * axis + 1` is
 /// [`Direction::Negative`], with roll 0, pitch 1, yaw 2, thrust 3; bit 8 says that the voltage was
-/// clamped.
+/// clamped, bit 9 that the density was, or was not measured.
 // Of 32 bits, so that a mix consists of whole words; see `SetpointError`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -39,9 +39,10 @@ pub struct Saturation(u32);
 impl Saturation {
     /// Everything was delivered.
     pub const NONE: Saturation = Saturation(0);
-    const VOLTAGE: u32 = 1 << 8;
+    pub(crate) const VOLTAGE: Saturation = Saturation(1 << 8);
+    pub(crate) const DENSITY: Saturation = Saturation(1 << 9);
 
-    /// The bits as documented on the type: 0..=0x1ff.
+    /// The bits as documented on the type: 0..=0x3ff.
     #[inline]
     pub const fn bits(self) -> u16 {
         self.0 as u16
@@ -50,7 +51,7 @@ impl Saturation {
     /// The inverse of [`Saturation::bits`]; unknown bits are dropped.
     #[inline]
     pub const fn from_bits(bits: u16) -> Self {
-        Saturation(bits as u32 & 0x1ff)
+        Saturation(bits as u32 & 0x3ff)
     }
 
     /// True where anything was given up on this axis in this direction.
@@ -69,7 +70,14 @@ impl Saturation {
     /// True where the voltage lay outside the airframe's range and was clamped into it.
     #[inline]
     pub const fn voltage_clamped(self) -> bool {
-        self.0 & Self::VOLTAGE != 0
+        self.0 & Self::VOLTAGE.0 != 0
+    }
+
+    /// True where the air's density lay outside the airframe's range and was clamped into it, or was
+    /// NaN, infinite, zero or negative and taken as the bench's.
+    #[inline]
+    pub const fn density_clamped(self) -> bool {
+        self.0 & Self::DENSITY.0 != 0
     }
 
     /// True where anything was given up on this axis, in either direction.
@@ -78,9 +86,10 @@ impl Saturation {
         self.0 & (3 << (2 * axis as u32)) != 0
     }
 
+    /// The flags of both.
     #[inline]
-    pub(crate) fn with_voltage_clamped(self, clamped: bool) -> Self {
-        Saturation(self.0 | if clamped { Self::VOLTAGE } else { 0 })
+    pub(crate) const fn with(self, other: Saturation) -> Self {
+        Saturation(self.0 | other.0)
     }
 
     /// Flags every axis on which `achieved` misses `requested` by more than `tolerance`.
@@ -120,9 +129,11 @@ impl fmt::Display for Saturation {
                 }
             }
         }
-        if self.voltage_clamped() {
-            write!(f, "{separator}voltage")?;
-            separator = " ";
+        for (flag, name) in [(Self::VOLTAGE, "voltage"), (Self::DENSITY, "density")] {
+            if self.0 & flag.0 != 0 {
+                write!(f, "{separator}{name}")?;
+                separator = " ";
+            }
         }
         if separator.is_empty() {
             f.write_str("none")?;

@@ -129,7 +129,7 @@ fn thrust_is_not_raised() {
             return None;
         }
         let least = if is_good {
-            f64::from(frame.tables.level_n[0]) * frame.factors(request.volts)[0]
+            f64::from(frame.tables.level_n[0]) * frame.factors(request)[0]
         } else {
             f64::NEG_INFINITY
         };

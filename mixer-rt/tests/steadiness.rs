@@ -82,6 +82,7 @@ fn larger_requests_get_no_less() {
                 let request = Request {
                     wrench: [roll * a, pitch * b, yaw * c, thrust * d],
                     volts: 14.8,
+                    density: 1.2,
                     health,
                 };
                 let along = frame.along(&request, &frame.mix(&request));

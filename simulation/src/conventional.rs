@@ -4,7 +4,7 @@
 use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::effectiveness::Effectiveness;
-use mixer_compiler::model::voltage;
+use mixer_compiler::model::law::CorrectionTables;
 use mixer_rt::{SetpointError, Wrench};
 use nalgebra::{SVector, Vector4};
 
@@ -22,12 +22,12 @@ impl ConventionalMixer {
     /// The conventional mixer of `airframe` with effectiveness M.
     ///
     /// # Errors
-    /// An airframe of other than eight rotors, or a voltage law that cannot be tabulated.
+    /// An airframe of other than eight rotors.
     pub fn new(airframe: &Airframe, effectiveness: &Effectiveness) -> Result<Self, &'static str> {
         if airframe.rotors() != ROTORS {
             return Err("the airframe has not eight rotors");
         }
-        let voltage = voltage::tabulate(airframe).map_err(|_| "the voltage law cannot be tabulated")?;
+        let voltage = CorrectionTables::new(airframe).voltage;
         Ok(ConventionalMixer {
             tables: IsolatedTables::of(airframe, effectiveness, voltage),
             thrust_factor: 1.0,

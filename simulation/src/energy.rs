@@ -57,7 +57,7 @@ impl Rotors {
         let mut compiled = mixer_compiler::compile(&Source::new("x8-11in-least-power.toml", FILE))
             .map_err(|faults| faults.to_string())?;
         compiled.airframe.voltage = None;
-        compiled.tables.voltage = None;
+        compiled.tables.corrections.voltage = None;
         let with = compiled.tables;
         let without = with.without_power_bias();
         Ok(Rotors {

@@ -19,7 +19,7 @@
 //! the paper gives nothing to model them by: drag, ground effect, wake between units, the rotors'
 //! own angular momentum (it cancels in a contra-rotating pair).
 
-use mixer_compiler::airframe::{Airframe, Voltage};
+use mixer_compiler::airframe::{Airframe, Correction};
 use nalgebra::{Quaternion, SVector, Vector3};
 
 use crate::atmosphere;
@@ -65,7 +65,7 @@ impl<const R: usize> Default for Disturbance<R> {
 pub struct Plant<const R: usize> {
     units: Vec<Unit>,
     pair: Pair,
-    voltage: Option<Voltage>,
+    voltage: Option<Correction>,
     motor: Option<Motor>,
     body: Body,
     battery: Battery,
@@ -102,7 +102,7 @@ impl<const R: usize> Plant<R> {
     pub fn in_air(self, density_kg_m3: f64, no_load: f64) -> Result<Self, String> {
         let voltage = self.voltage.as_ref();
         let exponent = voltage.map_or(USUAL_EXPONENT, exponent);
-        let reference_v = voltage.map(|voltage| voltage.reference_v);
+        let reference_v = voltage.map(|voltage| voltage.reference);
         let sigma = density_kg_m3 / atmosphere::SEA_LEVEL_KG_M3;
         let motor = Motor::new(exponent, no_load, reference_v, sigma).ok_or_else(|| {
             format!("thrust follows the voltage by the power {exponent:.2}: motors have 1 to 2")
@@ -189,7 +189,7 @@ impl<const R: usize> Plant<R> {
 }
 
 /// Exponent of the thrust between the ends of the range.
-fn exponent(voltage: &Voltage) -> f64 {
-    let [low, high] = voltage.range_v.map(|volts| (volts, voltage.thrust_factor(volts)));
+fn exponent(voltage: &Correction) -> f64 {
+    let [low, high] = voltage.range.map(|volts| (volts, voltage.thrust_factor(volts)));
     libm::log(high.1 / low.1) / libm::log(high.0 / low.0)
 }

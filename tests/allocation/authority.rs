@@ -26,6 +26,7 @@ fn given(frame: &Frame, wrench: [f32; 4]) -> [f64; 4] {
     let request = Request {
         wrench,
         volts: REFERENCE_V,
+        density: None,
         health: Health::GOOD,
     };
     let answer = request.mix(frame).expect("finite");

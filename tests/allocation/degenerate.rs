@@ -65,6 +65,7 @@ fn degenerate_requests_are_answered() {
                         0 => REFERENCE_V,
                         _ => NUMBERS[random.below(NUMBERS.len())],
                     },
+                    density: None,
                     health: Health::GOOD,
                 };
                 let answer = request.mix(&frame).expect("finite");
@@ -84,6 +85,7 @@ fn what_is_not_finite_is_refused_by_name() {
                 let mut request = Request {
                     wrench: [0.0, 0.0, 0.0, 20.0],
                     volts: REFERENCE_V,
+                    density: None,
                     health: Health::GOOD,
                 };
                 request.wrench[index] = bad;
@@ -92,6 +94,7 @@ fn what_is_not_finite_is_refused_by_name() {
             let request = Request {
                 wrench: [0.0, 0.0, 0.0, 20.0],
                 volts: bad,
+                density: None,
                 health: Health::GOOD,
             };
             assert_eq!(
@@ -106,11 +109,12 @@ fn what_is_not_finite_is_refused_by_name() {
 #[test]
 fn an_airframe_without_voltage_takes_any() {
     let frame = Frame::new(golden::compile("single-pair").expect("compiles"));
-    assert_eq!(frame.compiled.tables.voltage, None);
+    assert_eq!(frame.compiled.tables.corrections.voltage, None);
     let at = |volts| {
         let request = Request {
             wrench: [0.0, 0.0, 0.05, 10.0],
             volts,
+            density: None,
             health: Health::GOOD,
         };
         request.mix(&frame).expect("finite")

@@ -40,6 +40,7 @@ impl Flight {
         Request {
             wrench: [roll, pitch, yaw, self.thrust],
             volts: REFERENCE_V,
+            density: None,
             health: self.health,
         }
     }

@@ -201,6 +201,7 @@ impl Draw {
         Request {
             wrench,
             volts,
+            density: None,
             health,
         }
     }

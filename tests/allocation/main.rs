@@ -69,6 +69,7 @@ fn all_rotors(wrench: [f32; 4], volts: f32) -> Request {
     Request {
         wrench,
         volts,
+        density: None,
         health: Health::GOOD,
     }
 }

@@ -174,6 +174,7 @@ fn a_rotor_out_suspends_the_bias() {
     let request = Request {
         wrench: [0.1, 0.0, 0.0, 40.0],
         volts: REFERENCE_V,
+        density: None,
         health: Health::GOOD.with_failed(5),
     };
     let [without, with] = [&plain, &frame].map(|frame| request.mix(frame).expect("finite"));

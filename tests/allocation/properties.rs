@@ -90,6 +90,7 @@ proptest! {
             let request = Request {
                 wrench,
                 volts,
+                density: None,
                 // Channels beyond the frame's are no one's.
                 health: out(failed),
             };

@@ -153,7 +153,7 @@ fn assert_is_sound(frame: &Frame, request: &Request) {
 fn assert_is_optimal(frame: &Frame, request: &Request) {
     assert_is_sound(frame, request);
     let answer = request.mix(frame).expect("finite");
-    let factors = frame.physics.factors(request.volts);
+    let factors = request.factors(frame);
     let oracle = |build: fn(&_, &_, _, _) -> Oracle| {
         build(&frame.physics, frame.allocation(), factors, request.health)
     };
@@ -187,6 +187,7 @@ fn what_was_answered_badly_once_is_answered_well() {
             .map(|wrench| Request {
                 wrench,
                 volts,
+                density: None,
                 health,
             })
             .collect();

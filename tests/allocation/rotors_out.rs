@@ -68,6 +68,7 @@ fn a_reserve_yields_to_direction() {
             let request = Request {
                 wrench: [0.0, 0.0, yaw, thrust],
                 volts: REFERENCE_V,
+                density: None,
                 health: out(&failed),
             };
             assert_eq!(fault(&frame, &request), None, "{request:?}");
@@ -89,6 +90,7 @@ fn yaw_keeps_its_sign_on_a_y6() {
                         let request = Request {
                             wrench: [0.0, 0.0, yaw, (thrust * thrust_n) as f32],
                             volts: REFERENCE_V,
+                            density: None,
                             health: out(&failed),
                         };
                         assert_eq!(fault(&frame, &request), None, "{path}, {airmode}: {request:?}");

@@ -58,6 +58,7 @@ fn deliver(frame: &Frame, random: &mut Random, count: usize, tally: &mut Tally) 
         let request = Request {
             wrench: frame.physics.wrench(&throttles, 0.0).map(|x| x as f32),
             volts: 0.0,
+            density: None,
             health: Health::GOOD,
         };
         let answer = request.mix(frame).expect("finite");

@@ -97,6 +97,7 @@ fn request(wrench: [f32; 4], health: Health) -> Request {
     Request {
         wrench,
         volts: 0.0,
+        density: None,
         health,
     }
 }

@@ -8,8 +8,8 @@
 /// * unit 1 at (0.0, -0.45, 0.0) m, upper rotor ccw: channel 2 upper, 3 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00368 N and 4.25e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (330 cells).
+/// Proven: each unit's thrust and torque are within 0.00369 N and 4.26e-5 N m of what is asked, at every
+/// voltage and density and everywhere in the attainable set, rounding in f32 included (330 cells).
 /// Largest residual observed over 5251 efforts at the reference voltage: 0.00259 N, 2.99e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod coaxial_bicopter {
@@ -57,9 +57,24 @@ pub mod coaxial_bicopter {
         ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
             mix_with_health(setpoint, voltage_v, health)
         }
+        #[inline]
+        fn mix_in(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in(setpoint, conditions)
+        }
+        #[inline]
+        fn mix_in_with_health(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+            health: rt::Health,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in_with_health(setpoint, conditions, health)
+        }
     }
     /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
-    /// (V).
+    /// (V) and the bench's air density.
     ///
     /// # Errors
     /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
@@ -69,7 +84,13 @@ pub mod coaxial_bicopter {
         setpoint: &rt::Wrench,
         voltage_v: f32,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+        tables::mix::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, TABLES.at_reference_density(voltage_v))
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -81,13 +102,43 @@ pub mod coaxial_bicopter {
         voltage_v: f32,
         health: rt::Health,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        let conditions = TABLES.at_reference_density(voltage_v);
         tables::mix_with_health::<
             UNITS,
             CHANNELS,
             _,
             _,
             _,
-        >(&TABLES, setpoint, voltage_v, health)
+        >(&TABLES, setpoint, conditions, health)
+    }
+    /// [`mix`] under the present conditions: the battery's voltage and the air's density.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions)
+    }
+    /// [`mix_in`] with the rotors out that `health` names by channel.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in_with_health(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+        health: rt::Health,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix_with_health::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, *conditions, health)
     }
     /// The units: rows of M+, columns of M, output channels.
     const UNIT_TABLES: [tables::Unit; UNITS] = [
@@ -152,18 +203,25 @@ pub mod coaxial_bicopter {
         ],
         lower: [-0.018678555, -0.092187606, 0.19416437, -0.0368544, 1.1993, -0.29747206],
     };
-    /// The voltage correction.
-    const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::Some(tables::Voltage {
-        range_v: [12.8, 16.8],
-        thrust: tables::VoltageLaw::Polynomial {
-            variable: [0.5, -7.4],
-            coefficients: &[0.000005731108, -0.00013539205, 0.011984104, 0.2364866, 1.0],
-        },
-        torque: tables::VoltageLaw::Polynomial {
-            variable: [0.5, -7.4],
-            coefficients: &[0.000005731108, -0.00013539205, 0.011984104, 0.2364866, 1.0],
-        },
+    /// How thrust and torque follow the battery's voltage, V.
+    const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
+        reference: 14.8,
+        range: [12.8, 16.8],
+        pieces: &[
+            tables::LawPiece {
+                start: 12.8,
+                thrust: [-0.000018438423, 0.0031050392, 0.10604435, 0.7756387],
+                torque: [-0.000018438423, 0.0031050392, 0.10604435, 0.7756387],
+            },
+            tables::LawPiece {
+                start: 14.8,
+                thrust: [-0.000015563193, 0.0029947595, 0.11824325, 1.0],
+                torque: [-0.000015563193, 0.0029947595, 0.11824325, 1.0],
+            },
+        ],
     });
+    /// How they follow the air's density, kg/m3.
+    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
     /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -449,9 +507,10 @@ pub mod coaxial_bicopter {
             max: 1.0,
         },
         voltage: VOLTAGE,
+        air: AIR,
         rows: [0.0896502, 0.0, 4.595398, 0.040342588],
         spread: [443.2581, 0.14420184],
-        level_n: [1.2265872, 49.347454],
+        level_n: [1.2265425, 49.347492],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -460,8 +519,8 @@ pub mod coaxial_bicopter {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0029621422, 0.000034129265],
-            wrench: [0.0034201634, 0.0, 0.00008699345, 0.007600363],
+            efforts: [0.0029763097, 0.000034302808],
+            wrench: [0.0034260708, 0.0, 0.00008723946, 0.007613491],
         },
     };
 }

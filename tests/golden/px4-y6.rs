@@ -9,8 +9,8 @@
 /// * unit 2 at (0.25, -0.433, 0.0) m, upper rotor cw: channel 4 upper, 5 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00368 N and 4.25e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (330 cells).
+/// Proven: each unit's thrust and torque are within 0.00369 N and 4.26e-5 N m of what is asked, at every
+/// voltage and density and everywhere in the attainable set, rounding in f32 included (330 cells).
 /// Largest residual observed over 5251 efforts at the reference voltage: 0.00259 N, 2.99e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod px4_y6 {
@@ -58,9 +58,24 @@ pub mod px4_y6 {
         ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
             mix_with_health(setpoint, voltage_v, health)
         }
+        #[inline]
+        fn mix_in(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in(setpoint, conditions)
+        }
+        #[inline]
+        fn mix_in_with_health(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+            health: rt::Health,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in_with_health(setpoint, conditions, health)
+        }
     }
     /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
-    /// (V).
+    /// (V) and the bench's air density.
     ///
     /// # Errors
     /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
@@ -70,7 +85,13 @@ pub mod px4_y6 {
         setpoint: &rt::Wrench,
         voltage_v: f32,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+        tables::mix::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, TABLES.at_reference_density(voltage_v))
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -82,13 +103,43 @@ pub mod px4_y6 {
         voltage_v: f32,
         health: rt::Health,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        let conditions = TABLES.at_reference_density(voltage_v);
         tables::mix_with_health::<
             UNITS,
             CHANNELS,
             _,
             _,
             _,
-        >(&TABLES, setpoint, voltage_v, health)
+        >(&TABLES, setpoint, conditions, health)
+    }
+    /// [`mix`] under the present conditions: the battery's voltage and the air's density.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions)
+    }
+    /// [`mix_in`] with the rotors out that `health` names by channel.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in_with_health(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+        health: rt::Health,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix_with_health::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, *conditions, health)
     }
     /// The units: rows of M+, columns of M, output channels.
     const UNIT_TABLES: [tables::Unit; UNITS] = [
@@ -167,18 +218,25 @@ pub mod px4_y6 {
         ],
         lower: [-0.018678555, -0.092187606, 0.19416437, -0.0368544, 1.1993, -0.29747206],
     };
-    /// The voltage correction.
-    const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::Some(tables::Voltage {
-        range_v: [12.8, 16.8],
-        thrust: tables::VoltageLaw::Polynomial {
-            variable: [0.5, -7.4],
-            coefficients: &[0.000005731108, -0.00013539205, 0.011984104, 0.2364866, 1.0],
-        },
-        torque: tables::VoltageLaw::Polynomial {
-            variable: [0.5, -7.4],
-            coefficients: &[0.000005731108, -0.00013539205, 0.011984104, 0.2364866, 1.0],
-        },
+    /// How thrust and torque follow the battery's voltage, V.
+    const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
+        reference: 14.8,
+        range: [12.8, 16.8],
+        pieces: &[
+            tables::LawPiece {
+                start: 12.8,
+                thrust: [-0.000018438423, 0.0031050392, 0.10604435, 0.7756387],
+                torque: [-0.000018438423, 0.0031050392, 0.10604435, 0.7756387],
+            },
+            tables::LawPiece {
+                start: 14.8,
+                thrust: [-0.000015563193, 0.0029947595, 0.11824325, 1.0],
+                torque: [-0.000015563193, 0.0029947595, 0.11824325, 1.0],
+            },
+        ],
     });
+    /// How they follow the air's density, kg/m3.
+    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
     /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -477,9 +535,10 @@ pub mod px4_y6 {
             max: 1.0,
         },
         voltage: VOLTAGE,
+        air: AIR,
         rows: [0.13975492, 0.12102777, 4.595398, 0.040342588],
         spread: [443.2581, 0.14420184],
-        level_n: [1.8398807, 74.02117],
+        level_n: [1.8398136, 74.02123],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::RollPitch,
@@ -488,8 +547,8 @@ pub mod px4_y6 {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0029621422, 0.000034129265],
-            wrench: [0.003290957, 0.0038001814, 0.00013049018, 0.011400544],
+            efforts: [0.0029763097, 0.000034302808],
+            wrench: [0.0032966414, 0.0038067454, 0.00013085919, 0.011420236],
         },
     };
 }

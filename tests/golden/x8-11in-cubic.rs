@@ -11,7 +11,7 @@
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
 /// Proven: each unit's thrust and torque are within 0.00165 N and 2.39e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (217 cells).
+/// voltage and density and everywhere in the attainable set, rounding in f32 included (217 cells).
 /// Largest residual observed over 5251 efforts at the reference voltage: 0.00152 N, 2.08e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_11in_cubic {
@@ -59,9 +59,24 @@ pub mod x8_11in_cubic {
         ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
             mix_with_health(setpoint, voltage_v, health)
         }
+        #[inline]
+        fn mix_in(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in(setpoint, conditions)
+        }
+        #[inline]
+        fn mix_in_with_health(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+            health: rt::Health,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in_with_health(setpoint, conditions, health)
+        }
     }
     /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
-    /// (V).
+    /// (V) and the bench's air density.
     ///
     /// # Errors
     /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
@@ -71,7 +86,13 @@ pub mod x8_11in_cubic {
         setpoint: &rt::Wrench,
         voltage_v: f32,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+        tables::mix::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, TABLES.at_reference_density(voltage_v))
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -83,13 +104,43 @@ pub mod x8_11in_cubic {
         voltage_v: f32,
         health: rt::Health,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        let conditions = TABLES.at_reference_density(voltage_v);
         tables::mix_with_health::<
             UNITS,
             CHANNELS,
             _,
             _,
             _,
-        >(&TABLES, setpoint, voltage_v, health)
+        >(&TABLES, setpoint, conditions, health)
+    }
+    /// [`mix`] under the present conditions: the battery's voltage and the air's density.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions)
+    }
+    /// [`mix_in`] with the rotors out that `health` names by channel.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in_with_health(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+        health: rt::Health,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix_with_health::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, *conditions, health)
     }
     /// The units: rows of M+, columns of M, output channels.
     const UNIT_TABLES: [tables::Unit; UNITS] = [
@@ -173,8 +224,10 @@ pub mod x8_11in_cubic {
             -0.15099555,
         ],
     };
-    /// The voltage correction.
-    const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::None;
+    /// How thrust and torque follow the battery's voltage, V.
+    const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
+    /// How they follow the air's density, kg/m3.
+    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
     /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -575,6 +628,7 @@ pub mod x8_11in_cubic {
             max: 0.95,
         },
         voltage: VOLTAGE,
+        air: AIR,
         rows: [0.2616082, 0.2616082, 4.76171, 0.055495482],
         spread: [227.60522, 0.11379245],
         level_n: [2.2240434, 69.13363],

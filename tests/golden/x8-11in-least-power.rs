@@ -10,9 +10,9 @@
 /// * unit 3 at (0.2121320343559642, -0.2121320343559643, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00237 N and 1.96e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (593 cells).
-/// Largest residual observed over 5251 efforts at the reference voltage: 0.00155 N, 1.28e-5 N m.
+/// Proven: each unit's thrust and torque are within 0.00236 N and 1.96e-5 N m of what is asked, at every
+/// voltage and density and everywhere in the attainable set, rounding in f32 included (597 cells).
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00155 N, 1.29e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_11in_least_power {
     use ::mixer_rt::{self as rt, tables};
@@ -59,9 +59,24 @@ pub mod x8_11in_least_power {
         ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
             mix_with_health(setpoint, voltage_v, health)
         }
+        #[inline]
+        fn mix_in(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in(setpoint, conditions)
+        }
+        #[inline]
+        fn mix_in_with_health(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+            health: rt::Health,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in_with_health(setpoint, conditions, health)
+        }
     }
     /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
-    /// (V).
+    /// (V) and the bench's air density.
     ///
     /// # Errors
     /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
@@ -71,7 +86,13 @@ pub mod x8_11in_least_power {
         setpoint: &rt::Wrench,
         voltage_v: f32,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+        tables::mix::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, TABLES.at_reference_density(voltage_v))
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -83,13 +104,43 @@ pub mod x8_11in_least_power {
         voltage_v: f32,
         health: rt::Health,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        let conditions = TABLES.at_reference_density(voltage_v);
         tables::mix_with_health::<
             UNITS,
             CHANNELS,
             _,
             _,
             _,
-        >(&TABLES, setpoint, voltage_v, health)
+        >(&TABLES, setpoint, conditions, health)
+    }
+    /// [`mix`] under the present conditions: the battery's voltage and the air's density.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions)
+    }
+    /// [`mix_in`] with the rotors out that `health` names by channel.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in_with_health(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+        health: rt::Health,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix_with_health::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, *conditions, health)
     }
     /// The units: rows of M+, columns of M, output channels.
     const UNIT_TABLES: [tables::Unit; UNITS] = [
@@ -173,30 +224,25 @@ pub mod x8_11in_least_power {
             -0.16352606,
         ],
     };
-    /// The voltage correction.
-    const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::Some(tables::Voltage {
-        range_v: [9.97, 12.6],
-        thrust: tables::VoltageLaw::Polynomial {
-            variable: [0.76045626, -8.581749],
-            coefficients: &[
-                0.0000034785992,
-                -0.00009536025,
-                0.009796801,
-                0.22419664,
-                1.0994279,
-            ],
-        },
-        torque: tables::VoltageLaw::Polynomial {
-            variable: [0.76045626, -8.581749],
-            coefficients: &[
-                0.0000034785992,
-                -0.00009536025,
-                0.009796801,
-                0.22419664,
-                1.0994279,
-            ],
-        },
+    /// How thrust and torque follow the battery's voltage, V.
+    const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
+        reference: 10.69,
+        range: [9.97, 12.6],
+        pieces: &[
+            tables::LawPiece {
+                start: 9.97,
+                thrust: [-0.000046741225, 0.0058429097, 0.1553633, 0.88512695],
+                torque: [-0.000046741225, 0.0058429097, 0.1553633, 0.88512695],
+            },
+            tables::LawPiece {
+                start: 10.69,
+                thrust: [-0.000040301962, 0.0057385666, 0.1637044, 0.99999994],
+                torque: [-0.000040301962, 0.0057385666, 0.1637044, 0.99999994],
+            },
+        ],
     });
+    /// How they follow the air's density, kg/m3.
+    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
     /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -513,9 +559,10 @@ pub mod x8_11in_least_power {
             max: 0.95,
         },
         voltage: VOLTAGE,
+        air: AIR,
         rows: [0.23520674, 0.23520674, 4.404444, 0.049894884],
         spread: [287.4635, 0.12583156],
-        level_n: [2.351437, 74.526924],
+        level_n: [2.3513775, 74.526985],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -524,8 +571,8 @@ pub mod x8_11in_least_power {
         power_bias_nm_per_n: 0.00695,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0017872729, 0.000014833874],
-            wrench: [0.0020977466, 0.0020977466, 0.000083164996, 0.009888872],
+            efforts: [0.001791526, 0.000014990733],
+            wrench: [0.0020857677, 0.0020857677, 0.00008309945, 0.009832403],
         },
     };
 }

@@ -21,7 +21,7 @@ pub fn of(compiled: &Compiled, count: usize, rotors_out: u32) -> Vec<u64> {
             let mixed = mixer_rt::tables::mix_into(
                 &tables,
                 &wrench,
-                setpoint.voltage_v,
+                setpoint.conditions(),
                 health,
                 &mut states,
                 &mut throttle,

@@ -2,7 +2,7 @@
 //! against.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::{Airframe, RotorAlone, Voltage};
+use mixer_compiler::airframe::{Airframe, Correction, RotorAlone};
 use mixer_compiler::model::PairMap;
 use mixer_rt::Health;
 use nalgebra::{Matrix4xX, MatrixXx4, Vector3};
@@ -38,7 +38,8 @@ pub struct Physics {
     pseudo_inverse: MatrixXx4<f64>,
     /// Outputs of the upper and of the lower rotor, per unit.
     pub channels: Vec<[usize; 2]>,
-    voltage: Option<Voltage>,
+    /// Of voltage and of density.
+    corrections: [Option<Correction>; 2],
     /// What the upper and the lower rotor give alone, where the file says it.
     alone: [Option<RotorAlone>; 2],
 }
@@ -56,7 +57,7 @@ impl Physics {
                 .iter()
                 .map(|unit| [unit.upper_channel, unit.lower_channel])
                 .collect(),
-            voltage: airframe.voltage.clone(),
+            corrections: [airframe.voltage.clone(), airframe.air.clone()],
             alone: [airframe.pair.lower_out.clone(), airframe.pair.upper_out.clone()],
         }
     }
@@ -77,16 +78,31 @@ impl Physics {
 
     /// The declared range of voltage, V; `None` where voltage is ignored.
     pub fn voltage_range(&self) -> Option<[f64; 2]> {
-        self.voltage.as_ref().map(|voltage| voltage.range_v)
+        self.corrections[0].as_ref().map(|voltage| voltage.range)
     }
 
-    /// The correction `[k_f, k_Q]` at a battery voltage, which is clamped into the range.
+    /// The declared range of density, kg/m3; `None` where density is ignored.
+    pub fn density_range(&self) -> Option<[f64; 2]> {
+        self.corrections[1].as_ref().map(|air| air.range)
+    }
+
+    /// The correction `[k_f, k_Q]` at a battery voltage and the bench's density.
     pub fn factors(&self, volts: f32) -> [f64; 2] {
-        self.voltage.as_ref().map_or([1.0, 1.0], |voltage| {
-            let [low, high] = voltage.range_v;
-            let volts = f64::from(volts).clamp(low, high);
-            voltage.factors(volts)
-        })
+        self.factors_in(volts, None)
+    }
+
+    /// The correction `[k_f, k_Q]` at a battery voltage and a density, `None` for the bench's; both are clamped
+    /// into their ranges.
+    pub fn factors_in(&self, volts: f32, density: Option<f32>) -> [f64; 2] {
+        let [of_voltage, of_air] = [Some(volts), density].map(|x| x.map(f64::from));
+        let [[f, q], [by_f, by_q]] = [(0, of_voltage), (1, of_air)].map(|(k, x)| {
+            let correction = self.corrections[k].as_ref().zip(x);
+            correction.map_or([1.0, 1.0], |(correction, x)| {
+                let [low, high] = correction.range;
+                correction.factors(x.clamp(low, high))
+            })
+        });
+        [f * by_f, q * by_q]
     }
 
     /// `[roll, pitch, yaw, thrust]` (N m, N) that the units' efforts `[f, Q]` at the reference
@@ -110,13 +126,18 @@ impl Physics {
     }
 
     /// `[roll, pitch, yaw, thrust]` (N m, N) that throttles, one per output, give at a battery
-    /// voltage.
+    /// voltage and the bench's density.
     pub fn wrench(&self, throttle: &[f32], volts: f32) -> [f64; 4] {
+        self.wrench_in(throttle, self.factors(volts))
+    }
+
+    /// The same under a correction.
+    pub fn wrench_in(&self, throttle: &[f32], factors: [f64; 2]) -> [f64; 4] {
         let efforts = self.channels.iter().map(|channels| {
             let throttles = channels.map(|channel| f64::from(throttle[channel]));
             self.given(throttles)
         });
-        self.wrench_of(efforts, self.factors(volts))
+        self.wrench_of(efforts, factors)
     }
 
     /// What a unit gives: a rotor below idle is out.

@@ -2,7 +2,7 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Allocation;
-use mixer_rt::{Axis, Health, Saturation, SetpointError, Wrench};
+use mixer_rt::{Axis, Conditions, Health, Saturation, SetpointError, Wrench};
 
 use crate::physics::Physics;
 use mixer_setpoints::Random;
@@ -56,6 +56,7 @@ impl Frame {
         Request {
             wrench: [torques[0], torques[1], torques[2], thrust],
             volts,
+            density: None,
             health: Health::GOOD,
         }
     }
@@ -64,6 +65,12 @@ impl Frame {
     pub fn draw_volts(&self, random: &mut Random) -> f32 {
         let [low, high] = self.physics.voltage_range().unwrap_or([14.0, 14.0]);
         random.uniform(low, high) as f32
+    }
+
+    /// A density within the declared range; none where it is ignored.
+    pub fn draw_density(&self, random: &mut Random) -> Option<f32> {
+        let [low, high] = self.physics.density_range()?;
+        Some(random.uniform(low, high) as f32)
     }
 }
 
@@ -74,6 +81,8 @@ pub struct Request {
     pub wrench: [f32; 4],
     /// The battery's voltage, V.
     pub volts: f32,
+    /// The air's density, kg/m3; `None` for a mix at the bench's.
+    pub density: Option<f32>,
     /// The rotors that work.
     pub health: Health,
 }
@@ -90,6 +99,11 @@ pub struct Answer {
 }
 
 impl Request {
+    /// The correction `[k_f, k_Q]` of the frame under its conditions.
+    pub fn factors(&self, frame: &Frame) -> [f64; 2] {
+        frame.physics.factors_in(self.volts, self.density)
+    }
+
     /// `[roll, pitch, yaw, thrust]` asked, N m and N.
     pub fn asked(&self) -> [f64; 4] {
         self.wrench.map(f64::from)
@@ -102,7 +116,17 @@ impl Request {
     pub fn mix(&self, frame: &Frame) -> Result<Answer, SetpointError> {
         let setpoint = Wrench::from_array(self.wrench);
         let tables = &frame.compiled.tables;
-        let (throttle, achieved, saturation) = tables.mix_with_health(&setpoint, self.volts, self.health)?;
+        let (throttle, achieved, saturation) = match self.density {
+            None => tables.mix_with_health(&setpoint, self.volts, self.health)?,
+            Some(density_kg_m3) => {
+                let voltage_v = self.volts;
+                let conditions = Conditions {
+                    voltage_v,
+                    density_kg_m3,
+                };
+                tables.mix_in(&setpoint, conditions, self.health)?
+            }
+        };
         Ok(Answer {
             throttle,
             achieved: achieved.to_array().map(f64::from),

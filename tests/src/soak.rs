@@ -117,6 +117,7 @@ impl Soak {
                 &Request {
                     wrench: setpoint.wrench,
                     volts: setpoint.voltage_v,
+                    density: frame.physics.density_range().map(|_| setpoint.density_kg_m3),
                     health: Health::GOOD,
                 },
             )?;

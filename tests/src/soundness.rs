@@ -140,16 +140,21 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
                 })
             })
     });
-    let clamped = frame
-        .physics
-        .voltage_range()
-        .is_some_and(|[low, high]| !(low as f32..=high as f32).contains(&request.volts));
-    let voltage = clamped != answer.saturation.voltage_clamped();
+    let outside = |range: Option<[f64; 2]>, x: Option<f32>| {
+        let range = range.zip(x);
+        range.is_some_and(|([low, high], x)| !(low as f32..=high as f32).contains(&x))
+    };
+    let voltage = outside(frame.physics.voltage_range(), Some(request.volts));
+    let density = outside(frame.physics.density_range(), request.density);
+    let given = [
+        answer.saturation.voltage_clamped(),
+        answer.saturation.density_clamped(),
+    ];
     axes.or_else(|| {
-        voltage.then(|| Fault {
+        (given != [voltage, density]).then(|| Fault {
             kind: Kind::Flag,
             size: 0.0,
-            said: format!("voltage {}: clamped {clamped}", request.volts),
+            said: format!("{request:?}: voltage and density clamped {given:?}"),
         })
     })
 }
@@ -199,7 +204,7 @@ fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec
     if faults.is_empty() && !raised {
         return Ok(faults);
     }
-    let factors = frame.physics.factors(request.volts);
+    let factors = request.factors(frame);
     let oracle = Oracle::new(&frame.physics, frame.allocation(), factors, request.health);
     let Some(mut floor) = oracle.thrust_floor(asked[2])? else {
         return Ok(Vec::new());

@@ -7,20 +7,20 @@ use std::io::{self, BufWriter, IsTerminal as _, Read, Write, stdin, stdout};
 use std::path::{Path, PathBuf};
 
 use mixer_compiler::Compiled;
-use mixer_rt::Health;
+use mixer_rt::{Conditions, Health};
 
 use crate::setpoints::{BadLine, HEADER, Setpoints, Stopped};
 use crate::{Done, file, print_error};
 
 /// Mixes setpoints: CSV to CSV, from stdin to stdout row by row
 ///
-/// In:  a header and rows of roll_nm,pitch_nm,yaw_nm,thrust_n and, if there is one, voltage_v,
-///      in any order. Without voltage_v the reference voltage is taken.
+/// In:  a header and rows of roll_nm,pitch_nm,yaw_nm,thrust_n and, if there are such, voltage_v
+///      and density_kg_m3, in any order. Without them the bench's voltage and density are taken.
 /// Out: throttle_0.., achieved_roll_nm, achieved_pitch_nm, achieved_yaw_nm, achieved_thrust_n,
 ///      saturation. Numbers read back to the same bits (f32).
 ///      saturation is a sum: 1 roll, 4 pitch, 16 yaw, 64 thrust is achieved below the setpoint;
 ///      2, 8, 32, 128 above it; 256 the voltage was outside the airframe's range and clamped
-///      into it.
+///      into it; 512 the density was, or was NaN, infinite, 0 or less and taken as the bench's.
 ///      The throttle of a rotor that is out is 0.
 ///
 /// A bad row is reported with its line on stderr and left out; the exit status is then 1.
@@ -154,7 +154,10 @@ fn mix_rows(
 ) -> Result<(), Stopped> {
     let input = Answering { input, output };
     let mut setpoints = Setpoints::new(input)?;
-    let reference_v = compiled.airframe.reference_v() as f32;
+    let reference = compiled
+        .tables
+        .view()
+        .at_reference_density(compiled.airframe.reference_v() as f32);
     let write = |text: &str| {
         let written = output.borrow_mut().write_all(text.as_bytes());
         written.map_err(Stopped::Output)
@@ -166,8 +169,11 @@ fn mix_rows(
     let mut text = String::new();
     while let Some((line, row)) = setpoints.read()? {
         let mixed = row.and_then(|row| {
-            let voltage_v = row.voltage_v.unwrap_or(reference_v);
-            let mixed = compiled.tables.mix_with_health(&row.wrench, voltage_v, health);
+            let conditions = Conditions {
+                voltage_v: row.voltage_v.unwrap_or(reference.voltage_v),
+                density_kg_m3: row.density_kg_m3.unwrap_or(reference.density_kg_m3),
+            };
+            let mixed = compiled.tables.mix_in(&row.wrench, conditions, health);
             mixed.map_err(|error| BadLine {
                 line,
                 message: error.to_string(),

@@ -12,11 +12,13 @@
 #define @PREFIX@_VERSION "@VERSION@"
 #define @PREFIX@_SHA256 "@HASH@"
 
-/* Output channels, the range of every throttle, and the voltage of the bench: what to pass before one is measured. */
+/* Output channels, the range of every throttle, and voltage and air density of the bench: what to pass before one is
+ * measured; 0 where the airframe ignores it. */
 #define @PREFIX@_CHANNELS @ROTORS@
 #define @PREFIX@_THROTTLE_MIN @MIN@
 #define @PREFIX@_THROTTLE_MAX @MAX@
 #define @PREFIX@_REFERENCE_V @REFERENCE_V@
+#define @PREFIX@_REFERENCE_DENSITY_KG_M3 @REFERENCE_DENSITY@
 
 /* What one unit of PX4's normalised setpoints is@REFERENCE@: thrust 1 is all rotors at full throttle, a torque of 1
  * what its effectiveness makes of it on this frame. [-1, 1] times these is a setpoint. */
@@ -34,8 +36,8 @@ extern "C" {
 
 typedef struct {
     float throttle[@PREFIX@_CHANNELS]; /* by output channel */
-    mixer_wrench_t achieved; /* what these throttles give at this voltage */
-    uint32_t saturation; /* MIXER_ROLL_SHORT .. MIXER_VOLTAGE_CLAMPED */
+    mixer_wrench_t achieved; /* what these throttles give under these conditions */
+    uint32_t saturation; /* MIXER_ROLL_SHORT .. MIXER_DENSITY_CLAMPED */
 } @M@_mix_t;
 
 MIXER_STATIC_ASSERT(sizeof(@M@_mix_t) == 4 * @PREFIX@_CHANNELS + 20, @M@_mix_has_no_gaps);
@@ -43,8 +45,11 @@ MIXER_STATIC_ASSERT(offsetof(@M@_mix_t, saturation) == 4 * @PREFIX@_CHANNELS + 1
 
 /* Throttles for a setpoint. @VOLTAGE@.
  * Returns 0, or 1 to 4 where roll, pitch, yaw or thrust is infinite or NaN, 5 where the voltage is; `*out` is
- * untouched then. Neither pointer may be null. Reentrant: no state, no allocation. */
+ * untouched then. No pointer may be null. Reentrant: no state, no allocation. */
 int @M@_mix(const mixer_wrench_t *setpoint, float voltage_v, @M@_mix_t *out);
+
+/* The same in air of a measured density, where @M@_mix takes the bench's: @DENSITY@. */
+int @M@_mix_in(const mixer_wrench_t *setpoint, const mixer_conditions_t *conditions, @M@_mix_t *out);
 
 @HEALTH@/* In @M@_selftest.c: number of golden rows whose bits differ, 0 where all is well. */
 unsigned @M@_selftest(void);

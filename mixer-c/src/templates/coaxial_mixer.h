@@ -26,6 +26,14 @@ typedef struct {
 
 MIXER_STATIC_ASSERT(sizeof(mixer_wrench_t) == 16, mixer_wrench_is_four_floats);
 
+/* What is measured in flight. */
+typedef struct {
+    float voltage_v;     /* the battery's present voltage, V */
+    float density_kg_m3; /* of the air: pressure in Pa / (287.05 x temperature in K) */
+} mixer_conditions_t;
+
+MIXER_STATIC_ASSERT(sizeof(mixer_conditions_t) == 8, mixer_conditions_are_two_floats);
+
 /* Bits of `saturation`. SHORT: less was delivered than asked, the integrator must not grow upwards. OVER: more was
  * delivered than asked, the integrator must not grow downwards. */
 #define MIXER_ROLL_SHORT (1u << 0)
@@ -38,6 +46,8 @@ MIXER_STATIC_ASSERT(sizeof(mixer_wrench_t) == 16, mixer_wrench_is_four_floats);
 #define MIXER_THRUST_OVER (1u << 7)
 /* The voltage was outside the airframe's range and was clamped into it. */
 #define MIXER_VOLTAGE_CLAMPED (1u << 8)
+/* The density was, or was no density (NaN, infinite, 0 or less) and was taken as the bench's. */
+#define MIXER_DENSITY_CLAMPED (1u << 9)
 
 /* What a mix returns: 0, or what of its input is infinite or NaN; the output is untouched then. */
 #define MIXER_OK 0

@@ -11,7 +11,7 @@
 #endif
 
 typedef struct {
-    uint32_t in[5]; /* bits of roll, pitch, yaw, thrust, voltage */
+    uint32_t in[6]; /* bits of roll, pitch, yaw, thrust, voltage, density */
 @FAILED@    int status;
     uint32_t out[@PREFIX@_CHANNELS + 5]; /* bits of the throttles and of the achieved wrench, saturation */
 } @M@_row_t;
@@ -24,8 +24,9 @@ unsigned @M@_selftest(void)
     unsigned different = 0;
     size_t i;
     for (i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
-        float in[5];
+        float in[6];
         mixer_wrench_t setpoint;
+        mixer_conditions_t conditions;
         @M@_mix_t out;
         uint32_t bits[@PREFIX@_CHANNELS + 5];
         int status;
@@ -34,6 +35,8 @@ unsigned @M@_selftest(void)
         setpoint.pitch_nm = in[1];
         setpoint.yaw_nm = in[2];
         setpoint.thrust_n = in[3];
+        conditions.voltage_v = in[4];
+        conditions.density_kg_m3 = in[5];
         /* A refused row leaves the output as it was. */
         memset(&out, 0, sizeof out);
         status = @CALL@;

@@ -40,14 +40,14 @@ pub(crate) fn thrust_range(airframe: &Airframe, tables: &MixerTables) -> Result<
     })
 }
 
-/// Least and largest thrust without torques, N at the reference voltage, that least norm delivers at
-/// every voltage. Both are 0 where there is none.
+/// Least and largest thrust without torques, N at the bench's voltage and density, that least norm
+/// delivers under all conditions. Both are 0 where there is none.
 pub(crate) fn level(airframe: &Airframe, tables: &MixerTables) -> [f32; 2] {
-    let factors: Vec<[f64; 2]> = airframe.voltage.as_ref().map_or(vec![[1.0; 2]], |voltage| {
-        let [low, high] = voltage.range_v;
-        let volts = [low, voltage.reference_v, high];
-        volts.map(|volts| airframe.voltage_factors(volts)).to_vec()
-    });
+    let conditions = airframe.conditions();
+    let factors: Vec<[f64; 2]> = conditions
+        .iter()
+        .map(|[v, rho]| airframe.factors(*v, *rho))
+        .collect();
     let is_delivered = |thrust_n: f32| {
         factors.iter().all(|factors| {
             let wrench = [0.0, 0.0, 0.0, factors[0] as f32 * thrust_n];

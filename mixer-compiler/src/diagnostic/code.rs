@@ -65,16 +65,16 @@ catalogue! {
     Name = 100,
     /// Throttle limits that leave no range inside [0, 1].
     ThrottleRange = 101,
-    /// A voltage range that is empty or lacks the reference voltage.
-    VoltageRange = 102,
-    /// A voltage law that leaves no thrust or torque somewhere in the voltage range.
-    VoltageNotPositive = 103,
-    /// A voltage law that is not 1 at the reference voltage.
-    VoltageNotOne = 104,
+    /// A range of voltage or density that is empty or lacks the reference.
+    ConditionRange = 102,
+    /// A law of voltage or density that leaves no thrust or torque somewhere in its range.
+    FactorNotPositive = 103,
+    /// A law of voltage or density that is not 1 at the reference.
+    FactorNotOne = 104,
     /// Voltage points that do not ascend or do not cover the voltage range.
     VoltagePoints = 105,
-    /// A voltage law that multiplies thrust or torque beyond any pack.
-    VoltageTooLarge = 106,
+    /// A law of voltage or density that multiplies thrust or torque beyond any pack or air.
+    FactorTooLarge = 106,
     /// An output channel that two rotors share.
     DuplicateChannel = 110,
     /// An output channel beyond the number of rotors, which leaves another without a rotor.
@@ -111,8 +111,6 @@ catalogue! {
     Tolerance = 203,
     /// The airframe cannot hover: no thrust is attainable without roll, pitch and yaw.
     Hover = 204,
-    /// A voltage law that cannot be tabulated to the tolerance.
-    VoltageTable = 205,
     /// A tolerance above a tenth of a unit's largest effort.
     ToleranceAbsurd = 206,
     /// The pseudo-inverse M+ is not accurate: the layout hardly tells its axes apart.
@@ -150,10 +148,10 @@ catalogue! {
     ShortArm = 314,
     /// A supply of one cell for rotors that need more.
     SingleCell = 320,
-    /// A voltage law whose power of the voltage no propeller follows.
-    VoltageExponent = 321,
-    /// A voltage law that leaves little of thrust or torque, or multiplies it, within the voltage range.
-    VoltageFactor = 322,
+    /// A law whose power of voltage or density no propeller follows.
+    ConditionExponent = 321,
+    /// A law of voltage or density that leaves little of thrust or torque, or multiplies it, within its range.
+    ConditionFactor = 322,
     /// No `[voltage]`: thrust is taken to be the same at any voltage of the pack.
     NoVoltage = 323,
     /// A tolerance above a hundredth of a unit's largest effort.

@@ -6,7 +6,7 @@ use super::rule::{Facts, Rule};
 use crate::airframe::{Airframe, Axis};
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
 use crate::model::effectiveness::Effectiveness;
-use crate::model::{PairMap, voltage};
+use crate::model::{PairMap, law};
 
 /// Share of a unit's largest effort above which a tolerance is a mistake.
 const WIDE: f64 = 0.01;
@@ -61,7 +61,7 @@ pub(crate) fn check_tolerances(airframe: &Airframe, pair: &PairMap) -> Result<()
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
-/// Refuses rotors that give more of an axis, at the voltage where they give most, than requests are
+/// Refuses rotors that give more of an axis, under the conditions where they give most, than requests are
 /// limited to: what is beyond would be attainable and never be given.
 ///
 /// # Errors
@@ -72,7 +72,7 @@ pub(crate) fn check_authority(
     pair: &PairMap,
 ) -> Result<(), Vec<Diagnostic>> {
     let limit = f64::from(REQUEST_LIMIT);
-    let (scale, factors) = (pair.scale(), voltage::largest_factors(airframe));
+    let (scale, factors) = (pair.scale(), law::largest_factors(airframe));
     let efforts = [0, 1].map(|k| factors[k] * scale[k]);
     let most = |axis: Axis| effectiveness.largest(axis as usize, efforts);
     let Some(axis) = Axis::ALL.into_iter().rev().find(|axis| most(*axis) > limit) else {

@@ -1,7 +1,7 @@
-//! Rules on `[voltage]`.
+//! Rules on `[voltage]` and `[air]`.
 
 use super::rule::{Facts, Rule};
-use crate::airframe::VoltageLaw;
+use crate::airframe::{Correction, Law};
 use crate::diagnostic::{Code, number, rounded};
 
 /// What a pack of lithium cells loses of its voltage from full to empty, as a share.
@@ -16,11 +16,7 @@ const ONE_CELL_V: f64 = 4.5;
 /// Thrust of a unit that one cell does not drive, N.
 const ONE_CELL_THRUST_N: f64 = 5.0;
 
-/// Powers of the voltage that propellers follow: 1 to 2.5, and what a narrow range leaves
-/// uncertain.
-const EXPONENTS: [f64; 2] = [0.8, 2.7];
-
-/// Factors that packs give: 0.6 to 1.4 from empty to full.
+/// Factors that packs and air give: 0.6 to 1.4 from empty to full, 0.6 to 1.1 from mountain to coast.
 const FACTORS: [f64; 2] = [0.35, 2.0];
 
 /// The voltage of the bench, the power of the voltage that each law follows over its range, and what
@@ -42,11 +38,11 @@ pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
             ),
         ];
     };
-    let ([low, high], reference) = (voltage.range_v, number(voltage.reference_v));
+    let reference = number(voltage.reference);
     let thrust = facts.scale[0];
-    let is_one_cell = voltage.reference_v <= ONE_CELL_V && thrust >= ONE_CELL_THRUST_N;
+    let is_one_cell = voltage.reference <= ONE_CELL_V && thrust >= ONE_CELL_THRUST_N;
     let mut rules = vec![
-        Rule::holds(Code::SingleCell, "voltage.reference_v", !is_one_cell).says(
+        Rule::holds(Code::SingleCell, "voltage.reference", !is_one_cell).says(
             format!(
                 "{} N a unit at {reference} V, the voltage of one cell",
                 rounded(thrust)
@@ -55,36 +51,90 @@ pub(super) fn voltage(facts: &Facts<'_>) -> Vec<Rule> {
             "multiply reference_v, range_v and the voltages of points by the number of cells in series",
         ),
     ];
-    for (name, law) in [("thrust", &voltage.thrust), ("torque", &voltage.torque)] {
-        let key = match law {
-            VoltageLaw::Exponent(_) => format!("voltage.{name}_exponent"),
-            VoltageLaw::Points(_) => format!("voltage.{name}_points"),
-        };
-        let factor = |volts| law.factor(volts, voltage.reference_v);
-        let exponent = libm::log(factor(high) / factor(low)) / libm::log(high / low);
-        let [from, to] = voltage.range_v.map(number);
-        rules.push(
-            Rule::within(Code::VoltageExponent, &key, exponent, EXPONENTS).says(
+    rules.extend(laws(voltage, &VOLTAGE));
+    rules
+}
+
+/// The same of the air: the power of the density that each law follows, and what it leaves.
+pub(super) fn air(facts: &Facts<'_>) -> Vec<Rule> {
+    let air = facts.airframe.air.as_ref();
+    air.map(|air| laws(air, &AIR)).unwrap_or_default()
+}
+
+/// Words and limits of the laws over one measured quantity.
+struct Limits {
+    table: &'static str,
+    name: &'static str,
+    unit: &'static str,
+    /// Powers that propellers follow, and what is expected in words.
+    exponents: [f64; 2],
+    expected: &'static str,
+    typical: &'static str,
+    /// What to check where a factor is far from 1.
+    check: &'static str,
+}
+
+const VOLTAGE: Limits = Limits {
+    table: "voltage",
+    name: "voltage",
+    unit: "V",
+    exponents: [0.8, 2.7],
+    expected: "expected about 1 to 2.5",
+    typical: "benches give 1.75 at the median; without measurements at two voltages take that",
+    check: "check range_v and reference_v: a pack goes from about 0.85 to 1.15 of its nominal voltage",
+};
+
+const AIR: Limits = Limits {
+    table: "air",
+    name: "density",
+    unit: "kg/m3",
+    exponents: [0.4, 1.05],
+    expected: "expected about 0.6 to 0.85, or 1",
+    typical: "it is the voltage's exponent less 1, about 0.75; 1 with speed controllers that hold a speed",
+    check: "check range_kg_m3 and reference_density_kg_m3: air has 0.9 at 3,000 m and 1.2 at sea level",
+};
+
+fn laws(correction: &Correction, limits: &Limits) -> Vec<Rule> {
+    let ([low, high], reference) = (correction.range, number(correction.reference));
+    let Limits {
+        table,
+        name: of,
+        unit,
+        ..
+    } = limits;
+    let exponents = correction.exponents();
+    let laws = [("thrust", &correction.thrust), ("torque", &correction.torque)];
+    let rules = laws
+        .into_iter()
+        .zip(exponents)
+        .flat_map(|((name, law), exponent)| {
+            let key = match law {
+                Law::Exponent(_) => format!("{table}.{name}_exponent"),
+                Law::Points(_) => format!("{table}.{name}_points"),
+            };
+            let factor = |x| law.factor(x, correction.reference);
+            let [from, to] = correction.range.map(number);
+            let power = Rule::within(Code::ConditionExponent, &key, exponent, limits.exponents).says(
                 format!(
-                    "{name} follows the power {} of the voltage from {from} V to {to} V",
+                    "{name} follows the power {} of the {of} from {from} {unit} to {to} {unit}",
                     rounded(exponent)
                 ),
-                "expected about 1 to 2.5",
-                "benches give 1.75 at the median; without measurements at two voltages take that",
-            ),
-        );
-        let is_far = |volts: &f64| !(FACTORS[0]..=FACTORS[1]).contains(&factor(*volts));
-        rules.extend([low, high].into_iter().find(is_far).map(|volts| {
-            Rule::within(Code::VoltageFactor, &key, factor(volts), FACTORS).says(
-                format!(
-                    "at {} V {name} is {} of what it is at the reference of {reference} V",
-                    number(volts),
-                    rounded(factor(volts))
-                ),
-                format!("expected {} to {}", FACTORS[0], FACTORS[1]),
-                "check range_v and reference_v: a pack goes from about 0.85 to 1.15 of its nominal voltage",
-            )
-        }));
-    }
-    rules
+                limits.expected,
+                limits.typical,
+            );
+            let is_far = |x: &f64| !(FACTORS[0]..=FACTORS[1]).contains(&factor(*x));
+            let far = [low, high].into_iter().find(is_far).map(|x| {
+                Rule::within(Code::ConditionFactor, &key, factor(x), FACTORS).says(
+                    format!(
+                        "at {} {unit} {name} is {} of what it is at the reference of {reference} {unit}",
+                        number(x),
+                        rounded(factor(x))
+                    ),
+                    format!("expected {} to {}", FACTORS[0], FACTORS[1]),
+                    limits.check,
+                )
+            });
+            std::iter::once(power).chain(far)
+        });
+    rules.collect()
 }

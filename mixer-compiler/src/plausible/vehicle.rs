@@ -20,7 +20,7 @@ pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
     // Words for the lowest, the highest and the reference voltage, and a thrust at each.
     let [lowest, highest, reference] = match &facts.airframe.voltage {
         None => [const { String::new() }; 3].map(|none| (none, 1.0)),
-        Some(voltage) => [voltage.range_v[0], voltage.range_v[1], voltage.reference_v]
+        Some(voltage) => [voltage.range[0], voltage.range[1], voltage.reference]
             .map(|volts| (format!(" at {} V", number(volts)), voltage.thrust_factor(volts))),
     };
     let (most, least) = (lowest.1 * ceiling, highest.1 * floor);

@@ -2,8 +2,8 @@
 //! The fields of each type are named once, below.
 
 use mixer_rt::tables::{
-    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, Outline, Pair, Priorities,
-    SingleRotor, ThrottleRange, Tolerance, Unit, Voltage, VoltageLaw,
+    Airmode, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, Law, LawPiece, Outline, Pair,
+    Priorities, SingleRotor, ThrottleRange, Tolerance, Unit,
 };
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -105,7 +105,8 @@ parts! {
     Pair<QuantityTable> { thrust, torque };
     SingleRotor { thrust, torque };
     ThrottleRange { min, max };
-    Voltage<'_> { range_v, thrust, torque };
+    Law<'_> { reference, range, pieces };
+    LawPiece { start, thrust, torque };
     Priorities { airmode, yaw_reserve_nm };
     ClosedForm<'_> {
         units, complete, thrust_n, border, slopes, walls, torque_share, thrust_floor_n, thrust_middle_n,
@@ -135,25 +136,6 @@ impl QuantityTable {
             QuantityTable::Biquadratic(_) => quote!(tables::Biquadratic),
             QuantityTable::Cubic(_) => quote!(tables::Cubic),
             QuantityTable::Quartic(_) => quote!(tables::Quartic),
-        }
-    }
-}
-
-impl Part for VoltageLaw<'_> {
-    fn written(&self) -> (TokenStream, usize) {
-        match self {
-            VoltageLaw::Polynomial {
-                variable,
-                coefficients,
-            } => {
-                let ((variable, two), (coefficients, more)) = (variable.written(), coefficients.written());
-                let law = quote!(tables::VoltageLaw::Polynomial { variable: #variable, coefficients: #coefficients });
-                (law, two + more)
-            }
-            VoltageLaw::Points(points) => {
-                let (points, bytes) = points.written();
-                (quote!(tables::VoltageLaw::Points(#points)), bytes)
-            }
         }
     }
 }

@@ -106,8 +106,8 @@ impl<'a> Draw<'a> {
         let largest = |axis| compiled.effectiveness.largest(axis as usize, pair.scale());
         let size = Axis::ALL.map(largest);
         let volts = airframe.voltage.as_ref().map_or([12.0, 14.0, 16.0], |voltage| {
-            let [low, high] = voltage.range_v;
-            [low, voltage.reference_v, high]
+            let [low, high] = voltage.range;
+            [low, voltage.reference, high]
         });
         let border = pair.border(BORDER_POINTS).into_iter();
         Draw {

@@ -5,8 +5,8 @@
 
 use std::fmt::Debug;
 
-use mixer_rt::tables::{Airmode, Inverse, Pair, Priorities, Quantity, Tables, VoltageLaw, mix_with_health};
-use mixer_rt::{Health, Saturation, SetpointError, Wrench};
+use mixer_rt::tables::{Airmode, Inverse, LawPiece, Pair, Priorities, Quantity, Tables, mix_with_health};
+use mixer_rt::{Conditions, Health, Saturation, SetpointError, Wrench};
 
 #[rustfmt::skip]
 #[path = "../tables/tilted.rs"]
@@ -65,7 +65,19 @@ pub struct Request {
     /// Roll, pitch, yaw, N m; thrust, N.
     pub wrench: [f32; 4],
     pub volts: f32,
+    /// The air's density, kg/m3.
+    pub density: f32,
     pub health: Health,
+}
+
+impl Request {
+    /// Voltage and density.
+    pub fn conditions(&self) -> Conditions {
+        Conditions {
+            voltage_v: self.volts,
+            density_kg_m3: self.density,
+        }
+    }
 }
 
 /// What it answers.
@@ -102,6 +114,7 @@ fn common<P, I, S>(tables: &Tables<'static, P, I, S>) -> Tables<'static, (), (),
         inverse: (),
         throttle: tables.throttle,
         voltage: tables.voltage,
+        air: tables.air,
         rows: tables.rows,
         spread: tables.spread,
         level_n: tables.level_n,
@@ -131,8 +144,8 @@ macro_rules! frame {
                     Tables { priorities, ..TABLES },
                     Wrench::from_array(request.wrench),
                 );
-                let (volts, health) = (request.volts, request.health);
-                let mix = mix_with_health::<UNITS, CHANNELS, _, _, _>(&tables, &wrench, volts, health)?;
+                let (conditions, health) = (request.conditions(), request.health);
+                let mix = mix_with_health::<UNITS, CHANNELS, _, _, _>(&tables, &wrench, conditions, health)?;
                 Ok(Answer {
                     throttle: mix.throttle.to_vec(),
                     achieved: mix.achieved.to_array(),
@@ -204,7 +217,7 @@ impl Frame {
     /// the range or beyond, with `out` rotors out.
     pub fn draw(&self, random: &mut Random, out: usize) -> Request {
         let size = [0.02, 0.1, 0.3, 1.0, 1.5, 4.0][random.below(6) as usize];
-        let [low, high] = self.tables.voltage.expect("both frames have it").range_v;
+        let [low, high] = self.tables.voltage.expect("both frames have it").range;
         let share = [size, size, size, 0.0].map(|size| random.between(-size, size));
         let thrust = random.between(-0.05, 1.1);
         Request {
@@ -213,6 +226,7 @@ impl Frame {
                 share * self.authority()[axis]
             }),
             volts: random.between(low - 1.0, high + 1.0),
+            density: random.between(0.6, 1.5),
             health: self.failed(random, out),
         }
     }
@@ -222,6 +236,7 @@ impl Frame {
         Request {
             wrench: [(); 4].map(|()| random.wild()),
             volts: random.wild(),
+            density: random.wild(),
             health: self.failed(random, out),
         }
     }
@@ -229,7 +244,7 @@ impl Frame {
     /// The least-norm efforts of `request` at the reference voltage, unit by unit, with the throttles
     /// for them; `None` where a unit cannot give its efforts.
     pub fn least_norm(&self, request: &Request) -> Option<Vec<f32>> {
-        let factors = self.factors(request.volts);
+        let factors = self.factors(request);
         let mut throttle = vec![0.0; self.channels() as usize];
         for unit in self.tables.units {
             let efforts = [0, 1].map(|row| {
@@ -250,29 +265,28 @@ impl Frame {
         Some(throttle)
     }
 
-    /// `[k_f, k_Q]` at a voltage.
-    pub fn factors(&self, volts: f32) -> [f64; 2] {
-        let voltage = self.tables.voltage.expect("both frames have it");
-        let volts = f64::from(volts.clamp(voltage.range_v[0], voltage.range_v[1]));
-        [voltage.thrust, voltage.torque].map(|law| match law {
-            VoltageLaw::Polynomial {
-                variable,
-                coefficients,
-            } => {
-                let x = f64::from(variable[0]) * volts + f64::from(variable[1]);
-                coefficients.iter().fold(0.0, |sum, c| sum * x + f64::from(*c))
-            }
-            VoltageLaw::Points(points) => {
-                let piece = points.windows(2).find(|piece| volts <= f64::from(piece[1][0]));
-                let [[from, low], [to, high]] = [0, 1].map(|end| piece.expect("a range")[end].map(f64::from));
-                low + (volts - from) / (to - from) * (high - low)
-            }
-        })
+    /// `[k_f, k_Q]` under the conditions of a request.
+    pub fn factors(&self, request: &Request) -> [f64; 2] {
+        let is_measured = request.density > 0.0 && request.density.is_finite();
+        let laws = [
+            (&self.tables.voltage, Some(request.volts)),
+            (&self.tables.air, is_measured.then_some(request.density)),
+        ];
+        let of = laws.map(|(law, x)| {
+            let Some(law) = law else { return [1.0; 2] };
+            let x = f64::from(x.unwrap_or(law.reference).clamp(law.range[0], law.range[1]));
+            let before = |piece: &&LawPiece| f64::from(piece.start) <= x;
+            let piece = law.pieces.iter().rfind(before).expect("a range");
+            let along = x - f64::from(piece.start);
+            let value = |cubic: [f32; 4]| cubic.iter().fold(0.0, |sum, c| sum * along + f64::from(*c));
+            [piece.thrust, piece.torque].map(value)
+        });
+        [of[0][0] * of[1][0], of[0][1] * of[1][1]]
     }
 
     /// The wrench of throttles, in double precision.
     pub fn given(&self, request: &Request, throttle: &[f32]) -> [f64; 4] {
-        let factors = self.factors(request.volts);
+        let factors = self.factors(request);
         let mut wrench = [0.0; 4];
         for unit in self.tables.units {
             let turns = unit.channels.map(|channel| !request.health.has_failed(channel));

@@ -12,9 +12,9 @@
 /// * unit 5 at (0.4330127, -0.25, 0.0) m, upper rotor cw: channel 5 upper, 11 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00207 N and 3e-5 N m of what is asked, at every
-/// voltage and everywhere in the attainable set, rounding in f32 included (217 cells).
-/// Largest residual observed over 5251 efforts at the reference voltage: 0.0015 N, 2.09e-5 N m.
+/// Proven: each unit's thrust and torque are within 0.00233 N and 3.31e-5 N m of what is asked, at every
+/// voltage and density and everywhere in the attainable set, rounding in f32 included (238 cells).
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00148 N, 2.1e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod tilted {
     use ::mixer_rt::{self as rt, tables};
@@ -61,9 +61,24 @@ pub mod tilted {
         ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
             mix_with_health(setpoint, voltage_v, health)
         }
+        #[inline]
+        fn mix_in(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in(setpoint, conditions)
+        }
+        #[inline]
+        fn mix_in_with_health(
+            setpoint: &rt::Wrench,
+            conditions: &rt::Conditions,
+            health: rt::Health,
+        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
+            mix_in_with_health(setpoint, conditions, health)
+        }
     }
     /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
-    /// (V).
+    /// (V) and the bench's air density.
     ///
     /// # Errors
     /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
@@ -73,7 +88,13 @@ pub mod tilted {
         setpoint: &rt::Wrench,
         voltage_v: f32,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, voltage_v)
+        tables::mix::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, TABLES.at_reference_density(voltage_v))
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -85,13 +106,43 @@ pub mod tilted {
         voltage_v: f32,
         health: rt::Health,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        let conditions = TABLES.at_reference_density(voltage_v);
         tables::mix_with_health::<
             UNITS,
             CHANNELS,
             _,
             _,
             _,
-        >(&TABLES, setpoint, voltage_v, health)
+        >(&TABLES, setpoint, conditions, health)
+    }
+    /// [`mix`] under the present conditions: the battery's voltage and the air's density.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions)
+    }
+    /// [`mix_in`] with the rotors out that `health` names by channel.
+    ///
+    /// # Errors
+    /// As [`mix`].
+    #[inline]
+    pub fn mix_in_with_health(
+        setpoint: &rt::Wrench,
+        conditions: &rt::Conditions,
+        health: rt::Health,
+    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
+        tables::mix_with_health::<
+            UNITS,
+            CHANNELS,
+            _,
+            _,
+            _,
+        >(&TABLES, setpoint, *conditions, health)
     }
     /// The units: rows of M+, columns of M, output channels.
     const UNIT_TABLES: [tables::Unit; UNITS] = [
@@ -205,29 +256,60 @@ pub mod tilted {
             [0.055495482, 2.6901805, 0.02081367],
         ],
         upper: [
-            -0.06890051,
-            0.08589898,
-            1.1398168,
-            0.007074098,
-            -0.0262298,
-            -0.24299873,
+            -0.06907385,
+            0.085885495,
+            1.1400874,
+            0.0073161917,
+            -0.02649386,
+            -0.24304731,
         ],
-        lower: [0.17965335, -0.065023564, -0.08298396, 0.010654033, 1.0793114, -0.150937],
+        lower: [
+            0.17967688,
+            -0.06505051,
+            -0.082997896,
+            0.011196064,
+            1.0787277,
+            -0.15085563,
+        ],
     };
-    /// The voltage correction.
-    const VOLTAGE: ::core::option::Option<tables::Voltage<'static>> = ::core::option::Option::Some(tables::Voltage {
-        range_v: [9.0, 12.6],
-        thrust: tables::VoltageLaw::Polynomial {
-            variable: [0.5555556, -6.0],
-            coefficients: &[
-                0.00001287919,
-                -0.00024639032,
-                0.017653082,
-                0.28245005,
-                0.9683991,
-            ],
-        },
-        torque: tables::VoltageLaw::Points(&[[9.0, 0.72], [11.0, 1.0], [12.6, 1.25]]),
+    /// How thrust and torque follow the battery's voltage, V.
+    const VOLTAGE: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
+        reference: 11.0,
+        range: [9.0, 12.6],
+        pieces: &[
+            tables::LawPiece {
+                start: 9.0,
+                thrust: [-0.000046416957, 0.00569649, 0.13686195, 0.7038615],
+                torque: [0.0, 0.0, 0.14, 0.72],
+            },
+            tables::LawPiece {
+                start: 11.0,
+                thrust: [-0.00003768432, 0.0054209153, 0.1590909, 1.0],
+                torque: [0.0, 0.0, 0.15625, 1.0],
+            },
+        ],
+    });
+    /// How they follow the air's density, kg/m3.
+    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
+        reference: 1.2,
+        range: [0.75, 1.4],
+        pieces: &[
+            tables::LawPiece {
+                start: 0.75,
+                thrust: [0.049694587, -0.115743615, 0.70292664, 0.70292664],
+                torque: [0.07143335, -0.15318424, 0.6211377, 0.74550104],
+            },
+            tables::LawPiece {
+                start: 0.9486833,
+                thrust: [0.029286945, -0.086282365, 0.6628191, 0.8384072],
+                torque: [0.040878683, -0.11088428, 0.5687269, 0.863424],
+            },
+            tables::LawPiece {
+                start: 1.2,
+                thrust: [0.01896206, -0.06475821, 0.625, 1.0],
+                torque: [0.025829088, -0.080891654, 0.5207385, 1.0],
+            },
+        ],
     });
     /// The closed form of allocation, where there is one.
     const CLOSED_FORM: tables::NoClosedForm = tables::NoClosedForm;
@@ -248,9 +330,10 @@ pub mod tilted {
             max: 0.95,
         },
         voltage: VOLTAGE,
+        air: AIR,
         rows: [0.16757365, 0.19349739, 0.68405133, 0.05604087],
         spread: [227.60522, 0.11379245],
-        level_n: [3.3035195, 102.6913],
+        level_n: [3.3025599, 102.69206],
         is_vertical: false,
         priorities: tables::Priorities {
             airmode: tables::Airmode::RollPitch,
@@ -259,8 +342,8 @@ pub mod tilted {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0016428977, 0.000024088313],
-            wrench: [0.004283699, 0.0037097922, 0.0010834812, 0.01279936],
+            efforts: [0.0017596171, 0.000025626648],
+            wrench: [0.0048222747, 0.0041762125, 0.0012159959, 0.014409645],
         },
     };
 }

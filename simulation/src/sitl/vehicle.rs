@@ -94,7 +94,7 @@ impl Vehicle {
             inertia_kg_m2,
             rotor_lag_s: arguments.rotor_lag,
         };
-        let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference_v);
+        let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference);
         let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
         let fall_v = FALL_OVER_CAPACITY * full_v;
         let mut battery = Battery {

@@ -4,7 +4,7 @@
 use isolated_rotors::{IsolatedRotors, IsolatedTables, ThrustCurve};
 use mixer_rt::{
     Wrench,
-    tables::{Voltage, sqrt},
+    tables::{Law, sqrt},
 };
 use wls_alloc::wls::ControlAllocator;
 use wls_alloc::{ExitCode, MatA, VecN};
@@ -62,7 +62,7 @@ allocator!(12);
 pub(crate) struct WeightedLeastSquares<'a, A, const ROTORS: usize> {
     allocator: A,
     isolated: IsolatedRotors<'a>,
-    voltage: Option<&'a Voltage<'a>>,
+    voltage: Option<&'a Law<'a>>,
     /// Per axis: what all rotors at their least thrust give, and 1 / authority.
     offset: [f32; 4],
     per_authority: [f32; 4],
@@ -70,7 +70,7 @@ pub(crate) struct WeightedLeastSquares<'a, A, const ROTORS: usize> {
 
 impl<'a, A: Allocate<ROTORS>, const ROTORS: usize> WeightedLeastSquares<'a, A, ROTORS> {
     /// The mixer of isolated rotors with an allocator.
-    pub(crate) fn new(tables: &'a IsolatedTables, voltage: Option<&'a Voltage<'a>>) -> Self {
+    pub(crate) fn new(tables: &'a IsolatedTables, voltage: Option<&'a Law<'a>>) -> Self {
         let isolated = tables.view();
         let [low, high] = isolated.thrust_n;
         let mut matrix = MatA::<4, ROTORS>::zeros();
@@ -96,8 +96,8 @@ impl<'a, A: Allocate<ROTORS>, const ROTORS: usize> WeightedLeastSquares<'a, A, R
     pub(crate) fn mix(&mut self, setpoint: &Wrench, voltage_v: f32) -> ([f32; ROTORS], bool) {
         let mut factor = 1.0;
         if let Some(voltage) = self.voltage {
-            let [low, high] = voltage.range_v;
-            factor = voltage.thrust.factor(voltage_v.max(low).min(high));
+            let [low, high] = voltage.range;
+            factor = voltage.factors(voltage_v.max(low).min(high))[0];
         }
         let per_factor = 1.0 / factor;
         let mut request = VecN::<4>::zeros();

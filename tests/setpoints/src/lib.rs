@@ -12,6 +12,8 @@ mod random;
 mod requests;
 mod rotors_out;
 
+use mixer_rt::Conditions;
+
 pub use mixture::Mixture;
 pub use random::Random;
 pub use requests::{Kind, Requests};
@@ -26,15 +28,29 @@ pub struct Ranges {
     pub thrust_n: [f32; 2],
     /// Battery voltage lies in [min, max], V.
     pub voltage_v: [f32; 2],
+    /// Density of the air lies in [min, max], kg/m3, but for one in sixteen; none is drawn where it is ignored.
+    pub density_kg_m3: Option<[f32; 2]>,
 }
 
-/// One setpoint and the battery's voltage.
+/// One setpoint and the conditions.
 #[derive(Clone, Copy, Debug)]
 pub struct Setpoint {
     /// Roll, pitch, yaw (N m), thrust (N).
     pub wrench: [f32; 4],
     /// V.
     pub voltage_v: f32,
+    /// kg/m3; 0 where the airframe ignores it.
+    pub density_kg_m3: f32,
+}
+
+impl Setpoint {
+    /// Voltage and density.
+    pub const fn conditions(&self) -> Conditions {
+        Conditions {
+            voltage_v: self.voltage_v,
+            density_kg_m3: self.density_kg_m3,
+        }
+    }
 }
 
 /// Numbers that arithmetic treats in its own way. Not finite: a mixer refuses these.
@@ -86,7 +102,18 @@ impl Iterator for Setpoints {
             let axis = (choice >> 4) as usize % wrench.len();
             wrench[axis] = SPECIAL[(choice >> 32) as usize % SPECIAL.len()];
         }
-        Some(Setpoint { wrench, voltage_v })
+        let mut density_kg_m3 = 0.0;
+        if let Some(range) = self.ranges.density_kg_m3 {
+            density_kg_m3 = self.random.between(range);
+            if choice & 0xf00 == 0 {
+                density_kg_m3 = SPECIAL[(choice >> 40) as usize % SPECIAL.len()];
+            }
+        }
+        Some(Setpoint {
+            wrench,
+            voltage_v,
+            density_kg_m3,
+        })
     }
 }
 
@@ -149,6 +176,7 @@ mod tests {
         moments_nm: [2.0, 3.0, 0.5],
         thrust_n: [5.0, 90.0],
         voltage_v: [12.8, 16.8],
+        density_kg_m3: None,
     };
 
     #[test]

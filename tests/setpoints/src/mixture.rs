@@ -25,11 +25,15 @@ impl<'a, P: Quantity> Mixture<'a, P> {
         let [low, high] = tables
             .voltage
             .as_ref()
-            .map_or([12.0, 16.0], |voltage| voltage.range_v);
+            .map_or([12.0, 16.0], |voltage| voltage.range);
         let ranges = Ranges {
             moments_nm: [roll, pitch, yaw],
             thrust_n: [-0.2 * thrust, 1.2 * thrust],
             voltage_v: [low - 1.0, high + 1.0],
+            density_kg_m3: tables
+                .air
+                .as_ref()
+                .map(|air| air.range.map(|density| 1.5 * density - 0.4)),
         };
         Mixture {
             attainable,

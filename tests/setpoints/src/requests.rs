@@ -1,6 +1,8 @@
 //! Requests to one airframe's mixer, drawn around what it can deliver.
 
-use mixer_rt::tables::{Pair, Quantity, Tables, ThrottleRange, Unit, Voltage};
+use mixer_rt::tables::{Law, Pair, Quantity, Tables, ThrottleRange, Unit};
+
+use mixer_rt::Conditions;
 
 use crate::{Random, Setpoint};
 
@@ -24,7 +26,8 @@ pub struct Requests<'a, P> {
     pair: &'a Pair<P>,
     units: &'a [Unit],
     throttle: ThrottleRange,
-    voltage: Option<&'a Voltage<'a>>,
+    voltage: Option<&'a Law<'a>>,
+    air: Option<&'a Law<'a>>,
     /// The largest wrench on each axis at the reference voltage: all units at their best, whatever
     /// the others lose.
     authority: [f32; 4],
@@ -52,6 +55,7 @@ impl<'a, P: Quantity> Requests<'a, P> {
             units: tables.units,
             throttle: tables.throttle,
             voltage: tables.voltage.as_ref(),
+            air: tables.air.as_ref(),
             authority,
         }
     }
@@ -61,29 +65,44 @@ impl<'a, P: Quantity> Requests<'a, P> {
         self.authority
     }
 
-    /// V; any number where the airframe ignores the voltage.
-    fn voltage_v(&mut self, outside: f32) -> f32 {
-        let [low, high] = self.voltage.map_or([12.0, 16.0], |voltage| voltage.range_v);
-        self.random.between([low - outside, high + outside])
+    /// Voltage, by up to `outside` V beyond its range, and density, by up to a fifth of that in kg/m3; any where
+    /// the airframe ignores them.
+    fn conditions(&mut self, outside: f32) -> Conditions {
+        let [low, high] = self.voltage.map_or([12.0, 16.0], |voltage| voltage.range);
+        let voltage_v = self.random.between([low - outside, high + outside]);
+        let density_kg_m3 = self.air.map_or(0.0, |air| {
+            let ([low, high], outside) = (air.range, 0.2 * outside);
+            self.random.between([low - outside, high + outside])
+        });
+        Conditions {
+            voltage_v,
+            density_kg_m3,
+        }
     }
 
     /// The wrench of throttles that `draw` gives for each rotor.
     fn wrench_of(
         &mut self,
-        voltage_v: f32,
+        conditions: Conditions,
         mut draw: impl FnMut(&mut Random, ThrottleRange) -> f32,
     ) -> [f32; 4] {
-        let factors = self.voltage.map_or([1.0, 1.0], |voltage| {
-            let [low, high] = voltage.range_v;
-            let within = if voltage_v < low {
-                low
-            } else if voltage_v > high {
-                high
-            } else {
-                voltage_v
-            };
-            [voltage.thrust.factor(within), voltage.torque.factor(within)]
+        let [of_voltage, of_air] = [
+            (self.voltage, conditions.voltage_v),
+            (self.air, conditions.density_kg_m3),
+        ]
+        .map(|(law, x)| {
+            law.map_or([1.0, 1.0], |law| {
+                let [low, high] = law.range;
+                law.factors(if x < low {
+                    low
+                } else if x > high {
+                    high
+                } else {
+                    x
+                })
+            })
         });
+        let factors = [of_voltage[0] * of_air[0], of_voltage[1] * of_air[1]];
         let mut wrench = [0.0; 4];
         for unit in self.units {
             let throttles = [
@@ -100,13 +119,13 @@ impl<'a, P: Quantity> Requests<'a, P> {
         wrench
     }
 
-    fn attainable(&mut self, voltage_v: f32) -> [f32; 4] {
-        self.wrench_of(voltage_v, |random, range| random.between([range.min, range.max]))
+    fn attainable(&mut self, conditions: Conditions) -> [f32; 4] {
+        self.wrench_of(conditions, |random, range| random.between([range.min, range.max]))
     }
 
     /// Every rotor at idle, at the ceiling or, one in three, between.
-    fn corner(&mut self, voltage_v: f32) -> [f32; 4] {
-        self.wrench_of(voltage_v, |random, range| match random.index(3) {
+    fn corner(&mut self, conditions: Conditions) -> [f32; 4] {
+        self.wrench_of(conditions, |random, range| match random.index(3) {
             0 => range.min,
             1 => range.max,
             _ => random.between([range.min, range.max]),
@@ -122,7 +141,7 @@ impl<'a, P: Quantity> Requests<'a, P> {
         [roll, pitch, yaw, thrust]
     }
 
-    fn saturated(&mut self, voltage_v: f32) -> [f32; 4] {
+    fn saturated(&mut self, conditions: Conditions) -> [f32; 4] {
         let choice = self.random.bits();
         let axis = (choice >> 32) as usize % 4;
         match choice % 10 {
@@ -148,24 +167,24 @@ impl<'a, P: Quantity> Requests<'a, P> {
             }
             // A wrench that can be delivered, one of its axes stretched or replaced.
             5 => {
-                let mut wrench = self.attainable(voltage_v);
+                let mut wrench = self.attainable(conditions);
                 wrench[axis] *= self.random.between([-1.0, 4.0]);
                 wrench
             }
             6 => {
-                let mut wrench = self.attainable(voltage_v);
+                let mut wrench = self.attainable(conditions);
                 wrench[axis] = self.within(1.2)[axis];
                 wrench
             }
             // On the border, just within and just beyond it.
             7 => {
                 let by = [1.0, 0.9999, 1.0001, 1.01, 1.2, 1.5][self.random.index(6) as usize];
-                self.corner(voltage_v).map(|value| by * value)
+                self.corner(conditions).map(|value| by * value)
             }
             // All axes of an attainable wrench stretched.
             8 => {
                 let by = self.random.between([1.0, 3.0]);
-                self.attainable(voltage_v).map(|value| by * value)
+                self.attainable(conditions).map(|value| by * value)
             }
             // Absurd: far beyond, on one axis or on all, or almost nothing.
             _ => {
@@ -186,17 +205,25 @@ impl<P: Quantity> Iterator for Requests<'_, P> {
     type Item = Setpoint;
 
     fn next(&mut self) -> Option<Setpoint> {
-        let (voltage_v, wrench) = match self.kind {
+        let (conditions, wrench) = match self.kind {
             Kind::Attainable => {
-                let voltage_v = self.voltage_v(0.0);
-                (voltage_v, self.attainable(voltage_v))
+                let conditions = self.conditions(0.0);
+                (conditions, self.attainable(conditions))
             }
             Kind::Saturated => {
                 let outside = if self.random.index(8) == 0 { 2.0 } else { 0.0 };
-                let voltage_v = self.voltage_v(outside);
-                (voltage_v, self.saturated(voltage_v))
+                let conditions = self.conditions(outside);
+                (conditions, self.saturated(conditions))
             }
         };
-        Some(Setpoint { wrench, voltage_v })
+        let Conditions {
+            voltage_v,
+            density_kg_m3,
+        } = conditions;
+        Some(Setpoint {
+            wrench,
+            voltage_v,
+            density_kg_m3,
+        })
     }
 }

@@ -424,7 +424,7 @@ pub(super) fn yaw_reserve() -> Result<String, String> {
             .airframe
             .voltage
             .as_ref()
-            .map_or(0.0, |voltage| voltage.reference_v) as f32;
+            .map_or(0.0, |voltage| voltage.reference) as f32;
         let full = plain.thrust_range_n[1];
         // More yaw than any of them has.
         let yaw_nm = 10.0;

@@ -55,6 +55,8 @@ impl Zoo {
         );
         write_pair(&mut text, &pair);
         write_voltage(&mut text, &mut random);
+        // A sequence of its own, so that frames are otherwise those that they were before.
+        write_air(&mut text, &mut Random::new(random.clone().bits()));
         write_inverse(&mut text, &pair, &mut random);
         let units = place(class, &mut random);
         write_allocation(&mut text, class, &pair, units.len(), &mut random);
@@ -96,6 +98,26 @@ pub(super) fn write_pair(text: &mut String, pair: &Pair) {
             text,
             "\n[pair.{name}]\nthrust_n = {thrust}\ntorque_nm = {torque}\n"
         );
+    }
+}
+
+/// None, or exponents of its own, or those of the voltage less 1 where it has them.
+fn write_air(text: &mut String, random: &mut Random) {
+    if random.below(2) == 0 {
+        return;
+    }
+    let reference = three_digits(random.uniform(1.0, 1.25));
+    let range =
+        [random.uniform(0.6, 0.95), random.uniform(1.01, 1.2)].map(|share| three_digits(share * reference));
+    let _ = write!(
+        text,
+        "\n[air]\nreference_density_kg_m3 = {reference:?}\nrange_kg_m3 = {range:?}\n"
+    );
+    if !text.contains("[voltage]") || random.below(2) == 0 {
+        for quantity in ["thrust", "torque"] {
+            let exponent = rounded(random.uniform(0.5, 1.0));
+            let _ = writeln!(text, "{quantity}_exponent = {exponent:?}");
+        }
     }
 }
 

@@ -18,11 +18,16 @@ pub(super) struct Draw<'a> {
 impl Draw<'_> {
     /// What throttles in the box give.
     pub(super) fn attainable(&mut self) -> Request {
-        let volts = self.frame.draw_volts(self.random);
-        self.of_throttles(volts, 1.0)
+        let conditions = self.conditions();
+        self.of_throttles(conditions, 1.0)
     }
 
-    fn of_throttles(&mut self, volts: f32, factor: f64) -> Request {
+    fn conditions(&mut self) -> (f32, Option<f32>) {
+        let volts = self.frame.draw_volts(self.random);
+        (volts, self.frame.draw_density(self.random))
+    }
+
+    fn of_throttles(&mut self, (volts, density): (f32, Option<f32>), factor: f64) -> Request {
         let Draw {
             frame,
             random,
@@ -31,10 +36,12 @@ impl Draw<'_> {
         let rotors = 2 * frame.physics.units();
         let shares: Vec<f64> = (0..rotors).map(|_| random.uniform(0.0, 1.0)).collect();
         let throttles = frame.physics.throttles(shares.into_iter(), *health);
-        let wrench = frame.physics.wrench(&throttles, volts);
+        let factors = frame.physics.factors_in(volts, density);
+        let wrench = frame.physics.wrench_in(&throttles, factors);
         Request {
             wrench: wrench.map(|value| (factor * value) as f32),
             volts,
+            density,
             health: *health,
         }
     }
@@ -42,12 +49,12 @@ impl Draw<'_> {
     /// As a controller in trouble asks: up to three times the authority, near what is attainable,
     /// with some torques zero, or yaw alone as an idle stick asks.
     pub(super) fn moderate(&mut self) -> Request {
-        let volts = self.frame.draw_volts(self.random);
+        let conditions @ (volts, density) = self.conditions();
         let kind = self.random.below(6);
         let mut request = match kind {
             0 | 1 => {
                 let factor = self.random.uniform(0.8, 1.3);
-                self.of_throttles(volts, factor)
+                self.of_throttles(conditions, factor)
             }
             2 => self.frame.draw(self.random, 3.0, volts),
             _ => self.frame.draw(self.random, 0.6, volts),
@@ -60,6 +67,7 @@ impl Draw<'_> {
             }
             _ => {}
         }
+        request.density = density;
         request.health = self.health;
         request
     }

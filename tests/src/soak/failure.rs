@@ -49,10 +49,11 @@ impl Failure {
         let _ = match self.requests.first() {
             None => writeln!(report, "  cargo mixer check {}", file.display()),
             Some(first) => {
+                let density = first.density.map_or("", |_| ",density_kg_m3");
                 let rows: String = self.requests.iter().map(|request| row(request) + "\\n").collect();
                 writeln!(
                     report,
-                    "  printf 'roll_nm,pitch_nm,yaw_nm,thrust_n,voltage_v\\n{rows}' | cargo mixer mix {}{}",
+                    "  printf 'roll_nm,pitch_nm,yaw_nm,thrust_n,voltage_v{density}\\n{rows}' | cargo mixer mix {}{}",
                     file.display(),
                     failed(first)
                 )
@@ -65,7 +66,13 @@ impl Failure {
 /// A row of CSV for `cargo mixer mix`.
 fn row(request: &Request) -> String {
     let [roll, pitch, yaw, thrust] = request.wrench;
-    format!("{roll:?},{pitch:?},{yaw:?},{thrust:?},{:?}", request.volts)
+    let density = request
+        .density
+        .map_or(String::new(), |density| format!(",{density:?}"));
+    format!(
+        "{roll:?},{pitch:?},{yaw:?},{thrust:?},{:?}{density}",
+        request.volts
+    )
 }
 
 fn failed(request: &Request) -> String {

@@ -216,7 +216,7 @@ impl<'a> Visit<'a> {
         let Some(answer) = self.answer(frame, request) else {
             return Ok(());
         };
-        let factors = frame.physics.factors(request.volts);
+        let factors = request.factors(frame);
         let oracle = |build: fn(&_, &_, _, _) -> Oracle| {
             build(&frame.physics, frame.allocation(), factors, request.health)
         };
@@ -260,7 +260,7 @@ fn missed(frame: &Frame, request: &Request, answer: &Answer) -> f64 {
 
 /// True where level flight at the thrust asked is attainable with the yaw asked or less.
 fn has_level(frame: &Frame, request: &Request) -> Result<bool, Error> {
-    let factors = frame.physics.factors(request.volts);
+    let factors = request.factors(frame);
     let oracle = Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
     let [.., yaw, thrust] = request.asked();
     oracle.has_level(yaw, thrust)

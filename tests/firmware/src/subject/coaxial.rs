@@ -1,6 +1,8 @@
 //! The compiled coaxial mixer.
 
-use mixer_rt::{Health, Mix, SetpointError, Wrench};
+use core::hint::black_box;
+
+use mixer_rt::{Conditions, Health, Mix, SetpointError, Wrench};
 
 use super::{ROTORS_OUT, airframe};
 
@@ -12,7 +14,18 @@ pub(crate) fn prepare() {}
 
 #[inline(always)]
 pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32, health: Health) -> Mixed {
-    if ROTORS_OUT == 0 {
+    // In thin air, which the compiler must not know.
+    if let Some(air) = &airframe::TABLES.air {
+        let conditions = Conditions {
+            voltage_v,
+            density_kg_m3: black_box(0.9 * air.reference),
+        };
+        if ROTORS_OUT == 0 {
+            airframe::mix_in(setpoint, &conditions)
+        } else {
+            airframe::mix_in_with_health(setpoint, &conditions, health)
+        }
+    } else if ROTORS_OUT == 0 {
         airframe::mix(setpoint, voltage_v)
     } else {
         airframe::mix_with_health(setpoint, voltage_v, health)

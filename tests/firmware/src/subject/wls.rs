@@ -75,8 +75,8 @@ pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32, _: Health) -> Mixed {
     } = unsafe { (*STATE.0.get()).assume_init_mut() };
     let mut factor = 1.0;
     if let Some(voltage) = &airframe::TABLES.voltage {
-        let [low, high] = voltage.range_v;
-        factor = voltage.thrust.factor(voltage_v.max(low).min(high));
+        let [low, high] = voltage.range;
+        factor = voltage.factors(voltage_v.max(low).min(high))[0];
     }
     let per_factor = 1.0 / factor;
     let mut request = VecN::<4>::zeros();
