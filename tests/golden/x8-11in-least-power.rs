@@ -10,9 +10,9 @@
 /// * unit 3 at (0.2121320343559642, -0.2121320343559643, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00236 N and 1.96e-5 N m of what is asked, at every
-/// voltage and density and everywhere in the attainable set, rounding in f32 included (597 cells).
-/// Largest residual observed over 5251 efforts at the reference voltage: 0.00155 N, 1.29e-5 N m.
+/// Proven: each unit's thrust and torque are within 0.00266 N and 2.2e-5 N m of what is asked, at every
+/// voltage and density and everywhere in the attainable set, rounding in f32 included (622 cells).
+/// Largest residual observed over 5251 efforts at the reference voltage: 0.00155 N, 1.28e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_11in_least_power {
     use ::mixer_rt::{self as rt, tables};
@@ -242,7 +242,27 @@ pub mod x8_11in_least_power {
         ],
     });
     /// How they follow the air's density, kg/m3.
-    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::None;
+    const AIR: ::core::option::Option<tables::Law<'static>> = ::core::option::Option::Some(tables::Law {
+        reference: 1.2,
+        range: [0.75, 1.4],
+        pieces: &[
+            tables::LawPiece {
+                start: 0.75,
+                thrust: [0.049694587, -0.115743615, 0.70292664, 0.70292664],
+                torque: [0.049694587, -0.115743615, 0.70292664, 0.70292664],
+            },
+            tables::LawPiece {
+                start: 0.9486833,
+                thrust: [0.029286945, -0.086282365, 0.6628191, 0.8384072],
+                torque: [0.029286945, -0.086282365, 0.6628191, 0.8384072],
+            },
+            tables::LawPiece {
+                start: 1.2,
+                thrust: [0.01896206, -0.06475821, 0.625, 1.0],
+                torque: [0.01896206, -0.06475821, 0.625, 1.0],
+            },
+        ],
+    });
     /// The closed form of allocation, where there is one.
     const CLOSED_FORM: &tables::ClosedForm<'static> = &tables::ClosedForm {
         units: &[
@@ -562,7 +582,7 @@ pub mod x8_11in_least_power {
         air: AIR,
         rows: [0.23520674, 0.23520674, 4.404444, 0.049894884],
         spread: [287.4635, 0.12583156],
-        level_n: [2.3513775, 74.526985],
+        level_n: [2.3509657, 74.527405],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -571,8 +591,8 @@ pub mod x8_11in_least_power {
         power_bias_nm_per_n: 0.00695,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.001791526, 0.000014990733],
-            wrench: [0.0020857677, 0.0020857677, 0.00008309945, 0.009832403],
+            efforts: [0.0018919057, 0.000016066717],
+            wrench: [0.002350994, 0.002350994, 0.000093392024, 0.011082692],
         },
     };
 }
