@@ -21,7 +21,8 @@ pub struct Conditions {
 }
 
 /// How thrust and torque follow one measured quantity x, in its unit (V, or kg/m3). `powf` has no
-/// place in a mixer: the factors are cubics between nodes.
+/// place in a mixer: the factors are polynomials between nodes,
+/// mostly one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law<'a> {
     /// x of the bench, where the factors are 1.
@@ -32,15 +33,15 @@ pub struct Law<'a> {
     pub pieces: &'a [LawPiece],
 }
 
-/// A piece of a [`Law`]: two cubics in x - `start`, coefficients in descending powers.
+/// A piece of a [`Law`]: two polynomials in x - `start`, coefficients in descending powers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LawPiece {
     /// Where the piece starts.
     pub start: f32,
     /// Factor of thrust.
-    pub thrust: [f32; 4],
+    pub thrust: [f32; 5],
     /// Factor of torque.
-    pub torque: [f32; 4],
+    pub torque: [f32; 5],
 }
 
 impl Law<'_> {
@@ -66,7 +67,7 @@ impl LawPiece {
     #[inline]
     pub fn factors<S: Scalar>(&self, x: S) -> [S; 2] {
         let t = x + -self.start;
-        [self.thrust, self.torque].map(|[a, b, c, d]| ((S::constant(a) * t + b) * t + c) * t + d)
+        [self.thrust, self.torque].map(|[a, b, c, d, e]| (((S::constant(a) * t + b) * t + c) * t + d) * t + e)
     }
 }
 

@@ -5,7 +5,7 @@ use mixer_rt::{Axis, Health, SetpointError};
 use mixer_setpoints::Random;
 use mixer_tests::frames::{self, AIRMODES, Place};
 use mixer_tests::golden;
-use mixer_tests::request::{Frame, Request};
+use mixer_tests::request::{Answer, Frame, Request};
 use mixer_tests::soundness;
 
 use crate::{REFERENCE_V, compile};
@@ -126,4 +126,43 @@ fn an_airframe_without_voltage_takes_any() {
         assert_eq!(at(volts), at(REFERENCE_V), "{volts}");
     }
     assert!(!at(f32::NAN).saturation.voltage_clamped());
+}
+
+/// NaN, infinity, zero and less are no density: the mix is that at the bench's, and flagged. A density beyond
+/// the range is the nearest within, flagged as well; none else is.
+#[test]
+fn no_density_means_that_of_the_bench() {
+    let frame = Frame::new(golden::compile("x8-11in-least-power").expect("compiles"));
+    let at = |density| {
+        let request = Request {
+            wrench: [0.3, -0.2, 0.05, 30.0],
+            volts: 11.0,
+            density,
+            health: Health::GOOD,
+        };
+        request.mix(&frame).expect("finite")
+    };
+    let same = |a: &Answer, b: &Answer| a.throttle == b.throttle && a.achieved == b.achieved;
+    let bench = at(None);
+    assert!(!bench.saturation.density_clamped() && same(&bench, &at(Some(1.2))));
+    for none in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -0.0, -1.2] {
+        let answer = at(Some(none));
+        assert!(answer.saturation.density_clamped() && same(&answer, &bench), "{none}");
+    }
+    let [low, high] = frame.physics.density_range().expect("[air]").map(|density| density as f32);
+    for (within, beyond) in [(low, 1e-40), (low, 0.9 * low), (high, 1.1 * high), (high, f32::MAX)] {
+        let (within, beyond) = (at(Some(within)), at(Some(beyond)));
+        assert!(!within.saturation.density_clamped() && beyond.saturation.density_clamped());
+        assert!(same(&within, &beyond) && !same(&within, &bench));
+    }
+    let without = Frame::new(golden::compile("isae-x8").expect("compiles"));
+    for density in [f32::NAN, 0.5] {
+        let request = |density| Request {
+            wrench: [0.3, -0.2, 0.05, 30.0],
+            volts: 14.0,
+            density,
+            health: Health::GOOD,
+        };
+        assert_eq!(request(Some(density)).mix(&without), request(None).mix(&without));
+    }
 }

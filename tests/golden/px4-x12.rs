@@ -12,7 +12,7 @@
 /// * unit 5 at (-0.866025, -0.5, 0.0) m, upper rotor cw: channel 5 upper, 11 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00369 N and 4.26e-5 N m of what is asked, at every
+/// Proven: each unit's thrust and torque are within 0.00368 N and 4.25e-5 N m of what is asked, at every
 /// voltage and density and everywhere in the attainable set, rounding in f32 included (330 cells).
 /// Largest residual observed over 5251 efforts at the reference voltage: 0.00259 N, 2.99e-5 N m.
 #[allow(dead_code, unreachable_pub)]
@@ -252,13 +252,20 @@ pub mod px4_x12 {
         pieces: &[
             tables::LawPiece {
                 start: 12.8,
-                thrust: [-0.000018438423, 0.0031050392, 0.10604435, 0.7756387],
-                torque: [-0.000018438423, 0.0031050392, 0.10604435, 0.7756387],
-            },
-            tables::LawPiece {
-                start: 14.8,
-                thrust: [-0.000015563193, 0.0029947595, 0.11824325, 1.0],
-                torque: [-0.000015563193, 0.0029947595, 0.11824325, 1.0],
+                thrust: [
+                    0.00000035819426,
+                    -0.00001978956,
+                    0.0031061668,
+                    0.10604464,
+                    0.77563864,
+                ],
+                torque: [
+                    0.00000035819426,
+                    -0.00001978956,
+                    0.0031061668,
+                    0.10604464,
+                    0.77563864,
+                ],
             },
         ],
     });
@@ -286,7 +293,7 @@ pub mod px4_x12 {
         air: AIR,
         rows: [0.060513884, 0.06987545, 4.595398, 0.040342588],
         spread: [443.2581, 0.14420184],
-        level_n: [3.6796272, 148.04247],
+        level_n: [3.679707, 148.04239],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::RollPitch,
@@ -295,8 +302,8 @@ pub mod px4_x12 {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0029763097, 0.000034302808],
-            wrench: [0.015226982, 0.0131869465, 0.00026171838, 0.022840472],
+            efforts: [0.0029679495, 0.000034198627],
+            wrench: [0.015211489, 0.01317353, 0.00026128287, 0.022817234],
         },
     };
 }

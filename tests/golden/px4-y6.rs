@@ -9,7 +9,7 @@
 /// * unit 2 at (0.25, -0.433, 0.0) m, upper rotor cw: channel 4 upper, 5 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00369 N and 4.26e-5 N m of what is asked, at every
+/// Proven: each unit's thrust and torque are within 0.00368 N and 4.25e-5 N m of what is asked, at every
 /// voltage and density and everywhere in the attainable set, rounding in f32 included (330 cells).
 /// Largest residual observed over 5251 efforts at the reference voltage: 0.00259 N, 2.99e-5 N m.
 #[allow(dead_code, unreachable_pub)]
@@ -225,13 +225,20 @@ pub mod px4_y6 {
         pieces: &[
             tables::LawPiece {
                 start: 12.8,
-                thrust: [-0.000018438423, 0.0031050392, 0.10604435, 0.7756387],
-                torque: [-0.000018438423, 0.0031050392, 0.10604435, 0.7756387],
-            },
-            tables::LawPiece {
-                start: 14.8,
-                thrust: [-0.000015563193, 0.0029947595, 0.11824325, 1.0],
-                torque: [-0.000015563193, 0.0029947595, 0.11824325, 1.0],
+                thrust: [
+                    0.00000035819426,
+                    -0.00001978956,
+                    0.0031061668,
+                    0.10604464,
+                    0.77563864,
+                ],
+                torque: [
+                    0.00000035819426,
+                    -0.00001978956,
+                    0.0031061668,
+                    0.10604464,
+                    0.77563864,
+                ],
             },
         ],
     });
@@ -538,7 +545,7 @@ pub mod px4_y6 {
         air: AIR,
         rows: [0.13975492, 0.12102777, 4.595398, 0.040342588],
         spread: [443.2581, 0.14420184],
-        level_n: [1.8398136, 74.02123],
+        level_n: [1.8398535, 74.021194],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::RollPitch,
@@ -547,8 +554,8 @@ pub mod px4_y6 {
         power_bias_nm_per_n: 0.0,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0029763097, 0.000034302808],
-            wrench: [0.0032966414, 0.0038067454, 0.00013085919, 0.011420236],
+            efforts: [0.0029679495, 0.000034198627],
+            wrench: [0.0032932872, 0.0038028723, 0.00013064143, 0.011408617],
         },
     };
 }

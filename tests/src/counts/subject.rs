@@ -90,7 +90,7 @@ pub fn all(airframes: &[String]) -> Vec<Subject> {
         subjects.extend([ONE_OUT, TWO_OUT].map(|mixer| Subject::new(mixer, &airframe)));
     }
     subjects.extend((1..=8).map(|units| Subject::new("coaxial", &format!("regular-{units}"))));
-    let tolerances = ["0.1", "0.01", "0.004", "2e-4", "3e-5"];
+    let tolerances = ["0.1", "0.01", "0.004", "2e-4", "5e-5"];
     subjects.extend(tolerances.map(|tolerance| Subject::new("coaxial", &format!("tolerance-{tolerance}"))));
     let priorities = ["roll-pitch-yaw", "reserve-0.1", "roll-pitch-yaw-reserve-0.1"];
     let six = ["regular-6-roll-pitch-yaw", "regular-6-reserve-0.15"];
