@@ -147,10 +147,22 @@ fn no_density_means_that_of_the_bench() {
     assert!(!bench.saturation.density_clamped() && same(&bench, &at(Some(1.2))));
     for none in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -0.0, -1.2] {
         let answer = at(Some(none));
-        assert!(answer.saturation.density_clamped() && same(&answer, &bench), "{none}");
+        assert!(
+            answer.saturation.density_clamped() && same(&answer, &bench),
+            "{none}"
+        );
     }
-    let [low, high] = frame.physics.density_range().expect("[air]").map(|density| density as f32);
-    for (within, beyond) in [(low, 1e-40), (low, 0.9 * low), (high, 1.1 * high), (high, f32::MAX)] {
+    let [low, high] = frame
+        .physics
+        .density_range()
+        .expect("[air]")
+        .map(|density| density as f32);
+    for (within, beyond) in [
+        (low, 1e-40),
+        (low, 0.9 * low),
+        (high, 1.1 * high),
+        (high, f32::MAX),
+    ] {
         let (within, beyond) = (at(Some(within)), at(Some(beyond)));
         assert!(!within.saturation.density_clamped() && beyond.saturation.density_clamped());
         assert!(same(&within, &beyond) && !same(&within, &bench));
