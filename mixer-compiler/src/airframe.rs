@@ -199,7 +199,7 @@ impl Airframe {
     }
 
     /// Whether the file itself has a key like `unit[3].channels`.
-    pub(crate) fn states(&self, key: &str) -> bool {
+    pub fn states(&self, key: &str) -> bool {
         self.places.contains_key(key)
     }
 

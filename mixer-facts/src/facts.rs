@@ -3,12 +3,14 @@
 use std::fmt;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::atmosphere::TOP_M;
 use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::hover::HoverAt;
 use mixer_compiler::power::LevelPower;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use crate::air::{Air, AtAltitude, LEAST_THRUST_OVER_WEIGHT};
 use crate::cost::Cost;
 use crate::hover::Hover;
 
@@ -117,6 +119,7 @@ pub fn facts(compiled: &Compiled) -> Vec<Fact> {
     power(&mut list, compiled);
     model(&mut list, compiled);
     voltage(&mut list, compiled);
+    air(&mut list, compiled);
     inverse(&mut list, compiled);
     costs(&mut list, compiled);
     let warnings = mixer_compiler::lint(compiled).faults().len();
@@ -309,6 +312,62 @@ fn voltage(list: &mut List, compiled: &Compiled) {
     list.say("voltage", format!("{low} to {high}"), "V", " is corrected for")
         .first();
     list.say("reference voltage", voltage.reference, "V", words);
+}
+
+/// The air's density.
+fn air(list: &mut List, compiled: &Compiled) {
+    let air = Air::new(compiled);
+    let with_air = air.as_ref().and_then(|air| Some((air, air.range_kg_m3?)));
+    let density = match with_air {
+        None => list.say(
+            "air density",
+            "",
+            "",
+            "not corrected for: no [air]; thrust falls by 20 % at 3000 m",
+        ),
+        Some((_, [low, high])) => {
+            let range = format!("{low} to {high}");
+            list.say("air density", range, "kg/m3", " is corrected for")
+        }
+    };
+    let has_altitudes = air.as_ref().is_some_and(|air| !air.altitudes.is_empty());
+    density.json("air", &air).first_if(!has_altitudes);
+    if let Some((air, _)) = with_air {
+        let ([thrust, torque], [of_thrust, of_torque]) = (air.exponents, air.exponents_from);
+        let words = format!("; exponents {thrust} of thrust ({of_thrust}), {torque} of torque ({of_torque})");
+        list.say("reference density", air.reference_density_kg_m3, "kg/m3", words);
+    }
+    if let Some(air) = air {
+        ceiling(list, &air);
+    }
+}
+
+/// How high the vehicle flies.
+fn ceiling(list: &mut List, air: &Air) {
+    let Some(sea) = air.altitudes.first() else { return };
+    let ceiling = match air.ceiling_m {
+        Some(ceiling) => format!("{:.0}", 10.0 * (0.1 * ceiling).round()),
+        None if sea.thrust_over_weight < LEAST_THRUST_OVER_WEIGHT => "below 0".to_owned(),
+        None => format!("above {TOP_M}"),
+    };
+    let each = |value: &dyn Fn(&AtAltitude) -> String| {
+        let values: Vec<String> = air.altitudes.iter().map(value).collect();
+        values.join(", ")
+    };
+    let altitudes = each(&|at| at.altitude_m.to_string());
+    let over_weight = each(&|at| format!("{:.2}", at.thrust_over_weight));
+    let throttle = each(&|at| match at.hover_throttle {
+        Some(throttle) => format!("{throttle:.3}"),
+        None => "none".to_owned(),
+    });
+    let corrected = match air.range_kg_m3 {
+        Some([low, high]) => format!("density is corrected for from {low} to {high} kg/m3"),
+        None => "density is not corrected for: no [air]".to_owned(),
+    };
+    let words = format!(
+        ", thrust over weight {LEAST_THRUST_OVER_WEIGHT}; at {altitudes} m it is {over_weight}, hover throttle {throttle}; {corrected}"
+    );
+    list.say("ceiling", ceiling, "m", words).first();
 }
 
 /// The inverse map: what is proven of it, and its tables.

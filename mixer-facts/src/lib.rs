@@ -11,6 +11,7 @@
 //! assert_eq!(checked.json(())["rotors"], 2);
 //! ```
 
+pub mod air;
 mod check;
 pub mod checklist;
 pub mod cost;

@@ -1,13 +1,14 @@
 //! The rules on the vehicle's weight.
 
 use super::rule::{Facts, Rule};
+use crate::atmosphere::altitude_of;
 use crate::diagnostic::{Code, number, rounded};
 
 /// Share of the largest bare thrust above which hover leaves too little for control.
 const HIGH: f64 = 0.8;
 
 /// Too heavy to hover at the lowest voltage, or so light that it rises at idle at the highest, or
-/// with little thrust left at the reference voltage.
+/// with little thrust left at the reference voltage, in the thinnest air that it is to fly in.
 pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
     const KEY: &str = "vehicle.mass_kg";
     let (Some(vehicle), Some(weight), Some([floor, ceiling])) = (
@@ -24,6 +25,23 @@ pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
             .map(|volts| (format!(" at {} V", number(volts)), voltage.thrust_factor(volts))),
     };
     let (most, least) = (lowest.1 * ceiling, highest.1 * floor);
+    let (thin, in_air, from) = match &facts.airframe.air {
+        None => (1.0, String::new(), String::new()),
+        Some(air) => {
+            let sigma = libm::pow(weight / (HIGH * ceiling), 1.0 / air.exponents()[0]);
+            let from = match 10.0 * (0.1 * altitude_of(sigma * air.reference)).round() {
+                altitude if altitude > 0.0 => format!("; {:.0} % from {altitude} m up", 100.0 * HIGH),
+                _ => String::new(),
+            };
+            let thinnest = air.range[0];
+            (
+                air.thrust_factor(thinnest),
+                format!(" in air of {} kg/m3", number(thinnest)),
+                from,
+            )
+        }
+    };
+    let left = thin * ceiling;
     let weighs = format!("{} kg weigh {} N", number(vehicle.mass_kg), rounded(weight));
     vec![
         Rule::at_most(Code::TooHeavy, KEY, weight, most).says(
@@ -38,13 +56,13 @@ pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
                 "check the mass and the units of thrust_n, or lower throttle.min",
             )
             .unless_told(&[Code::TooHeavy]),
-        Rule::at_most(Code::HoversHigh, KEY, weight, HIGH * ceiling)
+        Rule::at_most(Code::HoversHigh, KEY, weight, HIGH * left)
             .says(
                 format!(
-                    "{weighs}, {:.0} % of the largest thrust{}, {} N",
-                    100.0 * weight / ceiling,
+                    "{weighs}, {:.0} % of the largest thrust{}{in_air}, {} N{from}",
+                    100.0 * weight / left,
                     reference.0,
-                    rounded(ceiling)
+                    rounded(left)
                 ),
                 "little is left",
                 "roll, pitch and yaw come out of what hover leaves; frames hover at 30 to 60 %",
