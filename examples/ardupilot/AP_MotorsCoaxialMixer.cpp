@@ -1,5 +1,6 @@
 #include "AP_MotorsCoaxialMixer.h"
 
+#include <AP_Baro/AP_Baro.h>
 #include <AP_BattMonitor/AP_BattMonitor.h>
 #include <AP_HAL/AP_HAL.h>
 
@@ -26,18 +27,18 @@ private:
 #endif
 };
 
-int mix_without_traps(const mixer_wrench_t &setpoint, float voltage_v, isae_x8_mix_t &mix)
+int mix_without_traps(const mixer_wrench_t &setpoint, const mixer_conditions_t &conditions, isae_x8_mix_t &mix)
 {
     const NoTraps guard {};
     (void)guard;
-    return isae_x8_mix(&setpoint, voltage_v, &mix);
+    return isae_x8_mix_in(&setpoint, &conditions, &mix);
 }
 
 } // namespace
 
 void AP_MotorsCoaxialMixer::output_armed_stabilizing()
 {
-    update_voltage();
+    update_conditions();
 
     // Stopped motors give nothing, whatever is asked.
     if (_spool_state == SpoolState::SHUT_DOWN) {
@@ -55,7 +56,7 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
         limit.throttle_upper = true;
     }
 
-    // No compensation gain: voltage and curve are the mixer's. The units are those of ArduPilot's own mixer, so that the
+    // No compensation gain: voltage, density and curve are the mixer's. The units are those of ArduPilot's own mixer, so that the
     // attitude controller's gains keep their meaning.
     const mixer_wrench_t setpoint {
         (_roll_in + _roll_in_ff) * ISAE_X8_ARDUPILOT_ROLL_NM,
@@ -64,7 +65,7 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
         throttle * ISAE_X8_ARDUPILOT_THRUST_N,
     };
     isae_x8_mix_t mix;
-    if (mix_without_traps(setpoint, _voltage_v, mix) == MIXER_OK) {
+    if (mix_without_traps(setpoint, _conditions, mix) == MIXER_OK) {
         mixed(mix, throttle);
     } else {
         refused();
@@ -79,11 +80,28 @@ static float measured_voltage()
     return battery.healthy(AP_BATT_PRIMARY_INSTANCE) && isfinite(voltage_v) ? voltage_v : 0.0f;
 }
 
-void AP_MotorsCoaxialMixer::update_voltage()
+// Density by the barometer's pressure, kg/m^3, 0 where it has none. The temperature is that of the ground (BARO_GND_TEMP), less
+// that of the standard atmosphere for the height above it: the barometer's own is the board's.
+static float measured_density()
+{
+    constexpr float ZERO_C = 273.15f;
+    constexpr float LAPSE_K_M = 0.0065f;
+    constexpr float GAS_CONSTANT = 287.05f;
+    const AP_Baro &baro = AP::baro();
+    const float temperature_k = baro.get_ground_temperature() + ZERO_C - LAPSE_K_M * baro.get_altitude();
+    const float density_kg_m3 = baro.get_pressure() / (GAS_CONSTANT * temperature_k);
+    return baro.healthy() && isfinite(density_kg_m3) ? density_kg_m3 : 0.0f;
+}
+
+void AP_MotorsCoaxialMixer::update_conditions()
 {
     const float voltage_v = measured_voltage();
     if (voltage_v > 0.0f) {
-        _voltage_v = voltage_v;
+        _conditions.voltage_v = voltage_v;
+    }
+    const float density_kg_m3 = measured_density();
+    if (density_kg_m3 > 0.0f) {
+        _conditions.density_kg_m3 = density_kg_m3;
     }
 }
 

@@ -1,6 +1,8 @@
 // ArduCopter's motors by a compiled coaxial mixer: channel 0 of the airframe is Motor1.
 #pragma once
 
+#include <cmath>
+
 #include <AP_Motors/AP_MotorsMatrix.h>
 
 #include "isae_x8.h"
@@ -26,7 +28,7 @@ protected:
     void output_armed_stabilizing() override;
 
 private:
-    void update_voltage();
+    void update_conditions();
     void mixed(const isae_x8_mix_t &mix, float throttle);
     void refused();
     void stopped();
@@ -44,7 +46,7 @@ private:
     static constexpr float MOST_SPIN_MIN = 0.3f;
 
     float _throttle[ISAE_X8_CHANNELS] {};
-    // The last voltage that was measured.
-    float _voltage_v = ISAE_X8_REFERENCE_V;
+    // The last voltage and density that were measured: until then those of the bench, which NAN stands for.
+    mixer_conditions_t _conditions {ISAE_X8_REFERENCE_V, NAN};
     float _refused_s = 0.0f;
 };

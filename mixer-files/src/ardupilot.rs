@@ -15,6 +15,10 @@ const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 /// ArduPilot has no monitor by default, and no voltage without one.
 const MONITOR: &str = "BATT_MONITOR is your board's; 0 measures no voltage, the simulator has 4";
 
+/// ArduPilot's density goes by the ground's temperature.
+const GROUND_TEMPERATURE: &str = "BARO_GND_TEMP, the air's temperature, is set before every take-off, as ArduPilot forgets it at \
+                                  power-off: without it the density goes by the barometer chip's, and 20 K more are 5 % too much thrust";
+
 /// ArduPilot's parameters where this mixer puts out the throttles.
 pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
     let airframe = &compiled.airframe;
@@ -30,6 +34,9 @@ pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
     all.because("The rotors of a pair would slew apart.")
         .real("MOT_SLEW_UP_TIME", 0.0)
         .real("MOT_SLEW_DN_TIME", 0.0);
+    if airframe.air.is_some() {
+        all.note(GROUND_TEMPERATURE);
+    }
     let full_n = f64::from(compiled.ardupilot_scale().thrust_n);
     let hover = airframe.weight_n().map(|weight| weight / full_n);
     let at = airframe

@@ -1,7 +1,7 @@
 //! PX4's parameters.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::{Spin, Unit};
+use mixer_compiler::airframe::{Correction, Spin, Unit};
 
 use crate::parameter::{Parameters, curve, hundredths, on_curve, slope_in_hover};
 
@@ -41,9 +41,9 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
     let why = "Weight over the thrust of all rotors at full throttle.";
     all.hover("MPC_THR_HOVER", hover, why);
     all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
-    // Idle lifts most at the highest voltage.
-    let voltage = airframe.voltage.as_ref();
-    let rise = voltage.map_or(1.0, |voltage| voltage.thrust_factor(voltage.range[1]));
+    // Idle lifts most at the highest voltage, in the densest air.
+    let most = |law: &Option<Correction>| law.as_ref().map_or(1.0, |law| law.thrust_factor(law.range[1]));
+    let rise = most(&airframe.voltage) * most(&airframe.air);
     let idle = rise * f64::from(compiled.thrust_range_n[0].max(0.0)) / full_n;
     let idle = libm::ceil(100.0 * idle) / 100.0;
     all.because("Thrust of all rotors at idle, or PX4's default where that is more: less is not to be had.")
@@ -53,8 +53,15 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
         all.note("all rotors at idle lift the vehicle: MPC_THR_MIN is above MPC_THR_HOVER");
     }
     failure_detection(compiled, currents, all);
+    if airframe.air.is_some() {
+        all.note(DENSITY);
+    }
     all.note(gains(compiled));
 }
+
+/// What PX4's density is worth.
+const DENSITY: &str = "vehicle_air_data.rho goes by 15 C where no airspeed sensor and no external barometer has the air's temperature: \
+                       thrust is then 7 % too high at -10 C, 6 % too low at 40 C (docs/air.md)";
 
 /// Why PX4's throttle curve is straight.
 const MIDDLE: &str = "Throttle stick in the middle is hover thrust.";

@@ -37,6 +37,7 @@ const PX4: Stack = Stack {
         "uORB/topics/battery_status.h",
         "uORB/topics/control_allocator_status.h",
         "uORB/topics/failure_detector_status.h",
+        "uORB/topics/vehicle_air_data.h",
         "uORB/topics/vehicle_control_mode.h",
         "uORB/topics/vehicle_thrust_setpoint.h",
         "uORB/topics/vehicle_torque_setpoint.h",
@@ -54,6 +55,7 @@ const PX4: Stack = Stack {
 const ARDUPILOT: Stack = Stack {
     name: "ardupilot",
     headers: &[
+        "AP_Baro/AP_Baro.h",
         "AP_BattMonitor/AP_BattMonitor.h",
         "AP_HAL/AP_HAL.h",
         "AP_Motors/AP_MotorsMatrix.h",
@@ -68,10 +70,12 @@ impl Stack {
     fn drive(&self) {
         let folder = Folder::new(self.name);
         let stand_ins = source("stand_ins");
-        run(&mut library(
-            &["airframes/isae-x8.toml", "--health"],
-            &folder.join("lib"),
-        ));
+        let airframe = folder.join("isae-x8.toml");
+        let air = "[air]\nreference_density_kg_m3 = 1.225\nrange_kg_m3 = [0.75, 1.40]\n";
+        let text = fs::read_to_string(root().join("airframes/isae-x8.toml")).unwrap();
+        fs::write(&airframe, format!("{text}\n{air}")).unwrap();
+        let arguments = [airframe.to_str().unwrap(), "--health"];
+        run(&mut library(&arguments, &folder.join("lib")));
         for header in self.headers {
             let path = folder.join("include").join(header);
             fs::create_dir_all(path.parent().unwrap()).unwrap();

@@ -96,11 +96,12 @@ public:
     }
 
     // Whether the actuators are those of the library, as they come.
-    bool same(float roll, float pitch, float yaw, float throttle, float voltage_v) const
+    bool same(float roll, float pitch, float yaw, float throttle, float voltage_v, float density_kg_m3 = NAN) const
     {
         const mixer_wrench_t setpoint {roll * ROLL_NM, pitch * PITCH_NM, yaw * YAW_NM, throttle * ISAE_X8_ARDUPILOT_THRUST_N};
         isae_x8_mix_t mix;
-        if (isae_x8_mix(&setpoint, voltage_v, &mix) != MIXER_OK) {
+        const mixer_conditions_t conditions {voltage_v, density_kg_m3};
+        if (isae_x8_mix_in(&setpoint, &conditions, &mix) != MIXER_OK) {
             return false;
         }
         for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
@@ -237,6 +238,20 @@ int main()
     motors.mix();
     CHECK(fegetexcept() == TRAPS);
     fedisableexcept(FE_ALL_EXCEPT);
+
+    // The standard atmosphere at 3,000 m, 100 m above the ground; then a barometer that fails: the density is the last one.
+    motors.cycle(State::THROTTLE_UNLIMITED, 0.0f, 0.0f, 0.0f, 0.3f);
+    const float dense = motors.actuator(0);
+    AP::baro().pressure = 70108.5f;
+    AP::baro().ground_temperature = -3.85f;
+    AP::baro().altitude = 100.0f;
+    AP::baro().good = true;
+    motors.cycle(State::THROTTLE_UNLIMITED, 0.0f, 0.0f, 0.0f, 0.3f);
+    CHECK(motors.same(0.0f, 0.0f, 0.0f, 0.3f, 15.5f, 0.90912f) && motors.actuator(0) > 1.05f * dense);
+    AP::baro().pressure = 50000.0f;
+    AP::baro().good = false;
+    motors.cycle(State::THROTTLE_UNLIMITED, 0.0f, 0.0f, 0.0f, 0.3f);
+    CHECK(motors.same(0.0f, 0.0f, 0.0f, 0.3f, 15.5f, 0.90912f));
 
     printf("%u faults\n", faults);
     return faults != 0;

@@ -63,7 +63,27 @@ public:
     bool good = false;
 };
 
+class AP_Baro {
+public:
+    // Pa, degrees C, and m above the ground.
+    float get_pressure() const { return pressure; }
+    float get_ground_temperature() const { return ground_temperature; }
+    float get_altitude() const { return altitude; }
+    bool healthy() const { return good; }
+
+    float pressure = 0.0f;
+    float ground_temperature = 0.0f;
+    float altitude = 0.0f;
+    bool good = false;
+};
+
 namespace AP {
+inline AP_Baro &baro()
+{
+    static AP_Baro sensor;
+    return sensor;
+}
+
 inline AP_BattMonitor &battery()
 {
     static AP_BattMonitor monitor;

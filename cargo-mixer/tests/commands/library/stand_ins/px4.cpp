@@ -46,6 +46,9 @@ static void cycle(float roll, float pitch, float yaw, float thrust)
 	publish(vehicle_torque_setpoint_s{0, stand_in::now_us() - 100, {roll, pitch, yaw}});
 }
 
+// The density that was published last.
+static float density_kg_m3 = NAN;
+
 // Whether the motors are, bit by bit, those of the library without the rotors of the channels in `failed`, whose motors
 // PX4 is told to stop.
 static bool same(float roll, float pitch, float yaw, float thrust, float voltage_v, unsigned failed = 0)
@@ -53,8 +56,9 @@ static bool same(float roll, float pitch, float yaw, float thrust, float voltage
 	const mixer_wrench_t setpoint{roll * ISAE_X8_ROLL_NM, pitch * ISAE_X8_PITCH_NM, yaw * ISAE_X8_YAW_NM, thrust * ISAE_X8_THRUST_N};
 	isae_x8_mix_t mix;
 	const actuator_motors_s motors = last<actuator_motors_s>();
-	bool equal = (failed ? isae_x8_mix_with_health(&setpoint, voltage_v, failed, &mix)
-		      : isae_x8_mix(&setpoint, voltage_v, &mix)) == MIXER_OK;
+	const mixer_conditions_t conditions{voltage_v, density_kg_m3};
+	bool equal = (failed ? isae_x8_mix_in_with_health(&setpoint, &conditions, failed, &mix)
+		      : isae_x8_mix_in(&setpoint, &conditions, &mix)) == MIXER_OK;
 
 	for (int i = 0; i < actuator_motors_s::NUM_CONTROLS; ++i) {
 		const bool stopped = i >= ISAE_X8_CHANNELS || (failed & (1u << i));
@@ -136,9 +140,12 @@ int main()
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
 	stand_in::failure_mode() = 1;
+	const unsigned errors = stand_in::errors();
 	publish(failure_detector_status_s{0, true, 1u << 2});
 	cycle(0.01f, 0.f, 0.f, 0.3f);
 	CHECK(same(0.01f, 0.f, 0.f, 0.3f, 15.5f, 1u << 2));
+	// No density was measured, which says nothing of level flight.
+	CHECK(stand_in::errors() == errors);
 	CHECK(last<control_allocator_status_s>().handled_motor_failure_mask == 1u << 2);
 	publish(failure_detector_status_s{0, false, 0});
 	cycle(0.01f, 0.f, 0.f, 0.3f);
@@ -162,7 +169,17 @@ int main()
 	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
 	CHECK(last<control_allocator_status_s>().handled_motor_failure_mask == 0);
 
+	// Thin air takes more throttle, and a density that is none is that of the bench.
+	const float dense = last<actuator_motors_s>().control[0];
+	density_kg_m3 = 0.9f;
+	publish(vehicle_air_data_s{0, density_kg_m3});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f) && last<actuator_motors_s>().control[0] > 1.05f * dense);
 	CHECK(command("status") == PX4_OK);
+	density_kg_m3 = NAN;
+	publish(vehicle_air_data_s{0, 0.f});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(same(0.f, 0.f, 0.f, 0.3f, 15.5f));
 	CHECK(command("nonsense") == 0);
 	CHECK(command("stop") == PX4_OK);
 	cycle(0.f, 0.f, 0.f, 0.3f);

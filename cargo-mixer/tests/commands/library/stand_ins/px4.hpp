@@ -16,6 +16,12 @@ inline hrt_abstime &now_us()
 	static hrt_abstime time = 1000000;
 	return time;
 }
+
+inline unsigned &errors()
+{
+	static unsigned count = 0;
+	return count;
+}
 }
 
 inline hrt_abstime hrt_absolute_time() { return stand_in::now_us(); }
@@ -29,7 +35,7 @@ constexpr int PX4_ERROR = -1;
 #define PX4_LINE(...) (printf(__VA_ARGS__), printf("\n"))
 #define PX4_INFO(...) PX4_LINE(__VA_ARGS__)
 #define PX4_WARN(...) PX4_LINE(__VA_ARGS__)
-#define PX4_ERR(...) PX4_LINE(__VA_ARGS__)
+#define PX4_ERR(...) (++stand_in::errors(), PX4_LINE(__VA_ARGS__))
 #define PRINT_MODULE_DESCRIPTION(text) PX4_LINE("%s", text)
 #define PRINT_MODULE_USAGE_NAME(name, category) PX4_LINE("%s: %s", category, name)
 #define PRINT_MODULE_USAGE_COMMAND(name) PX4_LINE("%s", name)
@@ -66,6 +72,11 @@ struct failure_detector_status_s {
 	uint64_t timestamp;
 	bool fd_motor;
 	uint16_t motor_failure_mask;
+};
+
+struct vehicle_air_data_s {
+	uint64_t timestamp;
+	float rho;
 };
 
 struct vehicle_control_mode_s {

@@ -38,7 +38,7 @@ void CoaxialMixer::Run()
 		return;
 	}
 
-	update_voltage();
+	update_conditions();
 
 	// FRD as in PX4, but thrust counts upwards.
 	const mixer_wrench_t setpoint{
@@ -68,7 +68,8 @@ void CoaxialMixer::Run()
 
 int CoaxialMixer::mix(const mixer_wrench_t &setpoint, isae_x8_mix_t &out) const
 {
-	return _failed ? isae_x8_mix_with_health(&setpoint, _voltage_v, _failed, &out) : isae_x8_mix(&setpoint, _voltage_v, &out);
+	return _failed ? isae_x8_mix_in_with_health(&setpoint, &_conditions, _failed, &out)
+	       : isae_x8_mix_in(&setpoint, &_conditions, &out);
 }
 
 // Whether another module publishes the motors, too. It would be control_allocator, started later: PX4's own flies on.
@@ -129,17 +130,24 @@ void CoaxialMixer::update_failed(const mixer_wrench_t &setpoint)
 	const mixer_wrench_t level{0.f, 0.f, 0.f, setpoint.thrust_n};
 	isae_x8_mix_t mixed;
 
-	if (mix(level, mixed) != MIXER_OK || (mixed.saturation & ~MIXER_VOLTAGE_CLAMPED)) {
+	if (mix(level, mixed) != MIXER_OK || (mixed.saturation & ~(MIXER_VOLTAGE_CLAMPED | MIXER_DENSITY_CLAMPED))) {
 		PX4_ERR("without the rotors 0x%x this thrust is not held level", static_cast<unsigned>(_failed));
 	}
 }
 
-void CoaxialMixer::update_voltage()
+void CoaxialMixer::update_conditions()
 {
 	battery_status_s battery;
 
 	if (_battery_sub.update(&battery) && battery.connected && std::isfinite(battery.voltage_v) && battery.voltage_v > 0.f) {
-		_voltage_v = battery.voltage_v;
+		_conditions.voltage_v = battery.voltage_v;
+	}
+
+	vehicle_air_data_s air;
+
+	// The mixer takes and flags what is no density.
+	if (_air_sub.update(&air)) {
+		_conditions.density_kg_m3 = air.rho;
 	}
 }
 
@@ -218,14 +226,9 @@ int CoaxialMixer::task_spawn(int, char *[])
 
 int CoaxialMixer::print_status()
 {
-	if (_voltage_v > 0.f) {
-		PX4_INFO("%s %s, %.2f V", ISAE_X8_AIRFRAME, ISAE_X8_VERSION, static_cast<double>(_voltage_v));
-
-	} else {
-		// The airframe has no voltage law, and none was measured.
-		PX4_INFO("%s %s, no voltage", ISAE_X8_AIRFRAME, ISAE_X8_VERSION);
-	}
-
+	// 0 V: the airframe has no voltage law, and none was measured.
+	PX4_INFO("%s %s, %.2f V, %.3f kg/m3", ISAE_X8_AIRFRAME, ISAE_X8_VERSION, static_cast<double>(_conditions.voltage_v),
+		 static_cast<double>(_conditions.density_kg_m3));
 	PX4_INFO("saturation 0x%x, rotors out 0x%x, refused %u%s", static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed),
 		 _refused, _displaced ? ", displaced by another module" : "");
 	return 0;

@@ -1,6 +1,8 @@
 // PX4's control allocation by a compiled coaxial mixer: runs after every torque setpoint, in place of control_allocator.
 #pragma once
 
+#include <cmath>
+
 #include <drivers/drv_hrt.h>
 #include <parameters/param.h>
 #include <px4_platform_common/module.h>
@@ -12,6 +14,7 @@
 #include <uORB/topics/battery_status.h>
 #include <uORB/topics/control_allocator_status.h>
 #include <uORB/topics/failure_detector_status.h>
+#include <uORB/topics/vehicle_air_data.h>
 #include <uORB/topics/vehicle_control_mode.h>
 #include <uORB/topics/vehicle_thrust_setpoint.h>
 #include <uORB/topics/vehicle_torque_setpoint.h>
@@ -44,7 +47,7 @@ public:
 
 private:
 	void Run() override;
-	void update_voltage();
+	void update_conditions();
 	void update_failed(const mixer_wrench_t &setpoint);
 	int mix(const mixer_wrench_t &setpoint, isae_x8_mix_t &out) const;
 	bool is_displaced();
@@ -60,6 +63,7 @@ private:
 	uORB::SubscriptionCallbackWorkItem _torque_sub{this, ORB_ID(vehicle_torque_setpoint)};
 	uORB::Subscription _thrust_sub{ORB_ID(vehicle_thrust_setpoint)};
 	uORB::Subscription _battery_sub{ORB_ID(battery_status)};
+	uORB::Subscription _air_sub{ORB_ID(vehicle_air_data)};
 	uORB::Subscription _mode_sub{ORB_ID(vehicle_control_mode)};
 	uORB::Subscription _failure_sub{ORB_ID(failure_detector_status)};
 	// Sees what others publish: this module's own messages are taken from it at once.
@@ -70,8 +74,8 @@ private:
 	vehicle_thrust_setpoint_s _thrust{};
 	vehicle_control_mode_s _mode{};
 	hrt_abstime _last_mix{0};
-	// The last voltage that was measured.
-	float _voltage_v{ISAE_X8_REFERENCE_V};
+	// The last voltage and density that were measured: until then those of the bench, which NAN stands for.
+	mixer_conditions_t _conditions{ISAE_X8_REFERENCE_V, NAN};
 	// Bit k: the rotor on channel k is out, until the vehicle is disarmed.
 	uint16_t _failed{0};
 	// What the failure detector reported last and was not believed.
