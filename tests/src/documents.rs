@@ -44,6 +44,8 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/bench.md", "spacings", tables::spacings()?),
         of("docs/allocation.md", "logged-saving", tables::logged_saving()?),
         of("docs/allocation.md", "yaw-reserve", tables::yaw_reserve()?),
+        of("docs/air.md", "altitudes", tables::altitudes()),
+        of("docs/air.md", "density", tables::density()),
         of("docs/flights.md", "logged-hover", tables::logged_hover()?),
         of("docs/flights.md", "hover", tables::hover()?),
         of("docs/flights.md", "tracking", tables::tracking()?),

@@ -2,6 +2,7 @@
 
 use isolated_rotors::IsolatedTables;
 use mixer_compiler::airframe::{Basis, KEYS};
+use mixer_compiler::atmosphere::{self, density_at, pressure_at};
 use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::spec::keys::{Key, Kind, Shape};
 use mixer_compiler::{Compiled, Source};
@@ -75,6 +76,64 @@ pub(super) fn keys() -> Vec<Table> {
         ),
     };
     KEYS.all().into_iter().map(table).collect()
+}
+
+/// Exponent of the density with ordinary speed controllers.
+const DENSITY_EXPONENT: f64 = 0.75;
+
+/// Thrust at equal throttles in the standard atmosphere, for a bench at sea level.
+pub(super) fn altitudes() -> String {
+    let row = |(words, altitude): (&str, f64)| {
+        let sigma = density_at(altitude) / density_at(0.0);
+        vec![
+            words.to_owned(),
+            format!("{:.3}", density_at(altitude)),
+            format!("{:.1} %", 100.0 * libm::pow(sigma, DENSITY_EXPONENT)),
+            format!("{:.1} %", 100.0 * sigma),
+        ]
+    };
+    let altitudes = [("0", 0.0), ("1,500", 1500.0), ("3,000", 3000.0)];
+    let header = [
+        "altitude (m)",
+        "kg/m³",
+        "thrust, exponent 0.75",
+        "linear, as ArduPilot corrects",
+    ];
+    markdown(&header, &altitudes.map(row))
+}
+
+/// 0 °C in K.
+const ZERO_C: f64 = 273.15;
+
+/// What an error of the density does to the thrust that is given.
+pub(super) fn density() -> String {
+    let sea = pressure_at(0.0);
+    let at = |celsius: f64| atmosphere::density(sea, celsius + ZERO_C);
+    let row = |(words, taken, true_): (&str, f64, f64)| {
+        let percent = |ratio: f64| format!("{:+.1} %", 100.0 * (ratio - 1.0));
+        let ratio = taken / true_;
+        vec![
+            words.to_owned(),
+            percent(ratio),
+            percent(libm::pow(ratio, -DENSITY_EXPONENT)),
+        ]
+    };
+    let rows = [
+        ("none is passed, at 1,500 m", at(15.0), density_at(1500.0)),
+        ("none is passed, at 3,000 m", at(15.0), density_at(3000.0)),
+        ("15 °C for -10 °C", at(15.0), at(-10.0)),
+        ("15 °C for 40 °C", at(15.0), at(40.0)),
+        (
+            "15 °C for -4.5 °C, 3,000 m",
+            atmosphere::density(pressure_at(3000.0), 15.0 + ZERO_C),
+            density_at(3000.0),
+        ),
+        ("a board 25 K warmer than the air", at(40.0), at(15.0)),
+    ];
+    markdown(
+        &["taken for the density", "is off by", "thrust given is off by"],
+        &rows.map(row),
+    )
 }
 
 /// Four requests to the paper's X8, and what isolated rotors and this mixer give by the pair's map.
