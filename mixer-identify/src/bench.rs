@@ -46,10 +46,28 @@ pub struct Point {
     pub thrust: f64,
     /// Torque, N m, positive where the lower rotor outweighs the upper; NaN where not measured.
     pub torque: f64,
-    /// Supply voltage, V; NaN where not measured.
+    /// Supply voltage, V, of the rotor that turns or in the mean of both; NaN where not measured.
     pub voltage: f64,
+    /// What the upper rotor's own voltage is above that mean, and the lower one's below it, as a
+    /// share; 0 where they have one supply.
+    pub imbalance: f64,
     /// Electrical power of the whole, W; NaN where not measured.
     pub power_w: f64,
+}
+
+impl Point {
+    /// What the throttles of the point, measured at `own` V, give at `reference` V: thrust and torque
+    /// follow V^k, electrical power the cube of the speed whose square is thrust.
+    #[must_use]
+    pub(crate) fn at_voltage(&self, own: f64, reference: f64, [thrust, torque]: [f64; 2]) -> Point {
+        let by = |exponent| libm::pow(own / reference, exponent);
+        Point {
+            thrust: self.thrust / by(thrust),
+            torque: self.torque / by(torque),
+            power_w: self.power_w / by(1.5 * thrust),
+            ..*self
+        }
+    }
 }
 
 /// A bench file made ready.
@@ -182,7 +200,10 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         Kind::SingleRotor => s.throttle[rotor].is_nan() || s.throttle[rotor] > how.stop_throttle,
     });
     let start_stop_rows = before - samples.len();
-    supplied(&name, &mut samples, &mut refused, &mut notes);
+    let turning: &[usize] = if kind == Kind::Pair { &[0, 1] } else { &[rotor] };
+    for &rotor in turning {
+        supplied(&name, rotor, &mut samples, &mut refused, &mut notes);
+    }
     let (streaming, mut settling_rows) = (plateau::is_streaming(&samples), 0);
     if streaming {
         (samples, settling_rows) = plateau::means(&samples, how.settle);
@@ -216,15 +237,19 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         ];
         match missing.iter().find(|(is, _)| *is) {
             Some((_, reason)) => refused.push(RefusedRow::new(&name, sample.line, *reason)),
-            None => points.push(Point {
-                line: sample.line,
-                u,
-                l,
-                thrust,
-                torque,
-                voltage: sample.voltage,
-                power_w: sample.power_w,
-            }),
+            None => {
+                let [voltage, imbalance] = supply(turning, sample.voltage);
+                points.push(Point {
+                    line: sample.line,
+                    u,
+                    l,
+                    thrust,
+                    torque,
+                    voltage,
+                    imbalance,
+                    power_w: sample.power_w,
+                })
+            }
         }
     }
     refused.sort_by_key(|r| r.line);
@@ -297,9 +322,28 @@ fn some_readable(
 /// Share of the median voltage below which a supply is off, or was not recorded.
 const OFF: f64 = 0.25;
 
-/// Refuses rows whose voltage cannot have driven the rotors. Where all are 0 none was recorded.
-fn supplied(name: &str, samples: &mut Vec<Sample>, refused: &mut Vec<RefusedRow>, notes: &mut Vec<String>) {
-    let volts = samples.iter().map(|s| s.voltage);
+/// Mean voltage of the rotors that turn, V, and the upper one's over it less 1. One supply is all of
+/// a rotor that has none of its own.
+fn supply(turning: &[usize], volts: [f64; 2]) -> [f64; 2] {
+    let own = |rotor: usize| {
+        Some(volts[rotor])
+            .filter(|v| v.is_finite())
+            .unwrap_or(volts[1 - rotor])
+    };
+    let mean = turning.iter().map(|&rotor| own(rotor)).sum::<f64>() / turning.len() as f64;
+    let above = own(turning[0]) / mean - 1.0;
+    [mean, if above.is_finite() { above } else { 0.0 }]
+}
+
+/// Refuses rows whose voltage cannot have driven the rotor. Where all are 0 none was recorded.
+fn supplied(
+    name: &str,
+    rotor: usize,
+    samples: &mut Vec<Sample>,
+    refused: &mut Vec<RefusedRow>,
+    notes: &mut Vec<String>,
+) {
+    let volts = samples.iter().map(|s| s.voltage[rotor]);
     let mut volts: Vec<f64> = volts.filter(|v| v.is_finite()).collect();
     volts.sort_by(f64::total_cmp);
     let Some(&median) = volts.get(volts.len() / 2) else {
@@ -310,16 +354,16 @@ fn supplied(name: &str, samples: &mut Vec<Sample>, refused: &mut Vec<RefusedRow>
             "the voltage is {median} V in most rows: taken as not measured"
         ));
         for sample in samples {
-            (sample.voltage, sample.power_w) = (f64::NAN, f64::NAN);
+            (sample.voltage[rotor], sample.power_w) = (f64::NAN, f64::NAN);
         }
         return;
     }
     samples.retain(|s| {
-        let off = s.voltage <= OFF * median;
+        let off = s.voltage[rotor] <= OFF * median;
         if off {
             let reason = format!(
                 "the voltage is {} V, in the middle of the rows {median} V",
-                s.voltage
+                s.voltage[rotor]
             );
             refused.push(RefusedRow::new(name, s.line, reason));
         }

@@ -9,6 +9,7 @@ use super::fit::power::{LeastPower, Power};
 use super::fit::voltage::{Estimate, Exponent, Voltage};
 use super::identified::Identified;
 use super::rotor::predict::Predicted;
+use super::rotor::single::exponents_told;
 use super::rotor::{Alone, Turning};
 
 /// Where a fact is told.
@@ -62,6 +63,9 @@ impl Facts {
         self.add(Told::Detail, "", text);
     }
 }
+
+/// Sag of a supply, as a share, that is told.
+const SAG: f64 = 0.01;
 
 /// Files that are named one by one in every report.
 const MOST_FILES: usize = 4;
@@ -334,9 +338,16 @@ pub fn of_predicted(predicted: &Predicted) -> Vec<Fact> {
     let mut facts = Facts::default();
     for run in &predicted.runs {
         let (file, points, [from, to]) = (&run.file, run.points, run.measured);
-        let volts = run
-            .voltage_v
-            .map_or(String::new(), |volts| format!(", {volts:.2} V"));
+        let volts = match (run.range_v, run.voltage_v) {
+            (Some([low, high]), Some(volts)) if high - low > SAG * volts && run.exponents != [0.0; 2] => {
+                format!(
+                    "; its rows of {low:.2} to {high:.2} V are brought to {volts:.2} V by {}",
+                    exponents_told(run.exponents)
+                )
+            }
+            (_, Some(volts)) => format!(", {volts:.2} V"),
+            (_, None) => String::new(),
+        };
         let text = format!("{file}: {points} points of one rotor, throttle {from:.2} to {to:.2}{volts}");
         facts.always("from", text);
     }

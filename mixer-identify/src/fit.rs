@@ -17,6 +17,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use self::basis::{Centred, ThrottleBox, monomials};
 use crate::statistics::{dot, extent, greatest, rms, times};
 
+pub mod balance;
 pub mod basis;
 pub mod cross;
 pub mod fold;

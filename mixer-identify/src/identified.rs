@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::bench::read::Reading;
 use crate::bench::{Bench, Kind, Preparation};
+use crate::fit::balance::balanced;
 use crate::fit::hundredths;
 use crate::fit::pair::{self, Pair};
 use crate::fit::power::{self, Power};
@@ -69,12 +70,16 @@ pub fn with_runs(
     wishes: &Wishes,
 ) -> Result<Identified, Refusal> {
     distinct_names(&benches)?;
-    let has = |kind| benches.iter().any(|b| b.kind == kind);
-    let voltage = dependence(&benches);
+    let balanced: Vec<Bench> = benches.iter().map(balanced).collect();
+    let voltage = dependence(&balanced);
     let voltage = match wishes.voltage_exponent {
         Some(exponents) => Some(declared(voltage, exponents, &benches)?),
         None => voltage,
     };
+    // Without exponents the sag of either supply stays in the map.
+    let corrected = voltage.as_ref().and_then(Voltage::exponents).is_some();
+    let benches = if corrected { balanced } else { benches };
+    let has = |kind| benches.iter().any(|b| b.kind == kind);
     let mut warnings = Vec::new();
     let pair = if has(Kind::Pair) {
         let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;

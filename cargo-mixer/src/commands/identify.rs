@@ -14,6 +14,7 @@ use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
+use mixer_identify::rotor::single::EXPONENT;
 use mixer_identify::texts::{Prediction, identify};
 
 use crate::bench_args::{finite, number, positive, pwm_range, role, sign_choice, throttle_box};
@@ -202,7 +203,10 @@ pub fn run(args: &IdentifyArgs) -> Done {
         let how = Prediction {
             run: predict::of_one_rotor(),
             map: settings,
-            known: args.rotors.known(args.reference_voltage),
+            known: args.rotors.known(
+                args.reference_voltage,
+                args.voltage_exponent.unwrap_or([EXPONENT; 2]),
+            ),
             wishes: args.rotors.wishes(args.throttle, false),
         };
         let answer = args.rotors.predict(single, &maps, &how).map_err(refused)?;

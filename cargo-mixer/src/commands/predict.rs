@@ -11,7 +11,7 @@ use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::rotor::predict::{Predicted, Wishes};
-use mixer_identify::rotor::single::Known;
+use mixer_identify::rotor::single::{EXPONENT, Known};
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
@@ -39,7 +39,7 @@ pub struct PredictArgs {
     /// revolutions per minute. Takes the column RPM, or --column upper=HEADER.
     #[arg(long, value_name = "RPM", value_parser = positive)]
     pub rpm_at_full: Option<f64>,
-    /// Bring the run to this voltage, V, by an exponent of 1.75.
+    /// Bring the rows of the run to this voltage, V, by an exponent of 1.75 [default: their mean].
     #[arg(long, value_name = "VOLT", value_parser = positive)]
     pub reference_voltage: Option<f64>,
     /// The throttles to command; the lower is raised where the map asks for it [default: 0.2,1].
@@ -101,13 +101,14 @@ impl RotorArgs {
         self.spacing_ratio.or(spacing.map(|(z, diameter)| z / diameter))
     }
 
-    /// What is known of the runs.
-    pub(crate) fn known(&self, reference_v: Option<f64>) -> Known {
+    /// What is known of the runs, whose thrust and torque follow the voltage by `exponents`.
+    pub(crate) fn known(&self, reference_v: Option<f64>, exponents: [f64; 2]) -> Known {
         Known {
             kappa_m: self.kappa,
             diameter_m: self.diameter,
             run_v: self.run_voltage,
             reference_v,
+            exponents,
         }
     }
 
@@ -180,10 +181,12 @@ impl PredictArgs {
     /// # Errors
     /// Files that cannot serve.
     pub fn predicted(&self) -> Result<Answer<Predicted>, Vec<Refusal>> {
+        // A speed that is held does not follow the voltage.
+        let exponents = [if self.rpm_at_full.is_some() { 0.0 } else { EXPONENT }; 2];
         let how = Prediction {
             run: self.settings(),
             map: Settings::default(),
-            known: self.rotors.known(self.reference_voltage),
+            known: self.rotors.known(self.reference_voltage, exponents),
             wishes: self.rotors.wishes(self.throttle, self.rpm_at_full.is_some()),
         };
         self.rotors.predict(&text(&self.single), &[], &how)

@@ -10,7 +10,7 @@ use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
 use mixer_identify::identified::Settings;
 use mixer_identify::rotor::predict::{Predicted, Wishes, correct};
-use mixer_identify::rotor::single::{Known, Single};
+use mixer_identify::rotor::single::{EXPONENT, Known, Single};
 use mixer_rt::Wrench;
 
 use crate::{bench_data, folder, json, run, stdout};
@@ -135,6 +135,9 @@ fn predicted_airframes_lift_what_is_asked() {
             .unwrap_or_else(|faults| panic!("{map}: {faults}"));
         let mut quartic = Settings::default();
         quartic.wishes.basis = Some(Basis::Quartic);
+        // Rows of the map at the voltage of the prediction.
+        quartic.wishes.voltage_exponent = Some([EXPONENT; 2]);
+        quartic.wishes.reference_v = predicted.reference_v;
         let measured = identify(&[file(map)], &quartic)
             .expect("a map")
             .pair

@@ -53,8 +53,8 @@ pub struct Columns {
     pub thrust: Split<Option<Column>>,
     /// Torque.
     pub torque: Split<Option<Column>>,
-    /// Supply voltage of the whole or of the upper rotor; that of the lower rotor for its power only,
-    /// as two sensors differ by their calibration.
+    /// Supply voltage of the whole or of the upper rotor, and of the lower one where it has a supply
+    /// of its own.
     pub voltage: Split<Option<Column>>,
     /// Supply current.
     pub current: Split<Option<Column>>,
@@ -131,6 +131,9 @@ impl Columns {
             use Quantity::{Current, Throttle, Thrust, Torque};
             for quantity in [Throttle, Thrust, Torque, Current] {
                 columns.of(quantity).rotors.swap(0, 1);
+            }
+            if columns.voltage.complete() {
+                columns.voltage.rotors.swap(0, 1);
             }
         }
         for (role, wanted) in &by_hand.columns {

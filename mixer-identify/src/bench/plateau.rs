@@ -50,7 +50,7 @@ pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
             throttle: [0, 1].map(|r| mean(&|s| s.throttle[r])),
             thrust: split(|s| s.thrust),
             torque: split(|s| s.torque),
-            voltage: mean(&|s| s.voltage),
+            voltage: [0, 1].map(|r| mean(&|s| s.voltage[r])),
             power_w: mean(&|s| s.power_w),
         });
     }
@@ -86,7 +86,7 @@ mod tests {
                 whole: f64::NAN,
                 rotors: [f64::NAN; 2],
             },
-            voltage: f64::NAN,
+            voltage: [f64::NAN; 2],
             power_w: f64::NAN,
         }
     }

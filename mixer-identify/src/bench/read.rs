@@ -48,8 +48,8 @@ pub struct Sample {
     pub thrust: Split<f64>,
     /// Torque, N m.
     pub torque: Split<f64>,
-    /// Supply voltage, V.
-    pub voltage: f64,
+    /// Supply voltage of the upper rotor or of both, and of the lower one where it has its own, V.
+    pub voltage: [f64; 2],
     /// Electrical power of the whole, W.
     pub power_w: f64,
 }
@@ -215,7 +215,7 @@ impl Cells {
             throttle,
             thrust: split(&columns.thrust)?,
             torque: split(&columns.torque)?,
-            voltage: voltage[0],
+            voltage,
             power_w,
         })
     }

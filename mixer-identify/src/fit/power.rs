@@ -184,17 +184,14 @@ fn least_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Res
 /// The points of the pair's files that have power, brought to the voltage of the map.
 fn with_power(benches: &[Bench], pair: &Pair, voltage: Option<&Voltage>) -> Result<Vec<Point>, String> {
     let of_pair = || benches.iter().filter(|b| b.kind == Kind::Pair);
-    // Where the map is brought to a voltage, power is as well: thrust goes with the square of
-    // speed, power with its cube.
-    let exponent = voltage.and_then(|v| v.thrust.value()).map(|k| 1.5 * k);
-    let at_reference = |p: &Point| match (pair.normalised_to_v, exponent) {
-        (Some(reference), Some(exponent)) => p.power_w / libm::pow(p.voltage / reference, exponent),
-        _ => p.power_w,
+    // Where the map is brought to a voltage, power is as well.
+    let brought = pair.normalised_to_v.zip(voltage.and_then(Voltage::exponents));
+    let at_reference = |p: &Point| {
+        brought.map_or(*p, |(reference, exponents)| {
+            p.at_voltage(p.voltage, reference, exponents)
+        })
     };
-    let points = of_pair().flat_map(|b| &b.points).map(|p| Point {
-        power_w: at_reference(p),
-        ..*p
-    });
+    let points = of_pair().flat_map(|b| &b.points).map(at_reference);
     let points: Vec<Point> = points.filter(|p| p.power_w.is_finite()).collect();
     if points.is_empty() {
         return Err(of_pair()

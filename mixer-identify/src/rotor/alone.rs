@@ -186,13 +186,12 @@ fn at_reference(
         ));
     }
     let place = |p: &Point| {
-        let [by_f, by_q] = brought.map_or([1.0, 1.0], |(reference, exponents)| {
-            exponents.map(|e| libm::pow(p.voltage / reference, e))
+        let p = brought.map_or(*p, |(reference, exponents)| {
+            p.at_voltage(p.voltage, reference, exponents)
         });
         Point {
-            thrust: p.thrust / by_f,
-            torque: turning.sign() * p.torque / by_q,
-            ..*p
+            torque: turning.sign() * p.torque,
+            ..p
         }
     };
     run.points.iter().map(place).collect()

@@ -11,7 +11,8 @@ use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 use toml_edit::{DocumentMut, value};
 
-use crate::bench::{Bench, Kind, mean_voltage};
+use crate::bench::{Bench, Kind};
+use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::uncertainty::Uncertainty;
 use crate::fit::{Design, ten_digits};
@@ -151,7 +152,7 @@ pub fn correct(
     let mut factors = [1.0; 3];
     let mut rows_with_torque = 0;
     if !maps.is_empty() {
-        let case = case(&runs, maps, general, spacing_ratio, throttle, &mut warnings)?;
+        let case = case(&runs, maps, general, spacing_ratio, throttle)?;
         rows_with_torque = case.rows.iter().filter(|row| row[3].is_finite()).count();
         advise(case.rows.len(), rows_with_torque, &mut warnings);
         let found = posterior::fit(general, BETWEEN_SYSTEMS, &[case]);
@@ -227,7 +228,6 @@ fn case(
     general: Interaction,
     spacing_ratio: f64,
     ThrottleBox { max, .. }: ThrottleBox,
-    warnings: &mut Vec<String>,
 ) -> Result<Case, Refusal> {
     let (rotors, mut rows) = (rotors(runs), Vec::new());
     for map in maps {
@@ -238,16 +238,13 @@ fn case(
                 "rows in which both rotors turn; a run of one rotor alone by --prior",
             ));
         }
-        rows.extend(map.points.iter().map(|p| [p.u, p.l, p.thrust, p.torque]));
-    }
-    let volts = mean_voltage(maps.iter().flat_map(|map| &map.points));
-    if let (Some((mean, _)), Some(of_run)) = (volts, runs[0].voltage_v)
-        && (mean / of_run - 1.0).abs() > 0.1
-    {
-        warnings.push(format!(
-            "the rows of the pair are of {mean:.2} V, the run of {of_run:.2} V: what lies between is taken as a factor of \
-             thrust and torque; --reference-voltage {mean:.2} brings the run to them"
-        ));
+        // As one supply for both rotors at the voltage of the runs.
+        rows.extend(map.points.iter().map(|p| {
+            let [u, l] = throttles(p);
+            let own = runs[0].voltage_v.filter(|_| p.voltage.is_finite());
+            let p = own.map_or(*p, |of_run| p.at_voltage(p.voltage, of_run, runs[0].exponents));
+            [u, l, p.thrust, p.torque]
+        }));
     }
     // The greatest torque is that of one rotor fast and the other slow.
     let [full, _] = general.pair(&rotors, spacing_ratio, [max; 2]);

@@ -25,7 +25,7 @@ pub const KAPPA_PER_DIAMETER: f64 = 0.048;
 pub const EXPONENT: f64 = 1.75;
 
 /// What the user knows of a run beside its file.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Known {
     /// Torque per thrust, m, for a run without torque.
     pub kappa_m: Option<f64>,
@@ -33,8 +33,22 @@ pub struct Known {
     pub diameter_m: Option<f64>,
     /// Voltage of the run, V, where it has no column for it.
     pub run_v: Option<f64>,
-    /// Voltage to which the run is brought, V.
+    /// Voltage to which the rows of the run are brought, V; their mean where it is none.
     pub reference_v: Option<f64>,
+    /// Exponents of thrust and of torque by which they are.
+    pub exponents: [f64; 2],
+}
+
+impl Default for Known {
+    fn default() -> Self {
+        Known {
+            kappa_m: None,
+            diameter_m: None,
+            run_v: None,
+            reference_v: None,
+            exponents: [EXPONENT; 2],
+        }
+    }
 }
 
 /// A rotor alone.
@@ -52,6 +66,10 @@ pub struct Single {
     pub kappa_m: Option<f64>,
     /// Voltage at which the curves hold, V, where it is known.
     pub voltage_v: Option<f64>,
+    /// Least and greatest voltage of the rows, V.
+    pub range_v: Option<[f64; 2]>,
+    /// Exponents of thrust and of torque that brought the rows from there to that voltage.
+    pub exponents: [f64; 2],
     /// Thrust and torque.
     #[serde(skip)]
     pub rotor: Rotor,
@@ -73,7 +91,8 @@ impl Single {
                 ),
             ));
         }
-        let points = &bench.points;
+        let (points, voltage_v) = at_one_voltage(bench, known, warnings)?;
+        let points = &points;
         let measured = extent(points.iter().map(|p| p.u));
         enough(file, points, measured)?;
         if measured[1] < FULL {
@@ -105,7 +124,6 @@ impl Single {
                  units of both"
             ));
         }
-        let (factor, voltage_v) = brought(bench, known, warnings)?;
         Ok(Single {
             file: file.clone(),
             points: points.len(),
@@ -113,9 +131,16 @@ impl Single {
             misfit_percent: [thrust.misfit_percent, torque.misfit_percent],
             kappa_m,
             voltage_v,
+            range_v: mean_voltage(&bench.points)
+                .filter(|_| known.run_v.is_none())
+                .map(|_| {
+                    let volts = bench.points.iter().map(|p| p.voltage);
+                    extent(volts.filter(|v| v.is_finite()))
+                }),
+            exponents: known.exponents,
             rotor: Rotor {
-                thrust: thrust.curve.times(factor),
-                torque: torque.curve.times(factor),
+                thrust: thrust.curve,
+                torque: torque.curve,
             },
         })
     }
@@ -207,24 +232,82 @@ fn stand_in(file: &str, known: &Known) -> Result<(f64, String), Refusal> {
     }
 }
 
-/// The factor that brings a run to the reference voltage, and the voltage where its curves hold.
-fn brought(bench: &Bench, known: &Known, warnings: &mut Vec<String>) -> Result<(f64, Option<f64>), Refusal> {
+/// The exponents of thrust and of torque in words.
+pub(crate) fn exponents_told([thrust, torque]: [f64; 2]) -> String {
+    match thrust == torque {
+        true => format!("an exponent of {thrust}"),
+        false => format!("exponents of {thrust} for thrust and {torque} for torque"),
+    }
+}
+
+/// The points, each brought from its own voltage to the reference, and that voltage where one is
+/// known.
+fn at_one_voltage(
+    bench: &Bench,
+    known: &Known,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Point>, Option<f64>), Refusal> {
     let mean = mean_voltage(&bench.points).map(|(mean, _)| mean);
-    match (known.run_v.or(mean), known.reference_v) {
-        (own, None) => Ok((1.0, own)),
-        (Some(own), Some(reference)) => {
-            if (own / reference - 1.0).abs() > 0.005 {
-                warnings.push(format!(
-                    "{} was run at {own:.2} V and is brought to {reference} V by an exponent of {EXPONENT}",
-                    bench.file
-                ));
-            }
-            Ok((libm::pow(reference / own, EXPONENT), Some(reference)))
+    let Some(run_v) = known.run_v.or(mean) else {
+        return match known.reference_v {
+            None => Ok((bench.points.clone(), None)),
+            Some(_) => Err(Refusal::of(
+                &bench.file,
+                "--reference-voltage has nothing to start from: the run has no voltage",
+                "--run-voltage VOLT, or a column of the voltage",
+            )),
+        };
+    };
+    let reference = known.reference_v.unwrap_or(run_v);
+    if (run_v / reference - 1.0).abs() > 0.005 {
+        warnings.push(format!(
+            "{} was run at {run_v:.2} V and is brought to {reference} V by {}",
+            bench.file,
+            exponents_told(known.exponents)
+        ));
+    }
+    let at_reference = |p: &Point| {
+        let own = Some(p.voltage).filter(|v| known.run_v.is_none() && v.is_finite());
+        p.at_voltage(own.unwrap_or(run_v), reference, known.exponents)
+    };
+    Ok((bench.points.iter().map(at_reference).collect(), Some(reference)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::{Preparation, prepare, read};
+
+    /// 20 u2 + 2 u N and a torque of 0.02 m of it at 22.2 V, measured at a supply that sags by `sag`
+    /// of it at full throttle.
+    fn run(sag: f64, known: &Known) -> Single {
+        let mut csv = String::from("throttle,thrust_n,torque_nm,voltage_v\n");
+        for u in (2..=10).map(|k| 0.1 * f64::from(k)) {
+            let volts = 22.2 * (1.0 - sag * u * u);
+            let thrust = (20.0 * u * u + 2.0 * u) * libm::pow(volts / 22.2, EXPONENT);
+            csv += &format!("{u},{thrust},{},{volts}\n", 0.02 * thrust);
         }
-        (None, Some(_)) => Err(Refusal::of(
-            &bench.file,
-            "--reference-voltage has nothing to start from: the run has no voltage",
-            "--run-voltage VOLT, or a column of the voltage",
-        )),
+        let log = read::read("run.csv", csv.as_bytes(), &read::Reading::default()).expect("a log");
+        let bench = prepare(log, &Preparation::default()).expect("a bench");
+        Single::of(&bench, known, &mut Vec::new()).expect("a rotor")
+    }
+
+    #[test]
+    fn a_supply_that_sags_gives_the_curves_of_one_that_holds() {
+        let known = Known {
+            reference_v: Some(22.2),
+            ..Known::default()
+        };
+        for sag in [0.0, 0.06, 0.1] {
+            let Rotor { thrust, torque } = run(sag, &known).rotor;
+            assert!((thrust.at(0.95) / 19.95 - 1.0).abs() < 1e-6, "{sag}: {thrust:?}");
+            assert!((torque.at(0.95) / 0.399 - 1.0).abs() < 1e-6, "{sag}: {torque:?}");
+        }
+        // Without a reference at the mean voltage.
+        let own = run(0.1, &Known::default());
+        let volts = own.voltage_v.expect("a voltage");
+        let wanted = 19.95 * libm::pow(volts / 22.2, EXPONENT);
+        assert!((own.rotor.thrust.at(0.95) / wanted - 1.0).abs() < 1e-6, "{volts}");
+        assert_eq!(own.range_v, Some([22.2 * 0.9, 22.2 * (1.0 - 0.1 * 0.2 * 0.2)]));
     }
 }

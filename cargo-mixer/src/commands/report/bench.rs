@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mixer_compiler::Compiled;
 use mixer_identify::bench::Kind;
+use mixer_identify::fit::balance::balanced;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_report::bench::BenchPoints;
@@ -23,7 +24,10 @@ pub(super) fn read(compiled: &Compiled, files: &[PathBuf]) -> Result<BenchPoints
 }
 
 fn add(points: &mut BenchPoints, compiled: &Compiled, file: &Path) -> Result<(), Refusal> {
-    let bench = read_one(file, &Settings::default())?;
+    let mut bench = read_one(file, &Settings::default())?;
+    if compiled.airframe.voltage.is_some() {
+        bench = balanced(&bench);
+    }
     if bench.kind != Kind::Pair {
         return Err(Refusal::of(
             bench.file,

@@ -6,6 +6,7 @@ use std::path::Path;
 use cargo_mixer::bench_files::{identify, read_one};
 use mixer_compiler::airframe::Basis;
 use mixer_identify::bench::Point;
+use mixer_identify::fit::balance::balanced;
 use mixer_identify::fit::polynomial::Polynomial;
 
 use super::bench_data::coaxial;
@@ -45,7 +46,7 @@ fn a_map_between_two_spacings_is_interpolated() {
             .collect()
     });
     let bench = read_one(&coaxial(&data, BETWEEN.0), &settings(None));
-    let rows = bench.expect("a bench").points;
+    let rows = balanced(&bench.expect("a bench")).points;
     let full = rows.iter().fold([0.0f64; 2], |full, row| {
         [full[0].max(row.thrust.abs()), full[1].max(row.torque.abs())]
     });
@@ -82,7 +83,8 @@ fn a_map_between_two_spacings_is_interpolated() {
     assert!(interpolated[0] < 1.2 && interpolated[1] < 3.0, "{interpolated:?}");
     for single in [near, far] {
         assert!(
-            interpolated[0] < single[0] && interpolated[1] < single[1],
+            // Thrust differs by 1 % from day to day, by less between the spacings.
+            interpolated[0] < single[0] + 0.05 && interpolated[1] < single[1],
             "{models:?}"
         );
     }

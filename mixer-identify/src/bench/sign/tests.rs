@@ -19,7 +19,7 @@ fn samples(a: f64, b: f64) -> Vec<Sample> {
             whole: a * u * u + b * l * l,
             rotors: [a * u * u, b * l * l],
         },
-        voltage: f64::NAN,
+        voltage: [f64::NAN; 2],
         power_w: f64::NAN,
     };
     [(0.2, 0.8), (0.8, 0.2), (0.5, 0.5), (0.9, 0.9), (0.2, 0.3)]

@@ -63,20 +63,13 @@ pub(super) fn at_reference<'a>(
             "the supply voltage of every row, in a column of its own (--column voltage=HEADER)",
         ));
     }
-    let bring = |y: f64, v: f64, exponent: f64| y / libm::pow(v / reference, exponent);
     let place = |bench: &&'a Bench, point: &'a Point| {
-        let (thrust, torque) = match exponents {
-            Some([f, q]) => (
-                bring(point.thrust, point.voltage, f),
-                bring(point.torque, point.voltage, q),
-            ),
-            None => (point.thrust, point.torque),
-        };
+        let at = exponents.map_or(*point, |k| point.at_voltage(point.voltage, reference, k));
         Placed {
             point,
             file: &bench.file,
-            thrust,
-            torque,
+            thrust: at.thrust,
+            torque: at.torque,
         }
     };
     let rows = benches.iter().flat_map(|b| b.points.iter().map(move |p| (b, p)));

@@ -39,6 +39,7 @@ fn sweep(volts: f64, sag: f64, k: f64, throttles: impl Iterator<Item = f64>, noi
             thrust: 10.0 * u * u * scale,
             torque: f64::NAN,
             voltage,
+            imbalance: 0.0,
             power_w: f64::NAN,
         }
     };
@@ -119,6 +120,7 @@ fn torque_that_changes_its_sign_has_an_exponent_too() {
                 thrust: 20.0 * (u * u + l * l) * scale,
                 torque,
                 voltage: volts,
+                imbalance: 0.0,
                 power_w: f64::NAN,
             }
         };
