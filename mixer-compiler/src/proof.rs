@@ -1,6 +1,6 @@
 //! Proof that the emitted inverse keeps its tolerance.
 //!
-//! The claim: for every voltage in the range and every pair of throttles in the throttle box, let E
+//! The claim: for every voltage and density in their ranges and every pair of throttles in the throttle box, let E
 //! = k F(u, l) be the efforts that they give. Where the mixer asks for E, rounded to f32, the
 //! throttles that the emitted tables give by the operations of `mixer-rt` lie within the throttle
 //! range, and their efforts are within `stated` of E. F and k are the airframe file's, in exact
@@ -33,7 +33,7 @@ pub struct Certificate {
     /// Bound of the residual at the reference voltage, `[N, N m]`, the voltage table's error
     /// included.
     pub reference: [f64; 2],
-    /// Bound of the residual at every voltage in the range, `[N, N m]`.
+    /// Bound of the residual at every voltage and density in their ranges, `[N, N m]`.
     pub stated: [f64; 2],
     /// The file's tolerance, `[N, N m]`.
     pub tolerance: [f64; 2],

@@ -36,7 +36,7 @@ struct Attempt {
 /// Bounds within this factor of the largest observed residual are sharp enough.
 const SHARP: f64 = 1.15;
 
-/// The cheapest evaluator that is proven to meet the file's tolerance at every voltage.
+/// The cheapest evaluator that is proven to meet the file's tolerance at every voltage and density.
 ///
 /// # Errors
 /// No evaluator meets the tolerance; the best bound that could be proven.

@@ -12,9 +12,10 @@ use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::tables::ClosedFormTable;
 
-/// Checks, and voltage where there is a correction.
+/// Checks, a correction of voltage or of density, and each piece of its table.
 const PER_MIX: u32 = 240;
-const PER_VOLTAGE: u32 = 78;
+const PER_CORRECTION: u32 = 70;
+const PER_PIECE: u32 = 10;
 
 /// A request brought down to what products do not overflow with.
 const LIMITED: u32 = 70;
@@ -100,9 +101,12 @@ fn interior(compiled: &Compiled) -> u32 {
     2 * ITERATIONS * (ITERATION + n * (unit + more)) + CUT + n * CUT_UNIT
 }
 
-/// Checks, and voltage where there is a correction.
+/// Checks, and corrections of voltage and density where there are any.
 fn per_mix(compiled: &Compiled) -> u32 {
-    PER_MIX + LIMITED + compiled.airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE)
+    let corrections = &compiled.tables.corrections;
+    let tables = corrections.voltage.iter().chain(&corrections.air);
+    let corrections = tables.map(|table| PER_CORRECTION + PER_PIECE * table.pieces.len() as u32);
+    PER_MIX + LIMITED + corrections.sum::<u32>()
 }
 
 /// The forward map of one unit.

@@ -1,7 +1,7 @@
 //! The instructions of a mix that delivers its request: about
 //!
 //! ```text
-//! per mix + n (per unit + evaluator) + PER_VOLTAGE where the airframe has a voltage correction
+//! per mix + n (per unit + evaluator) + PER_CORRECTION for each of voltage and density that is corrected for
 //! ```
 //!
 //! The inverse maps are counted on their own ([`mixer_compiler::evaluator::Evaluator::instructions`]). The overheads are
@@ -20,7 +20,7 @@ struct Overhead {
     error: f64,
 }
 
-const PER_VOLTAGE: u32 = 50;
+const PER_CORRECTION: u32 = 50;
 
 /// Requests that least norm delivers: the median over attainable ones.
 const CLOSED_FORM: Overhead = Overhead {
@@ -69,10 +69,10 @@ impl Overhead {
     fn estimate(&self, compiled: &Compiled) -> Option<Estimate> {
         let airframe = &compiled.airframe;
         let units = airframe.units.len() as u32;
-        let voltage = airframe.voltage.as_ref().map_or(0, |_| PER_VOLTAGE);
+        let corrections = airframe.voltage.iter().chain(&airframe.air).count() as u32;
         let one = compiled.evaluator.instructions(airframe.pair.basis)?;
         Some(Estimate {
-            instructions: self.per_mix + units * (self.per_unit + one) + voltage,
+            instructions: self.per_mix + units * (self.per_unit + one) + PER_CORRECTION * corrections,
             error: self.error,
         })
     }

@@ -84,6 +84,14 @@ fn symbols(archive: &Path) -> Vec<String> {
     text.lines().filter_map(words).collect()
 }
 
+/// All functions of a library with `--health`.
+const WITH_HEALTH: [&str; 4] = [
+    "T isae_x8_mix",
+    "T isae_x8_mix_in",
+    "T isae_x8_mix_in_with_health",
+    "T isae_x8_mix_with_health",
+];
+
 /// At the bench's density, and under conditions.
 fn functions(module: &str) -> [String; 2] {
     ["", "_in"].map(|name| format!("T {module}_mix{name}"))
@@ -111,7 +119,7 @@ fn host_programs_have_the_golden_bits() {
 fn rotors_that_are_out_have_an_object_of_their_own() {
     let folder = Folder::new("health");
     run(&mut library(&["airframes/isae-x8.toml", "--health"], &folder.0));
-    let expected = ["", "_in", "_in_with_health", "_with_health"].map(|name| format!("T isae_x8_mix{name}"));
+    let expected = WITH_HEALTH;
     assert_eq!(symbols(&folder.join("libisae_x8.a")), expected);
     for [driver, standard] in [["gcc", "-std=c99"], ["g++", "-std=c++17"]] {
         let program = folder.join("selftest");
@@ -201,7 +209,7 @@ fn assert_bits_without_floating_point(target: &str, processor: &str, machine: &s
     let (linked, own): (Vec<String>, Vec<String>) = symbols(&archive)
         .into_iter()
         .partition(|symbol| symbol.starts_with("U __"));
-    assert_eq!(own, ["T isae_x8_mix", "T isae_x8_mix_with_health"]);
+    assert_eq!(own, WITH_HEALTH);
     assert!(
         linked.iter().any(|symbol| symbol == "U __aeabi_fadd"),
         "{linked:?}"
@@ -284,7 +292,7 @@ fn an_aarch64_computer_has_the_bits() {
         &folder.0,
     ));
     let archive = folder.join("libisae_x8.a");
-    assert_eq!(symbols(&archive), ["T isae_x8_mix", "T isae_x8_mix_with_health"]);
+    assert_eq!(symbols(&archive), WITH_HEALTH);
     let program = folder.join("selftest");
     let mut compiler = Command::new(tools[0]);
     compiler.args([
