@@ -118,19 +118,30 @@ fn host_programs_have_the_golden_bits() {
 #[test]
 fn rotors_that_are_out_have_an_object_of_their_own() {
     let folder = Folder::new("health");
-    run(&mut library(&["airframes/isae-x8.toml", "--health"], &folder.0));
-    let expected = WITH_HEALTH;
-    assert_eq!(symbols(&folder.join("libisae_x8.a")), expected);
-    for [driver, standard] in [["gcc", "-std=c99"], ["g++", "-std=c++17"]] {
+    // Without [air], which ignores the density, and with it.
+    let airframes = [
+        "airframes/isae-x8.toml",
+        "airframes/x8-11in-least-power.toml",
+        "--health",
+    ];
+    run(&mut library(&airframes, &folder.0));
+    assert_eq!(symbols(&folder.join("libisae_x8.a")), WITH_HEALTH);
+    let languages = [["gcc", "-std=c99"], ["g++", "-std=c++17"]];
+    let modules = ["isae_x8", "x8_11in_least_power"].into_iter();
+    for (module, [driver, standard]) in
+        modules.flat_map(|module| languages.map(|language| (module, language)))
+    {
         let program = folder.join("selftest");
         let mut command = Command::new(driver);
         command.args([standard, "-Wall", "-Wextra", "-Werror", "-pedantic"]);
-        command.arg("-DISAE_X8_SELFTEST_MAIN");
+        command.arg(format!("-D{}_SELFTEST_MAIN", module.to_uppercase()));
         if driver == "g++" {
             command.args(["-x", "c++"]);
         }
-        command.arg(folder.join("isae_x8_selftest.c"));
-        command.args(["-x", "none"]).arg(folder.join("libisae_x8.a"));
+        command.arg(folder.join(&format!("{module}_selftest.c")));
+        command
+            .args(["-x", "none"])
+            .arg(folder.join(&format!("lib{module}.a")));
         run(command.arg("-o").arg(&program));
         let output = run(&mut Command::new(&program));
         let text = String::from_utf8(output.stdout).unwrap();
