@@ -13,7 +13,8 @@ use quote::{quote, quote_spanned};
 use syn::LitStr;
 
 /// Compiles the airframe file at the given path into a module that is named after the airframe:
-/// `mix`, `mix_with_health` for rotors that are out, the constants `UNITS`, `CHANNELS`, `SCALE` and
+/// `mix`, `mix_in` in air of a measured density, both `_with_health` for rotors that are out, the
+/// constants `UNITS`, `CHANNELS`, `SCALE` and
 /// `ARDUPILOT_SCALE`, and the mixer as a type.
 ///
 /// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such
@@ -109,8 +110,28 @@ fn find(given: &Path, span: Span) -> Result<PathBuf, String> {
 /// it.
 fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStream {
     let [module, mixer] = Airframe::names_if_refused(source).map(|name| Ident::new(&name, Span::call_site()));
-    let parameters = quote!(_: &::mixer_rt::Wrench, _: f32);
     let result = quote!(::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError>);
+    let functions = |visibility: proc_macro2::TokenStream| {
+        let forms = [
+            ("mix", quote!(f32)),
+            ("mix_with_health", quote!(f32, _: ::mixer_rt::Health)),
+            ("mix_in", quote!(&::mixer_rt::Conditions)),
+            (
+                "mix_in_with_health",
+                quote!(&::mixer_rt::Conditions, _: ::mixer_rt::Health),
+            ),
+        ];
+        let functions = forms.map(|(name, parameters)| {
+            let name = Ident::new(name, Span::call_site());
+            quote! {
+                #visibility fn #name(_: &::mixer_rt::Wrench, _: #parameters) -> #result {
+                    ::core::unreachable!()
+                }
+            }
+        });
+        quote!(#(#functions)*)
+    };
+    let (of_type, of_module) = (functions(quote!()), functions(quote!(pub)));
     let skeleton = quote! {
         pub mod #module {
             pub const UNITS: usize = 0;
@@ -124,19 +145,9 @@ fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStre
                 const CHANNELS: usize = CHANNELS;
                 const SCALE: ::mixer_rt::Wrench = SCALE;
                 type Mix = ::mixer_rt::Mix<CHANNELS>;
-                fn mix(#parameters) -> #result {
-                    ::core::unreachable!()
-                }
-                fn mix_with_health(#parameters, _: ::mixer_rt::Health) -> #result {
-                    ::core::unreachable!()
-                }
+                #of_type
             }
-            pub fn mix(#parameters) -> #result {
-                ::core::unreachable!()
-            }
-            pub fn mix_with_health(#parameters, _: ::mixer_rt::Health) -> #result {
-                ::core::unreachable!()
-            }
+            #of_module
         }
     };
     quote_spanned! { span => ::core::compile_error!(#message); #skeleton }
