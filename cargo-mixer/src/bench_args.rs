@@ -1,6 +1,8 @@
 //! Values of arguments that the commands about benches share.
 
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use mixer_identify::air;
 use mixer_identify::bench::header::{ROLES, unknown_role};
 use mixer_identify::bench::sign::SignChoice;
 use mixer_identify::fit::basis::ThrottleBox;
@@ -75,6 +77,34 @@ pub(crate) fn sign_choice(text: &str) -> Result<SignChoice, String> {
     match text.split_once(',') {
         Some((upper, lower)) => Ok(SignChoice::Given([one(upper)?, one(lower)?])),
         None => one(text).map(|s| SignChoice::Given([s, s])),
+    }
+}
+
+/// The air at the bench.
+#[derive(Debug, Clone, Args)]
+pub struct AirArgs {
+    /// Temperature of the air at the bench, degrees Celsius: with --pressure it gives `[air]`, in
+    /// place of columns of both or of the density.
+    #[arg(long, value_name = "C", value_parser = |text: &str| air::temperature(finite(text)?), requires = "pressure", allow_negative_numbers = true)]
+    pub temperature: Option<f64>,
+    /// Pressure at the place of the bench, hPa, not that reduced to sea level.
+    #[arg(long, value_name = "HPA", value_parser = |text: &str| air::pressure(finite(text)?), requires = "temperature")]
+    pub pressure: Option<f64>,
+    /// Density of the air at the bench, kg/m3, in place of both.
+    #[arg(long, value_name = "KG_M3", value_parser = |text: &str| air::density_given(finite(text)?), conflicts_with = "temperature")]
+    pub density: Option<f64>,
+}
+
+impl AirArgs {
+    /// The air, where it is given.
+    pub fn air(&self) -> Option<air::Known> {
+        let weather = self.temperature.zip(self.pressure);
+        let of_density = |density_kg_m3| air::Known {
+            density_kg_m3,
+            from: "--density".to_owned(),
+        };
+        let of_weather = weather.and_then(|(t, p)| air::Known::of_weather(t, p).ok());
+        self.density.map(of_density).or(of_weather)
     }
 }
 

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Spin;
 use mixer_facts::hover;
+use mixer_identify::air::Air;
 
 use crate::schema::DIRECTIVE;
 use crate::stack::Stack;
@@ -170,6 +171,10 @@ impl NewFrame<'_> {
             self.name()
         );
         text.push_str(tables.trim());
+        if !tables.contains("[air]") {
+            text += "\n";
+            text += Air::default().table(tables.contains("\n[voltage]")).trim_end();
+        }
         text.push_str("\n\n");
         text.push_str(&self.layout()?);
         let _ = write!(

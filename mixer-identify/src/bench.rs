@@ -12,6 +12,7 @@ use self::date::date_in;
 use self::header::Columns;
 use self::read::{Log, RefusedRow, Sample};
 use self::sign::{SignChoice, SignPolicy, Signs};
+use crate::air::{DENSITIES, Known};
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 
@@ -60,11 +61,17 @@ impl Point {
     /// follow V^k, electrical power the cube of the speed whose square is thrust.
     #[must_use]
     pub(crate) fn at_voltage(&self, own: f64, reference: f64, [thrust, torque]: [f64; 2]) -> Point {
-        let by = |exponent| libm::pow(own / reference, exponent);
+        self.divided(own / reference, [thrust, torque, 1.5 * thrust])
+    }
+
+    /// Thrust, torque and power over powers of a ratio.
+    #[must_use]
+    pub(crate) fn divided(&self, ratio: f64, exponents: [f64; 3]) -> Point {
+        let [thrust, torque, power] = exponents.map(|exponent| libm::pow(ratio, exponent));
         Point {
-            thrust: self.thrust / by(thrust),
-            torque: self.torque / by(torque),
-            power_w: self.power_w / by(1.5 * thrust),
+            thrust: self.thrust / thrust,
+            torque: self.torque / torque,
+            power_w: self.power_w / power,
             ..*self
         }
     }
@@ -97,6 +104,8 @@ pub struct Bench {
     pub refused_rows: Vec<RefusedRow>,
     /// Signs applied.
     pub signs: Signs,
+    /// The air, where its density is known.
+    pub air: Option<Known>,
     /// Remarks for the report.
     pub notes: Vec<String>,
     /// Why there is no electrical power, where columns are missing for it.
@@ -134,6 +143,8 @@ pub struct Preparation {
     pub own_columns: bool,
     /// Date given by hand.
     pub date: Option<String>,
+    /// The air of the bench, given by hand; else of columns where there are any.
+    pub air: Option<Known>,
 }
 
 /// Throttle at or below which a rotor stands still, unless the user says otherwise.
@@ -153,6 +164,7 @@ impl Default for Preparation {
             torque_may_lack: false,
             own_columns: false,
             date: None,
+            air: None,
         }
     }
 }
@@ -170,9 +182,16 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         columns,
         mut samples,
         mut refused,
+        density_kg_m3,
     } = log;
     let rows = samples.len() + refused.len();
     some_readable(&name, &columns, &samples, &refused)?;
+    let air = match &how.air {
+        None => density_kg_m3
+            .map(|density| of_columns(&name, density))
+            .transpose()?,
+        given => given.clone(),
+    };
     let mut notes = Vec::new();
     let two_throttles = columns.throttle.rotors[1].is_some();
     let turns = |rotor: usize| samples.iter().any(|s| s.throttle[rotor] > how.stop_throttle);
@@ -282,9 +301,26 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         points_used: points.len(),
         refused_rows: refused,
         signs,
+        air,
         notes,
         points,
     })
+}
+
+/// The air by the columns of a file.
+fn of_columns(name: &str, density_kg_m3: f64) -> Result<Known, Refusal> {
+    let [low, high] = DENSITIES;
+    if (low..=high).contains(&density_kg_m3) {
+        let from = format!("columns of {name}");
+        return Ok(Known { density_kg_m3, from });
+    }
+    Err(Refusal::of(
+        name,
+        format!(
+            "its columns of the air give a density of {density_kg_m3:.3} kg/m3, not within {low} to {high}"
+        ),
+        "their units by --unit temperature=, pressure= or density=; or the air by --temperature C --pressure HPA in their place",
+    ))
 }
 
 /// Refuses a file of which no row can be read, or whose command was not recorded.

@@ -2,6 +2,7 @@
 
 use mixer_compiler::model::PairMap;
 
+use super::air::Air;
 use super::bench::{Bench, Kind};
 use super::fit::Fit;
 use super::fit::pair::Pair;
@@ -90,6 +91,7 @@ pub fn of_identified(identified: &Identified) -> Vec<Fact> {
         Some(voltage) => of_voltage(&mut facts, voltage),
         None => facts.always("voltage", "not corrected for: no file has a voltage column"),
     }
+    of_air(&mut facts, &identified.air);
     facts.table = "pair.power";
     match &identified.power {
         Some(Power::Identified(found)) => of_power(&mut facts, found),
@@ -333,6 +335,22 @@ fn of_power(facts: &mut Facts, found: &LeastPower) {
     facts.more(text);
 }
 
+/// The air, where it is known.
+fn of_air(facts: &mut Facts, air: &Air) {
+    let Some((density, [low, high])) = air.density_kg_m3.zip(air.range_kg_m3) else {
+        return;
+    };
+    facts.table = "air";
+    let brought = match high - low > 1e-3 {
+        true => format!(
+            "; rows of {low:.3} to {high:.3} kg/m3 are brought to it by {}",
+            exponents_told(air.exponents)
+        ),
+        false => String::new(),
+    };
+    facts.always("air", format!("{density:.3} kg/m3, of {}{brought}", air.from));
+}
+
 /// What was predicted.
 pub fn of_predicted(predicted: &Predicted) -> Vec<Fact> {
     let mut facts = Facts::default();
@@ -357,6 +375,8 @@ pub fn of_predicted(predicted: &Predicted) -> Vec<Fact> {
     let (ratio, [b, m0, m1, n, a, limit]) = (predicted.spacing_ratio, predicted.constants);
     let text = format!("{ratio:.3}; constants B {b}, m0 {m0}, m1 {m1}, n {n}, a {a}, b {limit}");
     facts.always("z/D", text);
+    of_air(&mut facts, &predicted.air);
+    facts.table = "";
     let pair = &predicted.pair;
     let (f, q) = (pair.uncertainty.thrust_percent, pair.uncertainty.torque_percent);
     let text = format!(

@@ -88,7 +88,11 @@ pub fn tables(id: &Identified) -> String {
     for warning in &id.warnings {
         head += &comment("! ", warning);
     }
-    format!("{head}{document}{tail}")
+    let exponents = document
+        .get("voltage")
+        .and_then(|v| Some(v.get("thrust_exponent").and(v.get("torque_exponent"))?));
+    let air = id.air.table(exponents.is_some());
+    format!("{head}{document}{tail}{air}")
 }
 
 const SIGN: &str = "# Torque is positive where the lower rotor outweighs the upper, which is clockwise on the airframe for an upper\n\
@@ -171,7 +175,13 @@ pub fn of_prediction(predicted: &Predicted) -> String {
     }
     let document = predicted.pair.tables(&|table| comments(&facts, table));
     let reference = predicted.reference_v.map(|volts| (100.0 * volts).round() / 100.0);
-    format!("{head}{document}\n{}", to_fill_in(reference, None, [None; 2]))
+    // A speed that is held does not follow the voltage.
+    let held = predicted.runs.iter().all(|run| run.exponents == [0.0; 2]);
+    let voltage = match held {
+        true => String::new(),
+        false => format!("\n{}", to_fill_in(reference, None, [None; 2])),
+    };
+    format!("{head}{document}{voltage}{}", predicted.air.table(false))
 }
 
 /// The facts about a table.

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::air::{Air, DENSITY_EXPONENT};
 use crate::bench::read::Reading;
 use crate::bench::{Bench, Kind, Preparation};
 use crate::fit::balance::balanced;
@@ -35,6 +36,8 @@ pub struct Identified {
     pub pair: Option<Pair>,
     /// The dependence on voltage; none where no file has a voltage.
     pub voltage: Option<Voltage>,
+    /// The air.
+    pub air: Air,
     /// The torque of least power; none where all files are of single rotors.
     pub power: Option<Power>,
     /// What was read.
@@ -65,11 +68,19 @@ pub fn from_benches(benches: Vec<Bench>, wishes: &Wishes) -> Result<Identified, 
 
 /// [`from_benches`] with runs of the upper and of the lower rotor alone.
 pub fn with_runs(
-    benches: Vec<Bench>,
-    runs: [Option<Bench>; 2],
+    mut benches: Vec<Bench>,
+    mut runs: [Option<Bench>; 2],
     wishes: &Wishes,
 ) -> Result<Identified, Refusal> {
     distinct_names(&benches)?;
+    let of_air = wishes
+        .voltage_exponent
+        .map_or([DENSITY_EXPONENT; 2], |k| k.map(|k| k - 1.0));
+    let mut air = Air::of(&benches, of_air);
+    benches
+        .iter_mut()
+        .chain(runs.iter_mut().flatten())
+        .for_each(|b| air.bring(b));
     let balanced: Vec<Bench> = benches.iter().map(balanced).collect();
     let voltage = dependence(&balanced);
     let voltage = match wishes.voltage_exponent {
@@ -77,8 +88,9 @@ pub fn with_runs(
         None => voltage,
     };
     // Without exponents the sag of either supply stays in the map.
-    let corrected = voltage.as_ref().and_then(Voltage::exponents).is_some();
-    let benches = if corrected { balanced } else { benches };
+    let exponents = voltage.as_ref().and_then(Voltage::exponents);
+    let benches = if exponents.is_some() { balanced } else { benches };
+    air.exponents = exponents.map_or(of_air, |k| k.map(|k| k - 1.0));
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let mut warnings = Vec::new();
     let pair = if has(Kind::Pair) {
@@ -107,6 +119,7 @@ pub fn with_runs(
         generator: format!("cargo mixer identify {}", env!("CARGO_PKG_VERSION")),
         pair,
         voltage,
+        air,
         power,
         files: benches,
         reference_v,

@@ -30,6 +30,7 @@
 //! assert!(answer.tables.contains("[pair]"));
 //! ```
 
+pub mod air;
 pub mod bench;
 pub mod fact;
 pub mod fit;

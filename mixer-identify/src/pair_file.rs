@@ -5,7 +5,7 @@ use toml_edit::{DocumentMut, Item};
 use super::fragment::POWER_BIAS;
 
 /// Tables that describe the pair; the others of an airframe describe its vehicle.
-const OF_A_PAIR: [&str; 3] = ["throttle", "pair", "voltage"];
+const OF_A_PAIR: [&str; 4] = ["throttle", "pair", "voltage", "air"];
 
 /// The model of a pair, read.
 #[derive(Debug, Clone)]
@@ -36,7 +36,7 @@ impl PairFile {
         float(self.0.get(table)?.as_table_like()?.get(key)?)
     }
 
-    /// `[throttle]`, `[pair]` and `[voltage]`, and the torque of least power, N m per N.
+    /// `[throttle]`, `[pair]`, `[voltage]` and `[air]`, and the torque of least power, N m per N.
     pub fn model(&self) -> (String, Option<f64>) {
         self.tables(&OF_A_PAIR)
     }

@@ -69,14 +69,16 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The columns to fill in behind the throttles. Voltage and current are for the supply's sag and
-/// for the power map; they may stay empty.
-const TO_FILL: [&str; 6] = [
+/// for the power map, temperature and pressure of the air for its density; they may stay empty.
+const TO_FILL: [&str; 8] = [
     "thrust_n",
     "torque_nm",
     "upper_voltage_v",
     "lower_voltage_v",
     "upper_current_a",
     "lower_current_a",
+    "temperature_c",
+    "pressure_hpa",
 ];
 
 /// A CSV to fill in.

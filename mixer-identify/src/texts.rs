@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::air::Air;
 use super::bench::read;
 use super::bench::{self, Bench};
 use super::identified::{Identified, Settings, with_runs};
@@ -102,11 +103,19 @@ pub fn predict(
     maps: &[Text],
     how: &Prediction,
 ) -> Result<Answer<Predicted>, Vec<Refusal>> {
-    let maps = read_all(maps, &how.map)?;
+    let mut maps = read_all(maps, &how.map)?;
+    let run = |text: &Text| read(text, &how.run).map_err(|refusal| vec![refusal]);
+    let (mut upper, mut lower) = (run(upper)?, lower.map(run).transpose()?);
+    // That of the voltage less 1, and 1 where a speed is held.
+    let by_density = how.known.exponents.map(|k| if k == 0.0 { 1.0 } else { k - 1.0 });
+    let air = Air::of([&upper].into_iter().chain(&lower).chain(&maps), by_density);
+    let benches = [&mut upper].into_iter().chain(&mut lower).chain(&mut maps);
+    benches.for_each(|bench| air.bring(bench));
     let mut warnings = Vec::new();
-    let mut single = |text: &Text| Single::of(&read(text, &how.run)?, &how.known, &mut warnings);
-    let runs = single(upper).and_then(|upper| Ok((upper, lower.map(single).transpose()?)));
-    let found = runs.and_then(|(upper, lower)| predict::correct(upper, lower, &maps, &how.wishes, warnings));
+    let mut single = |run: &Bench| Single::of(run, &how.known, &mut warnings);
+    let runs = single(&upper).and_then(|upper| Ok((upper, lower.as_ref().map(single).transpose()?)));
+    let found =
+        runs.and_then(|(upper, lower)| predict::correct(upper, lower, &maps, air, &how.wishes, warnings));
     let found = found.map_err(|refusal| vec![refusal])?;
     let report = report::of_prediction(&found);
     Ok(Answer {

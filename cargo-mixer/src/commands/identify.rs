@@ -17,7 +17,7 @@ use mixer_identify::identified::Settings;
 use mixer_identify::rotor::single::EXPONENT;
 use mixer_identify::texts::{Prediction, identify};
 
-use crate::bench_args::{finite, number, positive, pwm_range, role, sign_choice, throttle_box};
+use crate::bench_args::{AirArgs, finite, number, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::{refused, text, texts};
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame_args::FrameArgs;
@@ -73,7 +73,7 @@ pub struct IdentifyArgs {
     pub settle: f64,
     /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust,
     /// torque, upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage,
-    /// current, upper_current, lower_current, time.
+    /// current, upper_current, lower_current, time, temperature, pressure, density (of the air).
     #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
     pub columns: Vec<(String, String)>,
     /// A unit by hand, as thrust=gf, for a header without one.
@@ -107,6 +107,9 @@ pub struct IdentifyArgs {
     /// median of 104 motors with propellers.
     #[arg(long, value_name = "K[,K]", value_parser = exponents)]
     pub voltage_exponent: Option<[f64; 2]>,
+    /// The air at the bench
+    #[command(flatten)]
+    pub air: AirArgs,
     /// The battery of the vehicle
     #[command(flatten)]
     pub pack: PackArgs,
@@ -168,6 +171,7 @@ impl IdentifyArgs {
                 torque_may_lack: self.prior.is_some(),
                 own_columns: false,
                 date: self.date.clone(),
+                air: self.air.air(),
             },
             wishes: Wishes {
                 basis: self.basis.0,
@@ -201,7 +205,7 @@ pub fn run(args: &IdentifyArgs) -> Done {
     let settings = args.settings();
     if let Some(single) = &prior {
         let how = Prediction {
-            run: predict::of_one_rotor(),
+            run: predict::of_one_rotor(args.air.air()),
             map: settings,
             known: args.rotors.known(
                 args.reference_voltage,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use mixer_identify::air::Known;
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::header::ByHand;
 use mixer_identify::bench::read::Reading;
@@ -11,11 +12,11 @@ use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::rotor::predict::{Predicted, Wishes};
-use mixer_identify::rotor::single::{EXPONENT, Known};
+use mixer_identify::rotor::single::{self, EXPONENT};
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
-use crate::bench_args::{positive, pwm_range, role, sign_choice, throttle_box};
+use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::{refused, text};
 use crate::frame_args::FrameArgs;
 use crate::place::Place;
@@ -42,6 +43,9 @@ pub struct PredictArgs {
     /// Bring the rows of the run to this voltage, V, by an exponent of 1.75 [default: their mean].
     #[arg(long, value_name = "VOLT", value_parser = positive)]
     pub reference_voltage: Option<f64>,
+    /// The air at the bench
+    #[command(flatten)]
+    pub air: AirArgs,
     /// The throttles to command; the lower is raised where the map asks for it [default: 0.2,1].
     #[arg(long, value_name = "MIN,MAX", value_parser = throttle_box)]
     pub throttle: Option<ThrottleBox>,
@@ -102,8 +106,8 @@ impl RotorArgs {
     }
 
     /// What is known of the runs, whose thrust and torque follow the voltage by `exponents`.
-    pub(crate) fn known(&self, reference_v: Option<f64>, exponents: [f64; 2]) -> Known {
-        Known {
+    pub(crate) fn known(&self, reference_v: Option<f64>, exponents: [f64; 2]) -> single::Known {
+        single::Known {
             kappa_m: self.kappa,
             diameter_m: self.diameter,
             run_v: self.run_voltage,
@@ -166,6 +170,7 @@ impl PredictArgs {
             },
             preparation: Preparation {
                 own_columns: true,
+                air: self.air.air(),
                 signs: SignPolicy {
                     thrust: self.thrust_sign,
                     torque: SignChoice::Auto,
@@ -194,10 +199,11 @@ impl PredictArgs {
 }
 
 /// How a run of one rotor is read.
-pub(crate) fn of_one_rotor() -> Settings {
+pub(crate) fn of_one_rotor(air: Option<Known>) -> Settings {
     Settings {
         preparation: Preparation {
             own_columns: true,
+            air,
             ..Preparation::default()
         },
         ..Settings::default()

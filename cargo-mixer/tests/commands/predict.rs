@@ -5,6 +5,7 @@ use std::fs;
 use cargo_mixer::bench_files::{identify, read_one};
 use mixer_compiler::airframe::Basis;
 use mixer_compiler::{Source, compile};
+use mixer_identify::air::Air;
 use mixer_identify::bench::Preparation;
 use mixer_identify::fit::polynomial::Polynomial;
 use mixer_identify::fragment;
@@ -126,7 +127,8 @@ fn predicted_airframes_lift_what_is_asked() {
             spacing_ratio: Some(spacing_ratio),
             ..Wishes::default()
         };
-        let predicted: Predicted = correct(single, None, &[], &wishes, Vec::new()).expect("a pair");
+        let predicted: Predicted =
+            correct(single, None, &[], Air::default(), &wishes, Vec::new()).expect("a pair");
         let airframe = format!(
             "name = \"predicted\"\n{}\n[layout]\narm_m = 0.4\nunits = 4\nfirst_angle_deg = 45.0\n",
             fragment::of_prediction(&predicted)

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use mixer_compiler::Source;
+use mixer_identify::air::Air;
 use mixer_identify::pair_file::PairFile;
 use toml::Value;
 
@@ -18,7 +19,7 @@ const EXPONENT: f64 = 1.75;
 
 /// Tables of a pair's file that an airframe takes over; `[throttle]` is made of both files. The others
 /// describe another vehicle.
-const TAKEN: &[&str] = &["pair", "voltage"];
+const TAKEN: &[&str] = &["pair", "voltage", "air"];
 
 /// The text, and the notes on it in `imported`.
 pub(super) fn airframe(
@@ -54,6 +55,10 @@ pub(super) fn airframe(
     match pair {
         Some(pair) => out += &pair.tables(TAKEN).0,
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
+    }
+    if !out.contains("[air]") {
+        out += Air::default().table(out.contains("\n[voltage]")).trim_start();
+        out.push('\n');
     }
     if let Some((airmode, reason)) = imported.airmode {
         let _ = writeln!(

@@ -60,6 +60,12 @@ pub struct Columns {
     pub current: Split<Option<Column>>,
     /// Time.
     pub time: Split<Option<Column>>,
+    /// Temperature of the air.
+    pub temperature: Split<Option<Column>>,
+    /// Its pressure.
+    pub pressure: Split<Option<Column>>,
+    /// Its density.
+    pub density: Split<Option<Column>>,
     /// The format that the header was recognised as, for the report.
     pub format: String,
     /// Whether names, rather than an assumption, say which rotor is the upper one.
@@ -80,7 +86,7 @@ pub struct ByHand {
 }
 
 /// Roles for `--column`, with what they measure and of which rotor.
-pub const ROLES: [(&str, Quantity, Option<usize>); 14] = [
+pub const ROLES: [(&str, Quantity, Option<usize>); 17] = [
     ("upper", Quantity::Throttle, Some(0)),
     ("lower", Quantity::Throttle, Some(1)),
     ("thrust", Quantity::Thrust, None),
@@ -95,6 +101,9 @@ pub const ROLES: [(&str, Quantity, Option<usize>); 14] = [
     ("upper_current", Quantity::Current, Some(0)),
     ("lower_current", Quantity::Current, Some(1)),
     ("time", Quantity::Time, None),
+    ("temperature", Quantity::Temperature, None),
+    ("pressure", Quantity::Pressure, None),
+    ("density", Quantity::Density, None),
 ];
 
 impl Columns {
@@ -106,6 +115,9 @@ impl Columns {
             Quantity::Voltage => &mut self.voltage,
             Quantity::Current => &mut self.current,
             Quantity::Time => &mut self.time,
+            Quantity::Temperature => &mut self.temperature,
+            Quantity::Pressure => &mut self.pressure,
+            Quantity::Density => &mut self.density,
         }
     }
 
@@ -181,7 +193,7 @@ impl Columns {
         for (index, name) in names.iter().enumerate() {
             let Some(quantity) = name.quantity() else { continue };
             let side = match (quantity, name.side(&prefixes)) {
-                (Quantity::Time, _) => None,
+                (Quantity::Time | Quantity::Temperature | Quantity::Pressure | Quantity::Density, _) => None,
                 (Quantity::Throttle | Quantity::Voltage, None) => Some(0),
                 (_, side) => side,
             };
@@ -190,11 +202,15 @@ impl Columns {
             if by_hand.columns.iter().any(|(r, _)| r == role) {
                 continue;
             }
+            // Power and air are by-products: what is doubtful there refuses no map.
+            use Quantity::{Current, Density, Pressure, Temperature};
+            let aside =
+                matches!(quantity, Current | Temperature | Pressure | Density) || role == "lower_voltage";
             let slot = self.slot(quantity, side);
             if let Some(first) = slot {
                 // Two columns for one role: guessing would be silent. Time is only used to keep
-                // rows in order. Power is a by-product: what is doubtful there refuses no map.
-                if matches!(quantity, Quantity::Time | Quantity::Current) || role == "lower_voltage" {
+                // rows in order.
+                if aside || quantity == Quantity::Time {
                     continue;
                 }
                 return Err(Refusal::of(
@@ -207,7 +223,7 @@ impl Columns {
                 ));
             }
             match scaled(file, index, name, quantity, role, by_hand) {
-                Err(_) if quantity == Quantity::Current || role == "lower_voltage" => {}
+                Err(_) if aside => {}
                 column => *slot = Some(column?),
             }
             self.sides_named |= quantity == Quantity::Throttle && name.says_upper_or_lower();

@@ -3,6 +3,7 @@
 //! A cell that is not a number, or a throttle outside the range, refuses its row, named by file and
 //! line. An empty cell is a missing value: streaming tools leave torque blank in most rows.
 
+use mixer_compiler::atmosphere;
 use serde::Serialize;
 
 use crate::bench::header::{ByHand, Column, Columns, Split};
@@ -65,6 +66,8 @@ pub struct Log {
     pub samples: Vec<Sample>,
     /// Rows that could not be read.
     pub refused: Vec<RefusedRow>,
+    /// Density of the air in the mean of the rows, kg/m3, where columns tell it.
+    pub density_kg_m3: Option<f64>,
 }
 
 /// How to read a file.
@@ -131,7 +134,9 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         columns,
         samples: Vec::new(),
         refused: Vec::new(),
+        density_kg_m3: None,
     };
+    let (mut densities, mut measured) = (0.0, 0);
     let mut rows = csv_of(rows);
     let mut record = csv::ByteRecord::new();
     let mut cells = Cells {
@@ -142,6 +147,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
     loop {
         let more = rows.read_byte_record(&mut record);
         if !more.map_err(|error| unreadable(name, &error.to_string()))? {
+            log.density_kg_m3 = (measured > 0).then(|| densities / f64::from(measured));
             return Ok(log);
         }
         // The reader stands behind the row's line end (where the row begins it does not know: it
@@ -152,7 +158,13 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
             continue;
         }
         match cells.sample(line, &log.columns, &record) {
-            Ok(sample) => log.samples.push(sample),
+            Ok(sample) => {
+                log.samples.push(sample);
+                let density = cells.density(&log.columns, &record);
+                if density.is_finite() {
+                    (densities, measured) = (densities + density, measured + 1);
+                }
+            }
             Err(reason) => log.refused.push(RefusedRow::new(name, line, reason)),
         }
     }
@@ -220,10 +232,22 @@ impl Cells {
         })
     }
 
+    /// Density of the air, kg/m3; NaN where the row does not tell it.
+    fn density(&self, columns: &Columns, record: &csv::ByteRecord) -> f64 {
+        let of = |column: &Split<Option<Column>>| self.value(&column.whole, record).unwrap_or(f64::NAN);
+        match columns.density.whole {
+            Some(_) => of(&columns.density),
+            None => atmosphere::density(of(&columns.pressure), of(&columns.temperature)),
+        }
+    }
+
     fn value(&self, column: &Option<Column>, record: &csv::ByteRecord) -> Result<f64, String> {
         let Some(column) = column else { return Ok(f64::NAN) };
-        let (Scale::Factor(factor) | Scale::Pulse(factor)) = column.scale;
-        Ok(self.number(column, record)? * factor)
+        let raw = self.number(column, record)?;
+        Ok(match column.scale {
+            Scale::Factor(factor) | Scale::Pulse(factor) => raw * factor,
+            Scale::Affine(factor, offset) => raw * factor + offset,
+        })
     }
 
     fn throttle(&self, column: &Option<Column>, record: &csv::ByteRecord) -> Result<f64, String> {
@@ -237,6 +261,7 @@ impl Cells {
             // cannot be a throttle.
             Scale::Factor(1.0) if self.pwm_given && raw > 1.5 => pulse(raw),
             Scale::Factor(factor) => raw * factor,
+            Scale::Affine(factor, offset) => raw * factor + offset,
         };
         if throttle > 1.02 {
             let why = match column.scale {

@@ -24,6 +24,12 @@ pub enum Quantity {
     Current,
     /// Time since the log's start, to s.
     Time,
+    /// Temperature of the air, to K.
+    Temperature,
+    /// Pressure of the air, to Pa.
+    Pressure,
+    /// Density of the air, to kg/m3.
+    Density,
 }
 
 /// How a throttle column is to be read.
@@ -31,6 +37,8 @@ pub enum Quantity {
 pub enum Scale {
     /// Multiply by this to reach the SI unit (or throttle in [0, 1]).
     Factor(f64),
+    /// Multiply by the first and add the second.
+    Affine(f64, f64),
     /// A pulse width; multiply to reach microseconds, then apply the PWM range.
     Pulse(f64),
 }
@@ -51,7 +59,7 @@ pub fn spelled(text: &str) -> String {
 }
 
 /// What a unit of a quantity is in SI units, the names of units as [`scale`] strips them.
-const FACTORS: [(Quantity, &str, f64); 24] = [
+const FACTORS: [(Quantity, &str, f64); 32] = [
     (Quantity::Throttle, "% percent", 0.01),
     (Quantity::Throttle, "1", 1.0),
     (Quantity::Thrust, "n", 1.0),
@@ -76,16 +84,28 @@ const FACTORS: [(Quantity, &str, f64); 24] = [
     (Quantity::Current, "ma", 1e-3),
     (Quantity::Time, "s sec", 1.0),
     (Quantity::Time, "ms", 1e-3),
+    (Quantity::Temperature, "k kelvin", 1.0),
+    (Quantity::Pressure, "pa", 1.0),
+    (Quantity::Pressure, "hpa mbar mb", 100.0),
+    (Quantity::Pressure, "kpa", 1000.0),
+    (Quantity::Pressure, "bar", 1e5),
+    (Quantity::Pressure, "mmhg", 133.322_4),
+    (Quantity::Pressure, "inhg", 3386.388_6),
+    (Quantity::Density, "kg/m3 kgm3 kg/m^3 kg/m³ kgm^3", 1.0),
 ];
 
 /// The scale of `unit` for this quantity, or nothing if the unit does not measure it.
 pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
-    let is_mark = |c: &char| matches!(c, '·' | '*' | '-' | '.' | ' ');
+    let is_mark = |c: &char| matches!(c, '·' | '*' | '-' | '.' | ' ' | '°' | 'º');
     let unit: String = spelled(unit).chars().filter(|c| !is_mark(c)).collect();
     match (quantity, unit.as_str()) {
         (Quantity::Throttle, "us" | "pwm") => Some(Scale::Pulse(1.0)),
         (Quantity::Throttle, "ms") => Some(Scale::Pulse(1000.0)),
         (Quantity::Throttle, "") => Some(Scale::Factor(1.0)),
+        (Quantity::Temperature, "c" | "degc" | "celsius") => Some(Scale::Affine(1.0, 273.15)),
+        (Quantity::Temperature, "f" | "degf" | "fahrenheit") => {
+            Some(Scale::Affine(5.0 / 9.0, 459.67 * 5.0 / 9.0))
+        }
         (_, unit) => {
             let is = |names: &str| names.split(' ').any(|name| name == unit);
             let mut factors = FACTORS.iter();
@@ -104,6 +124,9 @@ pub fn known(quantity: Quantity) -> &'static str {
         Quantity::Voltage => "V, mV",
         Quantity::Current => "A, mA",
         Quantity::Time => "s, ms",
+        Quantity::Temperature => "C, K, F",
+        Quantity::Pressure => "hPa, mbar, Pa, kPa, bar, mmHg, inHg",
+        Quantity::Density => "kg/m3",
     }
 }
 

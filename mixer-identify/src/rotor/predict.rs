@@ -11,6 +11,7 @@ use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 use toml_edit::{DocumentMut, value};
 
+use crate::air::Air;
 use crate::bench::{Bench, Kind};
 use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
@@ -85,6 +86,8 @@ pub struct Predicted {
     pub factors: [f64; 3],
     /// Voltage at which the map holds, V, where it is known.
     pub reference_v: Option<f64>,
+    /// The air.
+    pub air: Air,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -133,6 +136,7 @@ pub fn correct(
     upper: Single,
     lower: Option<Single>,
     maps: &[Bench],
+    air: Air,
     wishes: &Wishes,
     mut warnings: Vec<String>,
 ) -> Result<Predicted, Refusal> {
@@ -174,6 +178,7 @@ pub fn correct(
         date: wishes.date.clone(),
         pair,
         reference_v: runs[0].voltage_v,
+        air,
         runs,
         corrected_by: maps.iter().map(|m| (m.file.clone(), m.points.len())).collect(),
         spacing_ratio,

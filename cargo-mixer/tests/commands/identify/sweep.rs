@@ -251,6 +251,7 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
             torque_may_lack: false,
             own_columns: false,
             date: None,
+            air: None,
         },
         wishes: Wishes {
             basis,

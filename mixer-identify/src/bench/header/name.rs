@@ -60,7 +60,23 @@ impl Name {
         self.text.split([' ', '(', ')']).filter(|w| !w.is_empty())
     }
 
+    /// What is measured of the air around the bench. Sensors in motors, controllers and of airspeed
+    /// have other words in their names.
+    fn of_air(&self) -> Option<Quantity> {
+        const AIR: [&str; 6] = ["ambient", "air", "room", "barometric", "atmospheric", "station"];
+        let words: Vec<&str> = self.words().filter(|w| !AIR.contains(w)).collect();
+        match words[..] {
+            ["temperature" | "temp"] => Some(Quantity::Temperature),
+            ["pressure"] => Some(Quantity::Pressure),
+            ["density"] => Some(Quantity::Density),
+            _ => None,
+        }
+    }
+
     pub(super) fn quantity(&self) -> Option<Quantity> {
+        if let Some(quantity) = self.of_air() {
+            return Some(quantity);
+        }
         let padded = format!("{} ", self.text);
         if OTHERS.iter().any(|other| padded.contains(other)) {
             return None;
@@ -104,8 +120,12 @@ impl Name {
 
 /// Prefixes of the columns that matter, in order of appearance.
 pub(super) fn distinct_prefixes(names: &[Name]) -> Vec<&str> {
+    use Quantity::{Current, Density, Pressure, Temperature, Time};
     let mut prefixes: Vec<&str> = Vec::new();
-    let counts = |n: &&Name| !matches!(n.quantity(), None | Some(Quantity::Time | Quantity::Current));
+    let counts = |n: &&Name| {
+        n.quantity()
+            .is_some_and(|q| !matches!(q, Time | Current | Temperature | Pressure | Density))
+    };
     for prefix in names.iter().filter(counts).filter_map(|n| n.prefix.as_deref()) {
         if !prefixes.contains(&prefix) {
             prefixes.push(prefix);
@@ -122,6 +142,20 @@ fn split_unit(text: &str) -> (String, Option<String>) {
             return (
                 text[..start].trim().to_string(),
                 Some(inner[start + 1..].trim().to_string()),
+            );
+        }
+    }
+    let of_air = [
+        ("density", Quantity::Density),
+        ("temperature", Quantity::Temperature),
+        ("pressure", Quantity::Pressure),
+    ];
+    for (word, quantity) in of_air {
+        let unit = text.rsplit_once(word).map(|(_, unit)| unit.trim());
+        if let Some(unit) = unit.filter(|unit| units::scale(quantity, unit).is_some()) {
+            return (
+                text[..text.len() - unit.len()].trim().to_string(),
+                Some(unit.to_string()),
             );
         }
     }

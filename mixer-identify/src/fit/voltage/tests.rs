@@ -19,6 +19,7 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
             thrust_policy: "auto",
             torque_policy: "auto",
         },
+        air: None,
         notes: Vec::new(),
         no_power: None,
         turning: None,
