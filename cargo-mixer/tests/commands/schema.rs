@@ -201,8 +201,8 @@ fn spoilt(schema: &Value, value: &Value, path: &str) -> Vec<(String, Value)> {
         match rule.as_str() {
             "enum" => put(rule, json!("none-of-these")),
             "pattern" => put(rule, json!("")),
-            "minimum" => put(rule, json!(bound.as_i64().expect("bound") - 1)),
-            "maximum" => put(rule, json!(bound.as_i64().expect("bound") + 1)),
+            "minimum" => put(rule, json!(bound.as_f64().expect("bound") - 1.0)),
+            "maximum" => put(rule, json!(bound.as_f64().expect("bound") + 1.0)),
             "exclusiveMinimum" => put(rule, bound.clone()),
             "minItems"
                 if value
