@@ -21,7 +21,6 @@
 //! reservations.
 
 pub mod air;
-pub mod atmosphere;
 pub mod battery;
 pub mod controller;
 pub mod conventional;

@@ -20,9 +20,9 @@
 //! own angular momentum (it cancels in a contra-rotating pair).
 
 use mixer_compiler::airframe::{Airframe, Correction};
+use mixer_compiler::atmosphere;
 use nalgebra::{Quaternion, SVector, Vector3};
 
-use crate::atmosphere;
 use crate::battery::Battery;
 use crate::integrator::runge_kutta;
 use crate::motor::Motor;
@@ -67,6 +67,8 @@ pub struct Plant<const R: usize> {
     pair: Pair,
     voltage: Option<Correction>,
     motor: Option<Motor>,
+    /// Density of the air on the bench, that of the sea level where the file has none.
+    bench_kg_m3: f64,
     body: Body,
     battery: Battery,
     mismatch: SVector<f64, R>,
@@ -88,6 +90,10 @@ impl<const R: usize> Plant<R> {
             pair: Pair::new(&airframe.pair, &airframe.throttle),
             voltage: airframe.voltage.clone(),
             motor: None,
+            bench_kg_m3: airframe
+                .air
+                .as_ref()
+                .map_or_else(|| atmosphere::density_at(0.0), |air| air.reference),
             body,
             battery,
             mismatch,
@@ -101,9 +107,9 @@ impl<const R: usize> Plant<R> {
     /// An exponent that is not a motor's.
     pub fn in_air(self, density_kg_m3: f64, no_load: f64) -> Result<Self, String> {
         let voltage = self.voltage.as_ref();
-        let exponent = voltage.map_or(USUAL_EXPONENT, exponent);
+        let exponent = voltage.map_or(USUAL_EXPONENT, |voltage| voltage.exponents()[0]);
         let reference_v = voltage.map(|voltage| voltage.reference);
-        let sigma = density_kg_m3 / atmosphere::SEA_LEVEL_KG_M3;
+        let sigma = density_kg_m3 / self.bench_kg_m3;
         let motor = Motor::new(exponent, no_load, reference_v, sigma).ok_or_else(|| {
             format!("thrust follows the voltage by the power {exponent:.2}: motors have 1 to 2")
         })?;
@@ -186,10 +192,4 @@ impl<const R: usize> Plant<R> {
             charge_ah: self.current_a(state) / 3600.0,
         }
     }
-}
-
-/// Exponent of the thrust between the ends of the range.
-fn exponent(voltage: &Correction) -> f64 {
-    let [low, high] = voltage.range.map(|volts| (volts, voltage.thrust_factor(volts)));
-    libm::log(high.1 / low.1) / libm::log(high.0 / low.0)
 }

@@ -46,6 +46,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/allocation.md", "yaw-reserve", tables::yaw_reserve()?),
         of("docs/air.md", "altitudes", tables::altitudes()),
         of("docs/air.md", "density", tables::density()),
+        of("docs/air.md", "level-thrust", tables::level_thrust()?),
         of("docs/flights.md", "logged-hover", tables::logged_hover()?),
         of("docs/flights.md", "hover", tables::hover()?),
         of("docs/flights.md", "tracking", tables::tracking()?),

@@ -1,6 +1,6 @@
 //! What the tests of the whole way share: golden outputs, building firmware, running it in QEMU,
 //! looking into its image; frames and their physics, requests, the optimum of a request, other
-//! allocators to measure the mixer against, and the tables of the documents.
+//! allocators to measure the mixer against, motors in thin air, and the tables of the documents.
 
 pub mod allocators;
 pub mod bases;
@@ -19,6 +19,7 @@ pub mod request;
 pub mod shortfall;
 pub mod soak;
 pub mod soundness;
+pub mod thin_air;
 
 use std::path::{Path, PathBuf};
 

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Parser};
+use mixer_compiler::atmosphere;
 
 use super::plan::Manoeuvre;
-use crate::atmosphere;
 use crate::motor;
 
 /// One vehicle for the simulators of PX4 and ArduPilot
@@ -95,6 +95,9 @@ pub struct Arguments {
     pub seconds: Option<f64>,
 }
 
+/// Altitudes to fly at, m.
+const ALTITUDES_M: [f64; 2] = [-1000.0, atmosphere::TOP_M];
+
 /// A rotor that stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
@@ -128,7 +131,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 fn altitude(text: &str) -> Result<f64, String> {
-    let (value, [low, high]) = (number(text)?, atmosphere::ALTITUDES_M);
+    let (value, [low, high]) = (number(text)?, ALTITUDES_M);
     (low..=high)
         .contains(&value)
         .then_some(value)
@@ -136,7 +139,7 @@ fn altitude(text: &str) -> Result<f64, String> {
 }
 
 fn density(text: &str) -> Result<f64, String> {
-    let [most, least] = atmosphere::ALTITUDES_M.map(atmosphere::density_kg_m3);
+    let [most, least] = ALTITUDES_M.map(atmosphere::density_at);
     let value = number(text)?;
     (least..=most)
         .contains(&value)

@@ -2,13 +2,13 @@
 //!
 //! Sizes of the noise are those of PX4's jMAVSim, rounded; biases are left out.
 
+use mixer_compiler::atmosphere;
 use nalgebra::Vector3;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
 use super::world::World;
 use crate::air::normal;
-use crate::atmosphere;
 
 /// Standard deviations at a share of 1.
 const ACCELERATION_M_S2: f64 = 0.05;
@@ -96,12 +96,12 @@ impl Sensors {
     /// Barometer, by the standard atmosphere.
     pub fn air(&mut self, world: &World) -> Air {
         let altitude = world.vehicle.altitude_m - world.state.position.z;
-        let pressure_hpa = atmosphere::pressure_hpa(altitude)
+        let pressure_hpa = 0.01 * atmosphere::pressure_at(altitude)
             + self.share.max(LEAST_SHARE) * PRESSURE_HPA * normal(&mut self.source);
         Air {
             pressure_hpa,
-            altitude_m: atmosphere::altitude_of_pressure_m(pressure_hpa),
-            temperature_c: atmosphere::temperature_c(altitude),
+            altitude_m: (1.0 - libm::pow(pressure_hpa / 1013.25, 1.0 / 5.255_88)) / 2.255_77e-5,
+            temperature_c: atmosphere::temperature_at(altitude) - 273.15,
         }
     }
 

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
+use mixer_compiler::atmosphere;
 use nalgebra::{SVector, Vector3};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
 use super::arguments::Arguments;
 use crate::air::normal;
-use crate::atmosphere;
 use crate::battery::Battery;
 use crate::plant::Plant;
 use crate::state::State;
@@ -36,7 +36,7 @@ const HOVER_W_PER_KG: f64 = 80.0;
 /// cell.
 const FALL_OVER_CAPACITY: f64 = 0.157;
 
-/// Altitude of home over the sea, m, where no flag has one.
+/// Altitude of home over the sea, m, where neither a flag nor `[air]` has one.
 const HOME_M: f64 = 488.0;
 
 /// Voltage where neither the file nor a flag has one, V.
@@ -104,12 +104,13 @@ impl Vehicle {
             full_throttle_a: 0.0,
         };
         let mismatch = spread(arguments.spread, arguments.seed, rotors);
-        let thin = arguments.density.map(atmosphere::altitude_of_density_m);
+        let thin = arguments.density.map(atmosphere::altitude_of);
         let thin = thin.or(arguments.altitude);
+        let bench_m = own.air.as_ref().map(|air| atmosphere::altitude_of(air.reference));
         let plant = |battery: Battery| {
             let plant = Plant::new(&flown, body, battery, mismatch);
             let Some(altitude_m) = thin else { return Ok(plant) };
-            let density = atmosphere::density_kg_m3(altitude_m);
+            let density = atmosphere::density_at(altitude_m);
             plant
                 .in_air(density, arguments.no_load)
                 .map_err(|reason| format!("{path}: {reason}"))
@@ -135,7 +136,7 @@ impl Vehicle {
             mass_kg,
             battery,
             capacity_ah: arguments.capacity,
-            altitude_m: thin.unwrap_or(HOME_M),
+            altitude_m: thin.or(bench_m).unwrap_or(HOME_M),
             hover_throttle,
         })
     }

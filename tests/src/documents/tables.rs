@@ -13,7 +13,7 @@ use mixer_rt::Wrench;
 
 use super::Table;
 use crate::counts;
-use crate::{airframes, allocators, bases, golden, interaction, root};
+use crate::{airframes, allocators, bases, golden, interaction, root, thin_air};
 
 /// The airframe of the paper.
 const PAPER: &str = "isae-x8";
@@ -693,4 +693,46 @@ pub(super) fn tracking() -> Result<String, String> {
         .chain(["paper"])
         .collect();
     Ok(markdown(&header, &rows))
+}
+
+/// Level thrust of ten pairs in other air, by motors of their own.
+pub(super) fn level_thrust() -> Result<String, String> {
+    let flights = thin_air::fly()?;
+    let cells = |errors: &[f64]| {
+        thin_air::size(errors)
+            .map(|percent| format!("{percent:.1}"))
+            .join("; ")
+    };
+    let mut rows: Vec<Vec<String>> = flights
+        .iter()
+        .map(|flight| {
+            let place = flight
+                .place
+                .map(|[altitude, celsius]| format!("{altitude} m, {celsius} °C"));
+            vec![
+                format!("{:.3}", flight.sigma),
+                place.unwrap_or_default(),
+                cells(&flight.without),
+                cells(&flight.with),
+            ]
+        })
+        .collect();
+    let all =
+        |of: fn(&thin_air::Flight) -> &Vec<f64>| flights.iter().flat_map(of).copied().collect::<Vec<_>>();
+    let [without, with] = [all(|flight| &flight.without), all(|flight| &flight.with)];
+    rows.push(vec![
+        "all".to_owned(),
+        String::new(),
+        cells(&without),
+        cells(&with),
+    ]);
+    Ok(markdown(
+        &[
+            "density over the bench's",
+            "there",
+            "without `[air]`: mean; worst (%)",
+            "with it (%)",
+        ],
+        &rows,
+    ))
 }
