@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use mixer_identify::air;
+use mixer_identify::bench::air;
 use mixer_identify::bench::header::{ROLES, unknown_role};
 use mixer_identify::bench::sign::SignChoice;
 use mixer_identify::fit::basis::ThrottleBox;

@@ -8,14 +8,15 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
+use self::air::{DENSITIES, Known};
 use self::date::date_in;
 use self::header::Columns;
 use self::read::{Log, RefusedRow, Sample};
 use self::sign::{SignChoice, SignPolicy, Signs};
-use crate::air::{DENSITIES, Known};
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 
+pub mod air;
 pub mod date;
 pub mod header;
 pub mod plateau;
@@ -60,7 +61,7 @@ impl Point {
     /// What the throttles of the point, measured at `own` V, give at `reference` V: thrust and torque
     /// follow V^k, electrical power the cube of the speed whose square is thrust.
     #[must_use]
-    pub(crate) fn at_voltage(&self, own: f64, reference: f64, [thrust, torque]: [f64; 2]) -> Point {
+    pub fn at_voltage(&self, own: f64, reference: f64, [thrust, torque]: [f64; 2]) -> Point {
         self.divided(own / reference, [thrust, torque, 1.5 * thrust])
     }
 

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use cargo_mixer::bench_files::read_one;
 use mixer_identify::bench::{Bench, Point, Preparation};
+use mixer_identify::fit::balance::balanced;
 use mixer_identify::identified::Settings;
 use mixer_identify::plan::CORRECTING;
 use mixer_identify::rotor::interaction::{Interaction, OPEN_LOOP};
@@ -150,14 +151,21 @@ pub fn measure(data: &Path) -> Result<Measured, String> {
     let mut beds = Vec::new();
     for system in &SYSTEMS {
         let run = read(system.run)?;
+        let single = single(&run, &Known::default())?;
         let mut maps = Vec::new();
         for (part, spacing_ratio) in system.maps {
-            maps.push((*spacing_ratio, read(part)?.points));
+            // As the run: at one voltage.
+            let map = balanced(&read(part)?).points.into_iter();
+            let points = map.map(|p| match single.voltage_v {
+                Some(of_run) => p.at_voltage(p.voltage, of_run, single.exponents),
+                None => p,
+            });
+            maps.push((*spacing_ratio, points.collect()));
         }
         beds.push(Bed {
             name: system.name,
             diameter_m: system.diameter_m,
-            single: single(&run, &Known::default())?,
+            single,
             run,
             maps,
         });
@@ -237,12 +245,16 @@ impl Bed {
         });
         let mut table = self.run.clone();
         table.points.retain(|p| nearest(&self.run.points, p, &FIVE));
-        let five = single(&table, &Known::default())?.rotor;
+        let at_one_voltage = Known {
+            reference_v: self.single.voltage_v,
+            ..Known::default()
+        };
+        let five = single(&table, &at_one_voltage)?.rotor;
         let mut blank = self.run.clone();
         blank.points.iter_mut().for_each(|p| p.torque = f64::NAN);
         let known = Known {
             diameter_m: Some(self.diameter_m),
-            ..Known::default()
+            ..at_one_voltage
         };
         let no_torque = single(&blank, &known)?.rotor;
         let four = self.case(spacing_ratio, points, |p| {

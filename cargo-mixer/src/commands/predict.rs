@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use mixer_identify::air::Known;
 use mixer_identify::bench::Preparation;
+use mixer_identify::bench::air::Known;
 use mixer_identify::bench::header::ByHand;
 use mixer_identify::bench::read::Reading;
 use mixer_identify::bench::sign::{SignChoice, SignPolicy};
