@@ -108,7 +108,8 @@ impl System {
         for _ in 0..4 {
             let ratio = |own_n: f64| (upper_n.max(0.0) / own_n.max(1e-12)).min(36.0);
             let load = |square: f64| {
-                let inflow = ratio(sigma * self.thrust * square).powf(1.5);
+                let squared = ratio(sigma * self.thrust * square);
+                let inflow = squared * squared.sqrt();
                 1.0 - TORQUE[0] * inflow / (1.0 + TORQUE[1] * inflow)
             };
             let speed = self.speed(lower * volts, sigma, load);
@@ -135,12 +136,13 @@ impl System {
         let exponents = [0, 1].map(|k| {
             let products: f64 = full.iter().zip(&low).map(|(a, b)| a[k] * b[k]).sum();
             let squares: f64 = full.iter().map(|a| a[k] * a[k]).sum();
-            (products / squares).ln() / 0.85f64.ln()
+            libm::log(products / squares) / libm::log(0.85)
         });
         let powers = Basis::Cubic.exponents();
         let terms = DMatrix::from_fn(grid.len(), powers.len(), |row, term| {
             let ([u, l], (i, j)) = (grid[row], powers[term]);
-            u.powi(i32::from(i)) * l.powi(i32::from(j))
+            let power = |x: f64, times: u8| (0..times).fold(1.0, |product, _| product * x);
+            power(u, i) * power(l, j)
         });
         let svd = terms.svd(true, true);
         let fit = |k: usize| -> Result<Vec<f64>, String> {
