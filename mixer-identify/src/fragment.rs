@@ -90,7 +90,7 @@ pub fn tables(id: &Identified) -> String {
     }
     let exponents = document
         .get("voltage")
-        .and_then(|v| Some(v.get("thrust_exponent").and(v.get("torque_exponent"))?));
+        .and_then(|v| v.get("thrust_exponent").and(v.get("torque_exponent")));
     let air = id.air.table(exponents.is_some());
     format!("{head}{document}{tail}{air}")
 }

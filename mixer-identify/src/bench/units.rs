@@ -90,7 +90,7 @@ const FACTORS: [(Quantity, &str, f64); 32] = [
     (Quantity::Pressure, "kpa", 1000.0),
     (Quantity::Pressure, "bar", 1e5),
     (Quantity::Pressure, "mmhg", 133.322_4),
-    (Quantity::Pressure, "inhg", 3386.388_6),
+    (Quantity::Pressure, "inhg", 3_386.388_6),
     (Quantity::Density, "kg/m3 kgm3 kg/m^3 kg/m³ kgm^3", 1.0),
 ];
 
