@@ -378,7 +378,12 @@ fn inverse(list: &mut List, compiled: &Compiled) {
     list.say("evaluator", evaluator.name(), "", words)
         .json("evaluator", evaluator.name())
         .json("evaluator_description", evaluator.description());
-    let every = or_nothing(airframe.voltage.as_ref(), |_| " at every voltage".to_owned());
+    let every = match (&airframe.voltage, &airframe.air) {
+        (Some(_), Some(_)) => " at every voltage and density",
+        (Some(_), None) => " at every voltage",
+        (None, Some(_)) => " at every density",
+        (None, None) => "",
+    };
     let allowed = [
         airframe.inverse.thrust_tolerance_n,
         airframe.inverse.torque_tolerance_nm,
