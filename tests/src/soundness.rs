@@ -104,7 +104,7 @@ fn throttles(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault>
 
 /// The achieved wrench is what the throttles give.
 fn truth(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
-    let given = frame.physics.wrench(&answer.throttle, request.volts);
+    let given = frame.physics.wrench_in(&answer.throttle, request.factors(frame));
     Axis::ALL.into_iter().enumerate().find_map(|(index, axis)| {
         let (said, given) = (answer.achieved[index], given[index]);
         let size = (said - given).abs() / frame.size(index);

@@ -124,7 +124,7 @@ fn rotors_alone_and_a_bias_of_zero_leave_the_bits() {
     let text = std::fs::read_to_string(root().join("airframes/x8-11in-least-power.toml")).unwrap();
     let (before, rest) = text.split_once("[pair.lower_out]").unwrap();
     let (_, after) = rest.split_once("[pair.power]").unwrap();
-    let bias = |value: &str| text.replacen("power_bias_nm_per_n = 0.00695", value, 1);
+    let bias = |value: &str| text.replacen("power_bias_nm_per_n = 0.00654", value, 1);
     let variants = [
         ("declared", text.clone()),
         ("polynomials", format!("{before}[pair.power]{after}")),
