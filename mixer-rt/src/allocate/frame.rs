@@ -1,9 +1,9 @@
-//! A frame at one voltage.
+//! A frame under one set of conditions.
 
 use super::system::Columns;
 use crate::layout::{Tables, Unit};
 
-/// A frame at one voltage, `VERTICAL` where all axes are.
+/// A frame under one set of conditions, `VERTICAL` where all axes are.
 pub(super) struct Frame<'a, 't, P, I, S, const VERTICAL: bool> {
     pub(super) tables: &'a Tables<'t, P, I, S>,
     /// `[k_f, k_Q]`.
