@@ -47,13 +47,13 @@ fn axes_and_directions_are_words() {
 
 #[test]
 fn saturation_is_its_bits() {
-    for bits in 0..=0x1ff {
+    for bits in 0..=0x3ff {
         let saturation = Saturation::from_bits(bits);
         let text = to_string(&saturation).expect("JSON");
         assert_eq!(text, bits.to_string());
         assert_eq!(from_str::<Saturation>(&text).expect("flags"), saturation);
     }
     let unknown = from_str::<Saturation>("65535").expect("flags");
-    assert_eq!(unknown.bits(), 0x1ff, "unknown bits are dropped");
+    assert_eq!(unknown.bits(), 0x3ff, "unknown bits are dropped");
     assert!(from_str::<Saturation>("65536").is_err());
 }
