@@ -59,7 +59,7 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
     all.note(gains(compiled));
 }
 
-/// What PX4's density is worth.
+/// Accuracy of PX4's density.
 const DENSITY: &str = "vehicle_air_data.rho goes by 15 C where no airspeed sensor and no external barometer has the air's temperature: \
                        thrust is then 7 % too high at -10 C, 6 % too low at 40 C (docs/air.md)";
 

@@ -1,4 +1,4 @@
-//! What is measured in flight, and the factors of thrust and torque that follow from it:
+//! Conditions that are measured in flight, and the factors of thrust and torque that follow from it:
 //! f = k_f(V) d_f(rho) f(u, l) and Q = k_Q(V) d_Q(rho) Q(u, l), all 1 at the bench's voltage and
 //! density. (The paper multiplies its maps by k, section IV-B2. Thin air acts like a lower voltage,
 //! so d(rho) = (rho / rho_ref)^(k's exponent - 1) with ordinary speed controllers.)
@@ -6,7 +6,7 @@
 use crate::arithmetic::Scalar;
 use crate::{Saturation, SetpointError, clamp};
 
-/// What is measured in flight.
+/// Conditions that are measured in flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

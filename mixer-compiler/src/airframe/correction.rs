@@ -68,16 +68,16 @@ keys! { AIR_TABLE = "[air]":
         .refusing(DENSITY_LABEL, DENSITY_HELP);
 }
 
-/// What a table corrects for: its keys of reference and range, and the words of its diagnostics.
+/// A measured quantity: its keys of reference and range, and the words of its diagnostics.
 struct Measured {
     reference: &'static Key,
     range: &'static Key,
     name: &'static str,
     unit: &'static str,
     largest: f64,
-    /// What to write for the range.
+    /// Advice for a range that cannot be.
     ends: &'static str,
-    /// What was probably meant by a value beyond the largest, for this value.
+    /// Advice for a value beyond the largest.
     meant: fn(f64) -> String,
 }
 
@@ -103,11 +103,24 @@ const AIR: Measured = Measured {
     },
 };
 
-/// Reference and range once they are sound.
+/// Reference and range once they are sound, with their unit.
 #[derive(Clone, Copy)]
 struct Span {
     reference: f64,
     range: [f64; 2],
+    unit: &'static str,
+}
+
+impl Span {
+    /// The correction by the laws of thrust and of torque.
+    fn correction(self, [thrust, torque]: [Option<Law>; 2]) -> Option<Correction> {
+        Some(Correction {
+            reference: self.reference,
+            range: self.range,
+            thrust: thrust?,
+            torque: torque?,
+        })
+    }
 }
 
 /// `[voltage]`.
@@ -115,13 +128,7 @@ pub(super) fn read_voltage(table: &mut Fields<'_, '_>) -> Option<Correction> {
     let span = span(table, &VOLTAGE);
     let thrust = law(table, "thrust", [&THRUST_EXPONENT, &THRUST_POINTS], span);
     let torque = law(table, "torque", [&TORQUE_EXPONENT, &TORQUE_POINTS], span);
-    let Span { reference, range } = span?;
-    Some(Correction {
-        reference,
-        range,
-        thrust: thrust?,
-        torque: torque?,
-    })
+    span?.correction([thrust, torque])
 }
 
 /// `[air]`, whose exponents are those of the voltage less 1 where it has none of its own: a motor with
@@ -134,7 +141,7 @@ pub(super) fn read_air(
     let span = span(table, &AIR);
     let of_voltage = voltage.map(|voltage| voltage.map(|voltage| voltage.exponents().map(|k| k - 1.0)));
     let keys = [("thrust", &THRUST_OF_DENSITY), ("torque", &TORQUE_OF_DENSITY)];
-    let [thrust, torque] = [0, 1].map(|k| {
+    let laws = [0, 1].map(|k| {
         let (quantity, key): (_, &'static Key) = keys[k];
         let exponent = match (table.key_place(key), of_voltage) {
             (Some(_), _) => table.number(key)?,
@@ -148,13 +155,7 @@ pub(super) fn read_air(
         let law = Law::Exponent(exponent);
         check_size(table, key, &law, span?).then_some(law)
     });
-    let Span { reference, range } = span?;
-    Some(Correction {
-        reference,
-        range,
-        thrust: thrust?,
-        torque: torque?,
-    })
+    span?.correction(laws)
 }
 
 /// An exponent of the density that follows from the voltage's.
@@ -225,6 +226,7 @@ fn span(table: &mut Fields<'_, '_>, of: &Measured) -> Option<Span> {
     Some(Span {
         reference,
         range: [low, high],
+        unit,
     })
 }
 
@@ -269,11 +271,7 @@ fn law(
 /// Whether a law is 1 at the reference and leaves factors over the range that can be computed with.
 fn check_size(table: &mut Fields<'_, '_>, key: &'static Key, law: &Law, span: Span) -> bool {
     let path = table.key_path(key.name);
-    let unit = if table.path() == "air" {
-        AIR.unit
-    } else {
-        VOLTAGE.unit
-    };
+    let unit = span.unit;
     let factor = |x: f64| (law.factor(x, span.reference), x);
     let (values, mend) = match law {
         Law::Exponent(_) => (span.range.to_vec(), "raise the lower end of the range"),

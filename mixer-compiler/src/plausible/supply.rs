@@ -70,7 +70,7 @@ struct Limits {
     exponents: [f64; 2],
     expected: &'static str,
     typical: &'static str,
-    /// What to check where a factor is far from 1.
+    /// Advice where a factor is far from 1.
     check: &'static str,
 }
 

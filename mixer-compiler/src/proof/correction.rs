@@ -1,4 +1,4 @@
-//! What the corrections add to the efforts that the inverse is given.
+//! Error that the corrections add to the efforts that the inverse is given.
 //!
 //! The mixer divides efforts by the tabulated factors, in f32. The inverse is right about efforts divided
 //! by the file's. Both are enclosed by Taylor models over parts of each table's pieces, the table by
