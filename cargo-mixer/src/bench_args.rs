@@ -1,11 +1,14 @@
 //! Values of arguments that the commands about benches share.
 
-use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, FromArgMatches as _};
 use mixer_identify::bench::air;
-use mixer_identify::bench::header::{ROLES, unknown_role};
-use mixer_identify::bench::sign::SignChoice;
+use mixer_identify::bench::header::{ByHand, ROLES, unknown_role};
+use mixer_identify::bench::read::Reading;
+use mixer_identify::bench::sign::{SignChoice, SignPolicy};
+use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
 use mixer_identify::fit::basis::ThrottleBox;
+use mixer_identify::identified::Settings;
 
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     let value = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
@@ -78,6 +81,114 @@ pub(crate) fn sign_choice(text: &str) -> Result<SignChoice, String> {
         Some((upper, lower)) => Ok(SignChoice::Given([one(upper)?, one(lower)?])),
         None => one(text).map(|s| SignChoice::Given([s, s])),
     }
+}
+
+/// How bench files are read.
+#[derive(Debug, Clone, Args)]
+pub struct ReadingArgs {
+    /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
+    #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
+    pub pwm_range: Option<[f64; 2]>,
+    /// A rotor at or below this throttle stands still: a start or stop row; a negative value keeps
+    /// all rows.
+    #[arg(long, value_name = "THROTTLE", default_value_t = STOP_THROTTLE, value_parser = finite, allow_negative_numbers = true)]
+    pub stop_throttle: f64,
+    /// Part of each plateau of a streaming log that is dropped at its beginning, in [0, 1).
+    #[arg(long, value_name = "PART", default_value_t = SETTLE, value_parser = part)]
+    pub settle: f64,
+    /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust,
+    /// torque, upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage,
+    /// current, upper_current, lower_current, time, temperature, pressure, density (of the air).
+    #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
+    pub columns: Vec<(String, String)>,
+    /// A unit by hand, as thrust=gf, for a header without one.
+    #[arg(long = "unit", value_name = "ROLE=UNIT", value_parser = role)]
+    pub units: Vec<(String, String)>,
+    /// Exchange upper and lower rotor.
+    #[arg(long)]
+    pub swap: bool,
+    /// Sign of thrust: auto, + or -; +,- and the like for a column per rotor (upper, lower).
+    #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
+    pub thrust_sign: SignChoice,
+    /// Sign of torque, likewise; torque is positive where the lower rotor outweighs the upper.
+    #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
+    pub torque_sign: SignChoice,
+}
+
+impl ReadingArgs {
+    /// The settings that these ask for, the rest as without options.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            reading: Reading {
+                by_hand: ByHand {
+                    columns: self.columns.clone(),
+                    units: self.units.clone(),
+                    full_rpm: None,
+                    swap: self.swap,
+                },
+                pwm_range: self.pwm_range,
+            },
+            preparation: Preparation {
+                stop_throttle: self.stop_throttle,
+                settle: self.settle,
+                signs: SignPolicy {
+                    thrust: self.thrust_sign,
+                    torque: self.torque_sign,
+                },
+                ..Preparation::default()
+            },
+            options: self.options(),
+            ..Settings::default()
+        }
+    }
+
+    /// These as words of a command line, without those that say what holds without them.
+    fn options(&self) -> Vec<String> {
+        let signs =
+            [self.thrust_sign, self.torque_sign].map(|sign| (sign != SignChoice::Auto).then_some(sign));
+        let number = |x: f64, default: f64| (x != default).then(|| x.to_string());
+        let one = [
+            (
+                "--pwm-range",
+                self.pwm_range.map(|[low, high]| format!("{low},{high}")),
+            ),
+            ("--stop-throttle", number(self.stop_throttle, STOP_THROTTLE)),
+            ("--settle", number(self.settle, SETTLE)),
+            ("--thrust-sign", signs[0].map(|sign| sign.to_string())),
+            ("--torque-sign", signs[1].map(|sign| sign.to_string())),
+        ];
+        let of_roles = |option: &'static str, roles: &[(String, String)]| {
+            let words = roles.iter().map(|(role, value)| format!("{role}={value}"));
+            words.map(|word| (option, Some(word))).collect::<Vec<_>>()
+        };
+        let all = of_roles("--column", &self.columns)
+            .into_iter()
+            .chain(of_roles("--unit", &self.units))
+            .chain(one);
+        let given = all.filter_map(|(option, value)| Some([option.to_owned(), value?]));
+        let swap = self.swap.then(|| "--swap".to_owned());
+        given.flatten().chain(swap).collect()
+    }
+
+    /// Those that [`ReadingArgs::options`] wrote.
+    ///
+    /// # Errors
+    /// Words that are no such options.
+    pub fn remembered(options: &[String]) -> Result<ReadingArgs, String> {
+        let words = ["identify"].into_iter().chain(options.iter().map(String::as_str));
+        let command = ReadingArgs::augment_args(clap::Command::new("identify"));
+        let matches = command.try_get_matches_from(words);
+        let read = matches.and_then(|matches| ReadingArgs::from_arg_matches(&matches));
+        read.map_err(|error| {
+            let told = error.render().to_string();
+            let first = told.lines().next().unwrap_or_default();
+            first.trim_start_matches("error: ").to_owned()
+        })
+    }
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    number(text, |x| (0.0..1.0).contains(&x), "is not in [0, 1)")
 }
 
 /// The air at the bench.

@@ -13,11 +13,14 @@ use super::identified::Identified;
 use super::report::wrapped;
 use super::rotor::predict::Predicted;
 use super::rotor::single::EXPONENT;
-use super::table::{commented, numbers, table};
+use super::table::{commented, numbers, table, texts};
 
 /// The key of the torque of least power. Which airframe it is decides whether that saves anything,
 /// so that it stands in a comment.
 pub const POWER_BIAS: &str = "power_bias_nm_per_n";
+
+/// The key of the options that the bench files needed to be read.
+const BENCH_OPTIONS: &str = "bench_options";
 
 /// Columns of a comment.
 const WIDTH: usize = 104;
@@ -80,6 +83,9 @@ pub fn tables(id: &Identified) -> String {
                 table(&about("pair.power"), [("power_w", numbers(power_w))]),
             )),
             None => tail = format!("\n{}", about("pair.power")),
+        }
+        if !id.options.is_empty() {
+            entries.push((BENCH_OPTIONS, texts(&id.options)));
         }
         document.insert("pair", table(&(about("pair") + SIGN), entries));
     }
@@ -173,7 +179,10 @@ pub fn of_prediction(predicted: &Predicted) -> String {
     for warning in &predicted.warnings {
         head += &comment("! ", warning);
     }
-    let document = predicted.pair.tables(&|table| comments(&facts, table));
+    let mut document = predicted.pair.tables(&|table| comments(&facts, table));
+    if !predicted.options.is_empty() {
+        document["pair"][BENCH_OPTIONS] = texts(&predicted.options);
+    }
     let reference = predicted.reference_v.map(|volts| (100.0 * volts).round() / 100.0);
     // A speed that is held does not follow the voltage.
     let held = predicted.runs.iter().all(|run| run.exponents == [0.0; 2]);

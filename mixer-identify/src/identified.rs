@@ -25,6 +25,8 @@ pub struct Settings {
     pub preparation: Preparation,
     /// How points are fitted.
     pub wishes: Wishes,
+    /// `reading` and `preparation` as options of `cargo mixer identify`, which the tables remember.
+    pub options: Vec<String>,
 }
 
 /// All that `--json` prints.
@@ -42,6 +44,8 @@ pub struct Identified {
     pub power: Option<Power>,
     /// What was read.
     pub files: Vec<Bench>,
+    /// The options that the files needed to be read: [`Settings::options`].
+    pub options: Vec<String>,
     /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was
     /// given.
     pub reference_v: Option<f64>,
@@ -122,6 +126,7 @@ pub fn with_runs(
         air,
         power,
         files: benches,
+        options: Vec::new(),
         reference_v,
         pack_v: wishes.pack_v,
         warnings,

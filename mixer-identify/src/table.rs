@@ -17,6 +17,11 @@ pub(crate) fn numbers(values: impl IntoIterator<Item = f64>) -> Item {
     Item::Value(values.into_iter().collect::<Array>().into())
 }
 
+/// Texts in one line.
+pub(crate) fn texts(values: &[String]) -> Item {
+    Item::Value(values.iter().map(String::as_str).collect::<Array>().into())
+}
+
 /// Numbers in a line each, with a comment behind it.
 pub(crate) fn commented(values: &[f64], comments: impl Iterator<Item = String>) -> Item {
     let mut array = Array::new();

@@ -69,7 +69,8 @@ pub fn identify(
     let run = |run: Option<&Text>| run.map(|run| read(run, settings)).transpose();
     let [upper, lower] = runs;
     let found = run(upper).and_then(|upper| with_runs(benches, [upper, run(lower)?], &settings.wishes));
-    let found = found.map_err(|refusal| vec![refusal])?;
+    let mut found = found.map_err(|refusal| vec![refusal])?;
+    found.options.clone_from(&settings.options);
     Ok(Answer {
         report: report::verdict(&found),
         details: report::text(&found),
@@ -116,7 +117,8 @@ pub fn predict(
     let runs = single(&upper).and_then(|upper| Ok((upper, lower.as_ref().map(single).transpose()?)));
     let found =
         runs.and_then(|(upper, lower)| predict::correct(upper, lower, &maps, air, &how.wishes, warnings));
-    let found = found.map_err(|refusal| vec![refusal])?;
+    let mut found = found.map_err(|refusal| vec![refusal])?;
+    found.options.clone_from(&how.map.options);
     let report = report::of_prediction(&found);
     Ok(Answer {
         details: report.clone(),

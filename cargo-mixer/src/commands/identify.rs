@@ -6,18 +6,14 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_compiler::airframe::Basis;
-use mixer_identify::bench::date;
-use mixer_identify::bench::header::ByHand;
-use mixer_identify::bench::read::Reading;
-use mixer_identify::bench::sign::{SignChoice, SignPolicy};
-use mixer_identify::bench::{Preparation, SETTLE, STOP_THROTTLE};
+use mixer_identify::bench::{Preparation, date};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
 use mixer_identify::rotor::single::EXPONENT;
 use mixer_identify::texts::{Prediction, identify};
 
-use crate::bench_args::{AirArgs, finite, number, positive, pwm_range, role, sign_choice, throttle_box};
+use crate::bench_args::{AirArgs, ReadingArgs, positive, throttle_box};
 use crate::bench_files::{refused, text, texts};
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame_args::FrameArgs;
@@ -61,33 +57,9 @@ pub struct IdentifyArgs {
     /// The throttles to command [default: those measured].
     #[arg(long, value_name = "MIN,MAX", value_parser = throttle_box)]
     pub throttle: Option<ThrottleBox>,
-    /// Pulse widths of throttle 0 and 1, microseconds [default for pulse-width columns: 1000,2000].
-    #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
-    pub pwm_range: Option<[f64; 2]>,
-    /// A rotor at or below this throttle stands still: a start or stop row; a negative value keeps
-    /// all rows.
-    #[arg(long, value_name = "THROTTLE", default_value_t = STOP_THROTTLE, value_parser = finite, allow_negative_numbers = true)]
-    pub stop_throttle: f64,
-    /// Part of each plateau of a streaming log that is dropped at its beginning, in [0, 1).
-    #[arg(long, value_name = "PART", default_value_t = SETTLE, value_parser = part)]
-    pub settle: f64,
-    /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust,
-    /// torque, upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage,
-    /// current, upper_current, lower_current, time, temperature, pressure, density (of the air).
-    #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
-    pub columns: Vec<(String, String)>,
-    /// A unit by hand, as thrust=gf, for a header without one.
-    #[arg(long = "unit", value_name = "ROLE=UNIT", value_parser = role)]
-    pub units: Vec<(String, String)>,
-    /// Exchange upper and lower rotor.
-    #[arg(long)]
-    pub swap: bool,
-    /// Sign of thrust: auto, + or -; +,- and the like for a column per rotor (upper, lower).
-    #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
-    pub thrust_sign: SignChoice,
-    /// Sign of torque, likewise; torque is positive where the lower rotor outweighs the upper.
-    #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
-    pub torque_sign: SignChoice,
+    /// How the bench files are read
+    #[command(flatten)]
+    pub reading: ReadingArgs,
     /// Reference voltage, V [default: mean of the rows].
     #[arg(long, value_name = "VOLT", value_parser = positive)]
     pub reference_voltage: Option<f64>,
@@ -150,28 +122,13 @@ fn bases() -> impl TypedValueParser<Value = BasisChoice> {
 impl IdentifyArgs {
     /// The settings that the arguments ask for.
     pub fn settings(&self) -> Settings {
-        let by_hand = ByHand {
-            columns: self.columns.clone(),
-            units: self.units.clone(),
-            full_rpm: None,
-            swap: self.swap,
-        };
+        let settings = self.reading.settings();
         Settings {
-            reading: Reading {
-                by_hand,
-                pwm_range: self.pwm_range,
-            },
             preparation: Preparation {
-                stop_throttle: self.stop_throttle,
-                settle: self.settle,
-                signs: SignPolicy {
-                    thrust: self.thrust_sign,
-                    torque: self.torque_sign,
-                },
                 torque_may_lack: self.prior.is_some(),
-                own_columns: false,
                 date: self.date.clone(),
                 air: self.air.air(),
+                ..settings.preparation
             },
             wishes: Wishes {
                 basis: self.basis.0,
@@ -182,6 +139,7 @@ impl IdentifyArgs {
                 pack_v: self.pack.range_v(),
                 rotor_out_from_map: self.rotor_out_from_map,
             },
+            ..settings
         }
     }
 }
@@ -242,10 +200,6 @@ fn exponents(text: &str) -> Result<[f64; 2], String> {
         x => Ok(x),
     };
     Ok([exponent(thrust)?, exponent(torque)?])
-}
-
-fn part(text: &str) -> Result<f64, String> {
-    number(text, |x| (0.0..1.0).contains(&x), "is not in [0, 1)")
 }
 
 fn date_given(text: &str) -> Result<String, String> {

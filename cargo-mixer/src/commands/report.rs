@@ -4,12 +4,14 @@ mod bench;
 
 use std::path::{Path, PathBuf};
 
+use mixer_compiler::Compiled;
+use mixer_identify::identified::Settings;
 use mixer_report::origin::Origin;
 use mixer_report::page;
 use mixer_report::study::Study;
 use sha2::{Digest as _, Sha256};
 
-use crate::bench_args::quantity;
+use crate::bench_args::{ReadingArgs, quantity};
 use crate::today::today;
 use crate::{Done, file, print_error};
 
@@ -30,10 +32,28 @@ pub struct ReportArgs {
     /// Bench files of the pair, to be shown beside the model
     #[arg(long, value_name = "BENCH.csv")]
     bench: Vec<PathBuf>,
+    /// How the bench files are read [default: as the airframe file remembers]
+    #[command(flatten)]
+    reading: ReadingArgs,
     /// Total thrust of the comparison at constant thrust, N [default: the weight, without a mass
     /// about 40 % of the largest bare thrust]
     #[arg(long, value_name = "NEWTON", value_parser = thrust, allow_negative_numbers = true)]
     thrust: Option<f64>,
+}
+
+impl ReportArgs {
+    /// How `identify` read the bench: by what is given here, else by what the file remembers.
+    fn settings(&self, compiled: &Compiled) -> Result<Settings, String> {
+        let given = self.reading.settings();
+        if !given.options.is_empty() {
+            return Ok(given);
+        }
+        let remembered = ReadingArgs::remembered(&compiled.airframe.pair.bench_options);
+        let place = self.airframe.display();
+        remembered.map(|reading| reading.settings()).map_err(|error| {
+            format!("{place}: `pair.bench_options`: {error}; they are those of cargo mixer identify --help")
+        })
+    }
 }
 
 /// Runs the command.
@@ -43,7 +63,10 @@ pub fn run(args: &ReportArgs) -> Done {
     let compiled = crate::compile(&args.airframe)?;
     let bench = match args.bench.as_slice() {
         [] => None,
-        files => Some(bench::read(&compiled, files).map_err(print_error)?),
+        files => {
+            let settings = args.settings(&compiled).map_err(print_error)?;
+            Some(bench::read(&compiled, files, &settings).map_err(print_error)?)
+        }
     };
     for doubt in bench.iter().flat_map(|bench| bench.doubts(&compiled)) {
         crate::print_note(format_args!("warning: {doubt}"));

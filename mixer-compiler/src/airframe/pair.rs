@@ -1,5 +1,7 @@
 //! `[pair]`: the model of one pair, total thrust and torque as polynomials of the two throttles.
 
+use toml::Spanned;
+
 use super::basis::Basis;
 use super::limits;
 use super::power::{self, Power};
@@ -29,6 +31,8 @@ keys! { TABLE = "[pair]":
         "Electrical power, for what `check` and the report say of least power.";
     UNCERTAINTY "uncertainty" = "", Kind::Table(&uncertainty::TABLE),
         "How far the model of the pair may be from the pair.";
+    BENCH_OPTIONS "bench_options" = "[\"--swap\", \"--unit\", \"thrust=gf\"]", Kind::Texts,
+        "Options of `cargo mixer identify` that the bench files needed to be read: `report --bench` reads them so, too.";
 }
 
 /// Sense of rotation of a unit's upper rotor, seen from above. The lower rotor turns the other way.
@@ -90,6 +94,9 @@ pub struct Pair {
     pub power: Option<Power>,
     /// Error of the model; `None` where the file has no `[pair.uncertainty]`.
     pub uncertainty: Option<Uncertainty>,
+    /// Options of `cargo mixer identify` that the bench files needed to be read; empty where the file
+    /// has none.
+    pub bench_options: Vec<String>,
 }
 
 /// The pair, and its bench's spin also where other keys are at fault.
@@ -101,6 +108,8 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
     let upper_out = table.table(&UPPER_OUT, |table| rotor_alone::read(table, 1.0, throttle));
     let power = table.table(&POWER, |table| power::read(table, throttle));
     let uncertainty = table.table(&UNCERTAINTY, uncertainty::read);
+    let bench_options = table.read::<Vec<Spanned<String>>>(&BENCH_OPTIONS);
+    let bench_options = bench_options.map_or(Vec::new(), Spanned::into_inner);
     let pair = || {
         Some(Pair {
             basis: basis?,
@@ -111,6 +120,7 @@ pub(super) fn read(table: &mut Fields<'_, '_>, throttle: Option<&Throttle>) -> (
             upper_out: upper_out.flatten(),
             power: power.flatten(),
             uncertainty: uncertainty.flatten(),
+            bench_options: bench_options.into_iter().map(Spanned::into_inner).collect(),
         })
     };
     (pair(), upper_spin)

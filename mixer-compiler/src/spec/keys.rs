@@ -80,6 +80,8 @@ impl Key {
 pub enum Kind {
     /// Any text.
     Text,
+    /// A list of texts.
+    Texts,
     /// The name of a Rust module: lower-case letters and digits in parts joined by single `-` or
     /// `_`.
     Name,
@@ -144,6 +146,7 @@ impl Kind {
         };
         match self {
             Kind::Text => "text".to_owned(),
+            Kind::Texts => "list of texts".to_owned(),
             Kind::Name => "lower-case letters and digits, joined by `-` or `_`".to_owned(),
             Kind::Word(words) => any_of(words.iter().copied()),
             Kind::Words(words) => format!("list of {}", any_of(words.iter().copied())),

@@ -15,6 +15,8 @@
 //! A torque that rises with both throttles is a sum of magnitudes and no torque on the airframe: it
 //! is refused.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use crate::bench::header::{Column, Columns, Split};
@@ -29,6 +31,17 @@ pub enum SignChoice {
     Auto,
     /// These factors, for the upper and the lower rotor's column; the first for a total.
     Given([f64; 2]),
+}
+
+impl fmt::Display for SignChoice {
+    /// As `--thrust-sign` takes it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = |s: f64| if s < 0.0 { '-' } else { '+' };
+        match *self {
+            SignChoice::Auto => f.write_str(AUTO),
+            SignChoice::Given([upper, lower]) => write!(f, "{},{}", sign(upper), sign(lower)),
+        }
+    }
 }
 
 /// Signs of both channels.

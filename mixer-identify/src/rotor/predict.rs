@@ -78,6 +78,8 @@ pub struct Predicted {
     pub runs: Vec<Single>,
     /// Files with rows of the pair, and the rows used.
     pub corrected_by: Vec<(String, usize)>,
+    /// The options that these files needed to be read.
+    pub options: Vec<String>,
     /// z/D.
     pub spacing_ratio: f64,
     /// B, m0, m1, n, a, b.
@@ -181,6 +183,7 @@ pub fn correct(
         air,
         runs,
         corrected_by: maps.iter().map(|m| (m.file.clone(), m.points.len())).collect(),
+        options: Vec::new(),
         spacing_ratio,
         constants: constants.constants.map(ten_digits),
         factors: factors.map(ten_digits),

@@ -15,16 +15,25 @@ use crate::bench_files::read_one;
 ///
 /// # Errors
 /// A file that cannot be read, or that holds a single rotor.
-pub(super) fn read(compiled: &Compiled, files: &[PathBuf]) -> Result<BenchPoints, Refusal> {
+pub(super) fn read(
+    compiled: &Compiled,
+    files: &[PathBuf],
+    settings: &Settings,
+) -> Result<BenchPoints, Refusal> {
     let mut bench = BenchPoints::default();
     for file in files {
-        add(&mut bench, compiled, file)?;
+        add(&mut bench, compiled, file, settings)?;
     }
     Ok(bench)
 }
 
-fn add(points: &mut BenchPoints, compiled: &Compiled, file: &Path) -> Result<(), Refusal> {
-    let mut bench = read_one(file, &Settings::default())?;
+fn add(
+    points: &mut BenchPoints,
+    compiled: &Compiled,
+    file: &Path,
+    settings: &Settings,
+) -> Result<(), Refusal> {
+    let mut bench = read_one(file, settings)?;
     if compiled.airframe.voltage.is_some() {
         bench = balanced(&bench);
     }

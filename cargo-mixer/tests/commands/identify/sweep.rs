@@ -262,6 +262,7 @@ pub(crate) fn settings(basis: Option<Basis>) -> Settings {
             pack_v: None,
             rotor_out_from_map: false,
         },
+        options: Vec::new(),
     }
 }
 
