@@ -138,7 +138,10 @@ fn the_parser_agrees_key_by_key() {
              method = \"polynomial\"\ndegree = 9\n[allocation]\nairmode = \"disabled\"\naxes = [\"yaw\", \"thrust\"]\nyaw_reserve_nm = 0.0\n\
              power_bias_nm_per_n = 0.004\n"
         ),
-        format!("name = \"two\"\n{pair}{layout}{alone}"),
+        format!(
+            "name = \"two\"\n{}{layout}{alone}",
+            pair.replace("upper_spin", "bench_options = [\"--swap\"]\nupper_spin")
+        ),
         format!("name = \"three\"\n{}{layout}", with_law(&pair, points)),
         format!(
             "name = \"four\"\n{}[layout]\narm_m = 0.45\nunits = 3\nfirst_angle_deg = 60\nfirst_spin = \"ccw\"\n",
