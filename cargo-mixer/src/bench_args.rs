@@ -93,12 +93,17 @@ pub struct ReadingArgs {
     /// all rows.
     #[arg(long, value_name = "THROTTLE", default_value_t = STOP_THROTTLE, value_parser = finite, allow_negative_numbers = true)]
     pub stop_throttle: f64,
+    /// The speed controllers hold a speed: the speed at full throttle, revolutions per minute.
+    /// Where a file has columns of speeds, throttle is these over it.
+    #[arg(long, value_name = "RPM", value_parser = positive)]
+    pub rpm_at_full: Option<f64>,
     /// Part of each plateau of a streaming log that is dropped at its beginning, in [0, 1).
     #[arg(long, value_name = "PART", default_value_t = SETTLE, value_parser = part)]
     pub settle: f64,
     /// A column by hand, as upper="ESC A" or lower=#5 (number from 1). Roles: upper, lower, thrust,
     /// torque, upper_thrust, lower_thrust, upper_torque, lower_torque, voltage, lower_voltage,
-    /// current, upper_current, lower_current, time, temperature, pressure, density (of the air).
+    /// current, upper_current, lower_current, power, upper_power, lower_power, upper_speed, lower_speed,
+    /// time, temperature, pressure, density (of the air).
     #[arg(long = "column", value_name = "ROLE=HEADER", value_parser = role)]
     pub columns: Vec<(String, String)>,
     /// A unit by hand, as thrust=gf, for a header without one.
@@ -123,8 +128,9 @@ impl ReadingArgs {
                 by_hand: ByHand {
                     columns: self.columns.clone(),
                     units: self.units.clone(),
-                    full_rpm: None,
+                    full_rpm: self.rpm_at_full,
                     swap: self.swap,
+                    ..ByHand::default()
                 },
                 pwm_range: self.pwm_range,
             },
@@ -152,6 +158,7 @@ impl ReadingArgs {
                 "--pwm-range",
                 self.pwm_range.map(|[low, high]| format!("{low},{high}")),
             ),
+            ("--rpm-at-full", self.rpm_at_full.map(|rpm| rpm.to_string())),
             ("--stop-throttle", number(self.stop_throttle, STOP_THROTTLE)),
             ("--settle", number(self.settle, SETTLE)),
             ("--thrust-sign", signs[0].map(|sign| sign.to_string())),

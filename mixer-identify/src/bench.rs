@@ -4,14 +4,14 @@
 //! below `stop_throttle`); reduce a streaming log to one mean per plateau of constant command; make
 //! signs and sums; refuse rows with a missing value.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
 use self::air::{DENSITIES, Known};
 use self::date::date_in;
 use self::header::Columns;
-use self::read::{Log, RefusedRow, Sample};
+use self::read::{Fault, Log, RefusedRow, Sample};
 use self::sign::{SignChoice, SignPolicy, Signs};
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
@@ -19,8 +19,10 @@ use crate::rotor::Turning;
 pub mod air;
 pub mod date;
 pub mod header;
+pub mod number;
 pub mod plateau;
 pub mod read;
+pub mod sheet;
 pub mod sign;
 pub mod text;
 pub mod units;
@@ -116,6 +118,20 @@ pub struct Bench {
     pub points: Vec<Point>,
 }
 
+impl Bench {
+    /// Notes of the reading and rows refused, as few as can be read.
+    pub(crate) fn passed_over(&self) -> Vec<String> {
+        const MOST: usize = 5;
+        let told = |row: &RefusedRow| format!("refused: {}:{}: {}", row.file, row.line, row.reason);
+        let rows = self.refused_rows.iter().take(MOST).map(told);
+        let mut told: Vec<String> = self.notes.iter().cloned().chain(rows).collect();
+        if self.refused_rows.len() > MOST {
+            told.push(format!("refused: {} rows more", self.refused_rows.len() - MOST));
+        }
+        told
+    }
+}
+
 /// Mean supply voltage, V, and whether every point has one; nothing where none has.
 pub(crate) fn mean_voltage<'a>(points: impl IntoIterator<Item = &'a Point>) -> Option<(f64, bool)> {
     let (mut sum, mut count, mut all) = (0.0, 0, true);
@@ -183,17 +199,17 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         columns,
         mut samples,
         mut refused,
-        density_kg_m3,
+        air,
+        mut notes,
     } = log;
     let rows = samples.len() + refused.len();
-    some_readable(&name, &columns, &samples, &refused)?;
+    few_refused(&name, &refused, rows)?;
+    some_commanded(&name, &columns, &samples)?;
+    let unreadable = refused.len();
     let air = match &how.air {
-        None => density_kg_m3
-            .map(|density| of_columns(&name, density))
-            .transpose()?,
+        None => air.map(|air| plausible(&name, air)).transpose()?,
         given => given.clone(),
     };
-    let mut notes = Vec::new();
     let two_throttles = columns.throttle.rotors[1].is_some();
     let turns = |rotor: usize| samples.iter().any(|s| s.throttle[rotor] > how.stop_throttle);
     let kind = match two_throttles && turns(0) && turns(1) {
@@ -203,7 +219,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
     // Of a single rotor: its index among the throttles.
     let rotor = usize::from(two_throttles && !turns(0));
     match kind {
-        Kind::SingleRotor if two_throttles => notes.push(format!(
+        Kind::SingleRotor if two_throttles && !how.own_columns => notes.push(format!(
             "the {} rotor stands still throughout: a single rotor",
             ["lower", "upper"][rotor]
         )),
@@ -256,7 +272,9 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             (torque.is_nan() && torque_counts, "the torque is empty"),
         ];
         match missing.iter().find(|(is, _)| *is) {
-            Some((_, reason)) => refused.push(RefusedRow::new(&name, sample.line, *reason)),
+            Some((_, reason)) => {
+                refused.push(RefusedRow::new(&name, sample.line, Fault::new(*reason, *reason)))
+            }
             None => {
                 let [voltage, imbalance] = supply(turning, sample.voltage);
                 points.push(Point {
@@ -271,6 +289,10 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
                 })
             }
         }
+    }
+    match streaming {
+        true => few_refused(&name, &refused[unreadable..], samples.len())?,
+        false => few_refused(&name, &refused, rows)?,
     }
     refused.sort_by_key(|r| r.line);
     if points.is_empty() {
@@ -309,45 +331,65 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
 }
 
 /// The air by the columns of a file.
-fn of_columns(name: &str, density_kg_m3: f64) -> Result<Known, Refusal> {
-    let [low, high] = DENSITIES;
-    if (low..=high).contains(&density_kg_m3) {
-        let from = format!("columns of {name}");
-        return Ok(Known { density_kg_m3, from });
+fn plausible(name: &str, air: Known) -> Result<Known, Refusal> {
+    let ([low, high], density) = (DENSITIES, air.density_kg_m3);
+    if (low..=high).contains(&density) {
+        return Ok(air);
     }
     Err(Refusal::of(
         name,
-        format!(
-            "its columns of the air give a density of {density_kg_m3:.3} kg/m3, not within {low} to {high}"
-        ),
+        format!("its columns of the air give a density of {density:.3} kg/m3, not within {low} to {high}"),
         "their units by --unit temperature=, pressure= or density=; or the air by --temperature C --pressure HPA in their place",
     ))
 }
 
-/// Refuses a file of which no row can be read, or whose command was not recorded.
-fn some_readable(
-    name: &str,
-    columns: &Columns,
-    samples: &[Sample],
-    refused: &[RefusedRow],
-) -> Result<(), Refusal> {
-    if let (true, Some(first)) = (samples.is_empty(), refused.first()) {
-        let (count, reason) = (refused.len(), &first.reason);
-        return Err(Refusal::of(
-            format!("{name}:{}", first.line),
-            format!("none of {count} rows can be read, and this is the first: {reason}"),
-            "numbers in every row, throttles in [0, 1] or with their unit",
-        ));
-    }
-    if samples.iter().any(|s| !s.throttle[0].is_nan()) {
+/// Share of refused rows above which a file is refused. Real files have none (`maps_warn`), and what
+/// is wrong with a column is in most of its rows.
+const REFUSED: f64 = 0.05;
+
+/// Refuses a file of which too many rows are refused, with the reason that most of them share.
+fn few_refused(name: &str, refused: &[RefusedRow], rows: usize) -> Result<(), Refusal> {
+    if refused.len() as f64 <= REFUSED * rows as f64 {
         return Ok(());
     }
+    let mut kinds: BTreeMap<&str, Vec<&RefusedRow>> = BTreeMap::new();
+    for row in refused {
+        kinds.entry(&row.kind).or_default().push(row);
+    }
+    let most = kinds
+        .into_values()
+        .max_by_key(|rows| rows.len())
+        .unwrap_or_default();
+    let Some(first) = most.first() else { return Ok(()) };
+    Err(Refusal::of(
+        format!("{name}:{}", first.line),
+        format!(
+            "{} of {rows} rows are refused, {} of them for this reason: {}",
+            refused.len(),
+            most.len(),
+            first.reason
+        ),
+        "values in 95 % of the rows or more, of one unit and one way to write numbers",
+    ))
+}
+
+/// Throttle that the greatest of a file is above: one per cent as a share, or a share as per cent.
+const COMMANDED: f64 = 0.02;
+
+/// Refuses a file whose command was not recorded.
+fn some_commanded(name: &str, columns: &Columns, samples: &[Sample]) -> Result<(), Refusal> {
     let column = columns.throttle.rotors[0]
         .as_ref()
         .map_or("", |c| c.name.as_str());
-    let reason = match samples.len() {
-        0 => "there are no rows below the header".to_string(),
-        n => format!("the throttle column {column:?} is empty in all {n} rows"),
+    let throttles = samples.iter().flat_map(|s| s.throttle).filter(|t| !t.is_nan());
+    let greatest = throttles.reduce(f64::max);
+    let reason = match (greatest, samples.len()) {
+        (_, 0) => "there are no rows below the header".to_string(),
+        (None, n) => format!("the throttle column {column:?} is empty in all {n} rows"),
+        (Some(t), _) if 0.0 < t && t < COMMANDED => format!(
+            "the throttle column {column:?} reaches {t} of full throttle at most: shares taken as per cent, or another unit"
+        ),
+        _ => return Ok(()),
     };
     Err(Refusal::of(
         name,
@@ -402,7 +444,7 @@ fn supplied(
                 "the voltage is {} V, in the middle of the rows {median} V",
                 s.voltage[rotor]
             );
-            refused.push(RefusedRow::new(name, s.line, reason));
+            refused.push(RefusedRow::new(name, s.line, Fault::new("voltage off", reason)));
         }
         !off
     });
@@ -429,3 +471,6 @@ fn uneven_levels(samples: &[Sample]) -> Option<String> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -89,6 +89,7 @@ pub fn of_identified(identified: &Identified) -> Vec<Fact> {
     facts.table = "voltage";
     match &identified.voltage {
         Some(voltage) => of_voltage(&mut facts, voltage),
+        None if identified.closed_loop => facts.always("voltage", "no matter: the controllers hold a speed"),
         None => facts.always("voltage", "not corrected for: no file has a voltage column"),
     }
     of_air(&mut facts, &identified.air);

@@ -140,6 +140,8 @@ fn voltage(document: &mut DocumentMut, tail: &mut String, about: &str, id: &Iden
             }
             document.insert("voltage", table(&about, entries));
         }
+        // A speed that is held does not follow the voltage.
+        _ if id.closed_loop => {}
         (reference, range) => {
             *tail += &format!("\n{about}{}", to_fill_in(reference, range, exponents));
         }

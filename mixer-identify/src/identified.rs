@@ -49,6 +49,8 @@ pub struct Identified {
     /// Reference voltage of the fragment, V; none where the map's rows have no voltage and none was
     /// given.
     pub reference_v: Option<f64>,
+    /// Whether the controllers hold a speed, so that nothing follows the voltage.
+    pub closed_loop: bool,
     /// Voltage of the empty and of the full pack, V, where the user said so.
     pub pack_v: Option<[f64; 2]>,
     /// What the user should know.
@@ -77,16 +79,19 @@ pub fn with_runs(
     wishes: &Wishes,
 ) -> Result<Identified, Refusal> {
     distinct_names(&benches)?;
-    let of_air = wishes
-        .voltage_exponent
-        .map_or([DENSITY_EXPONENT; 2], |k| k.map(|k| k - 1.0));
+    let of_air = match wishes.closed_loop {
+        true => [1.0; 2],
+        false => wishes
+            .voltage_exponent
+            .map_or([DENSITY_EXPONENT; 2], |k| k.map(|k| k - 1.0)),
+    };
     let mut air = Air::of(&benches, of_air);
     benches
         .iter_mut()
         .chain(runs.iter_mut().flatten())
         .for_each(|b| air.bring(b));
     let balanced: Vec<Bench> = benches.iter().map(balanced).collect();
-    let voltage = dependence(&balanced);
+    let voltage = dependence(&balanced).filter(|_| !wishes.closed_loop);
     let voltage = match wishes.voltage_exponent {
         Some(exponents) => Some(declared(voltage, exponents, &benches)?),
         None => voltage,
@@ -128,6 +133,7 @@ pub fn with_runs(
         files: benches,
         options: Vec::new(),
         reference_v,
+        closed_loop: wishes.closed_loop,
         pack_v: wishes.pack_v,
         warnings,
     })

@@ -81,11 +81,17 @@ const TO_FILL: [&str; 8] = [
     "pressure_hpa",
 ];
 
-/// A CSV to fill in.
-pub fn template(pairs: &[[f64; 2]]) -> String {
-    let mut text = format!("upper,lower,{}\n", TO_FILL.join(","));
-    for [u, l] in pairs {
-        let _ = writeln!(text, "{u:?},{l:?}{}", ",".repeat(TO_FILL.len()));
+/// A CSV to fill in: throttles, or speeds in whole revolutions per minute where that at full throttle
+/// is given.
+pub fn template(pairs: &[[f64; 2]], full_rpm: Option<f64>) -> String {
+    let unit = if full_rpm.is_some() { "_rpm" } else { "" };
+    let mut text = format!("upper{unit},lower{unit},{}\n", TO_FILL.join(","));
+    for pair in pairs {
+        let [u, l] = pair.map(|throttle| match full_rpm {
+            Some(full) => (throttle * full).round().to_string(),
+            None => format!("{throttle:?}"),
+        });
+        let _ = writeln!(text, "{u},{l}{}", ",".repeat(TO_FILL.len()));
     }
     text
 }

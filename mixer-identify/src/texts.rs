@@ -112,7 +112,8 @@ pub fn predict(
     let air = Air::of([&upper].into_iter().chain(&lower).chain(&maps), by_density);
     let benches = [&mut upper].into_iter().chain(&mut lower).chain(&mut maps);
     benches.for_each(|bench| air.bring(bench));
-    let mut warnings = Vec::new();
+    let read = [&upper].into_iter().chain(&lower).chain(&maps);
+    let mut warnings: Vec<String> = read.flat_map(Bench::passed_over).collect();
     let mut single = |run: &Bench| Single::of(run, &how.known, &mut warnings);
     let runs = single(&upper).and_then(|upper| Ok((upper, lower.as_ref().map(single).transpose()?)));
     let found =

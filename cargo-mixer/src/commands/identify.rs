@@ -10,7 +10,6 @@ use mixer_identify::bench::{Preparation, date};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
-use mixer_identify::rotor::single::EXPONENT;
 use mixer_identify::texts::{Prediction, identify};
 
 use crate::bench_args::{AirArgs, ReadingArgs, positive, throttle_box};
@@ -77,7 +76,7 @@ pub struct IdentifyArgs {
     /// Exponent of thrust and of torque in (V / reference)^k, or one for both: brings the rows to
     /// the reference voltage and writes `[voltage]` where the files cannot tell one. 1.75 is the
     /// median of 104 motors with propellers.
-    #[arg(long, value_name = "K[,K]", value_parser = exponents)]
+    #[arg(long, value_name = "K[,K]", value_parser = exponents, conflicts_with = "rpm_at_full")]
     pub voltage_exponent: Option<[f64; 2]>,
     /// The air at the bench
     #[command(flatten)]
@@ -136,6 +135,7 @@ impl IdentifyArgs {
                 throttle: self.throttle,
                 reference_v: self.reference_voltage,
                 voltage_exponent: self.voltage_exponent,
+                closed_loop: self.reading.rpm_at_full.is_some(),
                 pack_v: self.pack.range_v(),
                 rotor_out_from_map: self.rotor_out_from_map,
             },
@@ -162,14 +162,13 @@ pub fn run(args: &IdentifyArgs) -> Done {
     let [prior, upper, lower] = runs.map(|run| run.as_deref().map(text));
     let settings = args.settings();
     if let Some(single) = &prior {
+        let held = args.reading.rpm_at_full.is_some();
+        let exponents = predict::exponents(args.voltage_exponent, held);
         let how = Prediction {
-            run: predict::of_one_rotor(args.air.air()),
+            run: args.rotors.reading(args.air.air(), args.reading.rpm_at_full),
             map: settings,
-            known: args.rotors.known(
-                args.reference_voltage,
-                args.voltage_exponent.unwrap_or([EXPONENT; 2]),
-            ),
-            wishes: args.rotors.wishes(args.throttle, false),
+            known: args.rotors.known(args.reference_voltage, exponents),
+            wishes: args.rotors.wishes(args.throttle, held),
         };
         let answer = args.rotors.predict(single, &maps, &how).map_err(refused)?;
         return place.write(&answer, args.verbose);

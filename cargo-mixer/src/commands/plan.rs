@@ -29,6 +29,10 @@ pub struct PlanArgs {
     /// The format to write
     #[arg(long, value_enum, default_value_t = Format::Template)]
     format: Format,
+    /// The speed controllers hold a speed: the speed at full throttle, revolutions per minute; the
+    /// template then has speeds to command
+    #[arg(long, value_name = "RPM", value_parser = crate::bench_args::positive)]
+    rpm_at_full: Option<f64>,
     /// Pulse widths of throttle 0 and 1 in a script, microseconds
     #[arg(long, value_name = "LOW,HIGH", default_value = "1000,2000", value_parser = crate::bench_args::pwm_range)]
     pwm_range: [f64; 2],
@@ -69,8 +73,12 @@ pub fn run(args: &PlanArgs) -> Done {
         // clap asks for one of the two.
         None => CORRECTING.to_vec(),
     };
+    if args.rpm_at_full.is_some() && args.format != Format::Template {
+        let message = "--rpm-at-full writes speeds into the template; the scripts command pulse widths";
+        return Err(crate::bad_usage(message));
+    }
     let text = match args.format {
-        Format::Template => template(&pairs),
+        Format::Template => template(&pairs, args.rpm_at_full),
         Format::Rcbenchmark => rcbenchmark(&pairs, args.pwm_range),
         Format::FlightStand => flight_stand(&pairs, args.pwm_range),
     };

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use mixer_identify::bench::Preparation;
 use mixer_identify::bench::air::Known;
-use mixer_identify::bench::header::ByHand;
+use mixer_identify::bench::header::{ByHand, Offers};
 use mixer_identify::bench::read::Reading;
-use mixer_identify::bench::sign::{SignChoice, SignPolicy};
+use mixer_identify::bench::sign::SignChoice;
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
@@ -36,8 +36,8 @@ pub struct PredictArgs {
     /// What is known of the rotors beside the run
     #[command(flatten)]
     pub rotors: RotorArgs,
-    /// The run's throttles are speeds, held by the speed controller: the speed at full throttle,
-    /// revolutions per minute. Takes the column RPM, or --column upper=HEADER.
+    /// The speed controller holds a speed: the speed at full throttle, revolutions per minute.
+    /// Throttle is then the column of the speed over it, or --column throttle=HEADER.
     #[arg(long, value_name = "RPM", value_parser = positive)]
     pub rpm_at_full: Option<f64>,
     /// Bring the rows of the run to this voltage, V, by an exponent of 1.75 [default: their mean].
@@ -116,6 +116,28 @@ impl RotorArgs {
         }
     }
 
+    /// How a run of one rotor is read, without options for its columns.
+    pub(crate) fn reading(&self, air: Option<Known>, full_rpm: Option<f64>) -> Settings {
+        Settings {
+            reading: Reading {
+                by_hand: ByHand {
+                    full_rpm,
+                    diameter_m: self.diameter,
+                    density_kg_m3: air.as_ref().map(|air| air.density_kg_m3),
+                    offers: Offers::Header,
+                    ..ByHand::default()
+                },
+                pwm_range: None,
+            },
+            preparation: Preparation {
+                own_columns: true,
+                air,
+                ..Preparation::default()
+            },
+            ..Settings::default()
+        }
+    }
+
     /// What is wished of the pair.
     pub(crate) fn wishes(&self, throttle: Option<ThrottleBox>, closed_loop: bool) -> Wishes {
         Wishes {
@@ -154,31 +176,13 @@ fn single_role(text: &str) -> Result<(String, String), String> {
 
 impl PredictArgs {
     fn settings(&self) -> Settings {
-        let mut columns = self.columns.clone();
-        if self.rpm_at_full.is_some() && !columns.iter().any(|(role, _)| role == "upper") {
-            columns.push(("upper".into(), "RPM".into()));
-        }
-        Settings {
-            reading: Reading {
-                by_hand: ByHand {
-                    columns,
-                    units: self.units.clone(),
-                    full_rpm: self.rpm_at_full,
-                    swap: false,
-                },
-                pwm_range: self.pwm_range,
-            },
-            preparation: Preparation {
-                own_columns: true,
-                air: self.air.air(),
-                signs: SignPolicy {
-                    thrust: self.thrust_sign,
-                    torque: SignChoice::Auto,
-                },
-                ..Preparation::default()
-            },
-            ..Settings::default()
-        }
+        let mut settings = self.rotors.reading(self.air.air(), self.rpm_at_full);
+        settings.reading.by_hand.columns = self.columns.clone();
+        settings.reading.by_hand.units = self.units.clone();
+        settings.reading.by_hand.offers = Offers::OneRotor;
+        settings.reading.pwm_range = self.pwm_range;
+        settings.preparation.signs.thrust = self.thrust_sign;
+        settings
     }
 
     /// Predicts the pair.
@@ -186,8 +190,7 @@ impl PredictArgs {
     /// # Errors
     /// Files that cannot serve.
     pub fn predicted(&self) -> Result<Answer<Predicted>, Vec<Refusal>> {
-        // A speed that is held does not follow the voltage.
-        let exponents = [if self.rpm_at_full.is_some() { 0.0 } else { EXPONENT }; 2];
+        let exponents = exponents(None, self.rpm_at_full.is_some());
         let how = Prediction {
             run: self.settings(),
             map: Settings::default(),
@@ -198,16 +201,9 @@ impl PredictArgs {
     }
 }
 
-/// How a run of one rotor is read.
-pub(crate) fn of_one_rotor(air: Option<Known>) -> Settings {
-    Settings {
-        preparation: Preparation {
-            own_columns: true,
-            air,
-            ..Preparation::default()
-        },
-        ..Settings::default()
-    }
+/// Exponents of the voltage: those given, else usual ones. A speed that is held does not follow it.
+pub(crate) fn exponents(given: Option<[f64; 2]>, held: bool) -> [f64; 2] {
+    given.unwrap_or([if held { 0.0 } else { EXPONENT }; 2])
 }
 
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.

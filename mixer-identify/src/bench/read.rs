@@ -6,16 +6,12 @@
 use mixer_compiler::atmosphere;
 use serde::Serialize;
 
-use crate::bench::header::{ByHand, Column, Columns, Split};
-use crate::bench::text;
-use crate::bench::units::Scale;
+use crate::bench::air;
+use crate::bench::header::{ByHand, Column, Columns, Offers, STANDARD_DENSITY, Split, is_unit, known};
+use crate::bench::number::{Cell, is_blank, is_missing};
+use crate::bench::sheet::Sheet;
+use crate::bench::units::{self, Scale};
 use crate::refusal::{Refusal, cut, cut_cell};
-
-/// Most columns of a log; loggers of whole vehicles have some hundred.
-const MOST_COLUMNS: usize = 2000;
-
-/// Longest header line, bytes.
-const LONGEST_HEADER: usize = 100_000;
 
 /// A row that was left out, and why.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -26,15 +22,34 @@ pub struct RefusedRow {
     pub line: u64,
     /// What is wrong with it.
     pub reason: String,
+    /// What rows of one fault have in common.
+    #[serde(skip)]
+    pub kind: String,
 }
 
 impl RefusedRow {
-    pub(crate) fn new(file: &str, line: u64, reason: impl Into<String>) -> Self {
+    pub(crate) fn new(file: &str, line: u64, fault: Fault) -> Self {
         RefusedRow {
             file: file.to_owned(),
             line,
-            reason: cut(reason.into()),
+            reason: cut(fault.reason),
+            kind: fault.kind,
         }
+    }
+}
+
+/// What is wrong with a row.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    kind: String,
+    reason: String,
+}
+
+impl Fault {
+    /// Of rows alike in `kind`.
+    pub(crate) fn new(kind: impl Into<String>, reason: impl Into<String>) -> Fault {
+        let (kind, reason) = (kind.into(), reason.into());
+        Fault { kind, reason }
     }
 }
 
@@ -66,8 +81,10 @@ pub struct Log {
     pub samples: Vec<Sample>,
     /// Rows that could not be read.
     pub refused: Vec<RefusedRow>,
-    /// Density of the air in the mean of the rows, kg/m3, where columns tell it.
-    pub density_kg_m3: Option<f64>,
+    /// The air in the mean of the rows, where columns tell it, or of coefficients.
+    pub air: Option<air::Known>,
+    /// What was passed over or taken for something else.
+    pub notes: Vec<String>,
 }
 
 /// How to read a file.
@@ -87,131 +104,224 @@ pub fn unreadable(name: &str, reason: &str) -> Refusal {
     Refusal::of(
         name,
         format!("cannot be read: {reason}"),
-        "a readable CSV file in UTF-8 or Latin-1",
+        "a readable CSV file in UTF-8, UTF-16 or Latin-1",
     )
 }
 
 /// Reads a bench log named `name`.
 ///
 /// # Errors
-/// Bytes that are no text, and a header without the columns that every use needs.
+/// Bytes that are no table of text, a header without the columns that every use needs, and numbers
+/// of two meanings.
 pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal> {
-    let text = text::normalised(bytes).map_err(|reason| unreadable(name, reason))?;
-    let (mut header, mut header_line, mut rows) = (&text[..0], 0, text.as_slice());
-    while header.trim_ascii().is_empty() && !rows.is_empty() {
-        let end = rows.iter().position(|byte| *byte == b'\n');
-        (header, rows) = rows.split_at(end.map_or(rows.len(), |at| at + 1));
-        header_line += 1;
+    let by_hand = &reading.by_hand;
+    let sheet = Sheet::of(name, bytes, &|cells| known(cells, by_hand), &is_unit)?;
+    let place = format!("{name}:{}", sheet.line.max(1));
+    let columns = named(&sheet, &place, Columns::find(&place, &sheet.headings, by_hand))?;
+    let mut decimals = vec!['.'; sheet.headings.len()];
+    for column in columns.all() {
+        decimals[column.index] = sheet.decimal(column.index).map_err(|(line, number)| {
+            Refusal::of(
+                format!("{name}:{line}"),
+                format!("{:?} = {number:?} may be in thousands or with decimals, and no other number of the file tells", column.name),
+                "numbers without separators of thousands, as 1234 or 1.234",
+            )
+        })?;
     }
-    if header.contains(&0) {
-        return Err(unreadable(name, "it holds zero bytes and is no text"));
-    }
-    let separator = text::separator(header);
-    let columns = header.iter().filter(|byte| **byte == separator).count() + 1;
-    if columns > MOST_COLUMNS || header.len() > LONGEST_HEADER {
-        return Err(Refusal::of(
-            format!("{name}:{header_line}"),
-            format!("a header line of {columns} columns and {} bytes", header.len()),
-            format!("at most {MOST_COLUMNS} columns and {LONGEST_HEADER} bytes"),
-        ));
-    }
-    let csv_of = |input| {
-        let mut builder = csv::ReaderBuilder::new();
-        builder.delimiter(separator).flexible(true).has_headers(false);
-        builder.from_reader::<&[u8]>(input)
-    };
-    let Some(Ok(record)) = csv_of(header).byte_records().next() else {
-        let needed = "a header line and rows of measurements";
-        return Err(Refusal::of(name, "the file is empty", needed));
-    };
-    let cells = record.iter().map(|cell| text::decode(cell).trim().to_string());
-    let headers: Vec<String> = cells.collect();
-    let columns = Columns::find(name, &headers, &reading.by_hand)?;
-    require(name, &columns, &headers)?;
-
     let mut log = Log {
         name: name.to_string(),
-        columns,
+        notes: taken_for_throttle(&columns, by_hand),
         samples: Vec::new(),
         refused: Vec::new(),
-        density_kg_m3: None,
+        air: None,
+        columns,
     };
-    let (mut densities, mut measured) = (0.0, 0);
-    let mut rows = csv_of(rows);
-    let mut record = csv::ByteRecord::new();
-    let mut cells = Cells {
+    let cells = Cells {
         pwm_range: reading.pwm_range.unwrap_or(PWM_RANGE),
         pwm_given: reading.pwm_range.is_some(),
-        decimal_comma: separator == b';',
+        offers: by_hand.offers,
+        decimals,
+        most: match sheet
+            .headings
+            .iter()
+            .rposition(|heading| !heading.name.is_empty())
+        {
+            Some(last) => last + 1,
+            None => 0,
+        },
+        least: if sheet.by_blanks { sheet.headings.len() } else { 0 },
     };
-    loop {
-        let more = rows.read_byte_record(&mut record);
-        if !more.map_err(|error| unreadable(name, &error.to_string()))? {
-            log.density_kg_m3 = (measured > 0).then(|| densities / f64::from(measured));
-            return Ok(log);
-        }
-        // The reader stands behind the row's line end (where the row begins it does not know: it
-        // skips blank lines silently). A quoted cell may span lines.
-        let inner = record.iter().flatten().filter(|b| **b == b'\n').count() as u64;
-        let line = header_line + rows.position().line() - 1 - inner;
-        if record.iter().all(|cell| cell.trim_ascii().is_empty()) {
-            continue;
-        }
-        match cells.sample(line, &log.columns, &record) {
+    let (mut densities, mut measured, mut aside) = (0.0, 0, Vec::new());
+    for (line, record) in &sheet.rows {
+        let line = *line;
+        match cells.sample(line, &log.columns, record) {
+            _ if let Some(what) = is_aside(&sheet, record) => aside.push((line, what)),
             Ok(sample) => {
                 log.samples.push(sample);
-                let density = cells.density(&log.columns, &record);
+                let density = cells.density(&log.columns, record);
                 if density.is_finite() {
                     (densities, measured) = (densities + density, measured + 1);
                 }
             }
-            Err(reason) => log.refused.push(RefusedRow::new(name, line, reason)),
+            Err(fault) => {
+                let names: Vec<String> = record.iter().map(str::to_owned).collect();
+                if known(&names, by_hand) > 1 {
+                    let reason = format!(
+                        "another header, {}, below that of line {}",
+                        names.join(", "),
+                        sheet.line
+                    );
+                    return Err(Refusal::of(
+                        format!("{name}:{line}"),
+                        reason,
+                        "one table in a file",
+                    ));
+                }
+                log.refused.push(RefusedRow::new(name, line, fault));
+            }
         }
+    }
+    let told = |(line, what): &(u64, &str)| format!("{name}:{line} is passed over: {what}");
+    log.notes.extend(aside.iter().take(MOST_TOLD).map(told));
+    if aside.len() > MOST_TOLD {
+        log.notes.push(format!(
+            "{name}: {} lines more are passed over",
+            aside.len() - MOST_TOLD
+        ));
+    }
+    let of_coefficients = log
+        .columns
+        .thrust
+        .whole
+        .as_ref()
+        .is_some_and(|c| matches!(c.scale, Scale::OfSpeed(_)));
+    log.air = match by_hand.density_kg_m3 {
+        _ if !of_coefficients => (measured > 0).then(|| air::Known {
+            density_kg_m3: densities / f64::from(measured),
+            from: format!("columns of {name}"),
+        }),
+        Some(_) => None,
+        None => Some(air::Known {
+            density_kg_m3: STANDARD_DENSITY,
+            from: "standard, for CT and CP".to_owned(),
+        }),
+    };
+    Ok(log)
+}
+
+/// Lines passed over that are told one by one.
+const MOST_TOLD: usize = 3;
+
+/// The columns, or that the first line has numbers where their names should stand.
+fn named(sheet: &Sheet, place: &str, found: Result<Columns, Refusal>) -> Result<Columns, Refusal> {
+    found.map_err(|refusal| match sheet.without_names {
+        false => refusal,
+        true => {
+            let names: Vec<&str> = sheet.headings.iter().map(|heading| heading.name.as_str()).collect();
+            Refusal::of(
+                place,
+                format!("numbers where the names of the columns stand: {}", names.join(", ")),
+                "a first line with names and units, as upper,lower,thrust_n,torque_nm or throttle,thrust_n,torque_nm",
+            )
+        }
+    })
+}
+
+/// What stands for throttle and thrust.
+fn taken_for_throttle(columns: &Columns, by_hand: &ByHand) -> Vec<String> {
+    let mut notes = Vec::new();
+    let speeds = columns.throttle.rotors.iter().flatten();
+    let speeds: Vec<String> = speeds
+        .filter(|column| matches!(column.scale, Scale::Speed(_)))
+        .map(|column| format!("{:?}", column.name))
+        .collect();
+    if let (Some(full), false) = (by_hand.full_rpm, speeds.is_empty()) {
+        notes.push(format!(
+            "throttle is {} over {full} rpm (--rpm-at-full)",
+            speeds.join(" and ")
+        ));
+    }
+    if let (Some(Scale::OfSpeed(_)), Some(diameter)) =
+        (columns.thrust.whole.as_ref().map(|c| c.scale), by_hand.diameter_m)
+    {
+        let density = by_hand.density_kg_m3.unwrap_or(STANDARD_DENSITY);
+        let standard = if by_hand.density_kg_m3.is_none() {
+            " (standard; --density gives another)"
+        } else {
+            ""
+        };
+        notes.push(format!(
+            "thrust and torque are those of CT and CP with a diameter of {diameter} m in air of {density} kg/m3{standard}"
+        ));
+    }
+    notes
+}
+
+/// Why a row is none of measurements: the header again, a summary, a remark.
+fn is_aside(sheet: &Sheet, record: &csv::StringRecord) -> Option<&'static str> {
+    const SUMMARIES: [&str; 13] = [
+        "average", "averages", "avg", "mean", "max", "maximum", "min", "minimum", "total", "sum", "std",
+        "median", "stddev",
+    ];
+    let first = record.iter().map(str::trim).find(|cell| !cell.is_empty())?;
+    if first.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    let held = record.iter().filter(|cell| !is_blank(cell)).count();
+    let has_number = record.iter().any(|cell| Cell::of(cell).is_some());
+    let word = first.trim_end_matches([':', '.']);
+    let names = sheet.headings.iter().map(|heading| heading.name.as_str());
+    let below = sheet
+        .headings
+        .iter()
+        .map(|heading| heading.below.as_deref().unwrap_or_default());
+    let units = record
+        .iter()
+        .map(|cell| cell.trim_matches(['(', ')', '[', ']', ' ']));
+    match () {
+        () if SUMMARIES.iter().any(|summary| word.eq_ignore_ascii_case(summary)) => {
+            Some("a summary of other rows")
+        }
+        () if names.eq(record.iter().map(str::trim)) => Some("the header again"),
+        () if has_number => None,
+        () if units.eq(below) => Some("the units again"),
+        () if held == 1 || first.starts_with(['#', '%']) && !is_error(first) => Some("a remark"),
+        () => None,
     }
 }
 
-/// Refuses a header without the columns that every use needs.
-fn require(name: &str, columns: &Columns, headers: &[String]) -> Result<(), Refusal> {
-    let has_thrust = columns.thrust.any();
-    let (what, roles) = match columns.throttle.rotors.each_ref() {
-        [None, None] => (
-            "throttle",
-            "upper=HEADER and --column lower=HEADER (rotor speeds are no throttles)",
-        ),
-        [None, Some(_)] => ("throttle of the upper rotor", "upper=HEADER"),
-        _ if !has_thrust => ("thrust", "thrust=HEADER"),
-        _ => return Ok(()),
-    };
-    let is_number = |header: &String| header.trim().parse::<f64>().is_ok();
-    let (place, names) = (format!("{name}:1"), headers.join(", "));
-    if headers.iter().all(is_number) {
-        return Err(Refusal::of(
-            place,
-            format!("numbers where the names of the columns stand: {names}"),
-            "a first line with names and units, as upper,lower,thrust_n,torque_nm or throttle,thrust_n,torque_nm",
-        ));
-    }
-    Err(Refusal::of(
-        place,
-        format!("no {what} column among: {names}"),
-        format!("the column by hand: --column {roles}"),
-    ))
+/// Whether a cell is what a spreadsheet writes for a value that it cannot compute.
+fn is_error(cell: &str) -> bool {
+    cell.starts_with('#') && cell[1..].starts_with(|c: char| c.is_uppercase())
 }
 
 struct Cells {
     pwm_range: [f64; 2],
     pwm_given: bool,
-    decimal_comma: bool,
+    offers: Offers,
+    /// Decimal mark by column.
+    decimals: Vec<char>,
+    /// Most cells that have a name, and least of a row.
+    most: usize,
+    least: usize,
 }
 
+/// Share of the pulse widths' range by which a controller at rest is commanded below it.
+const AT_REST: f64 = 0.3;
+
 impl Cells {
-    fn sample(&mut self, line: u64, columns: &Columns, record: &csv::ByteRecord) -> Result<Sample, String> {
+    fn sample(&self, line: u64, columns: &Columns, record: &csv::StringRecord) -> Result<Sample, Fault> {
+        self.in_columns(record)?;
         let [upper, lower] = &columns.throttle.rotors;
-        let split = |columns: &Split<Option<Column>>| -> Result<Split<f64>, String> {
+        let rpm = self
+            .value(&columns.speed.rotors[0], record, f64::NAN)
+            .unwrap_or(f64::NAN);
+        let value = |column: &Option<Column>| self.value(column, record, rpm);
+        let split = |columns: &Split<Option<Column>>| -> Result<Split<f64>, Fault> {
             let [upper, lower] = &columns.rotors;
             Ok(Split {
-                whole: self.value(&columns.whole, record)?,
-                rotors: [self.value(upper, record)?, self.value(lower, record)?],
+                whole: value(&columns.whole)?,
+                rotors: [value(upper)?, value(lower)?],
             })
         };
         let throttle = [self.throttle(upper, record)?, self.throttle(lower, record)?];
@@ -221,6 +331,19 @@ impl Cells {
         let power_w = match columns.current.whole {
             Some(_) => voltage[0] * current.whole,
             None => voltage[0] * current.rotors[0] + lower_voltage * current.rotors[1],
+        };
+        let power_w = match split(&columns.power)? {
+            _ if !power_w.is_nan() => power_w,
+            Split {
+                whole,
+                rotors: [upper, lower],
+            } => {
+                if whole.is_nan() {
+                    upper + lower
+                } else {
+                    whole
+                }
+            }
         };
         Ok(Sample {
             line,
@@ -232,69 +355,122 @@ impl Cells {
         })
     }
 
+    /// Refuses a row whose cells cannot stand in the columns of the header.
+    fn in_columns(&self, record: &csv::StringRecord) -> Result<(), Fault> {
+        let nameless = record.iter().skip(self.most).any(|cell| !is_blank(cell));
+        match nameless || record.len() < self.least {
+            false => Ok(()),
+            true => Err(Fault::new(
+                "cells",
+                format!(
+                    "{} cells, the header has {}: a separator inside of numbers or names?",
+                    record.len(),
+                    self.most
+                ),
+            )),
+        }
+    }
+
     /// Density of the air, kg/m3; NaN where the row does not tell it.
-    fn density(&self, columns: &Columns, record: &csv::ByteRecord) -> f64 {
-        let of = |column: &Split<Option<Column>>| self.value(&column.whole, record).unwrap_or(f64::NAN);
+    fn density(&self, columns: &Columns, record: &csv::StringRecord) -> f64 {
+        let of =
+            |column: &Split<Option<Column>>| self.value(&column.whole, record, f64::NAN).unwrap_or(f64::NAN);
         match columns.density.whole {
             Some(_) => of(&columns.density),
             None => atmosphere::density(of(&columns.pressure), of(&columns.temperature)),
         }
     }
 
-    fn value(&self, column: &Option<Column>, record: &csv::ByteRecord) -> Result<f64, String> {
+    fn value(&self, column: &Option<Column>, record: &csv::StringRecord, rpm: f64) -> Result<f64, Fault> {
         let Some(column) = column else { return Ok(f64::NAN) };
         let raw = self.number(column, record)?;
         Ok(match column.scale {
-            Scale::Factor(factor) | Scale::Pulse(factor) => raw * factor,
+            Scale::Factor(factor) | Scale::Pulse(factor) | Scale::Speed(factor) => raw * factor,
             Scale::Affine(factor, offset) => raw * factor + offset,
+            Scale::OfSpeed(factor) => raw * factor * rpm * rpm,
         })
     }
 
-    fn throttle(&self, column: &Option<Column>, record: &csv::ByteRecord) -> Result<f64, String> {
+    fn throttle(&self, column: &Option<Column>, record: &csv::StringRecord) -> Result<f64, Fault> {
         let Some(column) = column else { return Ok(f64::NAN) };
         let raw = self.number(column, record)?;
         let [low, high] = self.pwm_range;
-        let pulse = |us: f64| (us - low) / (high - low);
-        let throttle = match column.scale {
-            Scale::Pulse(to_us) => pulse(raw * to_us),
-            // A column without a unit becomes a pulse width when the range is given and the value
-            // cannot be a throttle.
-            Scale::Factor(1.0) if self.pwm_given && raw > 1.5 => pulse(raw),
-            Scale::Factor(factor) => raw * factor,
-            Scale::Affine(factor, offset) => raw * factor + offset,
+        // A column without a unit becomes a pulse width when the range is given and the value cannot
+        // be a throttle.
+        let us = match column.scale {
+            Scale::Pulse(to_us) => Some(raw * to_us),
+            Scale::Factor(1.0) if self.pwm_given && raw > 1.5 => Some(raw),
+            _ => None,
         };
-        if throttle > 1.02 {
-            let why = match column.scale {
-                Scale::Factor(1.0) if !self.pwm_given => {
-                    "is above 1: give --pwm-range 1000,2000 if it is a pulse width, --unit upper=% --unit lower=% if \
-                     it is in per cent"
-                        .to_string()
-                }
-                _ => format!("is throttle {throttle:.3}, above the range {low}..{high} us (--pwm-range)"),
-            };
-            return Err(format!("{:?} = {raw} {why}", column.name));
-        }
-        Ok(throttle)
+        let throttle = match (us, column.scale) {
+            (Some(us), _) => (us - low) / (high - low),
+            (None, Scale::Affine(factor, offset)) => raw * factor + offset,
+            (
+                None,
+                Scale::Factor(factor) | Scale::Pulse(factor) | Scale::Speed(factor) | Scale::OfSpeed(factor),
+            ) => raw * factor,
+        };
+        let why = match column.scale {
+            _ if us.is_some_and(|us| us > 0.0 && throttle < -AT_REST) => {
+                format!("is far below the pulse widths {low}..{high} us: another unit, or --pwm-range")
+            }
+            _ if throttle.is_nan() || throttle <= 1.02 => return Ok(throttle),
+            Scale::Factor(1.0) if !self.pwm_given => {
+                let per_cent = match self.offers {
+                    Offers::Pair => "--unit upper=% --unit lower=%",
+                    Offers::OneRotor => "--unit throttle=%",
+                    Offers::Header => "Throttle (%) in the header",
+                };
+                let pulse = match self.offers {
+                    Offers::Header => "PWM (us) in the header",
+                    _ => "--pwm-range 1000,2000",
+                };
+                format!("is above 1: give {pulse} if it is a pulse width, {per_cent} if it is in per cent")
+            }
+            Scale::Factor(_) => {
+                format!("is throttle {throttle:.3}, above full throttle: its unit is another")
+            }
+            Scale::Speed(factor) => format!(
+                "is above the speed at full throttle, {:.0} (--rpm-at-full)",
+                1.0 / factor
+            ),
+            _ => format!("is throttle {throttle:.3}, above the range {low}..{high} us (--pwm-range)"),
+        };
+        Err(Fault::new(
+            format!("{} range", column.index),
+            format!("{:?} = {raw} {why}", column.name),
+        ))
     }
 
-    /// A cell as a number; NaN where it is empty or the row is too short for it.
-    fn number(&self, column: &Column, record: &csv::ByteRecord) -> Result<f64, String> {
-        let cell = record.get(column.index).unwrap_or_default().trim_ascii();
-        if cell.is_empty() {
+    /// A cell as a number; NaN where it holds none or the row is too short for it.
+    fn number(&self, column: &Column, record: &csv::StringRecord) -> Result<f64, Fault> {
+        let cell = record.get(column.index).unwrap_or_default().trim();
+        if is_missing(cell) {
             return Ok(f64::NAN);
         }
-        let ascii = std::str::from_utf8(cell).ok();
-        let parsed = ascii.and_then(|t| match self.decimal_comma && t.contains(',') {
-            true => t.replace(',', ".").parse::<f64>().ok(),
-            false => t.parse::<f64>().ok(),
-        });
-        match parsed {
-            Some(value) if value.is_finite() => Ok(value),
-            _ => Err(format!(
-                "{:?} = {:?} is not a finite number",
-                column.name,
-                cut_cell(text::decode(cell))
-            )),
+        let fault = |what: &str, why: &str| {
+            let (name, cell) = (&column.name, cut_cell(cell.to_owned()));
+            Fault::new(
+                format!("{} {what}", column.index),
+                format!("{name:?} = {cell:?} {why}"),
+            )
+        };
+        let of = |cell: &Cell<'_>| {
+            cell.value(self.decimals[column.index])
+                .filter(|value| value.is_finite())
+        };
+        let taken = Cell::of(cell);
+        let Some((value, unit)) = taken.and_then(|cell| Some((of(&cell)?, cell.unit))) else {
+            return Err(fault("number", "is not a finite number"));
+        };
+        let own = || units::scale(column.quantity, unit);
+        match &column.in_cells {
+            _ if unit.is_empty() && column.in_cells.is_none() => Ok(value),
+            Some(common) if unit == common => Ok(value),
+            Some(common) => Err(fault("unit", &format!("is not in {common:?} as the others"))),
+            None if own().is_none() => Err(fault("number", "is not a finite number")),
+            None if own() == Some(column.scale) => Ok(value),
+            None => Err(fault("unit", "is in another unit than its column")),
         }
     }
 }

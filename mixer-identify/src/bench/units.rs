@@ -22,6 +22,14 @@ pub enum Quantity {
     Voltage,
     /// Supply current, to A.
     Current,
+    /// Electrical power, to W.
+    Power,
+    /// Speed, to revolutions per minute.
+    Speed,
+    /// Thrust over rho n^2 D^4, n in revolutions per second.
+    ThrustCoefficient,
+    /// Shaft power over rho n^3 D^5.
+    PowerCoefficient,
     /// Time since the log's start, to s.
     Time,
     /// Temperature of the air, to K.
@@ -32,7 +40,7 @@ pub enum Quantity {
     Density,
 }
 
-/// How a throttle column is to be read.
+/// How a column is to be read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scale {
     /// Multiply by this to reach the SI unit (or throttle in [0, 1]).
@@ -41,6 +49,10 @@ pub enum Scale {
     Affine(f64, f64),
     /// A pulse width; multiply to reach microseconds, then apply the PWM range.
     Pulse(f64),
+    /// A speed that stands for a throttle; multiply.
+    Speed(f64),
+    /// Multiply by this and by the square of the row's speed, revolutions per minute.
+    OfSpeed(f64),
 }
 
 /// Spells a name or a unit one way: micro and dot signs, blanks and case.
@@ -59,7 +71,7 @@ pub fn spelled(text: &str) -> String {
 }
 
 /// What a unit of a quantity is in SI units, the names of units as [`scale`] strips them.
-const FACTORS: [(Quantity, &str, f64); 32] = [
+const FACTORS: [(Quantity, &str, f64); 36] = [
     (Quantity::Throttle, "% percent", 0.01),
     (Quantity::Throttle, "1", 1.0),
     (Quantity::Thrust, "n", 1.0),
@@ -82,6 +94,10 @@ const FACTORS: [(Quantity, &str, f64); 32] = [
     (Quantity::Voltage, "mv", 1e-3),
     (Quantity::Current, "a", 1.0),
     (Quantity::Current, "ma", 1e-3),
+    (Quantity::Power, "w", 1.0),
+    (Quantity::Power, "kw", 1e3),
+    (Quantity::Speed, "rpm r/min u/min 1/min min1 min^1", 1.0),
+    (Quantity::Speed, "krpm", 1e3),
     (Quantity::Time, "s sec", 1.0),
     (Quantity::Time, "ms", 1e-3),
     (Quantity::Temperature, "k kelvin", 1.0),
@@ -123,6 +139,9 @@ pub fn known(quantity: Quantity) -> &'static str {
         Quantity::Torque => "N·m, mN·m, N·cm, N·mm, kgf·m, kgf·cm, gf·cm, lbf·in, lbf·ft, ozf·in",
         Quantity::Voltage => "V, mV",
         Quantity::Current => "A, mA",
+        Quantity::Power => "W, kW",
+        Quantity::Speed => "rpm, krpm",
+        Quantity::ThrustCoefficient | Quantity::PowerCoefficient => "none",
         Quantity::Time => "s, ms",
         Quantity::Temperature => "C, K, F",
         Quantity::Pressure => "hPa, mbar, Pa, kPa, bar, mmHg, inHg",

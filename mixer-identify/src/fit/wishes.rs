@@ -17,6 +17,8 @@ pub struct Wishes {
     pub reference_v: Option<f64>,
     /// Declared exponents of thrust and of torque, or nothing to identify them.
     pub voltage_exponent: Option<[f64; 2]>,
+    /// Whether a throttle commands a speed that the controller holds, whatever the voltage.
+    pub closed_loop: bool,
     /// Voltage of the empty and of the full pack, V, or nothing for what the bench had.
     pub pack_v: Option<[f64; 2]>,
     /// Whether rows of the map stand for runs of one rotor alone that are missing.

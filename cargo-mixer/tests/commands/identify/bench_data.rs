@@ -116,7 +116,11 @@ fn every_map_is_identified() {
         let found = fitted(&path, None, robust);
         let file = &found.files[0];
         assert_eq!(
-            (file.rows, file.start_stop_rows, file.points_used),
+            (
+                file.rows,
+                file.start_stop_rows + file.refused_rows.len(),
+                file.points_used
+            ),
             (103, 3, 100),
             "{}",
             path.display()
@@ -126,6 +130,8 @@ fn every_map_is_identified() {
             "{:?}",
             file.date
         );
+        // A start row of it has a pulse width of 320 us.
+        assert_eq!(file.refused_rows.len(), usize::from(robust));
         assert_eq!(
             file.notes.iter().any(|n| n.contains("drifts")),
             robust,
@@ -330,7 +336,7 @@ fn rotor_speeds_mapped_by_hand_are_still_one_line() {
         ("lower_torque", "Q_B(Nm)"),
     ];
     settings.reading.by_hand.columns = roles.map(|(r, h)| (r.to_string(), h.to_string())).to_vec();
-    settings.reading.pwm_range = Some([0.0, 3000.0]);
+    settings.reading.by_hand.full_rpm = Some(3200.0);
     let path = files(&data.join("pybemt"), "coaxial_data").remove(0);
     let error = identify(&[path], &settings).unwrap_err()[0].to_string();
     assert!(

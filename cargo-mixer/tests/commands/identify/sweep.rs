@@ -3,12 +3,9 @@
 use std::fmt::Write as _;
 
 use mixer_compiler::airframe::Basis;
-use mixer_identify::bench::header::ByHand;
-use mixer_identify::bench::read::{self, Reading};
-use mixer_identify::bench::sign::{SignChoice, SignPolicy};
-use mixer_identify::bench::{self, Bench, Preparation};
+use mixer_identify::bench::read;
+use mixer_identify::bench::{self, Bench};
 use mixer_identify::fit::polynomial::Polynomial;
-use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_setpoints::Random;
@@ -236,34 +233,9 @@ fn streaming(rows: &[Row]) -> Vec<u8> {
 }
 
 pub(crate) fn settings(basis: Option<Basis>) -> Settings {
-    Settings {
-        reading: Reading {
-            by_hand: ByHand::default(),
-            pwm_range: None,
-        },
-        preparation: Preparation {
-            stop_throttle: 0.005,
-            settle: 0.33,
-            signs: SignPolicy {
-                thrust: SignChoice::Auto,
-                torque: SignChoice::Auto,
-            },
-            torque_may_lack: false,
-            own_columns: false,
-            date: None,
-            air: None,
-        },
-        wishes: Wishes {
-            basis,
-            robust: false,
-            throttle: None,
-            reference_v: None,
-            voltage_exponent: None,
-            pack_v: None,
-            rotor_out_from_map: false,
-        },
-        options: Vec::new(),
-    }
+    let mut settings = Settings::default();
+    settings.wishes.basis = basis;
+    settings
 }
 
 /// Reads bytes as a file of this name.

@@ -73,8 +73,41 @@ impl Name {
         }
     }
 
+    /// What is measured beside thrust and torque: speed, electrical power, coefficients.
+    fn of_motor(&self) -> Option<Quantity> {
+        const ELECTRICAL: [&str; 8] = [
+            "electrical",
+            "electric",
+            "input",
+            "supply",
+            "total",
+            "motor",
+            "upper",
+            "lower",
+        ];
+        let unit = self
+            .unit
+            .as_deref()
+            .filter(|unit| units::scale(Quantity::Speed, unit).is_some());
+        let mut words = self
+            .words()
+            .filter(|word| word.len() > 1 && !ELECTRICAL.contains(word));
+        match self.text.as_str() {
+            "ct" => Some(Quantity::ThrustCoefficient),
+            "cp" => Some(Quantity::PowerCoefficient),
+            text if text.contains("servo") => None,
+            _ if unit.is_some() || self.words().any(|word| word == "rpm") => Some(Quantity::Speed),
+            _ => (words.next() == Some("power") && words.next().is_none()).then_some(Quantity::Power),
+        }
+    }
+
+    /// Whether the name is that of a command.
+    pub(super) fn is_throttle(&self) -> bool {
+        self.quantity() == Some(Quantity::Throttle)
+    }
+
     pub(super) fn quantity(&self) -> Option<Quantity> {
-        if let Some(quantity) = self.of_air() {
+        if let Some(quantity) = self.of_air().or_else(|| self.of_motor()) {
             return Some(quantity);
         }
         let padded = format!("{} ", self.text);
@@ -120,11 +153,11 @@ impl Name {
 
 /// Prefixes of the columns that matter, in order of appearance.
 pub(super) fn distinct_prefixes(names: &[Name]) -> Vec<&str> {
-    use Quantity::{Current, Density, Pressure, Temperature, Time};
+    use Quantity::{Throttle, Thrust, Torque, Voltage};
     let mut prefixes: Vec<&str> = Vec::new();
     let counts = |n: &&Name| {
         n.quantity()
-            .is_some_and(|q| !matches!(q, Time | Current | Temperature | Pressure | Density))
+            .is_some_and(|q| matches!(q, Throttle | Thrust | Torque | Voltage))
     };
     for prefix in names.iter().filter(counts).filter_map(|n| n.prefix.as_deref()) {
         if !prefixes.contains(&prefix) {
@@ -159,8 +192,18 @@ fn split_unit(text: &str) -> (String, Option<String>) {
             );
         }
     }
+    // `thrust/n`
+    if let Some((rest, last)) = text.rsplit_once('/')
+        && WORDS
+            .iter()
+            .any(|(word, of)| rest.split(' ').any(|own| own == *word) && suffix_of(*of, last))
+    {
+        return (rest.to_string(), Some(last.to_string()));
+    }
     if let Some((rest, last)) = text.rsplit_once(' ') {
+        let rest = rest.trim_end_matches([',', ':']);
         let known = [
+            Quantity::Speed,
             Quantity::Thrust,
             Quantity::Torque,
             Quantity::Voltage,

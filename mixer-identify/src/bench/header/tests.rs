@@ -5,8 +5,8 @@ fn find(line: &str) -> Columns {
 }
 
 fn find_by_hand(line: &str, by_hand: &ByHand) -> Result<Columns, Refusal> {
-    let headers: Vec<String> = line.split(',').map(str::to_string).collect();
-    Columns::find("bench.csv", &headers, by_hand)
+    let headings: Vec<Heading> = line.split(',').map(Heading::of).collect();
+    Columns::find("bench.csv:1", &headings, by_hand)
 }
 
 fn at(column: &Option<Column>) -> Option<usize> {
@@ -92,7 +92,7 @@ fn flight_stand_with_edited_prefixes() {
         c.thrust.rotors[0].as_ref().expect("thrust").scale,
         Scale::Factor(9.80665)
     );
-    let c = find("Bottom motor - ESC throttle (%),Top motor - ESC throttle (%)");
+    let c = find("Bottom motor - ESC throttle (%),Top motor - ESC throttle (%),thrust_n");
     assert_eq!(
         (
             at(&c.throttle.rotors[0]),
@@ -143,8 +143,7 @@ fn by_hand() {
             ("torque".into(), "M (N·m)".into()),
         ],
         units: vec![("thrust".into(), "kgf".into())],
-        swap: false,
-        full_rpm: None,
+        ..ByHand::default()
     };
     let c = find_by_hand("cmd_one,x,F,M (N⋅m)", &hand).expect("mapped");
     assert_eq!(

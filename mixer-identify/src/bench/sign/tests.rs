@@ -1,9 +1,10 @@
 use super::*;
 use crate::bench::header::ByHand;
+use crate::bench::sheet::Heading;
 
 fn columns(line: &str) -> Columns {
-    let headers: Vec<String> = line.split(',').map(str::to_string).collect();
-    Columns::find("b.csv", &headers, &ByHand::default()).expect("a header")
+    let headings: Vec<Heading> = line.split(',').map(Heading::of).collect();
+    Columns::find("b.csv:1", &headings, &ByHand::default()).expect("a header")
 }
 
 /// Rotor torques `a` u2 and `b` l2, total their sum.
