@@ -107,8 +107,8 @@ pub struct Style {
     proofs: [usize; 2],
     /// Line and text of the first number that may be either, of a point and of a comma.
     open: [Option<(u64, String)>; 2],
-    /// Whether a number has neither mark.
-    plain: bool,
+    /// Numbers without marks of one or two, three, and more digits.
+    plain: [usize; 3],
 }
 
 const MARKS: [char; 2] = ['.', ','];
@@ -122,8 +122,9 @@ impl Style {
         ];
         let (mark, at) = match (first, last) {
             ([None, None], _) => {
-                self.plain |= number != "0";
-                return;
+                let digits = number.bytes().filter(u8::is_ascii_digit).count();
+                let grouped = number.contains([' ', '\'']);
+                return self.plain[digits.clamp(2, 4) - 2] += usize::from(!grouped);
             }
             // One mark, once.
             ([Some(at), None], [Some(last), _]) if at == last => (0, at),
@@ -165,9 +166,18 @@ impl Style {
         match &self.open {
             [None, None] => Ok(of(file.proofs)),
             _ if proven[0] != proven[1] => Ok(of(file.proofs)),
-            // Programs write points with as many digits everywhere; thousands are beside plain numbers.
-            [Some(_), None] if !proven[0] && !self.plain => Ok('.'),
-            [point, comma] => point.as_ref().or(comma.as_ref()).cloned().map_or(Ok('.'), Err),
+            [point, comma] => {
+                let mark = usize::from(point.is_none());
+                let [few, hundreds, more] = self.plain;
+                let both = point.is_some() && comma.is_some();
+                // Who groups thousands does so everywhere, and has hundreds beside them; programs
+                // write points with as many digits everywhere.
+                let decimal = more > 0 || (mark == 0 && few + hundreds == 0 && !proven[0]);
+                if !both && (decimal || hundreds > 1) {
+                    return Ok(MARKS[if decimal { mark } else { 1 - mark }]);
+                }
+                point.as_ref().or(comma.as_ref()).cloned().map_or(Ok('.'), Err)
+            }
         }
     }
 }
@@ -235,6 +245,9 @@ mod tests {
             (&["1.234", "820"], &commas, Ok(',')),
             (&["1.234", "2.345"], &none, Ok('.')),
             (&["1.234", "820"], &none, Err("1.234")),
+            (&["1.234", "820", "905"], &none, Ok(',')),
+            (&["1,234", "820", "905"], &none, Ok('.')),
+            (&["1,234", "820", "1905"], &none, Ok(',')),
             (&["1,234", "2,345"], &none, Err("1,234")),
             (&["1 234,5"], &none, Ok(',')),
             (&["820"], &commas, Ok(',')),

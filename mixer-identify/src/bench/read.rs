@@ -123,7 +123,10 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
         decimals[column.index] = sheet.decimal(column.index).map_err(|(line, number)| {
             Refusal::of(
                 format!("{name}:{line}"),
-                format!("{:?} = {number:?} may be in thousands or with decimals, and no other number of the file tells", column.name),
+                format!(
+                    "{:?} = {number:?} may be in thousands or with three decimals, and no other number tells",
+                    column.name
+                ),
                 "numbers without separators of thousands, as 1234 or 1.234",
             )
         })?;
@@ -259,9 +262,23 @@ fn taken_for_throttle(columns: &Columns, by_hand: &ByHand) -> Vec<String> {
 
 /// Why a row is none of measurements: the header again, a summary, a remark.
 fn is_aside(sheet: &Sheet, record: &csv::StringRecord) -> Option<&'static str> {
-    const SUMMARIES: [&str; 13] = [
-        "average", "averages", "avg", "mean", "max", "maximum", "min", "minimum", "total", "sum", "std",
-        "median", "stddev",
+    const SUMMARIES: [&str; 16] = [
+        "average",
+        "averages",
+        "avg",
+        "mean",
+        "max",
+        "maximum",
+        "min",
+        "minimum",
+        "total",
+        "sum",
+        "std",
+        "median",
+        "stddev",
+        "mittelwert",
+        "moyenne",
+        "promedio",
     ];
     let first = record.iter().map(str::trim).find(|cell| !cell.is_empty())?;
     if first.starts_with(|c: char| c.is_ascii_digit()) {

@@ -204,6 +204,7 @@ fn split_unit(text: &str) -> (String, Option<String>) {
         let rest = rest.trim_end_matches([',', ':']);
         let known = [
             Quantity::Speed,
+            Quantity::Power,
             Quantity::Thrust,
             Quantity::Torque,
             Quantity::Voltage,
