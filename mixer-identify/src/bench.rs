@@ -24,6 +24,7 @@ pub mod plateau;
 pub mod read;
 pub mod sheet;
 pub mod sign;
+mod tare;
 pub mod text;
 pub mod units;
 
@@ -228,6 +229,14 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         ),
         _ => {}
     }
+
+    let stands = |throttle: f64| throttle <= how.stop_throttle;
+    let both = |s: &Sample| {
+        s.throttle[..1 + usize::from(two_throttles)]
+            .iter()
+            .all(|&t| stands(t))
+    };
+    tare::take_off(&mut samples, both, &mut notes);
 
     // An empty throttle is no start or stop row: it stays and is refused later, with its line.
     let before = samples.len();

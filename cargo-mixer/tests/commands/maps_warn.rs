@@ -275,7 +275,7 @@ fn mistakes_in_real_benches_are_told() {
     let Some(files) = maps::files("mistakes_in_real_benches_are_told") else {
         return;
     };
-    let (exchanged, tare, disorder) = ("look exchanged", "set the load cell to zero", "in disorder");
+    let (exchanged, tare, disorder) = ("look exchanged", "set the load cells to zero", "in disorder");
     let (mut full_range, mut tares) = (0, 0);
     for map in &files {
         let name = map.display();
@@ -286,8 +286,16 @@ fn mistakes_in_real_benches_are_told() {
         let greatest = bench.points.iter().map(|p| p.thrust).fold(0.0, f64::max);
         if lowest < 0.15 {
             full_range += 1;
-            let offset = changed(&bench, |p| p.thrust += 0.02 * greatest);
-            tares += usize::from(warnings(offset).contains(tare));
+            let torque = bench.points.iter().map(|p| p.torque.abs()).fold(0.0, f64::max);
+            let offsets: [[f64; 2]; 4] = [[0.02, 0.0], [-0.02, 0.0], [0.0, 0.06], [0.0, -0.06]];
+            let told = offsets.map(|[f, q]| {
+                let told = warnings(changed(&bench, |p| {
+                    (p.thrust, p.torque) = (p.thrust + f * greatest, p.torque + q * torque);
+                }));
+                told.contains(tare) && !told.contains(exchanged)
+            });
+            tares += told.iter().filter(|told| **told).count();
+            assert!(!warnings(bench.clone()).contains(tare), "{name}");
         }
         // Each row with what the row before it gave.
         let mut late = bench.clone();
@@ -297,8 +305,8 @@ fn mistakes_in_real_benches_are_told() {
         assert!(warnings(late).contains(disorder), "{name}");
     }
     println!(
-        "exchanged columns and rows in disorder are told of {0} of {0} maps, a missing tare of {tares} of {full_range} full-range maps",
+        "exchanged columns and rows in disorder are told of {0} of {0} maps, {tares} missing tares of {full_range} full-range maps",
         files.len()
     );
-    assert_eq!(tares, full_range);
+    assert_eq!(tares, 4 * full_range);
 }

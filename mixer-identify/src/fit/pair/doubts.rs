@@ -111,9 +111,9 @@ pub(super) fn exchanged(
     }
 }
 
-/// Power of the throttle below which thrust does not grow with equal throttles: 1.5 to 1.9 on real
-/// maps, 1.4 and less where 2 % of the greatest thrust was not tared.
-const GROWTH: f64 = 1.45;
+/// Powers of the throttle with which thrust grows along equal throttles: 1.5 to 1.9 on real maps, less
+/// where 2 % of the greatest thrust was not tared, more where the load cell reads low.
+const GROWTH: [f64; 2] = [1.45, 2.15];
 
 /// Throttles that a map must reach for that: from this or below, to this or above.
 const FULL_RANGE: [f64; 2] = [0.15, 0.5];
@@ -121,27 +121,48 @@ const FULL_RANGE: [f64; 2] = [0.15, 0.5];
 /// Throttles that differ by less are equal.
 const EQUAL: f64 = 0.01;
 
-/// A constant in the thrust: a load cell that was not set to zero.
-pub(super) fn tare(points: &[Placed], warnings: &mut Vec<String>) {
+/// Torque at the lowest equal throttles, as a share of the greatest: this, and a part of the share
+/// that thrust has there. Tared maps have 0.005 and 0.2 of it at most, one with an untared torque
+/// 0.016, which its rows at rest tell.
+const AT_LOWEST: [f64; 2] = [0.03, 0.2];
+
+/// Constants in thrust and torque: load cells that were not set to zero. Whether that of torque is
+/// told.
+pub(super) fn tare(points: &[Placed], [thrust, torque]: [&Fit; 2], warnings: &mut Vec<String>) -> bool {
+    const MEND: &str = "set the load cells to zero at rest, or record some rows at rest (throttle 0) \
+                        before and after, which identify takes off";
     let near = |p: &&Placed| (p.point.u - p.point.l).abs() < EQUAL;
-    let equal = points
-        .iter()
-        .filter(near)
-        .map(|p| (0.5 * (p.point.u + p.point.l), p.thrust));
-    let by_throttle = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0);
-    let (Some((low, least)), Some((high, most))) =
-        (equal.clone().min_by(by_throttle), equal.max_by(by_throttle))
-    else {
-        return;
+    let throttle = |p: &Placed| 0.5 * (p.point.u + p.point.l);
+    let by_throttle = |a: &&Placed, b: &&Placed| throttle(a).total_cmp(&throttle(b));
+    let equal = || points.iter().filter(near);
+    let (Some(lowest), Some(highest)) = (equal().min_by(by_throttle), equal().max_by(by_throttle)) else {
+        return false;
     };
-    if low > FULL_RANGE[0] || high < FULL_RANGE[1] || least <= 0.0 {
-        return;
+    let ([low, high], [least, most]) = (
+        [lowest, highest].map(throttle),
+        [lowest, highest].map(|p| p.thrust),
+    );
+    if low <= FULL_RANGE[0] && high >= FULL_RANGE[1] {
+        let growth = libm::log(most / least) / libm::log(high / low);
+        if least <= 0.0 {
+            warnings.push(format!(
+                "at ({low:.2}, {low:.2}) the thrust is {least:.2} N though both rotors turn: {MEND}"
+            ));
+        } else if growth < GROWTH[0] || growth > GROWTH[1] {
+            warnings.push(format!(
+                "from ({low:.2}, {low:.2}) to ({high:.2}, {high:.2}) the thrust grows from {least:.2} to {most:.2} N, with the power \
+                 {growth:.2} of the throttle; real pairs have 1.5 to 1.9: {MEND}"
+            ));
+        }
     }
-    let growth = libm::log(most / least) / libm::log(high / low);
-    if growth < GROWTH {
+    let share = lowest.torque / torque.full_scale;
+    let told = share.abs() > AT_LOWEST[0] + AT_LOWEST[1] * least.max(0.0) / thrust.full_scale;
+    if told {
         warnings.push(format!(
-            "from ({low:.2}, {low:.2}) to ({high:.2}, {high:.2}) the thrust grows from {least:.2} to {most:.2} N, with the power \
-             {growth:.2} of the throttle; real pairs have 1.5 to 1.9: set the load cell to zero at rest before a run"
+            "at ({low:.2}, {low:.2}) the torque is {:+.4} N m, {:.0} % of the greatest, where both rotors hardly load the stand: {MEND}",
+            lowest.torque,
+            100.0 * share
         ));
     }
+    told
 }
