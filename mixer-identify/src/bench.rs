@@ -110,6 +110,8 @@ pub struct Bench {
     pub signs: Signs,
     /// The air, where its density is known.
     pub air: Option<Known>,
+    /// What the load cells read at rest, where it was taken off.
+    pub tare: Vec<String>,
     /// Remarks for the report.
     pub notes: Vec<String>,
     /// Why there is no electrical power, where columns are missing for it.
@@ -120,12 +122,13 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Notes of the reading and rows refused, as few as can be read.
+    /// The tare, notes of the reading and rows refused, as few as can be read.
     pub(crate) fn passed_over(&self) -> Vec<String> {
         const MOST: usize = 5;
         let told = |row: &RefusedRow| format!("refused: {}:{}: {}", row.file, row.line, row.reason);
         let rows = self.refused_rows.iter().take(MOST).map(told);
-        let mut told: Vec<String> = self.notes.iter().cloned().chain(rows).collect();
+        let tare = self.tare.iter().map(|tare| format!("{}: {tare}", self.file));
+        let mut told: Vec<String> = tare.chain(self.notes.iter().cloned()).chain(rows).collect();
         if self.refused_rows.len() > MOST {
             told.push(format!("refused: {} rows more", self.refused_rows.len() - MOST));
         }
@@ -236,7 +239,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             .iter()
             .all(|&t| stands(t))
     };
-    tare::take_off(&mut samples, both, &mut notes);
+    let tare = tare::take_off(&mut samples, both);
 
     // An empty throttle is no start or stop row: it stays and is refused later, with its line.
     let before = samples.len();
@@ -334,6 +337,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         refused_rows: refused,
         signs,
         air,
+        tare,
         notes,
         points,
     })

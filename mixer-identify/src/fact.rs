@@ -78,6 +78,7 @@ pub fn of_identified(identified: &Identified) -> Vec<Fact> {
         let told = [Told::Always, Told::Detail][usize::from(k >= MOST_FILES)];
         facts.add(told, "read", format!("{}: {}", file.file, provenance(file)));
         facts.more(signs(file));
+        file.tare.iter().for_each(|tare| facts.add(told, "tare", tare));
     }
     let more = identified.files.len().saturating_sub(MOST_FILES);
     if more > 0 {

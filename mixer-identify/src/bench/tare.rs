@@ -10,12 +10,12 @@ use std::ops::Range;
 
 use crate::bench::read::Sample;
 
-/// Thrust and torque that a rotor running out gives, as a share of the column's greatest value: up to
+/// Thrust and torque that a rotor running out gives, as a share of the greatest value: up to
 /// 0.027 and 0.036 in single rows of the stops of 15 real runs.
 const RUN_OUT: [f64; 2] = [0.03, 0.05];
 
-/// An offset that is left alone, likewise; load cells that were set to zero read up to 0.001.
-const NOISE: f64 = 0.003;
+/// An offset that is left alone, likewise; load cells that were set to zero read up to 0.004 in those.
+const NOISE: f64 = 0.005;
 
 /// A reading above this is of rotors that have not stopped, unless the stop is steady.
 const STOPPED: f64 = 0.15;
@@ -39,19 +39,24 @@ struct Stop {
     bounds: [f64; 2],
 }
 
-/// Takes the offsets that the rows at rest tell off all rows, and says so.
-pub(super) fn take_off(samples: &mut [Sample], at_rest: impl Fn(&Sample) -> bool, notes: &mut Vec<String>) {
+/// Takes the offsets that the rows at rest tell off all rows; what was taken off.
+pub(super) fn take_off(samples: &mut [Sample], at_rest: impl Fn(&Sample) -> bool) -> Vec<String> {
     let stops = stops(samples, at_rest);
-    if stops.is_empty() {
-        return;
-    }
+    let mut told = Vec::new();
     let lines: Vec<f64> = samples.iter().map(|s| s.line as f64).collect();
+    let mut greatest = [0.0_f64; 2];
+    for (_, quantity, cell) in CELLS {
+        let sizes = samples
+            .iter_mut()
+            .map(|s| cell(s).abs())
+            .filter(|x| x.is_finite());
+        greatest[quantity] = sizes.fold(greatest[quantity], f64::max);
+    }
     let mut whole = [false; 2];
     for (k, (name, quantity, cell)) in CELLS.into_iter().enumerate() {
         let column: Vec<f64> = samples.iter_mut().map(|s| *cell(s)).collect();
-        let measured = || column.iter().filter(|x| x.is_finite());
-        let greatest = measured().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let upward = measured().sum::<f64>().signum();
+        let greatest = greatest[quantity];
+        let upward = column.iter().filter(|x| x.is_finite()).sum::<f64>().signum();
         let stop = |rows: &Range<usize>| {
             let cells: Vec<f64> = column[rows.clone()]
                 .iter()
@@ -68,10 +73,11 @@ pub(super) fn take_off(samples: &mut [Sample], at_rest: impl Fn(&Sample) -> bool
         }
         // The whole, which stands before the rotors' parts, speaks for them.
         if !whole[quantity] {
-            notes.push(offset.told(name, ["N", "N m"][quantity], greatest));
+            told.push(offset.told(name, ["N", "N m"][quantity], greatest));
         }
         whole[quantity] |= k % 3 == 0;
     }
+    told
 }
 
 /// The stretches of rows at rest.
@@ -143,11 +149,11 @@ impl Offset {
         let percent = 100.0 * largest / greatest;
         match &stops[..] {
             [only] => format!(
-                "at rest the {name} reads {}, {percent:.1} % of its greatest: taken off all rows",
+                "at rest the {name} reads {}, {percent:.1} % of the greatest: taken off all rows",
                 reading(only)
             ),
             [first, .., last] => format!(
-                "at rest the {name} drifts from {} to {}, {percent:.1} % of its greatest: taken off row by row",
+                "at rest the {name} drifts from {} to {}, {percent:.1} % of the greatest: taken off row by row",
                 reading(first),
                 reading(last)
             ),
@@ -220,9 +226,8 @@ mod tests {
         ];
         for (before, after, offsets, wanted) in cases {
             let all: Vec<(f64, f64)> = [before, &turning, after].concat();
-            let (mut samples, mut notes) = (rows(&all), Vec::new());
-            take_off(&mut samples, |s| s.throttle[0] <= 0.0, &mut notes);
-            let told = notes.join("; ");
+            let mut samples = rows(&all);
+            let told = take_off(&mut samples, |s| s.throttle[0] <= 0.0).join("; ");
             assert!(
                 told.contains(wanted) && told.is_empty() == wanted.is_empty(),
                 "{told} for {wanted}"

@@ -107,7 +107,11 @@ fn coaxial_map(rows: &[Row]) -> Vec<u8> {
         torque: [0.0; 2],
         voltage: 14.8,
     };
-    let all = [&[stop, stop], rows, &[stop]].concat();
+    let rest = Row {
+        thrust: [0.0; 2],
+        ..stop
+    };
+    let all = [&[stop, rest], rows, &[stop]].concat();
     for (k, r) in all.iter().enumerate() {
         let [f0, f1] = r.thrust.map(|f| f / G * 1000.0);
         let [q0, q1] = r.torque;

@@ -148,7 +148,7 @@ pub(super) fn tare(points: &[Placed], [thrust, torque]: [&Fit; 2], warnings: &mu
             warnings.push(format!(
                 "at ({low:.2}, {low:.2}) the thrust is {least:.2} N though both rotors turn: {MEND}"
             ));
-        } else if growth < GROWTH[0] || growth > GROWTH[1] {
+        } else if !(GROWTH[0]..=GROWTH[1]).contains(&growth) {
             warnings.push(format!(
                 "from ({low:.2}, {low:.2}) to ({high:.2}, {high:.2}) the thrust grows from {least:.2} to {most:.2} N, with the power \
                  {growth:.2} of the throttle; real pairs have 1.5 to 1.9: {MEND}"

@@ -20,6 +20,7 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
             torque_policy: "auto",
         },
         air: None,
+        tare: Vec::new(),
         notes: Vec::new(),
         no_power: None,
         turning: None,
