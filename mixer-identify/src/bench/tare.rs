@@ -56,6 +56,10 @@ pub(super) fn take_off(samples: &mut [Sample], at_rest: impl Fn(&Sample) -> bool
     for (k, (name, quantity, cell)) in CELLS.into_iter().enumerate() {
         let column: Vec<f64> = samples.iter_mut().map(|s| *cell(s)).collect();
         let greatest = greatest[quantity];
+        // Of a rotor that never turns nothing is used.
+        if !column.iter().any(|x| x.abs() > STOPPED * greatest) {
+            continue;
+        }
         let upward = column.iter().filter(|x| x.is_finite()).sum::<f64>().signum();
         let stop = |rows: &Range<usize>| {
             let cells: Vec<f64> = column[rows.clone()]
