@@ -50,8 +50,12 @@ pub(super) fn draw(svg: &mut String, [left, top]: [f64; 2], rows: &[Vec<(f64, &E
 
 /// A piece of a curve, or a point, 22 px wide.
 fn sample(class: &str, [x, y]: [f64; 2]) -> String {
-    // `dotted` and `dash-dot` are lines.
-    if class.split(' ').any(|word| matches!(word, "dot" | "mark-dot")) {
+    let is = |wanted: &str| class.split(' ').any(|word| word == wanted);
+    // A mark is the diamond of [`Figure::mark`]; `dotted` and `dash-dot` are lines.
+    if is("mark-dot") {
+        let (x, y) = (x + 11.0, y - 5.0);
+        format!("<path class=\"{class}\" d=\"M{x} {y}l5 5l-5 5l-5 -5Z\"/>\n")
+    } else if is("dot") {
         format!(
             "<circle class=\"{class}\" cx=\"{}\" cy=\"{y}\" r=\"3.5\"/>\n",
             x + 11.0
