@@ -1,7 +1,6 @@
 //! Bench files from the file system.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use mixer_compiler::diagnostic::printable;
 use mixer_identify::bench::{Bench, read};
@@ -51,12 +50,4 @@ pub fn identify_with_runs(
 /// A file that cannot be read or used.
 pub fn read_one(path: &Path, settings: &Settings) -> Result<Bench, Refusal> {
     texts::read(&text(path), settings)
-}
-
-/// Says what is wrong with the files.
-pub(crate) fn refused(refusals: Vec<Refusal>) -> ExitCode {
-    for refusal in refusals {
-        crate::print_error(refusal);
-    }
-    ExitCode::FAILURE
 }

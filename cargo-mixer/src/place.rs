@@ -3,11 +3,14 @@
 
 use std::io::{Write as _, stdout};
 use std::path::Path;
+use std::process::ExitCode;
 
 use mixer_compiler::Source;
 use mixer_files::new::new;
 use mixer_files::plain::printable_lines;
+use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::Answer;
+use serde_json::json;
 
 use crate::frame_args::FrameArgs;
 use crate::{Done, bad_usage, output, print_error, print_note};
@@ -41,6 +44,28 @@ impl Place<'_> {
             Some(path) => crate::file::writable(path, self.force, inputs),
             None => Ok(()),
         }
+    }
+
+    /// Says what is wrong with the files, on standard output, too, where the report is JSON: as
+    /// `check --json` has the faults of an airframe file.
+    pub(crate) fn refused(&self, refusals: &[Refusal]) -> ExitCode {
+        if self.json {
+            let error = |refusal: &Refusal| {
+                let place = refusal.place.as_deref().unwrap_or_default();
+                let parts = place
+                    .rsplit_once(':')
+                    .and_then(|(file, line)| Some((file, line.parse::<u64>().ok()?)));
+                let (file, line) = parts.map_or((place, None), |(file, line)| (file, Some(line)));
+                json!({ "code": "", "file": file, "key": "", "message": refusal.reason, "label": "", "help": refusal.needed,
+                        "line": line, "column": null })
+            };
+            let errors: Vec<_> = refusals.iter().map(error).collect();
+            let _ = crate::print(&format!("{:#}\n", json!({ "errors": errors, "warnings": [] })));
+        }
+        refusals.iter().for_each(|refusal| {
+            print_error(refusal);
+        });
+        ExitCode::FAILURE
     }
 
     /// Writes report and tables, and says what comes next.

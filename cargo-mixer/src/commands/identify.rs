@@ -13,7 +13,7 @@ use mixer_identify::identified::Settings;
 use mixer_identify::texts::{Prediction, identify};
 
 use crate::bench_args::{AirArgs, ReadingArgs, positive, throttle_box};
-use crate::bench_files::{refused, text, texts};
+use crate::bench_files::{text, texts};
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
@@ -170,10 +170,14 @@ pub fn run(args: &IdentifyArgs) -> Done {
             known: args.rotors.known(args.reference_voltage, exponents),
             wishes: args.rotors.wishes(args.throttle, held),
         };
-        let answer = args.rotors.predict(single, &maps, &how).map_err(refused)?;
+        let answer = args
+            .rotors
+            .predict(single, &maps, &how)
+            .map_err(|refusals| place.refused(&refusals))?;
         return place.write(&answer, args.verbose);
     }
-    let answer = identify(&maps, [upper.as_ref(), lower.as_ref()], &settings).map_err(refused)?;
+    let answer = identify(&maps, [upper.as_ref(), lower.as_ref()], &settings)
+        .map_err(|refusals| place.refused(&refusals))?;
     let refused_rows = || answer.found.files.iter().flat_map(|file| &file.refused_rows);
     let most = MOST_TOLD[usize::from(args.verbose)];
     for row in refused_rows().take(most) {

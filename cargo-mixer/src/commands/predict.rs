@@ -17,7 +17,7 @@ use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
 use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box};
-use crate::bench_files::{refused, text};
+use crate::bench_files::text;
 use crate::frame_args::FrameArgs;
 use crate::place::Place;
 use crate::today::today;
@@ -215,6 +215,6 @@ pub fn run(args: &PredictArgs) -> Done {
         json: args.json,
     };
     place.check(args.rotors.lower_single.iter().chain([&args.single]))?;
-    let answer = args.predicted().map_err(refused)?;
+    let answer = args.predicted().map_err(|refusals| place.refused(&refusals))?;
     place.write(&answer, false)
 }
