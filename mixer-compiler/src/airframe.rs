@@ -24,6 +24,7 @@ pub use self::basis::Basis;
 pub(crate) use self::basis::{POWERS, value_of_terms};
 pub use self::correction::{Correction, Law};
 pub use self::inverse::{Inverse, Method};
+pub use self::name::of_file as name_of_file;
 pub use self::pair::{Pair, Spin};
 pub use self::power::Power;
 pub use self::rotor_alone::RotorAlone;

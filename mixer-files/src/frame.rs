@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use mixer_compiler::Source;
-use mixer_compiler::airframe::Spin;
+use mixer_compiler::airframe::{Spin, name_of_file};
 use mixer_facts::hover;
 use mixer_identify::air::Air;
 
@@ -211,11 +211,8 @@ impl NewFrame<'_> {
 
     /// The name that is given, or that of the file, or that of the frame.
     fn name(&self) -> String {
-        let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
-        let usable =
-            |name: &&str| name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(plain);
-        if let Some(name) = self.name.or(self.file.filter(usable)) {
-            return name.to_owned();
+        if let Some(name) = self.name.map(str::to_owned).or(self.file.map(name_of_file)) {
+            return name;
         }
         let mut frames = Frame::ALL.into_iter();
         let word = frames.find(|(frame, ..)| *frame == self.frame);

@@ -57,10 +57,16 @@ pub(super) fn if_refused(source: &Source) -> [String; 2] {
     let stated = keys.as_ref().and_then(|keys| legal(keys.get("name")?.as_str()?));
     let name = stated.unwrap_or_else(|| {
         let stem = Path::new(&source.name).file_stem().unwrap_or_default();
-        let name = mended(&stem.to_string_lossy());
-        legal(&name).unwrap_or_else(|| format!("{name}-x8"))
+        of_file(&stem.to_string_lossy())
     });
     [module(&name), type_(&name)]
+}
+
+/// The name of an airframe whose file has this name, without folder and ending: the nearest legal one.
+pub fn of_file(stem: &str) -> String {
+    let name = mended(stem);
+    let legal = check(&Spanned::new(0..0, name.clone()), &mut Vec::new());
+    legal.unwrap_or_else(|| format!("{name}-x8"))
 }
 
 /// Lower-case letters and digits in parts joined by single `-` or `_`, from a letter on.
