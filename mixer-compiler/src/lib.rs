@@ -39,7 +39,7 @@ use tables::{MixerTables, Parts};
 pub use compiled::Compiled;
 pub use diagnostic::source::Source;
 pub use inverse::evaluator;
-pub use plausible::ARDUPILOT_MOST_SPIN_MIN;
+pub use plausible::{ARDUPILOT_MOST_SPIN_MIN, symmetry};
 pub use proof::Certificate;
 pub use proof::residual::Residual;
 

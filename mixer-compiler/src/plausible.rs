@@ -12,6 +12,7 @@ mod pair;
 mod rotors;
 mod rule;
 mod supply;
+pub mod symmetry;
 mod vehicle;
 
 pub(crate) use limits::{check_authority, check_tolerances};
@@ -24,12 +25,13 @@ use crate::diagnostic::Diagnostic;
 use crate::model::PairMap;
 
 /// The rules of one part of an airframe, those that may be the reason of others before these.
-const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 15] = [
+const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 16] = [
     pair::units,
     rotors::order,
     pair::thrust,
     rotors::sizes,
     pair::power,
+    geometry::odd_place,
     geometry::arms,
     geometry::radians,
     geometry::centre_of_gravity,

@@ -146,6 +146,8 @@ catalogue! {
     ManyUnits = 313,
     /// Arms so short that the rotors would overlap.
     ShortArm = 314,
+    /// A place that breaks the symmetry of all other units.
+    OddPlace = 315,
     /// A supply of one cell for rotors that need more.
     SingleCell = 320,
     /// A law whose power of voltage or density no propeller follows.

@@ -1,6 +1,7 @@
 //! Rules on where the units are and what drives them.
 
 use super::rule::{Facts, Rule};
+use super::symmetry;
 use crate::airframe::Axis;
 use crate::diagnostic::{Code, number, rounded};
 
@@ -25,6 +26,22 @@ const WRITTEN_DEG: f64 = 0.3;
 /// Least share of the units' thrust that must be left without roll and pitch. Without an offset it
 /// is 0.95 to 1 on real maps: what a torque of zero costs.
 const BALANCED_SHARE: f64 = 0.65;
+
+/// A place that breaks the symmetry of all others.
+pub(super) fn odd_place(facts: &Facts<'_>) -> Vec<Rule> {
+    let units = &facts.airframe.units;
+    let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
+    let mends = symmetry::mends(&places);
+    let Some(mend) = mends.first() else {
+        return Vec::new();
+    };
+    let key = facts.place("layout", format!("unit[{}].position_m", mend.unit));
+    vec![Rule::holds(Code::OddPlace, key, false).says(
+        symmetry::in_words(&mends),
+        "unlike its mirror image",
+        "check the sign and the decimal point; a frame that is meant so flies as it is written",
+    )]
+}
 
 /// Arms in another unit, or with a decimal point that slipped.
 pub(super) fn arms(facts: &Facts<'_>) -> Vec<Rule> {
@@ -71,7 +88,8 @@ pub(super) fn arms(facts: &Facts<'_>) -> Vec<Rule> {
             ),
             LABEL,
             help,
-        ),
+        )
+        .unless_told(&[Code::OddPlace]),
         Rule::holds(Code::ShortArm, key(0), reach == 0.0 || reach >= shortest)
             .says(
                 format!(
@@ -142,7 +160,8 @@ pub(super) fn centre_of_gravity(facts: &Facts<'_>) -> Vec<Rule> {
             ),
             "",
             "positions count from the centre of gravity, x forward and y right; check signs and origin",
-        ),
+        )
+        .unless_told(&[Code::OddPlace]),
     ]
 }
 
