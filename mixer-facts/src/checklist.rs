@@ -8,7 +8,7 @@ use std::fmt;
 use mixer_rt::Wrench;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::{Axis, Unit};
+use mixer_compiler::airframe::{Axis, Spin, Unit};
 
 /// Share of an axis' size that is asked: small enough to be delivered in full.
 const ASKED: f64 = 0.02;
@@ -114,11 +114,27 @@ fn size(compiled: &Compiled, axis: Axis) -> f64 {
     compiled.effectiveness.largest(axis as usize, scale)
 }
 
+/// Every unit in words, of its place, how the upper rotor spins, and the outputs of both rotors:
+/// `front right: outputs 0 and 4 (upper cw); ..`.
+pub fn in_words(units: &[([f64; 3], Spin, [usize; 2])]) -> String {
+    let places: Vec<[f64; 3]> = units.iter().map(|(place, ..)| *place).collect();
+    let each = units.iter().map(|(position_m, spin, [upper, lower])| {
+        let place = place_among(*position_m, &places);
+        format!("{place}: outputs {upper} and {lower} (upper {})", spin.name())
+    });
+    each.collect::<Vec<_>>().join("; ")
+}
+
 /// Where a unit is among the others: `front right`.
 fn place(unit: &Unit, units: &[Unit]) -> String {
-    let offsets = units.iter().map(|unit| unit.position_m);
-    let longest = offsets.fold(0.0f64, |longest, [x, y, _]| longest.max(x.abs()).max(y.abs()));
-    let [x, y, _] = unit.position_m;
+    let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
+    place_among(unit.position_m, &places)
+}
+
+fn place_among([x, y, _]: [f64; 3], places: &[[f64; 3]]) -> String {
+    let longest = places
+        .iter()
+        .fold(0.0f64, |longest, [x, y, _]| longest.max(x.abs()).max(y.abs()));
     let side = |offset: f64, positive, negative| match offset {
         x if x.abs() <= ON_AXIS * longest => None,
         x => Some(if x > 0.0 { positive } else { negative }),

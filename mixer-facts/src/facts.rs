@@ -11,11 +11,15 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::air::{Air, AtAltitude, LEAST_THRUST_OVER_WEIGHT};
+use crate::checklist;
 use crate::cost::Cost;
 use crate::hover::Hover;
 
 /// Share of the largest bare thrust at which the authority of any vehicle is looked at.
 const SHARE: f64 = 0.4;
+
+/// Characters of a line of a list.
+const LINE: usize = 140;
 
 /// Border points per edge of the throttle box at which the largest efforts are looked for.
 const SAMPLES: usize = 64;
@@ -132,6 +136,20 @@ fn or_nothing<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
     value.map_or_else(String::new, text)
 }
 
+/// Words of a list, over lines that are not too long for a terminal.
+fn wrapped(list: &str) -> String {
+    let (mut text, mut length) = (String::new(), 0);
+    for word in list.split_inclusive("; ") {
+        if length + word.len() > LINE && length > 0 {
+            text = format!("{}\n{:20}", text.trim_end(), "");
+            length = 0;
+        }
+        text += word;
+        length += word.len();
+    }
+    text
+}
+
 /// What it is, its thrust and its authority.
 fn gives(list: &mut List, compiled: &Compiled) {
     let (airframe, m) = (&compiled.airframe, &compiled.effectiveness);
@@ -146,6 +164,14 @@ fn gives(list: &mut List, compiled: &Compiled) {
     list.say("rotors", airframe.rotors(), "", words)
         .json("units", units)
         .json("rotors", airframe.rotors())
+        .first();
+    let frame = airframe.units.iter().map(|unit| {
+        let outputs = [unit.upper_channel, unit.lower_channel];
+        (unit.position_m, unit.upper_spin, outputs)
+    });
+    let frame = checklist::in_words(&frame.collect::<Vec<_>>());
+    list.say("frame", "", "", wrapped(&frame))
+        .json("frame", &frame)
         .first();
     list.say("served axes", axes.join(", "), "", "")
         .json("axes", &axes)
