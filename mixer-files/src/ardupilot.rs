@@ -76,10 +76,13 @@ pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
 /// `FRAME_CLASS` and `FRAME_TYPE`, if a frame has these rotors on these outputs.
 pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) {
     let Some((class, kind, name)) = frames::find(compiled) else {
-        return all.note(
-            "no FRAME_CLASS has these rotors on these outputs: `cargo mixer new --outputs ardupilot` writes an airframe \
-             whose `channels` and spins are one's",
-        );
+        return all.note(match frames::has_places(compiled) {
+            true => {
+                "no FRAME_CLASS has these rotors on these outputs: `cargo mixer new --outputs ardupilot` writes an airframe \
+                 whose `channels` and spins are one's"
+            }
+            false => "no FRAME_CLASS has pairs in these places: ArduPilot has X and plus frames of 4 and 6 pairs, and Y6",
+        });
     };
     let [class, kind] = [class, kind].map(|value| i32::try_from(value).unwrap_or_default());
     all.because(format!(

@@ -272,7 +272,8 @@ impl NewFrame<'_> {
             String::from("# The units in a circle, clockwise from the first as seen from above.\n[layout]\n");
         for (value, comment) in [
             (
-                format!("arm_m = {arm:?}"),
+                // To a micrometre: without the digits of a script's arithmetic.
+                format!("arm_m = {:?}", (arm * 1e6).round() / 1e6),
                 "from the centre of gravity to each mast",
             ),
             (format!("units = {units}"), "pairs of rotors"),

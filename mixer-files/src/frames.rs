@@ -16,6 +16,9 @@ pub(crate) enum Layer {
     Lower,
 }
 
+/// Half the distance of two layers, m: any will do, the units lie between them.
+pub(crate) const LAYER_M: f64 = 0.05;
+
 /// A motor of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Motor {
@@ -105,6 +108,16 @@ pub(crate) fn find(compiled: &Compiled) -> Option<(usize, usize, &'static str)> 
             .flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]]);
         let is_same = of_frame.eq(rotors.iter().copied()) && differences.all(|x| x.abs() < SAME_FACTOR);
         is_same.then_some((class, kind, name))
+    })
+}
+
+/// Whether some frame has pairs in these places, on whatever outputs, of whatever spins.
+pub(crate) fn has_places(compiled: &Compiled) -> bool {
+    let own = compiled.ardupilot_factors();
+    FRAMES.iter().any(|&(class, kind)| {
+        let all = motors(class, kind).map_or(Vec::new(), |(_, motors)| factors(&motors));
+        let is_near = |a: &[f64; 3], b: &[f64; 2]| (0..2).all(|k| (a[k] - b[k]).abs() < SAME_FACTOR);
+        all.len() == own.len() && own.iter().all(|a| all.iter().any(|b| is_near(a, b)))
     })
 }
 

@@ -2,29 +2,39 @@
 //!
 //! ```text
 //! PX4's CA_ROTOR*, ArduPilot's FRAME_*                                 parameters.rs
-//!   -> rotors: channel, place, axis, spin                              px4.rs, ardupilot.rs
+//!   -> rotors: channel, place, axis, spin                              px4.rs, ardupilot.rs, betaflight.rs
+//!   -> what the outputs send, and to which motor                       outputs.rs
 //!   -> units: two rotors in one place, which is on top                 pairs.rs
 //!   -> the airframe file, with what the parameters do not say named    text.rs
 //! ```
 
 mod ardupilot;
+mod betaflight;
+mod outputs;
 mod pairs;
 mod parameters;
 mod px4;
 mod rotors;
 mod text;
 
-use mixer_compiler::Source;
+use mixer_compiler::airframe::Airframe;
+use mixer_compiler::model::PairMap;
+use mixer_compiler::{Source, symmetry};
+use mixer_facts::checklist;
 use mixer_identify::pair_file::PairFile;
 
+use crate::parameter::bench_pulses;
 use parameters::Parameters;
 use rotors::Imported;
 
 /// What the parameters do not say.
 #[derive(Clone, Debug, Default)]
 pub struct Options<'a> {
-    /// Distance of the units from the centre, m: ArduPilot's files do not have it.
+    /// Distance of the units from the centre, m: only PX4's files have it.
     pub arm_m: Option<f64>,
+    /// Pulse widths of throttle 0 and 1 on the bench, microseconds; without them those that the
+    /// pair's file remembers, else 1000 and 2000.
+    pub pulses_us: Option<[f64; 2]>,
     /// The outputs, from 0, of the upper rotors, where the file does not say which they are.
     pub upper: &'a [usize],
     /// Name of the airframe.
@@ -40,7 +50,8 @@ pub struct Import {
     pub notes: Vec<String>,
 }
 
-/// Makes an airframe file of a parameter file of PX4 or ArduPilot. `pair` is a file with the pair's
+/// Makes an airframe file of a parameter file of PX4 or ArduPilot, a start script of PX4's, or the
+/// `diff all` of Betaflight or INAV. `pair` is a file with the pair's
 /// model.
 ///
 /// # Errors
@@ -51,25 +62,50 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
     let pair = pair
         .map(|pair| PairFile::read(&pair.name, &pair.text))
         .transpose()?;
-    let text = text::airframe(options.name, file, &mut imported, &units, pair.as_ref());
+    let frame = units
+        .iter()
+        .map(|unit| (unit.position_m, unit.upper_spin, unit.channels));
+    let frame: Vec<_> = frame.collect();
+    imported
+        .notes
+        .push(format!("the frame is {}", checklist::in_words(&frame)));
+    let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
+    let mends = symmetry::mends(&places);
+    if !mends.is_empty() {
+        imported.notes.push(symmetry::in_words(&mends));
+    }
+    let text = |imported: &mut Imported| text::airframe(options.name, file, imported, &units, pair.as_ref());
+    if let Some(pulses) = &imported.pulses {
+        let airframe = Airframe::read(&Source::new("airframe.toml", text(&mut imported.clone()))).ok();
+        let of_bench = options.pulses_us.or_else(|| bench_pulses(airframe.as_ref()?));
+        let map = airframe.map(|airframe| PairMap::new(&airframe.pair, &airframe.throttle));
+        let told = pulses.told(of_bench.unwrap_or(outputs::USUAL_US), map.as_ref());
+        imported.notes.extend(told);
+    }
     Ok(Import {
-        text,
+        text: text(&mut imported),
         notes: imported.notes,
     })
 }
 
 fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
+    if betaflight::is_dump(&file.text) {
+        return betaflight::read(file, arm_m);
+    }
     let parameters = Parameters::read(file)?;
     if parameters.has("CA_ROTOR_COUNT") || parameters.has("CA_ROTOR0_PX") {
         px4::read(&parameters)
-    } else if parameters.has("FRAME_CLASS") {
+    } else if parameters.has("FRAME_CLASS") || ardupilot::is_quadplane(&parameters) {
         ardupilot::read(&parameters, arm_m)
     } else {
         Err(format!(
-            "{}: no rotors: neither CA_ROTOR_COUNT and CA_ROTOR0_PX.. (PX4 1.13 or later) nor FRAME_CLASS (ArduPilot) \
-             among its {} parameters",
+            "{}: no rotors: neither CA_ROTOR_COUNT and CA_ROTOR0_PX.. (PX4 1.13 or later) nor FRAME_CLASS or Q_FRAME_CLASS \
+             (ArduPilot) among its {} parameters",
             file.name,
             parameters.count()
         ))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::airframe::Airframe;
 use serde::Serialize;
 
 /// A parameter of a flight stack.
@@ -92,6 +93,20 @@ impl Reason<'_> {
         let unit = libm::pow(10.0, digits.max(4.0));
         self.add(name, Value::Real((value * unit).round() / unit + 0.0))
     }
+}
+
+/// Pulse widths that speed controllers take, microseconds.
+pub(crate) const PULSES_US: [f64; 2] = [500.0, 2500.0];
+
+/// Pulse widths of throttle 0 and 1 on the bench, microseconds, where the airframe remembers that
+/// `identify` needed them.
+pub(crate) fn bench_pulses(airframe: &Airframe) -> Option<[f64; 2]> {
+    let options = &airframe.pair.bench_options;
+    let at = options.iter().position(|option| option == "--pwm-range")?;
+    let (low, high) = options.get(at + 1)?.split_once(',')?;
+    let us = [low.parse().ok()?, high.parse().ok()?];
+    let [least, most] = PULSES_US;
+    us.iter().all(|us| (least..=most).contains(us)).then_some(us)
 }
 
 /// To two decimals.

@@ -6,7 +6,7 @@ use mixer_compiler::Compiled;
 use mixer_identify::report::wrapped;
 
 use crate::ardupilot;
-use crate::parameter::{Parameter, Parameters, Value};
+use crate::parameter::{PULSES_US, Parameter, Parameters, Value, bench_pulses};
 use crate::plain::printable_lines;
 use crate::px4::{self, Currents};
 use crate::stack::Stack;
@@ -20,7 +20,8 @@ pub struct Options {
     pub format: Format,
     /// Whether they are for the stack's own mixer instead of this one.
     pub own: bool,
-    /// Pulse widths of throttle 0 and 1 on the bench, microseconds.
+    /// Pulse widths of throttle 0 and 1 on the bench, microseconds; without them those that the
+    /// airframe remembers.
     pub pulses_us: Option<[f64; 2]>,
 }
 
@@ -68,7 +69,7 @@ pub struct Params {
 /// The parameters of an airframe, each below its reason. `file` is the name of the airframe's file.
 ///
 /// # Errors
-/// Outputs that are not PX4's motors; a simulator's script for ArduPilot.
+/// Outputs that are not PX4's motors; a simulator's script for ArduPilot; no pulse widths.
 pub fn params(compiled: &Compiled, file: &str, options: &Options) -> Result<Params, String> {
     let Parameters { list, notes } = parameters(options, compiled)?;
     let mut head = header(compiled, file, options, &notes);
@@ -103,6 +104,15 @@ pub fn params(compiled: &Compiled, file: &str, options: &Options) -> Result<Para
 
 fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, String> {
     let mut all = Parameters::default();
+    let [least, most] = PULSES_US;
+    if let Some([low, high]) = options
+        .pulses_us
+        .filter(|us| us.iter().any(|us| !(least..=most).contains(us)))
+    {
+        return Err(format!(
+            "--pwm-range {low},{high}: pulse widths in microseconds from {least} to {most}, as 1000,2000"
+        ));
+    }
     let currents = match options.format {
         Format::GroundStation => Currents::Measured,
         Format::Simulator => Currents::Simulated,
@@ -117,7 +127,8 @@ fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, Stri
         (Stack::Ardupilot, true) => ardupilot::own(compiled, &mut all),
         (Stack::Ardupilot, false) => ardupilot::settings(compiled, &mut all),
     }
-    match (options.format, options.pulses_us, options.stack) {
+    let pulses_us = options.pulses_us.or_else(|| bench_pulses(&compiled.airframe));
+    match (options.format, pulses_us, options.stack) {
         // The simulator's outputs have no pulse widths.
         (Format::Simulator, ..) => px4::simulated(compiled, &mut all),
         (_, Some(pulses), Stack::Px4) => px4::pulses(compiled, pulses, &mut all),

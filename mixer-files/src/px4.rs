@@ -3,6 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Correction, Spin, Unit};
 
+use crate::frames::LAYER_M;
 use crate::parameter::{Parameters, curve, hundredths, on_curve, slope_in_hover};
 
 /// Most rotors that PX4 has parameters for.
@@ -102,14 +103,16 @@ pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), 
                  file gives their outputs, from 0"
             ));
         };
-        let (rotor, spin) = match unit.upper_channel == channel {
-            true => ("upper", unit.upper_spin),
-            false => ("lower", unit.upper_spin.reversed()),
+        let (rotor, spin, layer_m) = match unit.upper_channel == channel {
+            true => ("upper", unit.upper_spin, LAYER_M),
+            false => ("lower", unit.upper_spin.reversed(), -LAYER_M),
         };
         let sign = if spin == Spin::Ccw { 1.0 } else { -1.0 };
         let motor = channel + 1;
         let why = format!("Motor {motor}: {rotor} rotor, turns {}.", spin.name());
-        let ([px, py, pz], [ax, ay, az]) = (unit.position_m, unit.axis);
+        // Along its axis a rotor has no lever; so the file says which one is above.
+        let place = std::array::from_fn(|k| unit.position_m[k] + layer_m * unit.axis[k]);
+        let ([px, py, pz], [ax, ay, az]): (_, [f64; 3]) = (place, unit.axis);
         let values = [px, py, pz, ax, ay, az, thrust, sign * torque / thrust];
         for (key, value) in ["PX", "PY", "PZ", "AX", "AY", "AZ", "CT", "KM"]
             .iter()

@@ -4,17 +4,20 @@ use std::path::PathBuf;
 
 use mixer_files::import::{self, Options};
 
+use crate::bench_args::pwm_range;
 use crate::{Done, file};
 
 /// Makes an airframe file of a flight stack's parameters
 ///
-/// FILE is a parameter file of PX4 1.13 or later (CA_ROTOR*, as QGroundControl saves it) or of
-/// ArduPilot (FRAME_CLASS, FRAME_TYPE, MOT_*).
+/// FILE is a parameter file or a start script of PX4 1.13 or later (CA_ROTOR*), a parameter file
+/// of ArduPilot (FRAME_CLASS, FRAME_TYPE, MOT_*; of a QuadPlane Q_*), or the `diff all` of
+/// Betaflight or INAV (mixer, mmix).
 ///
-/// PX4:       two rotors in one place are a unit, the one with the smaller z is the upper;
-///            KM > 0 turns counter-clockwise; tilted axes are kept.
-/// ArduPilot: the table of the frame gives angles, spins and layers; --arm gives their
-///            distance, which the file lacks.
+/// PX4:        two rotors in one place are a unit, the one with the smaller z is the upper;
+///             KM > 0 turns counter-clockwise; tilted axes are kept.
+/// ArduPilot:  the table of the frame gives angles, spins and layers; --arm gives their
+///             distance, which the file lacks.
+/// Betaflight: two motors with the same roll and pitch are a unit; --arm gives the distance.
 ///
 /// What the parameters do not say is named on stderr and in the file.
 #[derive(clap::Args, Debug)]
@@ -25,13 +28,17 @@ pub struct ImportArgs {
     /// The pair's model: what `cargo mixer identify` writes, or another airframe file
     #[arg(long, value_name = "FILE")]
     pair: Option<PathBuf>,
-    /// Distance of the units from the centre, m: ArduPilot's files do not have it
+    /// Distance of the units from the centre, m: only PX4's files have it
     #[arg(long, value_name = "METRES")]
     arm: Option<f64>,
     /// The outputs, from 0, of the upper rotors: where the file does not say which they are, or
     /// says it wrongly
     #[arg(long, value_name = "CHANNELS", value_delimiter = ',')]
     upper: Vec<usize>,
+    /// Pulse widths of throttle 0 and 1 on the bench, microseconds [default: those that
+    /// identify needed, else 1000,2000]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
+    pwm_range: Option<[f64; 2]>,
     /// Name of the airframe
     #[arg(long)]
     name: Option<String>,
@@ -55,6 +62,7 @@ fn import(args: &ImportArgs) -> Result<(), String> {
     let options = Options {
         arm_m: args.arm,
         upper: &args.upper,
+        pulses_us: args.pwm_range,
         name: args.name.as_deref(),
     };
     let made = import::import(&parameters, pair.as_ref(), &options)?;

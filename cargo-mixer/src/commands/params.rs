@@ -33,7 +33,8 @@ pub struct ParamsArgs {
     /// For the stack's own mixer instead of this one
     #[arg(long)]
     own: bool,
-    /// Pulse widths of throttle 0 and 1 on the bench, microseconds, as `1000,2000`
+    /// Pulse widths of throttle 0 and 1 on the bench, microseconds, as `1000,2000` [default: those
+    /// that identify needed]
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
     pwm_range: Option<[f64; 2]>,
     /// The file to write; without it stdout

@@ -1,7 +1,9 @@
 //! A flight stack's parameters by name.
 //!
 //! A line is `NAME,VALUE` or `NAME VALUE` (Mission Planner, MAVProxy) or, tab-separated, vehicle,
-//! component, name, value and type (QGroundControl). `#` begins a comment.
+//! component, name, value and type (QGroundControl). `#` begins a comment. In a script, of PX4's
+//! start or of MAVProxy, they are those of `param set` and `param set-default`; all else is passed
+//! over there.
 
 use std::collections::BTreeMap;
 
@@ -21,39 +23,71 @@ const LONGEST_PIECE: usize = 80;
 impl Parameters {
     pub(super) fn read(source: &Source) -> Result<Self, String> {
         let Source { name: file, text } = source;
-        let mut values = BTreeMap::new();
-        for (line, number) in text.trim_start_matches('\u{feff}').lines().zip(1..) {
-            let content = line.split('#').next().unwrap_or_default();
-            let separated = |c: char| c.is_whitespace() || c == ',';
-            let words: Vec<&str> = content.split(separated).filter(|word| !word.is_empty()).collect();
-            let entry = match words[..] {
-                [] => continue,
-                [vehicle, _, name, value, _] if vehicle.parse::<u32>().is_ok() => Some((name, value)),
-                [name, value] | [name, value, _] => Some((name, value)),
-                _ => None,
-            };
-            let entry = entry.and_then(|(name, value)| Some((name, value.parse::<f64>().ok()?)));
-            let Some((name, value)) = entry else {
-                return Err(format!(
+        let text = text.trim_start_matches('\u{feff}');
+        let is_script = text
+            .lines()
+            .flat_map(statements)
+            .any(|words| set(&words).is_some());
+        let mut parameters = Parameters {
+            file: file.clone(),
+            values: BTreeMap::new(),
+        };
+        for (line, number) in text.lines().zip(1..) {
+            let bad = || {
+                format!(
                     "{file}:{number}: `{}` is no parameter: NAME,VALUE or a line of QGroundControl's",
                     line.trim().chars().take(LONGEST_PIECE).collect::<String>()
-                ));
+                )
             };
-            if !value.is_finite() {
-                return Err(format!(
-                    "{file}:{number}: {name} is {value}: write the number that the stack has"
-                ));
+            if is_script {
+                for words in statements(line) {
+                    match set(&words).map(|(name, value)| (name, value, value.parse())) {
+                        None => {}
+                        Some((name, _, Ok(value))) => parameters.add(name, value, number, true)?,
+                        // What a script computes is not known here.
+                        Some((name, ..)) if !is_of_rotors(name) => {}
+                        Some((name, value, Err(_))) => {
+                            return Err(format!(
+                                "{file}:{number}: {name} is `{value}`: write it as a number"
+                            ));
+                        }
+                    }
+                }
+                continue;
             }
-            if let Some((_, first)) = values.insert(name.to_owned(), (value, number)) {
-                return Err(format!(
-                    "{file}:{number}: {name} is there twice, first in line {first}: leave one of them"
-                ));
-            }
+            let content = line.split('#').next().unwrap_or_default();
+            let separated = |c: char| c.is_whitespace() || matches!(c, ',' | '=');
+            let words: Vec<&str> = content.split(separated).filter(|word| !word.is_empty()).collect();
+            let (name, value) = match words[..] {
+                [] => continue,
+                [vehicle, _, name, value, _] if vehicle.parse::<u32>().is_ok() => (name, value),
+                [name, value] => (name, value),
+                // A type, or `@READONLY`; not the rest of a number with a decimal comma.
+                [name, value, more] if !content.contains(',') || more.parse::<f64>().is_err() => {
+                    (name, value)
+                }
+                _ => return Err(bad()),
+            };
+            parameters.add(name, value.parse().map_err(|_| bad())?, number, false)?;
         }
-        Ok(Parameters {
-            file: file.clone(),
-            values,
-        })
+        Ok(parameters)
+    }
+
+    /// A parameter of a line. One that was there before is the same again, or in a script a later
+    /// value, though not of a rotor: a copied line whose number was left.
+    fn add(&mut self, name: &str, value: f64, number: u32, is_script: bool) -> Result<(), String> {
+        let file = &self.file;
+        if !value.is_finite() {
+            return Err(format!(
+                "{file}:{number}: {name} is {value}: write the number that the stack has"
+            ));
+        }
+        match self.values.insert(name.to_owned(), (value, number)) {
+            Some((before, first)) if before != value && (!is_script || is_of_rotors(name)) => Err(format!(
+                "{file}:{number}: {name} is there twice, first in line {first}: leave one of them"
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// Where a parameter is, `file:line`; the file where it is not there.
@@ -83,11 +117,52 @@ impl Parameters {
         self.get(name).unwrap_or(default)
     }
 
+    /// The names of all, in alphabetical order.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.values.keys().map(String::as_str)
+    }
+
     /// A whole number from 0, if it is one.
     pub(super) fn whole(&self, name: &str) -> Option<usize> {
         let value = self.get(name)?;
         (value >= 0.0 && value.fract() == 0.0 && value < 1e6).then_some(value as usize)
     }
+}
+
+/// The statements of a line of a script, as words without quotes.
+fn statements(line: &str) -> Vec<Vec<&str>> {
+    let content = line.split('#').next().unwrap_or_default();
+    let quote = |c| matches!(c, '"' | '\'');
+    content
+        .split(';')
+        .map(|statement| {
+            statement
+                .split_whitespace()
+                .map(|word| word.trim_matches(quote))
+                .collect()
+        })
+        .collect()
+}
+
+/// Name and value of `param set NAME VALUE` and `param set-default NAME VALUE`.
+fn set<'a>(words: &[&'a str]) -> Option<(&'a str, &'a str)> {
+    let at = words.iter().position(|word| *word == "param")?;
+    let mut rest = words[at + 1..].iter().copied();
+    matches!(rest.next()?, "set" | "set-default").then_some(())?;
+    let mut rest = rest.filter(|word| !matches!(*word, "-s" | "fail"));
+    Some((rest.next()?, rest.next()?))
+}
+
+/// Whether a rotor's place or spin depends on it.
+fn is_of_rotors(name: &str) -> bool {
+    name.starts_with("CA_") || name.contains("FRAME_")
+}
+
+/// So many finite numbers.
+pub(super) fn numbers<const N: usize>(words: &[&str]) -> Option<[f64; N]> {
+    let numbers: Option<Vec<f64>> = words.iter().map(|word| word.parse().ok()).collect();
+    let numbers: [f64; N] = numbers?.try_into().ok()?;
+    numbers.iter().all(|number| number.is_finite()).then_some(numbers)
 }
 
 #[cfg(test)]
@@ -102,6 +177,26 @@ mod tests {
         assert_eq!(parameters.whole("FRAME_CLASS"), Some(4));
         assert_eq!(parameters.get("CA_ROTOR0_PX"), Some(0.1905));
         assert_eq!(parameters.or("MOT_SPIN_MAX", 0.95), 0.95);
+    }
+
+    #[test]
+    fn scripts_are_read() {
+        let text = "#!/bin/sh\n. ${R}etc/init.d/rc.mc_defaults\nset MIXER none\nif [ $X = yes ]\nthen\n\tparam set-default \
+                    CA_ROTOR0_PX 0.5 # m\n  param set MC_P \"6.5\"; param set-default MAV_ID $((i+1))\nfi\nparam set MC_P 7\n";
+        let parameters = Parameters::read(&Source::new("a", text)).unwrap();
+        assert_eq!(parameters.count(), 2);
+        assert_eq!(parameters.get("CA_ROTOR0_PX"), Some(0.5));
+        assert_eq!(parameters.get("MC_P"), Some(7.0));
+        for (line, message) in [
+            (
+                "param set CA_ROTOR0_PX 0.6",
+                "a:10: CA_ROTOR0_PX is there twice, first in line 6",
+            ),
+            ("param set CA_ROTOR1_PX $ARM", "a:10: CA_ROTOR1_PX is `$ARM`"),
+        ] {
+            let error = Parameters::read(&Source::new("a", format!("{text}{line}\n"))).unwrap_err();
+            assert!(error.starts_with(message), "{error}");
+        }
     }
 
     #[test]

@@ -3,8 +3,9 @@
 
 use mixer_compiler::airframe::Spin;
 
+use super::outputs::{self, Bank};
 use super::parameters::Parameters;
-use super::rotors::{Imported, Rotor};
+use super::rotors::{Imported, Pulses, Rotor};
 
 /// What PX4 takes where a file has no `CA_ROTORi_KM` and no `CA_ROTORi_AZ`.
 const MOMENT_RATIO: f64 = 0.05;
@@ -23,13 +24,42 @@ pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
             ));
         }
     };
+    for index in (0..count).filter(|_| count > 2) {
+        if !parameters
+            .names()
+            .any(|name| name.starts_with(&format!("CA_ROTOR{index}_")))
+        {
+            return Err(format!(
+                "{}: CA_ROTOR_COUNT is {count}, and nothing is said of rotor {index}: CA_ROTOR{index}_PX, _PY and _PZ place it",
+                parameters.place("CA_ROTOR_COUNT")
+            ));
+        }
+    }
     let rotors = (0..count).map(|index| rotor(parameters, index));
     let mut imported = Imported {
         origin: format!("{count} rotors of PX4"),
         rotors: rotors.collect::<Result<_, _>>()?,
         range_v: battery(parameters),
+        pulses: pulses(parameters),
         ..Imported::default()
     };
+    if let Some(kind) = parameters.get("CA_AIRFRAME").filter(|kind| *kind != 0.0) {
+        imported.notes.push(format!(
+            "CA_AIRFRAME is {kind}, no multirotor (0): control surfaces, and rotors that tilt, are not in the model"
+        ));
+    }
+    let is_placed = |index: &usize| {
+        let place = ["PX", "PY"].map(|key| parameters.or(&format!("CA_ROTOR{index}_{key}"), 0.0));
+        place != [0.0; 2]
+    };
+    if let Some(index) = (count..MOST_ROTORS).find(is_placed) {
+        imported.notes.push(format!(
+            "CA_ROTOR_COUNT is {count}: rotor {index} and what follows it are left out"
+        ));
+    }
+    imported
+        .notes
+        .extend([MAIN, AUX].iter().find_map(|bank| bank.order(parameters)));
     imported.notes.push(
         "the idle is not among PX4's parameters: throttle.min is 0.1 unless the pair's file has another"
             .to_owned(),
@@ -43,6 +73,19 @@ fn rotor(parameters: &Parameters, index: usize) -> Result<Rotor, String> {
     let axis = [value("AX", 0.0), value("AY", 0.0), value("AZ", UPWARD)];
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     let place = |key: &str| parameters.place(&format!("CA_ROTOR{index}_{key}"));
+    if axis[2] > 0.0 {
+        return Err(format!(
+            "{}: CA_ROTOR{index}_AZ is {}: the thrust points down; z counts downwards, upward is -1",
+            place("AZ"),
+            axis[2]
+        ));
+    }
+    if value("TILT", 0.0) != 0.0 {
+        return Err(format!(
+            "{}: CA_ROTOR{index}_TILT: a rotor that a servo tilts is not in the model; 0 is a fixed one",
+            place("TILT")
+        ));
+    }
     if length == 0.0 {
         return Err(format!(
             "{}: CA_ROTOR{index}_AX, _AY and _AZ are all 0: upward is 0, 0, -1",
@@ -60,8 +103,48 @@ fn rotor(parameters: &Parameters, index: usize) -> Result<Rotor, String> {
         channel: index,
         place: place("PX"),
         position_m,
-        axis: axis.map(|x| x / length),
+        // Stacks hold single precision.
+        axis: axis.map(|x| (x / length * 1e7).round() / 1e7 + 0.0),
         spin: if moment > 0.0 { Spin::Ccw } else { Spin::Cw },
+    })
+}
+
+const MAIN: Bank = Bank {
+    function: |pin| format!("PWM_MAIN_FUNC{pin}"),
+    motor,
+    end: |pin, end| format!("PWM_MAIN_{end}{pin}"),
+};
+
+const AUX: Bank = Bank {
+    function: |pin| format!("PWM_AUX_FUNC{pin}"),
+    motor,
+    end: |pin, end| format!("PWM_AUX_{end}{pin}"),
+};
+
+/// The motor, from 0, of a value of `PWM_MAIN_FUNCn`.
+fn motor(function: usize) -> Option<usize> {
+    function.checked_sub(101).filter(|motor| *motor < MOST_ROTORS)
+}
+
+/// The motors' pulse widths, of all pins where no function is said; DShot, a `PWM_MAIN_TIMn` of -2
+/// and less, has none.
+fn pulses(parameters: &Parameters) -> Option<Pulses> {
+    let is_digital = |name: &str| {
+        let is_timer = name.starts_with("PWM_MAIN_TIM") || name.starts_with("PWM_AUX_TIM");
+        is_timer && parameters.or(name, 0.0) < -1.0
+    };
+    if parameters.names().any(is_digital) {
+        return None;
+    }
+    let banks = [MAIN, AUX].map(|bank| (bank.motors(parameters), bank));
+    let is_open = banks.iter().all(|(motors, _)| motors.is_empty());
+    outputs::pulses(parameters, |end| {
+        let older = ["PWM_", "PWM_MAIN_", "PWM_AUX_"].map(|bank| format!("{bank}{end}"));
+        let pins = banks.iter().flat_map(|(motors, bank)| match is_open {
+            true => bank.ends(1..=MOST_ROTORS, end),
+            false => bank.ends(motors.iter().map(|(pin, _)| *pin), end),
+        });
+        older.into_iter().chain(pins).collect()
     })
 }
 

@@ -27,14 +27,23 @@ pub(super) struct Unit {
     pub(super) channels: [usize; 2],
 }
 
+/// Pulse widths of throttle 0 and 1, where the file says them.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Pulses {
+    /// Microseconds, with the parameter that has them.
+    pub(super) ends: [Option<(f64, String)>; 2],
+}
+
 /// Rotors and settings of a flight stack's files.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Imported {
     /// The stack and the frame, for people.
     pub(super) origin: String,
     pub(super) rotors: Vec<Rotor>,
-    /// Least and largest throttle.
-    pub(super) throttle: Option<[f64; 2]>,
+    /// Least and largest throttle, with the names of what says them.
+    pub(super) throttle: Option<([f64; 2], [String; 2])>,
+    /// What the motors' outputs send.
+    pub(super) pulses: Option<Pulses>,
     /// The battery's range, V.
     pub(super) range_v: Option<[f64; 2]>,
     /// The airmode with which the stack's controllers work, and why.

@@ -88,13 +88,13 @@ pub(super) fn airframe(
 /// Both files' ranges: the pair's model is known in its own alone.
 fn throttle(imported: &mut Imported, pair: Option<&PairFile>) -> [f64; 2] {
     let number = |key| pair.and_then(|pair| pair.number("throttle", key));
-    match (imported.throttle, number("min"), number("max")) {
-        (Some([min, max]), low, high) => {
+    match (&imported.throttle, number("min"), number("max")) {
+        (&Some(([min, max], ref names)), low, high) => {
+            let [lowest, highest] = names;
             let (least, most) = (low.unwrap_or(min).max(min), high.unwrap_or(max).min(max));
             if [least, most] != [min, max] {
                 imported.notes.push(format!(
-                    "the stack's throttles {min} to {max} are narrowed to the pair's: set MOT_SPIN_MIN to {least}, MOT_SPIN_MAX \
-                     to {most}"
+                    "the stack's throttles {min} to {max} are narrowed to the pair's: set {lowest} to {least}, {highest} to {most}"
                 ));
             }
             [least, most]
