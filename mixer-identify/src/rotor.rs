@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+pub mod agreement;
 pub mod alone;
 pub mod curve;
 pub mod interaction;

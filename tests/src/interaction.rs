@@ -13,7 +13,7 @@ use mixer_identify::fit::balance::balanced;
 use mixer_identify::identified::Settings;
 use mixer_identify::plan::CORRECTING;
 use mixer_identify::rotor::interaction::{Interaction, OPEN_LOOP};
-use mixer_identify::rotor::posterior::{self, BETWEEN_SYSTEMS, Case, Deviations, scaled};
+use mixer_identify::rotor::posterior::{self, BETWEEN_SYSTEMS, Case, Deviations, ROW, scaled};
 use mixer_identify::rotor::single::{Known, Single};
 
 use crate::root;
@@ -56,6 +56,7 @@ const SYSTEMS: [System; 3] = [
 const BROAD: Deviations = Deviations {
     constants: [1.0; 6],
     scales: BETWEEN_SYSTEMS.scales,
+    equal: f64::INFINITY,
 };
 
 /// Throttles of a data sheet's table.
@@ -173,7 +174,7 @@ pub fn measure(data: &Path) -> Result<Measured, String> {
     let fitted = |left_out: Option<&str>| {
         let others = beds.iter().filter(|bed| Some(bed.name) != left_out);
         let cases: Vec<Case> = others.flat_map(Bed::cases).collect();
-        posterior::fit(OPEN_LOOP, BROAD, &cases).0
+        posterior::fit(OPEN_LOOP, BROAD, &cases).interaction
     };
     let mut rows = Vec::new();
     let mut constants = Vec::new();
@@ -214,6 +215,7 @@ impl Bed {
                 .map(|p| [p.u, p.l, p.thrust, p.torque])
                 .collect(),
             full_scale: full_scale(points),
+            row: ROW,
         }
     }
 
@@ -260,14 +262,14 @@ impl Bed {
         let four = self.case(spacing_ratio, points, |p| {
             CORRECTING.iter().any(|at| closest(points, *at).line == p.line)
         });
-        let (corrected, factors) = posterior::fit(OPEN_LOOP, BETWEEN_SYSTEMS, &[four]);
+        let found = posterior::fit(OPEN_LOOP, BETWEEN_SYSTEMS, &[four]);
         Ok([
             isolated,
             of(left_out, alone),
             of(OPEN_LOOP, alone),
             of(OPEN_LOOP, [five; 2]),
             of(OPEN_LOOP, [no_torque; 2]),
-            of(corrected, scaled(&alone, factors[0])),
+            of(found.interaction, scaled(&alone, found.factors[0])),
         ])
     }
 }

@@ -18,9 +18,10 @@ use crate::fit::basis::ThrottleBox;
 use crate::fit::uncertainty::Uncertainty;
 use crate::fit::{Design, ten_digits};
 use crate::refusal::Refusal;
+use crate::rotor::agreement::{self, Agreement, DOUBTED, REFUSED};
 use crate::rotor::curve::Rotor;
 use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
-use crate::rotor::posterior::{self, BETWEEN_SYSTEMS, Case, scaled};
+use crate::rotor::posterior::{BETWEEN_SYSTEMS, Case, ROW, fit, scaled};
 use crate::rotor::single::Single;
 use crate::statistics::{greatest, rms};
 use crate::table::{commented, numbers, table};
@@ -42,13 +43,13 @@ const UNEQUAL: f64 = 0.1;
 pub const ENOUGH_ROWS: usize = 16;
 
 /// One standard deviation of a prediction, % of full scale of thrust and of torque: the root mean
-/// square error on 52 maps of five systems, each system left out of the fit of the constants; what
-/// a table of few rows and a torque that was not measured add to it, in squares; and what four rows
-/// of the pair leave. docs/no-bench.md has the maps that the project can measure.
+/// square error on 52 maps of five systems, each system left out of the fit of the constants; and
+/// what a table of few rows and a torque that was not measured add to it, in squares. Of this the
+/// model's own error, [`ROW`], stays when rows of the pair correct it. docs/no-bench.md has the maps
+/// that the project can measure.
 const PREDICTED: [f64; 2] = [1.5, 3.7];
 const FEW_ROWS: [f64; 2] = [1.5, 2.4];
 const WITHOUT_TORQUE: [f64; 2] = [0.0, 2.0];
-const CORRECTED: [f64; 2] = [1.2, 2.8];
 /// Rows with torque that a correction of it takes.
 const CORRECTING_ROWS: usize = 4;
 
@@ -154,19 +155,16 @@ pub fn correct(
         true => CLOSED_LOOP,
         false => OPEN_LOOP,
     };
-    let mut constants = general;
-    let mut factors = [1.0; 3];
-    let mut rows_with_torque = 0;
+    let (case, places) = case(&runs, maps, general, spacing_ratio, throttle)?;
+    let found = agreement::judge(general, &case);
     if !maps.is_empty() {
-        let case = case(&runs, maps, general, spacing_ratio, throttle)?;
-        rows_with_torque = case.rows.iter().filter(|row| row[3].is_finite()).count();
-        advise(case.rows.len(), rows_with_torque, &mut warnings);
-        let found = posterior::fit(general, BETWEEN_SYSTEMS, &[case]);
-        constants = found.0;
-        factors = found.1.first().copied().unwrap_or(factors);
+        advise(&case, &mut warnings);
+        agree(&runs, &places, &found, &mut warnings)?;
     }
+    let uncertainty = uncertainty(general, &runs, &case, &found, throttle);
+    let constants = found.posterior.interaction;
+    let factors = found.posterior.factors.first().copied().unwrap_or([1.0; 3]);
     let rotors = scaled(&alone, factors);
-    let uncertainty = uncertainty(&runs, rows_with_torque);
     let map = |throttles| constants.pair(&rotors, spacing_ratio, throttles);
     let pair = compiled(&map, rotors, uncertainty, throttle, &runs[0].file)?;
     if pair.min_idle > throttle.min + 1e-9 {
@@ -229,15 +227,15 @@ fn rotors(runs: &[Single]) -> [Rotor; 2] {
     [&runs[0], runs.get(1).unwrap_or(&runs[0])].map(|run| run.rotor)
 }
 
-/// The rows of maps at the voltage of the runs.
+/// The rows of maps at the voltage of the runs, and the place of each.
 fn case(
     runs: &[Single],
     maps: &[Bench],
     general: Interaction,
     spacing_ratio: f64,
     ThrottleBox { max, .. }: ThrottleBox,
-) -> Result<Case, Refusal> {
-    let (rotors, mut rows) = (rotors(runs), Vec::new());
+) -> Result<(Case, Vec<String>), Refusal> {
+    let (rotors, mut rows, mut places) = (rotors(runs), Vec::new(), Vec::new());
     for map in maps {
         if map.kind != Kind::Pair {
             return Err(Refusal::of(
@@ -246,6 +244,7 @@ fn case(
                 "rows in which both rotors turn; a run of one rotor alone by --prior",
             ));
         }
+        places.extend(map.points.iter().map(|p| format!("{}:{}", map.file, p.line)));
         // As one supply for both rotors at the voltage of the runs.
         rows.extend(map.points.iter().map(|p| {
             let [u, l] = throttles(p);
@@ -258,15 +257,24 @@ fn case(
     let [full, _] = general.pair(&rotors, spacing_ratio, [max; 2]);
     let corners =
         [[LEAST_IDLE, max], [max, LEAST_IDLE]].map(|t| general.pair(&rotors, spacing_ratio, t)[1].abs());
-    Ok(Case {
+    // The model knows no map better than the curves under it know their runs.
+    let misfit = |k: usize| {
+        let percent = runs.iter().filter_map(|run| run.misfit_percent[k]);
+        percent.fold(100.0 * ROW[k], f64::max) / 100.0
+    };
+    let case = Case {
         rotors,
         spacing_ratio,
         rows,
         full_scale: [full, corners[0].max(corners[1])],
-    })
+        row: [misfit(0), misfit(1)],
+    };
+    Ok((case, places))
 }
 
-fn advise(rows: usize, with_torque: usize, warnings: &mut Vec<String>) {
+fn advise(case: &Case, warnings: &mut Vec<String>) {
+    let rows = case.rows.len();
+    let with_torque = case.rows.iter().filter(|row| row[3].is_finite()).count();
     if with_torque >= ENOUGH_ROWS {
         warnings.push(format!(
             "{with_torque} rows of the pair with torque: from {ENOUGH_ROWS} on, spread over both throttles, a plain identify \
@@ -280,16 +288,63 @@ fn advise(rows: usize, with_torque: usize, warnings: &mut Vec<String>) {
     }
 }
 
-fn uncertainty(runs: &[Single], rows_with_torque: usize) -> Uncertainty {
+/// Refuses rows that cannot be of this pair, and warns of those that hardly are.
+fn agree(
+    runs: &[Single],
+    places: &[String],
+    found: &Agreement,
+    warnings: &mut Vec<String>,
+) -> Result<(), Refusal> {
+    if found.misfit <= DOUBTED {
+        return Ok(());
+    }
+    let names: Vec<&str> = runs.iter().map(|run| run.file.as_str()).collect();
+    let explained = found.explained(places);
+    let told = format!(
+        "the rows miss what {} predicts by {}{}",
+        names.join(" and "),
+        agreement::told(found.missed_percent),
+        explained.reason
+    );
+    if found.misfit > REFUSED {
+        let file = places.first().and_then(|place| place.rsplit_once(':'));
+        return Err(Refusal::of(
+            file.map_or("", |(file, _)| file),
+            told,
+            explained.mend,
+        ));
+    }
+    warnings.push(format!(
+        "{told}; the uncertainty is widened {:.1} times; check {}",
+        found.misfit.sqrt(),
+        explained.mend
+    ));
+    Ok(())
+}
+
+/// What was measured of predictions without rows, in the proportion in which rows narrow the model's
+/// own, and widened where they fit it badly.
+fn uncertainty(
+    general: Interaction,
+    runs: &[Single],
+    case: &Case,
+    found: &Agreement,
+    throttle: ThrottleBox,
+) -> Uncertainty {
     let few = runs.iter().any(Single::is_sparse);
     let no_torque = runs.iter().any(|run| run.kappa_m.is_some());
     let adding = [(true, PREDICTED), (few, FEW_ROWS), (no_torque, WITHOUT_TORQUE)];
-    let percent = |k: usize| match rows_with_torque >= CORRECTING_ROWS {
-        true => CORRECTED[k],
-        false => {
-            let adding = adding.iter().filter(|(is, _)| *is);
-            adding.map(|(_, of)| of[k] * of[k]).sum::<f64>().sqrt()
-        }
+    let without = Case {
+        rows: Vec::new(),
+        ..case.clone()
+    };
+    let before = fit(general, BETWEEN_SYSTEMS, std::slice::from_ref(&without)).spread(case, throttle);
+    let after = found.posterior.spread(case, throttle);
+    let percent = |k: usize| {
+        let squares = adding.iter().filter(|(is, _)| *is).map(|(_, of)| of[k] * of[k]);
+        let ([row, own], narrowed) = ([ROW[k], case.row[k]].map(|x| 100.0 * x), after[k] / before[k]);
+        let learned = (squares.sum::<f64>() - row * row) * narrowed * narrowed;
+        ((own * own + learned) * found.misfit.max(1.0)).sqrt()
     };
     Uncertainty {
         is_predicted: true,
