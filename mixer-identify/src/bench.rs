@@ -157,7 +157,8 @@ pub struct Preparation {
     pub settle: f64,
     /// Signs of thrust and torque.
     pub signs: SignPolicy,
-    /// Whether rows of a pair may lack their torque.
+    /// Whether these are a few rows of a pair on top of a prediction: they may lack their torque, and one
+    /// throttle is that of both rotors.
     pub torque_may_lack: bool,
     /// Whether a run of one rotor is of that rotor, not of the whole: what it drives through the
     /// one at rest, which has a drag, is then left aside.
@@ -214,7 +215,13 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         None => air.map(|air| plausible(&name, air)).transpose()?,
         given => given.clone(),
     };
-    let two_throttles = columns.throttle.rotors[1].is_some();
+    // A stand that drives both rotors by one signal.
+    let one_signal =
+        columns.throttle.rotors[1].is_none() && (how.torque_may_lack || of_both(&columns, &samples));
+    if one_signal {
+        samples.iter_mut().for_each(|s| s.throttle[1] = s.throttle[0]);
+    }
+    let two_throttles = one_signal || columns.throttle.rotors[1].is_some();
     let turns = |rotor: usize| samples.iter().any(|s| s.throttle[rotor] > how.stop_throttle);
     let kind = match two_throttles && turns(0) && turns(1) {
         true => Kind::Pair,
@@ -264,7 +271,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         ));
     }
 
-    let may_lack = how.torque_may_lack;
+    let may_lack = how.torque_may_lack || one_signal;
     let (signs, sums) = match kind {
         Kind::Pair => {
             notes.extend(uneven_levels(&samples));
@@ -354,6 +361,45 @@ fn plausible(name: &str, air: Known) -> Result<Known, Refusal> {
         format!("its columns of the air give a density of {density:.3} kg/m3, not within {low} to {high}"),
         "their units by --unit temperature=, pressure= or density=; or the air by --temperature C --pressure HPA in their place",
     ))
+}
+
+/// Whether both rotors were measured: thrust or torque of each, or their currents.
+fn of_both(columns: &Columns, samples: &[Sample]) -> bool {
+    let measured = |x: f64| x.is_finite() && x != 0.0;
+    let each = |s: &Sample| {
+        [s.thrust, s.torque]
+            .iter()
+            .any(|of| of.rotors.iter().all(|x| measured(*x)))
+    };
+    columns.current.rotors.iter().all(Option::is_some) || samples.iter().any(each)
+}
+
+/// Throttles that differ by less are of one signal.
+const ONE_SIGNAL: f64 = 0.01;
+
+/// Refuses files in which both rotors have the same throttle throughout.
+pub fn unequal<'a>(benches: impl IntoIterator<Item = &'a Bench> + Clone) -> Result<(), Refusal> {
+    let mut points = benches.clone().into_iter().flat_map(|bench| &bench.points);
+    let files: Vec<&str> = benches.into_iter().map(|bench| bench.file.as_str()).collect();
+    match points.all(|p| (p.u - p.l).abs() < ONE_SIGNAL) {
+        false => Ok(()),
+        true => Err(Refusal::of(
+            files.join(", "),
+            "both rotors turn by one signal: equal throttles throughout say nothing of unequal ones",
+            format!(
+                "{}; a map takes a throttle for each rotor",
+                equal_commands(&files)
+            ),
+        )),
+    }
+}
+
+/// What a run of both rotors by one signal is for.
+pub(crate) fn equal_commands(files: &[&str]) -> String {
+    format!(
+        "a run or data sheet of ONE rotor, whose prediction this corrects: cargo mixer identify {} --prior SINGLE.csv",
+        files.join(" ")
+    )
 }
 
 /// Share of refused rows above which a file is refused. Real files have none (`maps_warn`), and what

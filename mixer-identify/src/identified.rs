@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::air::{Air, DENSITY_EXPONENT};
 use crate::bench::read::Reading;
-use crate::bench::{Bench, Kind, Preparation};
+use crate::bench::{Bench, Kind, Preparation, equal_commands, unequal};
 use crate::fit::balance::balanced;
 use crate::fit::hundredths;
 use crate::fit::pair::{self, Pair};
@@ -103,6 +103,7 @@ pub fn with_runs(
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let mut warnings = Vec::new();
     let pair = if has(Kind::Pair) {
+        unequal(benches.iter().filter(|bench| bench.kind == Kind::Pair))?;
         let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;
         warnings.extend(pair.warnings.clone());
         let of_runs = with_alone(pair, &benches, &runs, voltage.as_ref(), wishes, &mut warnings);
@@ -281,8 +282,12 @@ fn declared(
 /// Without a pair the files must at least give an exponent.
 fn only_single(benches: &[Bench], voltage: Option<&Voltage>) -> Result<(), Refusal> {
     let files = names(benches);
-    let for_pair = "for [pair]: a sweep of both throttles independently, with thrust and torque of the pair, or cargo mixer predict, which makes a pair of \
-                    a run of one rotor";
+    let paths: Vec<&str> = benches.iter().map(|bench| bench.file.as_str()).collect();
+    let for_pair = format!(
+        "for [pair]: a sweep of both throttles independently, with thrust and torque of the pair; of ONE rotor's run cargo mixer \
+         predict makes a pair; if this signal drives both rotors, {}",
+        equal_commands(&paths)
+    );
     let (why, needed) = match voltage.map(|v| &v.thrust) {
         Some(Exponent::Identified(_)) => return Ok(()),
         Some(Exponent::Refused { reason, needed }) => {

@@ -37,7 +37,7 @@ pub fn text(identified: &Identified) -> String {
 
 /// What was predicted, from what, how far to trust it.
 pub fn of_prediction(predicted: &Predicted) -> String {
-    let mut lines = vec!["Predicted, not measured".to_owned()];
+    let mut lines = vec!["Predicted from ONE rotor alone, not measured".to_owned()];
     lines.extend(facts_in_lines(&of_predicted(predicted)));
     let told: Vec<&str> = predicted.warnings.iter().map(String::as_str).collect();
     warnings(&mut lines, &told, usize::MAX);

@@ -240,3 +240,110 @@ fn rows_of_other_pairs_and_units_are_told_and_right_ones_pass() {
         );
     }
 }
+
+/// A table of 20 u2 + 2 u N and a torque of 0.02 m of it.
+fn table(header: &str, row: impl Fn(f64, f64) -> String) -> Text {
+    let rows = (4..=10)
+        .map(|k| 0.1 * f64::from(k))
+        .map(|u| row(u, 20.0 * u * u + 2.0 * u));
+    Text {
+        name: "table.csv".into(),
+        content: Ok(rows
+            .fold(format!("{header}\n"), |text, row| text + &row + "\n")
+            .into_bytes()),
+    }
+}
+
+/// The pair gives 1.58 of one rotor at equal throttles.
+#[test]
+fn a_stand_with_one_signal_for_both_rotors_corrects_a_prediction() {
+    let single = table("throttle,thrust_n,torque_nm", |u, f| {
+        format!("{u},{f},{}", 0.02 * f)
+    });
+    let both = table("throttle,thrust_n", |u, f| format!("{u},{}", 1.56 * f));
+    let wide = table("throttle,thrust_n", |u, f| format!("{u},{}", 2.4 * f));
+    let how = |both: bool| {
+        let preparation = Preparation {
+            torque_may_lack: both,
+            ..own().preparation
+        };
+        Prediction {
+            run: own(),
+            map: Settings { preparation, ..own() },
+            ..Prediction::default()
+        }
+    };
+    let found = predict(&single, None, std::slice::from_ref(&both), &how(true)).expect("a pair");
+    assert!(
+        found.report.contains("7 rows of equal throttles"),
+        "{}",
+        found.report
+    );
+    let percent = found.found.pair.uncertainty.thrust_percent;
+    let before = predict(&single, None, &[], &how(true))
+        .expect("a pair")
+        .found
+        .pair
+        .uncertainty;
+    assert!(percent < before.thrust_percent, "{percent}");
+    // One rotor for two, and two of another size.
+    for (rows, told) in [
+        (&single, "as rows of one rotor alone"),
+        (&wide, "1.27 times the voltage"),
+    ] {
+        let refused = predict(&single, None, std::slice::from_ref(rows), &how(true)).expect_err("no pair");
+        assert!(refused[0].reason.contains(told), "{}", refused[0]);
+    }
+    // A run of both rotors is none of one: their own columns say so, and a net torque near zero.
+    let own_columns = table("throttle,upper_thrust_n,lower_thrust_n", |u, f| {
+        format!("{u},{f},{}", 0.6 * f)
+    });
+    let net = table("throttle,thrust_n,torque_nm", |u, f| {
+        format!("{u},{},{}", 1.56 * f, 0.001 * f)
+    });
+    for run in [&own_columns, &net] {
+        let refused = predict(run, None, &[], &how(true)).expect_err("both rotors");
+        assert!(
+            refused[0].needed.contains("identify table.csv --prior"),
+            "{}",
+            refused[0]
+        );
+    }
+}
+
+/// Units and diameters that no rotor has, and two propellers in one table.
+#[test]
+fn an_impossible_rotor_is_refused_and_a_bad_curve_widens_the_band() {
+    let of = |run: &Text, diameter: f64| {
+        let known = Known {
+            diameter_m: Some(diameter),
+            ..Known::default()
+        };
+        let how = Prediction {
+            run: own(),
+            known,
+            ..Prediction::default()
+        };
+        predict(run, None, &[], &how)
+    };
+    let right = table("throttle,thrust_n,torque_nm", |u, f| {
+        format!("{u},{f},{}", 0.02 * f)
+    });
+    assert!(of(&right, 0.4).is_ok());
+    for diameter in [0.04, 4.0, 40.0] {
+        assert!(of(&right, diameter).is_err(), "{diameter}");
+    }
+    for (thrust, torque) in [(102.0, 0.02), (1.0, 2.0), (1.0, 0.0002), (0.102, 0.02)] {
+        let wrong = table("throttle,thrust_n,torque_nm", |u, f| {
+            format!("{u},{},{}", thrust * f, torque * f)
+        });
+        assert!(of(&wrong, 0.4).is_err(), "{thrust} {torque}");
+    }
+    let two = table("throttle,thrust_n", |u, f| format!("{u},{f}\n{u},{}", 1.12 * f));
+    let found = of(&two, 0.4).expect("a pair").found;
+    let missed = found.runs[0].misfit_percent[0].expect("a misfit");
+    assert!(
+        missed > 2.0 && found.pair.uncertainty.thrust_percent > missed,
+        "{missed}"
+    );
+}

@@ -68,7 +68,7 @@ fn rows_of_the_pair_correct_a_prediction() {
             let percent = &found["pair"]["uncertainty"]["thrust_percent"];
             percent.as_f64().unwrap()
         });
-        assert_eq!(percent < alone, with_torque);
+        assert!(percent < alone, "{with_torque}");
         let warned = after["warnings"].to_string().contains("halve the error");
         assert_eq!(warned, !with_torque);
     }

@@ -318,7 +318,8 @@ fn slopes(samples: &[Sample], torque: &[f64]) -> [f64; 2] {
     }
     let det = uu * ll - ul * ul;
     if det <= 0.02 * uu * ll {
-        return [-1.0, 1.0]; // nearly proportional throttles: the design is refused later, with its own reason
+        // Nearly proportional throttles: the lower rotor, in the wake, has the smaller torque.
+        return if uq + lq > 0.0 { [1.0, -1.0] } else { [-1.0, 1.0] };
     }
     [(uq * ll - lq * ul) / det, (lq * uu - uq * ul) / det]
 }

@@ -55,6 +55,8 @@ const NEAR: f64 = 0.15;
 pub enum Mistake {
     /// One of them, by its place.
     Row(usize),
+    /// Rows of equal throttles are of one rotor alone.
+    Alone,
     /// Upper and lower rotor are exchanged.
     Exchanged,
     /// Thrust times this, and why.
@@ -177,6 +179,9 @@ fn candidates(start: Interaction, case: &Case) -> Vec<Vec<Mistake>> {
             })
             .collect(),
     };
+    if case.rows.iter().all(|[u, l, ..]| u == l) {
+        all.push(vec![Mistake::Alone]);
+    }
     for exchanged in [vec![], vec![Mistake::Exchanged]] {
         let mut turned = case.clone();
         exchanged.iter().for_each(|mistake| mistake.undo(&mut turned));
@@ -281,6 +286,10 @@ impl Mistake {
                 let place = places.get(*k).map_or("", String::as_str);
                 (format!("without {place}"), format!("that row: {place}"))
             }
+            Mistake::Alone => (
+                "as rows of one rotor alone".into(),
+                "rows in which both rotors turn".into(),
+            ),
             Mistake::Exchanged => (
                 "with the rotors exchanged".into(),
                 "which rotor is the upper (--swap)".into(),
@@ -318,6 +327,9 @@ impl Mistake {
             Mistake::Torque(by, _) => divide([1.0, *by]),
             Mistake::Other(by) => divide(by.map(|by| if by.is_nan() { 1.0 } else { by })),
             // A torque that rises with the lower throttle was made of it when it was read.
+            Mistake::Alone => rows
+                .iter_mut()
+                .for_each(|row| *row = [row[0], 1e-6, row[2], -row[3].abs()]),
             Mistake::Exchanged => rows
                 .iter_mut()
                 .for_each(|row| *row = [row[1], row[0], row[2], -row[3]]),

@@ -12,7 +12,7 @@ use serde::Serialize;
 use toml_edit::{DocumentMut, value};
 
 use crate::air::Air;
-use crate::bench::{Bench, Kind};
+use crate::bench::{Bench, Kind, mean_voltage};
 use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::uncertainty::Uncertainty;
@@ -22,7 +22,7 @@ use crate::rotor::agreement::{self, Agreement, DOUBTED, REFUSED};
 use crate::rotor::curve::Rotor;
 use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
 use crate::rotor::posterior::{BETWEEN_SYSTEMS, Case, ROW, fit, scaled};
-use crate::rotor::single::Single;
+use crate::rotor::single::{Single, exponents_told};
 use crate::statistics::{greatest, rms};
 use crate::table::{commented, numbers, table};
 
@@ -155,6 +155,7 @@ pub fn correct(
         true => CLOSED_LOOP,
         false => OPEN_LOOP,
     };
+    warnings.extend(maps.iter().filter_map(|map| other_voltage(&runs[0], map)));
     let (case, places) = case(&runs, maps, general, spacing_ratio, throttle)?;
     let found = agreement::judge(general, &case);
     if !maps.is_empty() {
@@ -272,10 +273,42 @@ fn case(
     Ok((case, places))
 }
 
+/// Voltages of a run and of rows, as a ratio less 1, above which it is told that they are brought together.
+const OTHER_VOLTAGE: f64 = 0.03;
+
+/// A remark on rows of another voltage than the run's, or of which it is not known.
+fn other_voltage(run: &Single, map: &Bench) -> Option<String> {
+    let of_rows = mean_voltage(&map.points).map(|(mean, _)| mean);
+    match (run.voltage_v, of_rows) {
+        _ if run.exponents == [0.0; 2] => None,
+        (Some(of_run), Some(of_rows)) => ((of_rows / of_run - 1.0).abs() > OTHER_VOLTAGE).then(|| {
+            format!(
+                "{} is of {of_rows:.2} V and is brought to {of_run:.2} V by {}",
+                map.file,
+                exponents_told(run.exponents)
+            )
+        }),
+        (Some(of_run), None) => Some(format!(
+            "{} has no voltage and is taken for one of {of_run:.2} V, that of {}: 5 % of it are 9 % of thrust",
+            map.file, run.file
+        )),
+        (None, Some(of_rows)) => Some(format!(
+            "{} is of {of_rows:.2} V, {} has no voltage and is taken for one of the same (--run-voltage VOLT)",
+            map.file, run.file
+        )),
+        (None, None) => None,
+    }
+}
+
 fn advise(case: &Case, warnings: &mut Vec<String>) {
     let rows = case.rows.len();
     let with_torque = case.rows.iter().filter(|row| row[3].is_finite()).count();
-    if with_torque >= ENOUGH_ROWS {
+    if case.rows.iter().all(|[u, l, ..]| (u - l).abs() < 0.05) {
+        warnings.push(format!(
+            "{rows} rows of equal throttles: what unequal ones give is from the model alone; rows at (0.95, 0.4) and (0.4, 0.95) \
+             would tell"
+        ));
+    } else if with_torque >= ENOUGH_ROWS {
         warnings.push(format!(
             "{with_torque} rows of the pair with torque: from {ENOUGH_ROWS} on, spread over both throttles, a plain identify \
              is truer; leave --prior out"

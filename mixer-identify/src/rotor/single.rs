@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::bench::{Bench, Kind, Point, mean_voltage};
+use crate::bench::{Bench, Kind, Point, equal_commands, mean_voltage, unequal};
 use crate::fit::distinct_pairs;
 use crate::refusal::Refusal;
 use crate::rotor::curve::{Curve, Rotor};
@@ -19,6 +19,15 @@ const FULL: f64 = 0.95;
 const MISFIT: [f64; 2] = [0.02, 0.06];
 /// Torque per thrust of open propellers from 4 to 40 inch with an ample margin, m.
 const KAPPA: [f64; 2] = [0.002, 0.12];
+/// The same over the diameter: runs of 11 to 28 inch have 0.045 to 0.062.
+const KAPPA_OF_DIAMETER: [f64; 2] = [0.02, 0.15];
+/// Thrust over the area of the disc at full throttle, N/m2: the same runs have 140 to 290, racing
+/// quadrotors of 3 to 5 inch some 1,400.
+const LOADING: [f64; 2] = [15.0, 2500.0];
+/// Power of an ideal rotor over the electrical power above 0.7 of throttle: the same runs have 0.3 to 0.6.
+const FIGURE_OF_MERIT: [f64; 2] = [0.08, 0.95];
+/// Density of the air for it, kg/m3.
+const DENSITY: f64 = 1.2;
 /// Torque per thrust over diameter, where torque was not measured. Six runs of 11 to 22 inch.
 pub const KAPPA_PER_DIAMETER: f64 = 0.048;
 /// Exponent of voltage, the median of 104 motors with propellers.
@@ -83,6 +92,7 @@ impl Single {
     pub fn of(bench: &Bench, known: &Known, warnings: &mut Vec<String>) -> Result<Single, Refusal> {
         let file = &bench.file;
         if bench.kind == Kind::Pair {
+            unequal([bench])?;
             return Err(Refusal::of(
                 file,
                 "both rotors turn in it: it is a map of the pair",
@@ -117,13 +127,12 @@ impl Single {
             };
             (torque, Some(kappa))
         };
-        let kappa = torque.curve.at(measured[1]) / thrust.curve.at(measured[1]);
-        if !(KAPPA[0]..=KAPPA[1]).contains(&kappa) {
-            warnings.push(format!(
-                "torque per thrust in {file} is {kappa:.4} m, of propellers from 4 to 40 inch it is 0.005 to 0.05: check the \
-                 units of both"
-            ));
-        }
+        let [full, full_nm] = [&thrust, &torque].map(|channel| channel.curve.at(measured[1]));
+        let power = points.iter().filter(|p| p.u > REACHES && p.power_w > 0.0);
+        let quotient = power
+            .map(|p| libm::pow(p.thrust, 1.5) / p.power_w)
+            .fold(f64::NAN, f64::max);
+        plausible(file, full, full_nm / full, quotient, known.diameter_m)?;
         Ok(Single {
             file: file.clone(),
             points: points.len(),
@@ -149,6 +158,60 @@ impl Single {
     pub fn is_sparse(&self) -> bool {
         self.points < 10
     }
+}
+
+/// Refuses what no rotor gives: thrust, N, torque per thrust, m, T^1.5 over electrical power, and the
+/// diameter, m, where it is known.
+fn plausible(
+    file: &str,
+    thrust: f64,
+    kappa: f64,
+    quotient: f64,
+    diameter: Option<f64>,
+) -> Result<(), Refusal> {
+    let d = diameter.unwrap_or(f64::NAN);
+    let area = 0.25 * std::f64::consts::PI * d * d;
+    let all = [
+        ("torque per thrust", kappa, "m", KAPPA),
+        (
+            "torque per thrust over the diameter",
+            kappa / d,
+            "",
+            KAPPA_OF_DIAMETER,
+        ),
+        ("thrust over the area of the disc", thrust / area, "N/m2", LOADING),
+        (
+            "power of an ideal rotor over the electrical power",
+            quotient / (2.0 * DENSITY * area).sqrt(),
+            "",
+            FIGURE_OF_MERIT,
+        ),
+    ];
+    let cannot = |(_, x, _, [low, high]): &&(&str, f64, &str, [f64; 2])| x < low || x > high;
+    let Some((name, x, unit, [low, high])) = all.iter().find(cannot) else {
+        return Ok(());
+    };
+    let digits = |x: f64| {
+        if x < 0.001 {
+            return format!("{x:.1e}");
+        }
+        if x < 1.0 {
+            format!("{x:.4}")
+        } else {
+            format!("{x:.1}")
+        }
+    };
+    Err(Refusal::of(
+        file,
+        format!(
+            "the {name} is {} {unit}, of rotors it is {low} to {high}: a unit is wrong, the diameter, or this is no run of ONE rotor",
+            digits(*x)
+        ),
+        format!(
+            "right units and diameter; where one signal drives both rotors of a pair, {}",
+            equal_commands(&[file])
+        ),
+    ))
 }
 
 fn distinct(points: &[Point]) -> usize {
