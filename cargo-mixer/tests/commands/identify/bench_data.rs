@@ -339,10 +339,7 @@ fn rotor_speeds_mapped_by_hand_are_still_one_line() {
     settings.reading.by_hand.full_rpm = Some(3200.0);
     let path = files(&data.join("pybemt"), "coaxial_data").remove(0);
     let error = identify(&[path], &settings).unwrap_err()[0].to_string();
-    assert!(
-        error.contains("do not determine the map") || error.contains("distinct throttle pairs"),
-        "{error}"
-    );
+    assert!(error.contains("both rotors turn by one signal"), "{error}");
 }
 
 /// Indices of `count` levels of ten, from the lowest to the highest, evenly.
