@@ -66,6 +66,12 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
     }
     notes.extend(quadplane(parameters));
     notes.extend(SERVOS.order(parameters));
+    if !has_own_pulses(parameters, mot) && !parameters.has("RC3_MAX") {
+        notes.push(format!(
+            "{mot}PWM_MIN and {mot}PWM_MAX are 0: the pulses are those of the throttle stick, which the file lacks; compare \
+             them with the bench's"
+        ));
+    }
     let spin = [("SPIN_MIN", SPIN_MIN), ("SPIN_MAX", SPIN_MAX)];
     Ok(Imported {
         origin: format!("ArduPilot, {name} ({class_name} {class}, {type_name} {kind})"),
@@ -120,16 +126,19 @@ fn motor(function: usize) -> Option<usize> {
     }
 }
 
-/// `MOT_PWM_MIN` and `_MAX` where both are above 0, else the throttle stick's; digital protocols have
-/// the whole range (`AP_MotorsMulticopter::get_pwm_output_min`, `update_throttle_range`).
+/// Whether `MOT_PWM_MIN` and `_MAX` are above 0; else the pulses are the throttle stick's.
+fn has_own_pulses(parameters: &Parameters, mot: &str) -> bool {
+    ["MIN", "MAX"].map(|end| parameters.or(&format!("{mot}PWM_{end}"), 1.0) > 0.0) == [true; 2]
+}
+
+/// Digital protocols have the whole range (`AP_MotorsMulticopter::get_pwm_output_min`,
+/// `update_throttle_range`).
 fn pulses(parameters: &Parameters, mot: &str) -> Option<Pulses> {
     let kind = parameters.whole(&format!("{mot}PWM_TYPE")).unwrap_or(0);
-    let own = |end: &str| format!("{mot}PWM_{end}");
-    let is_on = ["MIN", "MAX"].map(|end| parameters.or(&own(end), 1.0) > 0.0) == [true; 2];
     outputs::pulses(parameters, |end| match kind {
         kind if DSHOT.contains(&kind) => Vec::new(),
         PWM_RANGE => SERVOS.ends(SERVOS.motors(parameters).into_iter().map(|(pin, _)| pin), end),
-        _ if is_on => vec![own(end)],
+        _ if has_own_pulses(parameters, mot) => vec![format!("{mot}PWM_{end}")],
         _ => vec![format!("RC3_{end}")],
     })
 }

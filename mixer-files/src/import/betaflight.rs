@@ -45,10 +45,14 @@ struct Dump<'a> {
     notes: Vec<String>,
 }
 
-/// Whether a text is one: by lines that no file of parameters has.
+/// Whether a text is one: by lines that no file of parameters has. PX4's older scripts load a mixer.
 pub(super) fn is_dump(text: &str) -> bool {
-    let mut first = text.lines().filter_map(|line| line.split_whitespace().next());
-    first.any(|word| matches!(word, "mixer" | "mmix" | "board_name" | "mixer_profile"))
+    let mut lines = text.lines().map(|line| line.split_whitespace());
+    lines.any(|mut words| match (words.next(), words.next()) {
+        (Some("mmix" | "board_name" | "mixer_profile"), _) => true,
+        (Some("mixer"), Some(name)) => name != "load" && words.next().is_none(),
+        _ => false,
+    })
 }
 
 impl<'a> Dump<'a> {

@@ -294,6 +294,16 @@ fn files_as_people_have_them() {
             Noted("RC3_MIN is 1100, RC3_MAX is 1900"),
         ),
         (
+            "the stick's, missing",
+            ardupilot("MOT_PWM_MIN,0\nMOT_PWM_MAX,0"),
+            Noted("those of the throttle stick, which the file lacks"),
+        ),
+        (
+            "an older script of PX4",
+            px4(X8, script) + "mixer load /dev/pwm_output0 /etc/mixers/octo_cox.main.mix\n",
+            Noted(FRAME),
+        ),
+        (
             "DShot",
             ardupilot("MOT_PWM_TYPE,6\nMOT_PWM_MAX,1940"),
             Silent("PWM"),

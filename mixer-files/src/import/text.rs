@@ -6,10 +6,14 @@ use std::path::Path;
 use mixer_compiler::Source;
 use mixer_identify::air::Air;
 use mixer_identify::pair_file::PairFile;
+use mixer_identify::report::wrapped;
 use toml::Value;
 
 use super::rotors::{Imported, Unit};
 use crate::plain::printable_lines;
+
+/// Characters of a line of comment.
+const COMMENT: usize = 110;
 
 /// Idle where nothing says one.
 const IDLE: f64 = 0.1;
@@ -49,7 +53,9 @@ pub(super) fn airframe(
         Path::new(&file.name).file_name().unwrap_or_default().display()
     );
     for note in &imported.notes {
-        let _ = writeln!(out, "# * {note}.");
+        for (k, line) in wrapped(&format!("{note}."), COMMENT).iter().enumerate() {
+            let _ = writeln!(out, "# {} {line}", if k == 0 { "*" } else { " " });
+        }
     }
     let _ = writeln!(out, "\n[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}");
     match pair {
