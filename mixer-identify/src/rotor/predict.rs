@@ -315,7 +315,7 @@ fn advise(case: &Case, warnings: &mut Vec<String>) {
         ));
     } else if with_torque < CORRECTING_ROWS {
         warnings.push(format!(
-            "{rows} rows of the pair, {with_torque} of them with torque, correct little: four with both, at (0.6, 0.6), \
+            "{with_torque} of {rows} rows of the pair have a torque, which is corrected little: four with both, at (0.6, 0.6), \
              (0.95, 0.4), (0.4, 0.95) and (0.95, 0.95), halve the error"
         ));
     }
