@@ -78,6 +78,8 @@ impl Sheet {
             let needed = "a readable CSV file in UTF-8, UTF-16 or Latin-1";
             Refusal::of(name, format!("cannot be read: {reason}"), needed)
         })?;
+        // Quotes behind a separator and a blank are quotes.
+        text = text.replace(", \"", ",\"").replace("; \"", ";\"");
         let (declared, begin) = declared(&text);
         let mut best: Option<Top> = None;
         for separator in SEPARATORS {

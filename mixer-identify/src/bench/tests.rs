@@ -396,8 +396,15 @@ fn maps_of_pairs() {
             Refused(&["both look like the upper", "--column upper="]),
         ),
         (
-            with("M1 PWM,M2 PWM,thrust_n,torque_nm"),
-            Refused(&["both look like the upper"]),
+            with("M1 throttle,M2 throttle,thrust_n,torque_nm"),
+            Noted("does not say which rotor is above"),
+        ),
+        (with("throttle1,throttle2,thrust_n,torque_nm"), Read(4, last)),
+        (
+            "upper, lower, thrust_n, torque_nm\n\"0,2\", \"0,8\", \"5\", \"0,2\"\n\"0,8\", \"0,2\", \"6\", \"-0,2\"\n\
+             \"0,8\", \"0,8\", \"9\", \"0,1\"\n"
+                .to_owned(),
+            Read(3, last),
         ),
         (
             with("motor1,motor2,F,Q"),

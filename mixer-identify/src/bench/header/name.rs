@@ -56,8 +56,12 @@ impl Name {
         }
     }
 
+    /// Words, a number at the end of one by itself: `esc1` is `esc` and `1`.
     pub(super) fn words(&self) -> impl Iterator<Item = &str> {
-        self.text.split([' ', '(', ')']).filter(|w| !w.is_empty())
+        let halves = |word: &'_ str| word.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        let words = self.text.split([' ', '(', ')']);
+        let words = words.flat_map(move |word| <[&str; 2]>::from(word.split_at(halves(word))));
+        words.filter(|w| !w.is_empty())
     }
 
     /// What is measured of the air around the bench. Sensors in motors, controllers and of airspeed
