@@ -432,3 +432,32 @@ fn maps_of_pairs() {
         .collect();
     hold(&Settings::default(), &cases);
 }
+
+/// Power is voltage times current, else what a column of it says.
+#[test]
+fn power_has_columns_of_its_own() {
+    for (header, row, watts) in [
+        ("throttle,thrust_n,Electrical Power (W)", "1,8,120", 120.0),
+        ("throttle,thrust_n,Power (kW)", "1,8,0.12", 120.0),
+        (
+            "throttle,thrust_n,voltage_v,current_a,Power (W)",
+            "1,8,20,5,120",
+            100.0,
+        ),
+        (
+            "upper,lower,thrust_n,torque_nm,upper_power_w,lower_power_w",
+            "1,0,8,.1,70,50",
+            120.0,
+        ),
+        ("throttle,thrust_n,Mechanical Power (W)", "1,8,120", f64::NAN),
+    ] {
+        let content = Ok(format!("{header}\n{row}\n").into_bytes());
+        let name = "b.csv".to_owned();
+        let bench = read(&Text { name, content }, &one_rotor()).expect("a bench");
+        let found = bench.points[0].power_w;
+        assert!(
+            found == watts || found.is_nan() && watts.is_nan(),
+            "{header}: {found}"
+        );
+    }
+}
