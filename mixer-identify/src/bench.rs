@@ -234,7 +234,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             "the {} rotor stands still throughout: a single rotor",
             ["lower", "upper"][rotor]
         )),
-        Kind::Pair if !columns.sides_named => notes.push(
+        Kind::Pair if !columns.sides_named && !one_signal => notes.push(
             "the header does not say which rotor is above: the first is taken (--swap exchanges)".into(),
         ),
         _ => {}

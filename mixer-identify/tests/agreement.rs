@@ -287,7 +287,11 @@ fn a_stand_with_one_signal_for_both_rotors_corrects_a_prediction() {
         .uncertainty;
     assert!(percent < before.thrust_percent, "{percent}");
     // One rotor for two, and two of another size.
+    let net = table("throttle,thrust_n,torque_nm", |u, f| {
+        format!("{u},{f},{}", 0.001 * f)
+    });
     for (rows, told) in [
+        (&net, "0.77 times the voltage"),
         (&single, "as rows of one rotor alone"),
         (&wide, "1.27 times the voltage"),
     ] {

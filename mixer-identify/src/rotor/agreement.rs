@@ -203,11 +203,11 @@ fn candidates(start: Interaction, case: &Case) -> Vec<Vec<Mistake>> {
                     .collect(),
             );
         }
-        if ratios
-            .iter()
-            .all(|ratio| (1.0 / ANY..ANY).contains(ratio) || ratio.is_nan())
-        {
-            all.push([exchanged, vec![Mistake::Other(ratios)]].concat());
+        // Rows of equal throttles say too little of the torque for a ratio of it.
+        for of in [ratios, [ratios[0], f64::NAN]] {
+            if of.iter().all(|x| (1.0 / ANY..ANY).contains(x) || x.is_nan()) {
+                all.push([exchanged.clone(), vec![Mistake::Other(of)]].concat());
+            }
         }
     }
     all.retain(|mistakes| !mistakes.is_empty());
