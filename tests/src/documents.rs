@@ -42,6 +42,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
         ),
         of("docs/bench.md", "levels", tables::levels()?),
         of("docs/bench.md", "spacings", tables::spacings()?),
+        of("docs/warnings.md", "mistakes", tables::mistakes()?),
         of("docs/allocation.md", "logged-saving", tables::logged_saving()?),
         of("docs/allocation.md", "yaw-reserve", tables::yaw_reserve()?),
         of("docs/air.md", "altitudes", tables::altitudes()),

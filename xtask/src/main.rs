@@ -77,7 +77,7 @@ const TASKS: &[Task] = &[
             "-c",
             ": \"${MIXER_BENCH_DATA:?names the folder of bench data}\" && \
              MIXER_MEASUREMENTS=write exec cargo test --quiet --locked -p cargo-mixer --test commands -- \
-             five_levels two_spacings logged_flights in_hover report_of_the_documents",
+             five_levels two_spacings mistakes_are_told logged_flights in_hover report_of_the_documents",
         ],
         does: "measures on MIXER_BENCH_DATA and writes levels.csv, spacings.csv, logged-saving.csv, logged-hover.csv and \
                docs/bench.md",

@@ -13,6 +13,7 @@ mod maps;
 mod maps_compile;
 mod maps_warn;
 mod measured;
+mod mistakes;
 mod mix;
 mod predict;
 mod report;

@@ -432,6 +432,22 @@ pub(super) fn spacings() -> Result<String, String> {
     Ok(markdown(&["map", "thrust", "torque"], &rows))
 }
 
+/// What is said of mistakes, by their kind, and how many there are.
+pub(super) fn mistakes() -> Result<String, String> {
+    let counts = cells::<5>("mistakes.csv")?;
+    let sum = |column: usize| -> usize {
+        counts
+            .iter()
+            .filter_map(|row| row[column].parse::<usize>().ok())
+            .sum()
+    };
+    let sums = [1, 2, 3, 4].map(|column| sum(column).to_string());
+    let all = [vec!["all".to_owned()], sums.to_vec()].concat();
+    let rows: Vec<Vec<String>> = counts.into_iter().map(Vec::from).chain([all]).collect();
+    let header = ["kind", "read rightly", "told", "refused", "silent"];
+    Ok(markdown(&header, &rows))
+}
+
 /// The saving of the power bias over logged flights.
 pub(super) fn logged_saving() -> Result<String, String> {
     let rows: Vec<Vec<String>> = cells("logged-saving.csv")?
