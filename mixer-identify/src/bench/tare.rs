@@ -35,6 +35,8 @@ const CELLS: [(&str, usize, Cell); 6] = [
 #[derive(Clone, Copy)]
 struct Stop {
     line: f64,
+    /// Whether it has several rows.
+    steady: bool,
     reads: f64,
     bounds: [f64; 2],
 }
@@ -113,7 +115,13 @@ impl Stop {
             _ => [reads - run_out, reads + run_out],
         };
         let stopped = reads.abs() <= STOPPED * greatest || run_out <= NOISE * greatest;
-        stopped.then_some(Stop { line, reads, bounds })
+        let steady = !before.is_empty();
+        stopped.then_some(Stop {
+            line,
+            steady,
+            reads,
+            bounds,
+        })
     }
 }
 
@@ -130,10 +138,10 @@ impl Offset {
         if low > high + noise {
             return Some(Offset(stops));
         }
-        let width = |s: &&Stop| s.bounds[1] - s.bounds[0];
-        let sharpest = *stops.iter().min_by(|a, b| width(a).total_cmp(&width(b)))?;
-        let [low, high] = sharpest.bounds;
-        (low > noise || high < -noise).then(|| Offset(vec![sharpest]))
+        // Of a stop of several rows the last is surely at rest.
+        let sharpest = *stops.iter().max_by_key(|stop| stop.steady)?;
+        let reads = sharpest.reads.clamp(low.min(high), high.max(low));
+        (low > noise || high < -noise).then(|| Offset(vec![Stop { reads, ..sharpest }]))
     }
 
     fn at(&self, line: f64) -> f64 {
