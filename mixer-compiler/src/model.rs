@@ -12,3 +12,8 @@ pub mod pseudo_inverse;
 pub mod wake;
 
 pub use self::pair_map::PairMap;
+
+/// The range of Q over the largest f of one unit, m: 0.016 to 0.034 on maps of 11 to 22 inch. It is
+/// about the propeller's diameter over 17, so that these limits stand for 4 to 40 inch. The nearest
+/// unit that may be mistaken, pounds of force, is a factor of 4.4 away.
+pub const TORQUE_SPAN_M: [f64; 2] = [0.005, 0.065];

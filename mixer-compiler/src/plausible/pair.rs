@@ -2,11 +2,7 @@
 
 use super::rule::{Facts, Rule};
 use crate::diagnostic::{Code, number, rounded};
-
-/// The range of Q over the largest f of one unit, m: 0.016 to 0.034 on maps of 11 to 22 inch. It is
-/// about the propeller's diameter over 17, so that these limits stand for 4 to 40 inch. The nearest
-/// unit that may be mistaken, pounds of force, is a factor of 4.4 away.
-const RATIO_M: [f64; 2] = [0.005, 0.065];
+use crate::model::TORQUE_SPAN_M;
 
 /// Largest thrust of one unit that is taken for newtons. Beyond it both may be in gram-force.
 const LARGEST_THRUST_N: f64 = 2000.0;
@@ -51,7 +47,7 @@ pub(super) fn units(facts: &Facts<'_>) -> Vec<Rule> {
     let span = torques.clone().fold(f64::NEG_INFINITY, f64::max) - torques.fold(f64::INFINITY, f64::min);
     let thrust = facts.scale[0];
     let ratio = span / thrust;
-    let [low, high] = RATIO_M;
+    let [low, high] = TORQUE_SPAN_M;
     // Too much torque for the thrust: the thrust is in a larger unit, or the torque in a smaller one.
     let would_do = |key: &str, size: f64| match key {
         "thrust_n" => (low..=high).contains(&(ratio / size)),
@@ -74,7 +70,7 @@ pub(super) fn units(facts: &Facts<'_>) -> Vec<Rule> {
         rounded(ratio)
     );
     vec![
-        Rule::within(Code::PairUnits, format!("pair.{key}"), ratio, RATIO_M).says(
+        Rule::within(Code::PairUnits, format!("pair.{key}"), ratio, TORQUE_SPAN_M).says(
             message,
             "in another unit?",
             help,

@@ -95,6 +95,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
 
     let [thrust, torque] = fits;
     let sign_is_found = benches.iter().any(|bench| bench.signs.torque_policy == AUTO);
+    doubts::units(&points, [&thrust, &torque], &mut warnings);
     // A constant in the torque looks as exchanged rotors do.
     if !doubts::tare(&points, [&thrust, &torque], &mut warnings) {
         doubts::exchanged(basis, &torque, throttle_box, sign_is_found, &mut warnings);

@@ -2,6 +2,7 @@
 //! not measured, exchanged rotors, a missing tare.
 
 use mixer_compiler::airframe::Basis;
+use mixer_compiler::model::TORQUE_SPAN_M;
 use mixer_compiler::model::wake::{Wake, mean_torque};
 
 use super::placed::Placed;
@@ -9,6 +10,7 @@ use crate::fit::Fit;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::polynomial::Polynomial;
 use crate::refusal::Refusal;
+use crate::statistics::extent;
 
 /// Full throttle, but for what pulse widths are rounded to.
 const FULL: f64 = 0.995;
@@ -84,6 +86,20 @@ pub(super) fn unexplained(
         }
     }
     Ok(())
+}
+
+/// Torque over thrust of no propeller: a unit.
+pub(super) fn units(points: &[Placed], [thrust, torque]: [&Fit; 2], warnings: &mut Vec<String>) {
+    let [least, most] = extent(points.iter().map(|p| p.torque));
+    let ratio = (most - least) / thrust.full_scale;
+    let [low, high] = TORQUE_SPAN_M;
+    if !(low..=high).contains(&ratio) {
+        warnings.push(format!(
+            "the torque of up to {:.3} N m spans {ratio:.2e} m times the greatest thrust, {:.2} N; propellers of 4 to 40 inch have {low} \
+             to {high} m: a unit is another one (--unit thrust=UNIT, --unit torque=UNIT)",
+            torque.full_scale, thrust.full_scale
+        ));
+    }
 }
 
 /// Says whether the rotors are exchanged, by the mean torque; asks where that does not tell and
