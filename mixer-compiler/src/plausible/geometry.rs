@@ -31,13 +31,12 @@ const BALANCED_SHARE: f64 = 0.65;
 pub(super) fn odd_place(facts: &Facts<'_>) -> Vec<Rule> {
     let units = &facts.airframe.units;
     let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
-    let mends = symmetry::mends(&places);
-    let Some(mend) = mends.first() else {
+    let Some((unit, told)) = symmetry::told(&places) else {
         return Vec::new();
     };
-    let key = facts.place("layout", format!("unit[{}].position_m", mend.unit));
+    let key = facts.place("layout", format!("unit[{unit}].position_m"));
     vec![Rule::holds(Code::OddPlace, key, false).says(
-        symmetry::in_words(&mends),
+        told,
         "unlike its mirror image",
         "check the sign and the decimal point; a frame that is meant so flies as it is written",
     )]
