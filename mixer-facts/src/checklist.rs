@@ -114,15 +114,15 @@ fn size(compiled: &Compiled, axis: Axis) -> f64 {
     compiled.effectiveness.largest(axis as usize, scale)
 }
 
-/// Every unit in words, of its place, how the upper rotor spins, and the outputs of both rotors:
-/// `front right: outputs 0 and 4 (upper cw); ..`.
-pub fn in_words(units: &[([f64; 3], Spin, [usize; 2])]) -> String {
+/// Every unit in words: its place, its outputs, and how its upper rotor spins:
+/// `front right: outputs 0 and 4 (upper cw)`.
+pub fn in_words(units: &[([f64; 3], Spin, [usize; 2])]) -> Vec<String> {
     let places: Vec<[f64; 3]> = units.iter().map(|(place, ..)| *place).collect();
     let each = units.iter().map(|(position_m, spin, [upper, lower])| {
         let place = place_among(*position_m, &places);
         format!("{place}: outputs {upper} and {lower} (upper {})", spin.name())
     });
-    each.collect::<Vec<_>>().join("; ")
+    each.collect()
 }
 
 /// Where a unit is among the others: `front right`.

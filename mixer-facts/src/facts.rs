@@ -18,8 +18,8 @@ use crate::hover::Hover;
 /// Share of the largest bare thrust at which the authority of any vehicle is looked at.
 const SHARE: f64 = 0.4;
 
-/// Characters of a line of a list.
-const LINE: usize = 140;
+/// Units in a line of the frame.
+const UNITS_A_LINE: usize = 3;
 
 /// Border points per edge of the throttle box at which the largest efforts are looked for.
 const SAMPLES: usize = 64;
@@ -136,20 +136,6 @@ fn or_nothing<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
     value.map_or_else(String::new, text)
 }
 
-/// Words of a list, over lines that are not too long for a terminal.
-fn wrapped(list: &str) -> String {
-    let (mut text, mut length) = (String::new(), 0);
-    for word in list.split_inclusive("; ") {
-        if length + word.len() > LINE && length > 0 {
-            text = format!("{}\n{:20}", text.trim_end(), "");
-            length = 0;
-        }
-        text += word;
-        length += word.len();
-    }
-    text
-}
-
 /// What it is, its thrust and its authority.
 fn gives(list: &mut List, compiled: &Compiled) {
     let (airframe, m) = (&compiled.airframe, &compiled.effectiveness);
@@ -170,8 +156,9 @@ fn gives(list: &mut List, compiled: &Compiled) {
         (unit.position_m, unit.upper_spin, outputs)
     });
     let frame = checklist::in_words(&frame.collect::<Vec<_>>());
-    list.say("frame", "", "", wrapped(&frame))
-        .json("frame", &frame)
+    let lines: Vec<String> = frame.chunks(UNITS_A_LINE).map(|units| units.join("; ")).collect();
+    list.say("frame", "", "", lines.join(&format!(";\n{:20}", "")))
+        .json("frame", frame.join("; "))
         .first();
     list.say("served axes", axes.join(", "), "", "")
         .json("axes", &axes)

@@ -76,13 +76,10 @@ pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
 /// `FRAME_CLASS` and `FRAME_TYPE`, if a frame has these rotors on these outputs.
 pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) {
     let Some((class, kind, name)) = frames::find(compiled) else {
-        return all.note(match frames::has_places(compiled) {
-            true => {
-                "no FRAME_CLASS has these rotors on these outputs: `cargo mixer new --outputs ardupilot` writes an airframe \
-                 whose `channels` and spins are one's"
-            }
-            false => "no FRAME_CLASS has pairs in these places: ArduPilot has X and plus frames of 4 and 6 pairs, and Y6",
-        });
+        return all.note(
+            "no FRAME_CLASS has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, and Y6; of \
+             those `cargo mixer new --outputs ardupilot` writes an airframe whose `channels` and spins are one's",
+        );
     };
     let [class, kind] = [class, kind].map(|value| i32::try_from(value).unwrap_or_default());
     all.because(format!(

@@ -111,16 +111,6 @@ pub(crate) fn find(compiled: &Compiled) -> Option<(usize, usize, &'static str)> 
     })
 }
 
-/// Whether some frame has pairs in these places, on whatever outputs, of whatever spins.
-pub(crate) fn has_places(compiled: &Compiled) -> bool {
-    let own = compiled.ardupilot_factors();
-    FRAMES.iter().any(|&(class, kind)| {
-        let all = motors(class, kind).map_or(Vec::new(), |(_, motors)| factors(&motors));
-        let is_near = |a: &[f64; 3], b: &[f64; 2]| (0..2).all(|k| (a[k] - b[k]).abs() < SAME_FACTOR);
-        all.len() == own.len() && own.iter().all(|a| all.iter().any(|b| is_near(a, b)))
-    })
-}
-
 /// Of roll and pitch, 0.5 where largest (`AP_MotorsMatrix::add_motor`, `normalise_rpy_factors`).
 fn factors(motors: &[Motor]) -> Vec<[f64; 2]> {
     let raw = motors.iter().map(|motor| {

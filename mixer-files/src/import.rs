@@ -51,8 +51,7 @@ pub struct Import {
 }
 
 /// Makes an airframe file of a parameter file of PX4 or ArduPilot, a start script of PX4's, or the
-/// `diff all` of Betaflight or INAV. `pair` is a file with the pair's
-/// model.
+/// `diff all` of Betaflight or INAV. `pair` is a file with the pair's model.
 ///
 /// # Errors
 /// A file that does not describe coaxial pairs: file, line, and what would serve.
@@ -65,25 +64,26 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
     let frame = units
         .iter()
         .map(|unit| (unit.position_m, unit.upper_spin, unit.channels));
-    let frame: Vec<_> = frame.collect();
+    let frame = checklist::in_words(&frame.collect::<Vec<_>>()).join("; ");
+    imported.notes.push(format!("the frame is {frame}"));
+    let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
     imported
         .notes
-        .push(format!("the frame is {}", checklist::in_words(&frame)));
-    let places: Vec<[f64; 3]> = units.iter().map(|unit| unit.position_m).collect();
-    let mends = symmetry::mends(&places);
-    if !mends.is_empty() {
-        imported.notes.push(symmetry::in_words(&mends));
-    }
-    let text = |imported: &mut Imported| text::airframe(options.name, file, imported, &units, pair.as_ref());
+        .extend(symmetry::told(&places).map(|(_, told)| told));
+    let tables = text::tables(&mut imported, &units, pair.as_ref());
     if let Some(pulses) = &imported.pulses {
-        let airframe = Airframe::read(&Source::new("airframe.toml", text(&mut imported.clone()))).ok();
+        let airframe = Source::new("airframe.toml", format!("name = \"a\"\n{tables}"));
+        let airframe = Airframe::read(&airframe).ok();
         let of_bench = options.pulses_us.or_else(|| bench_pulses(airframe.as_ref()?));
         let map = airframe.map(|airframe| PairMap::new(&airframe.pair, &airframe.throttle));
         let told = pulses.told(of_bench.unwrap_or(outputs::USUAL_US), map.as_ref());
         imported.notes.extend(told);
     }
+    let name = options
+        .name
+        .map_or_else(|| text::default_name(units.len()), str::to_owned);
     Ok(Import {
-        text: text(&mut imported),
+        text: text::airframe(&name, file, &imported, &tables),
         notes: imported.notes,
     })
 }

@@ -3,7 +3,7 @@
 
 use super::outputs::{self, Bank};
 use super::parameters::Parameters;
-use super::rotors::{Imported, Pulses, Rotor};
+use super::rotors::{Imported, Pulses, Rotor, UPWARD};
 use crate::frames::{LAYER_M, Layer, motors};
 
 /// ArduPilot's defaults.
@@ -13,6 +13,15 @@ const SPIN_MAX: f64 = 0.95;
 /// Values of `MOT_PWM_TYPE` from DShot150 to DShot1200, and that of SERVOn_MIN and SERVOn_MAX.
 const DSHOT: std::ops::RangeInclusive<usize> = 4..=7;
 const PWM_RANGE: usize = 8;
+
+/// Motors 1 to 8, and 9 to 12.
+const SERVOS: Bank = Bank {
+    function: "SERVO#_FUNCTION",
+    motors: &[[33, 40], [82, 85]],
+};
+
+/// Of a QuadPlane, on if above 0.
+const TILTS: [&str; 3] = ["Q_TILT_ENABLE", "Q_TILT_MASK", "Q_TAILSIT_ENABLE"];
 
 /// Where a QuadPlane's names begin with `Q_`.
 pub(super) fn is_quadplane(parameters: &Parameters) -> bool {
@@ -55,7 +64,7 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
         channel,
         place: file.clone(),
         position_m: place(arm, motor.angle_deg, motor.layer),
-        axis: [0.0, 0.0, -1.0],
+        axis: UPWARD,
         spin: motor.spin,
     });
     let mut notes = vec![format!(
@@ -64,14 +73,14 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
     if (class, kind) == (4, 2) {
         notes.push("ArduPilot's V gives the front rotors less yaw; the angles of its arms are not among its parameters".to_owned());
     }
-    notes.extend(quadplane(parameters));
-    notes.extend(SERVOS.order(parameters));
-    if !has_own_pulses(parameters, mot) && !parameters.has("RC3_MAX") {
+    if let Some(name) = TILTS.iter().find(|name| parameters.or(name, 0.0) > 0.0) {
         notes.push(format!(
-            "{mot}PWM_MIN and {mot}PWM_MAX are 0: the pulses are those of the throttle stick, which the file lacks; compare \
-             them with the bench's"
+            "{name} is on: the airframe is that of hover; rotors that tilt are not in the model"
         ));
     }
+    notes.extend(SERVOS.order(parameters));
+    let (pulses, note) = pulses(parameters, mot);
+    notes.extend(note);
     let spin = [("SPIN_MIN", SPIN_MIN), ("SPIN_MAX", SPIN_MAX)];
     Ok(Imported {
         origin: format!("ArduPilot, {name} ({class_name} {class}, {type_name} {kind})"),
@@ -80,67 +89,30 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
             spin.map(|(key, default)| parameters.or(&format!("{mot}{key}"), default)),
             spin.map(|(key, _)| format!("{mot}{key}")),
         )),
-        pulses: pulses(parameters, mot),
+        pulses,
         range_v: battery(parameters, mot),
         airmode: Some(("roll-pitch", "ArduPilot asks for roll and pitch at any throttle")),
         notes,
     })
 }
 
-/// What of a QuadPlane is not in the model of a multirotor.
-fn quadplane(parameters: &Parameters) -> Vec<String> {
-    let is = |name: &str, on: fn(f64) -> bool| parameters.get(name).filter(|value| on(*value));
-    let told = [
-        (
-            is("Q_ENABLE", |value| value == 0.0),
-            "Q_ENABLE",
-            "the rotors are switched off there",
-        ),
-        (is("Q_TILT_ENABLE", |value| value > 0.0), "Q_TILT_ENABLE", TILTS),
-        (is("Q_TILT_MASK", |value| value > 0.0), "Q_TILT_MASK", TILTS),
-        (
-            is("Q_TAILSIT_ENABLE", |value| value > 0.0),
-            "Q_TAILSIT_ENABLE",
-            "the airframe is that of hover, nose up",
-        ),
-    ];
-    let told = told.into_iter();
-    told.filter_map(|(value, name, what)| Some(format!("{name} is {}: {what}", value?)))
-        .collect()
-}
-
-const TILTS: &str = "rotors that tilt are not in the model; the airframe has them upright, as in hover";
-
-const SERVOS: Bank = Bank {
-    function: |pin| format!("SERVO{pin}_FUNCTION"),
-    motor,
-    end: |pin, end| format!("SERVO{pin}_{end}"),
-};
-
-/// The motor, from 0, of a value of `SERVOn_FUNCTION`.
-fn motor(function: usize) -> Option<usize> {
-    match function {
-        33..=40 => Some(function - 33),
-        82..=85 => Some(function - 82 + 8),
-        _ => None,
-    }
-}
-
-/// Whether `MOT_PWM_MIN` and `_MAX` are above 0; else the pulses are the throttle stick's.
-fn has_own_pulses(parameters: &Parameters, mot: &str) -> bool {
-    ["MIN", "MAX"].map(|end| parameters.or(&format!("{mot}PWM_{end}"), 1.0) > 0.0) == [true; 2]
-}
-
 /// Digital protocols have the whole range (`AP_MotorsMulticopter::get_pwm_output_min`,
-/// `update_throttle_range`).
-fn pulses(parameters: &Parameters, mot: &str) -> Option<Pulses> {
+/// `update_throttle_range`); where the pulses are others' than the motors', that is told.
+fn pulses(parameters: &Parameters, mot: &str) -> (Option<Pulses>, Option<String>) {
     let kind = parameters.whole(&format!("{mot}PWM_TYPE")).unwrap_or(0);
-    outputs::pulses(parameters, |end| match kind {
-        kind if DSHOT.contains(&kind) => Vec::new(),
-        PWM_RANGE => SERVOS.ends(SERVOS.motors(parameters).into_iter().map(|(pin, _)| pin), end),
-        _ if has_own_pulses(parameters, mot) => vec![format!("{mot}PWM_{end}")],
-        _ => vec![format!("RC3_{end}")],
-    })
+    let is_off = |end| parameters.get(&format!("{mot}PWM_{end}")) == Some(0.0);
+    let of_others = match kind {
+        PWM_RANGE => "PWM_TYPE is 8: the pulses are those of SERVOn_MIN and SERVOn_MAX",
+        _ if is_off("MIN") || is_off("MAX") => {
+            "PWM_MIN and _MAX are 0: the pulses are those of the throttle stick, RC3_MIN and RC3_MAX"
+        }
+        kind if DSHOT.contains(&kind) => return (None, None),
+        _ => return (outputs::pulses(parameters, &[format!("{mot}PWM_{{}}")]), None),
+    };
+    (
+        None,
+        Some(format!("{mot}{of_others}; compare them with the bench's")),
+    )
 }
 
 /// Forward, right, down.

@@ -2,8 +2,8 @@
 //!
 //! A line is `NAME,VALUE` or `NAME VALUE` (Mission Planner, MAVProxy) or, tab-separated, vehicle,
 //! component, name, value and type (QGroundControl). `#` begins a comment. In a script, of PX4's
-//! start or of MAVProxy, they are those of `param set` and `param set-default`; all else is passed
-//! over there.
+//! start or of MAVProxy, the parameters are those of `param set` and `param set-default`; all else is
+//! passed over there.
 
 use std::collections::BTreeMap;
 
@@ -23,52 +23,47 @@ const LONGEST_PIECE: usize = 80;
 impl Parameters {
     pub(super) fn read(source: &Source) -> Result<Self, String> {
         let Source { name: file, text } = source;
-        let text = text.trim_start_matches('\u{feff}');
-        let is_script = text
-            .lines()
-            .flat_map(statements)
-            .any(|words| set(&words).is_some());
+        let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
+        let statements = lines.flat_map(|(line, number)| {
+            let content = line.split('#').next().unwrap_or_default();
+            content.split(';').map(move |statement| (statement, number))
+        });
+        let statements: Vec<_> = statements.collect();
+        let is_script = statements
+            .iter()
+            .any(|(statement, _)| set(&words(statement)).is_some());
         let mut parameters = Parameters {
             file: file.clone(),
             values: BTreeMap::new(),
         };
-        for (line, number) in text.lines().zip(1..) {
-            let bad = || {
-                format!(
-                    "{file}:{number}: `{}` is no parameter: NAME,VALUE or a line of QGroundControl's",
-                    line.trim().chars().take(LONGEST_PIECE).collect::<String>()
-                )
+        for (statement, number) in statements {
+            let words = words(statement);
+            let words = if is_script {
+                set(&words).unwrap_or_default()
+            } else {
+                &words
             };
-            if is_script {
-                for words in statements(line) {
-                    match set(&words).map(|(name, value)| (name, value, value.parse())) {
-                        None => {}
-                        Some((name, _, Ok(value))) => parameters.add(name, value, number, true)?,
-                        // What a script computes is not known here.
-                        Some((name, ..)) if !is_of_rotors(name) => {}
-                        Some((name, value, Err(_))) => {
-                            return Err(format!(
-                                "{file}:{number}: {name} is `{value}`: write it as a number"
-                            ));
-                        }
-                    }
-                }
-                continue;
-            }
-            let content = line.split('#').next().unwrap_or_default();
-            let separated = |c: char| c.is_whitespace() || matches!(c, ',' | '=');
-            let words: Vec<&str> = content.split(separated).filter(|word| !word.is_empty()).collect();
-            let (name, value) = match words[..] {
+            let (name, value) = match *words {
                 [] => continue,
-                [vehicle, _, name, value, _] if vehicle.parse::<u32>().is_ok() => (name, value),
-                [name, value] => (name, value),
-                // A type, or `@READONLY`; not the rest of a number with a decimal comma.
-                [name, value, more] if !content.contains(',') || more.parse::<f64>().is_err() => {
-                    (name, value)
+                [vehicle, _, name, value, _] if vehicle.parse::<u32>().is_ok() => (name, value.parse()),
+                [name, value] => (name, value.parse()),
+                // A type, `@READONLY`, or a script's `fail`; not the rest of a number with a decimal comma.
+                [name, value, more] if !statement.contains(',') || more.parse::<f64>().is_err() => {
+                    (name, value.parse())
                 }
-                _ => return Err(bad()),
+                [name, ..] => (name, "".parse()),
             };
-            parameters.add(name, value.parse().map_err(|_| bad())?, number, false)?;
+            match value {
+                Ok(value) => parameters.add(name, value, number, is_script)?,
+                // What a script computes is not known here.
+                Err(_) if is_script && !is_of_rotors(name) => {}
+                Err(_) => {
+                    let piece: String = statement.trim().chars().take(LONGEST_PIECE).collect();
+                    return Err(format!(
+                        "{file}:{number}: `{piece}` is no parameter: NAME,VALUE with a number, or a line of QGroundControl's"
+                    ));
+                }
+            }
         }
         Ok(parameters)
     }
@@ -129,40 +124,23 @@ impl Parameters {
     }
 }
 
-/// The statements of a line of a script, as words without quotes.
-fn statements(line: &str) -> Vec<Vec<&str>> {
-    let content = line.split('#').next().unwrap_or_default();
-    let quote = |c| matches!(c, '"' | '\'');
-    content
-        .split(';')
-        .map(|statement| {
-            statement
-                .split_whitespace()
-                .map(|word| word.trim_matches(quote))
-                .collect()
-        })
-        .collect()
+/// The words of a line, without quotes and the flag of `param set -s`.
+pub(super) fn words(line: &str) -> Vec<&str> {
+    let separated = |c: char| c.is_whitespace() || matches!(c, ',' | '=' | '"' | '\'');
+    let words = line.split(separated);
+    words.filter(|word| !matches!(*word, "" | "-s")).collect()
 }
 
-/// Name and value of `param set NAME VALUE` and `param set-default NAME VALUE`.
-fn set<'a>(words: &[&'a str]) -> Option<(&'a str, &'a str)> {
-    let at = words.iter().position(|word| *word == "param")?;
-    let mut rest = words[at + 1..].iter().copied();
-    matches!(rest.next()?, "set" | "set-default").then_some(())?;
-    let mut rest = rest.filter(|word| !matches!(*word, "-s" | "fail"));
-    Some((rest.next()?, rest.next()?))
+/// What follows `param set` or `param set-default`.
+fn set<'a, 'b>(words: &'b [&'a str]) -> Option<&'b [&'a str]> {
+    let is_set = |pair: &[&str]| matches!(pair, ["param", "set" | "set-default"]);
+    let at = words.windows(2).position(is_set)?;
+    Some(&words[at + 2..])
 }
 
 /// Whether a rotor's place or spin depends on it.
 fn is_of_rotors(name: &str) -> bool {
     name.starts_with("CA_") || name.contains("FRAME_")
-}
-
-/// So many finite numbers.
-pub(super) fn numbers<const N: usize>(words: &[&str]) -> Option<[f64; N]> {
-    let numbers: Option<Vec<f64>> = words.iter().map(|word| word.parse().ok()).collect();
-    let numbers: [f64; N] = numbers?.try_into().ok()?;
-    numbers.iter().all(|number| number.is_finite()).then_some(numbers)
 }
 
 #[cfg(test)]
@@ -192,7 +170,10 @@ mod tests {
                 "param set CA_ROTOR0_PX 0.6",
                 "a:10: CA_ROTOR0_PX is there twice, first in line 6",
             ),
-            ("param set CA_ROTOR1_PX $ARM", "a:10: CA_ROTOR1_PX is `$ARM`"),
+            (
+                "param set CA_ROTOR1_PX $ARM",
+                "a:10: `param set CA_ROTOR1_PX $ARM` is no parameter",
+            ),
         ] {
             let error = Parameters::read(&Source::new("a", format!("{text}{line}\n"))).unwrap_err();
             assert!(error.starts_with(message), "{error}");

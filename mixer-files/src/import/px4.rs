@@ -24,7 +24,7 @@ pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
             ));
         }
     };
-    for index in (0..count).filter(|_| count > 2) {
+    for index in 0..count {
         if !parameters
             .names()
             .any(|name| name.starts_with(&format!("CA_ROTOR{index}_")))
@@ -59,7 +59,7 @@ pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
     }
     imported
         .notes
-        .extend([MAIN, AUX].iter().find_map(|bank| bank.order(parameters)));
+        .extend(BANKS.iter().find_map(|(bank, _)| bank.order(parameters)));
     imported.notes.push(
         "the idle is not among PX4's parameters: throttle.min is 0.1 unless the pair's file has another"
             .to_owned(),
@@ -109,43 +109,47 @@ fn rotor(parameters: &Parameters, index: usize) -> Result<Rotor, String> {
     })
 }
 
-const MAIN: Bank = Bank {
-    function: |pin| format!("PWM_MAIN_FUNC{pin}"),
-    motor,
-    end: |pin, end| format!("PWM_MAIN_{end}{pin}"),
-};
-
-const AUX: Bank = Bank {
-    function: |pin| format!("PWM_AUX_FUNC{pin}"),
-    motor,
-    end: |pin, end| format!("PWM_AUX_{end}{pin}"),
-};
-
-/// The motor, from 0, of a value of `PWM_MAIN_FUNCn`.
-fn motor(function: usize) -> Option<usize> {
-    function.checked_sub(101).filter(|motor| *motor < MOST_ROTORS)
-}
+/// Motors 1 to 12.
+const MOTORS: &[[usize; 2]] = &[[101, 112]];
+const BANKS: [(Bank, &str); 2] = [
+    (
+        Bank {
+            function: "PWM_MAIN_FUNC#",
+            motors: MOTORS,
+        },
+        "PWM_MAIN_{}#",
+    ),
+    (
+        Bank {
+            function: "PWM_AUX_FUNC#",
+            motors: MOTORS,
+        },
+        "PWM_AUX_{}#",
+    ),
+];
 
 /// The motors' pulse widths, of all pins where no function is said; DShot, a `PWM_MAIN_TIMn` of -2
 /// and less, has none.
 fn pulses(parameters: &Parameters) -> Option<Pulses> {
-    let is_digital = |name: &str| {
-        let is_timer = name.starts_with("PWM_MAIN_TIM") || name.starts_with("PWM_AUX_TIM");
-        is_timer && parameters.or(name, 0.0) < -1.0
-    };
+    let is_digital = |name: &str| name.contains("_TIM") && parameters.or(name, 0.0) < -1.0;
     if parameters.names().any(is_digital) {
         return None;
     }
-    let banks = [MAIN, AUX].map(|bank| (bank.motors(parameters), bank));
-    let is_open = banks.iter().all(|(motors, _)| motors.is_empty());
-    outputs::pulses(parameters, |end| {
-        let older = ["PWM_", "PWM_MAIN_", "PWM_AUX_"].map(|bank| format!("{bank}{end}"));
-        let pins = banks.iter().flat_map(|(motors, bank)| match is_open {
-            true => bank.ends(1..=MOST_ROTORS, end),
-            false => bank.ends(motors.iter().map(|(pin, _)| *pin), end),
-        });
-        older.into_iter().chain(pins).collect()
-    })
+    let pins = BANKS.iter().flat_map(|(bank, end)| {
+        let motors = bank.motors(parameters);
+        motors
+            .into_iter()
+            .map(move |(pin, _)| outputs::numbered(end, pin))
+    });
+    let mut names: Vec<String> = pins.collect();
+    if names.is_empty() {
+        let all = BANKS
+            .iter()
+            .flat_map(|(_, end)| (1..=MOST_ROTORS).map(|pin| outputs::numbered(end, pin)));
+        names = all.collect();
+    }
+    names.extend(["PWM_{}", "PWM_MAIN_{}", "PWM_AUX_{}"].map(str::to_owned));
+    outputs::pulses(parameters, &names)
 }
 
 /// The first battery's range.

@@ -2,6 +2,9 @@
 
 use mixer_compiler::airframe::Spin;
 
+/// The axis of a rotor that is not tilted.
+pub(super) const UPWARD: [f64; 3] = [0.0, 0.0, -1.0];
+
 /// A rotor of a flight stack.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Rotor {
@@ -27,11 +30,13 @@ pub(super) struct Unit {
     pub(super) channels: [usize; 2],
 }
 
-/// Pulse widths of throttle 0 and 1, where the file says them.
+/// Pulse widths of throttle 0 and 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pulses {
-    /// Microseconds, with the parameter that has them.
-    pub(super) ends: [Option<(f64, String)>; 2],
+    /// Microseconds.
+    pub(super) us: [f64; 2],
+    /// What the file says of them: `MOT_PWM_MAX is 1940`.
+    pub(super) said: Vec<String>,
 }
 
 /// Rotors and settings of a flight stack's files.

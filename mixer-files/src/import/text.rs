@@ -9,7 +9,7 @@ use mixer_identify::pair_file::PairFile;
 use mixer_identify::report::wrapped;
 use toml::Value;
 
-use super::rotors::{Imported, Unit};
+use super::rotors::{Imported, UPWARD, Unit};
 use crate::plain::printable_lines;
 
 /// Characters of a line of comment.
@@ -25,14 +25,8 @@ const EXPONENT: f64 = 1.75;
 /// describe another vehicle.
 const TAKEN: &[&str] = &["pair", "voltage", "air"];
 
-/// The text, and the notes on it in `imported`.
-pub(super) fn airframe(
-    name: Option<&str>,
-    file: &Source,
-    imported: &mut Imported,
-    units: &[Unit],
-    pair: Option<&PairFile>,
-) -> String {
+/// The tables, with the notes on them in `imported`.
+pub(super) fn tables(imported: &mut Imported, units: &[Unit], pair: Option<&PairFile>) -> String {
     let [min, max] = throttle(imported, pair);
     let voltage = voltage(imported, pair);
     if pair.is_none() {
@@ -40,24 +34,9 @@ pub(super) fn airframe(
             "no parameter describes the pair: `cargo mixer identify` makes [pair] of bench data; --pair takes it in".to_owned(),
         );
     }
-
     let mut out = String::new();
-    let name = name.map_or_else(|| default_name(units.len()), str::to_owned);
     // Writing to a String cannot fail; the results are dropped.
-    let _ = writeln!(out, "name = {}", Value::String(name));
-    let _ = writeln!(out, "description = {}\n", Value::String(imported.origin.clone()));
-    let _ = writeln!(
-        out,
-        "# Imported by cargo mixer {} from {}.",
-        env!("CARGO_PKG_VERSION"),
-        Path::new(&file.name).file_name().unwrap_or_default().display()
-    );
-    for note in &imported.notes {
-        for (k, line) in wrapped(&format!("{note}."), COMMENT).iter().enumerate() {
-            let _ = writeln!(out, "# {} {line}", if k == 0 { "*" } else { " " });
-        }
-    }
-    let _ = writeln!(out, "\n[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}");
+    let _ = writeln!(out, "[throttle]\nmin = {min:?}\nmax = {max:?}\n\n{voltage}");
     match pair {
         Some(pair) => out += &pair.tables(TAKEN).0,
         None => out += "# [pair]                               # basis, thrust_n, torque_nm, upper_spin\n\n",
@@ -77,7 +56,7 @@ pub(super) fn airframe(
         let [upper, lower] = unit.channels;
         let _ = writeln!(out, "[[unit]]                               # {index}");
         let _ = writeln!(out, "position_m = [{x:?}, {y:?}, {z:?}]");
-        if unit.axis != [0.0, 0.0, -1.0] {
+        if unit.axis != UPWARD {
             let [x, y, z] = unit.axis;
             let _ = writeln!(out, "axis = [{x:?}, {y:?}, {z:?}]");
         }
@@ -87,8 +66,27 @@ pub(super) fn airframe(
             out.push('\n');
         }
     }
+    out
+}
+
+/// The file of these tables.
+pub(super) fn airframe(name: &str, file: &Source, imported: &Imported, tables: &str) -> String {
+    let mut out = String::new();
+    let _ = writeln!(out, "name = {}", Value::from(name));
+    let _ = writeln!(out, "description = {}\n", Value::from(&*imported.origin));
+    let _ = writeln!(
+        out,
+        "# Imported by cargo mixer {} from {}.",
+        env!("CARGO_PKG_VERSION"),
+        Path::new(&file.name).file_name().unwrap_or_default().display()
+    );
+    for note in &imported.notes {
+        for (k, line) in wrapped(&format!("{note}."), COMMENT).iter().enumerate() {
+            let _ = writeln!(out, "# {} {line}", if k == 0 { "*" } else { " " });
+        }
+    }
     // Names of files and comments of the pair's file are in it.
-    printable_lines(&out)
+    printable_lines(&format!("{out}\n{tables}"))
 }
 
 /// Both files' ranges: the pair's model is known in its own alone.
@@ -132,7 +130,7 @@ fn voltage(imported: &mut Imported, pair: Option<&PairFile>) -> String {
     )
 }
 
-fn default_name(units: usize) -> String {
+pub(super) fn default_name(units: usize) -> String {
     match units {
         3 => "imported-y6".to_owned(),
         units => format!("imported-x{}", 2 * units),
