@@ -93,18 +93,24 @@ fn read(file: &Source, arm_m: Option<f64>) -> Result<Imported, String> {
         return betaflight::read(file, arm_m);
     }
     let parameters = Parameters::read(file)?;
-    if parameters.has("CA_ROTOR_COUNT") || parameters.has("CA_ROTOR0_PX") {
-        px4::read(&parameters)
+    let mut imported = if parameters.has("CA_ROTOR_COUNT") || parameters.has("CA_ROTOR0_PX") {
+        px4::read(&parameters)?
     } else if parameters.has("FRAME_CLASS") || ardupilot::is_quadplane(&parameters) {
-        ardupilot::read(&parameters, arm_m)
+        ardupilot::read(&parameters, arm_m)?
     } else {
-        Err(format!(
+        return Err(format!(
             "{}: no rotors: neither CA_ROTOR_COUNT and CA_ROTOR0_PX.. (PX4 1.13 or later) nor FRAME_CLASS or Q_FRAME_CLASS \
              (ArduPilot) among its {} parameters",
             file.name,
             parameters.count()
-        ))
+        ));
+    };
+    imported.notes.extend(outputs::order(&parameters));
+    match outputs::pulses(&parameters) {
+        Ok(pulses) => imported.pulses = pulses,
+        Err(note) => imported.notes.push(note),
     }
+    Ok(imported)
 }
 
 #[cfg(test)]

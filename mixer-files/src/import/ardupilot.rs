@@ -1,24 +1,14 @@
 //! ArduPilot's parameters: `FRAME_CLASS` and `FRAME_TYPE` name one of its frames. A QuadPlane has
 //! them with `Q_` before and `Q_M_` in place of `MOT_`.
 
-use super::outputs::{self, Bank};
+use super::outputs;
 use super::parameters::Parameters;
-use super::rotors::{Imported, Pulses, Rotor, UPWARD};
+use super::rotors::{Imported, Rotor, UPWARD};
 use crate::frames::{LAYER_M, Layer, motors};
 
 /// ArduPilot's defaults.
 const SPIN_MIN: f64 = 0.15;
 const SPIN_MAX: f64 = 0.95;
-
-/// Values of `MOT_PWM_TYPE` from DShot150 to DShot1200, and that of SERVOn_MIN and SERVOn_MAX.
-const DSHOT: std::ops::RangeInclusive<usize> = 4..=7;
-const PWM_RANGE: usize = 8;
-
-/// Motors 1 to 8, and 9 to 12.
-const SERVOS: Bank = Bank {
-    function: "SERVO#_FUNCTION",
-    motors: &[[33, 40], [82, 85]],
-};
 
 /// Of a QuadPlane, on if above 0.
 const TILTS: [&str; 3] = ["Q_TILT_ENABLE", "Q_TILT_MASK", "Q_TAILSIT_ENABLE"];
@@ -78,9 +68,6 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
             "{name} is on: the airframe is that of hover; rotors that tilt are not in the model"
         ));
     }
-    notes.extend(SERVOS.order(parameters));
-    let (pulses, note) = pulses(parameters, mot);
-    notes.extend(note);
     let spin = [("SPIN_MIN", SPIN_MIN), ("SPIN_MAX", SPIN_MAX)];
     Ok(Imported {
         origin: format!("ArduPilot, {name} ({class_name} {class}, {type_name} {kind})"),
@@ -89,30 +76,11 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
             spin.map(|(key, default)| parameters.or(&format!("{mot}{key}"), default)),
             spin.map(|(key, _)| format!("{mot}{key}")),
         )),
-        pulses,
         range_v: battery(parameters, mot),
         airmode: Some(("roll-pitch", "ArduPilot asks for roll and pitch at any throttle")),
         notes,
+        pulses: None,
     })
-}
-
-/// Digital protocols have the whole range (`AP_MotorsMulticopter::get_pwm_output_min`,
-/// `update_throttle_range`); where the pulses are others' than the motors', that is told.
-fn pulses(parameters: &Parameters, mot: &str) -> (Option<Pulses>, Option<String>) {
-    let kind = parameters.whole(&format!("{mot}PWM_TYPE")).unwrap_or(0);
-    let is_off = |end| parameters.get(&format!("{mot}PWM_{end}")) == Some(0.0);
-    let of_others = match kind {
-        PWM_RANGE => "PWM_TYPE is 8: the pulses are those of SERVOn_MIN and SERVOn_MAX",
-        _ if is_off("MIN") || is_off("MAX") => {
-            "PWM_MIN and _MAX are 0: the pulses are those of the throttle stick, RC3_MIN and RC3_MAX"
-        }
-        kind if DSHOT.contains(&kind) => return (None, None),
-        _ => return (outputs::pulses(parameters, &[format!("{mot}PWM_{{}}")]), None),
-    };
-    (
-        None,
-        Some(format!("{mot}{of_others}; compare them with the bench's")),
-    )
 }
 
 /// Forward, right, down.

@@ -64,12 +64,13 @@ fn motors(source: &Source) -> Result<(Vec<Motor>, bool), String> {
                 table = Some(motors.map(|motor| (place.clone(), *motor)).collect());
             }
             ["mmix", "reset"] => motors.clear(),
-            ["mmix", motor, ref factors @ ..] => {
-                let factors = factors.iter().map(|word| word.parse().ok());
-                let factors: Option<Vec<f64>> = factors.collect();
-                let factors = factors.filter(|factors| factors.iter().all(|factor| factor.is_finite()));
-                match (motor.parse::<usize>(), factors.as_deref()) {
-                    (Ok(motor), Some(&[throttle, roll, pitch, yaw])) if motor == motors.len() => {
+            ["mmix", ref rest @ ..] => {
+                let numbers = rest.iter().filter_map(|word| word.parse().ok());
+                let numbers: Vec<f64> = numbers.filter(|number: &f64| number.is_finite()).collect();
+                match numbers[..] {
+                    [motor, throttle, roll, pitch, yaw]
+                        if rest.len() == numbers.len() && motor == motors.len() as f64 =>
+                    {
                         if throttle > 0.0 {
                             motors.push((place, [roll, pitch, yaw]));
                         }

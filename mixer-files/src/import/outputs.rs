@@ -11,45 +11,77 @@ const MOST_PINS: usize = 32;
 /// Pulse widths of throttle 0 and 1, microseconds: the defaults of both stacks, and of a bench.
 pub(super) const USUAL_US: [f64; 2] = [1000.0, 2000.0];
 
-/// Parameters of the outputs of a board; `#` is the number of a pin, from 1.
-pub(super) struct Bank {
-    /// What a pin drives.
-    pub(super) function: &'static str,
-    /// The values of it for motors, from motor 1 on: firsts and lasts.
-    pub(super) motors: &'static [[usize; 2]],
-}
+/// The outputs of a board: the parameter of what pin `#` drives, the values of it for motors, from
+/// motor 1 on, as firsts and lasts, and the parameter of a pin's pulses, `{}` being MIN or MAX.
+type Bank = (&'static str, &'static [[usize; 2]], &'static str);
 
-impl Bank {
-    /// The pins that drive a motor, from 1, each with the motor, from 0.
-    pub(super) fn motors(&self, parameters: &Parameters) -> Vec<(usize, usize)> {
-        let motor = |pin: usize| {
-            let function = parameters.whole(&numbered(self.function, pin))?;
-            let mut functions = self.motors.iter().flat_map(|[first, last]| *first..=*last);
-            Some((pin, functions.position(|of_motor| of_motor == function)?))
-        };
-        (1..=MOST_PINS).filter_map(motor).collect()
-    }
+/// Of ArduPilot's servos pulses do not count: the motors have their own.
+const BANKS: [Bank; 3] = [
+    ("SERVO#_FUNCTION", &[[33, 40], [82, 85]], ""),
+    ("PWM_MAIN_FUNC#", &[[101, 112]], "PWM_MAIN_{}#"),
+    ("PWM_AUX_FUNC#", &[[101, 112]], "PWM_AUX_{}#"),
+];
 
-    /// That pins are not motors, where they are in another order.
-    pub(super) fn order(&self, parameters: &Parameters) -> Option<String> {
-        let motors = self.motors(parameters);
-        let (pin, motor) = motors.iter().find(|(pin, motor)| pin - 1 != *motor)?;
-        Some(format!(
-            "`channels` counts the stack's motors, from 0, not pins: {} has motor {}, which is channel {motor}",
-            numbered(self.function, *pin),
-            motor + 1
-        ))
-    }
-}
+/// The pulses of all motors, PX4's before 1.13, and those of ArduPilot.
+const OF_ALL: [&str; 5] = ["PWM_{}", "PWM_MAIN_{}", "PWM_AUX_{}", "MOT_PWM_{}", "Q_M_PWM_{}"];
 
-/// The parameter of a pin.
-pub(super) fn numbered(name: &str, pin: usize) -> String {
+fn numbered(name: &str, pin: usize) -> String {
     name.replace('#', &pin.to_string())
 }
 
-/// The pulse widths of throttle 0 and 1 by parameters named `MIN` and `MAX` in place of `{}`; of
-/// several that a file has those furthest from the usual.
-pub(super) fn pulses(parameters: &Parameters, names: &[String]) -> Option<Pulses> {
+/// The pins of a bank that drive a motor, from 1, each with the motor, from 0.
+fn motors((function, motors, _): Bank, parameters: &Parameters) -> Vec<(usize, usize)> {
+    let motor = |pin: usize| {
+        let function = parameters.whole(&numbered(function, pin))?;
+        let mut functions = motors.iter().flat_map(|[first, last]| *first..=*last);
+        Some((pin, functions.position(|of_motor| of_motor == function)?))
+    };
+    (1..=MOST_PINS).filter_map(motor).collect()
+}
+
+/// That pins are not motors, where they are in another order.
+pub(super) fn order(parameters: &Parameters) -> Option<String> {
+    BANKS.into_iter().find_map(|bank| {
+        let motors = motors(bank, parameters);
+        let (pin, motor) = motors.iter().find(|(pin, motor)| pin - 1 != *motor)?;
+        Some(format!(
+            "`channels` counts the stack's motors, from 0, not pins: {} has motor {}, which is channel {motor}",
+            numbered(bank.0, *pin),
+            motor + 1
+        ))
+    })
+}
+
+/// The pulse widths of throttle 0 and 1, of several that a file has those furthest from the usual;
+/// of all pins where no function is said. DShot, ArduPilot's `MOT_PWM_TYPE` of 4 to 7 and PX4's
+/// `PWM_MAIN_TIMn` of -2 and less, has none. Those that other parameters say are not looked at, and
+/// are `Err`, a note (`AP_MotorsMulticopter::get_pwm_output_min`, `update_throttle_range`).
+pub(super) fn pulses(parameters: &Parameters) -> Result<Option<Pulses>, String> {
+    for name in parameters.names() {
+        let value = parameters.or(name, 0.0);
+        let is_type = name.ends_with("PWM_TYPE");
+        let is_end = name.ends_with("PWM_MIN") || name.ends_with("PWM_MAX");
+        if (is_type && value == 8.0) || (is_end && value == 0.0) {
+            return Err(format!(
+                "{name} is {value}: the pulses are those of other parameters, of the throttle stick (RC3_MIN, RC3_MAX) or the \
+                 servos (SERVOn_MIN, SERVOn_MAX); compare them with the bench's"
+            ));
+        }
+        if (is_type && value >= 4.0) || (name.starts_with("PWM_") && name.contains("_TIM") && value < -1.0) {
+            return Ok(None);
+        }
+    }
+    let of_pins = |is_of_motor: bool| {
+        BANKS.into_iter().flat_map(move |bank| {
+            let motors = motors(bank, parameters);
+            let pins =
+                (1..=MOST_PINS).filter(move |pin| !is_of_motor || motors.iter().any(|(of, _)| of == pin));
+            pins.map(move |pin| numbered(bank.2, pin))
+        })
+    };
+    let is_said = of_pins(true).next().is_some();
+    let names = OF_ALL.into_iter().map(str::to_owned).chain(of_pins(is_said));
+    let names: Vec<String> = names.collect();
     let mut pulses = Pulses {
         us: USUAL_US,
         said: Vec::new(),
@@ -65,7 +97,7 @@ pub(super) fn pulses(parameters: &Parameters, names: &[String]) -> Option<Pulses
             pulses.said.push(format!("{name} is {value}"));
         }
     }
-    (!pulses.said.is_empty()).then_some(pulses)
+    Ok((!pulses.said.is_empty()).then_some(pulses))
 }
 
 /// Difference of throttles that does not matter: a microsecond or two.
@@ -94,7 +126,7 @@ impl Pulses {
             format!(": up to {share:+.0} % of the largest thrust")
         });
         Some(format!(
-            "{}: throttle 0 to 1 is {:.3} to {:.3} of a bench's {low} to {high} us (--pwm-range){off}; set {low} and {high}, \
+            "{}: throttle 0 to 1 is {:.3} to {:.3} of a bench's {low} to {high} us (--pwm-range){off}; set the pulses to {low} and {high}, \
              unless the speed controllers are calibrated to the vehicle's pulses",
             self.said.join(", "),
             ends[0],

@@ -3,9 +3,8 @@
 
 use mixer_compiler::airframe::Spin;
 
-use super::outputs::{self, Bank};
 use super::parameters::Parameters;
-use super::rotors::{Imported, Pulses, Rotor};
+use super::rotors::{Imported, Rotor};
 
 /// What PX4 takes where a file has no `CA_ROTORi_KM` and no `CA_ROTORi_AZ`.
 const MOMENT_RATIO: f64 = 0.05;
@@ -40,7 +39,6 @@ pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
         origin: format!("{count} rotors of PX4"),
         rotors: rotors.collect::<Result<_, _>>()?,
         range_v: battery(parameters),
-        pulses: pulses(parameters),
         ..Imported::default()
     };
     if let Some(kind) = parameters.get("CA_AIRFRAME").filter(|kind| *kind != 0.0) {
@@ -57,9 +55,6 @@ pub(super) fn read(parameters: &Parameters) -> Result<Imported, String> {
             "CA_ROTOR_COUNT is {count}: rotor {index} and what follows it are left out"
         ));
     }
-    imported
-        .notes
-        .extend(BANKS.iter().find_map(|(bank, _)| bank.order(parameters)));
     imported.notes.push(
         "the idle is not among PX4's parameters: throttle.min is 0.1 unless the pair's file has another"
             .to_owned(),
@@ -107,49 +102,6 @@ fn rotor(parameters: &Parameters, index: usize) -> Result<Rotor, String> {
         axis: axis.map(|x| (x / length * 1e7).round() / 1e7 + 0.0),
         spin: if moment > 0.0 { Spin::Ccw } else { Spin::Cw },
     })
-}
-
-/// Motors 1 to 12.
-const MOTORS: &[[usize; 2]] = &[[101, 112]];
-const BANKS: [(Bank, &str); 2] = [
-    (
-        Bank {
-            function: "PWM_MAIN_FUNC#",
-            motors: MOTORS,
-        },
-        "PWM_MAIN_{}#",
-    ),
-    (
-        Bank {
-            function: "PWM_AUX_FUNC#",
-            motors: MOTORS,
-        },
-        "PWM_AUX_{}#",
-    ),
-];
-
-/// The motors' pulse widths, of all pins where no function is said; DShot, a `PWM_MAIN_TIMn` of -2
-/// and less, has none.
-fn pulses(parameters: &Parameters) -> Option<Pulses> {
-    let is_digital = |name: &str| name.contains("_TIM") && parameters.or(name, 0.0) < -1.0;
-    if parameters.names().any(is_digital) {
-        return None;
-    }
-    let pins = BANKS.iter().flat_map(|(bank, end)| {
-        let motors = bank.motors(parameters);
-        motors
-            .into_iter()
-            .map(move |(pin, _)| outputs::numbered(end, pin))
-    });
-    let mut names: Vec<String> = pins.collect();
-    if names.is_empty() {
-        let all = BANKS
-            .iter()
-            .flat_map(|(_, end)| (1..=MOST_ROTORS).map(|pin| outputs::numbered(end, pin)));
-        names = all.collect();
-    }
-    names.extend(["PWM_{}", "PWM_MAIN_{}", "PWM_AUX_{}"].map(str::to_owned));
-    outputs::pulses(parameters, &names)
 }
 
 /// The first battery's range.

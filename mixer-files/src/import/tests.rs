@@ -291,7 +291,7 @@ fn files_as_people_have_them() {
         (
             "the stick's pulses",
             ardupilot("MOT_PWM_MIN,0\nMOT_PWM_MAX,0\nRC3_MIN,1100\nRC3_MAX,1900"),
-            Noted("the pulses are those of the throttle stick, RC3_MIN and RC3_MAX; compare"),
+            Noted("MOT_PWM_MAX is 0: the pulses are those of other parameters"),
         ),
         (
             "an older script of PX4",
@@ -306,7 +306,7 @@ fn files_as_people_have_them() {
         (
             "the servos' pulses",
             ardupilot("MOT_PWM_TYPE,8\nSERVO1_FUNCTION,33\nSERVO1_MIN,1100"),
-            Noted("the pulses are those of SERVOn_MIN and SERVOn_MAX; compare"),
+            Noted("MOT_PWM_TYPE is 8: the pulses are those of other parameters"),
         ),
         (
             "another order of servos",
