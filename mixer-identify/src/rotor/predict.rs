@@ -197,7 +197,7 @@ fn remarks(runs: &[Single], wishes: &Wishes, throttle: ThrottleBox, warnings: &m
         && !(least..=most).contains(&ratio)
     {
         warnings.push(format!(
-            "z/D is {ratio}: the interaction was measured from {least} to {most} and is extrapolated"
+            "z/D is {ratio:.2}: the interaction was measured from {least} to {most} and is extrapolated"
         ));
     }
     if throttle.min < LEAST_IDLE {
