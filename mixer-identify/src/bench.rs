@@ -13,6 +13,7 @@ use self::date::date_in;
 use self::header::Columns;
 use self::read::{Fault, Log, RefusedRow, Sample};
 use self::sign::{SignChoice, SignPolicy, Signs};
+use self::units::Quantity;
 use crate::refusal::Refusal;
 use crate::rotor::Turning;
 
@@ -216,12 +217,12 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         given => given.clone(),
     };
     // A stand that drives both rotors by one signal.
-    let one_signal =
-        columns.throttle.rotors[1].is_none() && (how.torque_may_lack || of_both(&columns, &samples));
+    let one_signal = columns[Quantity::Throttle].rotors[1].is_none()
+        && (how.torque_may_lack || of_both(&columns, &samples));
     if one_signal {
         samples.iter_mut().for_each(|s| s.throttle[1] = s.throttle[0]);
     }
-    let two_throttles = one_signal || columns.throttle.rotors[1].is_some();
+    let two_throttles = one_signal || columns[Quantity::Throttle].rotors[1].is_some();
     let turns = |rotor: usize| samples.iter().any(|s| s.throttle[rotor] > how.stop_throttle);
     let kind = match two_throttles && turns(0) && turns(1) {
         true => Kind::Pair,
@@ -371,7 +372,7 @@ fn of_both(columns: &Columns, samples: &[Sample]) -> bool {
             .iter()
             .any(|of| of.rotors.iter().all(|x| measured(*x)))
     };
-    columns.current.rotors.iter().all(Option::is_some) || samples.iter().any(each)
+    columns[Quantity::Current].rotors.iter().all(Option::is_some) || samples.iter().any(each)
 }
 
 /// Throttles that differ by less are of one signal.
@@ -420,12 +421,15 @@ fn few_refused(name: &str, refused: &[RefusedRow], rows: usize) -> Result<(), Re
         .max_by_key(|rows| rows.len())
         .unwrap_or_default();
     let Some(first) = most.first() else { return Ok(()) };
+    let shared = match most.len() == refused.len() {
+        true => String::new(),
+        false => format!(", {} of them for this reason", most.len()),
+    };
     Err(Refusal::of(
         format!("{name}:{}", first.line),
         format!(
-            "{} of {rows} rows are refused, {} of them for this reason: {}",
+            "{} of {rows} rows are refused{shared}: {}",
             refused.len(),
-            most.len(),
             first.reason
         ),
         "values in 95 % of the rows or more, of one unit and one way to write numbers",
@@ -437,7 +441,7 @@ const COMMANDED: f64 = 0.02;
 
 /// Refuses a file whose command was not recorded.
 fn some_commanded(name: &str, columns: &Columns, samples: &[Sample]) -> Result<(), Refusal> {
-    let column = columns.throttle.rotors[0]
+    let column = columns[Quantity::Throttle].rotors[0]
         .as_ref()
         .map_or("", |c| c.name.as_str());
     let throttles = samples.iter().flat_map(|s| s.throttle).filter(|t| !t.is_nan());

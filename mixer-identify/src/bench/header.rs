@@ -6,6 +6,8 @@
 //! prefix such as `Powertrain 1 - `, which users edit, so that the first prefix to appear is the
 //! first rotor). The first rotor is taken as the upper one unless names say otherwise.
 
+use std::ops::{Index, IndexMut};
+
 use self::name::{Name, distinct_prefixes};
 use crate::bench::sheet::Heading;
 use crate::bench::units::{self, Quantity, Scale};
@@ -24,8 +26,21 @@ pub struct Column {
     pub quantity: Quantity,
     /// How to reach SI.
     pub scale: Scale,
-    /// The unit, where nothing but the cells tells it.
-    pub in_cells: Option<String>,
+    /// The unit, where there is one.
+    pub unit: Option<String>,
+    /// Whether nothing but the cells tells the unit.
+    pub in_cells: bool,
+}
+
+impl Column {
+    /// Whether a number with this text behind it can stand in the column.
+    pub fn holds(&self, unit: &str) -> bool {
+        let scale = |unit: &str| units::scale(self.quantity, unit);
+        match unit {
+            "" => !self.in_cells,
+            unit => scale(unit).is_some() && self.unit.as_deref().and_then(scale) == scale(unit),
+        }
+    }
 }
 
 /// A quantity of the whole and of the upper and the lower rotor.
@@ -49,38 +64,31 @@ impl<T> Split<Option<T>> {
     }
 }
 
-/// The columns that are read; `--column ROLE=HEADER` names them by [`ROLES`].
+/// The columns that are read, by what they measure; `--column ROLE=HEADER` names them by [`ROLES`].
+///
+/// A voltage of the whole is the upper rotor's, the lower one has one where it has a supply of its own;
+/// the command of the only rotor is the upper one's.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Columns {
-    /// Commands of the upper rotor, or of the only one, and of the lower rotor.
-    pub throttle: Split<Option<Column>>,
-    /// Thrust.
-    pub thrust: Split<Option<Column>>,
-    /// Torque.
-    pub torque: Split<Option<Column>>,
-    /// Supply voltage of the whole or of the upper rotor, and of the lower one where it has a supply
-    /// of its own.
-    pub voltage: Split<Option<Column>>,
-    /// Supply current.
-    pub current: Split<Option<Column>>,
-    /// Electrical power.
-    pub power: Split<Option<Column>>,
-    /// Speed.
-    pub speed: Split<Option<Column>>,
-    /// Coefficients of thrust and of power, C_T and C_P.
-    pub coefficients: [Split<Option<Column>>; 2],
-    /// Time.
-    pub time: Split<Option<Column>>,
-    /// Temperature of the air.
-    pub temperature: Split<Option<Column>>,
-    /// Its pressure.
-    pub pressure: Split<Option<Column>>,
-    /// Its density.
-    pub density: Split<Option<Column>>,
+    by_quantity: [Split<Option<Column>>; Quantity::Density as usize + 1],
     /// The format that the header was recognised as, for the report.
     pub format: String,
     /// Whether names, rather than an assumption, say which rotor is the upper one.
     pub sides_named: bool,
+}
+
+impl Index<Quantity> for Columns {
+    type Output = Split<Option<Column>>;
+
+    fn index(&self, quantity: Quantity) -> &Self::Output {
+        &self.by_quantity[quantity as usize]
+    }
+}
+
+impl IndexMut<Quantity> for Columns {
+    fn index_mut(&mut self, quantity: Quantity) -> &mut Self::Output {
+        &mut self.by_quantity[quantity as usize]
+    }
 }
 
 /// Columns and units given by hand, and what else is known of them.
@@ -140,43 +148,20 @@ impl Offers {
             _ => format!("a unit in the header, or --unit {}=UNIT", self.role(role)),
         }
     }
-}
 
-/// All that a header lacks: what, and what would mend it.
-#[derive(Default)]
-struct Lacks {
-    all: Vec<(String, String)>,
-    /// What columns are of that cannot be read, so that they are not missing.
-    doubtful: Vec<Quantity>,
-}
-
-impl Lacks {
-    fn add(&mut self, what: impl Into<String>, mend: impl Into<String>) {
-        self.all.push((what.into(), mend.into()));
-    }
-
-    fn doubt(&mut self, quantity: Quantity, (what, mend): (String, String)) {
-        self.doubtful.push(quantity);
-        self.add(what, mend);
-    }
-
-    fn refused(self, place: &str, among: &str) -> Result<(), Refusal> {
-        if self.all.is_empty() {
-            return Ok(());
-        }
-        let (what, mut mends): (Vec<String>, Vec<String>) = self.all.into_iter().unzip();
-        let is_missing = |what: &&String| what.starts_with("no ");
-        let (missing, wrong): (Vec<&String>, Vec<&String>) = what.iter().partition(is_missing);
-        let joined = |of: Vec<&String>, between| of.into_iter().cloned().collect::<Vec<_>>().join(between);
-        let reason = match (joined(wrong, "; "), joined(missing, ", ")) {
-            (wrong, missing) if missing.is_empty() => wrong,
-            (wrong, missing) if wrong.is_empty() => format!("{missing} among: {among}"),
-            (wrong, missing) => format!("{wrong}; {missing} among: {among}"),
+    /// What a value above 1 in a throttle column without a unit needs.
+    pub fn above_one(self) -> String {
+        let [pulse, per_cent] = match self {
+            Offers::Pair => ["--pwm-range 1000,2000", "--unit upper=% --unit lower=%"],
+            Offers::OneRotor => ["--pwm-range 1000,2000", "--unit throttle=%"],
+            Offers::Header => ["PWM (us) in the header", "Throttle (%) in the header"],
         };
-        mends.dedup();
-        Err(Refusal::of(place, reason, mends.join("; ")))
+        format!("is above 1: give {pulse} if it is a pulse width, {per_cent} if it is in per cent")
     }
 }
+
+/// What a header lacks, and what would mend it.
+type Lack = (String, String);
 
 /// Roles for `--column`, with what they measure and of which rotor.
 pub const ROLES: [(&str, Quantity, Option<usize>); 22] = [
@@ -207,52 +192,22 @@ pub const ROLES: [(&str, Quantity, Option<usize>); 22] = [
 impl Columns {
     /// All of them.
     pub fn all(&self) -> impl Iterator<Item = &Column> {
-        let [ct, cp] = &self.coefficients;
-        let of = [
-            &self.throttle,
-            &self.thrust,
-            &self.torque,
-            &self.voltage,
-            &self.current,
-            &self.power,
-            &self.speed,
-            ct,
-            cp,
-        ];
-        let of_air = [&self.temperature, &self.pressure, &self.density];
-        let columns = of
-            .into_iter()
-            .chain(of_air)
-            .flat_map(|split| split.rotors.iter().chain([&split.whole]));
-        columns.flatten()
+        let splits = self.by_quantity.iter();
+        splits
+            .flat_map(|split| split.rotors.iter().chain([&split.whole]))
+            .flatten()
     }
 
-    fn of(&mut self, quantity: Quantity) -> &mut Split<Option<Column>> {
-        match quantity {
-            Quantity::Throttle => &mut self.throttle,
-            Quantity::Thrust => &mut self.thrust,
-            Quantity::Torque => &mut self.torque,
-            Quantity::Voltage => &mut self.voltage,
-            Quantity::Current => &mut self.current,
-            Quantity::Power => &mut self.power,
-            Quantity::Speed => &mut self.speed,
-            Quantity::ThrustCoefficient => &mut self.coefficients[0],
-            Quantity::PowerCoefficient => &mut self.coefficients[1],
-            Quantity::Time => &mut self.time,
-            Quantity::Temperature => &mut self.temperature,
-            Quantity::Pressure => &mut self.pressure,
-            Quantity::Density => &mut self.density,
-        }
+    /// Whether thrust is that of coefficients.
+    pub fn by_coefficients(&self) -> bool {
+        let thrust = self[Quantity::Thrust].whole.as_ref();
+        thrust.is_some_and(|column| matches!(column.scale, Scale::OfSpeed(_)))
     }
 
     /// The place of a quantity's column.
     fn slot(&mut self, quantity: Quantity, side: Option<usize>) -> &mut Option<Column> {
-        let Split { whole, rotors } = self.of(quantity);
-        match (side, rotors) {
-            (None, _) => whole,
-            (Some(0), [upper, _]) => upper,
-            (_, [_, lower]) => lower,
-        }
+        let Split { whole, rotors } = &mut self[quantity];
+        side.map_or(whole, |side| &mut rotors[side])
     }
 
     /// Reads the header at `place`, the file with its line.
@@ -266,15 +221,14 @@ impl Columns {
             format: format_name(&headers, &names),
             ..Columns::default()
         };
-        let mut lacks = Lacks::default();
+        let mut lacks = Vec::new();
         columns.by_name(headings, &names, by_hand, &mut lacks);
         if by_hand.swap {
-            use Quantity::{Current, Power, Speed, Throttle, Thrust, Torque};
-            for quantity in [Throttle, Thrust, Torque, Current, Power, Speed] {
-                columns.of(quantity).rotors.swap(0, 1);
-            }
-            if columns.voltage.complete() {
-                columns.voltage.rotors.swap(0, 1);
+            let one_supply = !columns[Quantity::Voltage].complete();
+            for (quantity, split) in columns.by_quantity.iter_mut().enumerate() {
+                if quantity != Quantity::Voltage as usize || !one_supply {
+                    split.rotors.swap(0, 1);
+                }
             }
         }
         for (role, wanted) in &by_hand.columns {
@@ -291,121 +245,98 @@ impl Columns {
             })?;
             // A column of one rotor given by hand stands above the whole's.
             if side.is_some() {
-                columns.of(quantity).whole = None;
+                columns[quantity].whole = None;
             }
-            match scaled(index, &headings[index], &names[index], quantity, role, by_hand) {
-                Ok(column) => *columns.slot(quantity, side) = Some(column),
-                Err(lack) => lacks.doubt(quantity, lack),
-            }
+            let (column, lack) = scaled(index, &headings[index], &names[index], quantity, role, by_hand);
+            *columns.slot(quantity, side) = Some(column);
+            lacks.extend(lack);
             columns.sides_named |= matches!(role.as_str(), "upper" | "lower");
         }
         columns.sides_named |= by_hand.swap;
-        columns.by_speed(place, &names, by_hand, &mut lacks)?;
+        columns.by_speed(&names, by_hand, &mut lacks);
         columns.require(by_hand, &mut lacks);
-        lacks.refused(place, &headers.join(", "))?;
-        Ok(columns)
+        if lacks.is_empty() {
+            return Ok(columns);
+        }
+        let (what, mut mends): (Vec<String>, Vec<String>) = lacks.into_iter().unzip();
+        mends.dedup();
+        let reason = format!("{}; the columns are {}", what.join("; "), headers.join(", "));
+        Err(Refusal::of(place, reason, mends.join("; ")))
     }
 
     /// Speeds that stand for throttles, and what coefficients give at them.
-    fn by_speed(
-        &mut self,
-        place: &str,
-        names: &[Name],
-        by_hand: &ByHand,
-        lacks: &mut Lacks,
-    ) -> Result<(), Refusal> {
-        let given = |rotor: &str| by_hand.columns.iter().any(|(role, _)| role == rotor);
-        let sides = [0, 1].map(|side| self.throttle.rotors[side].is_some());
-        let speeds = [0, 1].map(|side| self.speed.rotors[side].is_some());
-        let all = (0..2).all(|side| speeds[side] || !sides[side]);
-        if let Some(full) = by_hand
-            .full_rpm
-            .filter(|_| speeds != [false; 2] && all && !given("upper"))
-        {
-            self.throttle.rotors = self
-                .speed
-                .rotors
+    fn by_speed(&mut self, names: &[Name], by_hand: &ByHand, lacks: &mut Vec<Lack>) {
+        use Quantity::{PowerCoefficient, Speed, Throttle, Thrust, ThrustCoefficient, Torque};
+        let speeds = &self[Speed].rotors;
+        let commanded = |rotor: usize| self[Throttle].rotors[rotor].is_some();
+        let all = speeds.iter().any(Option::is_some)
+            && (0..2).all(|rotor| speeds[rotor].is_some() || !commanded(rotor))
+            && !by_hand.columns.iter().any(|(role, _)| role == "upper");
+        if let Some(full) = by_hand.full_rpm.filter(|_| all) {
+            let throttles = speeds
                 .clone()
                 .map(|column| column.map(|column| of_full(column, full)));
+            self[Throttle].rotors = throttles;
             self.sides_named |= names.iter().any(Name::says_upper_or_lower);
         }
-        let [Some(thrust), power] = self.coefficients.each_ref().map(|of| of.whole.clone()) else {
-            return Ok(());
+        let Some(of_thrust) = self[ThrustCoefficient]
+            .whole
+            .clone()
+            .filter(|_| !self[Thrust].any())
+        else {
+            return;
         };
-        if self.thrust.any() {
-            return Ok(());
-        }
         if names.iter().any(|name| name.text == "j") {
-            return Err(Refusal::of(
-                place,
-                "CT and CP over the advance ratio J: a propeller in forward flight",
-                "the static table of the same propeller, RPM CT CP, of a file named .._static_..",
-            ));
+            let mend = "the static table of the same propeller, RPM CT CP, of a file named .._static_..";
+            let what = "CT and CP over the advance ratio J: a propeller in forward flight";
+            return lacks.push((what.to_owned(), mend.to_owned()));
         }
         let Some(diameter) = by_hand.diameter_m else {
-            lacks.add(
-                "the diameter is missing, without which CT and CP give no thrust",
-                "--diameter METRE",
-            );
-            return Ok(());
+            let what = "the diameter is missing, without which CT and CP give no thrust";
+            return lacks.push((what.to_owned(), "--diameter METRE".to_owned()));
         };
-        if speeds[0] {
-            // T = C_T rho n^2 D^4, Q = C_P rho n^2 D^5 / (2 pi), n in revolutions per second.
-            let density = by_hand.density_kg_m3.unwrap_or(STANDARD_DENSITY);
-            let squared = diameter * diameter;
-            let force = density * squared * squared / 3600.0;
-            let moment = force * diameter / std::f64::consts::TAU;
-            let of = |column: Column, factor| Column {
-                scale: Scale::OfSpeed(factor),
-                ..column
-            };
-            self.thrust.whole = Some(of(thrust, force));
-            self.torque.whole = power.map(|power| of(power, moment));
-        }
-        Ok(())
+        // T = C_T rho n^2 D^4, Q = C_P rho n^2 D^5 / (2 pi), n in revolutions per second.
+        let density = by_hand.density_kg_m3.unwrap_or(STANDARD_DENSITY);
+        let squared = diameter * diameter;
+        let force = density * squared * squared / 3600.0;
+        let moment = force * diameter / std::f64::consts::TAU;
+        let of = |column: Column, factor| Column {
+            scale: Scale::OfSpeed(factor),
+            ..column
+        };
+        self[Torque].whole = self[PowerCoefficient]
+            .whole
+            .clone()
+            .map(|power| of(power, moment));
+        self[Thrust].whole = Some(of(of_thrust, force));
     }
 
     /// What every use needs.
-    fn require(&self, by_hand: &ByHand, lacks: &mut Lacks) {
+    fn require(&self, by_hand: &ByHand, lacks: &mut Vec<Lack>) {
         let offers = by_hand.offers;
-        let one_rotor = offers != Offers::Pair;
-        let doubtful = |quantity| lacks.doubtful.contains(&quantity);
-        let [throttle, thrust, torque] =
-            [Quantity::Throttle, Quantity::Thrust, Quantity::Torque].map(doubtful);
-        match self.throttle.rotors.each_ref() {
-            _ if throttle => {}
-            [None, _] if self.speed.any() && by_hand.full_rpm.is_none() => {
-                let speed = self.speed.rotors.iter().flatten().next();
-                let speed = speed.map_or("", |column| column.name.as_str());
-                let column = offers.column("upper", "HEADER");
-                let full = "--rpm-at-full RPM, the speed at full throttle";
-                lacks.add(
-                    "no throttle column",
-                    format!("{column}; or {full}, where the speed controllers hold the speeds {speed:?}"),
-                );
+        let pair = offers == Offers::Pair;
+        if let [None, lower] = &self[Quantity::Throttle].rotors {
+            let mut mend = offers.column("upper", "HEADER");
+            if pair && lower.is_none() {
+                mend += " and --column lower=HEADER";
             }
-            [None, None] if one_rotor => lacks.add("no throttle column", offers.column("upper", "HEADER")),
-            [None, None] => lacks.add(
-                "no throttle column",
-                "--column upper=HEADER and --column lower=HEADER",
-            ),
-            [None, Some(_)] => lacks.add(
-                "no throttle column of the upper rotor",
-                offers.column("upper", "HEADER"),
-            ),
-            _ => {}
+            let speed = self[Quantity::Speed].rotors.iter().flatten().next();
+            if let Some(speed) = speed.filter(|_| by_hand.full_rpm.is_none()) {
+                let held = format!("where the speed controllers hold the speeds {:?}", speed.name);
+                mend += &format!("; or --rpm-at-full RPM, the speed at full throttle, {held}");
+            }
+            let of_upper = lower.as_ref().map_or("", |_| " of the upper rotor");
+            lacks.push((format!("no throttle column{of_upper}"), mend));
         }
-        if !thrust && !self.thrust.any() && self.coefficients[0].whole.is_none() {
-            lacks.add("no thrust column", offers.column("thrust", "HEADER"));
+        if !self[Quantity::Thrust].any() && !self[Quantity::ThrustCoefficient].any() {
+            lacks.push(("no thrust column".to_owned(), offers.column("thrust", "HEADER")));
         }
         // Of a pair it is asked for later, where nothing else is missing.
-        let torque = torque || self.torque.any() || self.coefficients[1].whole.is_some();
-        if !torque && !lacks.all.is_empty() && by_hand.diameter_m.is_none() {
-            let otherwise = if one_rotor { " (or --diameter METRE)" } else { "" };
-            lacks.add(
-                "no torque column",
-                format!("{}{otherwise}", offers.column("torque", "HEADER")),
-            );
+        let torque = self[Quantity::Torque].any() || self[Quantity::PowerCoefficient].any();
+        if !torque && !lacks.is_empty() && by_hand.diameter_m.is_none() {
+            let otherwise = if pair { "" } else { " (or --diameter METRE)" };
+            let mend = offers.column("torque", "HEADER") + otherwise;
+            lacks.push(("no torque column".to_owned(), mend));
         }
     }
 
@@ -417,9 +348,14 @@ impl Columns {
                 named.name
             )
         };
-        match (&self.voltage.rotors[0], &self.current.whole, &self.current.rotors) {
+        let current = &self[Quantity::Current];
+        match (
+            &self[Quantity::Voltage].rotors[0],
+            &current.whole,
+            &current.rotors,
+        ) {
             (Some(_), Some(_), _) | (Some(_), _, [Some(_), Some(_)]) => None,
-            _ if self.power.complete() => None,
+            _ if self[Quantity::Power].complete() => None,
             (_, None, [Some(upper), None]) => Some(of_one(upper, "lower")),
             (_, None, [None, Some(lower)]) => Some(of_one(lower, "upper")),
             (_, None, [None, None]) => Some("no file has the current of both rotors".into()),
@@ -427,48 +363,37 @@ impl Columns {
         }
     }
 
-    fn by_name(&mut self, headings: &[Heading], names: &[Name], by_hand: &ByHand, lacks: &mut Lacks) {
+    fn by_name(&mut self, headings: &[Heading], names: &[Name], by_hand: &ByHand, lacks: &mut Vec<Lack>) {
+        use Quantity::{Current, Power, Speed, Throttle, Thrust, Torque, Voltage};
         let prefixes = distinct_prefixes(names);
         for (index, (name, heading)) in names.iter().zip(headings).enumerate() {
             let Some(quantity) = name.quantity() else { continue };
-            use Quantity::{
-                Density, PowerCoefficient, Pressure, Speed, Temperature, Throttle, ThrustCoefficient, Time,
-                Voltage,
-            };
             let side = match (quantity, name.side(&prefixes)) {
-                (Time | Temperature | Pressure | Density | ThrustCoefficient | PowerCoefficient, _) => None,
                 (Throttle | Voltage | Speed, None) => Some(0),
-                (_, side) => side,
+                (Throttle | Thrust | Torque | Voltage | Current | Power | Speed, side) => side,
+                _ => None,
             };
             let role = ROLES.iter().find(|(_, of, at)| (*of, *at) == (quantity, side));
             let role = role.map_or("coefficient", |(role, ..)| *role);
             if by_hand.columns.iter().any(|(r, _)| r == role) {
                 continue;
             }
-            // Power and air are by-products: what is doubtful there refuses no map. Time is only used
-            // to keep rows in order.
-            let aside = !matches!(
-                quantity,
-                Throttle | Quantity::Thrust | Quantity::Torque | Voltage | Time
-            ) || role == "lower_voltage";
+            // Power and air are by-products: what is doubtful there refuses no map.
+            let aside = !matches!(quantity, Throttle | Thrust | Torque | Voltage) || role == "lower_voltage";
             let slot = self.slot(quantity, side);
             if let Some(first) = slot {
                 // Two columns for one role: guessing would be silent. Told of the first two.
-                if !aside && quantity != Time && !lacks.doubtful.contains(&quantity) {
-                    let (first, raw, role) = (&first.name, &name.raw, by_hand.offers.role(role));
-                    let mend = match by_hand.offers {
-                        Offers::Header => format!("one column of the {role}"),
-                        _ => format!("the right one by hand: --column {role}={raw:?}"),
-                    };
-                    let what = format!("the columns {first:?} and {raw:?} both look like the {role}");
-                    lacks.doubt(quantity, (what, mend));
+                let (first, raw, shown) = (&first.name, &name.raw, by_hand.offers.role(role));
+                let both = format!("both look like the {shown}");
+                if !aside && !lacks.iter().any(|(what, _)| what.ends_with(&both)) {
+                    let mend = by_hand.offers.column(role, &format!("{raw:?}"));
+                    lacks.push((format!("the columns {first:?} and {raw:?} {both}"), mend));
                 }
                 continue;
             }
             match scaled(index, heading, name, quantity, role, by_hand) {
-                Ok(column) => *slot = Some(column),
-                Err(lack) if !aside => lacks.doubt(quantity, lack),
-                Err(_) => continue,
+                (_, Some(_)) if aside => continue,
+                (column, lack) => (*slot, _) = (Some(column), lacks.extend(lack)),
             }
             self.sides_named |= quantity == Throttle && name.says_upper_or_lower();
         }
@@ -495,14 +420,9 @@ fn of_full(column: Column, full_rpm: f64) -> Column {
 /// The number of cells of a line that name what is measured, by name or by hand.
 pub fn known(cells: &[String], by_hand: &ByHand) -> usize {
     let by_name = cells.iter().filter(|cell| Name::new(cell).quantity().is_some());
-    let wanted = by_hand
-        .columns
-        .iter()
-        .filter(|(_, wanted)| !wanted.starts_with('#'));
-    by_name.count()
-        + wanted
-            .filter(|(_, wanted)| position(cells, wanted).is_some())
-            .count()
+    let wanted = by_hand.columns.iter().map(|(_, wanted)| wanted);
+    let found = wanted.filter(|wanted| !wanted.starts_with('#') && position(cells, wanted).is_some());
+    by_name.count() + found.count()
 }
 
 /// Whether a text is a unit of what a column with this name measures.
@@ -552,7 +472,7 @@ fn position(headers: &[String], wanted: &str) -> Option<usize> {
         .or_else(|| headers.iter().position(|h| Name::new(h).text == spelled))
 }
 
-/// The column of a role, or what its unit lacks and what mends it.
+/// The column of a role, and what its unit lacks.
 fn scaled(
     index: usize,
     heading: &Heading,
@@ -560,69 +480,60 @@ fn scaled(
     quantity: Quantity,
     role: &str,
     by_hand: &ByHand,
-) -> Result<Column, (String, String)> {
-    let raw = &name.raw;
-    let full_rpm = by_hand
-        .full_rpm
-        .filter(|_| quantity == Quantity::Throttle && !name.is_throttle());
-    let quantity = if full_rpm.is_some() {
-        Quantity::Speed
-    } else {
-        quantity
-    };
-    let by_hand_unit = by_hand
+) -> (Column, Option<Lack>) {
+    let held = quantity == Quantity::Throttle && !name.is_throttle();
+    let full_rpm = by_hand.full_rpm.filter(|_| held);
+    let quantity = full_rpm.map_or(quantity, |_| Quantity::Speed);
+    let scale = |unit: &String| units::scale(quantity, unit);
+    let given = by_hand
         .units
         .iter()
         .find(|(r, _)| r == role)
         .map(|(_, unit)| unit);
-    let in_cells = heading
-        .in_cells
-        .as_ref()
-        .filter(|unit| units::scale(quantity, unit).is_some());
-    let mut told = [name.unit.as_ref(), heading.below.as_ref(), in_cells]
+    let in_header = given.or(name.unit.as_ref()).or(heading.below.as_ref());
+    let in_cells = heading.in_cells.as_ref().filter(|unit| scale(unit).is_some());
+    let told = [in_header, heading.below.as_ref(), in_cells];
+    let unit = told.into_iter().flatten().next();
+    let other = told
         .into_iter()
-        .flatten();
-    let in_header = name.unit.is_some() || heading.below.is_some() || by_hand_unit.is_some();
-    let unit = by_hand_unit.or(told.next());
-    let scale = match (unit, quantity) {
-        (Some(unit), _) => units::scale(quantity, unit),
-        (None, Quantity::Throttle) if name.words().any(|w| w == "pwm" || w == "esc") => {
-            Some(Scale::Pulse(1.0))
-        }
-        (None, Quantity::Throttle | Quantity::Time | Quantity::Speed) => Some(Scale::Factor(1.0)),
-        (None, Quantity::ThrustCoefficient | Quantity::PowerCoefficient) => Some(Scale::Factor(1.0)),
-        (None, _) => None,
+        .flatten()
+        .find(|other| scale(other) != unit.and_then(scale));
+    let of_pulses = || name.words().any(|word| word == "pwm" || word == "esc");
+    let without = match quantity {
+        Quantity::Throttle if of_pulses() => Some(Scale::Pulse(1.0)),
+        Quantity::Throttle | Quantity::Time | Quantity::Speed => Some(Scale::Factor(1.0)),
+        Quantity::ThrustCoefficient | Quantity::PowerCoefficient => Some(Scale::Factor(1.0)),
+        _ => None,
     };
-    let (shown, known) = (by_hand.offers.role(role), units::known(quantity));
-    let needed = || format!("{} with one of: {known}", by_hand.offers.unit(role));
-    let Some(scale) = scale else {
-        return Err(match unit {
-            Some(unit) => (
-                format!("the unit {unit:?} of the column {raw:?} is unknown for the {shown}"),
-                needed(),
-            ),
-            None => (format!("the column {raw:?} has no unit"), needed()),
-        });
+    let found = unit.map_or(without, scale);
+    let (raw, shown) = (&name.raw, by_hand.offers.role(role));
+    let lack = match (found, unit, other) {
+        (None, Some(unit), _) => Some(format!(
+            "the unit {unit:?} of the column {raw:?} is unknown for the {shown}"
+        )),
+        (None, None, _) => Some(format!("the column {raw:?} has no unit")),
+        (_, Some(unit), Some(other)) if given.is_none() => Some(format!(
+            "the column {raw:?} is in {unit:?} by its name and in {other:?} below it"
+        )),
+        _ => None,
     };
-    if let Some(other) =
-        told.find(|other| by_hand_unit.is_none() && units::scale(quantity, other) != Some(scale))
-    {
-        let unit = unit.map_or("", String::as_str);
-        return Err((
-            format!("the column {raw:?} is in {unit:?} by its name and in {other:?} below it"),
-            needed(),
-        ));
-    }
-    Ok(Column {
+    let mend = || {
+        format!(
+            "{} with one of: {}",
+            by_hand.offers.unit(role),
+            units::known(quantity)
+        )
+    };
+    let column = Column {
         index,
         name: raw.clone(),
         quantity,
-        scale: match (scale, full_rpm) {
-            (Scale::Factor(to_rpm), Some(full)) => Scale::Speed(to_rpm / full),
-            (scale, _) => scale,
-        },
-        in_cells: in_cells.filter(|_| !in_header).cloned(),
-    })
+        scale: found.unwrap_or(Scale::Factor(1.0)),
+        unit: unit.cloned(),
+        in_cells: in_header.is_none() && in_cells.is_some(),
+    };
+    let column = full_rpm.map_or_else(|| column.clone(), |full| of_full(column.clone(), full));
+    (column, lack.map(|what| (what, mend())))
 }
 
 #[cfg(test)]

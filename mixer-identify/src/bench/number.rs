@@ -22,6 +22,7 @@ pub fn is_blank(cell: &str) -> bool {
 /// (`#DIV/0!`, `#NV`, `n/a`, `NaN`).
 pub fn is_missing(cell: &str) -> bool {
     const WORDS: [&str; 6] = ["nan", "na", "n/a", "null", "none", "nil"];
+    let cell = cell.trim();
     cell.starts_with('#') || is_blank(cell) || WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
 }
 
@@ -71,43 +72,39 @@ impl Cell<'_> {
         !self.unit.contains(|c: char| c.is_ascii_digit())
     }
 
-    /// The value of the number by this decimal mark.
+    /// The value of the number by this decimal mark; before it, a mark stands before every three digits
+    /// or nowhere.
     pub fn value(&self, decimal: char) -> Option<f64> {
-        if decimal == '.'
-            && let Ok(value) = self.number.parse()
-        {
-            return Some(value);
-        }
-        let (mantissa, exponent) = split_exponent(self.number);
+        let (mantissa, exponent) = self
+            .number
+            .split_at(self.number.find(['e', 'E']).unwrap_or(self.number.len()));
         let (whole, part) = mantissa.split_once(decimal).unwrap_or((mantissa, ""));
-        let is_mark = |c: char| matches!(c, ' ' | '\'' | ',' | '.');
-        let mut marks = whole.chars().filter(|c| is_mark(*c));
-        let one_mark = marks.next().is_none_or(|first| marks.all(|mark| mark == first));
-        let mut groups = whole.trim_start_matches(['+', '-']).split(is_mark);
-        let first = groups.next().map_or(0, str::len);
-        let grouped = groups.clone().next().is_some();
-        let valid =
-            !grouped || (one_mark && (1..=3).contains(&first) && groups.all(|group| group.len() == 3));
-        let whole: String = whole.chars().filter(|c| !is_mark(*c)).collect();
-        match valid && !part.contains(is_mark) {
-            true => format!("{whole}.{part}{exponent}").parse().ok(),
-            false => None,
-        }
+        let sign = if whole.starts_with('-') { "-" } else { "" };
+        let whole = whole.trim_start_matches(['+', '-']);
+        let mark = whole
+            .find(|c: char| !c.is_ascii_digit())
+            .map(|at| &whole[at..=at]);
+        let groups: Vec<&str> = mark.map_or(vec![whole], |mark| whole.split(mark).collect());
+        let grouped = groups.len() == 1
+            || exponent.is_empty()
+                && !whole.starts_with('0')
+                && groups[0].len() <= 3
+                && groups[1..].iter().all(|group| group.len() == 3);
+        let number = format!("{sign}{}.{part}{exponent}", groups.concat());
+        number.parse().ok().filter(|_| grouped)
     }
-}
-
-fn split_exponent(number: &str) -> (&str, &str) {
-    number.split_at(number.find(['e', 'E']).unwrap_or(number.len()))
 }
 
 /// How the numbers of a column, or of a file, are written.
 #[derive(Debug, Clone, Default)]
 pub struct Style {
-    /// Numbers that prove a decimal point, and a decimal comma.
+    /// Numbers that have a value by a decimal point alone, and by a decimal comma alone.
     proofs: [usize; 2],
-    /// Line and text of the first number that may be either, of a point and of a comma.
-    open: [Option<(u64, String)>; 2],
-    /// Numbers without marks of one or two, three, and more digits.
+    /// Line and text of the first number that has a value by each.
+    open: Option<(u64, String)>,
+    /// Whether such numbers have a point, and a comma.
+    open_marks: [bool; 2],
+    /// Whole numbers without marks: of one or two digits, of three, of more.
     plain: [usize; 3],
 }
 
@@ -115,38 +112,26 @@ const MARKS: [char; 2] = ['.', ','];
 
 impl Style {
     /// Counts a number.
-    pub fn add(&mut self, line: u64, number: &str) {
-        let [first, last] = [
-            MARKS.map(|mark| number.find(mark)),
-            MARKS.map(|mark| number.rfind(mark)),
-        ];
-        let (mark, at) = match (first, last) {
-            ([None, None], _) => {
-                let digits = number.bytes().filter(u8::is_ascii_digit).count();
-                let grouped = number.contains([' ', '\'']);
-                return self.plain[digits.clamp(2, 4) - 2] += usize::from(!grouped);
+    pub fn add(&mut self, line: u64, cell: &Cell<'_>) {
+        match MARKS.map(|mark| cell.value(mark)) {
+            [Some(point), Some(comma)] if point == comma => {
+                let digits = cell.number.trim_start_matches(['+', '-']);
+                if digits.bytes().all(|byte| byte.is_ascii_digit()) {
+                    self.plain[digits.len().clamp(2, 4) - 2] += 1;
+                }
             }
-            // One mark, once.
-            ([Some(at), None], [Some(last), _]) if at == last => (0, at),
-            ([None, Some(at)], [_, Some(last)]) if at == last => (1, at),
-            // Of several alike each groups thousands; of two kinds the last is that of decimals.
-            ([Some(_), None], _) => return self.proofs[1] += 1,
-            ([None, Some(_)], _) => return self.proofs[0] += 1,
-            (_, [point, comma]) => return self.proofs[usize::from(comma > point)] += 1,
-        };
-        let (before, after) = (number[..at].trim_start_matches(['+', '-']), &number[at + 1..]);
-        let is_open = after.len() == 3
-            && (1..=3).contains(&before.len())
-            && !before.starts_with('0')
-            && !after.contains(['e', 'E']);
-        match is_open {
-            true if self.open[mark].is_none() => self.open[mark] = Some((line, number.to_owned())),
-            true => {}
-            false => self.proofs[mark] += 1,
+            [Some(_), Some(_)] => {
+                self.open_marks[usize::from(cell.number.contains(','))] = true;
+                self.open.get_or_insert_with(|| (line, cell.number.to_owned()));
+            }
+            [point, comma] => {
+                self.proofs[0] += usize::from(point.is_some());
+                self.proofs[1] += usize::from(comma.is_some());
+            }
         }
     }
 
-    /// Adds the numbers of another column.
+    /// Adds the proofs of another column.
     pub fn join(&mut self, other: &Style) {
         for mark in [0, 1] {
             self.proofs[mark] += other.proofs[mark];
@@ -162,22 +147,16 @@ impl Style {
         if self.proofs != [0, 0] {
             return Ok(of(self.proofs));
         }
-        let proven = file.proofs.map(|count| count > 0);
-        match &self.open {
-            [None, None] => Ok(of(file.proofs)),
-            _ if proven[0] != proven[1] => Ok(of(file.proofs)),
-            [point, comma] => {
-                let mark = usize::from(point.is_none());
-                let [few, hundreds, more] = self.plain;
-                let both = point.is_some() && comma.is_some();
-                // Who groups thousands does so everywhere, and has hundreds beside them; programs
-                // write points with as many digits everywhere.
-                let decimal = more > 0 || (mark == 0 && few + hundreds == 0 && !proven[0]);
-                if !both && (decimal || hundreds > 1) {
-                    return Ok(MARKS[if decimal { mark } else { 1 - mark }]);
-                }
-                point.as_ref().or(comma.as_ref()).cloned().map_or(Ok('.'), Err)
-            }
+        let unproven = (file.proofs[0] > 0) == (file.proofs[1] > 0);
+        match (&self.open, self.open_marks, self.plain) {
+            (None, ..) => Ok(of(file.proofs)),
+            _ if !unproven => Ok(of(file.proofs)),
+            // Programs write a decimal point with as many digits everywhere.
+            (_, [true, false], [0, 0, 0]) if file.proofs == [0, 0] => Ok('.'),
+            // Who groups thousands does so everywhere, and has hundreds beside them.
+            (_, [true, false], [_, 2..=usize::MAX, 0]) => Ok(','),
+            (_, [false, true], [_, 2..=usize::MAX, 0]) => Ok('.'),
+            (Some(open), ..) => Err(open.clone()),
         }
     }
 }
@@ -188,7 +167,9 @@ mod tests {
 
     fn style(numbers: &[&str]) -> Style {
         let mut style = Style::default();
-        numbers.iter().for_each(|number| style.add(1, number));
+        numbers
+            .iter()
+            .for_each(|number| style.add(1, &Cell { number, unit: "" }));
         style
     }
 
@@ -247,7 +228,7 @@ mod tests {
             (&["1.234", "820"], &none, Err("1.234")),
             (&["1.234", "820", "905"], &none, Ok(',')),
             (&["1,234", "820", "905"], &none, Ok('.')),
-            (&["1,234", "820", "1905"], &none, Ok(',')),
+            (&["1,234", "820", "1905"], &none, Err("1,234")),
             (&["1,234", "2,345"], &none, Err("1,234")),
             (&["1 234,5"], &none, Ok(',')),
             (&["820"], &commas, Ok(',')),

@@ -9,8 +9,8 @@ use serde::Serialize;
 use crate::bench::air;
 use crate::bench::header::{ByHand, Column, Columns, Offers, STANDARD_DENSITY, Split, is_unit, known};
 use crate::bench::number::{Cell, is_blank, is_missing};
-use crate::bench::sheet::Sheet;
-use crate::bench::units::{self, Scale};
+use crate::bench::sheet::{Sheet, names};
+use crate::bench::units::{Quantity, Scale};
 use crate::refusal::{Refusal, cut, cut_cell};
 
 /// A row that was left out, and why.
@@ -116,9 +116,21 @@ pub fn unreadable(name: &str, reason: &str) -> Refusal {
 pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal> {
     let by_hand = &reading.by_hand;
     let sheet = Sheet::of(name, bytes, &|cells| known(cells, by_hand), &is_unit)?;
-    let place = format!("{name}:{}", sheet.line.max(1));
-    let columns = named(&sheet, &place, Columns::find(&place, &sheet.headings, by_hand))?;
-    let mut decimals = vec!['.'; sheet.headings.len()];
+    let place = format!("{name}:{}", sheet.line);
+    let header: Vec<&str> = sheet
+        .headings
+        .iter()
+        .map(|heading| heading.name.as_str())
+        .collect();
+    let columns = Columns::find(&place, &sheet.headings, by_hand).map_err(|refusal| match sheet.without_names {
+        false => refusal,
+        true => Refusal::of(
+            place,
+            format!("numbers where the names of the columns stand: {}", header.join(", ")),
+            "a first line with names and units, as upper,lower,thrust_n,torque_nm or throttle,thrust_n,torque_nm",
+        ),
+    })?;
+    let mut decimals = vec!['.'; header.len()];
     for column in columns.all() {
         decimals[column.index] = sheet.decimal(column.index).map_err(|(line, number)| {
             Refusal::of(
@@ -131,185 +143,110 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
             )
         })?;
     }
-    let mut log = Log {
-        name: name.to_string(),
-        notes: taken_for_throttle(&columns, by_hand),
-        samples: Vec::new(),
-        refused: Vec::new(),
-        air: None,
-        columns,
-    };
     let cells = Cells {
         pwm_range: reading.pwm_range.unwrap_or(PWM_RANGE),
         pwm_given: reading.pwm_range.is_some(),
         offers: by_hand.offers,
         decimals,
-        most: match sheet
-            .headings
+        most: header
             .iter()
-            .rposition(|heading| !heading.name.is_empty())
-        {
-            Some(last) => last + 1,
-            None => 0,
-        },
-        least: if sheet.by_blanks { sheet.headings.len() } else { 0 },
+            .rposition(|name| !name.is_empty())
+            .map_or(0, |last| last + 1),
+        least: if sheet.by_blanks { header.len() } else { 0 },
     };
-    let (mut densities, mut measured, mut aside) = (0.0, 0, Vec::new());
+    let (mut samples, mut refused, mut asides, mut densities) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (line, record) in &sheet.rows {
-        let line = *line;
-        match cells.sample(line, &log.columns, record) {
-            _ if let Some(what) = is_aside(&sheet, record) => aside.push((line, what)),
-            Ok(sample) => {
-                log.samples.push(sample);
-                let density = cells.density(&log.columns, record);
-                if density.is_finite() {
-                    (densities, measured) = (densities + density, measured + 1);
-                }
-            }
-            Err(fault) => {
-                let names: Vec<String> = record.iter().map(str::to_owned).collect();
-                if known(&names, by_hand) > 1 {
-                    let reason = format!(
+        if let Some(what) = aside(record) {
+            let names = names(record);
+            if known(&names, by_hand) > 1 && names != header {
+                return Err(Refusal::of(
+                    format!("{name}:{line}"),
+                    format!(
                         "another header, {}, below that of line {}",
                         names.join(", "),
                         sheet.line
-                    );
-                    return Err(Refusal::of(
-                        format!("{name}:{line}"),
-                        reason,
-                        "one table in a file",
-                    ));
-                }
-                log.refused.push(RefusedRow::new(name, line, fault));
+                    ),
+                    "one table in a file",
+                ));
             }
+            asides.push((line, what));
+            continue;
+        }
+        match cells.sample(*line, &columns, record) {
+            Ok(sample) => {
+                samples.push(sample);
+                densities.push(cells.density(&columns, record));
+            }
+            Err(fault) => refused.push(RefusedRow::new(name, *line, fault)),
         }
     }
-    let told = |(line, what): &(u64, &str)| format!("{name}:{line} is passed over: {what}");
-    log.notes.extend(aside.iter().take(MOST_TOLD).map(told));
-    if aside.len() > MOST_TOLD {
-        log.notes.push(format!(
-            "{name}: {} lines more are passed over",
-            aside.len() - MOST_TOLD
-        ));
+    let mut notes = stand_ins(&columns, by_hand);
+    if let Some((line, what)) = asides.first() {
+        let more = match asides.len() {
+            1 => String::new(),
+            all => format!("; so are {} lines more", all - 1),
+        };
+        notes.push(format!("{name}:{line} is passed over: {what}{more}"));
     }
-    let of_coefficients = log
-        .columns
-        .thrust
-        .whole
-        .as_ref()
-        .is_some_and(|c| matches!(c.scale, Scale::OfSpeed(_)));
-    log.air = match by_hand.density_kg_m3 {
-        _ if !of_coefficients => (measured > 0).then(|| air::Known {
-            density_kg_m3: densities / f64::from(measured),
-            from: format!("columns of {name}"),
-        }),
-        Some(_) => None,
-        None => Some(air::Known {
+    densities.retain(|density| density.is_finite());
+    let air = match columns.by_coefficients() {
+        true => by_hand.density_kg_m3.is_none().then(|| air::Known {
             density_kg_m3: STANDARD_DENSITY,
             from: "standard, for CT and CP".to_owned(),
         }),
+        false => (!densities.is_empty()).then(|| air::Known {
+            density_kg_m3: densities.iter().sum::<f64>() / densities.len() as f64,
+            from: format!("columns of {name}"),
+        }),
     };
-    Ok(log)
-}
-
-/// Lines passed over that are told one by one.
-const MOST_TOLD: usize = 3;
-
-/// The columns, or that the first line has numbers where their names should stand.
-fn named(sheet: &Sheet, place: &str, found: Result<Columns, Refusal>) -> Result<Columns, Refusal> {
-    found.map_err(|refusal| match sheet.without_names {
-        false => refusal,
-        true => {
-            let names: Vec<&str> = sheet.headings.iter().map(|heading| heading.name.as_str()).collect();
-            Refusal::of(
-                place,
-                format!("numbers where the names of the columns stand: {}", names.join(", ")),
-                "a first line with names and units, as upper,lower,thrust_n,torque_nm or throttle,thrust_n,torque_nm",
-            )
-        }
+    Ok(Log {
+        name: name.to_owned(),
+        columns,
+        samples,
+        refused,
+        air,
+        notes,
     })
 }
 
 /// What stands for throttle and thrust.
-fn taken_for_throttle(columns: &Columns, by_hand: &ByHand) -> Vec<String> {
-    let mut notes = Vec::new();
-    let speeds = columns.throttle.rotors.iter().flatten();
-    let speeds: Vec<String> = speeds
-        .filter(|column| matches!(column.scale, Scale::Speed(_)))
-        .map(|column| format!("{:?}", column.name))
-        .collect();
-    if let (Some(full), false) = (by_hand.full_rpm, speeds.is_empty()) {
-        notes.push(format!(
+fn stand_ins(columns: &Columns, by_hand: &ByHand) -> Vec<String> {
+    let throttles = columns[Quantity::Throttle].rotors.iter().flatten();
+    let speeds = throttles.filter(|column| matches!(column.scale, Scale::Speed(_)));
+    let speeds: Vec<String> = speeds.map(|column| format!("{:?}", column.name)).collect();
+    let speeds = by_hand.full_rpm.filter(|_| !speeds.is_empty()).map(|full| {
+        format!(
             "throttle is {} over {full} rpm (--rpm-at-full)",
             speeds.join(" and ")
-        ));
-    }
-    if let (Some(Scale::OfSpeed(_)), Some(diameter)) =
-        (columns.thrust.whole.as_ref().map(|c| c.scale), by_hand.diameter_m)
-    {
-        let density = by_hand.density_kg_m3.unwrap_or(STANDARD_DENSITY);
-        let standard = if by_hand.density_kg_m3.is_none() {
-            " (standard; --density gives another)"
-        } else {
-            ""
+        )
+    });
+    let diameter = by_hand.diameter_m.filter(|_| columns.by_coefficients());
+    let coefficients = diameter.map(|diameter| {
+        let density = match by_hand.density_kg_m3 {
+            Some(density) => format!("{density} kg/m3"),
+            None => format!("{STANDARD_DENSITY} kg/m3 (standard; --density gives another)"),
         };
-        notes.push(format!(
-            "thrust and torque are those of CT and CP with a diameter of {diameter} m in air of {density} kg/m3{standard}"
-        ));
-    }
-    notes
+        format!(
+            "thrust and torque are those of CT and CP with a diameter of {diameter} m in air of {density}"
+        )
+    });
+    speeds.into_iter().chain(coefficients).collect()
 }
 
-/// Why a row is none of measurements: the header again, a summary, a remark.
-fn is_aside(sheet: &Sheet, record: &csv::StringRecord) -> Option<&'static str> {
-    const SUMMARIES: [&str; 16] = [
-        "average",
-        "averages",
-        "avg",
-        "mean",
-        "max",
-        "maximum",
-        "min",
-        "minimum",
-        "total",
-        "sum",
-        "std",
-        "median",
-        "stddev",
-        "mittelwert",
-        "moyenne",
-        "promedio",
-    ];
+/// Why a row is none of measurements.
+fn aside(record: &csv::StringRecord) -> Option<&'static str> {
+    const SUMMARIES: &str = "average averages avg mean max maximum min minimum total sum std median stddev mittelwert \
+                             moyenne promedio";
     let first = record.iter().map(str::trim).find(|cell| !cell.is_empty())?;
-    if first.starts_with(|c: char| c.is_ascii_digit()) {
-        return None;
+    let first = first.trim_end_matches([':', '.']);
+    match SUMMARIES
+        .split(' ')
+        .any(|summary| summary.eq_ignore_ascii_case(first))
+    {
+        true => Some("a summary of other rows"),
+        false => (!record.iter().any(|cell| Cell::of(cell).is_some())).then_some("there is no number in it"),
     }
-    let held = record.iter().filter(|cell| !is_blank(cell)).count();
-    let has_number = record.iter().any(|cell| Cell::of(cell).is_some());
-    let word = first.trim_end_matches([':', '.']);
-    let names = sheet.headings.iter().map(|heading| heading.name.as_str());
-    let below = sheet
-        .headings
-        .iter()
-        .map(|heading| heading.below.as_deref().unwrap_or_default());
-    let units = record
-        .iter()
-        .map(|cell| cell.trim_matches(['(', ')', '[', ']', ' ']));
-    match () {
-        () if SUMMARIES.iter().any(|summary| word.eq_ignore_ascii_case(summary)) => {
-            Some("a summary of other rows")
-        }
-        () if names.eq(record.iter().map(str::trim)) => Some("the header again"),
-        () if has_number => None,
-        () if units.eq(below) => Some("the units again"),
-        () if held == 1 || first.starts_with(['#', '%']) && !is_error(first) => Some("a remark"),
-        () => None,
-    }
-}
-
-/// Whether a cell is what a spreadsheet writes for a value that it cannot compute.
-fn is_error(cell: &str) -> bool {
-    cell.starts_with('#') && cell[1..].starts_with(|c: char| c.is_uppercase())
 }
 
 struct Cells {
@@ -329,46 +266,43 @@ const AT_REST: f64 = 0.3;
 impl Cells {
     fn sample(&self, line: u64, columns: &Columns, record: &csv::StringRecord) -> Result<Sample, Fault> {
         self.in_columns(record)?;
-        let [upper, lower] = &columns.throttle.rotors;
-        let rpm = self
-            .value(&columns.speed.rotors[0], record, f64::NAN)
-            .unwrap_or(f64::NAN);
-        let value = |column: &Option<Column>| self.value(column, record, rpm);
-        let split = |columns: &Split<Option<Column>>| -> Result<Split<f64>, Fault> {
-            let [upper, lower] = &columns.rotors;
+        let rpm = self.value(&columns[Quantity::Speed].rotors[0], record, f64::NAN);
+        let rpm = rpm.unwrap_or(f64::NAN);
+        let split = |quantity: Quantity| -> Result<Split<f64>, Fault> {
+            let Split {
+                whole,
+                rotors: [upper, lower],
+            } = &columns[quantity];
+            let value = |column| self.value(column, record, rpm);
             Ok(Split {
-                whole: value(&columns.whole)?,
+                whole: value(whole)?,
                 rotors: [value(upper)?, value(lower)?],
             })
         };
+        let [upper, lower] = &columns[Quantity::Throttle].rotors;
         let throttle = [self.throttle(upper, record)?, self.throttle(lower, record)?];
-        let (voltage, current) = (split(&columns.voltage)?.rotors, split(&columns.current)?);
+        let (voltage, current, power) = (
+            split(Quantity::Voltage)?.rotors,
+            split(Quantity::Current)?,
+            split(Quantity::Power)?,
+        );
         // Of the whole, or of both rotors together; NaN where a part of it is not measured.
-        let lower_voltage = voltage[usize::from(columns.voltage.rotors[1].is_some())];
-        let power_w = match columns.current.whole {
+        let lower_voltage = voltage[usize::from(columns[Quantity::Voltage].rotors[1].is_some())];
+        let by_current = match columns[Quantity::Current].whole {
             Some(_) => voltage[0] * current.whole,
             None => voltage[0] * current.rotors[0] + lower_voltage * current.rotors[1],
         };
-        let power_w = match split(&columns.power)? {
-            _ if !power_w.is_nan() => power_w,
-            Split {
-                whole,
-                rotors: [upper, lower],
-            } => {
-                if whole.is_nan() {
-                    upper + lower
-                } else {
-                    whole
-                }
-            }
-        };
+        let measured = [by_current, power.whole, power.rotors[0] + power.rotors[1]];
         Ok(Sample {
             line,
             throttle,
-            thrust: split(&columns.thrust)?,
-            torque: split(&columns.torque)?,
+            thrust: split(Quantity::Thrust)?,
+            torque: split(Quantity::Torque)?,
             voltage,
-            power_w,
+            power_w: measured
+                .into_iter()
+                .find(|power| !power.is_nan())
+                .unwrap_or(f64::NAN),
         })
     }
 
@@ -390,22 +324,19 @@ impl Cells {
 
     /// Density of the air, kg/m3; NaN where the row does not tell it.
     fn density(&self, columns: &Columns, record: &csv::StringRecord) -> f64 {
-        let of =
-            |column: &Split<Option<Column>>| self.value(&column.whole, record, f64::NAN).unwrap_or(f64::NAN);
-        match columns.density.whole {
-            Some(_) => of(&columns.density),
-            None => atmosphere::density(of(&columns.pressure), of(&columns.temperature)),
+        let of = |quantity| {
+            self.value(&columns[quantity].whole, record, f64::NAN)
+                .unwrap_or(f64::NAN)
+        };
+        match columns[Quantity::Density].whole {
+            Some(_) => of(Quantity::Density),
+            None => atmosphere::density(of(Quantity::Pressure), of(Quantity::Temperature)),
         }
     }
 
     fn value(&self, column: &Option<Column>, record: &csv::StringRecord, rpm: f64) -> Result<f64, Fault> {
         let Some(column) = column else { return Ok(f64::NAN) };
-        let raw = self.number(column, record)?;
-        Ok(match column.scale {
-            Scale::Factor(factor) | Scale::Pulse(factor) | Scale::Speed(factor) => raw * factor,
-            Scale::Affine(factor, offset) => raw * factor + offset,
-            Scale::OfSpeed(factor) => raw * factor * rpm * rpm,
-        })
+        Ok(column.scale.of(self.number(column, record)?, rpm))
     }
 
     fn throttle(&self, column: &Option<Column>, record: &csv::StringRecord) -> Result<f64, Fault> {
@@ -419,39 +350,17 @@ impl Cells {
             Scale::Factor(1.0) if self.pwm_given && raw > 1.5 => Some(raw),
             _ => None,
         };
-        let throttle = match (us, column.scale) {
-            (Some(us), _) => (us - low) / (high - low),
-            (None, Scale::Affine(factor, offset)) => raw * factor + offset,
-            (
-                None,
-                Scale::Factor(factor) | Scale::Pulse(factor) | Scale::Speed(factor) | Scale::OfSpeed(factor),
-            ) => raw * factor,
-        };
+        let throttle = us.map_or(column.scale.of(raw, f64::NAN), |us| (us - low) / (high - low));
         let why = match column.scale {
             _ if us.is_some_and(|us| us > 0.0 && throttle < -AT_REST) => {
                 format!("is far below the pulse widths {low}..{high} us: another unit, or --pwm-range")
             }
             _ if throttle.is_nan() || throttle <= 1.02 => return Ok(throttle),
-            Scale::Factor(1.0) if !self.pwm_given => {
-                let per_cent = match self.offers {
-                    Offers::Pair => "--unit upper=% --unit lower=%",
-                    Offers::OneRotor => "--unit throttle=%",
-                    Offers::Header => "Throttle (%) in the header",
-                };
-                let pulse = match self.offers {
-                    Offers::Header => "PWM (us) in the header",
-                    _ => "--pwm-range 1000,2000",
-                };
-                format!("is above 1: give {pulse} if it is a pulse width, {per_cent} if it is in per cent")
+            Scale::Factor(1.0) if !self.pwm_given => self.offers.above_one().to_owned(),
+            Scale::Pulse(_) | Scale::Factor(1.0) => {
+                format!("is throttle {throttle:.3}, above the range {low}..{high} us (--pwm-range)")
             }
-            Scale::Factor(_) => {
-                format!("is throttle {throttle:.3}, above full throttle: its unit is another")
-            }
-            Scale::Speed(factor) => format!(
-                "is above the speed at full throttle, {:.0} (--rpm-at-full)",
-                1.0 / factor
-            ),
-            _ => format!("is throttle {throttle:.3}, above the range {low}..{high} us (--pwm-range)"),
+            _ => format!("is throttle {throttle:.3}, above full throttle: another unit, or --rpm-at-full"),
         };
         Err(Fault::new(
             format!("{} range", column.index),
@@ -461,34 +370,21 @@ impl Cells {
 
     /// A cell as a number; NaN where it holds none or the row is too short for it.
     fn number(&self, column: &Column, record: &csv::StringRecord) -> Result<f64, Fault> {
-        let cell = record.get(column.index).unwrap_or_default().trim();
-        if is_missing(cell) {
+        let text = record.get(column.index).unwrap_or_default().trim();
+        if is_missing(text) {
             return Ok(f64::NAN);
         }
-        let fault = |what: &str, why: &str| {
-            let (name, cell) = (&column.name, cut_cell(cell.to_owned()));
-            Fault::new(
-                format!("{} {what}", column.index),
-                format!("{name:?} = {cell:?} {why}"),
-            )
+        let cell = Cell::of(text).filter(Cell::is_number);
+        let value = cell.and_then(|cell| cell.value(self.decimals[column.index]));
+        let why = match cell.zip(value.filter(|value| value.is_finite())) {
+            None => "is not a finite number",
+            Some((cell, value)) if column.holds(cell.unit) => return Ok(value),
+            Some(_) => "is in another unit than its column",
         };
-        let of = |cell: &Cell<'_>| {
-            cell.value(self.decimals[column.index])
-                .filter(|value| value.is_finite())
-        };
-        let taken = Cell::of(cell);
-        let Some((value, unit)) = taken.and_then(|cell| Some((of(&cell)?, cell.unit))) else {
-            return Err(fault("number", "is not a finite number"));
-        };
-        let own = || units::scale(column.quantity, unit);
-        match &column.in_cells {
-            _ if unit.is_empty() && column.in_cells.is_none() => Ok(value),
-            Some(common) if unit == common => Ok(value),
-            Some(common) => Err(fault("unit", &format!("is not in {common:?} as the others"))),
-            None if own().is_none() => Err(fault("number", "is not a finite number")),
-            None if own() == Some(column.scale) => Ok(value),
-            None => Err(fault("unit", "is in another unit than its column")),
-        }
+        Err(Fault::new(
+            format!("{} {why}", column.index),
+            format!("{:?} = {:?} {why}", column.name, cut_cell(text.to_owned())),
+        ))
     }
 }
 

@@ -21,6 +21,7 @@ use serde::Serialize;
 
 use crate::bench::header::{Column, Columns, Split};
 use crate::bench::read::Sample;
+use crate::bench::units::Quantity;
 use crate::refusal::Refusal;
 use crate::statistics::extent;
 
@@ -161,9 +162,9 @@ pub fn pair(
         of,
         total: columns.whole.is_some(),
     };
-    let thrust = channel("thrust", |s| s.thrust, &columns.thrust);
-    let torque = channel("torque", |s| s.torque, &columns.torque);
-    if !columns.thrust.complete() {
+    let thrust = channel("thrust", |s| s.thrust, &columns[Quantity::Thrust]);
+    let torque = channel("torque", |s| s.torque, &columns[Quantity::Torque]);
+    if !columns[Quantity::Thrust].complete() {
         return Err(Refusal::of(
             file,
             "thrust of one rotor only, though both turn",
@@ -203,10 +204,10 @@ fn pair_torque(
     choice: SignChoice,
     notes: &mut Vec<String>,
 ) -> Result<(Vec<f64>, Vec<f64>), Refusal> {
-    if !columns.torque.complete() {
+    if !columns[Quantity::Torque].complete() {
         return Err(Refusal::of(
             format!("{file}:1"),
-            match columns.torque.rotors.iter().flatten().next() {
+            match columns[Quantity::Torque].rotors.iter().flatten().next() {
                 Some(column) => format!("torque of one rotor only ({:?})", column.name),
                 None => "no torque column".to_string(),
             },
@@ -270,7 +271,7 @@ pub fn single(
     let whole = |columns: &Split<Option<Column>>| {
         columns.whole.is_some() && !(own_columns && columns.rotors[rotor].is_some())
     };
-    let [whole_thrust, whole_torque] = [&columns.thrust, &columns.torque].map(whole);
+    let [whole_thrust, whole_torque] = [&columns[Quantity::Thrust], &columns[Quantity::Torque]].map(whole);
     let of = |value: Split<f64>, whole: bool| if whole { value.whole } else { value.rotors[rotor] };
     let thrust = |s: &Sample| of(s.thrust, whole_thrust);
     let torque = |s: &Sample| of(s.torque, whole_torque);
@@ -279,7 +280,7 @@ pub fn single(
         SignChoice::Given(signs) => signs[rotor],
     };
     let torque_sign = sign_of_sum(samples.iter().map(torque));
-    let has_torque = whole_torque || columns.torque.rotors[rotor].is_some();
+    let has_torque = whole_torque || columns[Quantity::Torque].rotors[rotor].is_some();
     let signs = Signs {
         thrust: vec![thrust_sign],
         torque: if has_torque { vec![torque_sign] } else { Vec::new() },

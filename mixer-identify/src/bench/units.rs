@@ -55,6 +55,17 @@ pub enum Scale {
     OfSpeed(f64),
 }
 
+impl Scale {
+    /// A value in SI units (or a throttle, but for pulse widths in microseconds); `rpm` is the row's speed.
+    pub fn of(self, raw: f64, rpm: f64) -> f64 {
+        match self {
+            Scale::Factor(factor) | Scale::Pulse(factor) | Scale::Speed(factor) => raw * factor,
+            Scale::Affine(factor, offset) => raw * factor + offset,
+            Scale::OfSpeed(factor) => raw * factor * rpm * rpm,
+        }
+    }
+}
+
 /// Spells a name or a unit one way: micro and dot signs, blanks and case.
 pub fn spelled(text: &str) -> String {
     let folded: String = text
@@ -70,83 +81,97 @@ pub fn spelled(text: &str) -> String {
     words.join(" ").to_lowercase()
 }
 
-/// What a unit of a quantity is in SI units, the names of units as [`scale`] strips them.
-const FACTORS: [(Quantity, &str, f64); 36] = [
-    (Quantity::Throttle, "% percent", 0.01),
-    (Quantity::Throttle, "1", 1.0),
-    (Quantity::Thrust, "n newton newtons", 1.0),
-    (Quantity::Thrust, "mn", 1e-3),
-    (Quantity::Thrust, "kn", 1e3),
-    (Quantity::Thrust, "g gf gram grams", 1e-3 * G),
-    (Quantity::Thrust, "kg kgf kilogram kilograms", G),
-    (Quantity::Thrust, "lb lbf lbs pound pounds", POUND),
-    (Quantity::Thrust, "oz ozf ounce ounces", OUNCE),
-    (Quantity::Torque, "nm", 1.0),
-    (Quantity::Torque, "mnm nmm", 1e-3),
-    (Quantity::Torque, "ncm", 1e-2),
-    (Quantity::Torque, "kgfm kgm", G),
-    (Quantity::Torque, "kgfcm kgcm", 1e-2 * G),
-    (Quantity::Torque, "gfcm gcm", 1e-5 * G),
-    (Quantity::Torque, "lbfin lbin inlb inlbf", POUND * INCH),
-    (Quantity::Torque, "lbfft lbft ftlb ftlbf", POUND * 12.0 * INCH),
-    (Quantity::Torque, "ozfin ozin inoz inozf", OUNCE * INCH),
-    (Quantity::Voltage, "v volt volts", 1.0),
-    (Quantity::Voltage, "mv", 1e-3),
-    (Quantity::Current, "a amp amps ampere", 1.0),
-    (Quantity::Current, "ma", 1e-3),
-    (Quantity::Power, "w watt watts", 1.0),
-    (Quantity::Power, "kw", 1e3),
-    (Quantity::Speed, "rpm r/min u/min 1/min min1 min^1", 1.0),
-    (Quantity::Speed, "krpm", 1e3),
-    (Quantity::Time, "s sec", 1.0),
-    (Quantity::Time, "ms", 1e-3),
-    (Quantity::Temperature, "k kelvin", 1.0),
-    (Quantity::Pressure, "pa", 1.0),
-    (Quantity::Pressure, "hpa mbar mb", 100.0),
-    (Quantity::Pressure, "kpa", 1000.0),
-    (Quantity::Pressure, "bar", 1e5),
-    (Quantity::Pressure, "mmhg", 133.322_4),
-    (Quantity::Pressure, "inhg", 3_386.388_6),
-    (Quantity::Density, "kg/m3 kgm3 kg/m^3 kg/m³ kgm^3", 1.0),
+/// Units of each quantity, the first spelling for messages, and how to read them.
+const UNITS: [(Quantity, &str, Scale); 40] = [
+    (Quantity::Throttle, "us pwm", Scale::Pulse(1.0)),
+    (Quantity::Throttle, "% percent", Scale::Factor(0.01)),
+    (Quantity::Throttle, "ms", Scale::Pulse(1000.0)),
+    (Quantity::Throttle, "1", Scale::Factor(1.0)),
+    (Quantity::Thrust, "N newton newtons", Scale::Factor(1.0)),
+    (Quantity::Thrust, "mN", Scale::Factor(1e-3)),
+    (Quantity::Thrust, "kN", Scale::Factor(1e3)),
+    (Quantity::Thrust, "gf g gram grams", Scale::Factor(1e-3 * G)),
+    (Quantity::Thrust, "kgf kg kilogram kilograms", Scale::Factor(G)),
+    (Quantity::Thrust, "lbf lb lbs pound pounds", Scale::Factor(POUND)),
+    (Quantity::Thrust, "ozf oz ounce ounces", Scale::Factor(OUNCE)),
+    (Quantity::Torque, "N·m", Scale::Factor(1.0)),
+    (Quantity::Torque, "mN·m N·mm", Scale::Factor(1e-3)),
+    (Quantity::Torque, "N·cm", Scale::Factor(1e-2)),
+    (Quantity::Torque, "kgf·m kg·m", Scale::Factor(G)),
+    (Quantity::Torque, "kgf·cm kg·cm", Scale::Factor(1e-2 * G)),
+    (Quantity::Torque, "gf·cm g·cm", Scale::Factor(1e-5 * G)),
+    (
+        Quantity::Torque,
+        "lbf·in in·lb in·lbf",
+        Scale::Factor(POUND * INCH),
+    ),
+    (
+        Quantity::Torque,
+        "lbf·ft lb·ft ft·lb ft·lbf",
+        Scale::Factor(POUND * 12.0 * INCH),
+    ),
+    (
+        Quantity::Torque,
+        "ozf·in oz·in in·oz in·ozf",
+        Scale::Factor(OUNCE * INCH),
+    ),
+    (Quantity::Voltage, "V volt volts", Scale::Factor(1.0)),
+    (Quantity::Voltage, "mV", Scale::Factor(1e-3)),
+    (Quantity::Current, "A amp amps ampere", Scale::Factor(1.0)),
+    (Quantity::Current, "mA", Scale::Factor(1e-3)),
+    (Quantity::Power, "W watt watts", Scale::Factor(1.0)),
+    (Quantity::Power, "kW", Scale::Factor(1e3)),
+    (
+        Quantity::Speed,
+        "rpm r/min u/min 1/min min1 min^1",
+        Scale::Factor(1.0),
+    ),
+    (Quantity::Speed, "krpm", Scale::Factor(1e3)),
+    (Quantity::Time, "s sec", Scale::Factor(1.0)),
+    (Quantity::Time, "ms", Scale::Factor(1e-3)),
+    (
+        Quantity::Temperature,
+        "C degC celsius",
+        Scale::Affine(1.0, 273.15),
+    ),
+    (Quantity::Temperature, "K kelvin", Scale::Factor(1.0)),
+    (
+        Quantity::Temperature,
+        "F degF fahrenheit",
+        Scale::Affine(5.0 / 9.0, 459.67 * 5.0 / 9.0),
+    ),
+    (Quantity::Pressure, "hPa mbar mb", Scale::Factor(100.0)),
+    (Quantity::Pressure, "Pa", Scale::Factor(1.0)),
+    (Quantity::Pressure, "kPa", Scale::Factor(1000.0)),
+    (Quantity::Pressure, "bar", Scale::Factor(1e5)),
+    (Quantity::Pressure, "mmHg", Scale::Factor(133.322_4)),
+    (Quantity::Pressure, "inHg", Scale::Factor(3_386.388_6)),
+    (
+        Quantity::Density,
+        "kg/m3 kgm3 kg/m^3 kg/m³ kgm^3",
+        Scale::Factor(1.0),
+    ),
 ];
 
 /// The scale of `unit` for this quantity, or nothing if the unit does not measure it.
 pub fn scale(quantity: Quantity, unit: &str) -> Option<Scale> {
-    let is_mark = |c: &char| matches!(c, '·' | '*' | '-' | '.' | ' ' | '°' | 'º');
-    let unit: String = spelled(unit).chars().filter(|c| !is_mark(c)).collect();
-    match (quantity, unit.as_str()) {
-        (Quantity::Throttle, "us" | "pwm") => Some(Scale::Pulse(1.0)),
-        (Quantity::Throttle, "ms") => Some(Scale::Pulse(1000.0)),
-        (Quantity::Throttle, "") => Some(Scale::Factor(1.0)),
-        (Quantity::Temperature, "c" | "degc" | "celsius") => Some(Scale::Affine(1.0, 273.15)),
-        (Quantity::Temperature, "f" | "degf" | "fahrenheit") => {
-            Some(Scale::Affine(5.0 / 9.0, 459.67 * 5.0 / 9.0))
-        }
-        (_, unit) => {
-            let is = |names: &str| names.split(' ').any(|name| name == unit);
-            let mut factors = FACTORS.iter();
-            let found = factors.find(|(of, names, _)| *of == quantity && is(names))?;
-            Some(Scale::Factor(found.2))
-        }
-    }
+    let bare = |unit: &str| -> String {
+        let is_mark = |c: &char| matches!(c, '·' | '*' | '-' | '.' | ' ' | '°' | 'º');
+        spelled(unit).chars().filter(|c| !is_mark(c)).collect()
+    };
+    let unit = bare(unit);
+    let mut units = UNITS.iter().filter(|(of, ..)| *of == quantity);
+    let found = units.find(|(_, names, _)| names.split(' ').any(|name| bare(name) == unit))?;
+    Some(found.2)
 }
 
 /// The units that `scale` knows, for messages.
-pub fn known(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Throttle => "us, %, or none for a throttle in [0, 1]",
-        Quantity::Thrust => "N, mN, gf, kgf, lbf, ozf",
-        Quantity::Torque => "N·m, mN·m, N·cm, N·mm, kgf·m, kgf·cm, gf·cm, lbf·in, lbf·ft, ozf·in",
-        Quantity::Voltage => "V, mV",
-        Quantity::Current => "A, mA",
-        Quantity::Power => "W, kW",
-        Quantity::Speed => "rpm, krpm",
-        Quantity::ThrustCoefficient | Quantity::PowerCoefficient => "none",
-        Quantity::Time => "s, ms",
-        Quantity::Temperature => "C, K, F",
-        Quantity::Pressure => "hPa, mbar, Pa, kPa, bar, mmHg, inHg",
-        Quantity::Density => "kg/m3",
-    }
+pub fn known(quantity: Quantity) -> String {
+    let units = UNITS.iter().filter(|(of, ..)| *of == quantity);
+    let names: Vec<&str> = units
+        .filter_map(|(_, names, _)| names.split(' ').next())
+        .collect();
+    names.join(", ")
 }
 
 #[cfg(test)]

@@ -13,30 +13,19 @@ pub(super) struct Name {
 }
 
 /// Words that make a column something other than what its `thrust` or `torque` suggests.
-const OTHERS: [&str; 11] = [
-    "efficiency",
-    "power ",
-    "speed",
-    "rpm",
-    "servo",
-    "centre",
-    "center",
-    "temp",
-    "vibration",
-    "offset",
-    "std",
-];
+const OTHERS: &str = "efficiency|power |speed|rpm|servo|centre|center|temp|vibration|offset|std";
 
 /// Words that tell what a column measures, the first that is there.
-const WORDS: [(&str, Quantity); 8] = [
-    ("esc", Quantity::Throttle),
-    ("pwm", Quantity::Throttle),
-    ("throttle", Quantity::Throttle),
-    ("thrust", Quantity::Thrust),
-    ("torque", Quantity::Torque),
-    ("voltage", Quantity::Voltage),
-    ("time", Quantity::Time),
-    ("current", Quantity::Current),
+const WORDS: [(Quantity, &str); 6] = [
+    (Quantity::Throttle, "esc pwm throttle gas gaz acelerador"),
+    (
+        Quantity::Thrust,
+        "thrust schub pouss\u{e9}e poussee empuje spinta",
+    ),
+    (Quantity::Torque, "torque drehmoment couple par coppia"),
+    (Quantity::Voltage, "voltage spannung tension voltaje tensione"),
+    (Quantity::Time, "time zeit temps tiempo tempo"),
+    (Quantity::Current, "current strom courant corriente corrente"),
 ];
 
 impl Name {
@@ -79,23 +68,14 @@ impl Name {
 
     /// What is measured beside thrust and torque: speed, electrical power, coefficients.
     fn of_motor(&self) -> Option<Quantity> {
-        const ELECTRICAL: [&str; 8] = [
-            "electrical",
-            "electric",
-            "input",
-            "supply",
-            "total",
-            "motor",
-            "upper",
-            "lower",
-        ];
+        const ELECTRICAL: &str = "electrical electric input supply total motor upper lower";
         let unit = self
             .unit
             .as_deref()
             .filter(|unit| units::scale(Quantity::Speed, unit).is_some());
         let mut words = self
             .words()
-            .filter(|word| word.len() > 1 && !ELECTRICAL.contains(word));
+            .filter(|word| word.len() > 1 && !ELECTRICAL.split(' ').any(|of| of == *word));
         match self.text.as_str() {
             "ct" => Some(Quantity::ThrustCoefficient),
             "cp" => Some(Quantity::PowerCoefficient),
@@ -115,15 +95,17 @@ impl Name {
             return Some(quantity);
         }
         let padded = format!("{} ", self.text);
-        if OTHERS.iter().any(|other| padded.contains(other)) {
+        if OTHERS.split('|').any(|other| padded.contains(other)) {
             return None;
         }
         if matches!(self.text.as_str(), "upper" | "lower") {
             return Some(Quantity::Throttle);
         }
-        let mut quantities = WORDS.iter();
-        let found = quantities.find(|(word, _)| self.words().any(|own| own == *word));
-        found.map(|(_, quantity)| *quantity)
+        let is_of = |words: &str| self.words().any(|own| words.split(' ').any(|word| word == own));
+        WORDS
+            .iter()
+            .find(|(_, words)| is_of(words))
+            .map(|(quantity, _)| *quantity)
     }
 
     /// Words of the prefix and of the rest.
@@ -182,50 +164,27 @@ fn split_unit(text: &str) -> (String, Option<String>) {
             );
         }
     }
-    let of_air = [
-        ("density", Quantity::Density),
-        ("temperature", Quantity::Temperature),
-        ("pressure", Quantity::Pressure),
-    ];
-    for (word, quantity) in of_air {
-        let unit = text.rsplit_once(word).map(|(_, unit)| unit.trim());
-        if let Some(unit) = unit.filter(|unit| units::scale(quantity, unit).is_some()) {
-            return (
-                text[..text.len() - unit.len()].trim().to_string(),
-                Some(unit.to_string()),
-            );
+    // The last word, or two, as in `density_kg_m3`.
+    for (at, _) in text.rmatch_indices([' ', '/']).take(2) {
+        let (rest, last) = (text[..at].trim_end_matches([',', ':']), &text[at + 1..]);
+        let named = Name {
+            raw: String::new(),
+            prefix: None,
+            text: rest.to_owned(),
+            unit: None,
+        };
+        use Quantity::{Power, Speed, Throttle, Thrust, Time, Torque, Voltage};
+        let is_unit = match named.quantity() {
+            Some(quantity) => units::scale(quantity, last).is_some(),
+            // The A of amperes is also a side: it is a unit behind a current alone.
+            None => [Speed, Power, Thrust, Torque, Voltage, Time, Throttle]
+                .iter()
+                .any(|&quantity| units::scale(quantity, last).is_some()),
+        };
+        let is_number = last.bytes().all(|byte| byte.is_ascii_digit());
+        if is_unit && !is_number && last != "pwm" && rest.contains(char::is_alphabetic) {
+            return (rest.to_owned(), Some(last.to_owned()));
         }
     }
-    // `thrust/n`
-    if let Some((rest, last)) = text.rsplit_once('/')
-        && WORDS
-            .iter()
-            .any(|(word, of)| rest.split(' ').any(|own| own == *word) && suffix_of(*of, last))
-    {
-        return (rest.to_string(), Some(last.to_string()));
-    }
-    if let Some((rest, last)) = text.rsplit_once(' ') {
-        let rest = rest.trim_end_matches([',', ':']);
-        let known = [
-            Quantity::Speed,
-            Quantity::Power,
-            Quantity::Thrust,
-            Quantity::Torque,
-            Quantity::Voltage,
-            Quantity::Time,
-            Quantity::Throttle,
-        ];
-        // The A of amperes is also a side: it is a unit behind a current alone.
-        if rest.contains("current") && suffix_of(Quantity::Current, last) {
-            return (rest.to_string(), Some(last.to_string()));
-        }
-        if rest.contains(|c: char| c.is_alphabetic()) && known.iter().any(|&q| suffix_of(q, last)) {
-            return (rest.to_string(), Some(last.to_string()));
-        }
-    }
-    (text.to_string(), None)
-}
-
-fn suffix_of(quantity: Quantity, suffix: &str) -> bool {
-    !suffix.chars().any(|c| c.is_ascii_digit()) && suffix != "pwm" && units::scale(quantity, suffix).is_some()
+    (text.to_owned(), None)
 }

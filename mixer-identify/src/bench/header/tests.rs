@@ -22,16 +22,23 @@ fn coaxial_map() {
          Total Torque [Nm],Time [s]",
     );
     assert_eq!(
-        (at(&c.throttle.rotors[0]), at(&c.throttle.rotors[1])),
+        (
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1])
+        ),
         (Some(0), Some(1))
     );
     assert_eq!(
-        (at(&c.thrust.whole), at(&c.torque.whole), at(&c.voltage.rotors[0])),
+        (
+            at(&c[Quantity::Thrust].whole),
+            at(&c[Quantity::Torque].whole),
+            at(&c[Quantity::Voltage].rotors[0])
+        ),
         (Some(16), Some(17), Some(10))
     );
-    assert_eq!(c.thrust.rotors.each_ref().map(at), [Some(4), Some(6)]);
+    assert_eq!(c[Quantity::Thrust].rotors.each_ref().map(at), [Some(4), Some(6)]);
     assert_eq!(
-        c.throttle.rotors[0].clone().expect("upper").scale,
+        c[Quantity::Throttle].rotors[0].clone().expect("upper").scale,
         Scale::Pulse(1.0)
     );
     assert!(c.sides_named);
@@ -45,14 +52,14 @@ fn rcbenchmark_single() {
     );
     assert_eq!(
         (
-            at(&c.throttle.rotors[0]),
-            at(&c.throttle.rotors[1]),
-            at(&c.torque.whole),
-            at(&c.thrust.whole)
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1]),
+            at(&c[Quantity::Torque].whole),
+            at(&c[Quantity::Thrust].whole)
         ),
         (Some(1), None, Some(4), Some(5))
     );
-    assert_eq!(at(&c.time.whole), Some(0));
+    assert_eq!(at(&c[Quantity::Time].whole), Some(0));
 }
 
 #[test]
@@ -62,13 +69,13 @@ fn rcbenchmark_dual() {
     );
     assert_eq!(
         (
-            at(&c.throttle.rotors[0]),
-            at(&c.throttle.rotors[1]),
-            at(&c.thrust.whole)
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1]),
+            at(&c[Quantity::Thrust].whole)
         ),
         (Some(1), Some(5), None)
     );
-    assert_eq!(c.torque.rotors.each_ref().map(at), [Some(2), Some(6)]);
+    assert_eq!(c[Quantity::Torque].rotors.each_ref().map(at), [Some(2), Some(6)]);
     assert!(!c.sides_named, "A and B do not say which is above");
 }
 
@@ -81,22 +88,22 @@ fn flight_stand_with_edited_prefixes() {
     );
     assert_eq!(
         (
-            at(&c.throttle.rotors[0]),
-            at(&c.throttle.rotors[1]),
-            at(&c.voltage.rotors[0])
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1]),
+            at(&c[Quantity::Voltage].rotors[0])
         ),
         (Some(1), Some(5), Some(4))
     );
-    assert_eq!(c.thrust.rotors.each_ref().map(at), [Some(2), Some(6)]);
+    assert_eq!(c[Quantity::Thrust].rotors.each_ref().map(at), [Some(2), Some(6)]);
     assert_eq!(
-        c.thrust.rotors[0].as_ref().expect("thrust").scale,
+        c[Quantity::Thrust].rotors[0].as_ref().expect("thrust").scale,
         Scale::Factor(9.80665)
     );
     let c = find("Bottom motor - ESC throttle (%),Top motor - ESC throttle (%),thrust_n");
     assert_eq!(
         (
-            at(&c.throttle.rotors[0]),
-            at(&c.throttle.rotors[1]),
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1]),
             c.sides_named
         ),
         (Some(1), Some(0), true)
@@ -105,9 +112,9 @@ fn flight_stand_with_edited_prefixes() {
     let c = find("Powertrain 1 - ESC throttle (μs),Powertrain 1 - force Fz (thrust) (N)");
     assert_eq!(
         (
-            at(&c.throttle.rotors[0]),
-            at(&c.throttle.rotors[1]),
-            at(&c.thrust.whole)
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1]),
+            at(&c[Quantity::Thrust].whole)
         ),
         (Some(0), None, Some(1))
     );
@@ -118,19 +125,22 @@ fn plain() {
     let c = find("upper,lower,thrust_n,torque_nm,voltage_v");
     assert_eq!(
         (
-            at(&c.throttle.rotors[0]),
-            at(&c.throttle.rotors[1]),
-            at(&c.thrust.whole),
-            at(&c.torque.whole)
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1]),
+            at(&c[Quantity::Thrust].whole),
+            at(&c[Quantity::Torque].whole)
         ),
         (Some(0), Some(1), Some(2), Some(3))
     );
     assert_eq!(
-        c.throttle.rotors[0].clone().expect("upper").scale,
+        c[Quantity::Throttle].rotors[0].clone().expect("upper").scale,
         Scale::Factor(1.0)
     );
     let c = find("upper,lower,thrust_gf,torque_ozf-in");
-    assert_eq!(c.thrust.whole.expect("thrust").scale, Scale::Factor(0.00980665));
+    assert_eq!(
+        c[Quantity::Thrust].whole.as_ref().expect("thrust").scale,
+        Scale::Factor(0.00980665)
+    );
 }
 
 #[test]
@@ -148,10 +158,10 @@ fn by_hand() {
     let c = find_by_hand("cmd_one,x,F,M (N⋅m)", &hand).expect("mapped");
     assert_eq!(
         (
-            at(&c.throttle.rotors[0]),
-            at(&c.throttle.rotors[1]),
-            at(&c.thrust.whole),
-            at(&c.torque.whole)
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1]),
+            at(&c[Quantity::Thrust].whole),
+            at(&c[Quantity::Torque].whole)
         ),
         (Some(0), Some(1), Some(2), Some(3))
     );
@@ -172,10 +182,13 @@ fn swap_exchanges_the_rotors() {
     };
     let c = find_by_hand("ESC A (us),ESC B (us),Thrust A (N),Thrust B (N)", &hand).expect("a header");
     assert_eq!(
-        (at(&c.throttle.rotors[0]), at(&c.throttle.rotors[1])),
+        (
+            at(&c[Quantity::Throttle].rotors[0]),
+            at(&c[Quantity::Throttle].rotors[1])
+        ),
         (Some(1), Some(0))
     );
-    assert_eq!(c.thrust.rotors.each_ref().map(at), [Some(3), Some(2)]);
+    assert_eq!(c[Quantity::Thrust].rotors.each_ref().map(at), [Some(3), Some(2)]);
 }
 
 #[test]
