@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::air::{Air, DENSITY_EXPONENT};
 use crate::bench::read::Reading;
-use crate::bench::{Bench, Kind, Preparation, equal_commands, unequal};
+use crate::bench::{Bench, Kind, Preparation, equal_commands, is_one_signal};
 use crate::fit::balance::balanced;
 use crate::fit::hundredths;
 use crate::fit::pair::{self, Pair};
@@ -103,7 +103,7 @@ pub fn with_runs(
     let has = |kind| benches.iter().any(|b| b.kind == kind);
     let mut warnings = Vec::new();
     let pair = if has(Kind::Pair) {
-        unequal(benches.iter().filter(|bench| bench.kind == Kind::Pair))?;
+        two_signals(&benches)?;
         let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;
         warnings.extend(pair.warnings.clone());
         let of_runs = with_alone(pair, &benches, &runs, voltage.as_ref(), wishes, &mut warnings);
@@ -225,6 +225,24 @@ fn in_pack(reference_v: Option<f64>, pack_v: Option<[f64; 2]>) -> Result<(), Ref
 fn names(benches: &[Bench]) -> String {
     let names: Vec<&str> = benches.iter().map(|b| b.file.as_str()).collect();
     names.join(", ")
+}
+
+/// Refuses pairs whose rotors have the same throttle throughout.
+fn two_signals(benches: &[Bench]) -> Result<(), Refusal> {
+    let pairs = benches.iter().filter(|bench| bench.kind == Kind::Pair);
+    let files: Vec<&str> = pairs.clone().map(|bench| bench.file.as_str()).collect();
+    let mut points = pairs.flat_map(|bench| &bench.points);
+    match points.all(|p| is_one_signal([p.u, p.l])) {
+        false => Ok(()),
+        true => Err(Refusal::of(
+            files.join(", "),
+            "both rotors turn by one signal: equal throttles throughout say nothing of unequal ones",
+            format!(
+                "{}; a map takes a throttle for each rotor",
+                equal_commands(&files)
+            ),
+        )),
+    }
 }
 
 /// Rows are named by file name and line, so names must differ.

@@ -1,338 +1,249 @@
-//! Whether rows of a pair agree with the runs of its rotors, and which mistake would explain it if
-//! they do not.
+//! Whether rows of a pair agree with the runs of its rotors, and which mistake explains it if they do
+//! not.
 //!
 //! The least sum of squares of the [`posterior`](mod@super::posterior) is chi squared of the rows under
-//! what the runs predict. Each mistake that is common in such rows is undone in turn, and the one that
-//! leaves the least is the likeliest.
+//! what the runs predict. A mistake exchanges the rotors, spoils one row, or multiplies thrust and
+//! torque. Each is undone in turn, and the one that leaves the least is the likeliest.
 
-use crate::bench::units::{Quantity, Scale, scale};
+use crate::bench::is_one_signal;
+use crate::refusal::Refusal;
 use crate::rotor::interaction::Interaction;
 use crate::rotor::posterior::{BETWEEN_SYSTEMS, Case, Posterior, fit};
 use crate::rotor::single::EXPONENT;
 use crate::statistics::rms;
 
-/// Numbers that rows have beside their own in common: the scales of thrust and of either torque, and
-/// what is left at equal commands.
-const SHARED: usize = 4;
-
-/// Chi squared over the numbers and [`SHARED`] above which rows are doubted, and refused. Four to
-/// twelve rows of nine maps with runs of their rotors have up to 2 in 95 % and 4.5 in all; rows of other
-/// units, halved or of another voltage in four places 5 and more (`tests/agreement.rs`).
-pub const DOUBTED: f64 = 2.0;
+/// Misfit above which rows are doubted, and refused. Four to twelve rows of seven maps with runs of
+/// their rotors have up to 2 in 95 % and 4.5 in all; rows of other units, halved or of another voltage in
+/// four places 5 and more (`tests/agreement.rs`).
+const DOUBTED: f64 = 2.0;
 /// As above.
-pub const REFUSED: f64 = 5.0;
+const REFUSED: f64 = 5.0;
 
-/// What a mistake costs, in chi squared, and two ratios that may be any: the simplest explanation goes
-/// first.
+/// What a mistake costs, in chi squared, and two ratios that may be any, besides: the simplest
+/// explanation goes first.
 const COST: f64 = 6.0;
-const COST_OF_ANY: f64 = 40.0;
+const COST_OF_RATIOS: f64 = 34.0;
 
-/// The greatest ratio that another voltage or propeller is thought of for.
-const ANY: f64 = 4.0;
-
-/// Units that are taken for one another.
-const THRUST: [[&str; 2]; 5] = [
-    ["N", "gf"],
-    ["N", "kgf"],
-    ["gf", "kgf"],
-    ["N", "lbf"],
-    ["N", "ozf"],
-];
-const TORQUE: [[&str; 2]; 6] = [
-    ["N m", "N cm"],
-    ["N m", "mN m"],
-    ["N m", "kgf cm"],
-    ["N m", "gf cm"],
-    ["N m", "lbf in"],
-    ["N m", "ozf in"],
-];
-
-/// A ratio this far from that of two units, as a logarithm, is not of them.
+/// Rows of which one is left out: fewer are fitted by anything, of more a plain `identify` finds the
+/// wrong one.
+const LEFT_OUT: std::ops::Range<usize> = 4..17;
+/// Ratios of another voltage or propeller.
+const RATIOS: std::ops::Range<f64> = 0.25..4.0;
+/// A ratio this far from a factor with a name, as a logarithm, is not of it.
 const NEAR: f64 = 0.15;
 
-/// What is wrong with rows.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Mistake {
-    /// One of them, by its place.
-    Row(usize),
-    /// Rows of equal throttles are of one rotor alone.
-    Alone,
-    /// Upper and lower rotor are exchanged.
-    Exchanged,
-    /// Thrust times this, and why.
-    Thrust(f64, String),
-    /// Torque times this, and why.
-    Torque(f64, String),
-    /// Thrust and torque times these: another voltage or propeller.
-    Other([f64; 2]),
+/// What mistakes multiply thrust and torque by.
+const FACTORS: [&[(f64, &str)]; 2] = [
+    &[
+        (1.0, "the other sign"),
+        (0.5, "half of the pair's"),
+        (2.0, "twice the pair's"),
+        (101.9716, "gf read as N"),
+        (0.1019716, "kgf read as N"),
+        (0.2248089, "lbf read as N"),
+        (3.596943, "ozf read as N"),
+        (0.00980665, "N read as gf"),
+        (9.80665, "N read as kgf"),
+        (4.448222, "N read as lbf"),
+        (1000.0, "gf read as kgf"),
+        (0.001, "kgf read as gf"),
+    ],
+    &[
+        (1.0, "the other sign"),
+        (0.5, "half of the pair's"),
+        (2.0, "twice the pair's"),
+        (100.0, "N cm read as N m"),
+        (1000.0, "mN m read as N m"),
+        (10.19716, "kgf cm read as N m"),
+        (8.850746, "lbf in read as N m"),
+        (141.6119, "ozf in read as N m"),
+        (0.01, "N m read as N cm"),
+        (0.001, "N m read as mN m"),
+        (0.0980665, "N m read as kgf cm"),
+        (0.1129848, "N m read as lbf in"),
+    ],
+];
+
+/// What undoes a mistake, and what to look after.
+type Words<'a> = [&'a str; 2];
+const EXCHANGED: Words = ["with the rotors exchanged", "which rotor is the upper (--swap)"];
+const ALONE: Words = ["as rows of one rotor alone", "rows in which both rotors turn"];
+const OTHER: &str = "the voltage of both (a column, or --run-voltage VOLT) and the propeller";
+const NONE: &str = "whether rows and run are of one propeller, motor and voltage, in which units, and which rotor is the upper";
+
+/// Rows without mistakes.
+#[derive(Clone)]
+struct Mended {
+    case: Case,
+    words: [Vec<String>; 2],
+    cost: f64,
 }
 
-/// How rows agree.
-#[derive(Debug, Clone)]
-pub struct Agreement {
-    /// The best constants.
-    pub posterior: Posterior,
-    /// Chi squared over what it may be: about 1.
-    pub misfit: f64,
-    /// What the runs alone predict is missed by, rms, % of full scale; NaN where nothing was measured.
-    pub missed_percent: [f64; 2],
-    /// Mistakes that explain it, and what is then missed.
-    pub cause: Option<(Vec<Mistake>, [f64; 2])>,
-}
-
-/// How the rows of a case agree with its rotors.
-pub fn judge(start: Interaction, case: &Case) -> Agreement {
-    let (posterior, misfit) = chi(start, case);
-    let own = posterior.chi_squared;
-    let limit = DOUBTED.max(0.25 * misfit);
-    let mut best: Option<(f64, Vec<Mistake>, Case)> = None;
-    for mistakes in candidates(start, case) {
-        let mut mended = case.clone();
-        mistakes.iter().for_each(|mistake| mistake.undo(&mut mended));
-        let (of, misfit) = chi(start, &mended);
-        let cost = of.chi_squared + mistakes.iter().map(Mistake::cost).sum::<f64>();
-        if misfit < limit && cost < best.as_ref().map_or(own, |(least, ..)| *least) {
-            best = Some((cost, mistakes, mended));
-        }
+/// The best constants for rows; `runs` are the files of the rotors, `places` those of the rows.
+///
+/// # Errors
+/// Rows that cannot be of this pair.
+pub fn agreed(
+    start: Interaction,
+    case: &Case,
+    runs: &str,
+    places: &[String],
+    warnings: &mut Vec<String>,
+) -> Result<Posterior, Refusal> {
+    let found = fit(start, BETWEEN_SYSTEMS, std::slice::from_ref(case));
+    if found.misfit <= DOUBTED {
+        return Ok(found);
     }
-    Agreement {
-        posterior,
-        misfit,
-        missed_percent: missed(start, case),
-        cause: best.map(|(_, mistakes, mended)| (mistakes, missed(start, &mended))),
+    let (cause, check) = match cause(start, case, places, &found) {
+        Some(Mended { case, words, .. }) => (
+            format!("; {}, by {}", words[0].join(" and "), missed(start, &case)),
+            words[1].join("; "),
+        ),
+        None => (", and no single mistake explains it".into(), NONE.into()),
+    };
+    let told = format!(
+        "the rows miss what {runs} predicts by {}{cause}",
+        missed(start, case)
+    );
+    if found.misfit > REFUSED {
+        let file = places.first().and_then(|place| place.rsplit_once(':'));
+        return Err(Refusal::of(file.map_or("", |(file, _)| file), told, check));
     }
+    let wider = found.misfit.sqrt();
+    warnings.push(format!(
+        "{told}; the uncertainty is widened {wider:.1} times; check {check}"
+    ));
+    Ok(found)
 }
 
-/// Why rows do not agree.
-pub struct Explained {
-    /// To follow what they miss.
-    pub reason: String,
-    /// What to do.
-    pub mend: String,
+/// Thrusts (0) or torques (1) that were measured, and what the rotors alone predict for them.
+fn measured(start: Interaction, case: &Case, k: usize) -> impl Iterator<Item = [f64; 2]> {
+    let predicted = move |&[u, l, ..]: &[f64; 4]| start.pair(&case.rotors, case.spacing_ratio, [u, l])[k];
+    let rows = case.rows.iter().filter(move |row| row[2 + k].is_finite());
+    rows.map(move |row| [row[2 + k], predicted(row)])
 }
 
-/// Shares of full scale in words.
-pub fn told([thrust, torque]: [f64; 2]) -> String {
+/// What the runs alone miss of rows.
+fn missed(start: Interaction, case: &Case) -> String {
+    let [thrust, torque] = [0, 1].map(|k| {
+        let missed = measured(start, case, k).map(|[row, predicted]| row - predicted);
+        100.0 * rms(missed) / case.full_scale[k]
+    });
     match torque.is_nan() {
         true => format!("{thrust:.1} % of thrust"),
         false => format!("{thrust:.1} % of thrust and {torque:.1} % of torque"),
     }
 }
 
-impl Agreement {
-    /// The likeliest mistake and its mend; rows have these places.
-    pub fn explained(&self, places: &[String]) -> Explained {
-        let Some((mistakes, left)) = &self.cause else {
-            return Explained {
-                reason: ", and no single mistake explains it".into(),
-                mend: "whether rows and run are of one propeller, motor and voltage, in which units, and which rotor is the upper".into(),
-            };
-        };
-        let (reasons, mends): (Vec<String>, Vec<String>) =
-            mistakes.iter().map(|mistake| mistake.words(places)).unzip();
-        Explained {
-            reason: format!("; {}, by {}", reasons.join(" and "), told(*left)),
-            mend: mends.join("; "),
-        }
-    }
-}
-
-fn chi(start: Interaction, case: &Case) -> (Posterior, f64) {
-    let posterior = fit(start, BETWEEN_SYSTEMS, std::slice::from_ref(case));
-    let numbers = case
-        .rows
-        .iter()
-        .flat_map(|row| &row[2..])
-        .filter(|x| x.is_finite());
-    let misfit = posterior.chi_squared / (numbers.count() + SHARED) as f64;
-    (posterior, misfit)
-}
-
-/// What the rotors alone predict for each row: thrust and torque of the row over it.
-fn pairs(start: Interaction, case: &Case) -> Vec<[[f64; 2]; 2]> {
-    let of = |&[u, l, thrust, torque]: &[f64; 4]| {
-        let predicted = start.pair(&case.rotors, case.spacing_ratio, [u, l]);
-        [[thrust, predicted[0]], [torque, predicted[1]]]
+/// The likeliest mistakes: which rotor it is with factors of thrust and torque, or one row.
+fn cause(start: Interaction, case: &Case, places: &[String], found: &Posterior) -> Option<Mended> {
+    let as_is = Mended {
+        case: case.clone(),
+        words: [vec![], vec![]],
+        cost: 0.0,
     };
-    case.rows.iter().map(of).collect()
-}
-
-fn missed(start: Interaction, case: &Case) -> [f64; 2] {
-    let pairs = pairs(start, case);
-    [0, 1].map(|k| {
-        let missed = pairs.iter().map(|pair| pair[k][0] - pair[k][1]);
-        100.0 * rms(missed.filter(|x| x.is_finite())) / case.full_scale[k]
-    })
-}
-
-/// Mistakes to try.
-fn candidates(start: Interaction, case: &Case) -> Vec<Vec<Mistake>> {
-    let mut all: Vec<Vec<Mistake>> = match case.rows.len() {
-        0..4 => Vec::new(),
+    let mut tried = vec![as_is.with(EXCHANGED, |_, [u, l, f, q]| [l, u, f, -q])];
+    if case.rows.iter().all(|[u, l, ..]| is_one_signal([*u, *l])) {
+        // A torque that rises with the lower throttle was made of it when it was read.
+        tried.push(as_is.with(ALONE, |_, [u, _, f, q]| [u, 1e-6, f, -q.abs()]));
+    }
+    tried.push(as_is.clone());
+    for k in 0..tried.len() {
+        let scaled = tried[k].scaled(start);
+        tried.extend(scaled);
+    }
+    for (k, place) in places
+        .iter()
+        .enumerate()
+        .filter(|_| LEFT_OUT.contains(&places.len()))
+    {
+        let [undone, check] = [format!("without {place}"), format!("that row: {place}")];
+        let without = as_is.with([&undone, &check], |i, [u, l, f, q]| {
+            if i == k {
+                [u, l, f64::NAN, f64::NAN]
+            } else {
+                [u, l, f, q]
+            }
+        });
         // One row of the wrong sign may have turned all others when they were read.
-        rows => (0..rows)
-            .flat_map(|k| {
-                [
-                    vec![Mistake::Row(k)],
-                    vec![Mistake::Row(k), Mistake::Torque(-1.0, "the other sign".into())],
-                ]
-            })
-            .collect(),
-    };
-    if case.rows.iter().all(|[u, l, ..]| u == l) {
-        all.push(vec![Mistake::Alone]);
+        tried.extend([without.named(1, -1.0), Some(without)].into_iter().flatten());
     }
-    for exchanged in [vec![], vec![Mistake::Exchanged]] {
-        let mut turned = case.clone();
-        exchanged.iter().for_each(|mistake| mistake.undo(&mut turned));
-        let ratios = ratios(start, &turned);
-        let [thrust, torque] = [(Quantity::Thrust, ratios[0]), (Quantity::Torque, ratios[1])]
-            .map(|(quantity, ratio)| named(quantity, ratio));
-        let thrust = thrust.map(|(by, why)| Mistake::Thrust(by, why));
-        let torque = torque.map(|(by, why)| Mistake::Torque(by, why));
-        for used in 0..4 {
-            let chosen = [
-                thrust.clone().filter(|_| used & 1 > 0),
-                torque.clone().filter(|_| used & 2 > 0),
-            ];
-            all.push(
-                exchanged
-                    .iter()
-                    .cloned()
-                    .chain(chosen.into_iter().flatten())
-                    .collect(),
-            );
-        }
-        // Rows of equal throttles say too little of the torque for a ratio of it.
-        for of in [ratios, [ratios[0], f64::NAN]] {
-            if of.iter().all(|x| (1.0 / ANY..ANY).contains(x) || x.is_nan()) {
-                all.push([exchanged.clone(), vec![Mistake::Other(of)]].concat());
-            }
-        }
-    }
-    all.retain(|mistakes| !mistakes.is_empty());
-    all
-}
-
-/// Thrust and torque of rows over what is predicted: the median, and by least squares, as torque has
-/// both signs.
-fn ratios(start: Interaction, case: &Case) -> [f64; 2] {
-    let pairs = pairs(start, case);
-    let mut thrust: Vec<f64> = pairs
-        .iter()
-        .map(|[[row, predicted], _]| row / predicted)
-        .collect();
-    thrust.sort_by(f64::total_cmp);
-    let torque = pairs
-        .iter()
-        .map(|pair| pair[1])
-        .filter(|[row, _]| row.is_finite());
-    let (product, square) = torque.fold((0.0, 0.0), |(product, square), [row, predicted]| {
-        (product + row * predicted, square + predicted * predicted)
+    let most = DOUBTED.max(0.25 * found.misfit);
+    let explain = tried.into_iter().filter_map(|mended| {
+        let of = fit(start, BETWEEN_SYSTEMS, std::slice::from_ref(&mended.case));
+        let cost = of.chi_squared + mended.cost;
+        (of.misfit < most && cost < found.chi_squared).then_some((cost, mended))
     });
-    [
-        thrust.get(thrust.len() / 2).copied().unwrap_or(f64::NAN),
-        product / square,
-    ]
+    explain
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, mended)| mended)
 }
 
-/// The factor that is nearest to a ratio, and what it comes of.
-fn named(quantity: Quantity, ratio: f64) -> Option<(f64, String)> {
-    let halves = [
-        (0.5, "half of the pair's"),
-        (2.0, "twice the pair's"),
-        (1.0, "the other sign"),
-    ];
-    let halves = halves.map(|(by, why)| (by, why.to_owned()));
-    let units: &[[&str; 2]] = if quantity == Quantity::Thrust {
-        &THRUST
-    } else {
-        &TORQUE
-    };
-    let both_ways = units.iter().flat_map(|[a, b]| [[a, b], [b, a]]);
-    let units = both_ways.filter_map(
-        |[of, read]| match (scale(quantity, of)?, scale(quantity, read)?) {
-            (Scale::Factor(own), Scale::Factor(taken)) => Some((taken / own, format!("{of} read as {read}"))),
-            _ => None,
-        },
-    );
-    let all = halves.into_iter().chain(units);
-    let far = |by: f64| libm::log(ratio.abs() / by).abs();
-    let (by, why) = all.min_by(|a, b| far(a.0).total_cmp(&far(b.0)))?;
-    let by = by * ratio.signum();
-    (far(by.abs()) < NEAR && by != 1.0).then_some((by, why))
-}
-
-impl Mistake {
-    fn cost(&self) -> f64 {
-        if matches!(self, Mistake::Other(_)) {
-            COST_OF_ANY
-        } else {
-            COST
+impl Mended {
+    fn with(&self, words: Words, undo: impl Fn(usize, [f64; 4]) -> [f64; 4]) -> Mended {
+        let mut next = self.clone();
+        for (k, row) in next.case.rows.iter_mut().enumerate() {
+            *row = undo(k, *row);
         }
+        next.words
+            .iter_mut()
+            .zip(words)
+            .for_each(|(all, word)| all.push(word.into()));
+        next.cost += COST;
+        next
     }
 
-    /// What undoes it, and the mend.
-    fn words(&self, places: &[String]) -> (String, String) {
-        let of_unit = |name: &str, by: f64, why: &str| {
-            let reason = format!("with {name} divided by {} ({why})", (1e4 * by).round() / 1e4);
-            (
-                reason,
-                format!("the unit and the sign of {name} in both files (--unit {name}=UNIT, --{name}-sign)"),
-            )
-        };
-        match self {
-            Mistake::Row(k) => {
-                let place = places.get(*k).map_or("", String::as_str);
-                (format!("without {place}"), format!("that row: {place}"))
-            }
-            Mistake::Alone => (
-                "as rows of one rotor alone".into(),
-                "rows in which both rotors turn".into(),
-            ),
-            Mistake::Exchanged => (
-                "with the rotors exchanged".into(),
-                "which rotor is the upper (--swap)".into(),
-            ),
-            Mistake::Thrust(by, why) => of_unit("thrust", *by, why),
-            Mistake::Torque(by, why) => of_unit("torque", *by, why),
-            Mistake::Other([thrust, torque]) => {
-                let volts = libm::pow(*thrust, 1.0 / EXPONENT);
-                let torque = match torque.is_nan() {
-                    true => String::new(),
-                    false => format!(" and torque by {torque:.2}"),
-                };
-                let reason = format!(
-                    "with thrust divided by {thrust:.2}{torque} ({volts:.2} times the voltage, or another propeller)"
-                );
-                (
-                    reason,
-                    "the voltage of both (a column, or --run-voltage VOLT) and the propeller".into(),
-                )
-            }
-        }
+    /// Thrust, torque or both divided by factors.
+    fn scaled(&self, start: Interaction) -> impl Iterator<Item = Mended> + use<> {
+        // By least squares, as torque has both signs.
+        let [thrust, torque] = [0, 1].map(|k| {
+            let of = measured(start, &self.case, k)
+                .map(|[row, predicted]| [row * predicted, predicted * predicted]);
+            let [product, square] = of.fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+            product / square
+        });
+        let named = self.named(0, thrust);
+        let both = named.as_ref().and_then(|named| named.named(1, torque));
+        // Rows of equal throttles say too little of the torque for a ratio of it.
+        let other = [torque, 1.0].map(|torque| self.of_another([thrust, torque]));
+        [named, both, self.named(1, torque)]
+            .into_iter()
+            .chain(other)
+            .flatten()
     }
 
-    fn undo(&self, case: &mut Case) {
-        let rows = &mut case.rows;
-        let mut divide = |[thrust, torque]: [f64; 2]| {
-            for row in rows.iter_mut() {
-                row[2] /= thrust;
-                row[3] /= torque;
+    /// Divided by the factor of [`FACTORS`] that is nearest to a ratio.
+    fn named(&self, k: usize, ratio: f64) -> Option<Mended> {
+        let name = ["thrust", "torque"][k];
+        let far = |by: f64| libm::log(ratio.abs() / by).abs();
+        let (by, why) = FACTORS[k].iter().min_by(|a, b| far(a.0).total_cmp(&far(b.0)))?;
+        let divisor = by * ratio.signum();
+        let undone = format!("with {name} divided by {divisor} ({why})");
+        let check = match why.contains("read as") {
+            true => format!("the unit of {name} in both files (--unit {name}=UNIT)"),
+            false => {
+                format!("that {name} is of both rotors, each counted once, and its sign (--{name}-sign)")
             }
         };
-        match self {
-            Mistake::Row(k) => drop(case.rows.remove(*k)),
-            Mistake::Thrust(by, _) => divide([*by, 1.0]),
-            Mistake::Torque(by, _) => divide([1.0, *by]),
-            Mistake::Other(by) => divide(by.map(|by| if by.is_nan() { 1.0 } else { by })),
-            // A torque that rises with the lower throttle was made of it when it was read.
-            Mistake::Alone => rows
-                .iter_mut()
-                .for_each(|row| *row = [row[0], 1e-6, row[2], -row[3].abs()]),
-            Mistake::Exchanged => rows
-                .iter_mut()
-                .for_each(|row| *row = [row[1], row[0], row[2], -row[3]]),
-        }
+        let divide = |_, mut row: [f64; 4]| {
+            row[2 + k] /= divisor;
+            row
+        };
+        (far(*by) < NEAR && divisor != 1.0).then(|| self.with([&undone, &check], divide))
+    }
+
+    /// Divided by ratios that another voltage or propeller may have.
+    fn of_another(&self, [thrust, torque]: [f64; 2]) -> Option<Mended> {
+        let volts = libm::pow(thrust, 1.0 / EXPONENT);
+        let undone = format!(
+            "with thrust divided by {thrust:.2} and torque by {torque:.2} ({volts:.2} times the voltage, or another propeller)"
+        );
+        let divided = |_, [u, l, f, q]: [f64; 4]| [u, l, f / thrust, q / torque];
+        let possible = [thrust, torque].iter().all(|ratio| RATIOS.contains(ratio));
+        possible.then(|| {
+            let mut other = self.with([&undone, OTHER], divided);
+            other.cost += COST_OF_RATIOS;
+            other
+        })
     }
 }

@@ -54,6 +54,9 @@ pub const BETWEEN_SYSTEMS: Deviations = Deviations {
 /// Standard deviation of a row about the model with its own best constants, a share of full scale:
 /// noise of the bench and what six constants leave of a map's shape.
 pub const ROW: [f64; 2] = [0.01, 0.025];
+/// Numbers that rows of a case have beside their own in common: the scales of thrust and of either
+/// torque, and what is left at equal commands.
+const SHARED: usize = 4;
 const STEPS: usize = 30;
 const DIFFERENCE: f64 = 1e-6;
 
@@ -66,6 +69,8 @@ pub struct Posterior {
     pub factors: Vec<[f64; 3]>,
     /// The least sum of squares.
     pub chi_squared: f64,
+    /// The same over what it may be: about 1.
+    pub misfit: f64,
     /// Rows of the linear problem at the minimum, and the deviations of its unknowns.
     rows: Vec<Vec<f64>>,
     deviations: Vec<f64>,
@@ -151,10 +156,14 @@ pub fn fit(start: Interaction, before: Deviations, cases: &[Case]) -> Posterior 
         }
     }
     let (interaction, factors) = model(start, &x);
+    let rows = cases.iter().flat_map(|case| &case.rows);
+    let numbers = rows.flat_map(|row| &row[2..]).filter(|x| x.is_finite()).count();
+    let chi_squared = squares(&here);
     Posterior {
         interaction,
         factors,
-        chi_squared: squares(&here),
+        chi_squared,
+        misfit: chi_squared / (numbers + SHARED * cases.len()) as f64,
         rows: differences(&x, &here, residuals),
         deviations,
         start,

@@ -12,16 +12,16 @@ use serde::Serialize;
 use toml_edit::{DocumentMut, value};
 
 use crate::air::Air;
-use crate::bench::{Bench, Kind, mean_voltage};
+use crate::bench::{Bench, Kind, is_one_signal, mean_voltage};
 use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::uncertainty::Uncertainty;
 use crate::fit::{Design, ten_digits};
 use crate::refusal::Refusal;
-use crate::rotor::agreement::{self, Agreement, DOUBTED, REFUSED};
+use crate::rotor::agreement::agreed;
 use crate::rotor::curve::Rotor;
 use crate::rotor::interaction::{CLOSED_LOOP, Interaction, OPEN_LOOP};
-use crate::rotor::posterior::{BETWEEN_SYSTEMS, Case, ROW, fit, scaled};
+use crate::rotor::posterior::{BETWEEN_SYSTEMS, Case, Posterior, ROW, fit, scaled};
 use crate::rotor::single::{Single, exponents_told};
 use crate::statistics::{greatest, rms};
 use crate::table::{commented, numbers, table};
@@ -157,14 +157,14 @@ pub fn correct(
     };
     warnings.extend(maps.iter().filter_map(|map| other_voltage(&runs[0], map)));
     let (case, places) = case(&runs, maps, general, spacing_ratio, throttle)?;
-    let found = agreement::judge(general, &case);
     if !maps.is_empty() {
         advise(&case, &mut warnings);
-        agree(&runs, &places, &found, &mut warnings)?;
     }
+    let names: Vec<&str> = runs.iter().map(|run| run.file.as_str()).collect();
+    let found = agreed(general, &case, &names.join(" and "), &places, &mut warnings)?;
     let uncertainty = uncertainty(general, &runs, &case, &found, throttle);
-    let constants = found.posterior.interaction;
-    let factors = found.posterior.factors.first().copied().unwrap_or([1.0; 3]);
+    let constants = found.interaction;
+    let factors = found.factors.first().copied().unwrap_or([1.0; 3]);
     let rotors = scaled(&alone, factors);
     let map = |throttles| constants.pair(&rotors, spacing_ratio, throttles);
     let pair = compiled(&map, rotors, uncertainty, throttle, &runs[0].file)?;
@@ -303,7 +303,7 @@ fn other_voltage(run: &Single, map: &Bench) -> Option<String> {
 fn advise(case: &Case, warnings: &mut Vec<String>) {
     let rows = case.rows.len();
     let with_torque = case.rows.iter().filter(|row| row[3].is_finite()).count();
-    if case.rows.iter().all(|[u, l, ..]| (u - l).abs() < 0.05) {
+    if case.rows.iter().all(|[u, l, ..]| is_one_signal([*u, *l])) {
         warnings.push(format!(
             "{rows} rows of equal throttles: what unequal ones give is from the model alone; rows at (0.95, 0.4) and (0.4, 0.95) \
              would tell"
@@ -321,47 +321,13 @@ fn advise(case: &Case, warnings: &mut Vec<String>) {
     }
 }
 
-/// Refuses rows that cannot be of this pair, and warns of those that hardly are.
-fn agree(
-    runs: &[Single],
-    places: &[String],
-    found: &Agreement,
-    warnings: &mut Vec<String>,
-) -> Result<(), Refusal> {
-    if found.misfit <= DOUBTED {
-        return Ok(());
-    }
-    let names: Vec<&str> = runs.iter().map(|run| run.file.as_str()).collect();
-    let explained = found.explained(places);
-    let told = format!(
-        "the rows miss what {} predicts by {}{}",
-        names.join(" and "),
-        agreement::told(found.missed_percent),
-        explained.reason
-    );
-    if found.misfit > REFUSED {
-        let file = places.first().and_then(|place| place.rsplit_once(':'));
-        return Err(Refusal::of(
-            file.map_or("", |(file, _)| file),
-            told,
-            explained.mend,
-        ));
-    }
-    warnings.push(format!(
-        "{told}; the uncertainty is widened {:.1} times; check {}",
-        found.misfit.sqrt(),
-        explained.mend
-    ));
-    Ok(())
-}
-
 /// What was measured of predictions without rows, in the proportion in which rows narrow the model's
 /// own, and widened where they fit it badly.
 fn uncertainty(
     general: Interaction,
     runs: &[Single],
     case: &Case,
-    found: &Agreement,
+    found: &Posterior,
     throttle: ThrottleBox,
 ) -> Uncertainty {
     let few = runs.iter().any(Single::is_sparse);
@@ -372,7 +338,7 @@ fn uncertainty(
         ..case.clone()
     };
     let before = fit(general, BETWEEN_SYSTEMS, std::slice::from_ref(&without)).spread(case, throttle);
-    let after = found.posterior.spread(case, throttle);
+    let after = found.spread(case, throttle);
     let percent = |k: usize| {
         let squares = adding.iter().filter(|(is, _)| *is).map(|(_, of)| of[k] * of[k]);
         let ([row, own], narrowed) = ([ROW[k], case.row[k]].map(|x| 100.0 * x), after[k] / before[k]);

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::bench::{Bench, Kind, Point, equal_commands, mean_voltage, unequal};
+use crate::bench::{Bench, Kind, Point, equal_commands, mean_voltage};
 use crate::fit::distinct_pairs;
 use crate::refusal::Refusal;
 use crate::rotor::curve::{Curve, Rotor};
@@ -20,18 +20,6 @@ const FULL: f64 = 0.95;
 const MISFIT: [f64; 2] = [0.02, 0.06];
 /// Throttles within this are one.
 const SAME: f64 = 0.002;
-/// Torque per thrust of open propellers from 4 to 40 inch with an ample margin, m.
-const KAPPA: [f64; 2] = [0.002, 0.12];
-/// The same over the diameter: runs of 11 to 28 inch have 0.045 to 0.062.
-const KAPPA_OF_DIAMETER: [f64; 2] = [0.02, 0.15];
-/// Thrust over the area of the disc at full throttle, N/m2: runs of 11 to 22 inch have 150 to 190,
-/// racing quadrotors of 3 to 5 inch some 1,400.
-const LOADING: [f64; 2] = [15.0, 2500.0];
-/// Power of an ideal rotor over the electrical power above 0.7 of throttle: the same runs have 0.55 to
-/// 0.60, a pair with the power of both as much, one with the power of one 1.1.
-const FIGURE_OF_MERIT: [f64; 2] = [0.08, 0.95];
-/// Density of the air for it, kg/m3.
-const DENSITY: f64 = 1.2;
 /// Torque per thrust over diameter, where torque was not measured. Six runs of 11 to 22 inch.
 pub const KAPPA_PER_DIAMETER: f64 = 0.048;
 /// Exponent of voltage, the median of 104 motors with propellers.
@@ -96,12 +84,12 @@ impl Single {
     pub fn of(bench: &Bench, known: &Known, warnings: &mut Vec<String>) -> Result<Single, Refusal> {
         let file = &bench.file;
         if bench.kind == Kind::Pair {
-            unequal([bench])?;
             return Err(Refusal::of(
                 file,
                 "both rotors turn in it: it is a map of the pair",
                 format!(
-                    "a run of one rotor; of this file, cargo mixer identify {file} finds the pair itself"
+                    "{}; of unequal throttles, cargo mixer identify {file} finds the pair itself",
+                    equal_commands(&[file])
                 ),
             ));
         }
@@ -122,8 +110,12 @@ impl Single {
             (torque, None)
         } else {
             let (kappa, why) = stand_in(file, known)?;
+            let of_one = match points.iter().any(|p| p.power_w.is_finite()) {
+                true => "",
+                false => "; of ONE rotor: thrust alone does not tell one from two",
+            };
             warnings.push(format!(
-                "torque was not measured in {file}: {kappa:.4} N m per N stands for it, {why}"
+                "torque was not measured in {file}: {kappa:.4} N m per N stands for it, {why}{of_one}"
             ));
             let torque = Channel {
                 curve: thrust.curve.times(kappa),
@@ -131,12 +123,8 @@ impl Single {
             };
             (torque, Some(kappa))
         };
-        let [full, full_nm] = [&thrust, &torque].map(|channel| channel.curve.at(measured[1]));
-        let power = points.iter().filter(|p| p.u > REACHES && p.power_w > 0.0);
-        let quotient = power
-            .map(|p| libm::pow(p.thrust, 1.5) / p.power_w)
-            .fold(f64::NAN, f64::max);
-        plausible(file, full, full_nm / full, quotient, known.diameter_m)?;
+        let full = [&thrust, &torque].map(|channel| channel.curve.at(measured[1]));
+        plausible(file, full, points, known.diameter_m)?;
         Ok(Single {
             file: file.clone(),
             points: points.len(),
@@ -164,58 +152,51 @@ impl Single {
     }
 }
 
-/// Refuses what no rotor gives: thrust, N, torque per thrust, m, T^1.5 over electrical power, and the
-/// diameter, m, where it is known.
+/// Refuses what no rotor gives: thrust, N, and torque, N m, at the greatest throttle, and the diameter, m,
+/// where it is known.
 fn plausible(
     file: &str,
-    thrust: f64,
-    kappa: f64,
-    quotient: f64,
+    [thrust, torque]: [f64; 2],
+    points: &[Point],
     diameter: Option<f64>,
 ) -> Result<(), Refusal> {
     let d = diameter.unwrap_or(f64::NAN);
     let area = 0.25 * std::f64::consts::PI * d * d;
+    // By momentum theory, in air of 1.2 kg/m3.
+    let ideal = |p: &Point| libm::pow(p.thrust, 1.5) / (2.0 * 1.2 * area).sqrt() / p.power_w;
+    let power = points.iter().filter(|p| p.u > REACHES && p.power_w > 0.0);
     let all = [
-        ("torque per thrust", kappa, "m", KAPPA),
+        // Open propellers of 4 to 40 inch with an ample margin.
+        ("torque per thrust in m", torque / thrust, [0.002, 0.12]),
+        // Real runs of 11 to 28 inch: 0.045 to 0.062.
         (
-            "torque per thrust over the diameter",
-            kappa / d,
-            "",
-            KAPPA_OF_DIAMETER,
+            "torque per thrust in diameters",
+            torque / thrust / d,
+            [0.02, 0.15],
         ),
-        ("thrust over the area of the disc", thrust / area, "N/m2", LOADING),
+        // 120 to 190; racing quadrotors of 3 to 5 inch some 1,400.
+        ("disc loading in N/m2", thrust / area, [15.0, 2500.0]),
+        // 0.55 to 0.60, and a pair as much by both powers; 1.1 would be a pair by the power of one rotor.
         (
-            "power of an ideal rotor over the electrical power",
-            quotient / (2.0 * DENSITY * area).sqrt(),
-            "",
-            FIGURE_OF_MERIT,
+            "ideal power over electrical power",
+            power.map(ideal).fold(f64::NAN, f64::max),
+            [0.08, 0.95],
         ),
     ];
-    let cannot = |(_, x, _, [low, high]): &&(&str, f64, &str, [f64; 2])| x < low || x > high;
-    let Some((name, x, unit, [low, high])) = all.iter().find(cannot) else {
-        return Ok(());
-    };
-    let digits = |x: f64| {
-        if x < 0.001 {
-            return format!("{x:.1e}");
-        }
-        if x < 1.0 {
-            format!("{x:.4}")
-        } else {
-            format!("{x:.1}")
-        }
-    };
-    Err(Refusal::of(
-        file,
-        format!(
-            "the {name} is {} {unit}, of rotors it is {low} to {high}: a unit is wrong, the diameter, or this is no run of ONE rotor",
-            digits(*x)
-        ),
-        format!(
-            "right units and diameter; where one signal drives both rotors of a pair, {}",
-            equal_commands(&[file])
-        ),
-    ))
+    match all.iter().find(|(_, x, [low, high])| x < low || x > high) {
+        None => Ok(()),
+        Some((name, x, [low, high])) => Err(Refusal::of(
+            file,
+            format!(
+                "the {name} is {}, of rotors it is {low} to {high}: a unit is wrong, the diameter, or this is no run of ONE rotor",
+                format!("{x:.1e}").parse().unwrap_or(*x)
+            ),
+            format!(
+                "right units and diameter; where one signal drives both rotors of a pair, {}",
+                equal_commands(&[file])
+            ),
+        )),
+    }
 }
 
 fn distinct(points: &[Point]) -> usize {
@@ -263,7 +244,7 @@ fn channel(
     if share > MISFIT[0] {
         let told = format!(
             "the {name} misses a growing curve over the throttle by {percent:.1} % rms of its greatest value, good runs by 1 %; {}",
-            twice(&places, greatest)
+            two_curves(&places, greatest)
         );
         let needed = "one run of one rotor and propeller, at a supply that holds or with a voltage in each row, with the throttle \
                       that was commanded";
@@ -278,18 +259,19 @@ fn channel(
     })
 }
 
-/// What may be wrong where points `[throttle, y]` lie on no curve.
-fn twice(places: &[[f64; 2]], greatest: f64) -> String {
+/// Why points `[throttle, y]` may lie on no curve.
+fn two_curves(places: &[[f64; 2]], greatest: f64) -> String {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let apart = |pair: &&[[f64; 2]]| (pair[1][1] - pair[0][1]).abs();
-    let same = sorted.windows(2).filter(|pair| pair[1][0] - pair[0][0] < SAME);
-    match same.max_by(|a, b| apart(a).total_cmp(&apart(b))) {
-        Some(pair) if apart(&pair) > MISFIT[1] * greatest => format!(
+    let apart = |pair: &&[[f64; 2]]| {
+        pair[1][0] - pair[0][0] < SAME && (pair[1][1] - pair[0][1]).abs() > MISFIT[1] * greatest
+    };
+    match sorted.windows(2).rfind(apart) {
+        Some(pair) => format!(
             "at a throttle of {:.2} it is {:.3} and {:.3}: two propellers, motors or voltages in one table",
             pair[0][0], pair[0][1], pair[1][1]
         ),
-        _ => "a kink, a wrong row, or a supply that sags".into(),
+        None => "a kink, a wrong row, or a supply that sags".into(),
     }
 }
 
