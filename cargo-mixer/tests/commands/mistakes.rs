@@ -43,7 +43,7 @@ fn inputs(place: &Path) {
     };
     let mut row = |u: f64, l: f64| {
         let volts = 11.1 - 0.5 * (u * u + l * l);
-        let k = (volts / 10.71_f64).powf(1.75);
+        let k = libm::pow(volts / 10.71, 1.75);
         let [f, q] = map.efforts([u, l]);
         format!(
             "{u},{l},{:.4},{:.5},{volts:.3}\n",
@@ -65,7 +65,7 @@ fn inputs(place: &Path) {
     for percent in [30, 40, 50, 60, 70, 80, 90, 100] {
         let x = f64::from(percent) / 100.0;
         let volts = 11.1 - 0.5 * x * x;
-        let k = (volts / 10.71_f64).powf(1.75);
+        let k = libm::pow(volts / 10.71, 1.75);
         let at = |[a, b, c]: [f64; 3]| k * (a * x + b * x * x + c * x * x * x);
         let [f, q] = [alone.thrust_n, alone.torque_nm].map(at);
         let rpm = 2130.0 * f.sqrt();
