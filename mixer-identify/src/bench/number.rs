@@ -75,6 +75,12 @@ impl Cell<'_> {
     /// The value of the number by this decimal mark; before it, a mark stands before every three digits
     /// or nowhere.
     pub fn value(&self, decimal: char) -> Option<f64> {
+        // Nearly all are written this way.
+        if decimal == '.'
+            && let Ok(value) = self.number.parse()
+        {
+            return Some(value);
+        }
         let (mantissa, exponent) = self
             .number
             .split_at(self.number.find(['e', 'E']).unwrap_or(self.number.len()));
@@ -90,8 +96,10 @@ impl Cell<'_> {
                 && !whole.starts_with('0')
                 && groups[0].len() <= 3
                 && groups[1..].iter().all(|group| group.len() == 3);
-        let number = format!("{sign}{}.{part}{exponent}", groups.concat());
-        number.parse().ok().filter(|_| grouped)
+        if !grouped {
+            return None;
+        }
+        format!("{sign}{}.{part}{exponent}", groups.concat()).parse().ok()
     }
 }
 

@@ -223,11 +223,13 @@ fn rows(text: &str, separator: char) -> Box<dyn Iterator<Item = Row> + '_> {
     Box::new(rows.filter(|(_, cells)| !cells.iter().all(is_blank)))
 }
 
-/// Cells between blanks. A unit in brackets belongs to the name before it, a comment's mark to the one
-/// behind it.
+/// Cells between tabs where there are any, else between blanks. A unit in brackets belongs to the name
+/// before it, a comment's mark to the one behind it.
 fn between_blanks(line: &str) -> csv::StringRecord {
     let mut cells: Vec<String> = Vec::new();
-    for word in line.split_whitespace() {
+    let by_tabs = line.split('\t').filter(|_| line.contains('\t')).map(str::trim);
+    let by_blanks = line.split_whitespace().filter(|_| !line.contains('\t'));
+    for word in by_tabs.chain(by_blanks) {
         let open = |cell: &str| cell.matches(['(', '[']).count() > cell.matches([')', ']']).count();
         match cells.last_mut() {
             Some(last) if word.starts_with(['(', '[']) || open(last) || *last == "#" => {

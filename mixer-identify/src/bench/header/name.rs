@@ -131,7 +131,10 @@ impl Name {
         };
         let prefixed = || match prefixes {
             [_] => None,
-            _ => prefixes.iter().position(|p| Some(*p) == self.prefix.as_deref()),
+            _ => prefixes
+                .iter()
+                .position(|p| Some(*p) == self.prefix.as_deref())
+                .map(|at| at.min(1)),
         };
         named.or_else(numbered).or_else(prefixed)
     }
