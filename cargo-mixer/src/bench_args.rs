@@ -177,7 +177,7 @@ impl ReadingArgs {
         given.flatten().chain(swap).collect()
     }
 
-    /// Those that [`ReadingArgs::options`] wrote.
+    /// Those that [`Settings::options`] has as words.
     ///
     /// # Errors
     /// Words that are no such options.

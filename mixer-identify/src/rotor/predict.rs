@@ -1,7 +1,7 @@
 //! The map of a pair, predicted from runs of its rotors alone, with or without rows of the pair.
 //!
 //! runs -> [`Single`] -> [`interaction`](mod@crate::rotor::interaction), its constants moved by rows of the
-//! pair where there are some ([`posterior`]) -> cubic basis over the box -> the
+//! pair where there are some ([`posterior`](mod@super::posterior)) -> cubic basis over the box -> the
 //! idle raised until the compiler takes it -> `[throttle]`, `[pair]`, `[pair.uncertainty]`,
 //! `[pair.lower_out]`, `[pair.upper_out]`.
 
