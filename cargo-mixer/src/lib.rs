@@ -11,6 +11,7 @@ use std::process::ExitCode;
 use mixer_compiler::diagnostic::Diagnostics;
 use mixer_compiler::{Compiled, Source};
 use mixer_files::plain::printable_lines;
+use serde_json::{Value, json};
 
 mod airframe_file;
 pub mod arguments;
@@ -50,6 +51,16 @@ impl Refusal {
             }
         }
     }
+}
+
+/// A fault without a code or a column, as `--json` lists those of airframe files.
+fn fault(file: &str, line: Option<u64>, message: &str, help: &str) -> Value {
+    json!({ "code": "", "file": file, "key": "", "message": message, "label": "", "help": help, "line": line, "column": null })
+}
+
+/// What `--json` prints of faults.
+fn errors(faults: impl IntoIterator<Item = Value>) -> Value {
+    json!({ "errors": faults.into_iter().collect::<Vec<_>>(), "warnings": [] })
 }
 
 /// The result of a command: the exit status where it failed and has said why.

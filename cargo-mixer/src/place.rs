@@ -10,7 +10,6 @@ use mixer_files::new::new;
 use mixer_files::plain::printable_lines;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::Answer;
-use serde_json::json;
 
 use crate::frame_args::FrameArgs;
 use crate::{Done, bad_usage, output, print_error, print_note};
@@ -56,11 +55,9 @@ impl Place<'_> {
                     .rsplit_once(':')
                     .and_then(|(file, line)| Some((file, line.parse::<u64>().ok()?)));
                 let (file, line) = parts.map_or((place, None), |(file, line)| (file, Some(line)));
-                json!({ "code": "", "file": file, "key": "", "message": refusal.reason, "label": "", "help": refusal.needed,
-                        "line": line, "column": null })
+                crate::fault(file, line, &refusal.reason, &refusal.needed)
             };
-            let errors: Vec<_> = refusals.iter().map(error).collect();
-            let _ = crate::print(&format!("{:#}\n", json!({ "errors": errors, "warnings": [] })));
+            let _ = crate::print(&format!("{:#}\n", crate::errors(refusals.iter().map(error))));
         }
         refusals.iter().for_each(|refusal| {
             print_error(refusal);

@@ -15,6 +15,9 @@ pub const GAS_CONSTANT: f64 = 287.052_87;
 /// Where the temperature stops falling, m.
 pub const TOP_M: f64 = 11_000.0;
 
+/// rho0, kg/m^3.
+pub const SEA_LEVEL_KG_M3: f64 = 1.225;
+
 /// T0, K; p0, Pa; L, K/m.
 const SEA_LEVEL_K: f64 = 288.15;
 const SEA_LEVEL_PA: f64 = 101_325.0;

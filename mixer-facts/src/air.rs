@@ -2,7 +2,7 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Airframe, Law};
-use mixer_compiler::atmosphere::{TOP_M, altitude_of, density_at};
+use mixer_compiler::atmosphere::{SEA_LEVEL_KG_M3, TOP_M, altitude_of, density_at};
 use mixer_rt::Wrench;
 use serde::Serialize;
 
@@ -11,9 +11,6 @@ pub const ALTITUDES_M: [f64; 3] = [0.0, 1500.0, 3000.0];
 
 /// Thrust over weight at the ceiling: what is above 1 climbs, ends a descent and turns.
 pub const LEAST_THRUST_OVER_WEIGHT: f64 = 1.3;
-
-/// Density of the standard atmosphere at the sea, kg/m^3.
-const SEA_LEVEL: f64 = 1.225;
 
 /// Exponents of the density that ordinary speed controllers have: others are not concluded from the
 /// voltage's.
@@ -59,7 +56,7 @@ impl Air {
         let by_voltage = || {
             let exponents = airframe.voltage.as_ref()?.exponents().map(|k| k - 1.0);
             let is_ordinary = exponents.iter().all(|e| ORDINARY.contains(e));
-            is_ordinary.then_some((SEA_LEVEL, None, exponents))
+            is_ordinary.then_some((SEA_LEVEL_KG_M3, None, exponents))
         };
         let (reference_density_kg_m3, range_kg_m3, exponents) = match &airframe.air {
             Some(air) => (air.reference, Some(air.range), air.exponents()),

@@ -11,7 +11,7 @@ use serde::Serialize;
 use self::air::{DENSITIES, Known};
 use self::date::date_in;
 use self::header::Columns;
-use self::read::{Fault, Log, RefusedRow, Sample};
+use self::read::{Fault, Log, RefusedRow, Sample, refused_told};
 use self::sign::{SignChoice, SignPolicy, Signs};
 use self::units::Quantity;
 use crate::refusal::Refusal;
@@ -126,14 +126,9 @@ impl Bench {
     /// The tare, notes of the reading and rows refused, as few as can be read.
     pub(crate) fn passed_over(&self) -> Vec<String> {
         const MOST: usize = 5;
-        let told = |row: &RefusedRow| format!("refused: {}:{}: {}", row.file, row.line, row.reason);
-        let rows = self.refused_rows.iter().take(MOST).map(told);
         let tare = self.tare.iter().map(|tare| format!("{}: {tare}", self.file));
-        let mut told: Vec<String> = tare.chain(self.notes.iter().cloned()).chain(rows).collect();
-        if self.refused_rows.len() > MOST {
-            told.push(format!("refused: {} rows more", self.refused_rows.len() - MOST));
-        }
-        told
+        let rows = refused_told(self.refused_rows.iter(), MOST);
+        tare.chain(self.notes.iter().cloned()).chain(rows).collect()
     }
 }
 

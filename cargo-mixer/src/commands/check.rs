@@ -8,7 +8,7 @@ use mixer_facts::Checked;
 use mixer_facts::checklist::Checklist;
 use mixer_files::settings::Stacks;
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::{Done, Refusal};
 
@@ -89,14 +89,10 @@ fn tell(warnings: &Diagnostics, in_full: bool) {
     }
 }
 
-/// The JSON of a file that cannot be read: the fault has no place and no code.
+/// The JSON of a file that cannot be read.
 fn unreadable(airframe: &Path, message: &str) -> Value {
     let file = printable(&airframe.display().to_string());
-    json!({
-        "errors": [{ "code": "", "file": file, "key": "", "message": message, "label": "", "help": "",
-                     "line": null, "column": null }],
-        "warnings": [],
-    })
+    crate::errors([crate::fault(&file, None, message, "")])
 }
 
 fn pretty(value: &Value) -> String {

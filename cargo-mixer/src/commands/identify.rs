@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mixer_compiler::airframe::Basis;
+use mixer_identify::bench::read::refused_told;
 use mixer_identify::bench::{Preparation, date};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::Wishes;
@@ -178,15 +179,9 @@ pub fn run(args: &IdentifyArgs) -> Done {
     }
     let answer = identify(&maps, [upper.as_ref(), lower.as_ref()], &settings)
         .map_err(|refusals| place.refused(&refusals))?;
-    let refused_rows = || answer.found.files.iter().flat_map(|file| &file.refused_rows);
+    let refused_rows = answer.found.files.iter().flat_map(|file| &file.refused_rows);
     let most = MOST_TOLD[usize::from(args.verbose)];
-    for row in refused_rows().take(most) {
-        print_note(format_args!("refused: {}:{}: {}", row.file, row.line, row.reason));
-    }
-    let more = refused_rows().count().saturating_sub(most);
-    if more > 0 {
-        print_note(format_args!("refused: {more} rows more"));
-    }
+    refused_told(refused_rows, most).iter().for_each(print_note);
     place.write(&answer, args.verbose)
 }
 

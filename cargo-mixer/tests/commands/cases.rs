@@ -19,9 +19,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
-use crate::root;
+use crate::{in_shell, root};
 
 /// A test for each folder.
 macro_rules! folders {
@@ -132,21 +131,7 @@ fn session(case: &str, place: &Path) -> String {
 
 /// What a command says: its output, its errors, its status.
 fn answer(command: &str, place: &Path) -> String {
-    // As cargo calls it.
-    let script = format!(
-        "cargo() {{ '{}' \"$@\"; }}\n{command}\n",
-        env!("CARGO_BIN_EXE_cargo-mixer")
-    );
-    let mut shell = Command::new("sh");
-    shell
-        .args(["-c", &script])
-        .current_dir(place)
-        .stdin(Stdio::null());
-    shell
-        .env("LC_ALL", "C")
-        .env("SOURCE_DATE_EPOCH", "0")
-        .env_remove("RUSTC");
-    let output = shell.output().unwrap();
+    let output = in_shell(command, place);
     let mut told = String::new();
     for (mark, bytes) in [("  ", &output.stdout), ("! ", &output.stderr)] {
         let text = String::from_utf8(bytes.clone()).unwrap();

@@ -70,6 +70,24 @@ fn stderr(output: &Output) -> &str {
     str::from_utf8(&output.stderr).unwrap()
 }
 
+/// Runs a command of `sh` in a folder; `cargo mixer` in it is the program, as cargo calls it.
+fn in_shell(command: &str, place: &Path) -> Output {
+    let script = format!(
+        "cargo() {{ '{}' \"$@\"; }}\n{command}\n",
+        env!("CARGO_BIN_EXE_cargo-mixer")
+    );
+    let mut shell = Command::new("sh");
+    shell
+        .args(["-c", &script])
+        .current_dir(place)
+        .stdin(Stdio::null());
+    shell
+        .env("LC_ALL", "C")
+        .env("SOURCE_DATE_EPOCH", "0")
+        .env_remove("RUSTC");
+    shell.output().unwrap()
+}
+
 /// Runs without any input.
 fn run(arguments: &[&str]) -> Output {
     run_with(arguments, b"")

@@ -20,13 +20,12 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
 use mixer_compiler::model::PairMap;
 
-use crate::{folder, measured, root};
+use crate::{folder, in_shell, measured, root};
 
 /// A map of 7 x 7 throttles, runs of one rotor and four rows of the pair, of one real pair: its map and
 /// its rotors alone as `airframes/x8-11in-least-power.toml` has them, with the noise of a bench.
@@ -94,20 +93,7 @@ struct Answer {
 
 fn answer(command: &str, place: &Path) -> Answer {
     let _ = fs::remove_file(place.join("out.toml"));
-    let script = format!(
-        "cargo() {{ '{}' \"$@\"; }}\n{command}\n",
-        env!("CARGO_BIN_EXE_cargo-mixer")
-    );
-    let mut shell = Command::new("sh");
-    shell
-        .args(["-c", &script])
-        .current_dir(place)
-        .stdin(Stdio::null());
-    let output = shell
-        .env("LC_ALL", "C")
-        .env("SOURCE_DATE_EPOCH", "0")
-        .output()
-        .unwrap();
+    let output = in_shell(command, place);
     let text = [output.stderr, output.stdout]
         .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
         .concat();

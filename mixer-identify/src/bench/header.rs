@@ -8,6 +8,8 @@
 
 use std::ops::{Index, IndexMut};
 
+use mixer_compiler::atmosphere::SEA_LEVEL_KG_M3;
+
 use self::name::{Name, distinct_prefixes};
 use crate::bench::sheet::Heading;
 use crate::bench::units::{self, Quantity, Scale};
@@ -296,7 +298,7 @@ impl Columns {
             return lacks.push((what.to_owned(), "--diameter METRE".to_owned()));
         };
         // T = C_T rho n^2 D^4, Q = C_P rho n^2 D^5 / (2 pi), n in revolutions per second.
-        let density = by_hand.density_kg_m3.unwrap_or(STANDARD_DENSITY);
+        let density = by_hand.density_kg_m3.unwrap_or(SEA_LEVEL_KG_M3);
         let squared = diameter * diameter;
         let force = density * squared * squared / 3600.0;
         let moment = force * diameter / std::f64::consts::TAU;
@@ -402,9 +404,6 @@ impl Columns {
         }
     }
 }
-
-/// Density of the standard atmosphere at sea level, kg/m3, for coefficients without another.
-pub const STANDARD_DENSITY: f64 = 1.225;
 
 /// A speed as a throttle: its share of the speed at full throttle.
 fn of_full(column: Column, full_rpm: f64) -> Column {

@@ -3,11 +3,13 @@
 //! A cell that is not a number, or a throttle outside the range, refuses its row, named by file and
 //! line. An empty cell is a missing value: streaming tools leave torque blank in most rows.
 
-use mixer_compiler::atmosphere;
+use std::fmt;
+
+use mixer_compiler::atmosphere::{self, SEA_LEVEL_KG_M3};
 use serde::Serialize;
 
 use crate::bench::air;
-use crate::bench::header::{ByHand, Column, Columns, Offers, STANDARD_DENSITY, Split, is_unit, known};
+use crate::bench::header::{ByHand, Column, Columns, Offers, Split, is_unit, known};
 use crate::bench::number::{Cell, is_blank, is_missing};
 use crate::bench::sheet::{Sheet, names};
 use crate::bench::units::{Quantity, Scale};
@@ -36,6 +38,26 @@ impl RefusedRow {
             kind: fault.kind,
         }
     }
+}
+
+impl fmt::Display for RefusedRow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.file, self.line, self.reason)
+    }
+}
+
+/// Refused rows in words, `most` of them one by one.
+pub fn refused_told<'a>(rows: impl Iterator<Item = &'a RefusedRow> + Clone, most: usize) -> Vec<String> {
+    let mut told: Vec<String> = rows
+        .clone()
+        .take(most)
+        .map(|row| format!("refused: {row}"))
+        .collect();
+    let more = rows.count().saturating_sub(most);
+    if more > 0 {
+        told.push(format!("refused: {more} rows more"));
+    }
+    told
 }
 
 /// What is wrong with a row.
@@ -192,7 +214,7 @@ pub fn read(name: &str, bytes: &[u8], reading: &Reading) -> Result<Log, Refusal>
     densities.retain(|density| density.is_finite());
     let air = match columns.by_coefficients() {
         true => by_hand.density_kg_m3.is_none().then(|| air::Known {
-            density_kg_m3: STANDARD_DENSITY,
+            density_kg_m3: SEA_LEVEL_KG_M3,
             from: "standard, for CT and CP".to_owned(),
         }),
         false => (!densities.is_empty()).then(|| air::Known {
@@ -225,7 +247,7 @@ fn stand_ins(columns: &Columns, by_hand: &ByHand) -> Vec<String> {
     let coefficients = diameter.map(|diameter| {
         let density = match by_hand.density_kg_m3 {
             Some(density) => format!("{density} kg/m3"),
-            None => format!("{STANDARD_DENSITY} kg/m3 (standard; --density gives another)"),
+            None => format!("{SEA_LEVEL_KG_M3} kg/m3 (standard; --density gives another)"),
         };
         format!(
             "thrust and torque are those of CT and CP with a diameter of {diameter} m in air of {density}"

@@ -49,8 +49,7 @@ fn add(
         let (throttles, measured) = ([point.u, point.l], [point.thrust, point.torque]);
         points.add(compiled, point.line, throttles, measured, voltage_v);
     }
-    let refused = bench.refused_rows.iter();
-    let refused = refused.map(|row| format!("{}:{}: {}", row.file, row.line, row.reason));
+    let refused = bench.refused_rows.iter().map(ToString::to_string);
     points.refused.extend(refused);
     points.files.push(bench.file);
     Ok(())
