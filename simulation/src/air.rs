@@ -11,7 +11,7 @@
 //! Its size is a round figure that was set beforehand, not identified: the paper measures no
 //! disturbance.
 
-use nalgebra::{SVector, Vector3};
+use nalgebra::SVector;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
@@ -78,21 +78,21 @@ impl Room {
     /// The disturbance over the next `step` seconds.
     pub fn next(&mut self, step: f64) -> Disturbance<ROTORS> {
         if self.air == Air::Unsteady {
-            let kept = libm::exp(-step / CORRELATION_S);
-            let fresh = (1.0 - kept * kept).sqrt();
-            let (source, last) = (&mut self.source, self.disturbance);
-            let force = Vector3::from_fn(|_, _| FORCE_N * normal(source));
-            let mut flutter = SVector::<f64, ROTORS>::zeros();
+            let (steps, source) = (step / CORRELATION_S, &mut self.source);
+            let Disturbance { force_n, flutter } = &mut self.disturbance;
+            force_n.apply(|force| *force = gauss_markov(*force, FORCE_N, steps, source));
             flutter
                 .fixed_rows_mut::<UNITS>(0)
-                .apply(|unit| *unit = FLUTTER * normal(source));
-            self.disturbance = Disturbance {
-                force_n: last.force_n * kept + force * fresh,
-                flutter: last.flutter * kept + flutter * fresh,
-            };
+                .apply(|unit| *unit = gauss_markov(*unit, FLUTTER, steps, source));
         }
         self.disturbance
     }
+}
+
+/// The next value of a Gauss-Markov process of a standard deviation, `steps` correlation times later.
+pub fn gauss_markov(last: f64, size: f64, steps: f64, source: &mut Pcg64Mcg) -> f64 {
+    let kept = libm::exp(-steps);
+    last * kept + size * normal(source) * (1.0 - kept * kept).sqrt()
 }
 
 /// A number of the standard normal distribution.

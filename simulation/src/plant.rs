@@ -8,10 +8,10 @@
 //! J dw/dt     = sum_i (r_i x a_i f_i - s_i Q_i a_i) - w x J w
 //! dq/dt       = q (0, w) / 2
 //! tau de_k/dt = (1 + mismatch_k) throttle_k - e_k
-//! f_i = (1 + flutter_i) k_f(V) f(e_upper, e_lower),   Q_i = k_Q(V) Q(e_upper, e_lower)
+//! f_i = (1 + flutter_i) c k_f(V) f(e_upper, e_lower),   Q_i = c k_Q(V) Q(e_upper, e_lower)
 //! ```
 //!
-//! k_f and k_Q are the file's laws of the voltage. In [the air of an altitude](Plant::in_air) they and the throttles
+//! c is 1, or [the factor](Plant::scaled) by which every pair differs from the file. k_f and k_Q are the file's laws of the voltage. In [the air of an altitude](Plant::in_air) they and the throttles
 //! of the map are those of a [`motor`](crate::motor) instead, so that the mixer's laws are put to the test.
 //!
 //! f and Q are eq. (1) with the f64 coefficients of the file: the map that the coaxial mixer
@@ -69,6 +69,8 @@ pub struct Plant<const R: usize> {
     motor: Option<Motor>,
     /// Density of the air on the bench, that of the sea level where the file has none.
     bench_kg_m3: f64,
+    /// Thrust and torque of every pair over those of the file.
+    scale: f64,
     body: Body,
     battery: Battery,
     mismatch: SVector<f64, R>,
@@ -94,6 +96,7 @@ impl<const R: usize> Plant<R> {
                 .air
                 .as_ref()
                 .map_or_else(|| atmosphere::density_at(0.0), |air| air.reference),
+            scale: 1.0,
             body,
             battery,
             mismatch,
@@ -117,6 +120,12 @@ impl<const R: usize> Plant<R> {
             motor: Some(motor),
             ..self
         })
+    }
+
+    /// The same vehicle, thrust and torque of every pair multiplied by a factor.
+    #[must_use]
+    pub fn scaled(self, scale: f64) -> Self {
+        Plant { scale, ..self }
     }
 
     /// Current of the battery, A.
@@ -147,7 +156,7 @@ impl<const R: usize> Plant<R> {
                     ([factor; 2], throttles)
                 }
             };
-            let [f, q] = self.pair.efforts(throttles);
+            let [f, q] = self.pair.efforts(throttles).map(|effort| self.scale * effort);
             let thrust = unit.axis * ((1.0 + flutter) * k_f * f);
             force += thrust;
             torque += unit.position_m.cross(&thrust) - unit.axis * (unit.spin_sign * k_q * q);

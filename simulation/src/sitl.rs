@@ -1,9 +1,9 @@
 //! One vehicle for the software in the loop of PX4 and ArduPilot.
 //!
 //! [`vehicle`] makes the plant of an airframe file, [`world`] has it on the ground or in the air,
-//! [`sensors`] measures it. [`px4`] and [`ardupilot`] speak the interfaces that the stacks have for outside simulators;
-//! [`pilot`] flies a [`plan`] by MAVLink; [`record`] holds the
-//! truth, [`score`] makes the table of it.
+//! with [`wind`] or without, [`sensors`] measures it. [`px4`] and [`ardupilot`] speak the interfaces
+//! that the stacks have for outside simulators; [`pilot`] flies a [`plan`] by MAVLink; [`record`]
+//! holds the truth, [`score`] makes the table of it.
 
 pub mod ardupilot;
 pub mod arguments;
@@ -18,6 +18,7 @@ pub mod record;
 pub mod score;
 pub mod sensors;
 pub mod vehicle;
+pub mod wind;
 pub mod world;
 
 use std::fs::File;

@@ -73,8 +73,11 @@ impl Vehicle {
         let mut flown = own.clone();
         if let Some(path) = &arguments.map {
             let other = read(path)?;
+            // The battery is the vehicle's, what a voltage does to the pair is the other file's.
             flown.pair = other.pair;
             flown.throttle = other.throttle;
+            flown.voltage = other.voltage;
+            flown.air = other.air;
         }
         let rotors = own.rotors();
         if rotors > MOST_ROTORS {
@@ -108,7 +111,7 @@ impl Vehicle {
         let thin = thin.or(arguments.altitude);
         let bench_m = own.air.as_ref().map(|air| atmosphere::altitude_of(air.reference));
         let plant = |battery: Battery| {
-            let plant = Plant::new(&flown, body, battery, mismatch);
+            let plant = Plant::new(&flown, body, battery, mismatch).scaled(arguments.thrust_scale);
             let Some(altitude_m) = thin else { return Ok(plant) };
             let density = atmosphere::density_at(altitude_m);
             plant
@@ -121,7 +124,7 @@ impl Vehicle {
             hover(plant, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))
         };
         let hover_throttle = hover(&rough)?;
-        let power_w = own
+        let power_w = flown
             .power_w(&vec![hover_throttle; rotors])
             .unwrap_or(HOVER_W_PER_KG * mass_kg);
         let cube = hover_throttle * hover_throttle * hover_throttle;
@@ -228,9 +231,7 @@ mod tests {
     fn every_airframe_hovers_at_its_throttle() {
         for file in airframes() {
             let vehicle = vehicle(&file, &["--mass-kg", "1.5"]).unwrap();
-            let mut state = State::level(Vector3::zeros(), 0.0);
-            state.throttle = alike(vehicle.hover_throttle, vehicle.rotors);
-            let (force, torque) = vehicle.plant.rotor_wrench(&state, &SVector::zeros());
+            let (force, torque) = wrench(&vehicle, vehicle.hover_throttle);
             assert!(
                 (-force.z / vehicle.weight_n() - 1.0).abs() < 1e-9,
                 "{file:?}: {force}"
@@ -259,6 +260,43 @@ mod tests {
             // Thrust falls by sigma^0.8 and goes with the throttle's power 1.9.
             let more = vehicle.hover_throttle / sea.hover_throttle;
             assert!((1.10..1.17).contains(&more), "{more}");
+        }
+    }
+
+    /// Force and torque of all rotors at one throttle.
+    fn wrench(vehicle: &Vehicle, throttle: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let mut state = State::level(Vector3::zeros(), 0.0);
+        state.throttle = alike(throttle, vehicle.rotors);
+        vehicle.plant.rotor_wrench(&state, &SVector::zeros())
+    }
+
+    #[test]
+    fn a_scale_multiplies_thrust_and_torque() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/simulator/x8.toml");
+        let [plain, scaled] =
+            [&[][..], &["--thrust-scale", "1.07"]].map(|flags| vehicle(Path::new(file), flags).unwrap());
+        // Below idle, too.
+        for throttle in [0.1, 0.3, 0.9] {
+            let [(force, torque), (more, turned)] =
+                [&plain, &scaled].map(|vehicle| wrench(vehicle, throttle));
+            assert!((more - force * 1.07).norm() < 1e-9, "{force} {more}");
+            assert!((turned - torque * 1.07).norm() < 1e-9, "{torque} {turned}");
+        }
+        assert!(scaled.hover_throttle < 0.98 * plain.hover_throttle);
+    }
+
+    #[test]
+    fn a_map_of_another_file_keeps_its_own_reference() {
+        let file = |name: &str| format!("{}/../{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let [own, other] = ["examples/simulator/x8", "airframes/isae-x8"].map(file);
+        for more in [&["--volts", "16"][..], &["--volts", "13.5", "--altitude", "2000"]] {
+            let flags = [&["--mass-kg", "3"], more].concat();
+            let mapped = vehicle(Path::new(&own), &[&flags[..], &["--map", &other]].concat()).unwrap();
+            let plain = vehicle(Path::new(&other), &flags).unwrap();
+            for throttle in [0.3, 0.9] {
+                let [(force, _), (same, _)] = [&plain, &mapped].map(|vehicle| wrench(vehicle, throttle));
+                assert!((force - same).norm() < 1e-9, "{force} {same}");
+            }
         }
     }
 

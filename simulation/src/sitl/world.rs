@@ -6,6 +6,7 @@
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 
 use super::vehicle::{MOST_ROTORS, Throttles, Vehicle};
+use super::wind::Wind;
 use crate::plant::Disturbance;
 use crate::state::State;
 use crate::vehicle::GRAVITY_M_S2;
@@ -22,6 +23,8 @@ const CRASH_COSINE: f64 = 0.7;
 pub struct World {
     /// What flies.
     pub vehicle: Vehicle,
+    /// What it flies in; `None` is air without drag.
+    pub wind: Option<Wind>,
     /// Its state.
     pub state: State<MOST_ROTORS>,
     /// Simulated time, microseconds.
@@ -37,9 +40,10 @@ pub struct World {
 
 impl World {
     /// On the ground at the origin, level, nose to the north.
-    pub fn new(vehicle: Vehicle) -> World {
+    pub fn new(vehicle: Vehicle, wind: Option<Wind>) -> World {
         World {
             vehicle,
+            wind,
             state: State::level(Vector3::zeros(), 0.0),
             time_us: 0,
             specific_force: -Vector3::z() * GRAVITY_M_S2,
@@ -111,10 +115,18 @@ impl World {
     }
 
     fn step(&mut self, command: &Throttles, step_s: f64) {
-        let plant = &self.vehicle.plant;
-        self.state = plant.step(&self.state, command, &Disturbance::default(), step_s);
+        let (plant, mass_kg) = (&self.vehicle.plant, self.vehicle.mass_kg);
+        let drag = self.wind.as_mut().map_or_else(Vector3::zeros, |wind| {
+            wind.advance(step_s);
+            wind.drag(&self.state)
+        });
+        let disturbance = Disturbance {
+            force_n: self.state.rotation() * drag * mass_kg,
+            ..Disturbance::default()
+        };
+        self.state = plant.step(&self.state, command, &disturbance, step_s);
         let force = self.rotor_force();
-        self.specific_force = force / self.vehicle.mass_kg;
+        self.specific_force = force / mass_kg + drag;
         self.on_ground = false;
         if self.state.position.z < 0.0 {
             return;
@@ -135,5 +147,36 @@ impl World {
             self.specific_force = -Vector3::z() * GRAVITY_M_S2;
             self.on_ground = true;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::sitl::arguments::Arguments;
+    use crate::sitl::vehicle::alike;
+
+    #[test]
+    fn the_accelerometer_measures_thrust_and_drag() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/simulator/x8.toml");
+        let arguments = Arguments::try_parse_from(["sitl", file, "--px4"]).unwrap();
+        let vehicle = Vehicle::new(&arguments).unwrap();
+        let command = alike(1.02 * vehicle.hover_throttle, vehicle.rotors);
+        let mut world = World::new(vehicle, Some(Wind::new(12.0, 1.2, 1)));
+        world.advance(&command, 3_000_000);
+        for _ in 0..100 {
+            let before = world.state.velocity;
+            world.advance(&command, 1000);
+            let felt = (world.state.velocity - before) / 0.001 - Vector3::z() * GRAVITY_M_S2;
+            let measured = world.state.rotation() * world.specific_force;
+            assert!((felt - measured).norm() < 1e-4, "{felt} {measured}");
+        }
+        // It has been carried along by 1.8 + 0.9 m/s2 at first.
+        let wind = world.wind.as_ref().unwrap().velocity().xy();
+        let carried = world.state.velocity.xy().dot(&wind) / wind.norm();
+        assert!((2.0..8.0).contains(&carried), "{carried}");
+        assert!(world.specific_force.xy().norm() > 0.5, "{}", world.specific_force);
     }
 }
