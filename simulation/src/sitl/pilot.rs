@@ -273,15 +273,12 @@ impl Pilot {
             }
             Phase::Flying(_) => {}
         }
-        if !matches!(self.phase, Phase::Flying(_)) && time_s - since_s > PATIENCE_S {
+        if let Some(trouble) = self.trouble(world, time_s, since_s) {
             let told = match self.told.as_str() {
                 "" => String::new(),
-                told => format!(", which said last: {told}"),
+                told => format!("; it said last: {told}"),
             };
-            let state = if self.armed { "armed" } else { "not armed" };
-            return Err(format!(
-                "no hover within {PATIENCE_S} s, the stack is {state}{told}"
-            ));
+            return Err(format!("{trouble}{told}"));
         }
         // ArduPilot's take-off ends with the first of them.
         let takes_targets = self.stack == Stack::Px4 || matches!(self.phase, Phase::Flying(_));
@@ -299,6 +296,31 @@ impl Pilot {
             });
         }
         Ok(())
+    }
+
+    /// Why the manoeuvre is not flown any more.
+    fn trouble(&self, world: &World, time_s: f64, since_s: f64) -> Option<String> {
+        let Some(flown_s) = self.manoeuvre_s(time_s) else {
+            let state = if self.armed { "armed" } else { "not armed" };
+            let is_late = time_s - since_s > PATIENCE_S;
+            return is_late.then(|| format!("no hover within {PATIENCE_S} s, the stack is {state}"));
+        };
+        let guided = self.stack.guided();
+        let what = if !self.armed {
+            "the stack has disarmed".to_owned()
+        } else if self.mode != guided {
+            format!(
+                "the stack has left mode {guided}, which the pilot flies in, for {}",
+                self.mode
+            )
+        } else if world.on_ground {
+            "the vehicle has landed by itself".to_owned()
+        } else {
+            return None;
+        };
+        Some(format!(
+            "{what} at {flown_s:.2} s of the manoeuvre, which ends there"
+        ))
     }
 
     /// Asks for the mode, then for armed motors.

@@ -263,7 +263,8 @@ impl fmt::Display for Score {
         if let Some(hover) = &self.hover {
             writeln!(
                 f,
-                "hover: thrust setpoint {:.4}, throttle {:.4} (model {:.4}), height {:.3} m rms, {:.2} V",
+                "hover: thrust setpoint {:.4} (the stack's, in its units), throttle {:.4} (mean of the rotors' commands; \
+                 {:.4} by the plant, all alike), height {:.3} m rms, {:.2} V",
                 hover.thrust_setpoint, hover.throttle, self.model_throttle, hover.height_m, hover.voltage_v
             )?;
         }

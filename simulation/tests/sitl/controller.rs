@@ -27,8 +27,8 @@ pub(crate) struct Controller {
     stream: Option<TcpStream>,
     frames: Frames,
     mixer: Compiled,
-    armed: bool,
-    mode: u32,
+    pub(crate) armed: bool,
+    pub(crate) mode: u32,
     /// North, east, down, m, and heading, rad.
     target: Option<([f64; 3], f64)>,
     steps: u64,

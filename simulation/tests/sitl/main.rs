@@ -347,6 +347,52 @@ fn a_yaw_manoeuvre_is_flown_and_measured() {
     assert!((mean / WEIGHT_N - 1.0).abs() < 0.01, "{mean}");
 }
 
+/// Who flies a manoeuvre differently from what the pilot asks for.
+type Wilful = fn(&mut Controller, &mut [f64; ROTORS], f64);
+
+#[test]
+fn a_manoeuvre_that_the_stack_gives_up_is_an_error() {
+    let failsafe: Wilful = |controller, _, _| controller.mode = 9;
+    let disarmed: Wilful = |controller, _, _| controller.armed = false;
+    let sinks: Wilful = |_, throttles, hover| *throttles = alike(0.95 * hover);
+    for (name, wilful, said) in [
+        (
+            "failsafe",
+            failsafe,
+            "the stack has left mode 4, which the pilot flies in, for 9 at",
+        ),
+        ("disarmed", disarmed, "the stack has disarmed at"),
+        ("sinks", sinks, "the vehicle has landed by itself at"),
+    ] {
+        let mut controller = Controller::new();
+        let port = controller.port().to_string();
+        let arguments = ["--ardupilot", "--noise", "0", "--fly", "steps", "--link", &port];
+        let server = Server::start(&format!("ardupilot-{name}"), &arguments);
+        let mut ardupilot = Ardupilot::connect(&server);
+        controller.accept();
+        let (mut throttles, mut hovered) = (alike(0.0), 0);
+        while let Some(truth) = ardupilot.try_step(&throttles) {
+            throttles = controller.update(&truth);
+            hovered += usize::from(truth.position[2] < -4.5);
+            // In the first step of the manoeuvre, which is 5 s later.
+            if hovered > 4200 {
+                wilful(&mut controller, &mut throttles, server.hover);
+            }
+        }
+        let end = server.end();
+        assert_eq!(end.status, Some(1), "{end:?}");
+        assert!(end.stderr.contains(&format!("error: {said}")), "{end:?}");
+        assert!(
+            end.stderr.contains("; it said last: EKF3 IMU0 is using GPS"),
+            "{end:?}"
+        );
+        assert!(
+            end.stdout.starts_with("hover:") && !end.stdout.contains("| step"),
+            "{end:?}"
+        );
+    }
+}
+
 #[test]
 fn what_cannot_be_done_is_said() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
