@@ -1,40 +1,32 @@
 #include "AP_MotorsCoaxialMixer.h"
 
+#include <AP_Vehicle/AP_Vehicle_Type.h>
+
+// Copter alone: the other vehicles do not link the library.
+#if AP_MOTORS_COAXIAL_MIXER_ENABLED && APM_BUILD_TYPE(APM_BUILD_ArduCopter)
+
 #include <AP_Baro/AP_Baro.h>
 #include <AP_BattMonitor/AP_BattMonitor.h>
 #include <AP_HAL/AP_HAL.h>
-
-#if CONFIG_HAL_BOARD == HAL_BOARD_SITL
-#include <fenv.h>
-#endif
+#include <GCS_MAVLink/GCS.h>
 
 extern const AP_HAL::HAL &hal;
 
 static_assert(ISAE_X8_CHANNELS <= AP_MOTORS_MAX_NUM_MOTORS, "more rotors than ArduPilot has motors");
 
-namespace {
-
-// ArduPilot's simulator traps floating-point exceptions; boards do not. The library raises none that it traps: this guard keeps
-// an older library from ending the simulation.
-class NoTraps {
-public:
-#if CONFIG_HAL_BOARD == HAL_BOARD_SITL
-    NoTraps() { feholdexcept(&_before); }
-    ~NoTraps() { fesetenv(&_before); }
-
-private:
-    fenv_t _before;
-#endif
-};
-
-int mix_without_traps(const mixer_wrench_t &setpoint, const mixer_conditions_t &conditions, isae_x8_mix_t &mix)
+// The rotors of the airframe, whatever FRAME_TYPE says; the motor test takes them in the order of their numbers.
+void AP_MotorsCoaxialMixer::setup_motors(motor_frame_class frame_class, motor_frame_type)
 {
-    const NoTraps guard {};
-    (void)guard;
-    return isae_x8_mix_in(&setpoint, &conditions, &mix);
+    static const float factors[ISAE_X8_CHANNELS][3] = ISAE_X8_ARDUPILOT_FACTORS;
+    set_initialised_ok(false);
+    for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
+        add_motor_raw(i, factors[i][0], factors[i][1], factors[i][2], i + 1);
+    }
+    constexpr uint8_t n = ISAE_X8_CHANNELS;
+    _mav_type = n == 6 ? MAV_TYPE_HEXAROTOR : n == 8 ? MAV_TYPE_OCTOROTOR : n == 12 ? MAV_TYPE_DODECAROTOR : MAV_TYPE_GENERIC;
+    // Another class needs another object, which the next start makes.
+    set_initialised_ok(frame_class == MOTOR_FRAME_COAXIAL_MIXER);
 }
-
-} // namespace
 
 void AP_MotorsCoaxialMixer::output_armed_stabilizing()
 {
@@ -65,19 +57,21 @@ void AP_MotorsCoaxialMixer::output_armed_stabilizing()
         throttle * ISAE_X8_ARDUPILOT_THRUST_N,
     };
     isae_x8_mix_t mix;
-    if (mix_without_traps(setpoint, _conditions, mix) == MIXER_OK) {
+    if (isae_x8_mix_in(&setpoint, &_conditions, &mix) == MIXER_OK) {
         mixed(mix, throttle);
     } else {
         refused();
     }
 }
 
-// Voltage of the first battery monitor, 0 where it has none; `healthy()` would speak for all of them.
-static float measured_voltage()
+// Voltage of the battery that ArduPilot's own compensation has (MOT_BAT_IDX), 0 where it has none. It is that under load, as on
+// the bench: the resting estimate does not know the sag that takes thrust away.
+float AP_MotorsCoaxialMixer::measured_voltage() const
 {
     const AP_BattMonitor &battery = AP::battery();
-    const float voltage_v = battery.voltage(AP_BATT_PRIMARY_INSTANCE);
-    return battery.healthy(AP_BATT_PRIMARY_INSTANCE) && isfinite(voltage_v) ? voltage_v : 0.0f;
+    const uint8_t index = thr_lin.get_battery_index();
+    const float voltage_v = battery.voltage(index);
+    return battery.healthy(index) && isfinite(voltage_v) ? voltage_v : 0.0f;
 }
 
 // Density by the barometer's pressure, kg/m^3, 0 where it has none. The temperature is that of the ground (BARO_GND_TEMP), less
@@ -97,11 +91,31 @@ void AP_MotorsCoaxialMixer::update_conditions()
 {
     const float voltage_v = measured_voltage();
     if (voltage_v > 0.0f) {
-        _conditions.voltage_v = voltage_v;
+        _conditions.voltage_v = _voltage_filter.apply(voltage_v, _dt_s);
+        tell_voltage();
     }
     const float density_kg_m3 = measured_density();
     if (density_kg_m3 > 0.0f) {
         _conditions.density_kg_m3 = density_kg_m3;
+    }
+}
+
+// How far a voltage is outside the airframe's range_v, V; below 0 inside.
+static float beyond_range(float voltage_v)
+{
+    return MAX(ISAE_X8_MIN_V - voltage_v, voltage_v - ISAE_X8_MAX_V);
+}
+
+// Outside its range the model is that of the range's end. That is told once, and again after the voltage was inside.
+void AP_MotorsCoaxialMixer::tell_voltage()
+{
+    const float voltage_v = _conditions.voltage_v;
+    if (!NEEDS_VOLTAGE || !armed() || beyond_range(voltage_v) <= 0.0f) {
+        _told_voltage = false;
+    } else if (!_told_voltage && beyond_range(voltage_v) > VOLTAGE_ERROR * voltage_v) {
+        _told_voltage = true;
+        GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "%.2f V, %s has %.2f to %.2f V", double(voltage_v), ISAE_X8_AIRFRAME,
+                      double(ISAE_X8_MIN_V), double(ISAE_X8_MAX_V));
     }
 }
 
@@ -163,36 +177,7 @@ void AP_MotorsCoaxialMixer::output_to_motors()
 
 bool AP_MotorsCoaxialMixer::arming_checks(size_t buflen, char *buffer) const
 {
-    return AP_MotorsMatrix::arming_checks(buflen, buffer) && check_frame(buflen, buffer) && check_parameters(buflen, buffer)
-           && check_battery(buflen, buffer);
-}
-
-// Whether ArduPilot's motors are the airframe's rotors, by what each does to an axis.
-bool AP_MotorsCoaxialMixer::check_frame(size_t buflen, char *buffer) const
-{
-    static const float factors[ISAE_X8_CHANNELS][3] = ISAE_X8_ARDUPILOT_FACTORS;
-    for (uint8_t i = 0; i < AP_MOTORS_MAX_NUM_MOTORS; i++) {
-        if (motor_enabled[i] != (i < ISAE_X8_CHANNELS)) {
-            hal.util->snprintf(buffer, buflen, "%s has %u rotors: Motor%u differs, set FRAME_CLASS", ISAE_X8_AIRFRAME,
-                               unsigned(ISAE_X8_CHANNELS), unsigned(i + 1));
-            return false;
-        }
-    }
-    for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
-        const float own[3] {_roll_factor[i], _pitch_factor[i], _yaw_factor[i]};
-        const char *const axes[3] {"roll", "pitch", "yaw"};
-        for (uint8_t axis = 0; axis < 3; axis++) {
-            // Of yaw the sign counts: V frames weight it by the arm.
-            const bool same = axis == 2 ? own[axis] * factors[i][axis] > 0.0f || fabsf(factors[i][axis]) < SAME_FACTOR
-                                        : fabsf(own[axis] - factors[i][axis]) < SAME_FACTOR;
-            if (!same) {
-                hal.util->snprintf(buffer, buflen, "Motor%u %s %.2f, %s %.2f: set FRAME_TYPE or channels", unsigned(i + 1),
-                                   axes[axis], double(own[axis]), ISAE_X8_AIRFRAME, double(factors[i][axis]));
-                return false;
-            }
-        }
-    }
-    return true;
+    return AP_MotorsMatrix::arming_checks(buflen, buffer) && check_parameters(buflen, buffer) && check_battery(buflen, buffer);
 }
 
 // Whether the parameters are those that the airframe file was measured with.
@@ -221,14 +206,21 @@ bool AP_MotorsCoaxialMixer::check_parameters(size_t buflen, char *buffer) const
     return true;
 }
 
-// Whether the voltage is measured: without it the mixer would keep that of the bench, whatever the pack has.
+// Whether the voltage is one of the airframe's: otherwise the mixer would keep another, and the thrust would be off.
 bool AP_MotorsCoaxialMixer::check_battery(size_t buflen, char *buffer) const
 {
-    // 0 in an airframe without a voltage law.
-    const bool needs_voltage = ISAE_X8_REFERENCE_V > 0.0f;
-    if (needs_voltage && measured_voltage() <= 0.0f) {
-        hal.util->snprintf(buffer, buflen, "battery 1 has no voltage: set BATT_MONITOR");
+    const unsigned number = thr_lin.get_battery_index() + 1;
+    const float voltage_v = measured_voltage();
+    if (NEEDS_VOLTAGE && voltage_v <= 0.0f) {
+        hal.util->snprintf(buffer, buflen, "battery %u has no voltage: set BATT_MONITOR", number);
+        return false;
+    }
+    if (NEEDS_VOLTAGE && beyond_range(voltage_v) > VOLTAGE_ERROR * voltage_v) {
+        hal.util->snprintf(buffer, buflen, "battery %u has %.2f V, %s %.2f to %.2f V: change it, or range_v", number,
+                           double(voltage_v), ISAE_X8_AIRFRAME, double(ISAE_X8_MIN_V), double(ISAE_X8_MAX_V));
         return false;
     }
     return true;
 }
+
+#endif // AP_MOTORS_COAXIAL_MIXER_ENABLED

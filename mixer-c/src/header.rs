@@ -68,6 +68,7 @@ impl Header<'_> {
             .iter()
             .map(|factors| format!("{{{}}}", factors.map(|factor| float(factor as f32)).join(", ")))
             .collect();
+        let [min_v, max_v] = airframe.voltage.as_ref().map_or([0.0; 2], |voltage| voltage.range);
         let at = |words: fn(&Correction) -> String| airframe.voltage.as_ref().map(words).unwrap_or_default();
         fill(
             include_str!("templates/airframe.h"),
@@ -85,6 +86,8 @@ impl Header<'_> {
                 ("ROTORS", &airframe.rotors()),
                 ("MIN", &float(airframe.throttle.min as f32)),
                 ("MAX", &float(airframe.throttle.max as f32)),
+                ("MIN_V", &float(min_v as f32)),
+                ("MAX_V", &float(max_v as f32)),
                 ("REFERENCE_V", &float(airframe.reference_v() as f32)),
                 ("REFERENCE_DENSITY", &float(airframe.reference_density() as f32)),
                 ("PX4", &scales("", compiled.scale())),

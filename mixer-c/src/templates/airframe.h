@@ -12,11 +12,13 @@
 #define @PREFIX@_VERSION "@VERSION@"
 #define @PREFIX@_SHA256 "@HASH@"
 
-/* Output channels, the range of every throttle, and voltage and air density of the bench: what to pass before one is
- * measured; 0 where the airframe ignores it. */
+/* Output channels, the range of every throttle, the voltages of range_v, and voltage and air density of the bench: what to
+ * pass before one is measured; 0 where the airframe ignores it. */
 #define @PREFIX@_CHANNELS @ROTORS@
 #define @PREFIX@_THROTTLE_MIN @MIN@
 #define @PREFIX@_THROTTLE_MAX @MAX@
+#define @PREFIX@_MIN_V @MIN_V@
+#define @PREFIX@_MAX_V @MAX_V@
 #define @PREFIX@_REFERENCE_V @REFERENCE_V@
 #define @PREFIX@_REFERENCE_DENSITY_KG_M3 @REFERENCE_DENSITY@
 
