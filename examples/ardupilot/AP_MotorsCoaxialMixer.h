@@ -55,15 +55,14 @@ private:
     static constexpr float MOST_SPIN_MIN = 0.3f;
     // Share of a voltage that a sensor may be off: a full pack may read more than range_v has.
     static constexpr float VOLTAGE_ERROR = 0.01f;
-    // Of the voltage: that of ArduPilot's own compensation (AP_MOTORS_BATT_VOLT_FILT_HZ).
-    static constexpr float VOLTAGE_FILTER_HZ = 0.5f;
     // 0 in an airframe without a voltage law.
     static constexpr bool NEEDS_VOLTAGE = ISAE_X8_MAX_V > 0.0f;
 
     float _throttle[ISAE_X8_CHANNELS] {};
     // The last voltage and density that were measured: until then those of the bench, which NAN stands for.
     mixer_conditions_t _conditions {ISAE_X8_REFERENCE_V, NAN};
-    LowPassFilterFloat _voltage_filter {VOLTAGE_FILTER_HZ};
+    // Hz: that of ArduPilot's own compensation (AP_MOTORS_BATT_VOLT_FILT_HZ).
+    LowPassFilterFloat _voltage_filter {0.5f};
     bool _told_voltage = false;
     float _refused_s = 0.0f;
 };

@@ -68,7 +68,10 @@ impl Header<'_> {
             .iter()
             .map(|factors| format!("{{{}}}", factors.map(|factor| float(factor as f32)).join(", ")))
             .collect();
-        let [min_v, max_v] = airframe.voltage.as_ref().map_or([0.0; 2], |voltage| voltage.range);
+        let [min_v, max_v] = airframe
+            .voltage
+            .as_ref()
+            .map_or([0.0; 2], |voltage| voltage.range);
         let at = |words: fn(&Correction) -> String| airframe.voltage.as_ref().map(words).unwrap_or_default();
         fill(
             include_str!("templates/airframe.h"),

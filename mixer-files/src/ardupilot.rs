@@ -12,6 +12,9 @@ const SPIN_ARM: f64 = 0.1;
 /// Range of `MOT_THST_HOVER` in ArduPilot.
 const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 
+/// `MOTOR_FRAME_COAXIAL_MIXER`, as `examples/ardupilot` has it enumerated.
+const COAXIAL_MIXER: i32 = 100;
+
 /// ArduPilot has no monitor by default, and no voltage without one.
 const MONITOR: &str = "BATT_MONITOR is your board's; 0 measures no voltage, the simulator has 4";
 
@@ -73,8 +76,16 @@ pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
     hover_throttle(hover, why, all);
 }
 
-/// `FRAME_CLASS` and `FRAME_TYPE`, if a frame has these rotors on these outputs.
-pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) {
+/// `FRAME_CLASS` of this mixer; of ArduPilot's `own`, `FRAME_CLASS` and `FRAME_TYPE`, if a frame has these rotors on
+/// these outputs.
+pub(crate) fn geometry(compiled: &Compiled, own: bool, all: &mut Parameters) {
+    if !own {
+        all.because(
+            "The motors class of the compiled airframe, which has its rotors; FRAME_TYPE has no effect.",
+        )
+        .whole("FRAME_CLASS", COAXIAL_MIXER);
+        return;
+    }
     let Some((class, kind, name)) = frames::find(compiled) else {
         return all.note(
             "no FRAME_CLASS has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, and Y6; of \

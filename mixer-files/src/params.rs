@@ -119,7 +119,7 @@ fn parameters(options: &Options, compiled: &Compiled) -> Result<Parameters, Stri
     };
     match options.stack {
         Stack::Px4 => px4::geometry(compiled, &mut all)?,
-        Stack::Ardupilot => ardupilot::geometry(compiled, &mut all),
+        Stack::Ardupilot => ardupilot::geometry(compiled, options.own, &mut all),
     }
     match (options.stack, options.own) {
         (Stack::Px4, true) => px4::own(compiled, currents, &mut all),

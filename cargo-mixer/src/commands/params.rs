@@ -16,7 +16,7 @@ use crate::{Done, file, print_error};
 /// PX4:       CA_* in motor order, hover and least thrust, failure detection, what must be off.
 ///            `--format airframe` writes a start script for PX4's simulator and, beside it as
 ///            FILE.post, what starts this mixer in place of control_allocator.
-/// ArduPilot: FRAME_CLASS and FRAME_TYPE where one fits, MOT_*.
+/// ArduPilot: FRAME_CLASS, with --own FRAME_TYPE, and MOT_*.
 ///
 /// Parameters that need more than the airframe file says are named on stderr and in the file.
 #[derive(clap::Args, Debug)]

@@ -315,7 +315,7 @@ fn new_frames_are_those_of_the_stacks_tables() {
     for (frame, expected) in [("x8", (4, 1)), ("y6", (5, 10)), ("x12", (12, 1))] {
         let (file, text) = new_frame(&folder, frame, "ardupilot");
         assert!(text.contains("airmode = \"roll-pitch\""), "{text}");
-        let params = printed(&["params", file.to_str().unwrap(), "--stack", "ardupilot"]);
+        let params = printed(&["params", file.to_str().unwrap(), "--stack", "ardupilot", "--own"]);
         let numbers_of = ["FRAME_CLASS", "FRAME_TYPE"].map(|name| value(&params, name).unwrap());
         assert_eq!(numbers_of, [f64::from(expected.0), f64::from(expected.1)]);
         let frames = table["frames"].as_array().unwrap();
@@ -492,7 +492,7 @@ fn ardupilot_units_are_those_of_its_tables() {
             "{name}: {} {yaw_nm}",
             unit("yaw_nm")
         );
-        let params = printed(&["params", airframe, "--stack", "ardupilot"]);
+        let params = printed(&["params", airframe, "--stack", "ardupilot", "--own"]);
         let found = ["FRAME_CLASS", "FRAME_TYPE"].map(|name| value(&params, name));
         let kind = if (class, kind) == (4, 2) { 1 } else { kind };
         assert_eq!(found, [Some(f64::from(class)), Some(f64::from(kind))], "{name}");

@@ -59,11 +59,18 @@ const ARDUPILOT: Stack = Stack {
         "AP_BattMonitor/AP_BattMonitor.h",
         "AP_HAL/AP_HAL.h",
         "AP_Motors/AP_MotorsMatrix.h",
+        "AP_Motors_config.h",
+        "AP_Vehicle/AP_Vehicle_Type.h",
+        "Filter/LowPassFilter.h",
+        "GCS_MAVLink/GCS.h",
     ],
     declarations: "ardupilot.h",
     folder: "examples/ardupilot",
     source: "AP_MotorsCoaxialMixer.cpp",
-    flags: &[&["-std=gnu++11"], &["-std=gnu++17"]],
+    flags: &[
+        &["-std=gnu++11", "-DAPM_BUILD_DIRECTORY=2"],
+        &["-std=gnu++17", "-DAPM_BUILD_DIRECTORY=2"],
+    ],
 };
 
 impl Stack {

@@ -2,7 +2,6 @@
 #include "AP_MotorsCoaxialMixer.h"
 
 #include <cfenv>
-#include <cfloat>
 #include <cstdio>
 #include <cstring>
 
@@ -10,6 +9,8 @@ static AP_HAL::Util util;
 static const AP_HAL::HAL here {&util};
 extern const AP_HAL::HAL &hal;
 const AP_HAL::HAL &hal = here;
+
+Told told;
 
 static unsigned faults;
 
@@ -33,12 +34,7 @@ public:
     // The frame and the parameters of the airframe file.
     Bench() : AP_MotorsCoaxialMixer(400)
     {
-        for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
-            motor_enabled[i] = true;
-            _roll_factor[i] = FACTORS[i][0];
-            _pitch_factor[i] = FACTORS[i][1];
-            _yaw_factor[i] = FACTORS[i][2];
-        }
+        init(MOTOR_FRAME_COAXIAL_MIXER, MOTOR_FRAME_TYPE_PLUS);
         thr_lin.spin_min = ISAE_X8_THROTTLE_MIN;
         thr_lin.spin_max = ISAE_X8_THROTTLE_MAX;
     }
@@ -74,16 +70,32 @@ public:
         output_to_motors();
     }
 
-    // A yaw that is a normal number in N m, and none any more as a share of each unit.
-    void ask_least_yaw()
+    // The motors are the rotors of the airframe, and no others.
+    bool has_the_rotors() const
     {
-        _roll_in = _roll_in_ff = _pitch_in = _pitch_in_ff = _yaw_in_ff = 0.0f;
-        _yaw_in = 1.5f * FLT_MIN / YAW_NM;
-        _spool_state = SpoolState::THROTTLE_UNLIMITED;
-        _throttle_in = 0.3f;
+        for (uint8_t i = 0; i < AP_MOTORS_MAX_NUM_MOTORS; i++) {
+            const bool rotor = i < ISAE_X8_CHANNELS;
+            const float *const factors = FACTORS[rotor ? i : 0];
+            const bool same = std::fabs(_roll_factor[i] - factors[0]) + std::fabs(_pitch_factor[i] - factors[1])
+                                      + std::fabs(_yaw_factor[i] - factors[2])
+                              <= 0.0f;
+            if (motor_enabled[i] != rotor || (rotor && (!same || _test_order[i] != i + 1))) {
+                return false;
+            }
+        }
+        return _mav_type == MAV_TYPE_OCTOROTOR && strcmp(_get_frame_string(), "isae-x8") == 0;
     }
 
-    void mix() { output_armed_stabilizing(); }
+    // Hovers so long at a voltage.
+    void hover(float volts, float seconds)
+    {
+        AP::battery().volts = volts;
+        for (int i = 0; i < int(seconds / _dt_s); i++) {
+            cycle(SpoolState::THROTTLE_UNLIMITED, 0.0f, 0.0f, 0.0f, 0.3f);
+        }
+    }
+
+    void set_armed(bool armed) { _armed = armed; }
 
     bool all_written(float throttle) const
     {
@@ -96,7 +108,8 @@ public:
     }
 
     // Whether the actuators are those of the library, as they come.
-    bool same(float roll, float pitch, float yaw, float throttle, float voltage_v, float density_kg_m3 = NAN) const
+    bool same(float roll, float pitch, float yaw, float throttle, float voltage_v, float density_kg_m3 = NAN,
+              float error = 1e-5f) const
     {
         const mixer_wrench_t setpoint {roll * ROLL_NM, pitch * PITCH_NM, yaw * YAW_NM, throttle * ISAE_X8_ARDUPILOT_THRUST_N};
         isae_x8_mix_t mix;
@@ -105,7 +118,7 @@ public:
             return false;
         }
         for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
-            const bool close = std::fabs(_actuator[i] - mix.throttle[i]) < 1e-5f && std::fabs(_thrust_rpyt_out[i] - mix.throttle[i]) < 1e-5f;
+            const bool close = std::fabs(_actuator[i] - mix.throttle[i]) < error && std::fabs(_thrust_rpyt_out[i] - mix.throttle[i]) < error;
             if (!close || _written[i] != static_cast<uint16_t>(1000.0f + 1000.0f * _actuator[i])) {
                 return false;
             }
@@ -116,7 +129,7 @@ public:
 
     float throttle_out() const { return _throttle_out; }
 
-    // Frames and parameters that are not the airframe's.
+    // Parameters that are not the airframe's.
     friend void arming();
 
     void spool_limit(float throttle) { _throttle_thrust_max = throttle; }
@@ -135,50 +148,85 @@ void arming()
     AP::battery().volts = 15.5f;
     CHECK(Bench().refuses("BATT_MONITOR"));
     AP::battery().good = true;
+    CHECK(Bench().arms() && Bench().has_the_rotors());
+    AP::battery().volts = 12.6f;
+    CHECK(Bench().refuses("battery 1 has 12.60 V, isae-x8 12.80 to 16.80 V: change it, or range_v"));
+    AP::battery().volts = 17.0f;
+    CHECK(Bench().refuses("17.00 V"));
+    // A full pack by a sensor that is half a percent off.
+    AP::battery().volts = 16.88f;
     CHECK(Bench().arms());
+    {
+        Bench motors;
+        motors.thr_lin.battery = 1;
+        CHECK(motors.refuses("battery 2 has no voltage"));
+        AP::battery().battery = 1;
+        CHECK(motors.arms());
+        AP::battery().battery = 0;
+    }
+    {
+        // FRAME_CLASS was changed, and ArduPilot not started anew; then back.
+        Bench motors;
+        motors.init(Bench::MOTOR_FRAME_OCTAQUAD, Bench::MOTOR_FRAME_TYPE_PLUS);
+        CHECK(motors.refuses("Check frame class and type"));
+        motors.init(Bench::MOTOR_FRAME_COAXIAL_MIXER, Bench::MOTOR_FRAME_TYPE_PLUS);
+        CHECK(motors.arms() && motors.has_the_rotors());
+    }
+    const struct {
+        void (*change)(Bench &motors);
+        const char *said;
+    } parameters[] {
+        {[](Bench &motors) { motors.thr_lin.spin_min = 0.15f; }, "MOT_SPIN_MIN is 0.15, isae-x8 has 0.1"},
+        {[](Bench &motors) { motors.thr_lin.spin_max = 0.95f; }, "MOT_SPIN_MAX"},
+        {[](Bench &motors) { motors._pwm_min = 1100; }, "MOT_PWM_MIN is 1100, isae-x8 has 1000"},
+        {[](Bench &motors) { motors._pwm_max = 1900; }, "MOT_PWM_MAX"},
+        {[](Bench &motors) { motors._slew_up_time.value = 0.05f; }, "MOT_SLEW_UP_TIME"},
+        {[](Bench &motors) { motors._slew_dn_time.value = 0.05f; }, "MOT_SLEW_DN_TIME"},
+    };
+    for (const auto &parameter : parameters) {
+        Bench motors;
+        parameter.change(motors);
+        CHECK(motors.refuses(parameter.said));
+    }
+    AP::battery() = AP_BattMonitor();
+}
+
+// In flight the voltage is filtered, and that it leaves the range is told once.
+void voltage()
+{
     Bench motors;
-    motors._ready = false;
-    CHECK(motors.refuses("Check frame class and type"));
-    motors = Bench();
-    motors.motor_enabled[7] = false;
-    CHECK(motors.refuses("8 rotors: Motor8 differs, set FRAME_CLASS"));
-    motors = Bench();
-    motors.motor_enabled[8] = true;
-    CHECK(motors.refuses("Motor9"));
-    motors = Bench();
-    motors._roll_factor[2] = -motors._roll_factor[2];
-    CHECK(motors.refuses("Motor3 roll") && motors.refuses("FRAME_TYPE"));
-    motors = Bench();
-    motors._pitch_factor[0] = 0.4f * motors._pitch_factor[0];
-    CHECK(motors.refuses("Motor1 pitch"));
-    motors = Bench();
-    motors._yaw_factor[5] = -motors._yaw_factor[5];
-    CHECK(motors.refuses("Motor6 yaw"));
-    motors = Bench();
-    motors.thr_lin.spin_min = 0.15f;
-    CHECK(motors.refuses("MOT_SPIN_MIN is 0.15, isae-x8 has 0.1"));
-    motors = Bench();
-    motors.thr_lin.spin_max = 0.95f;
-    CHECK(motors.refuses("MOT_SPIN_MAX"));
-    motors = Bench();
-    motors._pwm_min = 1100;
-    CHECK(motors.refuses("MOT_PWM_MIN is 1100, isae-x8 has 1000"));
-    motors = Bench();
-    motors._pwm_max = 1900;
-    CHECK(motors.refuses("MOT_PWM_MAX"));
-    motors = Bench();
-    motors._slew_up_time.value = 0.05f;
-    CHECK(motors.refuses("MOT_SLEW_UP_TIME"));
-    motors = Bench();
-    motors._slew_dn_time.value = 0.05f;
-    CHECK(motors.refuses("MOT_SLEW_DN_TIME"));
+    AP::battery().good = true;
+    motors.hover(12.0f, 1.0f);
+    // Not armed, nothing is told.
+    CHECK(told.times == 0);
+    motors.hover(16.0f, 6.0f);
+    motors.set_armed(true);
+    CHECK(motors.same(0.0f, 0.0f, 0.0f, 0.3f, 16.0f));
+    // A step: 63 % of it after 0.32 s.
+    motors.hover(14.0f, 0.3183f);
+    CHECK(motors.same(0.0f, 0.0f, 0.0f, 0.3f, 14.0f + 2.0f / std::exp(1.0f), NAN, 1e-3f));
+    CHECK(told.times == 0);
+    motors.hover(12.6f, 5.0f);
+    CHECK(told.times == 1 && strstr(told.text, "V, isae-x8 has 12.80 to 16.80 V") != nullptr);
+    // At the end of the range, to and fro within what a sensor is off.
+    for (int i = 0; i < 5; i++) {
+        motors.hover(12.7f, 2.0f);
+        motors.hover(12.79f, 2.0f);
+    }
+    CHECK(told.times == 1);
+    motors.hover(13.5f, 5.0f);
+    motors.hover(12.0f, 5.0f);
+    CHECK(told.times == 2);
     AP::battery() = AP_BattMonitor();
 }
 
 int main()
 {
+    // What ArduPilot's simulator traps.
+    feenableexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW);
     using State = AP_MotorsMatrix::SpoolState;
     arming();
+    voltage();
     Bench motors;
 
     motors.cycle(State::SHUT_DOWN, 0.0f, 0.0f, 0.0f, 0.0f);
@@ -229,15 +277,6 @@ int main()
     CHECK(motors.throttle_out() > 0.25f);
     motors.cycle(State::SHUT_DOWN, 0.5f, 0.0f, 0.0f, 0.3f);
     CHECK(motors.all_written(0.0f) && motors.throttle_out() <= 0.0f && motors.output(0) <= 0.0f);
-
-    // What the simulator traps, and underflow, which the library may raise: nothing is trapped in the mix, and the traps are
-    // there again after it.
-    constexpr int TRAPS = FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW | FE_UNDERFLOW;
-    motors.ask_least_yaw();
-    feenableexcept(TRAPS);
-    motors.mix();
-    CHECK(fegetexcept() == TRAPS);
-    fedisableexcept(FE_ALL_EXCEPT);
 
     // The standard atmosphere at 3,000 m, 100 m above the ground; then a barometer that fails: the density is the last one.
     motors.cycle(State::THROTTLE_UNLIMITED, 0.0f, 0.0f, 0.0f, 0.3f);

@@ -10,11 +10,23 @@
 
 using std::isfinite;
 
-#define HAL_BOARD_SITL 3
-#define CONFIG_HAL_BOARD HAL_BOARD_SITL
 #define AP_MOTORS_MAX_NUM_MOTORS 32
-#define AP_BATT_PRIMARY_INSTANCE 0
 #define MIN(a, b) ((a) < (b) ? (a) : (b))
+#define MAX(a, b) ((a) > (b) ? (a) : (b))
+
+#define APM_BUILD_ArduCopter 2
+#define APM_BUILD_TYPE(type) ((type) == APM_BUILD_DIRECTORY)
+
+enum MAV_TYPE { MAV_TYPE_GENERIC = 0, MAV_TYPE_HEXAROTOR = 13, MAV_TYPE_OCTOROTOR = 14, MAV_TYPE_DODECAROTOR = 29 };
+enum MAV_SEVERITY { MAV_SEVERITY_WARNING = 4 };
+
+// What the ground station was told, and how often.
+struct Told {
+    char text[100];
+    unsigned times;
+};
+extern Told told;
+#define GCS_SEND_TEXT(severity, ...) (void(severity), ++told.times, snprintf(told.text, sizeof(told.text), __VA_ARGS__))
 
 namespace AP_HAL {
 class Util {
@@ -47,20 +59,43 @@ class Thrust_Linearization {
 public:
     float get_spin_min() const { return spin_min; }
     float get_spin_max() const { return spin_max; }
+    int8_t get_battery_index() const { return battery; }
 
     // Protected there, with the class above for a friend.
     float spin_min = 0.15f;
     float spin_max = 0.95f;
+    int8_t battery = 0;
 };
 
+// It takes the first sample as it is.
+class LowPassFilterFloat {
+public:
+    explicit LowPassFilterFloat(const float &cutoff_hz) : _rc(1.0f / (6.2831853f * cutoff_hz)) {}
+    LowPassFilterFloat(const LowPassFilterFloat &) = delete;
+    LowPassFilterFloat &operator=(const LowPassFilterFloat &) = delete;
+
+    float apply(const float &sample, const float &dt)
+    {
+        _output += (_begun ? dt / (dt + _rc) : 1.0f) * (sample - _output);
+        _begun = true;
+        return _output;
+    }
+
+private:
+    float _rc;
+    float _output = 0.0f;
+    bool _begun = false;
+};
+
+// Of one monitor, whose index is 0 if not said otherwise.
 class AP_BattMonitor {
 public:
-    // Of one monitor; there is but one here.
-    float voltage(uint8_t) const { return volts; }
-    bool healthy(uint8_t) const { return good; }
+    float voltage(uint8_t index) const { return index == battery ? volts : 0.0f; }
+    bool healthy(uint8_t index) const { return index == battery && good; }
 
     float volts = 0.0f;
     bool good = false;
+    uint8_t battery = 0;
 };
 
 class AP_Baro {
@@ -97,12 +132,32 @@ public:
     explicit AP_MotorsMatrix(uint16_t speed_hz = 490) : _speed_hz(speed_hz) {}
     virtual ~AP_MotorsMatrix() = default;
 
+    enum motor_frame_class { MOTOR_FRAME_OCTAQUAD = 4, MOTOR_FRAME_COAXIAL_MIXER = 100 };
+    enum motor_frame_type { MOTOR_FRAME_TYPE_PLUS = 0 };
+
+    virtual void init(motor_frame_class frame_class, motor_frame_type frame_type) { setup_motors(frame_class, frame_type); }
+
     virtual bool arming_checks(size_t buflen, char *buffer) const
     {
         if (!_ready) {
             snprintf(buffer, buflen, "Check frame class and type");
         }
         return _ready;
+    }
+
+    bool armed() const { return _armed; }
+    void set_initialised_ok(bool ready) { _ready = ready; }
+
+    // Nothing where the motors are set up.
+    void add_motor_raw(int8_t motor, float roll, float pitch, float yaw, uint8_t order, float = 1.0f)
+    {
+        if (!_ready) {
+            motor_enabled[motor] = true;
+            _roll_factor[motor] = roll;
+            _pitch_factor[motor] = pitch;
+            _yaw_factor[motor] = yaw;
+            _test_order[motor] = order;
+        }
     }
 
     int16_t get_pwm_output_min() const { return _pwm_min; }
@@ -140,6 +195,8 @@ public:
 
 protected:
     virtual void output_armed_stabilizing() {}
+    virtual void setup_motors(motor_frame_class, motor_frame_type) {}
+    virtual const char *_get_frame_string() const { return ""; }
 
     virtual void rc_write(uint8_t channel, uint16_t pwm) { _written[channel] = pwm; }
 
@@ -165,6 +222,9 @@ protected:
     float _roll_factor[AP_MOTORS_MAX_NUM_MOTORS] {};
     float _pitch_factor[AP_MOTORS_MAX_NUM_MOTORS] {};
     float _yaw_factor[AP_MOTORS_MAX_NUM_MOTORS] {};
+    uint8_t _test_order[AP_MOTORS_MAX_NUM_MOTORS] {};
+    MAV_TYPE _mav_type = MAV_TYPE_GENERIC;
+    bool _armed = false;
     AP_Float _slew_up_time {};
     AP_Float _slew_dn_time {};
     int16_t _pwm_min = 1000;
@@ -175,5 +235,5 @@ protected:
     // Of the stand-in: what was written and checked last.
     uint16_t _written[AP_MOTORS_MAX_NUM_MOTORS] {};
     float _checked_throttle = -1.0f;
-    bool _ready = true;
+    bool _ready = false;
 };
