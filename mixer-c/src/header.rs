@@ -63,11 +63,6 @@ impl Header<'_> {
                 .map(|(name, value)| format!("#define {prefix}_{stack}{name} {}\n", float(value)))
                 .collect()
         };
-        let factors = compiled.ardupilot_factors();
-        let factors: Vec<String> = factors
-            .iter()
-            .map(|factors| format!("{{{}}}", factors.map(|factor| float(factor as f32)).join(", ")))
-            .collect();
         let [min_v, max_v] = airframe
             .voltage
             .as_ref()
@@ -95,7 +90,8 @@ impl Header<'_> {
                 ("REFERENCE_DENSITY", &float(airframe.reference_density() as f32)),
                 ("PX4", &scales("", compiled.scale())),
                 ("ARDUPILOT", &scales("ARDUPILOT_", compiled.ardupilot_scale())),
-                ("FACTORS", &factors.join(", \\\n    ")),
+                ("ROTOR_ROWS", &rows(&compiled.px4_rotors())),
+                ("FACTORS", &rows(&compiled.ardupilot_factors())),
                 (
                     "REFERENCE",
                     &at(|voltage| format!(" at {:?} V", voltage.reference)),
@@ -187,6 +183,12 @@ pub(crate) fn fill(template: &str, values: &[(&str, &dyn Display)]) -> String {
 /// A constant that reads back to the same bits.
 fn float(value: f32) -> String {
     format!("{value:?}f")
+}
+
+/// Rows of a table of C.
+fn rows<const N: usize>(rows: &[[f64; N]]) -> String {
+    let row = |row: &[f64; N]| format!("{{{}}}", row.map(|value| float(value as f32)).join(", "));
+    rows.iter().map(row).collect::<Vec<_>>().join(", \\\n    ")
 }
 
 /// Text that ends no comment and begins none, on one line.

@@ -184,6 +184,11 @@ impl Compiled {
         self.rotors(self.airframe.reference_v()).ardupilot_factors()
     }
 
+    /// PX4's `CA_ROTORn_PX`, `_PY`, `_PZ`, `_AX`, `_AY`, `_AZ`, `_CT` and `_KM`, by channel.
+    pub fn px4_rotors(&self) -> Vec<[f64; 8]> {
+        self.rotors(self.airframe.reference_v()).px4_rotors()
+    }
+
     /// The highest voltage of the range, V; 0 where the airframe has no correction.
     pub fn highest_v(&self) -> f64 {
         let voltage = self.airframe.voltage.as_ref();

@@ -38,7 +38,7 @@
 use mixer_rt::Wrench;
 use nalgebra::DMatrix;
 
-use crate::airframe::{Airframe, Axis};
+use crate::airframe::{Airframe, Axis, Spin};
 use crate::model::PairMap;
 use crate::model::effectiveness::Effectiveness;
 use crate::model::pseudo_inverse::PseudoInverse;
@@ -49,6 +49,9 @@ const NO_SHARE: f64 = 1e-9;
 
 /// ArduPilot's factor of the motor with the largest part in an axis.
 const LARGEST_FACTOR: f64 = 0.5;
+
+/// Half the distance of a pair's rotors along their axis, m. Any will do: there a rotor has no lever.
+const LAYER_M: f64 = 0.05;
 
 /// Halvings of the throttle range in the search for hover: to the rounding of f64.
 const HALVINGS: usize = 52;
@@ -136,6 +139,24 @@ impl Rotors<'_> {
         };
         let factors = |(_, rotor)| [Axis::Roll, Axis::Pitch, Axis::Yaw].map(|axis| factor(axis, rotor));
         rotors.into_iter().map(factors).collect()
+    }
+
+    /// Place (m), axis, thrust (N) and torque over thrust (m, positive where it turns counter-clockwise)
+    /// of the rotor on each channel, each isolated and both of a pair alike.
+    pub(crate) fn px4_rotors(&self) -> Vec<[f64; 8]> {
+        let [thrust, torque] = self.per_rotor();
+        let mut rotors = vec![[0.0; 8]; self.airframe.rotors()];
+        for unit in &self.airframe.units {
+            let upper = (unit.upper_channel, unit.upper_spin, LAYER_M);
+            let lower = (unit.lower_channel, unit.upper_spin.reversed(), -LAYER_M);
+            for (channel, spin, layer_m) in [upper, lower] {
+                let sign = if spin == Spin::Ccw { 1.0 } else { -1.0 };
+                let [ax, ay, az] = unit.axis;
+                let [px, py, pz] = std::array::from_fn(|k| unit.position_m[k] + layer_m * unit.axis[k]);
+                rotors[channel] = [px, py, pz, ax, ay, az, thrust, sign * torque / thrust];
+            }
+        }
+        rotors
     }
 
     /// B, a row per served axis, 2n columns: upper rotors, then lower ones.

@@ -69,7 +69,7 @@ pub struct Params {
 /// The parameters of an airframe, each below its reason. `file` is the name of the airframe's file.
 ///
 /// # Errors
-/// Outputs that are not PX4's motors; a simulator's script for ArduPilot; no pulse widths.
+/// More rotors than the stack has parameters for; a simulator's script for ArduPilot; no pulse widths.
 pub fn params(compiled: &Compiled, file: &str, options: &Options) -> Result<Params, String> {
     let Parameters { list, notes } = parameters(options, compiled)?;
     let mut head = header(compiled, file, options, &notes);

@@ -1,9 +1,8 @@
 //! PX4's parameters.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::{Correction, Spin, Unit};
+use mixer_compiler::airframe::{Correction, Spin};
 
-use crate::frames::LAYER_M;
 use crate::parameter::{Parameters, curve, hundredths, on_curve, slope_in_hover};
 
 /// Most rotors that PX4 has parameters for.
@@ -83,37 +82,22 @@ pub(crate) fn own(compiled: &Compiled, currents: Currents, all: &mut Parameters)
 /// The rotors for PX4's own allocator, which takes each as isolated and both of a pair as alike.
 ///
 /// # Errors
-/// Outputs that are not PX4's motors.
+/// More rotors than PX4 has parameters for.
 pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
     let airframe = &compiled.airframe;
     let count = airframe.rotors();
     if count > MOST_ROTORS {
         return Err(format!("{count} rotors: PX4 has parameters for {MOST_ROTORS}"));
     }
-    let [thrust, torque] = compiled.per_rotor();
     all.because("A multirotor.")
         .whole("CA_AIRFRAME", 0)
         .whole("CA_ROTOR_COUNT", i32::try_from(count).unwrap_or_default());
     all.because("No rotor turns backwards.").whole("CA_R_REV", 0);
-    for channel in 0..count {
-        let is_on = |unit: &&Unit| unit.upper_channel == channel || unit.lower_channel == channel;
-        let Some(unit) = airframe.units.iter().find(is_on) else {
-            return Err(format!(
-                "no rotor is on output {channel}: PX4's motors are numbered without a gap; `channels` of the airframe \
-                 file gives their outputs, from 0"
-            ));
-        };
-        let (rotor, spin, layer_m) = match unit.upper_channel == channel {
-            true => ("upper", unit.upper_spin, LAYER_M),
-            false => ("lower", unit.upper_spin.reversed(), -LAYER_M),
-        };
-        let sign = if spin == Spin::Ccw { 1.0 } else { -1.0 };
-        let motor = channel + 1;
-        let why = format!("Motor {motor}: {rotor} rotor, turns {}.", spin.name());
-        // Along its axis a rotor has no lever; so the file says which one is above.
-        let place = std::array::from_fn(|k| unit.position_m[k] + layer_m * unit.axis[k]);
-        let ([px, py, pz], [ax, ay, az]): (_, [f64; 3]) = (place, unit.axis);
-        let values = [px, py, pz, ax, ay, az, thrust, sign * torque / thrust];
+    for (channel, values) in compiled.px4_rotors().into_iter().enumerate() {
+        let is_upper = airframe.units.iter().any(|unit| unit.upper_channel == channel);
+        let layer = if is_upper { "upper" } else { "lower" };
+        let spin = if values[7] > 0.0 { Spin::Ccw } else { Spin::Cw };
+        let why = format!("Motor {}: {layer} rotor, turns {}.", channel + 1, spin.name());
         for (key, value) in ["PX", "PY", "PZ", "AX", "AY", "AZ", "CT", "KM"]
             .iter()
             .zip(values)

@@ -25,6 +25,11 @@
 /* What one unit of PX4's normalised setpoints is@REFERENCE@: thrust 1 is all rotors at full throttle, a torque of 1
  * what its effectiveness makes of it on this frame. [-1, 1] times these is a setpoint. */
 @PX4@
+/* PX4's CA_ROTORn_PX, _PY, _PZ, _AX, _AY, _AZ, _CT and _KM by channel: those that `cargo mixer params` writes. */
+#define @PREFIX@_PX4_ROTORS { \
+    @ROTOR_ROWS@ \
+}
+
 /* What one unit of ArduPilot's inputs is@HIGHEST@. */
 @ARDUPILOT@
 /* ArduPilot's factors of roll, pitch and yaw by channel: those of the frame that this airframe is there. */
