@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <map>
+#include <string>
 
 typedef uint64_t hrt_abstime;
 
@@ -22,7 +24,33 @@ inline unsigned &errors()
 	static unsigned count = 0;
 	return count;
 }
+
+// What the ground station was told last.
+inline char (&told())[128]
+{
+	static char text[128];
+	return text;
 }
+}
+
+namespace time_literals
+{
+constexpr hrt_abstime operator""_s(unsigned long long seconds) { return seconds * 1000000; }
+constexpr hrt_abstime operator""_ms(unsigned long long milliseconds) { return milliseconds * 1000; }
+}
+
+typedef void *orb_advert_t;
+
+#define mavlink_log_critical(publication, ...) ((void)(publication), snprintf(stand_in::told(), 128, __VA_ARGS__))
+
+// Performance counters: cycles begun and not ended.
+typedef int *perf_counter_t;
+constexpr int PC_ELAPSED = 1;
+inline perf_counter_t perf_alloc(int, const char *) { return new int{0}; }
+inline void perf_begin(perf_counter_t counter) { ++*counter; }
+inline void perf_end(perf_counter_t counter) { --*counter; }
+inline void perf_print_counter(perf_counter_t counter) { printf("%d cycles under way\n", *counter); }
+inline void perf_free(perf_counter_t counter) { delete counter; }
 
 inline hrt_abstime hrt_absolute_time() { return stand_in::now_us(); }
 inline hrt_abstime hrt_elapsed_time(const hrt_abstime *then) { return hrt_absolute_time() - *then; }
@@ -49,6 +77,19 @@ struct actuator_motors_s {
 	float control[12];
 };
 
+struct arming_check_reply_s {
+	uint64_t timestamp;
+	uint8_t request_id;
+	uint8_t registration_id;
+	bool can_arm_and_run;
+};
+
+struct arming_check_request_s {
+	uint64_t timestamp;
+	uint32_t valid_registrations_mask;
+	uint8_t request_id;
+};
+
 struct battery_status_s {
 	uint64_t timestamp;
 	float voltage_v;
@@ -64,6 +105,7 @@ struct control_allocator_status_s {
 	float unallocated_thrust[3];
 	int8_t actuator_saturation[16];
 	uint16_t handled_motor_failure_mask;
+	uint16_t motor_stop_mask;
 	bool torque_setpoint_achieved;
 	bool thrust_setpoint_achieved;
 };
@@ -72,6 +114,28 @@ struct failure_detector_status_s {
 	uint64_t timestamp;
 	bool fd_motor;
 	uint16_t motor_failure_mask;
+	uint16_t motor_stop_mask;
+};
+
+struct parameter_update_s {
+	uint64_t timestamp;
+};
+
+struct register_ext_component_reply_s {
+	uint64_t timestamp;
+	char name[25];
+	bool success;
+	int8_t arming_check_id;
+};
+
+struct register_ext_component_request_s {
+	static constexpr uint16_t LATEST_PX4_ROS2_API_VERSION = 1;
+	uint64_t timestamp;
+	uint64_t request_id;
+	uint16_t px4_ros2_api_version;
+	char name[25];
+	bool register_arming_check;
+	bool register_mode;
 };
 
 struct vehicle_air_data_s {
@@ -85,25 +149,82 @@ struct vehicle_control_mode_s {
 	bool flag_control_allocation_enabled;
 };
 
-// Parameters: CA_FAILURE_MODE alone.
-typedef int param_t;
+// Parameters: whole ones, flags and those by name are all kept as numbers.
+typedef const char *param_t;
 
 namespace stand_in
 {
-inline int32_t &failure_mode()
+inline std::map<std::string, float> &parameters()
 {
-	static int32_t mode = 0;
-	return mode;
+	static std::map<std::string, float> all;
+	return all;
 }
 }
 
-inline param_t param_find(const char *name) { return strcmp(name, "CA_FAILURE_MODE") == 0 ? 1 : -1; }
+inline param_t param_find(const char *name) { return stand_in::parameters().count(name) ? name : nullptr; }
 
-inline int param_get(param_t parameter, int32_t *value)
+inline int param_get(param_t parameter, float *value)
 {
-	*value = stand_in::failure_mode();
-	return parameter == 1 ? PX4_OK : PX4_ERROR;
+	if (!parameter) {
+		return PX4_ERROR;
+	}
+
+	*value = stand_in::parameters()[parameter];
+	return PX4_OK;
 }
+
+namespace px4
+{
+namespace params
+{
+struct CA_ROTOR_COUNT { static constexpr const char *NAME = "CA_ROTOR_COUNT"; };
+struct CA_FAILURE_MODE { static constexpr const char *NAME = "CA_FAILURE_MODE"; };
+struct THR_MDL_FAC { static constexpr const char *NAME = "THR_MDL_FAC"; };
+struct MC_BAT_SCALE_EN { static constexpr const char *NAME = "MC_BAT_SCALE_EN"; };
+}
+}
+
+template<class Name, class T>
+class Param
+{
+public:
+	T get() const { return _value; }
+	void update() { _value = static_cast<T>(stand_in::parameters()[Name::NAME]); }
+
+private:
+	T _value{};
+};
+
+template<class Name> using ParamInt = Param<Name, int32_t>;
+template<class Name> using ParamFloat = Param<Name, float>;
+template<class Name> using ParamBool = Param<Name, bool>;
+
+class ModuleParams
+{
+public:
+	explicit ModuleParams(ModuleParams *) {}
+	virtual ~ModuleParams() = default;
+
+protected:
+	// A parameter has its value from then on.
+	void updateParams() { updateParamsImpl(); }
+	virtual void updateParamsImpl() = 0;
+};
+
+// The four parameters of the module, each written as `(type) name`.
+#define STAND_IN_REMOVE(...)
+#define STAND_IN_KEEP(...) __VA_ARGS__
+#define STAND_IN_NAME(parameter) STAND_IN_REMOVE parameter
+#define STAND_IN_DECLARE(parameter) STAND_IN_KEEP parameter;
+#define DEFINE_PARAMETERS(a, b, c, d) \
+	STAND_IN_DECLARE(a) STAND_IN_DECLARE(b) STAND_IN_DECLARE(c) STAND_IN_DECLARE(d) \
+	void updateParamsImpl() override \
+	{ \
+		STAND_IN_NAME(a).update(); \
+		STAND_IN_NAME(b).update(); \
+		STAND_IN_NAME(c).update(); \
+		STAND_IN_NAME(d).update(); \
+	}
 
 struct vehicle_thrust_setpoint_s {
 	uint64_t timestamp;
@@ -129,15 +250,40 @@ constexpr wq_config_t rate_ctrl{"wq:rate_ctrl"};
 }
 
 // Runs at once where PX4 would queue it.
-class WorkItem
+class ScheduledWorkItem
 {
 public:
-	WorkItem(const char *, const wq_config_t &) {}
-	virtual ~WorkItem() = default;
+	ScheduledWorkItem(const char *, const wq_config_t &) { stand_in_scheduled() = this; }
+	virtual ~ScheduledWorkItem() { stand_in_scheduled() = nullptr; }
 	void ScheduleNow() { Run(); }
+	void ScheduleDelayed(uint32_t delay_us) { _due_us = hrt_absolute_time() + delay_us; }
+
+	// Time goes on, and nothing else happens.
+	static void wait_until(hrt_abstime then_us)
+	{
+		ScheduledWorkItem *item = stand_in_scheduled();
+
+		while (item && item->_due_us && item->_due_us <= then_us) {
+			stand_in::now_us() = item->_due_us;
+			item->_due_us = 0;
+			item->Run();
+			item = stand_in_scheduled();
+		}
+
+		stand_in::now_us() = then_us;
+	}
 
 protected:
 	virtual void Run() = 0;
+
+private:
+	static ScheduledWorkItem *&stand_in_scheduled()
+	{
+		static ScheduledWorkItem *only = nullptr;
+		return only;
+	}
+
+	hrt_abstime _due_us{0};
 };
 }
 
@@ -146,7 +292,7 @@ struct orb_metadata {
 	size_t size;
 	unsigned generation;
 	bool advertised;
-	px4::WorkItem *callback;
+	px4::ScheduledWorkItem *callback;
 };
 
 namespace stand_in
@@ -172,11 +318,25 @@ class Publication
 public:
 	explicit Publication(orb_metadata *topic) : _topic(topic) {}
 
+	// As PX4's own: the topic is unadvertised with the publication.
+	~Publication()
+	{
+		if (_advertised) {
+			_topic->advertised = false;
+		}
+	}
+
+	bool advertise()
+	{
+		_topic->advertised = _advertised = true;
+		return true;
+	}
+
 	bool publish(const T &message)
 	{
+		advertise();
 		memcpy(_topic->last, &message, _topic->size);
 		++_topic->generation;
-		_topic->advertised = true;
 
 		if (_topic->callback) {
 			_topic->callback->ScheduleNow();
@@ -187,6 +347,7 @@ public:
 
 private:
 	orb_metadata *_topic;
+	bool _advertised{false};
 };
 
 class Subscription
@@ -194,13 +355,23 @@ class Subscription
 public:
 	explicit Subscription(orb_metadata *topic) : _topic(topic) {}
 
+	// As in PX4, a topic that nobody advertises any more has nothing new.
+	bool updated() const { return _topic->advertised && _seen != _topic->generation; }
+
 	bool update(void *message)
 	{
-		if (_seen == _topic->generation) {
+		if (!updated()) {
 			return false;
 		}
 
 		_seen = _topic->generation;
+		memcpy(message, _topic->last, _topic->size);
+		return true;
+	}
+
+	bool copy(void *message)
+	{
+		update(message);
 		memcpy(message, _topic->last, _topic->size);
 		return true;
 	}
@@ -210,10 +381,16 @@ protected:
 	unsigned _seen{0};
 };
 
+class SubscriptionInterval : public Subscription
+{
+public:
+	SubscriptionInterval(orb_metadata *topic, hrt_abstime) : Subscription(topic) {}
+};
+
 class SubscriptionCallbackWorkItem : public Subscription
 {
 public:
-	SubscriptionCallbackWorkItem(px4::WorkItem *item, orb_metadata *topic) : Subscription(topic), _item(item) {}
+	SubscriptionCallbackWorkItem(px4::ScheduledWorkItem *item, orb_metadata *topic) : Subscription(topic), _item(item) {}
 
 	bool registerCallback()
 	{
@@ -224,7 +401,7 @@ public:
 	void unregisterCallback() { _topic->callback = nullptr; }
 
 private:
-	px4::WorkItem *_item;
+	px4::ScheduledWorkItem *_item;
 };
 }
 

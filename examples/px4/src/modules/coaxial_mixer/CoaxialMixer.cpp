@@ -1,22 +1,34 @@
 #include "CoaxialMixer.hpp"
 
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 
 #ifdef MODULE_BASE_HAS_DESCRIPTOR
 ModuleBase::Descriptor CoaxialMixer::desc {task_spawn, custom_command, print_usage};
 #endif
 
-CoaxialMixer::CoaxialMixer() : WorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl)
+CoaxialMixer::CoaxialMixer() : ModuleParams(nullptr), ScheduledWorkItem(MODULE_NAME, px4::wq_configurations::rate_ctrl)
 {
+	// The logger subscribes to what is advertised when it starts.
+	_motors_pub.advertise();
+	_status_pub.advertise();
 	// What was published before this module started.
 	actuator_motors_s before;
 	_motors_sub.update(&before);
+	update_parameters();
+}
+
+CoaxialMixer::~CoaxialMixer()
+{
+	perf_free(_loop_perf);
 }
 
 void CoaxialMixer::Run()
 {
 	if (should_exit()) {
 		_torque_sub.unregisterCallback();
+		_arming_check_sub.unregisterCallback();
 #ifdef MODULE_BASE_HAS_DESCRIPTOR
 		exit_and_cleanup(desc);
 #else
@@ -25,19 +37,128 @@ void CoaxialMixer::Run()
 		return;
 	}
 
-	vehicle_torque_setpoint_s torque;
+	perf_begin(_loop_perf);
+#ifndef ENABLE_LOCKSTEP_SCHEDULER // It would interfere with lockstep, as control_allocator says.
+	ScheduleDelayed(BACKUP_SCHEDULE);
+#endif
+	cycle();
+	perf_end(_loop_perf);
+}
 
-	if (!_torque_sub.update(&torque)) {
-		return;
+void CoaxialMixer::cycle()
+{
+	_mode_sub.update(&_mode);
+
+	if (_parameter_update_sub.updated()) {
+		parameter_update_s update;
+		_parameter_update_sub.copy(&update);
+		update_parameters();
 	}
 
-	_thrust_sub.update(&_thrust);
-	_mode_sub.update(&_mode);
+	answer_arming_check();
 
 	if (is_displaced()) {
 		return;
 	}
 
+	vehicle_torque_setpoint_s torque;
+
+	if (_torque_sub.update(&torque) && mix_setpoint(torque)) {
+		_last_mix = hrt_absolute_time();
+
+	} else if (_stranger[0] || hrt_elapsed_time(&_last_mix) > PATIENCE) {
+		// Until then the outputs hold the last throttles.
+		publish_motors(nullptr, hrt_absolute_time());
+	}
+}
+
+// Library and parameters must be of one vehicle: those of its frame as `cargo mixer params` writes them, and no
+// correction of what the mixer corrects itself.
+void CoaxialMixer::update_parameters()
+{
+	updateParams();
+
+	if (_mode.flag_armed) {
+		return;
+	}
+
+	_stranger[0] = '\0';
+	expect("CA_ROTOR_COUNT", _param_rotor_count.get(), ISAE_X8_CHANNELS);
+	expect("THR_MDL_FAC", _param_thrust_curve.get(), 0.f);
+
+	// 0 V: the airframe has no voltage law, and PX4's may stand.
+	if (ISAE_X8_REFERENCE_V > 0.f) {
+		expect("MC_BAT_SCALE_EN", _param_battery_scale.get(), 0.f);
+	}
+
+	static constexpr const char *keys[] {"PX", "PY", "PZ", "AX", "AY", "AZ", "CT", "KM"};
+	static constexpr float rotors[ISAE_X8_CHANNELS][8] = ISAE_X8_PX4_ROTORS;
+
+	for (int rotor = 0; rotor < ISAE_X8_CHANNELS; ++rotor) {
+		for (int key = 0; key < 8; ++key) {
+			char name[32];
+			float value = NAN;
+			snprintf(name, sizeof(name), "CA_ROTOR%d_%s", rotor, keys[key]);
+			param_get(param_find(name), &value);
+			expect(name, value, rotors[rotor][key]);
+		}
+	}
+}
+
+void CoaxialMixer::expect(const char *name, float value, float of_airframe)
+{
+	// Ground stations show two decimals.
+	const float tolerance = 0.005f + 0.01f * std::fabs(of_airframe);
+
+	if (!_stranger[0] && !(std::fabs(value - of_airframe) <= tolerance)) {
+		snprintf(_stranger, sizeof(_stranger), "%s is %.4f, must be %.4f for %s", name, static_cast<double>(value),
+			 static_cast<double>(of_airframe), ISAE_X8_AIRFRAME);
+	}
+}
+
+// Keeps the vehicle from arming with another vehicle's parameters, by an arming check that the commander has for
+// components outside it. It drops one that does not answer, so a question that stays away is asked for again.
+void CoaxialMixer::answer_arming_check()
+{
+	if (_stranger[0] && !_mode.flag_armed && (_last_told == 0 || hrt_elapsed_time(&_last_told) > 10_s)) {
+		_last_told = hrt_absolute_time();
+		mavlink_log_critical(&_mavlink_log_pub, "Coaxial mixer: %s", _stranger);
+	}
+
+	register_ext_component_reply_s registered;
+
+	while (_registered_sub.update(&registered)) {
+		if (registered.success && strncmp(registered.name, MODULE_NAME, sizeof(registered.name)) == 0) {
+			_check_id = registered.arming_check_id;
+		}
+	}
+
+	arming_check_request_s request;
+
+	if (_arming_check_sub.update(&request) && _check_id >= 0 && (request.valid_registrations_mask & (1u << _check_id))) {
+		_last_asked = hrt_absolute_time();
+		arming_check_reply_s reply{};
+		reply.timestamp = _last_asked;
+		reply.request_id = request.request_id;
+		reply.registration_id = _check_id;
+		reply.can_arm_and_run = !_stranger[0];
+		_arming_check_pub.publish(reply);
+
+	} else if (_stranger[0] && !_mode.flag_armed && hrt_elapsed_time(&_last_asked) > 1_s) {
+		_last_asked = hrt_absolute_time();
+		register_ext_component_request_s component{};
+		component.timestamp = _last_asked;
+		component.request_id = _last_asked;
+		strncpy(component.name, MODULE_NAME, sizeof(component.name) - 1);
+		component.px4_ros2_api_version = register_ext_component_request_s::LATEST_PX4_ROS2_API_VERSION;
+		component.register_arming_check = true;
+		_register_pub.publish(component);
+	}
+}
+
+bool CoaxialMixer::mix_setpoint(const vehicle_torque_setpoint_s &torque)
+{
+	_thrust_sub.update(&_thrust);
 	update_conditions();
 
 	// FRD as in PX4, but thrust counts upwards.
@@ -50,20 +171,24 @@ void CoaxialMixer::Run()
 	update_failed(setpoint);
 	isae_x8_mix_t mixed;
 
-	if (mix(setpoint, mixed) == MIXER_OK) {
-		_last_mix = hrt_absolute_time();
-		_saturation = mixed.saturation;
-		publish_motors(mixed.throttle, torque.timestamp_sample);
-		publish_status(setpoint, mixed);
-
-	} else {
-		// The outputs hold the last throttles.
-		++_refused;
-
-		if (hrt_elapsed_time(&_last_mix) > PATIENCE_US) {
-			publish_motors(nullptr, torque.timestamp_sample);
-		}
+	if (_stranger[0]) {
+		return false;
 	}
+
+	if (mix(setpoint, mixed) != MIXER_OK) {
+		++_refused;
+		return false;
+	}
+
+	_saturation = mixed.saturation;
+	publish_motors(mixed.throttle, torque.timestamp_sample);
+
+	if (hrt_elapsed_time(&_last_status) >= STATUS_INTERVAL) {
+		_last_status = hrt_absolute_time();
+		publish_status(setpoint, mixed);
+	}
+
+	return true;
 }
 
 int CoaxialMixer::mix(const mixer_wrench_t &setpoint, isae_x8_mix_t &out) const
@@ -89,7 +214,11 @@ bool CoaxialMixer::is_displaced()
 void CoaxialMixer::update_failed(const mixer_wrench_t &setpoint)
 {
 	failure_detector_status_s detected{};
-	const bool is_new = _failure_sub.update(&detected);
+	const bool is_new = _failure_sub.update(&detected) && _param_failure_mode.get() > 0;
+
+	if (is_new) {
+		_stopped = detected.motor_stop_mask;
+	}
 
 	if (!_mode.flag_armed) {
 		_failed = 0;
@@ -100,13 +229,6 @@ void CoaxialMixer::update_failed(const mixer_wrench_t &setpoint)
 	const uint16_t found = detected.motor_failure_mask & ALL_ROTORS;
 
 	if (!is_new || !detected.fd_motor || !(found & ~_failed)) {
-		return;
-	}
-
-	int32_t mode = 0;
-	param_get(param_find("CA_FAILURE_MODE"), &mode);
-
-	if (mode != 1) {
 		return;
 	}
 
@@ -137,10 +259,13 @@ void CoaxialMixer::update_failed(const mixer_wrench_t &setpoint)
 
 void CoaxialMixer::update_conditions()
 {
+	// The battery that the rate controller takes for MC_BAT_SCALE_EN, which this takes the place of.
 	battery_status_s battery;
 
 	if (_battery_sub.update(&battery) && battery.connected && std::isfinite(battery.voltage_v) && battery.voltage_v > 0.f) {
-		_conditions.voltage_v = battery.voltage_v;
+		const float dt_s = 1e-6f * (battery.timestamp - _last_battery);
+		_conditions.voltage_v += (battery.voltage_v - _conditions.voltage_v) * dt_s / (dt_s + VOLTAGE_TIME_CONSTANT_S);
+		_last_battery = battery.timestamp;
 	}
 
 	vehicle_air_data_s air;
@@ -162,7 +287,7 @@ void CoaxialMixer::publish_motors(const float *throttle, hrt_abstime timestamp_s
 	actuator_motors_s motors{};
 
 	for (int i = 0; i < actuator_motors_s::NUM_CONTROLS; ++i) {
-		motors.control[i] = throttle && i < ISAE_X8_CHANNELS && !(_failed & (1u << i)) ? throttle[i] : NAN;
+		motors.control[i] = throttle && i < ISAE_X8_CHANNELS && !((_failed | _stopped) & (1u << i)) ? throttle[i] : NAN;
 	}
 
 	motors.timestamp_sample = timestamp_sample;
@@ -194,6 +319,7 @@ void CoaxialMixer::publish_status(const mixer_wrench_t &setpoint, const isae_x8_
 	}
 
 	status.handled_motor_failure_mask = _failed;
+	status.motor_stop_mask = _stopped;
 	status.timestamp = hrt_absolute_time();
 	_status_pub.publish(status);
 }
@@ -208,7 +334,7 @@ int CoaxialMixer::task_spawn(int, char *[])
 
 	CoaxialMixer *instance = new CoaxialMixer();
 
-	if (instance && instance->_torque_sub.registerCallback()) {
+	if (instance && instance->_torque_sub.registerCallback() && instance->_arming_check_sub.registerCallback()) {
 #ifdef MODULE_BASE_HAS_DESCRIPTOR
 		desc.object.store(instance);
 		desc.task_id = task_id_is_work_queue;
@@ -216,6 +342,7 @@ int CoaxialMixer::task_spawn(int, char *[])
 		_object.store(instance);
 		_task_id = task_id_is_work_queue;
 #endif
+		instance->ScheduleNow();
 		return PX4_OK;
 	}
 
@@ -231,6 +358,12 @@ int CoaxialMixer::print_status()
 		 static_cast<double>(_conditions.density_kg_m3));
 	PX4_INFO("saturation 0x%x, rotors out 0x%x, refused %u%s", static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed),
 		 _refused, _displaced ? ", displaced by another module" : "");
+
+	if (_stranger[0]) {
+		PX4_INFO("arming refused: %s", _stranger);
+	}
+
+	perf_print_counter(_loop_perf);
 	return 0;
 }
 
