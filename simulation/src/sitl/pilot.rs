@@ -286,10 +286,11 @@ impl Pilot {
             let target = self.wanted(time_s).unwrap_or_default();
             // In roll PX4 keeps the thrust of the hover; ArduPilot's 0.5 is no climb.
             let thrust = match self.stack {
+                _ if target.is_climb => 1.0,
                 Stack::Px4 => self.thrust_setpoint as f32,
                 Stack::Ardupilot => 0.5,
             };
-            self.link.send(&if target.roll_deg == 0.0 {
+            self.link.send(&if target.roll_deg == 0.0 && !target.is_climb {
                 position(target, self.height_m, peer, time_s)
             } else {
                 attitude(target, thrust, peer, time_s)

@@ -16,6 +16,8 @@ pub enum Manoeuvre {
     Sidestep,
     /// Four steps of 15 degrees in roll, a second each, and back to the place
     Roll,
+    /// A climb at full thrust, and in it three steps of 90 degrees in heading
+    Climb,
     /// Output 0 stops, or that of --fail; then a step of 90 degrees in heading, there and back
     Failure,
 }
@@ -29,6 +31,8 @@ pub struct Target {
     pub yaw_deg: f64,
     /// Roll, degrees; unless it is 0, the attitude is asked for and no place.
     pub roll_deg: f64,
+    /// Level at full thrust: no place is asked for.
+    pub is_climb: bool,
 }
 
 /// Targets from a time of the manoeuvre on, and its end.
@@ -46,9 +50,10 @@ pub const FIRST_S: f64 = 5.0;
 /// End of a manoeuvre without steps, s.
 const HOVER_S: f64 = 30.0;
 
-/// Time from one step to the next, s, and from one in roll: the vehicle gathers speed.
+/// Time from one step to the next, s, and from one in roll and in a climb: the vehicle gathers speed.
 const BETWEEN_S: f64 = 8.0;
 const ROLL_S: f64 = 1.0;
+const CLIMB_S: f64 = 4.0;
 
 impl Manoeuvre {
     /// When what is asked for.
@@ -62,18 +67,25 @@ impl Manoeuvre {
             Manoeuvre::Yaw => &[90.0, 0.0, -90.0, 0.0, 175.0, 0.0, -175.0, 0.0].map(yaw),
             Manoeuvre::Sidestep => &[[0.0, 6.0, 0.0, 90.0, 0.0], HOME, [0.0, 6.0, 0.0, 0.0, 0.0], HOME],
             Manoeuvre::Roll => &[15.0, 0.0, -15.0, 0.0, 15.0, 0.0, -15.0, 0.0].map(roll),
+            Manoeuvre::Climb => &[HOME, yaw(90.0), HOME, yaw(-90.0)],
             // The rotor stops at the first time.
             Manoeuvre::Failure => &[HOME, yaw(90.0), HOME],
         };
         let mut end_s = FIRST_S;
         let steps = targets.iter().map(|&[north, east, up, yaw_deg, roll_deg]| {
             let begin_s = end_s;
-            end_s += if roll_deg == 0.0 { BETWEEN_S } else { ROLL_S };
+            let is_climb = self == Manoeuvre::Climb;
+            end_s += match roll_deg == 0.0 {
+                _ if is_climb => CLIMB_S,
+                true => BETWEEN_S,
+                false => ROLL_S,
+            };
             let offset = Vector3::new(north, east, up);
             let target = Target {
                 offset,
                 yaw_deg,
                 roll_deg,
+                is_climb,
             };
             (begin_s, target)
         });

@@ -126,6 +126,9 @@ fn name(from: &Target, to: &Target) -> Option<String> {
     if to.roll_deg != 0.0 {
         parts.push(format!("{} deg in roll", to.roll_deg.abs()));
     }
+    if to.is_climb && !parts.is_empty() {
+        parts.push("full thrust".to_owned());
+    }
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
@@ -167,7 +170,7 @@ impl Flown<'_> {
         let largest = |of: &dyn Fn(&Sample) -> f64| most(window().map(|(_, sample)| of(sample)));
         let error = |sample: &Sample| (height(sample) - height_m).abs();
         let offset = to.offset - from.offset;
-        let holds_height = offset.z == 0.0 && to.roll_deg == 0.0;
+        let holds_height = offset.z == 0.0 && to.roll_deg == 0.0 && !to.is_climb;
         let square = |sample: &Sample| error(sample) * error(sample);
         let rms = self.mean(begin_s, begin_s + RMS_S, square)?.sqrt();
         let turn = to.yaw_deg - from.yaw_deg;
@@ -185,7 +188,7 @@ impl Flown<'_> {
             } else if offset.xy().norm() > 0.0 {
                 let moved = [sample.position.x - north, sample.position.y - east];
                 (moved[0] * offset.x + moved[1] * offset.y) / offset.xy().norm_squared()
-            } else if !holds_height {
+            } else if offset.z != 0.0 {
                 (height(sample) - height_m) / offset.z
             } else {
                 // Continuous: a step of 175 degrees may overshoot 180.
@@ -399,6 +402,18 @@ mod tests {
             .unwrap();
         assert!((step[0] - 13.5 / 33.0).abs() < 0.005, "{step:?}");
         assert!((step[1] - 10.0).abs() < 1e-6 && step[2].is_nan(), "{step:?}");
+    }
+
+    #[test]
+    fn a_turn_in_the_climb_has_no_height_to_hold() {
+        let record = flown(|t| [(90.0 * (t - 9.0)).clamp(0.0, 90.0), 5.0 * t, 0.0]);
+        let plan = Manoeuvre::Climb.plan();
+        let [(begin_s, from), (turn_s, to)] = [plan.steps[0], plan.steps[1]];
+        assert!((begin_s, turn_s, plan.end_s) == (5.0, 9.0, 21.0) && from.is_climb);
+        assert_eq!(name(&Target::default(), &from), None);
+        assert_eq!(name(&from, &to).as_deref(), Some("90 deg in yaw, full thrust"));
+        let step = Flown(&record).step([9.0, 13.0], &from, &to, 10.0).unwrap();
+        assert!((step[0] - 0.9).abs() < 0.025 && step[2].is_nan(), "{step:?}");
     }
 
     #[test]
