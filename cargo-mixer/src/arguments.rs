@@ -6,7 +6,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
     check, compare, expand, golden, identify, import, library, mix, new, params, plan, predict, report,
-    schema, shell, sweep,
+    review, schema, shell, sweep,
 };
 use crate::{Done, output};
 
@@ -38,6 +38,7 @@ enum Command {
     Import(import::ImportArgs),
     Library(library::LibraryArgs),
     Report(report::ReportArgs),
+    Review(review::ReviewArgs),
     Schema(schema::SchemaArgs),
     Sweep(sweep::SweepArgs),
     Completions(shell::CompletionsArgs),
@@ -71,6 +72,7 @@ pub fn run() -> ExitCode {
         Command::Import(args) => import::run(&args),
         Command::Library(args) => library::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Review(args) => review::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Completions(args) => shell::run(&args, Arguments::command()),

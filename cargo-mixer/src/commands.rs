@@ -13,6 +13,7 @@ pub mod params;
 pub mod plan;
 pub mod predict;
 pub mod report;
+pub mod review;
 pub mod schema;
 pub mod shell;
 pub mod sweep;

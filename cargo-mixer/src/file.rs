@@ -11,6 +11,9 @@ use tempfile::NamedTempFile;
 /// Largest bench file that is read, MB. A device without an end would fill the memory.
 const LARGEST_MB: u64 = 64;
 
+/// Largest flight log, MB: an hour at PX4's high rates.
+const LARGEST_LOG_MB: u64 = 1024;
+
 /// Largest airframe or parameter file, MB. They have kilobytes; read, they take forty times their
 /// size.
 const LARGEST_SMALL_MB: u64 = 1;
@@ -21,6 +24,14 @@ const LARGEST_SMALL_MB: u64 = 1;
 /// A file that cannot be read, or is above 64 MB.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     up_to(path, LARGEST_MB)
+}
+
+/// The bytes of a flight log.
+///
+/// # Errors
+/// A file that cannot be read, or is above 1 GB; the message names it.
+pub(crate) fn read_log(path: &Path) -> Result<Vec<u8>, String> {
+    up_to(path, LARGEST_LOG_MB).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 fn up_to(path: &Path, most_mb: u64) -> io::Result<Vec<u8>> {

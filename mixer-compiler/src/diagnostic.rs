@@ -14,8 +14,8 @@ use serde::Serialize;
 
 pub use self::code::{Code, Severity};
 use self::source::{BYTE_ORDER_MARK, Place, Source};
-pub(crate) use self::wording::{any_of, nearest, number, quoted, rounded};
-pub use self::wording::{is_plain, printable, rounded_up};
+pub(crate) use self::wording::{any_of, nearest, number, quoted};
+pub use self::wording::{is_plain, printable, rounded, rounded_up};
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,17 +1,20 @@
 //! The mathematics of one pair and of the frame: what is known before anything is fitted.
 //!
 //! `polynomial` is a tool; `pair_map` is the forward map, `injectivity` the proof that it can be
-//! inverted, `effectiveness` M and M+ by `pseudo_inverse`, `law` the factors of voltage and density.
+//! inverted, `effectiveness` M and M+ by `pseudo_inverse`, `law` the factors of voltage and
+//! density, `physics` the wrench of given throttles.
 
 pub mod effectiveness;
 pub mod injectivity;
 pub mod law;
 mod pair_map;
+mod physics;
 pub mod polynomial;
 pub mod pseudo_inverse;
 pub mod wake;
 
 pub use self::pair_map::PairMap;
+pub use self::physics::Physics;
 
 /// The range of Q over the largest f of one unit, m: 0.016 to 0.034 on maps of 11 to 22 inch. It is
 /// about the propeller's diameter over 17, so that these limits stand for 4 to 40 inch. The nearest

@@ -14,10 +14,9 @@
 //!
 //! A wrench is delivered, or flagged and, with one rotor out at most, sound: no torque reversed or exceeded, the direction of
 //! (roll, pitch) kept, and with airmode disabled and all rotors no more thrust than asked. It has to be delivered
-//! where the throttles of least norm are well inside their range. The physics ([`physics`])
+//! where the throttles of least norm are well inside their range. The physics ([`Physics`])
 //! know nothing of M: they add forces and torques unit by unit.
 
-mod physics;
 mod sides;
 
 use mixer_rt::tables::Airmode;
@@ -26,7 +25,7 @@ use mixer_rt::{Axis, Conditions, Health, Saturation, Wrench};
 use crate::airframe::Correction;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic};
-use physics::Physics;
+use crate::model::Physics;
 
 /// Share of an axis' authority by which a flagged wrench may be exceeded, reversed or off its
 /// direction. Faults of the tables are off by more. Curves of single rotors, and level flight of tilted

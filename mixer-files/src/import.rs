@@ -26,6 +26,7 @@ use mixer_identify::pair_file::PairFile;
 use crate::parameter::bench_pulses;
 use parameters::Parameters;
 use rotors::Imported;
+pub use rotors::Rotor;
 
 /// What the parameters do not say.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +49,37 @@ pub struct Import {
     pub text: String,
     /// Assumptions, and settings that the parameters lack.
     pub notes: Vec<String>,
+}
+
+/// What a flight stack's parameters state of the vehicle that has them.
+#[derive(Clone, Debug)]
+pub struct Stated {
+    /// The rotors; places of ArduPilot's are those of arms of 1 m.
+    pub rotors: Vec<Rotor>,
+    /// Pins of ArduPilot's board, from 1, each with the motor, from 0, that it drives.
+    pub pins: Vec<(usize, usize)>,
+    /// Pulse widths of throttle 0 and 1, microseconds.
+    pub pulses_us: Option<[f64; 2]>,
+}
+
+/// Reads what [`import`] begins with.
+///
+/// # Errors
+/// Parameters of no vehicle with coaxial pairs.
+pub fn stated(file: &Source) -> Result<Stated, String> {
+    let imported = read(file, Some(1.0))?;
+    let mut pins = outputs::servos(&Parameters::read(file)?);
+    if pins.is_empty() {
+        // As ArduPilot has them without a parameter.
+        pins = (0..imported.rotors.len())
+            .map(|motor| (motor + 1, motor))
+            .collect();
+    }
+    Ok(Stated {
+        rotors: imported.rotors,
+        pins,
+        pulses_us: imported.pulses.map(|pulses| pulses.us),
+    })
 }
 
 /// Makes an airframe file of a parameter file of PX4 or ArduPilot, a start script of PX4's, or the

@@ -29,3 +29,5 @@ mod px4;
 pub mod schema;
 pub mod settings;
 pub mod stack;
+
+pub use parameter::bench_pulses;

@@ -100,7 +100,7 @@ pub(crate) const PULSES_US: [f64; 2] = [500.0, 2500.0];
 
 /// Pulse widths of throttle 0 and 1 on the bench, microseconds, where the airframe remembers that
 /// `identify` needed them.
-pub(crate) fn bench_pulses(airframe: &Airframe) -> Option<[f64; 2]> {
+pub fn bench_pulses(airframe: &Airframe) -> Option<[f64; 2]> {
     let options = &airframe.pair.bench_options;
     let at = options.iter().position(|option| option == "--pwm-range")?;
     let (low, high) = options.get(at + 1)?.split_once(',')?;

@@ -87,7 +87,7 @@ pub(crate) fn number(x: f64) -> String {
 }
 
 /// A computed number to four significant digits.
-pub(crate) fn rounded(x: f64) -> String {
+pub fn rounded(x: f64) -> String {
     number(format!("{x:.3e}").parse().unwrap_or(x))
 }
 

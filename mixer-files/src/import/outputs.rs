@@ -39,6 +39,11 @@ fn motors((function, motors, _): Bank, parameters: &Parameters) -> Vec<(usize, u
     (1..=MOST_PINS).filter_map(motor).collect()
 }
 
+/// The pins of ArduPilot's board that drive a motor, from 1, each with the motor, from 0.
+pub(super) fn servos(parameters: &Parameters) -> Vec<(usize, usize)> {
+    motors(BANKS[0], parameters)
+}
+
 /// That pins are not motors, where they are in another order.
 pub(super) fn order(parameters: &Parameters) -> Option<String> {
     BANKS.into_iter().find_map(|bank| {

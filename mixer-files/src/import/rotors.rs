@@ -7,17 +7,17 @@ pub(super) const UPWARD: [f64; 3] = [0.0, 0.0, -1.0];
 
 /// A rotor of a flight stack.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Rotor {
+pub struct Rotor {
     /// Output, from 0.
-    pub(super) channel: usize,
+    pub channel: usize,
     /// Where it is said: `file:line`.
     pub(super) place: String,
     /// Forward, right, down, m.
-    pub(super) position_m: [f64; 3],
+    pub position_m: [f64; 3],
     /// Direction of the thrust, a unit vector.
-    pub(super) axis: [f64; 3],
+    pub axis: [f64; 3],
     /// Seen from above.
-    pub(super) spin: Spin,
+    pub spin: Spin,
 }
 
 /// Two rotors in one place.

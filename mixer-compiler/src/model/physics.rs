@@ -2,27 +2,28 @@
 
 use mixer_rt::Health;
 
+use super::PairMap;
 use crate::airframe::{Airframe, Unit};
-use crate::model::PairMap;
 
 /// The physics of one airframe.
-pub(super) struct Physics<'a> {
+pub struct Physics<'a> {
     /// The airframe.
-    pub(super) airframe: &'a Airframe,
+    pub airframe: &'a Airframe,
     /// Its pair.
-    pub(super) map: &'a PairMap,
+    pub map: &'a PairMap,
 }
 
 impl Physics<'_> {
-    /// `[roll, pitch, yaw, thrust]` (N m, N) of a throttle per channel at the factors `[k_f, k_Q]`.
-    pub(super) fn wrench(&self, throttle: &[f32], factors: [f64; 2], health: Health) -> [f64; 4] {
+    /// `[roll, pitch, yaw, thrust]` (N m, N) of a throttle per channel at the factors `[k_f, k_Q]`, with
+    /// [`Airframe::factors`] those of a voltage and a density.
+    pub fn wrench(&self, throttle: &[f32], factors: [f64; 2], health: Health) -> [f64; 4] {
         let efforts = |unit: &Unit| self.efforts(unit, throttle, health);
         self.wrench_of(self.airframe.units.iter().map(efforts), factors)
     }
 
     /// The same of the units' efforts `[f, Q]` at the reference voltage: the force f a at r and the
     /// reaction -s Q a of the rotors.
-    pub(super) fn wrench_of(&self, efforts: impl Iterator<Item = [f64; 2]>, factors: [f64; 2]) -> [f64; 4] {
+    fn wrench_of(&self, efforts: impl Iterator<Item = [f64; 2]>, factors: [f64; 2]) -> [f64; 4] {
         let mut wrench = [0.0; 4];
         for (unit, efforts) in self.airframe.units.iter().zip(efforts) {
             let [f, q] = [factors[0] * efforts[0], factors[1] * efforts[1]];

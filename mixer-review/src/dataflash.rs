@@ -1,0 +1,61 @@
+//! ArduPilot's DataFlash log in its binary form.
+
+use std::io::Cursor;
+
+use ardupilot_binlog::{Entry, Reader};
+
+use crate::log::{Log, Wanted};
+
+/// The first bytes of a DataFlash log: a message that describes a format.
+pub(crate) const MAGIC: &[u8] = &[0xa3, 0x95, 0x80];
+
+/// Fields that number the sensors of a kind.
+const INSTANCES: [&str; 4] = ["I", "Inst", "Instance", "C"];
+
+/// The wanted topics of a log. Damaged messages are passed over.
+pub(crate) fn read(bytes: &[u8], wanted: &Wanted) -> Log {
+    let mut log = Log::default();
+    let mut input = Cursor::new(bytes);
+    let mut failed = None;
+    for entry in Reader::new(&mut input) {
+        match entry {
+            Ok(entry) => take(&mut log, wanted, &entry),
+            Err(error) => {
+                failed = Some(error.to_string());
+                break;
+            }
+        }
+    }
+    // The reader gives up without a word where too much is damaged.
+    let missing = bytes.len() as u64 - input.position();
+    log.damage = match failed {
+        Some(error) => Some(format!("the log is damaged: {error}; what stands before is used")),
+        None if missing > 0 => Some(format!(
+            "the log is damaged: its last {missing} bytes are not read"
+        )),
+        None => None,
+    };
+    log
+}
+
+fn take(log: &mut Log, wanted: &Wanted, entry: &Entry) {
+    if entry.name == "PARM" {
+        if let (Some(name), Some(value)) = (entry.get_str("Name"), entry.get_f64("Value")) {
+            log.parameters.insert(name.to_owned(), value);
+        }
+        return;
+    }
+    let (Some(topic), Some(time_us)) = (
+        wanted.iter().find(|(topic, _)| *topic == entry.name),
+        entry.timestamp_usec,
+    ) else {
+        return;
+    };
+    let instance = INSTANCES
+        .iter()
+        .find_map(|field| entry.get_f64(field))
+        .unwrap_or(0.0);
+    log.push(*topic, instance as u8, 1e-6 * time_us as f64, |field| {
+        entry.get_f64(field)
+    });
+}

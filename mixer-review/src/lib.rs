@@ -1,0 +1,30 @@
+//! A flight log of PX4 or ArduPilot over the model of a compiled airframe: whether the model is true of
+//! the vehicle.
+//!
+//! ```text
+//! bytes of a log -> topics and parameters      log.rs; ulog.rs, dataflash.rs
+//!   -> a flight, in one form for both stacks   flight.rs; px4.rs, ardupilot.rs
+//!   -> instants in the air, and the model's wrench at the logged throttles     rows.rs
+//!   -> what that says of the model             review.rs; saturated.rs, thrust.rs
+//!   -> text and JSON; the airframe file with the scale                         text.rs, scaled.rs
+//! ```
+//!
+//! Nothing here reads or writes files.
+
+mod ardupilot;
+mod dataflash;
+mod flight;
+mod log;
+mod px4;
+mod review;
+mod rows;
+mod saturated;
+mod scaled;
+mod text;
+mod thrust;
+mod ulog;
+
+pub use crate::flight::{Flight, Stack};
+pub use crate::log::Series;
+pub use crate::review::{Options, Review};
+pub use crate::scaled::scaled;

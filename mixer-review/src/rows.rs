@@ -1,0 +1,232 @@
+//! The flight resampled at its outputs, with what the model says there.
+//!
+//! The accelerometer measures f = (T + D) / m with the thrust T along the body's axis and the drag D. In
+//! hover and wind D is horizontal, so the vertical part of f is that of the thrust alone, which is
+//! divided by the cosine of the tilt:
+//!
+//! ```text
+//! T / m = -(f . d + b) / d_z      d: the earth's downward direction in body axes
+//! ```
+//!
+//! b is the accelerometer's offset. The mean of -f . d over a time is g plus the change of the upward
+//! velocity over it, and the velocity of the stack's estimator does not drift: that gives b.
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::GRAVITY;
+use mixer_compiler::model::Physics;
+use mixer_rt::{Conditions, Health};
+
+use crate::flight::Flight;
+use crate::log::Series;
+
+/// Cosine of the largest tilt in hover: 10 degrees.
+const LEVEL: f64 = 0.985;
+
+/// Largest speeds in hover, m/s: with more the flow through the rotors changes their thrust.
+const SLOW_VERTICAL: f64 = 0.5;
+const SLOW_HORIZONTAL: f64 = 3.0;
+
+/// Largest rate in a straight hover, rad/s.
+const STRAIGHT: f64 = 0.1;
+
+/// What is left out after take-off and before landing, s: the ground carries a part of the weight
+/// there, and stacks see a landing late.
+const NEAR_GROUND_S: [f64; 2] = [1.0, 2.0];
+
+/// Times between outputs that are further apart than this do not follow each other, s.
+const GAP_S: f64 = 0.5;
+
+/// Share of the weight above which a vehicle flies whose log does not say so.
+const CARRIES: f64 = 0.7;
+
+/// One instant.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) time_s: f64,
+    /// Throttle of each output, 0 where it is off.
+    pub(crate) throttle: Vec<f32>,
+    /// Rotors that are off.
+    pub(crate) health: Health,
+    pub(crate) conditions: Conditions,
+    /// Roll, pitch, yaw (N m) and thrust (N) of the model.
+    pub(crate) model: [f64; 4],
+    /// Thrust over mass by the accelerometer, m/s2: by its vertical part, and by the body's axis alone.
+    pub(crate) measured: [f64; 2],
+    /// Whether the vehicle hovers, all rotors turning; and whether without turning about any axis.
+    pub(crate) hovers: bool,
+    pub(crate) is_straight: bool,
+    /// Whether it follows the row before it.
+    pub(crate) follows: bool,
+}
+
+/// The rows of a flight in the air, and what they rest on.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Rows {
+    pub(crate) rows: Vec<Row>,
+    /// The accelerometer's offset, m/s2; `None` where no velocity was logged.
+    pub(crate) offset: Option<f64>,
+    /// Length of the log, s.
+    pub(crate) seconds: f64,
+}
+
+/// Whether the vehicle is in the air from `from` to `to`, s, away from the ground.
+fn flies(landed: &Series, time_s: f64) -> bool {
+    let [after, before] = NEAR_GROUND_S;
+    let on_ground = |row: &[f64]| row[0] != 0.0;
+    let now = landed.at(time_s).is_none_or(on_ground);
+    let near = landed
+        .rows()
+        .any(|(at, row)| on_ground(row) && (time_s - after..time_s + before).contains(&at));
+    // The last message before holds until the next one.
+    !now && !near && landed.at(time_s - after).is_some_and(|row| !on_ground(row))
+}
+
+impl Rows {
+    pub(crate) fn new(flight: &Flight, compiled: &Compiled, mass_kg: f64) -> Rows {
+        let physics = Physics {
+            airframe: &compiled.airframe,
+            map: &compiled.pair,
+        };
+        let mut rows = Rows::default();
+        let mut before: Option<f64> = None;
+        for (time_s, outputs) in flight.throttle.rows() {
+            let last = before.replace(time_s);
+            rows.seconds += last.map_or(0.0, |last| time_s - last);
+            let rotors = compiled.airframe.rotors();
+            let (Some(last), true) = (last.filter(|last| time_s - last < GAP_S), outputs.len() >= rotors)
+            else {
+                continue;
+            };
+            let throttle: Vec<f32> = outputs[..rotors]
+                .iter()
+                .map(|x| if x.is_finite() { *x as f32 } else { 0.0 })
+                .collect();
+            let conditions = conditions(flight, compiled, time_s);
+            let health = health(flight, &throttle, time_s);
+            let factors = compiled
+                .airframe
+                .factors(conditions.voltage_v.into(), conditions.density_kg_m3.into());
+            let model = physics.wrench(&throttle, factors, health);
+            let in_the_air = flight
+                .landed
+                .as_ref()
+                .map_or(model[3] > CARRIES * mass_kg * GRAVITY, |landed| {
+                    flies(landed, time_s)
+                });
+            // The accelerometer around the time of the outputs: half a step to each side.
+            let half = 0.5 * (time_s - last);
+            let force = flight.force.mean(time_s - half, time_s + half);
+            let (Some(force), true) = (force, in_the_air) else {
+                continue;
+            };
+            let upright = vec![0.0, 0.0, 1.0];
+            let down = flight
+                .down
+                .as_ref()
+                .and_then(|down| down.at(time_s))
+                .map_or(upright, <[f64]>::to_vec);
+            let along: f64 = force.iter().zip(&down).map(|(f, d)| f * d).sum();
+            let slow = flight
+                .velocity
+                .as_ref()
+                .and_then(|velocity| velocity.at(time_s))
+                .is_none_or(|v| libm::hypot(v[0], v[1]) < SLOW_HORIZONTAL && v[2].abs() < SLOW_VERTICAL);
+            let turns = flight
+                .rates
+                .as_ref()
+                .and_then(|rates| rates.mean(time_s - half, time_s + half));
+            let is_whole = health == Health::GOOD;
+            let hovers = is_whole && slow && down[2] > LEVEL;
+            rows.rows.push(Row {
+                time_s,
+                throttle,
+                health,
+                conditions,
+                model,
+                measured: [-along / down[2].max(0.1), -force[2]],
+                hovers,
+                is_straight: hovers
+                    && turns.is_none_or(|rates| rates.iter().all(|rate| rate.abs() < STRAIGHT)),
+                follows: rows.rows.last().is_some_and(|row: &Row| row.time_s == last),
+            });
+        }
+        rows.offset = flight
+            .velocity
+            .as_ref()
+            .and_then(|velocity| offset(&rows.rows, flight, velocity));
+        let offset = rows.offset.unwrap_or_default();
+        for row in &mut rows.rows {
+            row.measured = row.measured.map(|measured| measured - offset);
+        }
+        rows
+    }
+
+    /// Mean of a number over the rows that are chosen; `None` where none is.
+    pub(crate) fn mean(&self, is_of: impl Fn(&Row) -> bool, number: impl Fn(&Row) -> f64) -> Option<f64> {
+        let (mut count, mut sum) = (0.0, 0.0);
+        for row in self.rows.iter().filter(|row| is_of(row)) {
+            count += 1.0;
+            sum += number(row);
+        }
+        (count > 0.0).then(|| sum / count)
+    }
+
+    /// Share of the rows.
+    pub(crate) fn share(&self, is_of: impl Fn(&Row) -> bool) -> f64 {
+        self.rows.iter().filter(|row| is_of(row)).count() as f64 / self.rows.len().max(1) as f64
+    }
+
+    /// Time of the rows that are chosen, s.
+    pub(crate) fn seconds_of(&self, is_of: impl Fn(&Row) -> bool) -> f64 {
+        let pairs = self
+            .rows
+            .windows(2)
+            .filter(|pair| pair[1].follows && is_of(&pair[1]));
+        pairs.map(|pair| pair[1].time_s - pair[0].time_s).sum()
+    }
+}
+
+/// Voltage and density at a time; the reference where none was measured, as in flight.
+fn conditions(flight: &Flight, compiled: &Compiled, time_s: f64) -> Conditions {
+    let at = |series: &Option<Series>| {
+        let values = series.as_ref()?.at(time_s)?;
+        values
+            .first()
+            .copied()
+            .filter(|value| value.is_finite() && *value > 0.0)
+    };
+    Conditions {
+        voltage_v: at(&flight.voltage).unwrap_or(compiled.airframe.reference_v()) as f32,
+        density_kg_m3: at(&flight.density).unwrap_or(compiled.airframe.reference_density()) as f32,
+    }
+}
+
+/// Rotors whose output is off, and those that the stack has found dead.
+fn health(flight: &Flight, throttle: &[f32], time_s: f64) -> Health {
+    let found = flight.failed.as_ref().and_then(|failed| failed.at(time_s));
+    let found = found.map_or(0, |mask| mask[0] as u64);
+    let is_out = |channel: &usize| throttle[*channel] <= 0.0 || (found >> channel) & 1 == 1;
+    let out = (0..throttle.len()).filter(is_out);
+    out.fold(Health::GOOD, |health, channel| health.with_failed(channel as u8))
+}
+
+/// The accelerometer's offset upwards: its mean beyond gravity and the change of the velocity, m/s2.
+fn offset(rows: &[Row], flight: &Flight, velocity: &Series) -> Option<f64> {
+    let upward = |time_s: f64| Some(-velocity.at(time_s)?[2]);
+    let (mut gained, mut integral, mut seconds) = (0.0, 0.0, 0.0);
+    for pair in rows.windows(2).filter(|pair| pair[1].follows) {
+        let [from, to] = [pair[0].time_s, pair[1].time_s];
+        let cosine = |time_s| {
+            flight
+                .down
+                .as_ref()
+                .and_then(|down| down.at(time_s))
+                .map_or(1.0, |down| down[2])
+        };
+        gained += upward(to)? - upward(from)?;
+        integral +=
+            0.5 * (to - from) * (pair[0].measured[0] * cosine(from) + pair[1].measured[0] * cosine(to));
+        seconds += to - from;
+    }
+    (seconds > 0.0).then(|| integral / seconds - GRAVITY - gained / seconds)
+}

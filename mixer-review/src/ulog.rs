@@ -1,0 +1,82 @@
+//! PX4's ULog, read by PX4's own crate.
+
+use std::collections::HashMap;
+
+use px4_ulog::stream_parser::model::{FlattenedFieldType as Type, FlattenedFormat};
+use px4_ulog::stream_parser::{DataMessage, LittleEndianParser, LogParser, ParameterMessage};
+
+use crate::log::{Log, Wanted};
+
+/// The first bytes of a ULog.
+pub(crate) const MAGIC: &[u8] = b"ULog\x01\x12\x35";
+
+/// A field's value; `None` where the message ends before it.
+fn value(kind: &Type, bytes: &[u8]) -> Option<f64> {
+    fn of<T: LittleEndianParser>(bytes: &[u8]) -> Option<T> {
+        (bytes.len() >= size_of::<T>()).then(|| T::parse(bytes))
+    }
+    Some(match kind {
+        Type::Int8 => of::<i8>(bytes)?.into(),
+        Type::UInt8 | Type::Char => of::<u8>(bytes)?.into(),
+        Type::Int16 => of::<i16>(bytes)?.into(),
+        Type::UInt16 => of::<u16>(bytes)?.into(),
+        Type::Int32 => of::<i32>(bytes)?.into(),
+        Type::UInt32 => of::<u32>(bytes)?.into(),
+        Type::Int64 => of::<i64>(bytes)? as f64,
+        Type::UInt64 => of::<u64>(bytes)? as f64,
+        Type::Float => of::<f32>(bytes)?.into(),
+        Type::Double => of::<f64>(bytes)?,
+        Type::Bool => f64::from(u8::from(of::<bool>(bytes)?)),
+    })
+}
+
+/// Where a format has the fields.
+type Places = HashMap<String, (usize, Type)>;
+
+fn places(format: &FlattenedFormat) -> Places {
+    let place = |field: &px4_ulog::stream_parser::model::FlattenedField| {
+        let at = (usize::from(field.offset), field.field_type.clone());
+        (field.flattened_field_name.clone(), at)
+    };
+    format.field_iter().map(place).collect()
+}
+
+/// The wanted topics of a ULog. A log that breaks off keeps what is before.
+pub(crate) fn read(bytes: &[u8], wanted: &Wanted) -> Log {
+    let mut log = Log::default();
+    let mut parameters = Vec::new();
+    let mut formats: HashMap<u16, Places> = HashMap::new();
+    let mut on_data = |message: &DataMessage<'_>| {
+        let name = message.flattened_format.message_name();
+        let Some(topic) = wanted.iter().find(|(topic, _)| *topic == name) else {
+            return;
+        };
+        let places = formats
+            .entry(message.msg_id)
+            .or_insert_with(|| places(message.flattened_format));
+        let value = |field: &str| {
+            let (at, kind) = places.get(field)?;
+            value(kind, message.data.get(*at..)?)
+        };
+        if let Some(time_us) = value("timestamp") {
+            log.push(*topic, message.multi_id.value(), 1e-6 * time_us, value);
+        }
+    };
+    let mut on_parameter = |message: &ParameterMessage<'_>| match message {
+        ParameterMessage::Float(name, value, _) => parameters.push(((*name).to_owned(), f64::from(*value))),
+        ParameterMessage::Int32(name, value, _) => parameters.push(((*name).to_owned(), f64::from(*value))),
+    };
+    let mut parser = LogParser::default();
+    parser.set_data_message_callback(&mut on_data);
+    parser.set_parameter_message_callback(&mut on_parameter);
+    let read = parser.consume_bytes(bytes);
+    let is_cut = parser.has_leftover();
+    drop(parser);
+    log.parameters = parameters.into_iter().collect();
+    log.damage = match read {
+        Err(error) => Some(format!("the log is damaged: {error}; what stands before is used")),
+        Ok(()) if is_cut => Some("the log ends within a message: its end is missing".to_owned()),
+        Ok(()) => None,
+    };
+    log
+}
