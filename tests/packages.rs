@@ -9,7 +9,7 @@ use std::process::Command;
 use mixer_tests::root;
 
 /// In the order of publication: each uses only those before it.
-const PUBLISHED: [&str; 10] = [
+const PUBLISHED: [&str; 11] = [
     "mixer-rt",
     "mixer-compiler",
     "mixer-macros",
@@ -19,6 +19,7 @@ const PUBLISHED: [&str; 10] = [
     "mixer-report",
     "mixer-c",
     "mixer-files",
+    "mixer-review",
     "cargo-mixer",
 ];
 
@@ -115,6 +116,7 @@ fn firmware_builds_nothing_of_the_command_line() {
             "mixer-report",
             "mixer-c",
             "mixer-files",
+            "mixer-review",
             "cargo-mixer",
             "faer",
             "csv",

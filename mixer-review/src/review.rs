@@ -233,17 +233,14 @@ impl Review {
                 ));
             }
         }
-        if let Some([x, y]) = self
+        let off = self
             .hover
             .centre_m
-            .filter(|at| libm::hypot(at[0], at[1]) > CENTRE_M)
-        {
+            .filter(|[x, y]| libm::hypot(*x, *y) > CENTRE_M);
+        if let Some(centre) = off {
             warnings.push(format!(
-                "the centre of gravity is {:.0} mm {} and {:.0} mm {} of the file's: move the pack, or the units' position_m",
-                1e3 * x.abs(),
-                if x > 0.0 { "forward" } else { "back" },
-                1e3 * y.abs(),
-                if y > 0.0 { "right" } else { "left" },
+                "the centre of gravity is {} of the file's: move the pack, or the units' position_m",
+                beside(centre)
             ));
         }
         let all_yaw = compiled.pair.scale()[1] * compiled.airframe.units.len() as f64;
@@ -363,6 +360,17 @@ impl Range {
             outside: rows.share(is_outside),
         })
     }
+}
+
+/// Where a point is, m: `12 mm forward and 7 mm left`.
+pub(crate) fn beside([x, y]: [f64; 2]) -> String {
+    format!(
+        "{:.0} mm {} and {:.0} mm {}",
+        1e3 * x.abs(),
+        if x < 0.0 { "back" } else { "forward" },
+        1e3 * y.abs(),
+        if y < 0.0 { "left" } else { "right" }
+    )
 }
 
 /// Rotors that are off in the air, each since its first row of those.

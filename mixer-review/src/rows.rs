@@ -1,15 +1,18 @@
 //! The flight resampled at its outputs, with what the model says there.
 //!
-//! The accelerometer measures f = (T + D) / m with the thrust T along the body's axis and the drag D. In
-//! hover and wind D is horizontal, so the vertical part of f is that of the thrust alone, which is
-//! divided by the cosine of the tilt:
+//! The accelerometer measures f = (T + D) / m with the thrust T along the body's axis and the drag D. At the
+//! speeds of a hover in wind most of D is the rotors' own and lies in their plane (the momentum drag of
+//! PX4's and ArduPilot's wind estimators; Burri et al. 2018), so that the body's axis has T alone. Were D
+//! horizontal instead, the vertical part would have it. With d, the earth's downward direction in body axes:
 //!
 //! ```text
-//! T / m = -(f . d + b) / d_z      d: the earth's downward direction in body axes
+//! T / m = -(f_z + b)                in the rotors' plane
+//! T / m = -(f . d + b) / d_z        horizontal
 //! ```
 //!
-//! b is the accelerometer's offset. The mean of -f . d over a time is g plus the change of the upward
-//! velocity over it, and the velocity of the stack's estimator does not drift: that gives b.
+//! The first is used, and half of their difference is an error of it. b is the accelerometer's offset. The mean of
+//! -f . d over a time is g plus the change of the upward velocity over it, whatever the drag, and the
+//! velocity of the stack's estimator does not drift: that gives b.
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::GRAVITY;
@@ -50,7 +53,7 @@ pub(crate) struct Row {
     pub(crate) conditions: Conditions,
     /// Roll, pitch, yaw (N m) and thrust (N) of the model.
     pub(crate) model: [f64; 4],
-    /// Thrust over mass by the accelerometer, m/s2: by its vertical part, and by the body's axis alone.
+    /// Thrust over mass by the accelerometer, m/s2: by the body's axis, and by the vertical part.
     pub(crate) measured: [f64; 2],
     /// Whether the vehicle hovers, all rotors turning; and whether without turning about any axis.
     pub(crate) hovers: bool,
@@ -143,7 +146,7 @@ impl Rows {
                 health,
                 conditions,
                 model,
-                measured: [-along / down[2].max(0.1), -force[2]],
+                measured: [-force[2], -along / down[2].max(0.1)],
                 hovers,
                 is_straight: hovers
                     && turns.is_none_or(|rates| rates.iter().all(|rate| rate.abs() < STRAIGHT)),
@@ -225,7 +228,7 @@ fn offset(rows: &[Row], flight: &Flight, velocity: &Series) -> Option<f64> {
         };
         gained += upward(to)? - upward(from)?;
         integral +=
-            0.5 * (to - from) * (pair[0].measured[0] * cosine(from) + pair[1].measured[0] * cosine(to));
+            0.5 * (to - from) * (pair[0].measured[1] * cosine(from) + pair[1].measured[1] * cosine(to));
         seconds += to - from;
     }
     (seconds > 0.0).then(|| integral / seconds - GRAVITY - gained / seconds)

@@ -4,7 +4,7 @@ use std::fmt;
 
 use mixer_compiler::diagnostic::rounded;
 
-use crate::review::{Range, Review};
+use crate::review::{Range, Review, beside};
 use crate::saturated::Source;
 use crate::thrust::Part;
 
@@ -85,7 +85,7 @@ impl fmt::Display for Review {
             f,
             "hover throttle",
             format_args!(
-                "upper {} flown, {} by the model; lower {}, {}",
+                "upper {} flown, {} by this mixer; lower {}, {}",
                 or_dash(self.hover.upper, 3),
                 or_dash(upper, 3),
                 or_dash(self.hover.lower, 3),
@@ -106,15 +106,11 @@ impl fmt::Display for Review {
                 ),
             )?;
         }
-        if let Some([x, y]) = self.hover.centre_m {
+        if let Some(centre) = self.hover.centre_m {
             say(
                 f,
                 "centre of gravity",
-                format_args!(
-                    "{:.0} mm forward, {:.0} mm right of the file's, by roll and pitch",
-                    1e3 * x,
-                    1e3 * y
-                ),
+                format_args!("{} of the file's, by roll and pitch", beside(centre)),
             )?;
         }
         if let Some(voltage) = &self.voltage {

@@ -17,6 +17,7 @@ mod mistakes;
 mod mix;
 mod predict;
 mod report;
+mod review;
 mod schema;
 mod shell;
 mod stacks;

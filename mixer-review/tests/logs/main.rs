@@ -1,0 +1,397 @@
+//! Logs of both stacks' formats, of a flight whose answers are known: a hover with a slow heave, a centre of gravity
+//! off the file's, thrust off the model's.
+#![allow(missing_docs)]
+
+mod writers;
+
+use mixer_compiler::airframe::GRAVITY;
+use mixer_compiler::model::Physics;
+use mixer_compiler::{Compiled, Source};
+use mixer_review::{Options, Review, scaled};
+use mixer_rt::{Health, Wrench};
+use writers::{Message, Rows, Topic, dataflash, ulog};
+
+const MASS_KG: f64 = 6.5;
+const SECONDS: f64 = 30.0;
+const VOLTS: f64 = 23.0;
+
+/// The model gives more than the vehicle by this.
+const SCALE: f64 = 1.06;
+
+/// The centre of gravity, forward and right of the file's, m.
+const CENTRE_M: [f64; 2] = [0.012, -0.007];
+
+fn compiled() -> Compiled {
+    let text = include_str!("../../../examples/simulator/x8.toml");
+    mixer_compiler::compile(&Source::new("x8.toml", text)).unwrap()
+}
+
+/// Upward acceleration, m/s2, and velocity, m/s.
+fn heave(time_s: f64) -> [f64; 2] {
+    [0.4 * (2.0 * time_s).sin(), -0.2 * (2.0 * time_s).cos()]
+}
+
+/// The throttles of a vehicle that flies so: what this mixer gives.
+fn throttles(compiled: &Compiled, time_s: f64) -> Vec<f32> {
+    if !(2.0..SECONDS - 2.0).contains(&time_s) {
+        return vec![0.0; 8];
+    }
+    let thrust = SCALE * MASS_KG * (GRAVITY + heave(time_s)[0]);
+    let [x, y] = CENTRE_M;
+    let setpoint = Wrench {
+        roll_nm: (-y * thrust) as f32,
+        pitch_nm: (x * thrust) as f32,
+        yaw_nm: 0.05,
+        thrust_n: thrust as f32,
+    };
+    let mixed = compiled.tables.mix(&setpoint, VOLTS as f32).unwrap();
+    assert!(!mixed.2.any_axis());
+    mixed.0
+}
+
+fn force(time_s: f64) -> Vec<f32> {
+    vec![0.0, 0.0, -(GRAVITY + heave(time_s)[0] + 0.1) as f32]
+}
+
+fn landed(time_s: f64) -> bool {
+    !(2.5..SECONDS - 2.5).contains(&time_s)
+}
+
+fn parameters(pairs: &[(&str, f64)]) -> Vec<(String, f64)> {
+    pairs
+        .iter()
+        .map(|(name, value)| ((*name).to_owned(), *value))
+        .collect()
+}
+
+/// What PX4 has of the frame, by the airframe.
+fn px4_frame(compiled: &Compiled) -> Vec<(String, f64)> {
+    let mut all = parameters(&[("CA_ROTOR_COUNT", 8.0), ("THR_MDL_FAC", 0.0)]);
+    for unit in &compiled.airframe.units {
+        for (channel, spin) in [(unit.upper_channel, 1.0), (unit.lower_channel, -1.0)] {
+            let sign = if unit.upper_spin.name() == "ccw" {
+                spin
+            } else {
+                -spin
+            };
+            let of = |key: &str| format!("CA_ROTOR{channel}_{key}");
+            all.push((of("PX"), unit.position_m[0]));
+            all.push((of("PY"), unit.position_m[1]));
+            all.push((of("KM"), 0.05 * sign));
+        }
+    }
+    all
+}
+
+fn px4_log(compiled: &Compiled, parameters: &[(String, f64)]) -> Vec<u8> {
+    px4_log_of(parameters, &|time_s| throttles(compiled, time_s))
+}
+
+fn px4_log_of(parameters: &[(String, f64)], motors: Rows<'_>) -> Vec<u8> {
+    let topics = [
+        Topic {
+            name: "actuator_motors",
+            fields: "float[8] control;",
+            period_s: 0.1,
+            rows: motors,
+        },
+        Topic {
+            name: "sensor_combined",
+            fields: "float[3] accelerometer_m_s2;",
+            period_s: 0.004,
+            rows: &force,
+        },
+        Topic {
+            name: "vehicle_attitude",
+            fields: "float[4] q;",
+            period_s: 0.02,
+            rows: &|_| vec![0.8, 0.0, 0.0, 0.6],
+        },
+        Topic {
+            name: "vehicle_local_position",
+            fields: "float vx;float vy;float vz;",
+            period_s: 0.1,
+            rows: &|time_s| vec![0.0, 0.0, -heave(time_s)[1] as f32],
+        },
+        Topic {
+            name: "vehicle_land_detected",
+            fields: "float landed;",
+            period_s: 0.5,
+            rows: &|time_s| vec![f32::from(u8::from(landed(time_s)))],
+        },
+        Topic {
+            name: "battery_status",
+            fields: "float voltage_v;float connected;",
+            period_s: 0.2,
+            rows: &|_| vec![VOLTS as f32, 1.0],
+        },
+    ];
+    ulog(parameters, &topics, SECONDS)
+}
+
+/// ArduPilot's octaquad X: of the example's numbering.
+fn ardupilot_frame() -> Vec<(String, f64)> {
+    let mut all = parameters(&[("FRAME_CLASS", 4.0), ("FRAME_TYPE", 1.0), ("MOT_PWM_MIN", 1000.0)]);
+    all.extend((1..=8).map(|pin| (format!("SERVO{pin}_FUNCTION"), f64::from(32 + pin))));
+    all
+}
+
+fn ardupilot_log(compiled: &Compiled, parameters: &[(String, f64)]) -> Vec<u8> {
+    let pulses = |time_s: f64| {
+        throttles(compiled, time_s)
+            .iter()
+            .map(|x| 1000.0 + 1000.0 * x)
+            .collect()
+    };
+    let messages = [
+        Message {
+            name: "RCOU",
+            labels: "C1,C2,C3,C4,C5,C6,C7,C8",
+            period_s: 0.1,
+            rows: &pulses,
+        },
+        Message {
+            name: "IMU",
+            labels: "AccX,AccY,AccZ",
+            period_s: 0.04,
+            rows: &force,
+        },
+        Message {
+            name: "ATT",
+            labels: "Roll,Pitch",
+            period_s: 0.1,
+            rows: &|_| vec![0.0, 0.0],
+        },
+        Message {
+            name: "XKF1",
+            labels: "VN,VE,VD",
+            period_s: 0.1,
+            rows: &|time_s| vec![0.0, 0.0, -heave(time_s)[1] as f32],
+        },
+        Message {
+            name: "EV",
+            labels: "Id",
+            period_s: 0.5,
+            rows: &|time_s| vec![if landed(time_s) { 18.0 } else { 28.0 }],
+        },
+        Message {
+            name: "BAT",
+            labels: "Volt",
+            period_s: 0.1,
+            rows: &|_| vec![VOLTS as f32],
+        },
+    ];
+    dataflash(parameters, &messages, SECONDS)
+}
+
+fn review(log: &[u8]) -> Result<Review, String> {
+    Review::new("a.log", log, &compiled(), &Options::default())
+}
+
+/// The logs of the example, by stack.
+fn logs() -> [Vec<u8>; 2] {
+    let compiled = compiled();
+    [
+        px4_log(&compiled, &px4_frame(&compiled)),
+        ardupilot_log(&compiled, &ardupilot_frame()),
+    ]
+}
+
+#[test]
+fn both_stacks_logs_tell_what_was_flown() {
+    for log in logs() {
+        let review = review(&log).unwrap();
+        let off = review.thrust.scale / SCALE - 1.0;
+        assert!(off.abs() < 2e-3, "{off}\n{review}");
+        let [low, high] = review.thrust.interval;
+        assert!(
+            low < SCALE && SCALE < high && high - low < 0.025,
+            "{low} to {high}"
+        );
+        let hover = &review.hover;
+        for (found, put) in hover.centre_m.unwrap().into_iter().zip(CENTRE_M) {
+            assert!((found - put).abs() < 2e-4, "{found} {put}");
+        }
+        assert!((hover.yaw_nm.unwrap() - 0.05).abs() < 2e-3, "{hover:?}");
+        // It hovers higher on the throttle than the model, which gives more.
+        let [upper, lower] = hover.model.unwrap();
+        assert!(
+            hover.upper.unwrap() > upper + 0.005 && hover.lower.unwrap() > lower + 0.005,
+            "{hover:?}"
+        );
+        let voltage = review.voltage.as_ref().unwrap();
+        assert_eq!(
+            [voltage.least, voltage.largest, voltage.outside],
+            [VOLTS, VOLTS, 0.0]
+        );
+        assert!(review.stopped.is_empty(), "{review}");
+        let told = review.to_string();
+        assert!(told.lines().count() <= 30, "{told}");
+        for what in ["6.0 % more thrust", "12 mm forward and 7 mm left"] {
+            assert!(told.contains(what), "{told}");
+        }
+    }
+}
+
+#[test]
+fn a_scaled_file_gives_the_measured_thrust() {
+    let [log, _] = logs();
+    let compiled = compiled();
+    let review = review(&log).unwrap();
+    let text = scaled(&compiled.source.text, &review, "a.ulg").unwrap();
+    assert!(text.contains("cargo mixer review a.ulg"), "{text}");
+    let scaled = mixer_compiler::compile(&Source::new("x8.toml", text)).unwrap();
+    let wrench = |compiled: &Compiled| {
+        let physics = Physics {
+            airframe: &compiled.airframe,
+            map: &compiled.pair,
+        };
+        physics.wrench(&[0.6; 8], [1.0, 1.0], Health::GOOD)
+    };
+    let [before, after] = [&compiled, &scaled].map(wrench);
+    assert!(
+        (before[3] / after[3] / review.thrust.scale - 1.0).abs() < 1e-6,
+        "{before:?} {after:?}"
+    );
+    assert_eq!(before[2], after[2]);
+    let again = Review::new("a.log", &log, &scaled, &Options::default()).unwrap();
+    assert!((again.thrust.scale - 1.0).abs() < 1e-3, "{again}");
+    assert!(
+        again.warnings.iter().all(|warning| !warning.contains("-o")),
+        "{again}"
+    );
+}
+
+#[test]
+fn a_rotor_that_stops_is_told() {
+    let compiled = compiled();
+    let stops = |time_s: f64| {
+        let mut throttles = throttles(&compiled, time_s);
+        if time_s > 20.0 {
+            throttles[3] = f32::NAN;
+        }
+        throttles
+    };
+    let review = review(&px4_log_of(&px4_frame(&compiled), &stops)).unwrap();
+    let stopped = &review.stopped[..];
+    assert!(
+        matches!(stopped, [one] if one.output == 3 && (20.0..20.3).contains(&one.time_s)),
+        "{stopped:?}"
+    );
+    // What follows is not hover.
+    assert!((review.thrust.scale / SCALE - 1.0).abs() < 2e-3, "{review}");
+    assert!((15.0..18.0).contains(&review.seconds[2]), "{review}");
+}
+
+#[test]
+fn what_is_no_log_of_this_vehicle_is_refused_by_name() {
+    let compiled = compiled();
+    let with = |name: &str, value: f64| {
+        let mut frame = px4_frame(&compiled);
+        frame.retain(|(of, _)| of != name);
+        frame.push((name.to_owned(), value));
+        px4_log(&compiled, &frame)
+    };
+    let spin = px4_frame(&compiled)
+        .iter()
+        .find(|(name, _)| name == "CA_ROTOR3_KM")
+        .unwrap()
+        .1;
+    let place = px4_frame(&compiled)
+        .iter()
+        .find(|(name, _)| name == "CA_ROTOR3_PX")
+        .unwrap()
+        .1;
+    let mut quad = px4_frame(&compiled);
+    quad.retain(|(name, _)| {
+        !["4", "5", "6", "7", "COUNT"]
+            .iter()
+            .any(|k| name.starts_with(&format!("CA_ROTOR{k}_")))
+    });
+    quad.retain(|(name, _)| name != "CA_ROTOR_COUNT");
+    quad.push(("CA_ROTOR_COUNT".to_owned(), 4.0));
+    let frame_y6 = parameters(&[("FRAME_CLASS", 5.0), ("FRAME_TYPE", 10.0)]);
+    let no_outputs = ulog(
+        &px4_frame(&compiled),
+        &[Topic {
+            name: "sensor_combined",
+            fields: "float[3] accelerometer_m_s2;",
+            period_s: 0.01,
+            rows: &force,
+        }],
+        SECONDS,
+    );
+    let short = ardupilot_log(&compiled, &ardupilot_frame());
+    for (log, message) in [
+        (with("CA_ROTOR3_KM", -spin), "motor 4 turns"),
+        (with("CA_ROTOR3_PX", -place), "motor 4 is"),
+        (px4_log(&compiled, &quad), "it has 4 motors, x8 8 rotors"),
+        (ardupilot_log(&compiled, &frame_y6), "it has 6 motors"),
+        (no_outputs, "`actuator_motors`"),
+        (px4_log(&compiled, &[]), "no parameters"),
+        (b"\xfd7zXZ\0".to_vec(), "xz -dk"),
+        (b"FMT, 128, 89, FMT".to_vec(), ".bin"),
+        (b"hello".to_vec(), "neither PX4's ULog"),
+        (Vec::new(), "neither PX4's ULog"),
+        (short[..2000].to_vec(), "no accelerometer (`IMU`)"),
+    ] {
+        let error = review(&log).unwrap_err();
+        assert!(
+            error.starts_with("a.log: ") && error.contains(message),
+            "{message}: {error}"
+        );
+    }
+}
+
+#[test]
+fn a_log_of_the_ground_is_refused() {
+    let compiled = compiled();
+    let topics = [
+        Topic {
+            name: "actuator_motors",
+            fields: "float[8] control;",
+            period_s: 0.1,
+            rows: &|_| vec![0.2; 8],
+        },
+        Topic {
+            name: "sensor_combined",
+            fields: "float[3] accelerometer_m_s2;",
+            period_s: 0.01,
+            rows: &|_| vec![0.0, 0.0, -9.81],
+        },
+    ];
+    let error = review(&ulog(&px4_frame(&compiled), &topics, SECONDS)).unwrap_err();
+    assert!(error.contains("a log of the ground: 30 s"), "{error}");
+}
+
+/// A damaged log is read as far as it goes, or refused; nothing panics.
+#[test]
+fn damaged_logs_do_no_harm() {
+    for log in logs() {
+        let mut state = 1u64;
+        let mut next = |below: usize| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % below
+        };
+        for _ in 0..60 {
+            let mut damaged = log[..next(log.len())].to_vec();
+            for _ in 0..next(20) {
+                let at = next(damaged.len().max(1));
+                if let Some(byte) = damaged.get_mut(at) {
+                    *byte ^= 1 << next(8);
+                }
+            }
+            let _ = review(&damaged);
+        }
+    }
+    let [log, _] = logs();
+    let cut = review(&log[..log.len() - 5]).unwrap();
+    assert!(
+        cut.warnings
+            .iter()
+            .any(|warning| warning.contains("ends within a message")),
+        "{cut}"
+    );
+}

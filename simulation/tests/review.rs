@@ -1,0 +1,151 @@
+//! Flights whose plant is off by a known factor, logged as the stacks log them, in wind, with noise and a battery
+//! that sags: `mixer_review` finds the factor, and its interval holds it.
+
+use clap::Parser;
+use mixer_compiler::{Compiled, Source};
+use mixer_review::{Flight, Review, Series, Stack};
+use mixer_rt::Wrench;
+use nalgebra::{UnitQuaternion, Vector3};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::SeedableRng;
+use simulation::air::normal;
+use simulation::sitl::arguments::Arguments;
+use simulation::sitl::sensors::Sensors;
+use simulation::sitl::vehicle::{Throttles, Vehicle};
+use simulation::sitl::wind::Wind;
+use simulation::sitl::world::World;
+
+const X8: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/simulator/x8.toml");
+
+/// A step of the controller and of the inertial sensors, s: 100 Hz.
+const STEP_S: f64 = 0.01;
+
+/// Steps between rows of outputs: 10 Hz, as both stacks log them.
+const OUTPUTS: usize = 10;
+
+const TAKE_OFF_S: f64 = 3.0;
+const END_S: f64 = 35.0;
+
+/// Offset of the accelerometer's vertical axis, m/s2.
+const OFFSET_M_S2: f64 = 0.15;
+
+fn compiled() -> Compiled {
+    let text = std::fs::read_to_string(X8).unwrap();
+    mixer_compiler::compile(&Source::new("x8.toml", text)).unwrap()
+}
+
+/// Thrust and torques that hold the vehicle at 5 m, heading north, with integrators as the stacks have them; N, N m.
+fn controller(world: &World, sum: &mut Vector3<f64>) -> [f64; 4] {
+    let (state, mass) = (&world.state, world.vehicle.mass_kg);
+    let error = Vector3::new(0.0, 0.0, -5.0) - state.position;
+    *sum = (*sum + error * STEP_S).map(|x| x.clamp(-4.0, 4.0));
+    let demanded = (error.cap_magnitude(2.0) * 2.0 - state.velocity * 2.4 + *sum * 0.8).cap_magnitude(4.0);
+    let attitude: UnitQuaternion<f64> = state.rotation();
+    let wanted = UnitQuaternion::from_euler_angles(demanded.y / 9.8, -demanded.x / 9.8, 0.0);
+    let turn = (attitude.inverse() * wanted).scaled_axis();
+    let torque =
+        |axis: usize, stiffness: f64, damping: f64| stiffness * turn[axis] - damping * state.rate[axis];
+    let level = (attitude * Vector3::z()).z.max(0.5);
+    [
+        torque(0, 10.0, 2.0),
+        torque(1, 10.0, 2.0),
+        torque(2, 1.3, 1.1),
+        mass * (9.806_65 - demanded.z) / level,
+    ]
+}
+
+/// A flight of a vehicle whose pairs give `scale` times the thrust of the file.
+fn fly(compiled: &Compiled, scale: f64, wind_m_s: f64, noise: f64, seed: u64) -> Flight {
+    let text = [scale, wind_m_s].map(|x| x.to_string());
+    let flags = [
+        "--thrust-scale",
+        &text[0],
+        "--resistance",
+        "0.03",
+        "--capacity",
+        "3",
+        "--volts",
+        "24",
+    ];
+    let arguments = ["sitl", X8, "--px4"].into_iter().chain(flags);
+    let vehicle = Vehicle::new(&Arguments::try_parse_from(arguments).unwrap()).unwrap();
+    let mut world = World::new(vehicle, Some(Wind::new(wind_m_s, 1.15, seed)));
+    let mut sensors = Sensors::new(noise, seed);
+    let mut sum = Vector3::zeros();
+    let [
+        mut throttle,
+        mut force,
+        mut down,
+        mut velocity,
+        mut voltage,
+        mut landed,
+    ] = [(); 6].map(|()| Series::default());
+    for step in 0..(END_S / STEP_S) as usize {
+        let time_s = world.time_s();
+        let flies = time_s > TAKE_OFF_S;
+        let [roll, pitch, yaw, thrust] = controller(&world, &mut sum);
+        let setpoint = Wrench {
+            roll_nm: roll as f32,
+            pitch_nm: pitch as f32,
+            yaw_nm: yaw as f32,
+            thrust_n: if flies { thrust as f32 } else { 0.0 },
+        };
+        let volts = world.voltage_v();
+        let (throttles, ..) = compiled.tables.mix(&setpoint, volts as f32).unwrap();
+        let measured = sensors.inertial(&world);
+        let axes = |x: Vector3<f64>| x.iter().copied().collect::<Vec<f64>>();
+        force.push(time_s, axes(measured.acceleration + Vector3::z() * OFFSET_M_S2));
+        if step.is_multiple_of(OUTPUTS) {
+            throttle.push(
+                time_s,
+                throttles.iter().map(|throttle| f64::from(*throttle)).collect(),
+            );
+            voltage.push(time_s, vec![volts]);
+            velocity.push(time_s, axes(sensors.fix(&world).velocity));
+            down.push(time_s, axes(world.state.rotation().inverse() * Vector3::z()));
+            landed.push(time_s, vec![f64::from(u8::from(world.on_ground))]);
+        }
+        let command = Throttles::from_fn(|rotor, _| throttles.get(rotor).copied().unwrap_or(0.0).into());
+        world.advance(&command, (1e6 * STEP_S) as u64);
+    }
+    assert_eq!(world.crashed_s, None);
+    Flight {
+        stack: Stack::Px4,
+        throttle,
+        force,
+        down: Some(down),
+        velocity: Some(velocity),
+        rates: None,
+        landed: Some(landed),
+        voltage: Some(voltage),
+        density: None,
+        setpoint: None,
+        unallocated: None,
+        failed: None,
+        damage: None,
+    }
+}
+
+#[test]
+fn the_scale_is_found_to_one_percent_in_wind_and_noise() {
+    let compiled = compiled();
+    let mut scales = Pcg64Mcg::seed_from_u64(47);
+    let (mut held, mut worst) = (0, 0.0f64);
+    for seed in 1..=20 {
+        let scale = 0.85 + 0.015 * seed as f64;
+        let wind_m_s = (seed % 4) as f64 * 2.0;
+        let noise = 0.25 * (1 + seed % 5) as f64;
+        let flight = fly(&compiled, scale, wind_m_s, noise, seed);
+        // The mass as it is weighed: 0.5 % off.
+        let mass_kg = 6.5 * (1.0 + 0.005 * normal(&mut scales));
+        let review = Review::of(&flight, &compiled, Some(mass_kg)).unwrap();
+        let found = review.thrust.scale * scale * mass_kg / 6.5 - 1.0;
+        let [low, high] = review.thrust.interval.map(|end| end * scale);
+        println!("{scale:.3} {wind_m_s} {noise} {found:+.4} {low:.4} {high:.4}");
+        held += u32::from((low..=high).contains(&1.0));
+        worst = worst.max(found.abs());
+        assert!(high - low < 0.05, "{seed}: {low} to {high}");
+    }
+    assert!(held >= 19, "{held} of 20");
+    assert!(worst < 0.01, "{worst}");
+}
