@@ -7,6 +7,9 @@ use mixer_compiler::airframe::Spin;
 use Layer::{Lower, Upper};
 use Spin::{Ccw, Cw};
 
+/// `FRAME_CLASS` of this mixer, `MOTOR_FRAME_COAXIAL_MIXER` of `examples/ardupilot`.
+pub(crate) const COAXIAL_MIXER: usize = 100;
+
 /// Of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Layer {

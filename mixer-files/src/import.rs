@@ -23,6 +23,7 @@ use mixer_compiler::{Source, symmetry};
 use mixer_facts::checklist;
 use mixer_identify::pair_file::PairFile;
 
+use crate::frames;
 use crate::parameter::bench_pulses;
 use parameters::Parameters;
 use rotors::Imported;
@@ -54,8 +55,9 @@ pub struct Import {
 /// What a flight stack's parameters state of the vehicle that has them.
 #[derive(Clone, Debug)]
 pub struct Stated {
-    /// The rotors; places of ArduPilot's are those of arms of 1 m.
-    pub rotors: Vec<Rotor>,
+    /// The rotors; places of ArduPilot's are those of arms of 1 m. `None` with the frame class of
+    /// this mixer, whose motors are those of the airframe that it was compiled of.
+    pub rotors: Option<Vec<Rotor>>,
     /// Pins of ArduPilot's board, from 1, each with the motor, from 0, that it drives.
     pub pins: Vec<(usize, usize)>,
     /// Pulse widths of throttle 0 and 1, microseconds.
@@ -67,16 +69,19 @@ pub struct Stated {
 /// # Errors
 /// Parameters of no vehicle with coaxial pairs.
 pub fn stated(file: &Source) -> Result<Stated, String> {
-    let imported = read(file, Some(1.0))?;
-    let mut pins = outputs::servos(&Parameters::read(file)?);
-    if pins.is_empty() {
-        // As ArduPilot has them without a parameter.
-        pins = (0..imported.rotors.len())
-            .map(|motor| (motor + 1, motor))
-            .collect();
+    let parameters = Parameters::read(file)?;
+    let pins = outputs::servos(&parameters);
+    if parameters.whole("FRAME_CLASS") == Some(frames::COAXIAL_MIXER) {
+        let pulses = outputs::pulses(&parameters).unwrap_or_default();
+        return Ok(Stated {
+            rotors: None,
+            pins,
+            pulses_us: pulses.map(|pulses| pulses.us),
+        });
     }
+    let imported = read(file, Some(1.0))?;
     Ok(Stated {
-        rotors: imported.rotors,
+        rotors: Some(imported.rotors),
         pins,
         pulses_us: imported.pulses.map(|pulses| pulses.us),
     })

@@ -211,6 +211,17 @@ impl Figure {
         );
     }
 
+    /// Points without numbers.
+    pub fn cloud(&mut self, class: &str, radius: f64, points: &[[f64; 2]]) {
+        for point in points {
+            let [x, y] = self.at(*point);
+            let _ = writeln!(
+                self.above,
+                "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"
+            );
+        }
+    }
+
     /// A point whose values the read-out shows, in the order of its quantities; `paint` is a class
     /// or a colour as an attribute.
     pub fn read_dot(&mut self, paint: &str, radius: f64, point: [f64; 2], values: &[String]) {

@@ -20,15 +20,21 @@ pub const ERROR_SIDE: usize = 97;
 const UPPER: &str = "upper throttle u";
 const LOWER: &str = "lower throttle l";
 
-/// Thrust or torque over both throttles, with the bench points on it.
+/// Thrust or torque over both throttles, with the bench points and the flight on it.
 pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -> Figure {
     let field = Field::new(SIDE, |square| study.efforts(square)[effort as usize]);
     let values = range(field.values().iter().copied());
     let points = bench.map_or(&[][..], |bench| &bench.points);
+    let flown = study.flown.as_ref().map_or(&[][..], |flown| &flown.throttles);
     let throttles = |k: usize| {
         let measured = points.iter().map(|point| point.throttles[k]);
+        let measured = measured.chain(flown.iter().map(|throttles| throttles[k]));
         // Markers stay within the frame.
-        let room = if points.is_empty() { 0.0 } else { 0.025 };
+        let room = if points.is_empty() && flown.is_empty() {
+            0.0
+        } else {
+            0.025
+        };
         widened(range(measured.chain(study.pair.range())), room)
     };
     let title = format!("{} of one unit over both throttles", effort.name());
@@ -49,6 +55,7 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     };
     figure.keep_clear(points.iter().map(|point| point.throttles));
     paint(&mut figure, &field, &painting, |square| study.throttles(square));
+    figure.cloud("flown-dot", 1.6, flown);
     if let Some(bench) = bench {
         for point in points {
             figure.dot("bench-dot", 3.0, point.throttles, &bench.text(point, effort));

@@ -290,6 +290,8 @@ fn column(effort: Effort) -> &'static str {
 
 fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     let points = bench.map_or("", |_| " Bench points with their distance from it.");
+    let flown = study.flown.as_ref();
+    let where_flown = flown.map_or("", |_| " Small dots: where the pairs flew.");
     let csv = data::sweep(study, Data::Forward).unwrap_or_default();
     let maps = Effort::BOTH.map(|effort| {
         let (quantity, column) = (effort.name(), column(effort));
@@ -302,7 +304,7 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
         let word = format!("forward-{}", effort.word());
         let map = shown(
             &maps::forward(study, effort, bench),
-            &format!("{quantity} with iso-curves. (Fig. 4)"),
+            &format!("{quantity} with iso-curves.{where_flown} (Fig. 4)"),
             &link::columns(study, &word, &csv, &columns, "Data of both pictures (CSV)"),
         );
         html! { (surface) (map) }
@@ -323,6 +325,7 @@ fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     let residuals: Vec<Markup> = Effort::BOTH.into_iter().filter_map(residual).collect();
     html! {
         @if let Some(bench) = bench { (bench_points(study, bench)) }
+        @if let Some(flown) = flown { (table::flown(flown)) }
         (figures(&maps))
         @if !residuals.is_empty() { (figures(&residuals)) }
         (table::coefficients(study))

@@ -16,6 +16,19 @@ pub struct Study<'a> {
     pub pair: PairMap,
     /// Total thrust of the comparisons at constant thrust, N.
     pub thrust_n: f64,
+    /// A flight of the vehicle, to be shown beside the model.
+    pub flown: Option<Flown>,
+}
+
+/// A flight held against the model.
+#[derive(Clone, Debug)]
+pub struct Flown {
+    /// The log's name.
+    pub log: String,
+    /// What it says: names and texts.
+    pub lines: Vec<(&'static str, String)>,
+    /// Throttles `[u, l]` of pairs in the air.
+    pub throttles: Vec<[f64; 2]>,
 }
 
 /// What a mixer meets in flight.
@@ -38,6 +51,7 @@ impl<'a> Study<'a> {
             compiled,
             pair: compiled.pair.clone(),
             thrust_n: round_half_digit(HOVER_SHARE * f64::from(compiled.thrust_range_n[1])),
+            flown: None,
         };
         if let Some(thrust_n) = thrust_n.or_else(|| study.hover_n()) {
             study.thrust_n = thrust_n;

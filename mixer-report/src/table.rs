@@ -12,7 +12,7 @@ use crate::effort::Effort;
 use crate::number::{fixed, shortest, significant};
 use crate::origin::Origin;
 use crate::rows::table;
-use crate::study::Study;
+use crate::study::{Flown, Study};
 
 /// Rows of the comparison that the page shows of the whole sweep.
 const SHOWN_ROWS: usize = 9;
@@ -174,6 +174,17 @@ pub fn bench(study: &Study<'_>, bench: &BenchPoints) -> Markup {
         significant(scale[1], 3)
     );
     table(&caption, &header, &rows)
+}
+
+/// A flight over the model.
+pub fn flown(flown: &Flown) -> Markup {
+    let line = |(name, text): &(&str, String)| vec![(*name).trim().to_owned(), printable(text)];
+    let rows: Vec<Vec<String>> = flown.lines.iter().map(line).collect();
+    table(
+        format!("The flight of {} over the model", printable(&flown.log)),
+        &["", "flown"],
+        &rows,
+    )
 }
 
 /// What to try on the bench before the first flight: outputs one by one, then the axes.

@@ -32,16 +32,14 @@ const LAPSE_K_M: f64 = 0.0065;
 /// # Errors
 /// What the log lacks.
 pub(crate) fn flight(log: &Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
-    let motors = vehicle.pins.len();
+    let motors = vehicle.rotors.as_ref().map_or(vehicle.pins.len(), Vec::len);
+    // As ArduPilot has them where no parameter says it.
     let pin_of = |motor: usize| {
-        vehicle
-            .pins
-            .iter()
-            .find(|(_, of)| *of == motor)
-            .map(|(pin, _)| pin - 1)
+        let pin = vehicle.pins.iter().find(|(_, of)| *of == motor);
+        pin.map_or(motor, |(pin, _)| pin - 1)
     };
     let pins: Vec<&str> = (0..motors)
-        .map(|motor| OUTPUTS.get(pin_of(motor)?).copied())
+        .map(|motor| OUTPUTS.get(pin_of(motor)).copied())
         .collect::<Option<_>>()
         .ok_or("motors at outputs above 14 are not read: give them SERVO1_FUNCTION to SERVO14_FUNCTION")?;
     let outputs = log.series("RCOU", 0, &pins).filter(|_| motors > 0).ok_or(

@@ -141,15 +141,15 @@ fn vehicle(name: &str, log: &Log) -> Result<Stated, String> {
 
 /// Refuses a log of another frame.
 fn same_vehicle(name: &str, vehicle: &Stated, airframe: &Airframe) -> Result<(), String> {
-    let rotors = &vehicle.rotors;
     let of = &airframe.name;
-    if rotors.len() != airframe.rotors() {
+    let motors = vehicle.rotors.as_ref().map_or(vehicle.pins.len(), Vec::len);
+    if motors != airframe.rotors() {
         return Err(format!(
-            "{name}: a log of another vehicle: it has {} motors, {of} {} rotors",
-            rotors.len(),
+            "{name}: a log of another vehicle: it has {motors} motors, {of} {} rotors",
             airframe.rotors()
         ));
     }
+    let rotors = vehicle.rotors.as_deref().unwrap_or_default();
     // Stacks take the geometry in any unit.
     let arm = |places: &mut dyn Iterator<Item = [f64; 3]>| {
         let arms: Vec<f64> = places.map(|[x, y, _]| libm::hypot(x, y)).collect();

@@ -109,6 +109,9 @@ const PARTS_OFF: f64 = 0.04;
 const CENTRE_M: f64 = 0.01;
 const YAW_LEFT: f64 = 0.03;
 
+/// How long a rotor is off that has stopped, s.
+const STOPPED_S: f64 = 1.0;
+
 /// Share of the time that is worth a word.
 const OFTEN: f64 = 0.01;
 
@@ -373,14 +376,19 @@ pub(crate) fn beside([x, y]: [f64; 2]) -> String {
     )
 }
 
-/// Rotors that are off in the air, each since its first row of those.
+/// Rotors that are off for [`STOPPED_S`] in the air: stock allocators take the throttle of one away for
+/// shorter.
 fn stopped(rows: &Rows) -> Vec<Stopped> {
     let outputs = rows.rows.first().map_or(0, |row| row.throttle.len());
     let first = |output: usize| {
-        let mut of = rows.rows.iter().filter(|row| row.health.has_failed(output as u8));
-        of.next().map(|row| Stopped {
-            output,
-            time_s: row.time_s,
+        let mut since = None;
+        rows.rows.iter().find_map(|row| {
+            since = row
+                .health
+                .has_failed(output as u8)
+                .then(|| since.unwrap_or(row.time_s));
+            let time_s = since.filter(|since| row.time_s - since >= STOPPED_S)?;
+            Some(Stopped { output, time_s })
         })
     };
     (0..outputs).filter_map(first).collect()

@@ -4,18 +4,14 @@ use std::fmt;
 
 use mixer_compiler::diagnostic::rounded;
 
-use crate::review::{Range, Review, beside};
-use crate::saturated::Source;
+use crate::review::{Hover, Range, Review, beside};
+use crate::saturated::{Saturated, Source};
 use crate::thrust::Part;
 
-/// Width of the names.
-const NAMES: usize = 18;
+/// A line: its name and its text.
+type Line = (&'static str, String);
 
-fn say(f: &mut fmt::Formatter<'_>, name: &str, text: impl fmt::Display) -> fmt::Result {
-    writeln!(f, "{name:<NAMES$}  {text}")
-}
-
-/// Parts of a flight: `21.1 V: 1.012 (14 s)`.
+/// Parts of a flight: `1.012 at 21.1 V (14 s)`.
 fn parts(parts: &[Part], unit: &str) -> String {
     let part = |part: &Part| {
         format!(
@@ -27,129 +23,119 @@ fn parts(parts: &[Part], unit: &str) -> String {
 }
 
 fn range(range: &Range, unit: &str, key: &str) -> String {
-    let Range {
-        least,
-        largest,
-        range,
-        outside,
-    } = range;
-    let of_file = range.map_or(format!("; the file has no {key}"), |[low, high]| {
-        format!(
-            "; {key} is {low} to {high}, outside for {:.1} % of the time",
-            100.0 * outside
-        )
-    });
-    format!("{least:.2} to {largest:.2} {unit}{of_file}")
+    let of_file = range
+        .range
+        .map_or(format!("; the file has no {key}"), |[low, high]| {
+            let percent = 100.0 * range.outside;
+            format!("; {key} is {low} to {high}, outside for {percent:.1} % of the time")
+        });
+    format!("{:.2} to {:.2} {unit}{of_file}", range.least, range.largest)
 }
 
 fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
 }
 
-impl fmt::Display for Review {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [log, air, hover] = self.seconds;
+fn hover(hover: &Hover) -> Vec<Line> {
+    let [upper, lower] = hover.model.map_or([None; 2], |model| model.map(Some));
+    let [upper, by_upper, lower, by_lower] =
+        [hover.upper, upper, hover.lower, lower].map(|throttle| or_dash(throttle, 3));
+    let throttle = format!("upper {upper} flown, {by_upper} by this mixer; lower {lower}, {by_lower}");
+    let torque = hover.roll_nm.zip(hover.pitch_nm).zip(hover.yaw_nm).map(|((roll, pitch), yaw)| {
+        let [roll, pitch, yaw] = [roll, pitch, yaw].map(rounded);
+        format!("roll {roll}, pitch {pitch}, yaw {yaw} N m by the model in a straight hover, where there is none")
+    });
+    let centre = hover
+        .centre_m
+        .map(|centre| format!("{} of the file's, by roll and pitch", beside(centre)));
+    let all = [
+        ("hover throttle", Some(throttle)),
+        ("torque left", torque),
+        ("centre of gravity", centre),
+    ];
+    all.into_iter()
+        .filter_map(|(name, text)| Some((name, text?)))
+        .collect()
+}
+
+fn saturated(cut: &Saturated) -> String {
+    let [roll, pitch, yaw, thrust] =
+        [cut.roll, cut.pitch, cut.yaw, cut.thrust].map(|share| or_dash(share.map(|share| 100.0 * share), 1));
+    let by = match cut.by {
+        Source::Mixer => "by this mixer",
+        Source::Allocator => "by control_allocator_status",
+        Source::None => "the log does not say of which axis",
+    };
+    let [full, idle] = [cut.at_full, cut.at_idle].map(|share| 100.0 * share);
+    format!(
+        "roll {roll}, pitch {pitch}, yaw {yaw}, thrust {thrust} % of the time ({by}); a rotor at full {full:.1}, at idle {idle:.1} %"
+    )
+}
+
+impl Review {
+    /// Names and texts, at most 30 lines of them; those of a warning have one name.
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let [log, air, hovers] = self.seconds;
+        let [low, high] = self.thrust.interval;
         let with = match self.saturated.by {
             Source::Mixer => "with this mixer: it gives the logged throttles",
             _ => "with another mixer than this",
         };
-        say(
-            f,
-            "flight",
-            format_args!(
-                "{} of {log:.0} s: {air:.0} s in the air, {hover:.0} s of them hover; {with}",
-                self.stack
+        let mut lines = vec![
+            (
+                "flight",
+                format!(
+                    "{} of {log:.0} s: {air:.0} s in the air, {hovers:.0} s of them hover; {with}",
+                    self.stack
+                ),
             ),
-        )?;
-        let [low, high] = self.thrust.interval;
-        say(
-            f,
-            "thrust",
-            format_args!(
-                "model over measured {:.3}; in 19 of 20 flights between {low:.3} and {high:.3}, at {} kg +- 0.5 %",
-                self.thrust.scale, self.mass_kg
+            (
+                "thrust",
+                format!(
+                    "model over measured {:.3}; in 19 of 20 flights between {low:.3} and {high:.3}, at {} kg +- 0.5 %",
+                    self.thrust.scale, self.mass_kg
+                ),
             ),
-        )?;
+        ];
         if !self.thrust.by_voltage.is_empty() {
-            say(f, "  by voltage", parts(&self.thrust.by_voltage, " V"))?;
+            lines.push(("  by voltage", parts(&self.thrust.by_voltage, " V")));
         }
         if !self.thrust.by_thrust.is_empty() {
-            say(
-                f,
+            lines.push((
                 "  by thrust",
-                format_args!("{} of the weight", parts(&self.thrust.by_thrust, "")),
-            )?;
+                format!("{} of the weight", parts(&self.thrust.by_thrust, "")),
+            ));
         }
-        let [upper, lower] = self.hover.model.map_or([None; 2], |model| model.map(Some));
-        say(
-            f,
-            "hover throttle",
-            format_args!(
-                "upper {} flown, {} by this mixer; lower {}, {}",
-                or_dash(self.hover.upper, 3),
-                or_dash(upper, 3),
-                or_dash(self.hover.lower, 3),
-                or_dash(lower, 3)
-            ),
-        )?;
-        if let (Some(roll), Some(pitch), Some(yaw)) =
-            (self.hover.roll_nm, self.hover.pitch_nm, self.hover.yaw_nm)
-        {
-            say(
-                f,
-                "torque left",
-                format_args!(
-                    "roll {}, pitch {}, yaw {} N m by the model in a straight hover, where there is none",
-                    rounded(roll),
-                    rounded(pitch),
-                    rounded(yaw)
-                ),
-            )?;
-        }
-        if let Some(centre) = self.hover.centre_m {
-            say(
-                f,
-                "centre of gravity",
-                format_args!("{} of the file's, by roll and pitch", beside(centre)),
-            )?;
-        }
-        if let Some(voltage) = &self.voltage {
-            say(f, "voltage", range(voltage, "V", "range_v"))?;
-        }
-        if let Some(density) = &self.density {
-            say(f, "density", range(density, "kg/m3", "range_kg_m3"))?;
-        }
-        let cut = &self.saturated;
-        let percent = |share: Option<f64>| or_dash(share.map(|share| 100.0 * share), 1);
-        let by = match cut.by {
-            Source::Mixer => "by this mixer",
-            Source::Allocator => "by control_allocator_status",
-            Source::None => "the log does not say of which axis",
-        };
-        say(
-            f,
-            "saturated",
-            format_args!(
-                "roll {}, pitch {}, yaw {}, thrust {} % of the time ({by}); a rotor at full {:.1}, at idle {:.1} %",
-                percent(cut.roll),
-                percent(cut.pitch),
-                percent(cut.yaw),
-                percent(cut.thrust),
-                100.0 * cut.at_full,
-                100.0 * cut.at_idle
-            ),
-        )?;
-        say(
-            f,
+        lines.extend(hover(&self.hover));
+        lines.extend(
+            self.voltage
+                .iter()
+                .map(|voltage| ("voltage", range(voltage, "V", "range_v"))),
+        );
+        lines.extend(
+            self.density
+                .iter()
+                .map(|density| ("density", range(density, "kg/m3", "range_kg_m3"))),
+        );
+        lines.push(("saturated", saturated(&self.saturated)));
+        let margin = &self.margin;
+        lines.push((
             "least margin",
-            format_args!(
+            format!(
                 "{:.3} of throttle, output {} at {:.1} s",
-                self.margin.throttle, self.margin.output, self.margin.time_s
+                margin.throttle, margin.output, margin.time_s
             ),
-        )?;
-        self.warnings
+        ));
+        lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
+        lines.extend(self.not_told.iter().map(|what| ("not told", what.clone())));
+        lines
+    }
+}
+
+impl fmt::Display for Review {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.lines()
             .iter()
-            .try_for_each(|warning| say(f, "warning", warning))?;
-        self.not_told.iter().try_for_each(|what| say(f, "not told", what))
+            .try_for_each(|(name, text)| writeln!(f, "{name:<18}  {text}"))
     }
 }

@@ -3,14 +3,17 @@
 mod bench;
 
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
 use mixer_identify::identified::Settings;
 use mixer_report::origin::Origin;
 use mixer_report::page;
-use mixer_report::study::Study;
+use mixer_report::study::{Flown, Study};
+use mixer_review::Options;
 use sha2::{Digest as _, Sha256};
 
+use super::review::{mass, review};
 use crate::bench_args::{ReadingArgs, quantity};
 use crate::today::today;
 use crate::{Done, file, print_error};
@@ -35,6 +38,12 @@ pub struct ReportArgs {
     /// How the bench files are read [default: as the airframe file remembers]
     #[command(flatten)]
     reading: ReadingArgs,
+    /// A flight log, to be shown beside the model, as review reads it
+    #[arg(long, value_name = "LOG")]
+    log: Option<PathBuf>,
+    /// Mass in that flight, kg [default: that of the airframe file]
+    #[arg(long, value_name = "KG", value_parser = mass, requires = "log", allow_negative_numbers = true)]
+    mass: Option<f64>,
     /// Total thrust of the comparison at constant thrust, N [default: the weight, without a mass
     /// about 40 % of the largest bare thrust]
     #[arg(long, value_name = "NEWTON", value_parser = thrust, allow_negative_numbers = true)]
@@ -42,6 +51,19 @@ pub struct ReportArgs {
 }
 
 impl ReportArgs {
+    fn flown(&self, log: &Path, compiled: &Compiled) -> Result<Flown, ExitCode> {
+        let options = Options {
+            mass_kg: self.mass,
+            bench_us: self.reading.pwm_range,
+        };
+        let review = review(log, compiled, &options).map_err(print_error)?;
+        Ok(Flown {
+            log: log.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            lines: review.lines(),
+            throttles: review.flown,
+        })
+    }
+
     /// How `identify` read the bench: by what is given here, else by what the file remembers.
     fn settings(&self, compiled: &Compiled) -> Result<Settings, String> {
         let given = self.reading.settings();
@@ -58,7 +80,7 @@ impl ReportArgs {
 
 /// Runs the command.
 pub fn run(args: &ReportArgs) -> Done {
-    let inputs = args.bench.iter().chain([&args.airframe]);
+    let inputs = args.bench.iter().chain(&args.log).chain([&args.airframe]);
     file::writable(&args.output, args.force, inputs)?;
     let compiled = crate::compile(&args.airframe)?;
     let bench = match args.bench.as_slice() {
@@ -71,7 +93,12 @@ pub fn run(args: &ReportArgs) -> Done {
     for doubt in bench.iter().flat_map(|bench| bench.doubts(&compiled)) {
         crate::print_note(format_args!("warning: {doubt}"));
     }
-    let study = Study::new(&compiled, args.thrust);
+    let mut study = Study::new(&compiled, args.thrust);
+    study.flown = args
+        .log
+        .as_deref()
+        .map(|log| args.flown(log, &compiled))
+        .transpose()?;
     let page = page::page(&study, bench.as_ref(), &origin(&args.airframe));
     file::save(&args.output, &page).map_err(print_error)
 }

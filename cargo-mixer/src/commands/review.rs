@@ -29,34 +29,24 @@ pub struct ReviewArgs {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    #[command(flatten)]
-    flight: FlightArgs,
-}
-
-/// What the log does not have.
-#[derive(clap::Args, Debug)]
-pub(crate) struct FlightArgs {
     /// Mass in this flight, kg [default: that of the airframe file]
-    #[arg(long = "mass", value_name = "KG", value_parser = mass, allow_negative_numbers = true)]
-    mass_kg: Option<f64>,
+    #[arg(long, value_name = "KG", value_parser = mass, allow_negative_numbers = true)]
+    mass: Option<f64>,
     /// Pulse widths of throttle 0 and 1 on the bench, microseconds, as `1000,2000` [default: those
     /// that identify needed]
     #[arg(long, value_name = "LOW,HIGH", value_parser = pwm_range)]
     pwm_range: Option<[f64; 2]>,
 }
 
-fn mass(text: &str) -> Result<f64, String> {
+/// A mass on the command line, kg.
+pub(crate) fn mass(text: &str) -> Result<f64, String> {
     quantity(text, "kilograms")
 }
 
 /// A log over a model.
-pub(crate) fn review(log: &Path, compiled: &Compiled, args: &FlightArgs) -> Result<Review, String> {
+pub(crate) fn review(log: &Path, compiled: &Compiled, options: &Options) -> Result<Review, String> {
     let bytes = file::read_log(log)?;
-    let options = Options {
-        mass_kg: args.mass_kg,
-        bench_us: args.pwm_range,
-    };
-    Review::new(&log.display().to_string(), &bytes, compiled, &options)
+    Review::new(&log.display().to_string(), &bytes, compiled, options)
 }
 
 /// Runs the command.
@@ -65,7 +55,11 @@ pub fn run(args: &ReviewArgs) -> Done {
         file::writable(output, args.force, [&args.log, &args.airframe])?;
     }
     let compiled = crate::compile(&args.airframe)?;
-    let review = review(&args.log, &compiled, &args.flight).map_err(|error| refused(args, &error))?;
+    let options = Options {
+        mass_kg: args.mass,
+        bench_us: args.pwm_range,
+    };
+    let review = review(&args.log, &compiled, &options).map_err(|error| refused(args, &error))?;
     if args.json {
         let json = serde_json::to_value(&review).unwrap_or_default();
         crate::print(&format!("{json:#}\n"))?;
