@@ -178,13 +178,12 @@ pub fn bench(study: &Study<'_>, bench: &BenchPoints) -> Markup {
 
 /// A flight over the model.
 pub fn flown(flown: &Flown) -> Markup {
-    let line = |(name, text): &(&str, String)| vec![(*name).trim().to_owned(), printable(text)];
-    let rows: Vec<Vec<String>> = flown.lines.iter().map(line).collect();
-    table(
-        format!("The flight of {} over the model", printable(&flown.log)),
-        &["", "flown"],
-        &rows,
-    )
+    let lines = flown.lines.iter();
+    let lines: Vec<(&str, String)> = lines.map(|(name, text)| (name.trim(), printable(text))).collect();
+    html! {
+        p { "The flight of " code { (printable(&flown.log)) } " over the model:" }
+        (facts([].iter(), &lines))
+    }
 }
 
 /// What to try on the bench before the first flight: outputs one by one, then the axes.

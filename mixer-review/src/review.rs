@@ -281,7 +281,7 @@ impl Review {
         }
         if let (Some(density), None) = (&self.density, &compiled.airframe.air) {
             self.not_told.push(format!(
-                "what the air does: {:.3} kg/m3 in this flight; without [air] the scale has it in it",
+                "the air's part: {:.3} kg/m3 in this flight, and without [air] the scale has it in it",
                 0.5 * (density.least + density.largest)
             ));
         }

@@ -547,10 +547,18 @@ pub(super) fn yaw_reserve() -> Result<String, String> {
 pub(super) fn logged_hover() -> Result<String, String> {
     let rows: Vec<Vec<String>> = cells("logged-hover.csv")?
         .into_iter()
-        .map(|[flight, mean, deviation, rows]| vec![flight, format!("{mean} ± {deviation}"), rows])
+        .map(|[flight, mean, deviation, rows, scale, low, high]| {
+            let command = format!("{mean} ± {deviation}");
+            vec![flight, command, rows, format!("{scale} ({low} to {high})")]
+        })
         .collect();
     Ok(markdown(
-        &["flight", "command over weight", "rows in hover"],
+        &[
+            "flight",
+            "command over weight",
+            "rows in hover",
+            "predicted pair over measured",
+        ],
         &rows,
     ))
 }
