@@ -12,9 +12,6 @@ const SPIN_ARM: f64 = 0.1;
 /// Range of `MOT_THST_HOVER` in ArduPilot.
 const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
 
-/// `MOTOR_FRAME_COAXIAL_MIXER`, as `examples/ardupilot` has it enumerated.
-const COAXIAL_MIXER: i32 = 100;
-
 /// ArduPilot has no monitor by default, and no voltage without one.
 const MONITOR: &str = "BATT_MONITOR is your board's; 0 measures no voltage, the simulator has 4";
 
@@ -83,7 +80,7 @@ pub(crate) fn geometry(compiled: &Compiled, own: bool, all: &mut Parameters) {
         all.because(
             "The motors class of the compiled airframe, which has its rotors; FRAME_TYPE has no effect.",
         )
-        .whole("FRAME_CLASS", COAXIAL_MIXER);
+        .whole("FRAME_CLASS", frames::COAXIAL_MIXER);
         return;
     }
     let Some((class, kind, name)) = frames::find(compiled) else {

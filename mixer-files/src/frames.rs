@@ -8,7 +8,7 @@ use Layer::{Lower, Upper};
 use Spin::{Ccw, Cw};
 
 /// `FRAME_CLASS` of this mixer, `MOTOR_FRAME_COAXIAL_MIXER` of `examples/ardupilot`.
-pub(crate) const COAXIAL_MIXER: usize = 100;
+pub(crate) const COAXIAL_MIXER: i32 = 100;
 
 /// Of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]

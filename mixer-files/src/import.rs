@@ -23,7 +23,7 @@ use mixer_compiler::{Source, symmetry};
 use mixer_facts::checklist;
 use mixer_identify::pair_file::PairFile;
 
-use crate::frames;
+use crate::frames::COAXIAL_MIXER;
 use crate::parameter::bench_pulses;
 use parameters::Parameters;
 use rotors::Imported;
@@ -71,7 +71,7 @@ pub struct Stated {
 pub fn stated(file: &Source) -> Result<Stated, String> {
     let parameters = Parameters::read(file)?;
     let pins = outputs::servos(&parameters);
-    if parameters.whole("FRAME_CLASS") == Some(frames::COAXIAL_MIXER) {
+    if parameters.whole("FRAME_CLASS") == Some(COAXIAL_MIXER as usize) {
         let pulses = outputs::pulses(&parameters).unwrap_or_default();
         return Ok(Stated {
             rotors: None,
