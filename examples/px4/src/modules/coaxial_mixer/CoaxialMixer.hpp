@@ -76,7 +76,7 @@ private:
 	static constexpr uint32_t BACKUP_SCHEDULE = 50_ms;
 	static constexpr hrt_abstime STATUS_INTERVAL = 5_ms;
 	// Of the low-pass on the battery's voltage: a step of thrust must not change the throttles by its own sag at once.
-	static constexpr float VOLTAGE_TIME_CONSTANT_S = 0.3f;
+	static constexpr float VOLTAGE_TIME_CONSTANT_S = 0.1f;
 	// More rotors than these are not believed to be dead: the mixer is tested with up to two out.
 	static constexpr int MOST_OUT = 2;
 	static constexpr uint16_t ALL_ROTORS = (1u << ISAE_X8_CHANNELS) - 1;
