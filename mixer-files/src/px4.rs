@@ -30,6 +30,10 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
     let airframe = &compiled.airframe;
     all.because("The mixer inverts the rotors' curve; the outputs would bend the throttles once more.")
         .real("THR_MDL_FAC", 0.0);
+    if currents == Currents::Measured {
+        all.because("With DShot: throttle 0 is that of the bench's pulses; PX4's default lifts all throttles by up to 0.055.")
+            .real("DSHOT_MIN", 0.0);
+    }
     if airframe.voltage.is_some() {
         all.because(
             "The mixer follows the battery's voltage; the rate controller would scale by it once more.",

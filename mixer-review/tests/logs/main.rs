@@ -28,7 +28,7 @@ fn compiled() -> Compiled {
 
 /// Upward acceleration, m/s2, and velocity, m/s.
 fn heave(time_s: f64) -> [f64; 2] {
-    [0.4 * (2.0 * time_s).sin(), -0.2 * (2.0 * time_s).cos()]
+    [0.4 * libm::sin(2.0 * time_s), -0.2 * libm::cos(2.0 * time_s)]
 }
 
 /// The throttles of a vehicle that flies so: what this mixer gives.

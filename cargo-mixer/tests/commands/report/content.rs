@@ -1,6 +1,8 @@
 //! What a page has: curves of authority, marks, folded tables, data and the keyboard. Its words are in
 //! `cases/report`.
 
+use mixer_report::study::Flown;
+
 use super::*;
 
 fn text_of(node: Node) -> String {
@@ -50,6 +52,26 @@ fn captions_stand_below() {
         let last = figure.children().rfind(Node::is_element).unwrap();
         assert_eq!(last.tag_name().name(), "figcaption");
         assert!(!text_of(last).is_empty());
+    }
+}
+
+/// A flight stands beside the model: its lines, and a point on both maps for each of its throttles.
+#[test]
+fn a_flight_is_shown_over_the_model() {
+    let compiled = x8();
+    let mut study = Study::new(&compiled, None);
+    study.flown = Some(Flown {
+        log: "a<b>.ulg".to_owned(),
+        lines: vec![("thrust", "model over measured 1.02".to_owned())],
+        throttles: vec![[0.4, 0.5], [0.9, 0.2], [0.45, 0.5]],
+    });
+    let page = page(&study, None, &Origin::default());
+    let document = parsed(&page);
+    let dots = named(document.root(), "circle").filter(|dot| dot.attribute("class") == Some("flown-dot"));
+    assert_eq!(dots.count(), 6);
+    let text = text_of(document.root());
+    for what in ["a<b>.ulg", "model over measured 1.02", "where the pairs flew"] {
+        assert!(text.contains(what), "{what}");
     }
 }
 
