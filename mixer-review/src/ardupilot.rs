@@ -57,7 +57,7 @@ pub(crate) fn flight(log: &Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<
         down: log.series("ATT", 0, &["Roll", "Pitch"]).map(|att| att.map(down)),
         velocity,
         rates: log.series("IMU", 0, &["GyrX", "GyrY", "GyrZ"]),
-        landed: log.series("EV", 0, &["Id"]).map(|events| landed(&events)),
+        landed: log.series("EV", 0, &["Id"]).and_then(|events| landed(&events)),
         voltage: log.series("BAT", 0, &["Volt"]),
         density: log.series("BARO", 0, &["Press", "GndTemp", "Alt"]).map(|air| {
             // The barometer's own temperature is the board's.
@@ -77,14 +77,16 @@ fn down(angles: &[f64]) -> Vec<f64> {
     vec![-sin_p, cos_p * sin_r, cos_p * cos_r]
 }
 
-/// From the events that say so; on the ground before the first.
-fn landed(events: &Series) -> Series {
+/// From the events that say so; before the first the other way round. `None` where there are none.
+fn landed(events: &Series) -> Option<Series> {
+    let says = |event: f64| event == FLYING || ON_THE_GROUND.contains(&event);
+    let row = |lands: bool| vec![f64::from(u8::from(lands))];
     let mut landed = Series::default();
-    landed.push(0.0, vec![1.0]);
-    for (time_s, event) in events.rows() {
-        if event[0] == FLYING || ON_THE_GROUND.contains(&event[0]) {
-            landed.push(time_s, vec![f64::from(u8::from(event[0] != FLYING))]);
+    for (time_s, event) in events.rows().filter(|(_, event)| says(event[0])) {
+        if landed.is_empty() {
+            landed.push(0.0, row(event[0] == FLYING));
         }
+        landed.push(time_s, row(event[0] != FLYING));
     }
-    landed
+    (!landed.is_empty()).then_some(landed)
 }
