@@ -208,10 +208,10 @@ void voltage()
     CHECK(told.times == 0);
     motors.hover(12.6f, 5.0f);
     CHECK(told.times == 1 && strstr(told.text, "V, isae-x8 has 12.80 to 16.80 V") != nullptr);
-    // At the end of the range, to and fro within what a sensor is off.
+    // To and fro at the end of the range, never inside.
     for (int i = 0; i < 5; i++) {
-        motors.hover(12.7f, 2.0f);
-        motors.hover(12.79f, 2.0f);
+        motors.hover(12.6f, 3.0f);
+        motors.hover(12.75f, 3.0f);
     }
     CHECK(told.times == 1);
     motors.hover(13.5f, 5.0f);
