@@ -1,11 +1,13 @@
 //! Electrical power in level flight and its saving by the power bias, by the mixer itself and the
-//! file's power map.
+//! file's power map; and what a rotor takes with it that stops there.
 
-use mixer_rt::Wrench;
+use mixer_rt::{Health, Wrench};
 use serde::Serialize;
 
+use crate::airframe::Unit;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, number, rounded};
+use crate::model::Physics;
 use crate::tables::MixerTables;
 
 /// Share of the largest bare thrust at which vehicles without a mass are looked at.
@@ -24,6 +26,11 @@ pub struct LevelPower {
     pub saving_percent: f64,
     /// By how much longer the flight is, percent.
     pub flight_time_percent: f64,
+    /// Share of their units' thrust that an upper and a lower rotor take with them that stop, until the
+    /// mixer leaves them out, percent.
+    pub stop_percent: [f64; 2],
+    /// The same with all torques zero.
+    pub without_bias_stop_percent: [f64; 2],
     /// Whether the thrust is the vehicle's weight.
     pub is_hover: bool,
 }
@@ -34,14 +41,17 @@ impl LevelPower {
     pub fn new(compiled: &Compiled) -> Option<LevelPower> {
         let weight = compiled.airframe.weight_n();
         let thrust_n = weight.unwrap_or(LEVEL * f64::from(compiled.thrust_range_n[1]));
-        let power_w = at(compiled, &compiled.tables, thrust_n)?;
-        let without_bias_w = at(compiled, &compiled.tables.without_power_bias(), thrust_n)?;
+        let (power_w, stop_percent) = at(compiled, &compiled.tables, thrust_n)?;
+        let without = compiled.tables.with_power_bias(0.0);
+        let (without_bias_w, without_bias_stop_percent) = at(compiled, &without, thrust_n)?;
         Some(LevelPower {
             thrust_n,
             power_w,
             without_bias_w,
             saving_percent: 100.0 * (1.0 - power_w / without_bias_w),
             flight_time_percent: 100.0 * (without_bias_w / power_w - 1.0),
+            stop_percent,
+            without_bias_stop_percent,
             is_hover: weight.is_some(),
         })
     }
@@ -78,14 +88,33 @@ pub(crate) fn warnings(compiled: &Compiled) -> Option<Diagnostic> {
     ))
 }
 
-/// Power of all rotors at a level thrust, W; `None` where it is not delivered.
-fn at(compiled: &Compiled, tables: &MixerTables, thrust_n: f64) -> Option<f64> {
+/// Power of all rotors at a level thrust, W, and what an upper and a lower rotor take with them that
+/// stop, percent of their units' thrust; `None` where it is not delivered.
+fn at(compiled: &Compiled, tables: &MixerTables, thrust_n: f64) -> Option<(f64, [f64; 2])> {
     let setpoint = Wrench {
         thrust_n: thrust_n as f32,
         ..Wrench::default()
     };
     let airframe = &compiled.airframe;
     let (throttle, _, saturation) = tables.mix(&setpoint, airframe.reference_v() as f32).ok()?;
-    let throttle: Vec<f64> = throttle.into_iter().map(f64::from).collect();
-    airframe.power_w(&throttle).filter(|_| !saturation.any_axis())
+    let physics = Physics {
+        airframe,
+        map: &compiled.pair,
+    };
+    let thrust = |is_out: [bool; 2]| -> f64 {
+        let of_unit = |unit: &Unit| {
+            let channels = [unit.upper_channel, unit.lower_channel];
+            let out = channels.into_iter().zip(is_out).filter(|(_, is_out)| *is_out);
+            let health = out.fold(Health::GOOD, |health, (channel, _)| {
+                health.with_failed(channel as u8)
+            });
+            physics.efforts(unit, &throttle, health)[0]
+        };
+        airframe.units.iter().map(of_unit).sum()
+    };
+    let all = thrust([false; 2]);
+    let stop = [[true, false], [false, true]].map(|is_out| 100.0 * (1.0 - thrust(is_out) / all));
+    let each: Vec<f64> = throttle.iter().copied().map(f64::from).collect();
+    let power_w = airframe.power_w(&each).filter(|_| !saturation.any_axis())?;
+    Some((power_w, stop))
 }

@@ -204,10 +204,11 @@ impl MixerTables {
         }
     }
 
-    /// The same tables with all torques starting from 0, to compare with.
-    pub fn without_power_bias(&self) -> Self {
+    /// The same tables with another power bias, to compare with.
+    #[must_use]
+    pub fn with_power_bias(&self, power_bias_nm_per_n: f32) -> Self {
         MixerTables {
-            power_bias_nm_per_n: 0.0,
+            power_bias_nm_per_n,
             ..self.clone()
         }
     }

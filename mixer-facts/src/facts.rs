@@ -275,7 +275,17 @@ fn power(list: &mut List, compiled: &Compiled) {
         format!(", {without:.1} W at Q = 0: saves {saving:.2} %, flight time {time:+.2} %")
     });
     let words = format!(" at {:.2} N ({what}){saving}", power.thrust_n);
-    list.say("power", format!("{:.1}", power.power_w), "W", words);
+    list.say("power", format!("{:.1}", power.power_w), "W", words)
+        .first();
+    let [upper, lower] = power.stop_percent;
+    let instead = or_nothing(without, |_| {
+        let [upper, lower] = power.without_bias_stop_percent;
+        format!("; {lower:.0} and {upper:.0} % at Q = 0")
+    });
+    let words = format!(
+        " of its unit's thrust lost with a lower rotor until it is left out, {upper:.0} % with an upper one{instead}"
+    );
+    list.say("rotor stops", format!("{lower:.0}"), "%", words).first();
 }
 
 /// The pair's map.

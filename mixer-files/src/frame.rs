@@ -155,7 +155,7 @@ fn rounded(value: f64) -> String {
 impl NewFrame<'_> {
     /// A whole airframe file around `tables`, which are `[throttle]`, `[pair]` and, if there is
     /// one, `[voltage]`. `power_bias` is the torque of least power, N m per N, if it is known; it
-    /// is written where the frame gains by it.
+    /// stands in a comment where the frame gains by it, as one rotor of a unit then carries more and its stop costs more.
     ///
     /// # Errors
     /// An arm that is missing, or one too many.
@@ -196,9 +196,11 @@ impl NewFrame<'_> {
             let _ = writeln!(text, "{axes}");
         }
         if let Some(bias) = power_bias {
-            let line = format!("power_bias_nm_per_n = {bias:?}");
+            let line = format!("# power_bias_nm_per_n = {bias:?}");
             text += &match spins {
-                Spins::Alternate => format!("{line:<38} # least power: torque per thrust of every unit\n"),
+                Spins::Alternate => {
+                    format!("{line:<38} # least power, if wanted: one rotor of a unit then carries more, and its stop costs more; `check` says both\n")
+                }
                 Spins::Alike => {
                     "# no power_bias_nm_per_n: it saves nothing where no upper rotors turn against each other\n"
                         .to_owned()

@@ -32,7 +32,7 @@ pub fn text(identified: &Identified) -> String {
     if let Some(bias) = identified.power_bias() {
         let _ = writeln!(
             text,
-            "\n# {POWER_BIAS} = {bias:?}    # for [allocation]; cargo mixer new takes it over where upper rotors turn against each other"
+            "\n# {POWER_BIAS} = {bias:?}    # for [allocation], if wanted: one rotor of a unit then carries more, and its stop costs more; cargo mixer new keeps it in a comment"
         );
     }
     text

@@ -5,13 +5,14 @@ use std::error::Error;
 use std::fmt;
 
 use mixer_compiler::airframe::Airframe;
+use mixer_rt::SetpointError;
 use nalgebra::{SVector, Vector3, Vector4};
 
 use crate::air::{Air, Room};
 use crate::battery;
 use crate::controller::{Controller, Measurement, PERIOD_S, Tilt};
 use crate::manoeuvre::{END_S, Reference, SETTLING_S, reference};
-use crate::mixer::{Method, Mixer};
+use crate::mixer::{Method, Mixed, Mixer};
 use crate::plant::Plant;
 use crate::state::State;
 use crate::vehicle::{BODY, ROTORS};
@@ -56,48 +57,87 @@ pub struct Flight {
     pub samples: Vec<Sample>,
 }
 
+/// Plant, controller and room in a closed loop.
+#[derive(Clone, Debug)]
+pub struct ClosedLoop {
+    plant: Plant<ROTORS>,
+    controller: Controller,
+    room: Room,
+    /// The last positions, the oldest first: those that the controller knows.
+    positions: VecDeque<Vector3<f64>>,
+    /// The true state.
+    pub state: State<ROTORS>,
+}
+
+impl ClosedLoop {
+    /// At the manoeuvre's start, the controller's tilt by `tilt`.
+    pub fn new(airframe: &Airframe, tilt: Tilt, room: Room) -> Self {
+        let state = State::level(reference(-SETTLING_S).position, START_THROTTLE);
+        ClosedLoop {
+            plant: Plant::new(airframe, BODY, battery::PAPER, room.mismatch()),
+            controller: Controller::new(tilt),
+            room,
+            positions: VecDeque::from(vec![state.position; DELAY]),
+            state,
+        }
+    }
+
+    /// Flies a period by its number; `mix` has the throttles for a command and a voltage, and whether they
+    /// are short of it. The state at its beginning.
+    ///
+    /// # Errors
+    /// A command that is not finite: the loop has diverged.
+    pub fn period(
+        &mut self,
+        number: i32,
+        reference: &Reference,
+        mix: impl FnOnce(&Vector4<f64>, f64) -> Result<Mixed, SetpointError>,
+    ) -> Result<Sample, String> {
+        let (state, time_s) = (self.state, f64::from(number) * PERIOD_S);
+        self.positions.push_back(state.position);
+        let measured = Measurement {
+            position: self.positions.pop_front().unwrap_or(state.position),
+            attitude: state.rotation(),
+            rate: state.rate,
+        };
+        let command = self.controller.update(&measured, reference);
+        let voltage_v = self.plant.voltage_v(&state);
+        let (throttle, saturated) =
+            mix(&command, voltage_v).map_err(|reason| format!("lost at {time_s:.2} s: {reason}"))?;
+        let disturbance = self.room.next(PERIOD_S);
+        for _ in 0..STEPS {
+            self.state = self.plant.step(&self.state, &throttle, &disturbance, STEP_S);
+        }
+        Ok(Sample {
+            time_s,
+            reference: *reference,
+            position: state.position,
+            yaw: state.yaw(),
+            command,
+            throttle,
+            voltage_v,
+            saturated,
+        })
+    }
+}
+
+/// Periods of the controller in a time, s.
+pub fn periods(time_s: f64) -> i32 {
+    (time_s / PERIOD_S).round() as i32
+}
+
 /// Flies the manoeuvre with `mixer` in `room`, the controller's tilt by `tilt`.
 ///
 /// # Errors
 /// A command that is not finite: the loop has diverged.
-pub fn fly(airframe: &Airframe, mixer: &Mixer, tilt: Tilt, mut room: Room) -> Result<Flight, String> {
-    let plant = Plant::new(airframe, BODY, battery::PAPER, room.mismatch());
-    let start = reference(-SETTLING_S);
-    let mut state = State::level(start.position, START_THROTTLE);
-    let mut controller = Controller::new(tilt);
-    let mut positions = VecDeque::from(vec![state.position; DELAY]);
-    let settling = (SETTLING_S / PERIOD_S).round() as i32;
-    let end = (END_S / PERIOD_S).round() as i32;
+pub fn fly(airframe: &Airframe, mixer: &Mixer, tilt: Tilt, room: Room) -> Result<Flight, String> {
+    let mut flown = ClosedLoop::new(airframe, tilt, room);
     let mut samples = Vec::new();
-    for period in -settling..end {
-        let time_s = f64::from(period) * PERIOD_S;
-        let reference = reference(time_s);
-        positions.push_back(state.position);
-        let measured = Measurement {
-            position: positions.pop_front().unwrap_or(state.position),
-            attitude: state.rotation(),
-            rate: state.rate,
-        };
-        let command = controller.update(&measured, &reference);
-        let voltage_v = plant.voltage_v(&state);
-        let (throttle, saturated) = mixer
-            .mix(&command, voltage_v)
-            .map_err(|reason| format!("lost at {time_s:.2} s: {reason}"))?;
-        if period >= 0 {
-            samples.push(Sample {
-                time_s,
-                reference,
-                position: state.position,
-                yaw: state.yaw(),
-                command,
-                throttle,
-                voltage_v,
-                saturated,
-            });
-        }
-        let disturbance = room.next(PERIOD_S);
-        for _ in 0..STEPS {
-            state = plant.step(&state, &throttle, &disturbance, STEP_S);
+    for number in -periods(SETTLING_S)..periods(END_S) {
+        let reference = reference(f64::from(number) * PERIOD_S);
+        let sample = flown.period(number, &reference, |wrench, volts| mixer.mix(wrench, volts))?;
+        if number >= 0 {
+            samples.push(sample);
         }
     }
     Ok(Flight { samples })

@@ -45,6 +45,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/warnings.md", "mistakes", tables::mistakes()?),
         of("docs/allocation.md", "logged-saving", tables::logged_saving()?),
         of("docs/allocation.md", "yaw-reserve", tables::yaw_reserve()?),
+        of("docs/allocation.md", "steep", tables::steep()?),
         of("docs/air.md", "altitudes", tables::altitudes()),
         of("docs/air.md", "density", tables::density()),
         of("docs/air.md", "level-thrust", tables::level_thrust()?),
@@ -52,6 +53,7 @@ pub fn tables() -> Result<Vec<Table>, String> {
         of("docs/flights.md", "hover", tables::hover()?),
         of("docs/flights.md", "tracking", tables::tracking()?),
         of("docs/flights.md", "energy", tables::energy()?),
+        of("docs/flights.md", "rotor-out", tables::rotor_out()?),
     ]);
     Ok(tables)
 }

@@ -97,8 +97,10 @@ const TASKS: &[Task] = &[
             "tests/measurements/flight.csv",
             "--energy",
             "tests/measurements/energy.csv",
+            "--rotor-out",
+            "tests/measurements/rotor-out.csv",
         ],
-        does: "flies the comparison and writes flight.csv and energy.csv of tests/measurements/",
+        does: "flies the comparison and writes flight.csv, energy.csv and rotor-out.csv of tests/measurements/",
     },
     Task {
         name: "tables",

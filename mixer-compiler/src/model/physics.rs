@@ -40,7 +40,7 @@ impl Physics<'_> {
 
     /// `[f, Q]` of a unit. A rotor that is out gives nothing; its partner gives what the file says
     /// of a rotor alone, else the pair's polynomial at throttle 0 of the other.
-    fn efforts(&self, unit: &Unit, throttle: &[f32], health: Health) -> [f64; 2] {
+    pub(crate) fn efforts(&self, unit: &Unit, throttle: &[f32], health: Health) -> [f64; 2] {
         let channels = [unit.upper_channel, unit.lower_channel];
         let [u, l] = channels.map(|channel| f64::from(throttle[channel]));
         let pair = &self.airframe.pair;

@@ -543,6 +543,50 @@ pub(super) fn yaw_reserve() -> Result<String, String> {
     ))
 }
 
+/// How far throttles move for the last yaw of X8s, at shares of full thrust.
+pub(super) fn steep() -> Result<String, String> {
+    let mut rows = Vec::new();
+    for name in [PAPER, "x8-11in-cubic", "x8-16in-quartic", "x8-22in-cubic"] {
+        let compiled = golden::compile(name)?;
+        let volts = compiled.airframe.reference_v() as f32;
+        for percent in [16.0, 35.0, 50.0] {
+            let thrust_n = 0.01 * percent * compiled.thrust_range_n[1];
+            let mix = |yaw_nm: f32| {
+                let setpoint = Wrench {
+                    yaw_nm,
+                    thrust_n,
+                    ..Wrench::default()
+                };
+                compiled
+                    .tables
+                    .mix(&setpoint, volts)
+                    .map_err(|error| error.to_string())
+            };
+            // More yaw than any of them has.
+            let (_, Wrench { yaw_nm: most, .. }, _) = mix(10.0)?;
+            let moved = |from: f32, to: f32| -> Result<String, String> {
+                let [(before, ..), (after, ..)] = [mix(from * most)?, mix(to * most)?];
+                let moves = before.iter().zip(&after).map(|(a, b)| (a - b).abs());
+                Ok(format!("{:.2}", moves.fold(0.0, f32::max)))
+            };
+            let names = [name.to_owned(), format!("{percent:.0} %"), format!("{most:.2}")];
+            let moves = [moved(0.0, 0.15)?, moved(0.75, 0.9)?, moved(0.85, 1.0)?];
+            rows.push([names, moves].concat());
+        }
+    }
+    Ok(markdown(
+        &[
+            "airframe",
+            "thrust",
+            "most yaw (N m)",
+            "0 to 15 % of it",
+            "75 to 90 %",
+            "85 to 100 %",
+        ],
+        &rows,
+    ))
+}
+
 /// Thrust command over weight of an ordinary mixer in logged flights.
 pub(super) fn logged_hover() -> Result<String, String> {
     let rows: Vec<Vec<String>> = cells("logged-hover.csv")?
@@ -563,8 +607,8 @@ pub(super) fn logged_hover() -> Result<String, String> {
     ))
 }
 
-/// One flight of `tests/measurements/flight.csv` or `energy.csv`: scenario, seed, mixer and
-/// figures.
+/// One flight of `tests/measurements/flight.csv` or `energy.csv`: scenario, seed, mixer or share of
+/// the power bias, and figures.
 struct Flight {
     scenario: String,
     seed: String,
@@ -642,7 +686,7 @@ pub(super) fn hover() -> Result<String, String> {
     ))
 }
 
-/// Energy of the manoeuvre with a power bias and without.
+/// Energy of the manoeuvre with shares of a power bias.
 pub(super) fn energy() -> Result<String, String> {
     let flights = flights("energy.csv")?;
     let row = |scenario: &str| {
@@ -652,22 +696,61 @@ pub(super) fn energy() -> Result<String, String> {
                 .filter(|flight| flight.scenario == scenario && flight.mixer == mixer);
             flown.map(|flight| flight.figures[0]).collect()
         };
-        let (with, without) = (of("bias"), of("none"));
-        let saved: Vec<f64> = with
-            .iter()
-            .zip(&without)
-            .map(|(a, b)| 100.0 * (1.0 - a / b))
-            .collect();
-        vec![
-            scenario.to_owned(),
-            spread(&with, 0),
-            spread(&without, 0),
-            spread(&saved, 2),
-        ]
+        let without = of("0");
+        let saved = |share: &str| {
+            let pairs = of(share).into_iter().zip(&without);
+            spread(&pairs.map(|(a, b)| 100.0 * (1.0 - a / b)).collect::<Vec<_>>(), 2)
+        };
+        vec![scenario.to_owned(), spread(&without, 0), saved("0.5"), saved("1")]
     };
     let rows: Vec<Vec<String>> = scenarios(&flights).into_iter().map(row).collect();
     Ok(markdown(
-        &["energy, J", "with the power bias", "without", "saved, %"],
+        &[
+            "",
+            "energy without, J",
+            "saved by half of the bias, %",
+            "by all of it, %",
+        ],
+        &rows,
+    ))
+}
+
+/// Means of what a rotor does that stops, with shares of a power bias.
+pub(super) fn rotor_out() -> Result<String, String> {
+    let path = root().join("tests/measurements/rotor-out.csv");
+    let stops = measured(&path)?;
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for rotor in ["upper", "lower"] {
+        for unknown_ms in ["100", "200", "300"] {
+            let of = |share: &str| {
+                let kind = [rotor, unknown_ms, share];
+                let these = stops
+                    .iter()
+                    .filter(|stop| stop.get(..3).is_some_and(|key| key == kind));
+                let mean = |column: usize| {
+                    let cells = these.clone().filter_map(|stop| stop.get(column)?.parse().ok());
+                    let values: Vec<f64> = cells.collect();
+                    values.iter().sum::<f64>() / values.len() as f64
+                };
+                format!("{:.1}; {:.3}", mean(4), mean(5))
+            };
+            rows.push(
+                [
+                    &[rotor.to_owned(), unknown_ms.to_owned()][..],
+                    &["0", "0.5", "1"].map(of),
+                ]
+                .concat(),
+            );
+        }
+    }
+    Ok(markdown(
+        &[
+            "rotor",
+            "unknown for (ms)",
+            "without: tilt (deg); height (m)",
+            "half of the bias",
+            "all of it",
+        ],
         &rows,
     ))
 }

@@ -86,7 +86,7 @@ fn one_supply_current_of_the_whole_serves() {
 }
 
 #[test]
-fn an_airframe_has_the_bias_where_it_gains_by_it() {
+fn an_airframe_offers_the_bias_where_it_gains_by_it() {
     let found = identified(&BOTH, 0.0);
     let airframe = |frame| {
         let frame = NewFrame {
@@ -98,16 +98,16 @@ fn an_airframe_has_the_bias_where_it_gains_by_it() {
         text.expect("an airframe")
     };
     let x8 = airframe(Frame::X8);
-    let compiled = mixer_compiler::compile(&mixer_compiler::Source::new("x8.toml", x8));
-    let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
-    assert_eq!(
-        Some(compiled.airframe.allocation.power_bias_nm_per_n),
-        found.power_bias()
-    );
-    assert!(compiled.airframe.pair.power.is_some());
+    let wanted = x8.replace("# power_bias_nm_per_n", "power_bias_nm_per_n");
+    for (text, bias) in [(x8, Some(0.0)), (wanted, found.power_bias())] {
+        let compiled = mixer_compiler::compile(&mixer_compiler::Source::new("x8.toml", text));
+        let compiled = compiled.unwrap_or_else(|faults| panic!("{faults}"));
+        assert_eq!(Some(compiled.airframe.allocation.power_bias_nm_per_n), bias);
+        assert!(compiled.airframe.pair.power.is_some());
+    }
     let y6 = airframe(Frame::Y6);
     assert!(
-        !y6.contains("\npower_bias_nm_per_n = ") && y6.contains("it saves nothing"),
+        !y6.contains("power_bias_nm_per_n = ") && y6.contains("it saves nothing"),
         "{y6}"
     );
 }

@@ -15,10 +15,10 @@ use super::sweep::Normal;
 use crate::bench_data;
 use crate::measured;
 
-/// An X8 with the pairs of a map, and its mixer without the bias that was identified.
+/// An X8 with the pairs of a map, and its mixer with the bias that was identified.
 struct X8 {
     compiled: Compiled,
-    without: MixerTables,
+    with: MixerTables,
     /// All rotors at full throttle, N.
     full_n: f64,
     /// N m per unit of a normalised setpoint: roll, pitch, yaw.
@@ -36,13 +36,13 @@ impl X8 {
         let text = frame.airframe(&fragment::tables(&found), found.power_bias());
         let source = Source::new("x8.toml", text.expect("a frame"));
         let compiled = mixer_compiler::compile(&source).unwrap_or_else(|faults| panic!("{faults}"));
-        assert!(compiled.tables.power_bias_nm_per_n > 0.0, "{}", map.display());
-        let without = compiled.tables.without_power_bias();
+        let bias = found.power_bias().unwrap_or_else(|| panic!("{}", map.display()));
+        let with = compiled.tables.with_power_bias(bias as f32);
         let full_n = f64::from(compiled.thrust_range_n[1]);
         let [roll, pitch, yaw, _] = compiled.scale().to_array().map(f64::from);
         X8 {
             compiled,
-            without,
+            with,
             full_n,
             scale_nm: [roll, pitch, yaw],
         }
@@ -59,7 +59,7 @@ impl X8 {
             let watts = self.compiled.airframe.power_w(&throttle).expect("a power map");
             (watts, saturation.any_axis())
         };
-        let ((with, short), (without, _)) = (of(&self.compiled.tables), of(&self.without));
+        let ((with, short), (without, _)) = (of(&self.with), of(&self.compiled.tables));
         ([with, without], short)
     }
 }
