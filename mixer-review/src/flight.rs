@@ -70,6 +70,25 @@ pub(crate) const USUAL_US: [f64; 2] = [1000.0, 2000.0];
 const SAME_PLACE: f64 = 0.3;
 
 impl Flight {
+    /// A flight of which only the outputs and the accelerometer are known.
+    pub fn new(stack: Stack, throttle: Series, force: Series) -> Flight {
+        Flight {
+            stack,
+            throttle,
+            force,
+            down: None,
+            velocity: None,
+            rates: None,
+            landed: None,
+            voltage: None,
+            density: None,
+            setpoint: None,
+            unallocated: None,
+            failed: None,
+            damage: None,
+        }
+    }
+
     /// Reads a log of a vehicle.
     ///
     /// # Errors

@@ -110,19 +110,11 @@ fn fly(compiled: &Compiled, scale: f64, wind_m_s: f64, noise: f64, seed: u64) ->
     }
     assert_eq!(world.crashed_s, None);
     Flight {
-        stack: Stack::Px4,
-        throttle,
-        force,
         down: Some(down),
         velocity: Some(velocity),
-        rates: None,
         landed: Some(landed),
         voltage: Some(voltage),
-        density: None,
-        setpoint: None,
-        unallocated: None,
-        failed: None,
-        damage: None,
+        ..Flight::new(Stack::Px4, throttle, force)
     }
 }
 

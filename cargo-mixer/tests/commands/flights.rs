@@ -145,19 +145,10 @@ fn reviewed(log: &Path, widest: &Path, folder: &Path) -> Review {
         landed.push(time_s, vec![f64::from(u8::from(-row[1] < FLIES_M))]);
     }
     let flight = Flight {
-        stack: Stack::Px4,
-        throttle,
-        force,
         down: Some(down),
         velocity: Some(velocity),
-        rates: None,
         landed: Some(landed),
-        voltage: None,
-        density: None,
-        setpoint: None,
-        unallocated: None,
-        failed: None,
-        damage: None,
+        ..Flight::new(Stack::Px4, throttle, force)
     };
     Review::of(&flight, &compiled, Some(MASS_KG)).unwrap_or_else(|error| panic!("{}: {error}", log.display()))
 }
