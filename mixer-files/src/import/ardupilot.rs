@@ -4,7 +4,7 @@
 use super::outputs;
 use super::parameters::Parameters;
 use super::rotors::{Imported, Rotor, UPWARD};
-use crate::frames::{LAYER_M, Layer, motors};
+use crate::frames::{COAXIAL_MIXER, LAYER_M, Layer, motors};
 
 /// ArduPilot's defaults.
 const SPIN_MIN: f64 = 0.15;
@@ -39,6 +39,9 @@ pub(super) fn read(parameters: &Parameters, arm: Option<f64>) -> Result<Imported
     let kind = kind.unwrap_or(1);
     let Some((name, motors)) = motors(class, kind) else {
         return Err(match (class, kind) {
+            (class, _) if class == COAXIAL_MIXER as usize => format!(
+                "{file}: {class_name} {class} is this mixer's own: the frame is that of the airframe file that it was compiled of"
+            ),
             (4, 20 | 21) => format!(
                 "{file}: {type_name} {kind}: both rotors of an arm turn the same way; the mixer is for pairs that \
                  contra-rotate"
