@@ -7,7 +7,7 @@
 //! the map's, over the throttles that the mixer commands.
 //!
 //! A rotor stops in hover. For a while nobody knows; then the mixer leaves it out. Measured are the
-//! largest tilt and the largest error of the height until [`AFTER_S`].
+//! largest tilt and the largest error of the height until `AFTER_S`.
 
 use std::error::Error;
 use std::fmt;
