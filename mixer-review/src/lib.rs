@@ -4,6 +4,7 @@
 //! ```text
 //! bytes of a log -> topics and parameters      log.rs; ulog.rs, dataflash.rs
 //!   -> a flight, in one form for both stacks   flight.rs; px4.rs, ardupilot.rs
+//!   -> one of this vehicle, or refused          read.rs
 //!   -> instants in the air, and the model's wrench at the logged throttles     rows.rs
 //!   -> what that says of the model             review.rs; saturated.rs, thrust.rs
 //!   -> text and JSON; the airframe file with the scale                         text.rs, scaled.rs
@@ -16,6 +17,7 @@ mod dataflash;
 mod flight;
 mod log;
 mod px4;
+mod read;
 mod review;
 mod rows;
 mod saturated;

@@ -2,7 +2,7 @@
 
 use mixer_rt::Health;
 
-use super::PairMap;
+use super::pair_map::PairMap;
 use crate::airframe::{Airframe, Unit};
 
 /// The physics of one airframe.
