@@ -2,17 +2,19 @@
 //! the vehicle.
 //!
 //! ```text
-//! bytes of a log -> topics and parameters      log.rs; ulog.rs, dataflash.rs
-//!   -> a flight, in one form for both stacks   flight.rs; px4.rs, ardupilot.rs
-//!   -> one of this vehicle, or refused          read.rs
-//!   -> instants in the air, and the model's wrench at the logged throttles     rows.rs
-//!   -> what that says of the model             review.rs; saturated.rs, thrust.rs
-//!   -> text and JSON; the airframe file with the scale                         text.rs, scaled.rs
+//! bytes of a log -> topics and parameters        log.rs; ulog.rs, dataflash.rs
+//!   -> a flight, in one form for both stacks     flight.rs; px4.rs, ardupilot.rs
+//!   -> one of this vehicle, or refused           read.rs
+//!   -> instants in the air, and the model's wrench at the logged throttles    rows.rs
+//!   -> what that says of the model               compare.rs: thrust.rs, saturated.rs; review.rs is the result
+//!   -> what deserves a look                      warnings.rs
+//!   -> text; the airframe file with the scale    text.rs, scaled.rs
 //! ```
 //!
 //! Nothing here reads or writes files.
 
 mod ardupilot;
+mod compare;
 mod dataflash;
 mod flight;
 mod log;
@@ -25,6 +27,7 @@ mod scaled;
 mod text;
 mod thrust;
 mod ulog;
+mod warnings;
 
 pub use crate::flight::{Flight, Stack};
 pub use crate::log::Series;

@@ -4,9 +4,20 @@ use std::fmt;
 
 use mixer_compiler::diagnostic::rounded;
 
-use crate::review::{Hover, Range, Review, beside};
+use crate::review::{Hover, Range, Review};
 use crate::saturated::{Saturated, Source};
 use crate::thrust::Part;
+
+/// Where a point is, m: `12 mm forward and 7 mm left`.
+pub(crate) fn beside([x, y]: [f64; 2]) -> String {
+    format!(
+        "{:.0} mm {} and {:.0} mm {}",
+        1e3 * x.abs(),
+        if x < 0.0 { "back" } else { "forward" },
+        1e3 * y.abs(),
+        if y < 0.0 { "left" } else { "right" }
+    )
+}
 
 /// A line: its name and its text.
 type Line = (&'static str, String);

@@ -66,7 +66,7 @@ void CoaxialMixer::cycle()
 	if (_torque_sub.update(&torque) && mix_setpoint(torque)) {
 		_last_mix = hrt_absolute_time();
 
-	} else if (_stranger[0] || hrt_elapsed_time(&_last_mix) > PATIENCE) {
+	} else if (_mismatch[0] || hrt_elapsed_time(&_last_mix) > PATIENCE) {
 		// Until then the outputs hold the last throttles.
 		publish_motors(nullptr, hrt_absolute_time());
 	}
@@ -82,7 +82,7 @@ void CoaxialMixer::update_parameters()
 		return;
 	}
 
-	_stranger[0] = '\0';
+	_mismatch[0] = '\0';
 	expect("CA_ROTOR_COUNT", _param_rotor_count.get(), ISAE_X8_CHANNELS);
 	expect("THR_MDL_FAC", _param_thrust_curve.get(), 0.f);
 
@@ -110,8 +110,8 @@ void CoaxialMixer::expect(const char *name, float value, float of_airframe)
 	// Ground stations show two decimals.
 	const float tolerance = 0.005f + 0.01f * std::fabs(of_airframe);
 
-	if (!_stranger[0] && !(std::fabs(value - of_airframe) <= tolerance)) {
-		snprintf(_stranger, sizeof(_stranger), "%s is %.4f, must be %.4f for %s", name, static_cast<double>(value),
+	if (!_mismatch[0] && !(std::fabs(value - of_airframe) <= tolerance)) {
+		snprintf(_mismatch, sizeof(_mismatch), "%s is %.4f, must be %.4f for %s", name, static_cast<double>(value),
 			 static_cast<double>(of_airframe), ISAE_X8_AIRFRAME);
 	}
 }
@@ -120,9 +120,9 @@ void CoaxialMixer::expect(const char *name, float value, float of_airframe)
 // components outside it. It drops one that does not answer, so a question that stays away is asked for again.
 void CoaxialMixer::answer_arming_check()
 {
-	if (_stranger[0] && !_mode.flag_armed && (_last_told == 0 || hrt_elapsed_time(&_last_told) > 10_s)) {
+	if (_mismatch[0] && !_mode.flag_armed && (_last_told == 0 || hrt_elapsed_time(&_last_told) > 10_s)) {
 		_last_told = hrt_absolute_time();
-		mavlink_log_critical(&_mavlink_log_pub, "Coaxial mixer: %s", _stranger);
+		mavlink_log_critical(&_mavlink_log_pub, "Coaxial mixer: %s", _mismatch);
 	}
 
 	register_ext_component_reply_s registered;
@@ -141,10 +141,10 @@ void CoaxialMixer::answer_arming_check()
 		reply.timestamp = _last_asked;
 		reply.request_id = request.request_id;
 		reply.registration_id = _check_id;
-		reply.can_arm_and_run = !_stranger[0];
+		reply.can_arm_and_run = !_mismatch[0];
 		_arming_check_pub.publish(reply);
 
-	} else if (_stranger[0] && !_mode.flag_armed && hrt_elapsed_time(&_last_asked) > 1_s) {
+	} else if (_mismatch[0] && !_mode.flag_armed && hrt_elapsed_time(&_last_asked) > 1_s) {
 		_last_asked = hrt_absolute_time();
 		register_ext_component_request_s component{};
 		component.timestamp = _last_asked;
@@ -171,7 +171,7 @@ bool CoaxialMixer::mix_setpoint(const vehicle_torque_setpoint_s &torque)
 	update_failed(setpoint);
 	isae_x8_mix_t mixed;
 
-	if (_stranger[0]) {
+	if (_mismatch[0]) {
 		return false;
 	}
 
@@ -359,8 +359,8 @@ int CoaxialMixer::print_status()
 	PX4_INFO("saturation 0x%x, rotors out 0x%x, refused %u%s", static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed),
 		 _refused, _displaced ? ", displaced by another module" : "");
 
-	if (_stranger[0]) {
-		PX4_INFO("arming refused: %s", _stranger);
+	if (_mismatch[0]) {
+		PX4_INFO("arming refused: %s", _mismatch);
 	}
 
 	perf_print_counter(_loop_perf);

@@ -107,7 +107,7 @@ private:
 	mixer_conditions_t _conditions{ISAE_X8_REFERENCE_V, NAN};
 	hrt_abstime _last_battery{0};
 	// The first parameter that is of another vehicle than the library; empty where all are of this one.
-	char _stranger[100] {};
+	char _mismatch[100] {};
 	hrt_abstime _last_told{0};
 	// Of the arming check with the commander, which asks every 300 ms; -1 without one.
 	int _check_id{-1};
