@@ -4,22 +4,24 @@ use mixer_compiler::atmosphere::density;
 use mixer_files::import::Stated;
 
 use crate::flight::{Flight, Stack};
-use crate::log::{Log, Series, Wanted};
+use crate::log::{Channel, Log, Series};
 
-const OUTPUTS: [&str; 14] = [
+#[rustfmt::skip]
+const OUTPUTS: Channel = ("RCOU", &[
     "C1", "C2", "C3", "C4", "C5", "C6", "C7", "C8", "C9", "C10", "C11", "C12", "C13", "C14",
-];
+]);
+const ACCELEROMETER: Channel = ("IMU", &["AccX", "AccY", "AccZ"]);
+const GYROSCOPE: Channel = ("IMU", &["GyrX", "GyrY", "GyrZ"]);
+const ATTITUDE: Channel = ("ATT", &["Roll", "Pitch"]);
+const VELOCITIES: [Channel; 2] = [("XKF1", &["VN", "VE", "VD"]), ("NKF1", &["VN", "VE", "VD"])];
+const EVENTS: Channel = ("EV", &["Id"]);
+const BATTERY: Channel = ("BAT", &["Volt"]);
+const AIR: Channel = ("BARO", &["Press", "GndTemp", "Alt"]);
+const SETPOINT: Channel = ("RATE", &["ROut", "POut", "YOut", "AOut"]);
 
-pub(crate) const WANTED: &Wanted = &[
-    ("RCOU", &OUTPUTS),
-    ("IMU", &["AccX", "AccY", "AccZ", "GyrX", "GyrY", "GyrZ"]),
-    ("ATT", &["Roll", "Pitch"]),
-    ("XKF1", &["VN", "VE", "VD"]),
-    ("NKF1", &["VN", "VE", "VD"]),
-    ("EV", &["Id"]),
-    ("BAT", &["Volt"]),
-    ("BARO", &["Press", "GndTemp", "Alt"]),
-    ("RATE", &["ROut", "POut", "YOut", "AOut"]),
+#[rustfmt::skip]
+pub(crate) const WANTED: &[Channel] = &[
+    OUTPUTS, ACCELEROMETER, GYROSCOPE, ATTITUDE, VELOCITIES[0], VELOCITIES[1], EVENTS, BATTERY, AIR, SETPOINT,
 ];
 
 /// Events (`LogEvent`): disarmed, landed, flying.
@@ -31,42 +33,44 @@ const LAPSE_K_M: f64 = 0.0065;
 
 /// # Errors
 /// What the log lacks.
-pub(crate) fn flight(log: &Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
+pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
     let motors = vehicle.rotors.as_ref().map_or(vehicle.pins.len(), Vec::len);
     // As ArduPilot has them where no parameter says it.
     let pin_of = |motor: usize| {
         let pin = vehicle.pins.iter().find(|(_, of)| *of == motor);
         pin.map_or(motor, |(pin, _)| pin - 1)
     };
-    let pins: Vec<&str> = (0..motors)
-        .map(|motor| OUTPUTS.get(pin_of(motor)).copied())
-        .collect::<Option<_>>()
-        .ok_or("motors at outputs above 14 are not read: give them SERVO1_FUNCTION to SERVO14_FUNCTION")?;
-    let outputs = log.series("RCOU", 0, &pins).filter(|_| motors > 0).ok_or(
-        "the log has no `RCOU` with all motors' outputs, which says what they were told: set bit 10 of LOG_BITMASK",
+    let pins: Vec<usize> = (0..motors).map(pin_of).collect();
+    let has_all = |outputs: &Series| {
+        outputs
+            .rows()
+            .all(|(_, row)| pins.iter().all(|pin| *pin < row.len()))
+    };
+    let outputs = log.some(OUTPUTS, 0).filter(has_all).ok_or(
+        "the log has no `RCOU` with all motors' outputs, which says what they were told: set bit 10 of LOG_BITMASK; of outputs above 14 it \
+         says nothing",
     )?;
-    let throttle = |us: &f64| (us - bench_us[0]) / (bench_us[1] - bench_us[0]);
-    let force = log.series("IMU", 0, &["AccX", "AccY", "AccZ"]);
-    let velocity = ["XKF1", "NKF1"]
-        .into_iter()
-        .find_map(|topic| log.series(topic, 0, &["VN", "VE", "VD"]));
+    let throttle = |us: f64| (us - bench_us[0]) / (bench_us[1] - bench_us[0]);
+    let force = log.series(ACCELEROMETER, 0);
     Ok(Flight {
         stack: Stack::ArduPilot,
-        throttle: outputs.map(|row| row.iter().map(throttle).collect()),
+        throttle: outputs.map(|row| pins.iter().map(|pin| throttle(row[*pin])).collect()),
         force: force.ok_or("the log has no accelerometer (`IMU`): set bit 18 of LOG_BITMASK")?,
-        down: log.series("ATT", 0, &["Roll", "Pitch"]).map(|att| att.map(down)),
-        velocity,
-        rates: log.series("IMU", 0, &["GyrX", "GyrY", "GyrZ"]),
-        landed: log.series("EV", 0, &["Id"]).and_then(|events| landed(&events)),
-        voltage: log.series("BAT", 0, &["Volt"]),
-        density: log.series("BARO", 0, &["Press", "GndTemp", "Alt"]).map(|air| {
+        down: log.series(ATTITUDE, 0).map(|att| att.map(down)),
+        velocity: VELOCITIES
+            .into_iter()
+            .find_map(|velocity| log.series(velocity, 0)),
+        rates: log.series(GYROSCOPE, 0),
+        landed: log.series(EVENTS, 0).and_then(|events| landed(&events)),
+        voltage: log.series(BATTERY, 0),
+        density: log.series(AIR, 0).map(|air| {
             // The barometer's own temperature is the board's.
             air.map(|row| vec![density(row[0], row[1] + ZERO_C - LAPSE_K_M * row[2])])
         }),
-        setpoint: log.series("RATE", 0, &["ROut", "POut", "YOut", "AOut"]),
+        setpoint: log.series(SETPOINT, 0),
         unallocated: None,
         failed: None,
-        damage: log.damage.clone(),
+        damage: log.damage,
     })
 }
 

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use ardupilot_binlog::{Entry, Reader};
 
-use crate::log::{Log, Wanted};
+use crate::log::{Channel, Log};
 
 /// The first bytes of a DataFlash log: a message that describes a format.
 pub(crate) const MAGIC: &[u8] = &[0xa3, 0x95, 0x80];
@@ -12,8 +12,8 @@ pub(crate) const MAGIC: &[u8] = &[0xa3, 0x95, 0x80];
 /// Fields that number the sensors of a kind.
 const INSTANCES: [&str; 4] = ["I", "Inst", "Instance", "C"];
 
-/// The wanted topics of a log. Damaged messages are passed over.
-pub(crate) fn read(bytes: &[u8], wanted: &Wanted) -> Log {
+/// The wanted channels of a log. Damaged messages are passed over.
+pub(crate) fn read(bytes: &[u8], wanted: &[Channel]) -> Log {
     let mut log = Log::default();
     let mut input = Cursor::new(bytes);
     let mut failed = None;
@@ -38,24 +38,23 @@ pub(crate) fn read(bytes: &[u8], wanted: &Wanted) -> Log {
     log
 }
 
-fn take(log: &mut Log, wanted: &Wanted, entry: &Entry) {
+fn take(log: &mut Log, wanted: &[Channel], entry: &Entry) {
     if entry.name == "PARM" {
         if let (Some(name), Some(value)) = (entry.get_str("Name"), entry.get_f64("Value")) {
             log.parameters.insert(name.to_owned(), value);
         }
         return;
     }
-    let (Some(topic), Some(time_us)) = (
-        wanted.iter().find(|(topic, _)| *topic == entry.name),
-        entry.timestamp_usec,
-    ) else {
+    let Some(time_us) = entry.timestamp_usec else {
         return;
     };
     let instance = INSTANCES
         .iter()
         .find_map(|field| entry.get_f64(field))
         .unwrap_or(0.0);
-    log.push(*topic, instance as u8, 1e-6 * time_us as f64, |field| {
-        entry.get_f64(field)
-    });
+    for channel in wanted.iter().filter(|(topic, _)| *topic == entry.name) {
+        log.push(*channel, instance as u8, 1e-6 * time_us as f64, |field| {
+            entry.get_f64(field)
+        });
+    }
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// Topics, each with the fields that are read of it.
-pub(crate) type Wanted = [(&'static str, &'static [&'static str])];
+/// A topic, and fields of it that are read together.
+pub(crate) type Channel = (&'static str, &'static [&'static str]);
 
 /// Values of one or more fields over time.
 #[derive(Clone, Debug, Default)]
@@ -13,10 +13,12 @@ pub struct Series {
 }
 
 impl Series {
-    /// Adds values at a time, s, which is not before the last one.
+    /// Adds values at a time, s, which is not before the last one, as many as there were before.
     pub fn push(&mut self, time_s: f64, values: Vec<f64>) {
-        // A clock that runs back would break every search: such rows are of no use.
-        if time_s.is_finite() && self.time_s.last().is_none_or(|last| *last <= time_s) {
+        // Damaged rows, and a clock that runs back, are of no use.
+        let is_alike = self.values.last().is_none_or(|last| last.len() == values.len());
+        let is_later = self.time_s.last().is_none_or(|last| *last <= time_s);
+        if time_s.is_finite() && is_alike && is_later {
             self.time_s.push(time_s);
             self.values.push(values);
         }
@@ -72,17 +74,11 @@ impl Series {
     }
 }
 
-/// What was read of one instance of a topic.
-#[derive(Debug, Default)]
-struct Topic {
-    fields: Vec<&'static str>,
-    series: Series,
-}
-
-/// A log's wanted topics and its parameters.
+/// A log's wanted channels and its parameters.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
-    topics: BTreeMap<(&'static str, u8), Topic>,
+    /// Of each instance of a topic.
+    channels: BTreeMap<(Channel, u8), Series>,
     /// By name, the last value of each.
     pub(crate) parameters: BTreeMap<String, f64>,
     /// What is missing of a log that is damaged or cut off.
@@ -90,49 +86,37 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// Adds a message: those of the fields that it has.
+    /// Adds a message: its fields up to the first that it lacks.
     pub(crate) fn push(
         &mut self,
-        (topic, fields): (&'static str, &[&'static str]),
+        channel: Channel,
         instance: u8,
         time_s: f64,
         value: impl Fn(&str) -> Option<f64>,
     ) {
-        let found = fields.iter().filter_map(|field| Some((*field, value(field)?)));
-        let (fields, values): (Vec<&str>, Vec<f64>) = found.unzip();
-        let topic = self.topics.entry((topic, instance)).or_insert_with(|| Topic {
-            fields: fields.clone(),
-            series: Series::default(),
-        });
-        if topic.fields == fields {
-            topic.series.push(time_s, values);
+        let values: Vec<f64> = channel.1.iter().map_while(|field| value(field)).collect();
+        if !values.is_empty() {
+            self.channels
+                .entry((channel, instance))
+                .or_default()
+                .push(time_s, values);
         }
     }
 
-    /// Fields of one instance of a topic; `None` where the log lacks one of them.
-    pub(crate) fn series(&self, topic: &'static str, instance: u8, fields: &[&str]) -> Option<Series> {
-        let topic = self
-            .topics
-            .get(&(topic, instance))
-            .filter(|topic| !topic.series.is_empty())?;
-        let column = |field: &&str| topic.fields.iter().position(|of| of == field);
-        let columns: Vec<usize> = fields.iter().map(column).collect::<Option<_>>()?;
-        Some(
-            topic
-                .series
-                .map(|row| columns.iter().map(|at| row[*at]).collect()),
-        )
+    /// Takes a channel with the fields that the log has of it.
+    pub(crate) fn some(&mut self, channel: Channel, instance: u8) -> Option<Series> {
+        self.channels.remove(&(channel, instance))
     }
 
-    /// How many of numbered fields, `{}` being the number from `first` on, a topic has.
-    pub(crate) fn numbered(&self, topic: &'static str, name: &str, first: usize) -> Vec<String> {
-        let Some(topic) = self.topics.get(&(topic, 0)) else {
-            return Vec::new();
+    /// Takes a channel; `None` where the log lacks one of its fields.
+    pub(crate) fn series(&mut self, channel: Channel, instance: u8) -> Option<Series> {
+        let is_whole = |series: &Series| {
+            series
+                .values
+                .first()
+                .is_some_and(|row| row.len() == channel.1.len())
         };
-        let names = (first..).map(|number| name.replace("{}", &number.to_string()));
-        names
-            .take_while(|name| topic.fields.contains(&name.as_str()))
-            .collect()
+        self.some(channel, instance).filter(is_whole)
     }
 
     /// A parameter, or its default.

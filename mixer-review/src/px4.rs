@@ -3,55 +3,39 @@
 use mixer_files::import::Stated;
 
 use crate::flight::{Flight, Stack, USUAL_US};
-use crate::log::{Log, Series, Wanted};
+use crate::log::{Channel, Log, Series};
 
-pub(crate) const WANTED: &Wanted = &[
-    (
-        "actuator_motors",
-        &[
-            "control[0]",
-            "control[1]",
-            "control[2]",
-            "control[3]",
-            "control[4]",
-            "control[5]",
-            "control[6]",
-            "control[7]",
-            "control[8]",
-            "control[9]",
-            "control[10]",
-            "control[11]",
-        ],
-    ),
-    (
-        "sensor_combined",
-        &[
-            "accelerometer_m_s2[0]",
-            "accelerometer_m_s2[1]",
-            "accelerometer_m_s2[2]",
-            "gyro_rad[0]",
-            "gyro_rad[1]",
-            "gyro_rad[2]",
-        ],
-    ),
-    ("vehicle_acceleration", &["xyz[0]", "xyz[1]", "xyz[2]"]),
-    ("vehicle_attitude", &["q[0]", "q[1]", "q[2]", "q[3]"]),
-    ("vehicle_local_position", &["vx", "vy", "vz"]),
-    ("vehicle_land_detected", &["landed"]),
-    ("battery_status", &["voltage_v", "connected"]),
-    ("vehicle_air_data", &["rho"]),
-    ("vehicle_torque_setpoint", &["xyz[0]", "xyz[1]", "xyz[2]"]),
-    ("vehicle_thrust_setpoint", &["xyz[2]"]),
-    (
-        "control_allocator_status",
-        &[
-            "unallocated_torque[0]",
-            "unallocated_torque[1]",
-            "unallocated_torque[2]",
-            "unallocated_thrust[2]",
-        ],
-    ),
-    ("failure_detector_status", &["motor_failure_mask"]),
+#[rustfmt::skip]
+const MOTORS: Channel = ("actuator_motors", &[
+    "control[0]", "control[1]", "control[2]", "control[3]", "control[4]", "control[5]", "control[6]", "control[7]",
+    "control[8]", "control[9]", "control[10]", "control[11]",
+]);
+const ACCELEROMETER: Channel = (
+    "sensor_combined",
+    &[
+        "accelerometer_m_s2[0]",
+        "accelerometer_m_s2[1]",
+        "accelerometer_m_s2[2]",
+    ],
+);
+const FILTERED: Channel = ("vehicle_acceleration", &["xyz[0]", "xyz[1]", "xyz[2]"]);
+const GYROSCOPE: Channel = ("sensor_combined", &["gyro_rad[0]", "gyro_rad[1]", "gyro_rad[2]"]);
+const ATTITUDE: Channel = ("vehicle_attitude", &["q[0]", "q[1]", "q[2]", "q[3]"]);
+const VELOCITY: Channel = ("vehicle_local_position", &["vx", "vy", "vz"]);
+const LANDED: Channel = ("vehicle_land_detected", &["landed"]);
+const BATTERY: Channel = ("battery_status", &["voltage_v", "connected"]);
+const DENSITY: Channel = ("vehicle_air_data", &["rho"]);
+const TORQUE: Channel = ("vehicle_torque_setpoint", &["xyz[0]", "xyz[1]", "xyz[2]"]);
+const THRUST: Channel = ("vehicle_thrust_setpoint", &["xyz[2]"]);
+#[rustfmt::skip]
+const UNALLOCATED: Channel = ("control_allocator_status", &[
+    "unallocated_torque[0]", "unallocated_torque[1]", "unallocated_torque[2]", "unallocated_thrust[2]",
+]);
+const FAILED: Channel = ("failure_detector_status", &["motor_failure_mask"]);
+
+#[rustfmt::skip]
+pub(crate) const WANTED: &[Channel] = &[
+    MOTORS, ACCELEROMETER, FILTERED, GYROSCOPE, ATTITUDE, VELOCITY, LANDED, BATTERY, DENSITY, TORQUE, THRUST, UNALLOCATED, FAILED,
 ];
 
 /// Batteries that PX4 knows.
@@ -62,56 +46,35 @@ const DSHOT_MIN: f64 = 0.055;
 
 /// # Errors
 /// What the log lacks.
-pub(crate) fn flight(log: &Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
-    let motors = log.numbered("actuator_motors", "control[{}]", 0);
-    let motors: Vec<&str> = motors.iter().map(String::as_str).collect();
-    let motors = log.series("actuator_motors", 0, &motors).filter(|_| !motors.is_empty()).ok_or(
+pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Result<Flight, String> {
+    let motors = log.some(MOTORS, 0).ok_or(
         "the log has no `actuator_motors`, which says what the motors were told: PX4 logs it by default since 1.13 (SDLOG_PROFILE)",
     )?;
-    let pulses = pulses_us(log, vehicle);
+    let pulses = pulses_us(&log, vehicle);
     let factor = log.parameter("THR_MDL_FAC", 0.0);
     let on_bench = |control: &f64| {
         let us = pulses[0] + curve(factor, *control) * (pulses[1] - pulses[0]);
         (us - bench_us[0]) / (bench_us[1] - bench_us[0])
     };
-    let accelerometer = [
-        "accelerometer_m_s2[0]",
-        "accelerometer_m_s2[1]",
-        "accelerometer_m_s2[2]",
-    ];
-    let force = log.series("sensor_combined", 0, &accelerometer);
-    let force = force.or_else(|| log.series("vehicle_acceleration", 0, &["xyz[0]", "xyz[1]", "xyz[2]"]));
-    let torque = log.series("vehicle_torque_setpoint", 0, &["xyz[0]", "xyz[1]", "xyz[2]"]);
-    let thrust = log.series("vehicle_thrust_setpoint", 0, &["xyz[2]"]);
-    let status = [
-        "unallocated_torque[0]",
-        "unallocated_torque[1]",
-        "unallocated_torque[2]",
-        "unallocated_thrust[2]",
-    ];
+    let force = log.series(ACCELEROMETER, 0).or_else(|| log.series(FILTERED, 0));
+    let (torque, thrust) = (log.series(TORQUE, 0), log.series(THRUST, 0));
     Ok(Flight {
         stack: Stack::Px4,
         throttle: motors.map(|row| row.iter().map(on_bench).collect()),
         force: force
             .ok_or("the log has no accelerometer: neither `sensor_combined` nor `vehicle_acceleration`")?,
-        down: log
-            .series("vehicle_attitude", 0, &["q[0]", "q[1]", "q[2]", "q[3]"])
-            .map(|q| q.map(down)),
-        velocity: log.series("vehicle_local_position", 0, &["vx", "vy", "vz"]),
-        rates: log.series(
-            "sensor_combined",
-            0,
-            &["gyro_rad[0]", "gyro_rad[1]", "gyro_rad[2]"],
-        ),
-        landed: log.series("vehicle_land_detected", 0, &["landed"]),
-        voltage: (0..BATTERIES).find_map(|battery| voltage(log, battery)),
-        density: log.series("vehicle_air_data", 0, &["rho"]),
+        down: log.series(ATTITUDE, 0).map(|q| q.map(down)),
+        velocity: log.series(VELOCITY, 0),
+        rates: log.series(GYROSCOPE, 0),
+        landed: log.series(LANDED, 0),
+        voltage: (0..BATTERIES).find_map(|battery| voltage(&mut log, battery)),
+        density: log.series(DENSITY, 0),
         setpoint: torque
             .zip(thrust)
             .map(|(torque, thrust)| with_thrust(&torque, &thrust)),
-        unallocated: log.series("control_allocator_status", 0, &status),
-        failed: log.series("failure_detector_status", 0, &["motor_failure_mask"]),
-        damage: log.damage.clone(),
+        unallocated: log.series(UNALLOCATED, 0),
+        failed: log.series(FAILED, 0),
+        damage: log.damage,
     })
 }
 
@@ -146,10 +109,10 @@ fn down(q: &[f64]) -> Vec<f64> {
 }
 
 /// Of a battery that is connected.
-fn voltage(log: &Log, battery: u8) -> Option<Series> {
-    let both = log.series("battery_status", battery, &["voltage_v", "connected"]);
+fn voltage(log: &mut Log, battery: u8) -> Option<Series> {
     let is_connected = |series: &Series| series.rows().any(|(_, row)| row[1] != 0.0 && row[0] > 0.0);
-    Some(both.filter(is_connected)?.map(|row| vec![row[0]]))
+    let both = log.series(BATTERY, battery).filter(is_connected)?;
+    Some(both.map(|row| vec![row[0]]))
 }
 
 fn with_thrust(torque: &Series, thrust: &Series) -> Series {

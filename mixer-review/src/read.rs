@@ -36,8 +36,8 @@ impl Flight {
         same_vehicle(name, &vehicle, airframe)?;
         let bench_us = bench_us.or_else(|| bench_pulses(airframe)).unwrap_or(USUAL_US);
         let flight = match stack {
-            Stack::Px4 => px4::flight(&log, &vehicle, bench_us),
-            Stack::ArduPilot => ardupilot::flight(&log, &vehicle, bench_us),
+            Stack::Px4 => px4::flight(log, &vehicle, bench_us),
+            Stack::ArduPilot => ardupilot::flight(log, &vehicle, bench_us),
         };
         flight.map_err(|error| format!("{name}: {error}"))
     }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use px4_ulog::stream_parser::model::{FlattenedFieldType as Type, FlattenedFormat};
 use px4_ulog::stream_parser::{DataMessage, LittleEndianParser, LogParser, ParameterMessage};
 
-use crate::log::{Log, Wanted};
+use crate::log::{Channel, Log};
 
 /// The first bytes of a ULog.
 pub(crate) const MAGIC: &[u8] = b"ULog\x01\x12\x35";
@@ -41,16 +41,17 @@ fn places(format: &FlattenedFormat) -> Places {
     format.field_iter().map(place).collect()
 }
 
-/// The wanted topics of a ULog. A log that breaks off keeps what is before.
-pub(crate) fn read(bytes: &[u8], wanted: &Wanted) -> Log {
+/// The wanted channels of a ULog. A log that breaks off keeps what is before.
+pub(crate) fn read(bytes: &[u8], wanted: &[Channel]) -> Log {
     let mut log = Log::default();
     let mut parameters = Vec::new();
     let mut formats: HashMap<u16, Places> = HashMap::new();
     let mut on_data = |message: &DataMessage<'_>| {
         let name = message.flattened_format.message_name();
-        let Some(topic) = wanted.iter().find(|(topic, _)| *topic == name) else {
+        let mut channels = wanted.iter().filter(|(topic, _)| *topic == name).peekable();
+        if channels.peek().is_none() {
             return;
-        };
+        }
         let places = formats
             .entry(message.msg_id)
             .or_insert_with(|| places(message.flattened_format));
@@ -59,7 +60,7 @@ pub(crate) fn read(bytes: &[u8], wanted: &Wanted) -> Log {
             value(kind, message.data.get(*at..)?)
         };
         if let Some(time_us) = value("timestamp") {
-            log.push(*topic, message.multi_id.value(), 1e-6 * time_us, value);
+            channels.for_each(|channel| log.push(*channel, message.multi_id.value(), 1e-6 * time_us, value));
         }
     };
     let mut on_parameter = |message: &ParameterMessage<'_>| match message {
