@@ -18,10 +18,12 @@ pub const TOP_M: f64 = 11_000.0;
 /// rho0, kg/m^3.
 pub const SEA_LEVEL_KG_M3: f64 = 1.225;
 
-/// T0, K; p0, Pa; L, K/m.
+/// L, K/m.
+pub const LAPSE: f64 = 0.0065;
+
+/// T0, K; p0, Pa.
 const SEA_LEVEL_K: f64 = 288.15;
 const SEA_LEVEL_PA: f64 = 101_325.0;
-const LAPSE: f64 = 0.0065;
 
 /// n.
 const EXPONENT: f64 = GRAVITY / (GAS_CONSTANT * LAPSE);

@@ -25,6 +25,7 @@ use mixer_identify::pair_file::PairFile;
 
 use crate::frames::COAXIAL_MIXER;
 use crate::parameter::bench_pulses;
+pub use outputs::USUAL_US;
 use parameters::Parameters;
 use rotors::Imported;
 pub use rotors::Rotor;
@@ -60,8 +61,10 @@ pub struct Stated {
     pub rotors: Option<Vec<Rotor>>,
     /// Pins of ArduPilot's board, from 1, each with the motor, from 0, that it drives.
     pub pins: Vec<(usize, usize)>,
-    /// Pulse widths of throttle 0 and 1, microseconds.
+    /// Pulse widths of throttle 0 and 1, microseconds; DShot has none.
     pub pulses_us: Option<[f64; 2]>,
+    /// Whether the motors are driven by DShot.
+    pub is_dshot: bool,
 }
 
 /// Reads what [`import`] begins with.
@@ -71,12 +74,15 @@ pub struct Stated {
 pub fn stated(file: &Source) -> Result<Stated, String> {
     let parameters = Parameters::read(file)?;
     let pins = outputs::servos(&parameters);
+    let mut names = parameters.names();
+    let is_dshot = names.any(|name| outputs::is_dshot(name, parameters.or(name, 0.0)));
     if parameters.whole("FRAME_CLASS") == Some(COAXIAL_MIXER as usize) {
         let pulses = outputs::pulses(&parameters).unwrap_or_default();
         return Ok(Stated {
             rotors: None,
             pins,
             pulses_us: pulses.map(|pulses| pulses.us),
+            is_dshot,
         });
     }
     let imported = read(file, Some(1.0))?;
@@ -84,6 +90,7 @@ pub fn stated(file: &Source) -> Result<Stated, String> {
         rotors: Some(imported.rotors),
         pins,
         pulses_us: imported.pulses.map(|pulses| pulses.us),
+        is_dshot,
     })
 }
 
@@ -113,7 +120,7 @@ pub fn import(file: &Source, pair: Option<&Source>, options: &Options<'_>) -> Re
         let airframe = Airframe::read(&airframe).ok();
         let of_bench = options.pulses_us.or_else(|| bench_pulses(airframe.as_ref()?));
         let map = airframe.map(|airframe| PairMap::new(&airframe.pair, &airframe.throttle));
-        let told = pulses.told(of_bench.unwrap_or(outputs::USUAL_US), map.as_ref());
+        let told = pulses.told(of_bench.unwrap_or(USUAL_US), map.as_ref());
         imported.notes.extend(told);
     }
     let name = options

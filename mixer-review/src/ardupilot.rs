@@ -1,6 +1,6 @@
 //! What ArduPilot logs, by message.
 
-use mixer_compiler::atmosphere::density;
+use mixer_compiler::atmosphere::{LAPSE, density};
 use mixer_files::import::Stated;
 
 use crate::flight::{Flight, Stack};
@@ -29,7 +29,6 @@ const ON_THE_GROUND: [f64; 2] = [11.0, 18.0];
 const FLYING: f64 = 28.0;
 
 const ZERO_C: f64 = 273.15;
-const LAPSE_K_M: f64 = 0.0065;
 
 /// # Errors
 /// What the log lacks.
@@ -65,7 +64,7 @@ pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Resu
         voltage: log.series(BATTERY, 0),
         density: log.series(AIR, 0).map(|air| {
             // The barometer's own temperature is the board's.
-            air.map(|row| vec![density(row[0], row[1] + ZERO_C - LAPSE_K_M * row[2])])
+            air.map(|row| vec![density(row[0], row[1] + ZERO_C - LAPSE * row[2])])
         }),
         setpoint: log.series(SETPOINT, 0),
         unallocated: None,

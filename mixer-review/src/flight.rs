@@ -57,9 +57,6 @@ pub struct Flight {
     pub damage: Option<String>,
 }
 
-/// Pulse widths of throttle 0 and 1 on the bench, where nothing else is known, microseconds.
-pub(crate) const USUAL_US: [f64; 2] = [1000.0, 2000.0];
-
 impl Flight {
     /// A flight of which only the outputs and the accelerometer are known.
     pub fn new(stack: Stack, throttle: Series, force: Series) -> Flight {

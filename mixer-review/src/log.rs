@@ -54,6 +54,12 @@ impl Series {
         (distance(&nearest) <= within_s).then(|| self.values[nearest].as_slice())
     }
 
+    /// The values at times from `from` on, before `to`, s.
+    pub(crate) fn within(&self, from: f64, to: f64) -> &[Vec<f64>] {
+        let [first, end] = [from, to].map(|limit| self.time_s.partition_point(|time| *time < limit));
+        &self.values[first..end]
+    }
+
     /// Means over the times from `from` to `to`, s; the values that hold at `to` where there are none between.
     pub fn mean(&self, from: f64, to: f64) -> Option<Vec<f64>> {
         let [first, end] = [from, to].map(|limit| self.time_s.partition_point(|time| *time <= limit));

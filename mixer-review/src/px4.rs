@@ -1,8 +1,8 @@
 //! What PX4 logs, by topic.
 
-use mixer_files::import::Stated;
+use mixer_files::import::{Stated, USUAL_US};
 
-use crate::flight::{Flight, Stack, USUAL_US};
+use crate::flight::{Flight, Stack};
 use crate::log::{Channel, Log, Series};
 
 #[rustfmt::skip]
@@ -90,9 +90,7 @@ fn curve(factor: f64, control: f64) -> f64 {
 
 /// Pulse widths of a command of 0 and 1, microseconds; of DShot those that have the same throttle.
 fn pulses_us(log: &Log, vehicle: &Stated) -> [f64; 2] {
-    let is_dshot =
-        |(name, value): (&String, &f64)| name.starts_with("PWM_") && name.contains("_TIM") && *value < -1.0;
-    match log.parameters.iter().any(is_dshot) {
+    match vehicle.is_dshot {
         true => [1000.0 + 1000.0 * log.parameter("DSHOT_MIN", DSHOT_MIN), 2000.0],
         false => vehicle.pulses_us.unwrap_or(USUAL_US),
     }

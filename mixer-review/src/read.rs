@@ -3,9 +3,9 @@
 use mixer_compiler::Source;
 use mixer_compiler::airframe::Airframe;
 use mixer_files::bench_pulses;
-use mixer_files::import::{Stated, stated};
+use mixer_files::import::{Stated, USUAL_US, stated};
 
-use crate::flight::{Flight, Stack, USUAL_US};
+use crate::flight::{Flight, Stack};
 use crate::log::Log;
 use crate::{ardupilot, dataflash, px4, ulog};
 

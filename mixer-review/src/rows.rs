@@ -72,16 +72,13 @@ pub(crate) struct Rows {
     pub(crate) seconds: f64,
 }
 
-/// Whether the vehicle is in the air from `from` to `to`, s, away from the ground.
+/// Whether the vehicle is in the air at a time, s, away from take-off and landing. What a message says holds until
+/// the next one.
 fn flies(landed: &Series, time_s: f64) -> bool {
     let [after, before] = NEAR_GROUND_S;
-    let on_ground = |row: &[f64]| row[0] != 0.0;
-    let now = landed.at(time_s).is_none_or(on_ground);
-    let near = landed
-        .rows()
-        .any(|(at, row)| on_ground(row) && (time_s - after..time_s + before).contains(&at));
-    // The last message before holds until the next one.
-    !now && !near && landed.at(time_s - after).is_some_and(|row| !on_ground(row))
+    let is_up = |row: &[f64]| row[0] == 0.0;
+    let since = time_s - after;
+    landed.at(since).is_some_and(is_up) && landed.within(since, time_s + before).iter().all(|row| is_up(row))
 }
 
 impl Rows {

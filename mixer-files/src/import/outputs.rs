@@ -9,7 +9,7 @@ use super::rotors::Pulses;
 const MOST_PINS: usize = 32;
 
 /// Pulse widths of throttle 0 and 1, microseconds: the defaults of both stacks, and of a bench.
-pub(super) const USUAL_US: [f64; 2] = [1000.0, 2000.0];
+pub const USUAL_US: [f64; 2] = [1000.0, 2000.0];
 
 /// The outputs of a board: the parameter of what pin `#` drives, the values of it for motors, from
 /// motor 1 on, as firsts and lasts, and the parameter of a pin's pulses, `{}` being MIN or MAX.
@@ -57,9 +57,15 @@ pub(super) fn order(parameters: &Parameters) -> Option<String> {
     })
 }
 
+/// Whether a parameter says that the motors are driven by DShot: ArduPilot's `MOT_PWM_TYPE` of 4 and more,
+/// PX4's `PWM_MAIN_TIMn` of -2 and less.
+pub(super) fn is_dshot(name: &str, value: f64) -> bool {
+    let is_timer = name.starts_with("PWM_") && name.contains("_TIM");
+    (name.ends_with("PWM_TYPE") && value >= 4.0) || (is_timer && value < -1.0)
+}
+
 /// The pulse widths of throttle 0 and 1, of several that a file has those furthest from the usual;
-/// of all pins where no function is said. DShot, ArduPilot's `MOT_PWM_TYPE` of 4 to 7 and PX4's
-/// `PWM_MAIN_TIMn` of -2 and less, has none. Those that other parameters say are not looked at, and
+/// of all pins where no function is said. DShot has none. Those that other parameters say are not looked at, and
 /// are `Err`, a note (`AP_MotorsMulticopter::get_pwm_output_min`, `update_throttle_range`).
 pub(super) fn pulses(parameters: &Parameters) -> Result<Option<Pulses>, String> {
     for name in parameters.names() {
@@ -72,7 +78,7 @@ pub(super) fn pulses(parameters: &Parameters) -> Result<Option<Pulses>, String> 
                  servos (SERVOn_MIN, SERVOn_MAX); compare them with the bench's"
             ));
         }
-        if (is_type && value >= 4.0) || (name.starts_with("PWM_") && name.contains("_TIM") && value < -1.0) {
+        if is_dshot(name, value) {
             return Ok(None);
         }
     }
