@@ -8,6 +8,30 @@ use mixer_identify::identified::{Identified, Settings};
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{self, Text};
 
+use crate::today::today;
+
+/// What a command about benches takes from outside: the files, and the day.
+pub struct Outside<'a> {
+    /// A file by its path.
+    pub text: &'a dyn Fn(&Path) -> Text,
+    /// `YYYY-MM-DD`.
+    pub today: Option<String>,
+}
+
+impl Outside<'_> {
+    /// The file system and the clock.
+    pub fn of_the_machine() -> Outside<'static> {
+        Outside {
+            text: &text,
+            today: today(),
+        }
+    }
+
+    pub(crate) fn texts(&self, paths: &[PathBuf]) -> Vec<Text> {
+        paths.iter().map(|path| (self.text)(path)).collect()
+    }
+}
+
 /// A file, or why it cannot be read.
 pub fn text(path: &Path) -> Text {
     let name = path.file_name().unwrap_or(path.as_os_str());
@@ -16,11 +40,6 @@ pub fn text(path: &Path) -> Text {
         content: crate::file::bytes(path)
             .map_err(|error| read::unreadable(&path.display().to_string(), &error.to_string())),
     }
-}
-
-/// The files.
-pub fn texts(paths: &[PathBuf]) -> Vec<Text> {
-    paths.iter().map(|path| text(path)).collect()
 }
 
 /// Identifies what files hold.
@@ -41,7 +60,8 @@ pub fn identify_with_runs(
     settings: &Settings,
 ) -> Result<Identified, Vec<Refusal>> {
     let runs = runs.map(|run| run.map(text));
-    texts::identify(&texts(paths), runs.each_ref().map(Option::as_ref), settings).map(|answer| answer.found)
+    let maps: Vec<Text> = paths.iter().map(|path| text(path)).collect();
+    texts::identify(&maps, runs.each_ref().map(Option::as_ref), settings).map(|answer| answer.found)
 }
 
 /// Reads a file and makes it ready.

@@ -35,6 +35,19 @@ pub struct Answer<T> {
     pub json: String,
 }
 
+impl<T> Answer<T> {
+    /// Its texts alone.
+    pub fn texts(self) -> Answer<()> {
+        Answer {
+            found: (),
+            report: self.report,
+            details: self.details,
+            tables: self.tables,
+            json: self.json,
+        }
+    }
+}
+
 /// Reads a file and makes it ready.
 ///
 /// # Errors

@@ -11,10 +11,11 @@ use mixer_identify::bench::{Preparation, date};
 use mixer_identify::fit::basis::ThrottleBox;
 use mixer_identify::fit::wishes::Wishes;
 use mixer_identify::identified::Settings;
-use mixer_identify::texts::{Prediction, identify};
+use mixer_identify::refusal::Refusal;
+use mixer_identify::texts::{Answer, Prediction, identify};
 
 use crate::bench_args::{AirArgs, ReadingArgs, positive, throttle_box};
-use crate::bench_files::{text, texts};
+use crate::bench_files::Outside;
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
@@ -145,12 +146,53 @@ impl IdentifyArgs {
     }
 }
 
+/// Why there is no answer.
+#[derive(Debug, Clone)]
+pub enum NoAnswer {
+    /// The arguments do not fit together.
+    Usage(&'static str),
+    /// The files cannot serve.
+    Refused(Vec<Refusal>),
+}
+
+impl IdentifyArgs {
+    /// The pair, and notes about refused rows.
+    ///
+    /// # Errors
+    /// Arguments that do not fit together, files that cannot serve.
+    pub fn answer(&self, outside: &Outside<'_>) -> Result<(Answer<()>, Vec<String>), NoAnswer> {
+        if self.prior.is_none() && self.rotors.is_given() {
+            let message =
+                "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given";
+            return Err(NoAnswer::Usage(message));
+        }
+        let maps = outside.texts(&self.files);
+        let runs = [&self.prior, &self.lower_out, &self.upper_out];
+        let [prior, upper, lower] = runs.map(|run| run.as_deref().map(outside.text));
+        let settings = self.settings();
+        if let Some(single) = &prior {
+            let held = self.reading.rpm_at_full.is_some();
+            let exponents = predict::exponents(self.voltage_exponent, held);
+            let how = Prediction {
+                run: self.rotors.reading(self.air.air(), self.reading.rpm_at_full),
+                map: settings,
+                known: self.rotors.known(self.reference_voltage, exponents),
+                wishes: self.rotors.wishes(self.throttle, held, outside),
+            };
+            let answer = self.rotors.predict(single, &maps, &how, outside);
+            return Ok((answer.map_err(NoAnswer::Refused)?.texts(), Vec::new()));
+        }
+        let answer =
+            identify(&maps, [upper.as_ref(), lower.as_ref()], &settings).map_err(NoAnswer::Refused)?;
+        let refused_rows = answer.found.files.iter().flat_map(|file| &file.refused_rows);
+        let most = MOST_TOLD[usize::from(self.verbose)];
+        let notes = refused_told(refused_rows, most);
+        Ok((answer.texts(), notes))
+    }
+}
+
 /// Runs the command: status 0, 1 for input that cannot serve, 2 for bad usage.
 pub fn run(args: &IdentifyArgs) -> Done {
-    if args.prior.is_none() && args.rotors.is_given() {
-        let message = "what is known of one rotor alone belongs to --prior SINGLE.csv, which is not given";
-        return Err(bad_usage(message));
-    }
     let place = Place {
         output: args.output.as_deref(),
         force: args.force,
@@ -159,29 +201,13 @@ pub fn run(args: &IdentifyArgs) -> Done {
     };
     let runs = [&args.prior, &args.lower_out, &args.upper_out];
     place.check(args.files.iter().chain(runs.into_iter().flatten()))?;
-    let maps = texts(&args.files);
-    let [prior, upper, lower] = runs.map(|run| run.as_deref().map(text));
-    let settings = args.settings();
-    if let Some(single) = &prior {
-        let held = args.reading.rpm_at_full.is_some();
-        let exponents = predict::exponents(args.voltage_exponent, held);
-        let how = Prediction {
-            run: args.rotors.reading(args.air.air(), args.reading.rpm_at_full),
-            map: settings,
-            known: args.rotors.known(args.reference_voltage, exponents),
-            wishes: args.rotors.wishes(args.throttle, held),
-        };
-        let answer = args
-            .rotors
-            .predict(single, &maps, &how)
-            .map_err(|refusals| place.refused(&refusals))?;
-        return place.write(&answer, args.verbose);
-    }
-    let answer = identify(&maps, [upper.as_ref(), lower.as_ref()], &settings)
-        .map_err(|refusals| place.refused(&refusals))?;
-    let refused_rows = answer.found.files.iter().flat_map(|file| &file.refused_rows);
-    let most = MOST_TOLD[usize::from(args.verbose)];
-    refused_told(refused_rows, most).iter().for_each(print_note);
+    let (answer, notes) = args
+        .answer(&Outside::of_the_machine())
+        .map_err(|none| match none {
+            NoAnswer::Usage(message) => bad_usage(message),
+            NoAnswer::Refused(refusals) => place.refused(&refusals),
+        })?;
+    notes.iter().for_each(print_note);
     place.write(&answer, args.verbose)
 }
 

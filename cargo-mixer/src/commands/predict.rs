@@ -17,10 +17,9 @@ use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
 use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box};
-use crate::bench_files::text;
+use crate::bench_files::Outside;
 use crate::frame_args::FrameArgs;
 use crate::place::Place;
-use crate::today::today;
 
 /// Predict a pair's thrust and torque from a run of one rotor, or the table of its data sheet
 ///
@@ -139,12 +138,17 @@ impl RotorArgs {
     }
 
     /// What is wished of the pair.
-    pub(crate) fn wishes(&self, throttle: Option<ThrottleBox>, closed_loop: bool) -> Wishes {
+    pub(crate) fn wishes(
+        &self,
+        throttle: Option<ThrottleBox>,
+        closed_loop: bool,
+        outside: &Outside<'_>,
+    ) -> Wishes {
         Wishes {
             spacing_ratio: self.ratio(),
             closed_loop,
             throttle,
-            date: today(),
+            date: outside.today.clone(),
         }
     }
 
@@ -154,8 +158,9 @@ impl RotorArgs {
         single: &Text,
         maps: &[Text],
         how: &Prediction,
+        outside: &Outside<'_>,
     ) -> Result<Answer<Predicted>, Vec<Refusal>> {
-        let lower = self.lower_single.as_deref().map(text);
+        let lower = self.lower_single.as_deref().map(outside.text);
         texts::predict(single, lower.as_ref(), maps, how)
     }
 
@@ -189,15 +194,18 @@ impl PredictArgs {
     ///
     /// # Errors
     /// Files that cannot serve.
-    pub fn predicted(&self) -> Result<Answer<Predicted>, Vec<Refusal>> {
+    pub fn answer(&self, outside: &Outside<'_>) -> Result<Answer<Predicted>, Vec<Refusal>> {
         let exponents = exponents(None, self.rpm_at_full.is_some());
         let how = Prediction {
             run: self.settings(),
             map: Settings::default(),
             known: self.rotors.known(self.reference_voltage, exponents),
-            wishes: self.rotors.wishes(self.throttle, self.rpm_at_full.is_some()),
+            wishes: self
+                .rotors
+                .wishes(self.throttle, self.rpm_at_full.is_some(), outside),
         };
-        self.rotors.predict(&text(&self.single), &[], &how)
+        self.rotors
+            .predict(&(outside.text)(&self.single), &[], &how, outside)
     }
 }
 
@@ -215,6 +223,7 @@ pub fn run(args: &PredictArgs) -> Done {
         json: args.json,
     };
     place.check(args.rotors.lower_single.iter().chain([&args.single]))?;
-    let answer = args.predicted().map_err(|refusals| place.refused(&refusals))?;
+    let answer = args.answer(&Outside::of_the_machine());
+    let answer = answer.map_err(|refusals| place.refused(&refusals))?;
     place.write(&answer, false)
 }

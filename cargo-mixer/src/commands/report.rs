@@ -7,6 +7,8 @@ use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
 use mixer_identify::identified::Settings;
+use mixer_identify::texts::Text;
+use mixer_report::bench::BenchPoints;
 use mixer_report::origin::Origin;
 use mixer_report::page;
 use mixer_report::study::{Flown, Study};
@@ -15,6 +17,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::review::{mass, review};
 use crate::bench_args::{ReadingArgs, quantity};
+use crate::bench_files::Outside;
 use crate::today::today;
 use crate::{Done, file, print_error};
 
@@ -63,19 +66,27 @@ impl ReportArgs {
             throttles: review.flown,
         })
     }
+}
 
-    /// How `identify` read the bench: by what is given here, else by what the file remembers.
-    fn settings(&self, compiled: &Compiled) -> Result<Settings, String> {
-        let given = self.reading.settings();
-        if !given.options.is_empty() {
-            return Ok(given);
-        }
-        let remembered = ReadingArgs::remembered(&compiled.airframe.pair.bench_options);
-        let place = self.airframe.display();
-        remembered.map(|reading| reading.settings()).map_err(|error| {
-            format!("{place}: `pair.bench_options`: {error}; they are those of cargo mixer identify --help")
-        })
-    }
+/// Bench files of the airframe's pair, read by `given`, else as `identify` read them by what the file
+/// remembers.
+///
+/// # Errors
+/// Remembered options that are none, a file that cannot be read or that holds a single rotor.
+pub fn bench_points(compiled: &Compiled, files: &[Text], given: Settings) -> Result<BenchPoints, String> {
+    let settings = match given.options.as_slice() {
+        [] => remembered(compiled)?,
+        _ => given,
+    };
+    bench::read(compiled, files, &settings).map_err(|refusal| refusal.to_string())
+}
+
+fn remembered(compiled: &Compiled) -> Result<Settings, String> {
+    let remembered = ReadingArgs::remembered(&compiled.airframe.pair.bench_options);
+    remembered.map(|reading| reading.settings()).map_err(|error| {
+        let place = &compiled.source.name;
+        format!("{place}: `pair.bench_options`: {error}; they are those of cargo mixer identify --help")
+    })
 }
 
 /// Runs the command.
@@ -86,8 +97,8 @@ pub fn run(args: &ReportArgs) -> Done {
     let bench = match args.bench.as_slice() {
         [] => None,
         files => {
-            let settings = args.settings(&compiled).map_err(print_error)?;
-            Some(bench::read(&compiled, files, &settings).map_err(print_error)?)
+            let texts = Outside::of_the_machine().texts(files);
+            Some(bench_points(&compiled, &texts, args.reading.settings()).map_err(print_error)?)
         }
     };
     for doubt in bench.iter().flat_map(|bench| bench.doubts(&compiled)) {
@@ -112,7 +123,7 @@ fn origin(airframe: &Path) -> Origin {
 }
 
 /// The digest of a file's bytes in hexadecimal, as `sha256sum` prints it.
-fn sha256(bytes: &[u8]) -> String {
+pub fn sha256(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,25 +1,18 @@
 //! Bench files for the report page, read as `identify` reads them.
 
-use std::path::{Path, PathBuf};
-
 use mixer_compiler::Compiled;
 use mixer_identify::bench::Kind;
 use mixer_identify::fit::balance::balanced;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
+use mixer_identify::texts::{Text, read as ready};
 use mixer_report::bench::BenchPoints;
-
-use crate::bench_files::read_one;
 
 /// Reads bench files of the airframe's pair.
 ///
 /// # Errors
 /// A file that cannot be read, or that holds a single rotor.
-pub(super) fn read(
-    compiled: &Compiled,
-    files: &[PathBuf],
-    settings: &Settings,
-) -> Result<BenchPoints, Refusal> {
+pub(super) fn read(compiled: &Compiled, files: &[Text], settings: &Settings) -> Result<BenchPoints, Refusal> {
     let mut bench = BenchPoints::default();
     for file in files {
         add(&mut bench, compiled, file, settings)?;
@@ -30,10 +23,10 @@ pub(super) fn read(
 fn add(
     points: &mut BenchPoints,
     compiled: &Compiled,
-    file: &Path,
+    file: &Text,
     settings: &Settings,
 ) -> Result<(), Refusal> {
-    let mut bench = read_one(file, settings)?;
+    let mut bench = ready(file, settings)?;
     if compiled.airframe.voltage.is_some() {
         bench = balanced(&bench);
     }
