@@ -19,6 +19,7 @@
 
 pub mod authority;
 pub mod bench;
+mod bench_check;
 pub mod colour;
 pub mod comparison;
 pub mod data;

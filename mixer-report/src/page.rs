@@ -1,7 +1,8 @@
 //! The page: one self-contained file that needs no network, no script to be read, and prints.
 //!
 //! It is written as XML that is also HTML (every element closed, every attribute quoted), so that
-//! it can be checked by machine.
+//! it can be checked by machine. [`content`] is what another page shows in an element of its own,
+//! with [`STYLE`] and [`SCRIPT`].
 
 mod link;
 
@@ -14,6 +15,7 @@ use mixer_facts::cost::Cost;
 
 use crate::authority;
 use crate::bench::{BenchPoint, BenchPoints};
+use crate::bench_check::bench_check;
 use crate::comparison::Comparison;
 use crate::data::{self, Data, THRUSTS, YAW_COMMANDS};
 use crate::effort::Effort;
@@ -30,8 +32,17 @@ use crate::table;
 
 /// The style of figures, in the page and in files of their own.
 pub const FIGURE_STYLE: &str = include_str!("style.css");
+
+/// The style of figures and of [`Content::body`] in an element of class `report`; nothing else is
+/// touched but custom properties of the root.
+pub const STYLE: &str = concat!(include_str!("style.css"), include_str!("report.css"));
+
+/// Defines `report(element, model)`, which makes a [`Content::body`] in an element answer to the
+/// pointer and the keyboard; called again for new content.
+pub const SCRIPT: &str = include_str!("report.js");
+
+/// What the content leaves to its page.
 const PAGE_STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
 
 /// Thrusts at which it is found with every rotor out in turn.
 const THRUSTS_ROTOR_OUT: usize = 21;
@@ -54,15 +65,41 @@ pub const SECTIONS: [(&str, &str); 11] = [
     ("matrices", "Allocation"),
 ];
 
+/// The report without the page around it.
+#[derive(Clone, Debug)]
+pub struct Content {
+    /// Markup, for an element of class `report`.
+    pub body: String,
+    /// JSON, for the script.
+    pub model: String,
+}
+
 /// The whole page.
 pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> String {
+    let Content { body, model } = content(study, bench, origin);
+    let title = html! { title { (printable(&study.compiled.airframe.name)) ": coaxial mixer" } };
+    // The head's elements without content are closed, as XML demands.
+    format!(
+        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n{}\n\
+         <style>\n{STYLE}{PAGE_STYLE}</style>\n</head>\n<body>\n<main class=\"report\">{body}</main>\n\
+         <script type=\"application/json\" id=\"model\">{model}</script>\n<script>//<![CDATA[\n{SCRIPT}\
+         report(document.querySelector(\".report\"), JSON.parse(document.getElementById(\"model\").textContent));\n\
+         //]]></script>\n</body>\n</html>\n",
+        title.into_string(),
+    )
+}
+
+/// What stands in the page, and what its script needs.
+pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> Content {
     let compiled = study.compiled;
     let airframe = &compiled.airframe;
     let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
     let facts = mixer_facts::facts(compiled);
     let section = |anchor| match anchor {
         "layout" => layout_section(study),
-        "bench-check" => table::bench_check(study),
+        "bench-check" => bench_check(study),
         "level" => level_section(study),
         "comparison" => comparison_section(study),
         "authority" => authority_section(study),
@@ -73,10 +110,8 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
         "cost" => cost_section(study, &facts),
         _ => table::matrices(study, &facts),
     };
-    let name = printable(&airframe.name);
-    let title = html! { title { (name) ": coaxial mixer" } };
     let body = html! {
-        h1 { (name) }
+        h1 { (printable(&airframe.name)) }
         p.lead { (printable(&airframe.description)) }
         nav { @for (anchor, title) in SECTIONS { a href={ "#" (anchor) } { (title) } " " } }
         (warnings(study, bench))
@@ -90,18 +125,11 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
             ". Body frame FRD, SI units; clockwise yaw seen from above is positive, thrust is positive upwards; the torque \
              of a unit is positive where its lower rotor outweighs the upper one."
         }
-        script type="application/json" id="model" { (PreEscaped(model(study, &errors).to_string())) }
-        script { (PreEscaped(format!("//<![CDATA[\n{SCRIPT}//]]>"))) }
     };
-    // The head's elements without content are closed, as XML demands.
-    format!(
-        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n{}\n\
-         <style>\n{FIGURE_STYLE}{PAGE_STYLE}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n",
-        title.into_string(),
-        body.into_string()
-    )
+    Content {
+        body: body.into_string(),
+        model: model(study, &errors).to_string(),
+    }
 }
 
 /// What is plausibly a mistake; nothing where there is none.

@@ -1,10 +1,9 @@
-//! Tables of the page: summary, units, M and M+, the static comparison, the bench.
+//! Tables of the page: summary, units, M and M+, the static comparison, model against bench.
 
 use maud::{Markup, html};
-use mixer_compiler::airframe::{Axis, Spin};
+use mixer_compiler::airframe::Spin;
 use mixer_compiler::diagnostic::printable;
 use mixer_facts::Fact;
-use mixer_facts::checklist::{self, Checklist};
 
 use crate::bench::BenchPoints;
 use crate::comparison::{Answer, Comparison};
@@ -184,45 +183,6 @@ pub fn flown(flown: &Flown) -> Markup {
         p { "The flight of " code { (printable(&flown.log)) } " over the model:" }
         (facts([].iter(), &lines))
     }
-}
-
-/// What to try on the bench before the first flight: outputs one by one, then the axes.
-pub fn bench_check(study: &Study<'_>) -> Markup {
-    let checklist = Checklist(study.compiled);
-    let mut outputs: Vec<(usize, Vec<String>)> = Vec::new();
-    for (index, unit) in study.compiled.airframe.units.iter().enumerate() {
-        let rotors = [
-            (unit.upper_channel, "upper", unit.upper_spin),
-            (unit.lower_channel, "lower", unit.upper_spin.reversed()),
-        ];
-        for (channel, rotor, spin) in rotors {
-            let place = checklist.place(unit);
-            let words = format!("unit {index}, {place}: {rotor} rotor");
-            outputs.push((channel, to_tick([&channel.to_string(), &words, spin.in_words()])));
-        }
-    }
-    outputs.sort_by_key(|(channel, _)| *channel);
-    let outputs: Vec<Vec<String>> = outputs.into_iter().map(|(_, row)| row).collect();
-    let commands: Vec<Vec<String>> = Axis::ALL
-        .into_iter()
-        .filter_map(|axis| {
-            let rises = checklist.rises_in_words(axis)?;
-            let command = format!("+{}", axis.name());
-            Some(to_tick([&command, &rises, checklist::motion(axis)]))
-        })
-        .collect();
-    html! {
-        p { "Propellers off. Drive the outputs one by one, then command each axis; spins are as seen from above." }
-        div.figures.words {
-            (table("Outputs", &["output", "drives", "turns", "seen"], &outputs))
-            (table("Commands, the strongest outputs first", &["command", "raises outputs", "moves", "seen"], &commands))
-        }
-    }
-}
-
-/// A row with a box to be ticked on paper.
-fn to_tick([a, b, c]: [&str; 3]) -> Vec<String> {
-    [a, b, c, "\u{2610}"].map(str::to_owned).to_vec()
 }
 
 /// The pair's coefficients, as the file has them.

@@ -24,11 +24,33 @@ for (const svg of document.querySelectorAll("svg[data-hover]")) {
 }
 </script></body>"#;
 
+/// Ticks the third box, shows the same content anew in an element that is made for it, and lists
+/// which boxes are ticked there, how often one value is told, and what a copy button makes of itself.
+const AGAIN: &str = r#"<script>
+const model = JSON.parse(document.getElementById("model").textContent);
+const main = document.querySelector("main");
+document.querySelectorAll(".seen input")[2].click();
+const fresh = document.createElement("div");
+fresh.className = "report";
+fresh.innerHTML = main.innerHTML;
+for (const made of fresh.querySelectorAll(".copy, .cross")) made.remove();
+main.replaceWith(fresh);
+report(fresh, model);
+const boxes = [...fresh.querySelectorAll(".seen input")];
+fresh.querySelector(".copy").click();
+addEventListener("load", () => setTimeout(() => {
+  const ticked = boxes.flatMap((box, k) => box.checked ? [k] : []);
+  const rows = fresh.querySelectorAll("tr.check").length;
+  const crosses = fresh.querySelectorAll("svg[data-hover] .cross").length - fresh.querySelectorAll("svg[data-hover]").length;
+  document.body.textContent = [ticked, boxes.length === rows, crosses, getSelection().toString(),
+    fresh.querySelector(".copy").textContent !== "copy"].join("; ");
+}, 500));
+</script></body>"#;
+
 /// A page in a window of a phone's width, and what of it is wider than that.
 const PHONE: &str = r#"<iframe src="PAGE" style="width:390px;height:30000px;border:0"></iframe><script>
 addEventListener("load", () => {
   const page = document.querySelector("iframe").contentDocument;
-  page.querySelectorAll("details").forEach((details) => { details.open = true; });
   const wide = [...page.querySelectorAll(".wide")].filter((box) => box.scrollWidth > box.clientWidth);
   const names = wide.map((box) => box.closest("section").querySelector("h2").textContent);
   const root = page.documentElement;
@@ -156,7 +178,26 @@ fn pages_open_without_errors_and_show_values() {
     );
 }
 
-/// No table is cut, folded ones opened.
+#[test]
+fn a_check_is_kept_where_the_content_is_shown_again() {
+    let Some(browser) = wanted_browser() else {
+        return;
+    };
+    let compiled = compiled(&root().join("airframes/isae-x8.toml"));
+    let html = page(&Study::new(&compiled, None), None, &Origin::default());
+    let path = scratch("again.html");
+    fs::write(&path, html.replace("</body>", AGAIN)).unwrap();
+    let (dom, messages) = open(&browser, &path);
+    assert!(messages.is_empty(), "{messages:#?}");
+    let (_, told) = dom.split_once("<body>").expect("a body");
+    let told = told.split("</body>").next().unwrap_or_default();
+    assert_eq!(
+        told.trim(),
+        "2; true; 0; actuator_test set -m 1 -v 0.15 -t 2; true"
+    );
+}
+
+/// No table is cut.
 #[test]
 fn pages_fit_a_phone() {
     let Some(browser) = wanted_browser() else {

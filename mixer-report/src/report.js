@@ -1,7 +1,7 @@
-// Values at the pointer, the finger and the cursor keys. The page is complete without this.
-"use strict";
-(function () {
-  const model = JSON.parse(document.getElementById("model").textContent);
+// A report in an element: values at the pointer, the finger and the cursor keys, and a check list
+// that is kept. It is complete without this.
+function report(root, model) {
+  "use strict";
   const [low, high] = model.throttle;
 
   // The pair's forward map and its Jacobian, in double precision.
@@ -64,7 +64,7 @@
   const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
   const ring = ([x, y]) => `M${x - 4} ${y}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0`;
 
-  for (const svg of document.querySelectorAll("svg[data-hover]")) {
+  for (const svg of root.querySelectorAll("svg[data-hover]")) {
     const kind = svg.dataset.hover;
     const outputs = [...svg.parentNode.querySelectorAll("output")];
     const [left, top, width, height] = svg.dataset.box.split(" ").map(Number);
@@ -152,6 +152,38 @@
       top + (rangeY[1] - startY) / (rangeY[1] - rangeY[0]) * height]);
   }
 
-  // Paper has no folds.
-  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((details) => { details.open = true; }));
-})();
+  checks(root);
+
+  // Ticks are kept by the airframe's name and by what a row says: one that says something else is open again.
+  function checks(root) {
+    const key = `checks of ${root.querySelector("h1").textContent}`;
+    // Some origins have no storage, and what is in it may be another's.
+    const guarded = (action, otherwise) => { try { return action(); } catch { return otherwise; } };
+    const kept = guarded(() => new Set(JSON.parse(localStorage.getItem(key) ?? "[]")), new Set());
+    for (const row of root.querySelectorAll("tr.check")) {
+      const said = [...row.cells].filter((cell) => !cell.matches(".seen, :has(.line)")).map((cell) => cell.textContent).join(", ");
+      const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: kept.has(said) });
+      box.setAttribute("aria-label", `seen: ${said}`);
+      box.addEventListener("change", () => {
+        kept[box.checked ? "add" : "delete"](said);
+        guarded(() => localStorage.setItem(key, JSON.stringify([...kept])));
+      });
+      row.querySelector(".seen").replaceChildren(box);
+    }
+    for (const line of root.querySelectorAll("code.line")) {
+      const button = Object.assign(document.createElement("button"), { type: "button", className: "copy", textContent: "copy" });
+      button.setAttribute("aria-label", `copy ${line.textContent}`);
+      button.addEventListener("click", async () => {
+        // Where nothing may be copied, the line is selected for the keyboard.
+        getSelection().selectAllChildren(line);
+        try {
+          await navigator.clipboard.writeText(line.textContent);
+          button.textContent = "copied";
+        } catch {
+          button.textContent = "selected";
+        }
+      });
+      line.after(" ", button);
+    }
+  }
+}
