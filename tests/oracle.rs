@@ -7,6 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use cargo_mixer::commands::mix::MIX;
+use cargo_mixer::rows::answer;
 use mixer_compiler::Compiled;
 use mixer_rt::Health;
 use mixer_tests::{airframes, frames, golden, root};
@@ -71,7 +73,7 @@ fn compiled(path: &str) -> Compiled {
 fn mix_with(path: &str, health: Health, setpoints: &str) -> String {
     let compiled = compiled(path);
     let mut mixed = Vec::new();
-    let bad = cargo_mixer::commands::mix::mix(&compiled, health, setpoints.as_bytes(), &mut mixed, |bad| {
+    let bad = answer(&MIX, &compiled, health, setpoints.as_bytes(), &mut mixed, |bad| {
         eprintln!("{bad:?}")
     });
     assert!(matches!(bad, Ok(0)), "{bad:?}");

@@ -6,7 +6,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
     check, compare, expand, golden, identify, import, library, mix, new, params, plan, predict, report,
-    review, schema, shell, sweep,
+    review, schema, shell, sweep, wrench,
 };
 use crate::{Done, output};
 
@@ -41,6 +41,7 @@ enum Command {
     Review(review::ReviewArgs),
     Schema(schema::SchemaArgs),
     Sweep(sweep::SweepArgs),
+    Wrench(wrench::WrenchArgs),
     Completions(shell::CompletionsArgs),
 }
 
@@ -75,6 +76,7 @@ pub fn run() -> ExitCode {
         Command::Review(args) => review::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Wrench(args) => wrench::run(&args),
         Command::Completions(args) => shell::run(&args, Arguments::command()),
     })
 }

@@ -17,3 +17,4 @@ pub mod review;
 pub mod schema;
 pub mod shell;
 pub mod sweep;
+pub mod wrench;

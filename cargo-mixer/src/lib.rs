@@ -22,7 +22,7 @@ pub mod file;
 pub mod frame_args;
 pub mod pack;
 mod place;
-pub mod setpoints;
+pub mod rows;
 mod today;
 
 /// The exit status for a bad input.

@@ -39,7 +39,7 @@ macro_rules! folders {
     };
 }
 
-folders! { check compare expand golden identify import library mix new params plan predict report usage }
+folders! { check compare expand golden identify import library mix new params plan predict report usage wrench }
 
 /// The names of what is in a folder, in order.
 fn names(folder: &Path) -> Vec<String> {

@@ -21,6 +21,7 @@ mod review;
 mod schema;
 mod shell;
 mod stacks;
+mod wrench;
 
 use std::fs;
 use std::io::Write;

@@ -16,7 +16,7 @@ pub struct Physics<'a> {
 impl Physics<'_> {
     /// `[roll, pitch, yaw, thrust]` (N m, N) of a throttle per channel at the factors `[k_f, k_Q]`, with
     /// [`Airframe::factors`] those of a voltage and a density.
-    pub fn wrench(&self, throttle: &[f32], factors: [f64; 2], health: Health) -> [f64; 4] {
+    pub fn wrench<T: Copy + Into<f64>>(&self, throttle: &[T], factors: [f64; 2], health: Health) -> [f64; 4] {
         let efforts = |unit: &Unit| self.efforts(unit, throttle, health);
         self.wrench_of(self.airframe.units.iter().map(efforts), factors)
     }
@@ -40,9 +40,14 @@ impl Physics<'_> {
 
     /// `[f, Q]` of a unit. A rotor that is out gives nothing; its partner gives what the file says
     /// of a rotor alone, else the pair's polynomial at throttle 0 of the other.
-    pub(crate) fn efforts(&self, unit: &Unit, throttle: &[f32], health: Health) -> [f64; 2] {
+    pub(crate) fn efforts<T: Copy + Into<f64>>(
+        &self,
+        unit: &Unit,
+        throttle: &[T],
+        health: Health,
+    ) -> [f64; 2] {
         let channels = [unit.upper_channel, unit.lower_channel];
-        let [u, l] = channels.map(|channel| f64::from(throttle[channel]));
+        let [u, l] = channels.map(|channel| throttle[channel].into());
         let pair = &self.airframe.pair;
         match channels.map(|channel| health.has_failed(channel as u8)) {
             [false, false] => self.map.efforts([u, l]),

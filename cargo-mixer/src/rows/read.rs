@@ -1,32 +1,34 @@
-//! Setpoints as CSV: a header `roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v][,density_kg_m3]` in any
-//! order, then one row per line.
+//! Rows as CSV: a header with the columns that a command needs and, if there are such, `voltage_v`
+//! and `density_kg_m3`, in any order, then one row per line.
 //!
 //! A row never spans lines, although CSV allows it in quotes: so a stray quote spoils its own row
 //! and not all rows after it.
 
 use std::io::{self, Read};
+use std::str::FromStr;
 
 use csv::{ByteRecord, ReaderBuilder, Terminator};
-use mixer_rt::Wrench;
 
-/// The columns that must be there, in the order of [`Wrench::to_array`].
-const REQUIRED: [&str; 4] = ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n"];
 const VOLTAGE: &str = "voltage_v";
 const DENSITY: &str = "density_kg_m3";
-pub(crate) const HEADER: &str = "roll_nm,pitch_nm,yaw_nm,thrust_n[,voltage_v][,density_kg_m3]";
 
-/// One row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setpoint {
-    /// What is asked for.
-    pub wrench: Wrench,
-    /// The battery's voltage, V, if there is such a column.
-    pub voltage_v: Option<f32>,
-    /// The air's density, kg/m3, if there is such a column.
-    pub density_kg_m3: Option<f32>,
+/// The header in words: the columns that must be there, and those that may.
+pub(crate) fn header(required: &[String]) -> String {
+    format!("{}[,{VOLTAGE}][,{DENSITY}]", required.join(","))
 }
 
-/// A line that is no setpoint.
+/// One row of numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row<T> {
+    /// Values of the columns that must be there, in the command's order.
+    pub values: Vec<T>,
+    /// The battery's voltage, V, if there is such a column.
+    pub voltage_v: Option<T>,
+    /// The air's density, kg/m3, if there is such a column.
+    pub density_kg_m3: Option<T>,
+}
+
+/// A line that is no row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadLine {
     /// Line of the input, from 1.
@@ -47,33 +49,34 @@ pub enum Stopped {
 }
 
 /// A row with its line, from 1.
-pub type Row = (usize, Result<Setpoint, BadLine>);
+pub type Line<T> = (usize, Result<Row<T>, BadLine>);
 
-/// Reads setpoints row by row.
+/// Reads a table row by row.
 #[derive(Debug)]
-pub struct Setpoints<R> {
-    rows: Rows<R>,
+pub struct Rows<R> {
+    records: Records<R>,
     columns: Columns,
 }
 
-impl<R: Read> Setpoints<R> {
-    /// Reads the header.
+impl<R: Read> Rows<R> {
+    /// Reads the header, in which the `required` columns must be.
     ///
     /// # Errors
     /// An input without one, a column that is missing, unknown or stands twice, or an input that
     /// fails.
-    pub fn new(input: R) -> Result<Self, Stopped> {
-        let mut rows = Rows::new(input);
-        let columns = match rows.next().map_err(Stopped::Input)? {
-            Some((_, row)) => fields(row).and_then(|fields| Columns::new(&fields)),
+    pub fn new(input: R, required: Vec<String>) -> Result<Self, Stopped> {
+        let header = header(&required);
+        let mut records = Records::new(input, header.clone());
+        let columns = match records.next().map_err(Stopped::Input)? {
+            Some((_, record)) => fields(record).and_then(|fields| Columns::new(&fields, required, &header)),
             None => Err(format!(
-                "the input is empty; its first line is the header {HEADER}"
+                "the input is empty; its first line is the header {header}"
             )),
         };
         match columns {
-            Ok(columns) => Ok(Self { rows, columns }),
+            Ok(columns) => Ok(Self { records, columns }),
             Err(message) => Err(Stopped::Header(BadLine {
-                line: rows.line(),
+                line: records.line(),
                 message,
             })),
         }
@@ -83,70 +86,77 @@ impl<R: Read> Setpoints<R> {
     ///
     /// # Errors
     /// An input that cannot be read any further.
-    pub fn read(&mut self) -> Result<Option<Row>, Stopped> {
-        let Some((line, row)) = self.rows.next().map_err(Stopped::Input)? else {
+    pub fn read<T: FromStr>(&mut self) -> Result<Option<Line<T>>, Stopped> {
+        let Some((line, record)) = self.records.next().map_err(Stopped::Input)? else {
             return Ok(None);
         };
-        let row = fields(row).and_then(|fields| self.columns.read(&fields));
+        let row = fields(record).and_then(|fields| self.columns.read(&fields));
         Ok(Some((line, row.map_err(|message| BadLine { line, message }))))
     }
 }
 
-/// Rows that are not blank.
+/// Lines that are not blank.
 #[derive(Debug)]
-struct Rows<R> {
+struct Records<R> {
     reader: csv::Reader<io::Chain<Lines<R>, &'static [u8]>>,
-    row: ByteRecord,
+    record: ByteRecord,
 }
 
-impl<R: Read> Rows<R> {
-    fn new(input: R) -> Self {
+impl<R: Read> Records<R> {
+    fn new(input: R, header: String) -> Self {
         // A line feed alone ends a row: a carriage return within a line would hide what follows it.
         // The last row has one, too.
         let mut settings = ReaderBuilder::new();
         settings.has_headers(false).flexible(true).quoting(false);
         settings.terminator(Terminator::Any(b'\n'));
-        Rows {
-            reader: settings.from_reader(Lines { input, length: 0 }.chain(b"\n")),
-            row: ByteRecord::new(),
+        let lines = Lines {
+            input,
+            header,
+            length: 0,
+        };
+        Records {
+            reader: settings.from_reader(lines.chain(b"\n")),
+            record: ByteRecord::new(),
         }
     }
 
-    /// The next row and its line.
+    /// The next record and its line.
     fn next(&mut self) -> io::Result<Option<(usize, &ByteRecord)>> {
-        let is_blank = |row: &ByteRecord| String::from_utf8_lossy(row.as_slice()).trim().is_empty();
-        while self.reader.read_byte_record(&mut self.row)? {
-            if self.row.len() > 1 || !is_blank(&self.row) {
-                return Ok(Some((self.line(), &self.row)));
+        let is_blank = |record: &ByteRecord| String::from_utf8_lossy(record.as_slice()).trim().is_empty();
+        while self.reader.read_byte_record(&mut self.record)? {
+            if self.record.len() > 1 || !is_blank(&self.record) {
+                return Ok(Some((self.line(), &self.record)));
             }
         }
         Ok(None)
     }
 
-    /// The line of the last row.
+    /// The line of the last record.
     fn line(&self) -> usize {
         let next = self.reader.position().line();
         usize::try_from(next.saturating_sub(1).max(1)).unwrap_or(usize::MAX)
     }
 }
 
-/// The fields of a row, without quotes and the blanks around them.
-fn fields(row: &ByteRecord) -> Result<Vec<&str>, String> {
+/// The fields of a record, without quotes and the blanks around them.
+fn fields(record: &ByteRecord) -> Result<Vec<&str>, String> {
     let field = |field| {
         let text = str::from_utf8(field).map_err(|_| "not UTF-8".to_owned())?.trim();
         let inner = text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
         Ok(inner.map_or(text, str::trim))
     };
-    row.iter().map(field).collect()
+    record.iter().map(field).collect()
 }
 
-/// Longest line, bytes: six numbers take a hundred. A device without an end would fill the memory.
+/// Longest line, bytes: sixty-six numbers take two thousand. A device without an end would fill the memory.
 const LONGEST_LINE: usize = 1 << 16;
 
 /// An input whose lines end.
 #[derive(Debug)]
 struct Lines<R> {
     input: R,
+    /// The header in words.
+    header: String,
     /// Bytes of the last line so far.
     length: usize,
 }
@@ -161,7 +171,8 @@ impl<R: Read> Read for Lines<R> {
         };
         if self.length > LONGEST_LINE {
             return Err(io::Error::other(format!(
-                "a line has more than {LONGEST_LINE} bytes: setpoints are lines of numbers below {HEADER}"
+                "a line has more than {LONGEST_LINE} bytes: rows are lines of numbers below {}",
+                self.header
             )));
         }
         Ok(count)
@@ -172,55 +183,61 @@ impl<R: Read> Read for Lines<R> {
 #[derive(Debug)]
 struct Columns {
     count: usize,
-    wrench: [usize; 4],
+    /// Names and places of those that must be there.
+    required: Vec<(String, usize)>,
     voltage: Option<usize>,
     density: Option<usize>,
 }
 
 impl Columns {
-    fn new(header: &[&str]) -> Result<Self, String> {
-        let place = |name: &str| header.iter().position(|column| *column == name);
-        let known = |name: &str| REQUIRED.contains(&name) || [VOLTAGE, DENSITY].contains(&name);
-        let missing = REQUIRED.into_iter().filter(|name| place(name).is_none());
-        let missing = missing.collect::<Vec<_>>().join(", ");
+    fn new(fields: &[&str], required: Vec<String>, header: &str) -> Result<Self, String> {
+        let place = |name: &str| fields.iter().position(|field| *field == name);
+        let known =
+            |name: &str| required.iter().any(|column| column == name) || [VOLTAGE, DENSITY].contains(&name);
+        let missing = required.iter().filter(|name| place(name).is_none());
+        let missing: Vec<&str> = missing.map(String::as_str).collect();
         if !missing.is_empty() {
-            return Err(format!("no column {missing}; the header is {HEADER}"));
+            return Err(format!(
+                "no column {}; the header is {header}",
+                missing.join(", ")
+            ));
         }
-        if let Some(unknown) = header.iter().find(|name| !known(name)) {
+        if let Some(unknown) = fields.iter().find(|name| !known(name)) {
             let unknown = unknown.escape_debug();
-            return Err(format!("unknown column `{unknown}`; the header is {HEADER}"));
+            return Err(format!("unknown column `{unknown}`; the header is {header}"));
         }
-        let mut columns = header.iter().enumerate();
+        let mut columns = fields.iter().enumerate();
         if let Some((_, name)) = columns.find(|(i, name)| place(name) != Some(*i)) {
             return Err(format!("column `{name}` stands twice"));
         }
+        let placed = |name: String| {
+            let place = place(&name)?;
+            Some((name, place))
+        };
         Ok(Columns {
-            count: header.len(),
-            wrench: REQUIRED.map(|name| place(name).unwrap_or_default()),
+            count: fields.len(),
             voltage: place(VOLTAGE),
             density: place(DENSITY),
+            required: required.into_iter().filter_map(placed).collect(),
         })
     }
 
-    fn read(&self, fields: &[&str]) -> Result<Setpoint, String> {
+    fn read<T: FromStr>(&self, fields: &[&str]) -> Result<Row<T>, String> {
         let (count, expected) = (fields.len(), self.count);
         if count != expected {
             let columns = if count == 1 { "column" } else { "columns" };
             return Err(format!("{count} {columns} where the header has {expected}"));
         }
-        let number = |index: usize, name: &str| {
+        let number = |name: &str, index: usize| {
             let text = fields.get(index).copied().unwrap_or_default();
-            text.parse::<f32>()
+            text.parse::<T>()
                 .map_err(|_| format!("{name} `{}` is not a number", text.escape_debug()))
         };
-        let mut wrench = [0.0; 4];
-        for ((value, index), name) in wrench.iter_mut().zip(self.wrench).zip(REQUIRED) {
-            *value = number(index, name)?;
-        }
-        Ok(Setpoint {
-            wrench: Wrench::from_array(wrench),
-            voltage_v: self.voltage.map(|index| number(index, VOLTAGE)).transpose()?,
-            density_kg_m3: self.density.map(|index| number(index, DENSITY)).transpose()?,
+        let values = self.required.iter().map(|(name, index)| number(name, *index));
+        Ok(Row {
+            values: values.collect::<Result<_, _>>()?,
+            voltage_v: self.voltage.map(|index| number(VOLTAGE, index)).transpose()?,
+            density_kg_m3: self.density.map(|index| number(DENSITY, index)).transpose()?,
         })
     }
 }
@@ -229,26 +246,32 @@ impl Columns {
 mod tests {
     use super::*;
 
+    /// Reads the header of `text` as that of setpoints.
+    fn rows(text: &[u8]) -> Result<Rows<&[u8]>, Stopped> {
+        let required = ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n"];
+        Rows::new(text, required.map(str::to_owned).into())
+    }
+
     /// The rows of `text`, and the line and message of each that is bad.
-    fn read(text: impl AsRef<[u8]>) -> (Vec<Setpoint>, Vec<(usize, String)>) {
+    fn read(text: impl AsRef<[u8]>) -> (Vec<Row<f32>>, Vec<(usize, String)>) {
         let (mut good, mut bad) = (Vec::new(), Vec::new());
-        let mut setpoints = match Setpoints::new(text.as_ref()) {
-            Ok(setpoints) => setpoints,
+        let mut rows = match rows(text.as_ref()) {
+            Ok(rows) => rows,
             Err(Stopped::Header(BadLine { line, message })) => return (good, vec![(line, message)]),
             Err(stopped) => panic!("{stopped:?}"),
         };
-        while let Some((_, row)) = setpoints.read().unwrap() {
+        while let Some((_, row)) = rows.read().unwrap() {
             match row {
-                Ok(setpoint) => good.push(setpoint),
+                Ok(row) => good.push(row),
                 Err(BadLine { line, message }) => bad.push((line, message)),
             }
         }
         (good, bad)
     }
 
-    fn setpoint(wrench: [f32; 4], voltage_v: Option<f32>) -> Setpoint {
-        Setpoint {
-            wrench: Wrench::from_array(wrench),
+    fn row(values: [f32; 4], voltage_v: Option<f32>) -> Row<f32> {
+        Row {
+            values: values.into(),
             voltage_v,
             density_kg_m3: None,
         }
@@ -257,26 +280,26 @@ mod tests {
     #[test]
     fn columns_in_any_order() {
         let (good, bad) = read("voltage_v,thrust_n,yaw_nm,pitch_nm,roll_nm\n15,4,3,2,1\n");
-        assert_eq!(good, [setpoint([1.0, 2.0, 3.0, 4.0], Some(15.0))]);
+        assert_eq!(good, [row([1.0, 2.0, 3.0, 4.0], Some(15.0))]);
         assert_eq!(bad, []);
     }
 
     #[test]
     fn files_of_other_systems() {
-        let expected = [setpoint([1.0, -2.5, 3e-3, 40.0], None); 2];
+        let expected = vec![row([1.0, -2.5, 3e-3, 40.0], None); 2];
         for text in [
             "roll_nm,pitch_nm,yaw_nm,thrust_n\n1,-2.5,3e-3,40\n1,-2.5,3e-3,40",
             "\u{feff}roll_nm,pitch_nm,yaw_nm,thrust_n\r\n1,-2.5,3e-3,40\r\n\u{a0}\r\n1,-2.5,3e-3,40\r\n",
             "\n \"roll_nm\" ,\"pitch_nm\",\"yaw_nm\",thrust_n \n\"1\",\" -2.5 \",3e-3,40\n\t\n+1.0, -2.5,.003,40.\n",
         ] {
-            assert_eq!(read(text), (expected.to_vec(), vec![]), "{text:?}");
+            assert_eq!(read(text), (expected.clone(), vec![]), "{text:?}");
         }
     }
 
     #[test]
     fn a_line_without_end_is_refused() {
         let fault = |text: String| {
-            let read = Setpoints::new(text.as_bytes()).and_then(|mut setpoints| setpoints.read());
+            let read = rows(text.as_bytes()).and_then(|mut rows| rows.read::<f32>());
             match read.unwrap_err() {
                 Stopped::Input(error) => error.to_string(),
                 other => panic!("{other:?}"),
@@ -290,7 +313,7 @@ mod tests {
             "roll_nm,pitch_nm,yaw_nm,thrust_n",
             LONGEST_LINE - 1
         );
-        assert_eq!(read(padded), (vec![setpoint([1.0, 2.0, 3.0, 4.0], None)], vec![]));
+        assert_eq!(read(padded), (vec![row([1.0, 2.0, 3.0, 4.0], None)], vec![]));
     }
 
     #[test]
@@ -308,7 +331,7 @@ mod tests {
             b"1,2,3,4",
         ];
         let (good, bad) = read(rows.join(&b'\n'));
-        assert_eq!(good, [setpoint([1.0, 2.0, 3.0, 4.0], None)]);
+        assert_eq!(good, [row([1.0, 2.0, 3.0, 4.0], None)]);
         let expected = [
             (2, "roll_nm `\\\"1` is not a number"),
             (4, "3 columns where the header has 4"),
