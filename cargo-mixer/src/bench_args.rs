@@ -49,7 +49,7 @@ pub(crate) fn throttle_box(text: &str) -> Result<ThrottleBox, String> {
 }
 
 /// `LOW,HIGH`, increasing, microseconds.
-pub(crate) fn pwm_range(text: &str) -> Result<[f64; 2], String> {
+pub fn pwm_range(text: &str) -> Result<[f64; 2], String> {
     let [low, high] = two(text)?;
     if low < high {
         Ok([low, high])

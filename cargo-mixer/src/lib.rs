@@ -21,7 +21,7 @@ pub mod commands;
 pub mod file;
 pub mod frame_args;
 pub mod pack;
-mod place;
+pub mod place;
 pub mod rows;
 mod today;
 

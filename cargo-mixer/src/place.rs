@@ -25,6 +25,26 @@ pub(crate) struct Place<'a> {
     pub(crate) json: bool,
 }
 
+/// The tables of an answer, or the airframe of this frame with them.
+///
+/// # Errors
+/// A frame that is not fully described.
+pub fn tables_or_airframe<T>(
+    answer: &Answer<T>,
+    frame: Option<&FrameArgs>,
+    output: Option<&Path>,
+) -> Result<String, String> {
+    let text = match frame {
+        None => answer.tables.clone(),
+        Some(frame) => {
+            let tables = Source::new("the tables", answer.tables.as_str());
+            new(&frame.frame(output), Some(&tables)).map_err(|error| error.to_string())?
+        }
+    };
+    // Names, headers and cells of the bench files are in it, as in the report.
+    Ok(printable_lines(&text))
+}
+
 impl Place<'_> {
     fn to_stdout(&self) -> bool {
         self.output == Some(Path::new("-"))
@@ -50,11 +70,7 @@ impl Place<'_> {
     pub(crate) fn refused(&self, refusals: &[Refusal]) -> ExitCode {
         if self.json {
             let error = |refusal: &Refusal| {
-                let place = refusal.place.as_deref().unwrap_or_default();
-                let parts = place
-                    .rsplit_once(':')
-                    .and_then(|(file, line)| Some((file, line.parse::<u64>().ok()?)));
-                let (file, line) = parts.map_or((place, None), |(file, line)| (file, Some(line)));
+                let (file, line) = refusal.file_and_line();
                 crate::fault(file, line, &refusal.reason, &refusal.needed)
             };
             let _ = crate::print(&format!("{:#}\n", crate::errors(refusals.iter().map(error))));
@@ -72,15 +88,8 @@ impl Place<'_> {
             (_, true) => &answer.details,
             _ => &answer.report,
         };
-        let text = match self.frame {
-            None => answer.tables.clone(),
-            Some(frame) => {
-                let tables = Source::new("the tables", answer.tables.as_str());
-                new(&frame.frame(self.file()), Some(&tables)).map_err(bad_usage)?
-            }
-        };
-        // Names, headers and cells of the bench files are in both.
-        let [report, text] = [report.as_str(), &text].map(printable_lines);
+        let text = tables_or_airframe(answer, self.frame, self.file()).map_err(bad_usage)?;
+        let report = printable_lines(report);
         let out = if self.to_stdout() {
             print_note(report.trim_end());
             text.trim_end()

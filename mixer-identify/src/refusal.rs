@@ -47,6 +47,14 @@ impl Refusal {
         }
     }
 
+    /// The file, or nothing, and the line in it.
+    pub fn file_and_line(&self) -> (&str, Option<u64>) {
+        let place = self.place.as_deref().unwrap_or_default();
+        let parts = place.rsplit_once(':');
+        let parts = parts.and_then(|(file, line)| Some((file, line.parse().ok()?)));
+        parts.map_or((place, None), |(file, line)| (file, Some(line)))
+    }
+
     /// A refusal that concerns all files together.
     pub fn general(reason: impl Into<String>, needed: impl Into<String>) -> Self {
         Self {

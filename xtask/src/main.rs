@@ -51,6 +51,19 @@ const TASKS: &[Task] = &[
         does: "counts instructions in QEMU; `counts --search` looks for requests that cost more, `counts --bless` writes tests/counts.csv, tests/worst.csv and docs/costs.md, `counts --page` docs/costs.md alone",
     },
     Task {
+        name: "web",
+        program: &[
+            "cargo",
+            "run",
+            "--quiet",
+            "--locked",
+            "-p",
+            "mixer-web-bundle",
+            "--",
+        ],
+        does: "makes the page of web/ as static files; `web -o FOLDER`",
+    },
+    Task {
         name: "soak",
         program: tests!("soak"),
         does: "draws frames and requests for `--minutes M` with `--seed S` and holds every answer to the physics; prints failures with what reproduces them",

@@ -24,10 +24,10 @@ use crate::{Done, file};
 #[command(verbatim_doc_comment)]
 pub struct ImportArgs {
     /// The parameter file
-    file: PathBuf,
+    pub file: PathBuf,
     /// The pair's model: what `cargo mixer identify` writes, or another airframe file
     #[arg(long, value_name = "FILE")]
-    pair: Option<PathBuf>,
+    pub pair: Option<PathBuf>,
     /// Distance of the units from the centre, m: only PX4's files have it
     #[arg(long, value_name = "METRES")]
     arm: Option<f64>,
@@ -56,16 +56,22 @@ pub fn run(args: &ImportArgs) -> Done {
     import(args).map_err(crate::print_error)
 }
 
+impl ImportArgs {
+    /// What the parameters do not say, as far as the arguments say it.
+    pub fn options(&self) -> Options<'_> {
+        Options {
+            arm_m: self.arm,
+            upper: &self.upper,
+            pulses_us: self.pwm_range,
+            name: self.name.as_deref(),
+        }
+    }
+}
+
 fn import(args: &ImportArgs) -> Result<(), String> {
     let parameters = file::source(&args.file)?;
     let pair = args.pair.as_deref().map(file::source).transpose()?;
-    let options = Options {
-        arm_m: args.arm,
-        upper: &args.upper,
-        pulses_us: args.pwm_range,
-        name: args.name.as_deref(),
-    };
-    let made = import::import(&parameters, pair.as_ref(), &options)?;
+    let made = import::import(&parameters, pair.as_ref(), &args.options())?;
     file::save(&args.output, &made.text)?;
     crate::print_notes(&made.notes);
     Ok(())

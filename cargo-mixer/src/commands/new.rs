@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use mixer_compiler::Source;
 use mixer_files::new::{Error, new};
 
 use crate::frame_args::FrameArgs;
@@ -17,7 +18,7 @@ pub struct NewArgs {
     frame: FrameArgs,
     /// The pair's model: what `cargo mixer identify -o` writes, or another airframe's
     #[arg(long, value_name = "PAIR.toml")]
-    pair: Option<PathBuf>,
+    pub pair: Option<PathBuf>,
     /// The airframe file to write
     #[arg(short, long, value_name = "AIRFRAME.toml")]
     output: PathBuf,
@@ -26,13 +27,22 @@ pub struct NewArgs {
     force: bool,
 }
 
+impl NewArgs {
+    /// The file's text with this pair's model.
+    ///
+    /// # Errors
+    /// A file without `[pair]`, an arm that is missing.
+    pub fn text(&self, pair: Option<&Source>) -> Result<String, Error> {
+        new(&self.frame.frame(Some(&self.output)), pair)
+    }
+}
+
 /// Runs the command.
 pub fn run(args: &NewArgs) -> Done {
     file::writable(&args.output, args.force, &args.pair)?;
     let pair = args.pair.as_deref().map(file::source).transpose();
     let pair = pair.map_err(print_error)?;
-    let made = new(&args.frame.frame(Some(&args.output)), pair.as_ref());
-    let text = made.map_err(|error| match error {
+    let text = args.text(pair.as_ref()).map_err(|error| match error {
         Error::Pair(message) => print_error(message),
         Error::Frame(message) => bad_usage(message),
     })?;

@@ -40,12 +40,7 @@ impl Physics<'_> {
 
     /// `[f, Q]` of a unit. A rotor that is out gives nothing; its partner gives what the file says
     /// of a rotor alone, else the pair's polynomial at throttle 0 of the other.
-    pub(crate) fn efforts<T: Copy + Into<f64>>(
-        &self,
-        unit: &Unit,
-        throttle: &[T],
-        health: Health,
-    ) -> [f64; 2] {
+    pub fn efforts<T: Copy + Into<f64>>(&self, unit: &Unit, throttle: &[T], health: Health) -> [f64; 2] {
         let channels = [unit.upper_channel, unit.lower_channel];
         let [u, l] = channels.map(|channel| throttle[channel].into());
         let pair = &self.airframe.pair;

@@ -1,0 +1,188 @@
+// The mixer under sliders: draws what Desk.scene and Desk.mix answer.
+"use strict";
+const AXES = [["roll", "N m"], ["pitch", "N m"], ["yaw", "N m"], ["thrust", "N"]];
+const SATURATED = { "+": (axis) => `less ${axis} than asked`, "-": (axis) => `more ${axis} than asked` };
+
+function drawn(name, attributes = {}, text = "") {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  made.textContent = text;
+  return made;
+}
+
+// The text of a number of a table: all the digits that the command line prints.
+const exact = (x) => String(x);
+const short = (x) => Number(x.toPrecision(4)).toString();
+
+class Hand {
+  // `moved` is told of every new position, `edited` of a key of [allocation] with its new value.
+  constructor(ask, moved, edited) {
+    Object.assign(this, { ask, moved, edited, busy: false, stale: false, frames: 0 });
+    document.getElementById("hover").addEventListener("click", () => this.put({ wrench: [0, 0, 0, this.scene.hover_n] }));
+    for (const key of ["airmode", "yaw_reserve_nm", "power_bias_nm_per_n"]) {
+      const field = document.getElementById(key);
+      field.addEventListener("change", () => edited(key, key === "airmode" ? JSON.stringify(field.value) : field.value.trim()));
+    }
+  }
+
+  // A new airframe; `at` is the position { wrench, volts, density, failed } of the one before, or null.
+  async show(at) {
+    this.scene = await this.ask("scene", at?.volts ?? NaN, at?.density ?? NaN);
+    const { largest, hover_n, volts, density, units } = this.scene;
+    const within = (x, ends) => (ends ? Math.min(ends[2], Math.max(ends[0], x ?? ends[1])) : 0);
+    const limit = (x, k) => (k === 3 ? Math.min(largest[3], Math.max(0, x)) : Math.min(largest[k], Math.max(-largest[k], x)));
+    this.at = {
+      wrench: (at?.wrench ?? [0, 0, 0, hover_n]).map(limit),
+      volts: within(at?.volts, volts),
+      density: within(at?.density, density),
+      failed: (at?.failed ?? []).filter((channel) => channel < 2 * units.length),
+    };
+    this.sliders();
+    this.rotors();
+    this.frame();
+    this.put({});
+  }
+
+  sliders() {
+    const { largest, volts, density } = this.scene;
+    const one = (id, label, low, high, get, put) => {
+      const step = 10 ** Math.floor(Math.log10((high - low) / 400));
+      const range = element("input", { type: "range", id, min: low, max: high, step: "any", value: get() });
+      const number = element("input", { type: "number", id: `${id}-number`, step: "any", value: get(), ariaLabel: label });
+      range.addEventListener("input", () => put(Math.min(high, Math.max(low, Number((Math.round(range.value / step) * step).toPrecision(12))))));
+      number.addEventListener("change", () => put(Number(number.value)));
+      range.addEventListener("keydown", (event) => {
+        const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -20, PageUp: 20 }[event.key];
+        if (!by) return;
+        event.preventDefault();
+        put(Math.min(high, Math.max(low, Number((get() + by * step).toPrecision(12)))));
+      });
+      this.shown.push(() => { range.value = get(); if (document.activeElement !== number) number.value = get(); });
+      return element("label", {}, element("span", { textContent: label }), range, number);
+    };
+    this.shown = [];
+    const axis = ([name, unit], k) => one(name, `${name}, ${unit}`, k === 3 ? 0 : -largest[k], largest[k],
+      () => this.at.wrench[k], (x) => this.put({ wrench: this.at.wrench.with(k, x) }));
+    const condition = (key, label, ends) => one(key, label, ends[0], ends[2], () => this.at[key], (x) => this.put({ [key]: x }));
+    document.getElementById("sliders").replaceChildren(
+      ...AXES.map((name, k) => largest[k] > 0 && axis(name, k)).filter(Boolean),
+      ...[volts && condition("volts", "voltage, V", volts), density && condition("density", "density, kg/m\u00b3", density)].filter(Boolean));
+    for (const key of ["airmode", "yaw_reserve_nm", "power_bias_nm_per_n"]) document.getElementById(key).value = this.scene[key];
+  }
+
+  // Every rotor as { channel, layer (0 upper, 1 lower), unit }, by output.
+  all() {
+    const rotors = this.scene.units.flatMap((unit) => unit.channels.map((channel, layer) => ({ channel, layer, unit })));
+    return rotors.sort((a, b) => a.channel - b.channel);
+  }
+
+  rotors() {
+    const label = ({ channel, layer, unit }) => `${channel} ${"\u2191\u2193"[layer]} ${unit.place}`;
+    document.getElementById("rotors").replaceChildren(...this.all().map((rotor) => {
+      const button = element("button", { type: "button", textContent: label(rotor) });
+      button.dataset.output = rotor.channel;
+      button.addEventListener("click", () => {
+        const { failed } = this.at, { channel } = rotor;
+        this.put({ failed: failed.includes(channel) ? failed.filter((other) => other !== channel) : [...failed, channel] });
+      });
+      this.shown.push(() => button.setAttribute("aria-pressed", this.at.failed.includes(rotor.channel)));
+      return button;
+    }));
+    const row = (head, cells) => element("tr", {}, element("th", { scope: "row", textContent: head }), ...cells.map(() => element("td")));
+    document.querySelector("#throttles tbody").replaceChildren(...this.all().map((rotor) => row(label(rotor), [0, 1])));
+    document.querySelector("#wrench tbody").replaceChildren(...AXES.map(([name, unit]) => row(`${name}, ${unit}`, [0, 1, 2])));
+  }
+
+  // What does not move: the frame from above and the axes of the attainable set.
+  frame() {
+    const { units, box_n_nm: [[low_n, high_n], [low_nm, high_nm]] } = this.scene;
+    const top = document.getElementById("top"), set = document.getElementById("set");
+    const far = Math.max(1e-9, ...units.map(({ place_m }) => Math.hypot(...place_m)));
+    const place = ({ place_m: [x, y] }) => [150 + 98 * y / far, 150 - 98 * x / far];
+    const apart = units.flatMap((a, k) => units.slice(k + 1).map((b) => Math.hypot(place(a)[0] - place(b)[0], place(a)[1] - place(b)[1])));
+    const radius = Math.min(40, 0.44 * Math.min(90, ...apart));
+    top.setAttribute("viewBox", "0 0 300 300");
+    top.replaceChildren(...units.map((unit) => drawn("path", { class: "arm", d: `M150 150L${place(unit)}` })),
+      drawn("path", { class: "forward", d: "M150 128v-26m-7 9l7 -9l7 9" }));
+    this.rings = [];
+    for (const unit of units) {
+      const [x, y] = place(unit);
+      top.append(drawn("circle", { class: "disk", cx: x, cy: y, r: radius }));
+      unit.channels.forEach((channel, layer) => {
+        const at = { cx: x, cy: y, r: radius - 15 + 10 * layer, pathLength: 1 };
+        const clockwise = (unit.upper_spin === "cw") === (layer === 0);
+        const turn = `rotate(-90 ${x} ${y})${clockwise ? "" : ` matrix(1 0 0 -1 0 ${2 * y})`}`;
+        const ring = drawn("circle", { ...at, class: layer ? "ring lower" : "ring", transform: turn });
+        const text = drawn("text", { class: "middle", x, y: y - 2 + 13 * layer });
+        top.append(drawn("circle", { ...at, class: "track" }), ring, text);
+        this.rings[channel] = { ring, text, spin: clockwise ? "\u21bb" : "\u21ba" };
+      });
+    }
+    set.setAttribute("viewBox", "0 0 320 230");
+    this.toX = (n) => 56 + 250 * (n - low_n) / (high_n - low_n || 1);
+    this.toY = (nm) => 190 - 176 * (nm - low_nm) / (high_nm - low_nm || 1);
+    const [left, right, bottom, above] = [56, 306, 190, 14];
+    this.border = drawn("path", { class: "fill-1 border" });
+    const dots = (kind) => units.map(() => drawn("circle", { class: kind, r: 5 }));
+    this.dots = [dots("unit-dot"), dots("unit-hollow")];
+    set.replaceChildren(this.border, drawn("path", { class: "frame", d: `M${left} ${above}V${bottom}H${right}` }),
+      drawn("path", { class: "grid", d: `M${left} ${this.toY(0)}H${right}` }),
+      ...[low_n, high_n].map((n) => drawn("text", { class: "tick middle", x: this.toX(n), y: 206 }, short(n))),
+      ...[low_nm, 0, high_nm].map((nm) => drawn("text", { class: "tick end", x: 50, y: this.toY(nm) + 4 }, short(nm))),
+      drawn("text", { class: "middle", x: 181, y: 222 }, "thrust, N"), drawn("text", { x: 60, y: 24 }, "torque, N m"),
+      ...this.dots.flat());
+  }
+
+  // A new position: at most one mix is under way, and the newest waits.
+  put(change) {
+    Object.assign(this.at, change);
+    this.moved(this.at);
+    for (const show of this.shown) show();
+    this.stale = true;
+    if (!this.busy) this.run();
+  }
+
+  async run() {
+    this.busy = true;
+    while (this.stale) {
+      this.stale = false;
+      const { wrench, volts, density, failed } = this.at;
+      try {
+        const [scene, mixed] = await Promise.all([this.ask("scene", volts, density), this.ask("mix", wrench, volts, density, failed)]);
+        await new Promise(requestAnimationFrame);
+        this.draw(scene, mixed);
+      } catch (error) {
+        this.flag(String(error.message), true);
+      }
+    }
+    this.busy = false;
+  }
+
+  flag(text, wrong) {
+    const flags = document.getElementById("flags");
+    flags.textContent = text;
+    flags.classList.toggle("error", wrong);
+  }
+
+  draw(scene, { throttles, achieved, saturation: [bits, words], efforts, isolated }) {
+    this.frames += 1;
+    const told = words.split(" ").map((word) => SATURATED[word.at(-1)]?.(word.slice(0, -1)) ?? `${word} outside its range and clamped`);
+    this.flag(bits === 0 ? "Delivered in full" : told.join(", "), bits !== 0);
+    document.getElementById("flags").dataset.bits = bits;
+    const fill = (table, rows) => document.querySelectorAll(`#${table} tbody tr`).forEach((row, k) =>
+      row.querySelectorAll("td").forEach((cell, column) => { cell.textContent = rows[k][column]; }));
+    fill("throttles", throttles.map((throttle, channel) => [exact(throttle), exact(isolated.throttles[channel])]));
+    fill("wrench", AXES.map((_, k) => [exact(this.at.wrench[k]), exact(achieved[k]), short(isolated.given[k])]));
+    throttles.forEach((throttle, channel) => {
+      const { ring, text, spin } = this.rings[channel], out = this.at.failed.includes(channel);
+      ring.classList.toggle("out", out);
+      ring.setAttribute("stroke-dasharray", out ? ".02 .02" : `${throttle} 1`);
+      text.textContent = out ? `${channel} out` : `${channel}${spin} ${Math.round(100 * throttle)}`;
+    });
+    this.border.setAttribute("d", `M${scene.border.map(([n, nm]) => `${this.toX(n).toFixed(1)} ${this.toY(nm).toFixed(1)}`).join("L")}Z`);
+    [efforts, isolated.efforts].forEach((of, kind) => of.forEach(([n, nm], unit) => {
+      this.dots[kind][unit].setAttribute("cx", this.toX(n));
+      this.dots[kind][unit].setAttribute("cy", this.toY(nm));
+    }));
+  }
+}

@@ -1,0 +1,348 @@
+// The page: files and forms in, one airframe on the desk, what came of it out. Everything is computed by the worker.
+"use strict";
+const $ = (id) => document.getElementById(id);
+const KEY = "coaxial-mixer";
+const FIELDS = ["frame", "arm", "name", "outputs", "options", "pulses"];
+const KINDS = { map: "bench file of a pair", run: "run of one rotor", pair: "pair's tables", parameters: "vehicle's parameters" };
+// From this many points on a pair's bench file needs no prediction to stand on (cargo mixer identify --prior).
+const ENOUGH = 16;
+const OUTPUTS = [
+  ["airframe", "Airframe file"], ["pair", "Pair's tables"], ["report", "Report page"], ["px4", "PX4 parameters"],
+  ["ardupilot", "ArduPilot parameters"], ["px4-own", "PX4, its own mixer"], ["ardupilot-own", "ArduPilot, its own mixer"],
+  ["rs", "Generated Rust"], ["vectors.csv", "Golden outputs"], ["rotors-out.csv", "Golden, rotors out"], ["report.txt", "Every number"],
+];
+
+const today = () => new Date().toISOString().slice(0, 10);
+const later = (wait, run) => { let timer; return (...words) => { clearTimeout(timer); timer = setTimeout(run, wait, ...words); }; };
+const quoted = (word) => (/^[\w./,=:+-]+$/.test(word) ? word : `'${word}'`);
+
+// --- the worker
+
+class Refused extends Error {
+  constructor(why) {
+    super(typeof why === "string" ? why : why.map(({ message }) => message).join("; "));
+    this.faults = typeof why === "string" ? [{ file: "", message: why, help: "" }] : why;
+  }
+}
+const waiting = new Map();
+let asked = 0;
+const worker = new Worker(URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" })));
+worker.onmessage = ({ data: { id, value, error } }) => {
+  const [resolve, reject] = waiting.get(id);
+  waiting.delete(id);
+  if (error) reject(new Error(`the compiler stopped: ${error}; reload the page, which keeps your files`));
+  else if (value?.Err !== undefined) reject(new Refused(value.Err));
+  else resolve(value?.Ok ?? value);
+};
+const loaded = new Promise((...both) => waiting.set(0, both));
+worker.postMessage(Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0)));
+$("module").remove();
+const ask = (method, ...words) => new Promise((...both) => {
+  waiting.set(asked += 1, both);
+  worker.postMessage({ id: asked, method, words });
+});
+
+// --- the state, which a reload keeps
+
+const fresh = () => ({ files: [], form: Object.fromEntries(FIELDS.map((key) => [key, key === "frame" ? "x8" : ""])), airframe: null, made: "", before: null, tab: "", hand: null });
+let state = fresh();
+let pair = null, offered = null, benchFaults = [], told = null;
+
+function keep() {
+  try {
+    localStorage.setItem(KEY, JSON.stringify(state));
+  } catch {
+    say("The files are too large for the browser to keep them over a reload.", true);
+  }
+}
+const keepSoon = later(200, keep);
+addEventListener("pagehide", keep);
+
+function say(text, wrong = false) {
+  $("status").textContent = text;
+  $("status").classList.toggle("error", wrong);
+}
+
+async function packed(text, stream) {
+  return new Uint8Array(await new Response(new Blob([text]).stream().pipeThrough(stream)).arrayBuffer());
+}
+async function link() {
+  const bytes = await packed(JSON.stringify(state.airframe), new CompressionStream("deflate-raw"));
+  const text = btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  return `${location.href.split("#")[0]}#airframe=${text}`;
+}
+async function linked() {
+  const found = location.hash.match(/^#airframe=([\w-]+)$/);
+  if (!found) return;
+  history.replaceState(null, "", location.href.split("#")[0]);
+  try {
+    const bytes = Uint8Array.from(atob(found[1].replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
+    const { name, text } = JSON.parse(new TextDecoder().decode(await packed(bytes, new DecompressionStream("deflate-raw"))));
+    adopt({ name: String(name), text: String(text) }, "");
+  } catch {
+    say("The link holds no whole airframe: copy all of it.", true);
+  }
+}
+
+// --- files
+
+async function drop(files) {
+  for (const file of files) {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    let text;
+    try {
+      text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes);
+    } catch {
+      text = Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""); // Latin-1, as the command line reads it
+    }
+    const { kind, points } = await ask("kind", file.name, text);
+    if (kind === "airframe") adopt({ name: file.name, text }, "");
+    else {
+      state.files = [...state.files.filter(({ name }) => name !== file.name), { name: file.name, text, kind, points }];
+      state.tab = file.name;
+    }
+  }
+  await remake();
+}
+
+const of = (kind) => state.files.filter((file) => file.kind === kind);
+const named = (files) => [files.map(({ name }) => name), files.map(({ text }) => text)];
+
+// The command that makes the pair of the bench files; null without any.
+function pairCommand() {
+  const [maps, runs] = ["map", "run"].map((kind) => of(kind).map(({ name }) => name));
+  const [run, lower] = runs;
+  const beside = lower ? ["--lower-single", lower] : [];
+  if (!maps.length) return run ? ["predict", run, ...beside] : null;
+  const few = of("map").reduce((sum, { points }) => sum + points, 0) < ENOUGH;
+  return few && run ? ["identify", ...maps, "--prior", run, ...beside] : ["identify", ...maps, ...runs];
+}
+
+// The command that makes the airframe, and its file; null where the frame is not told.
+function airframeCommand() {
+  const { frame, arm, name, outputs } = state.form, [parameters] = of("parameters");
+  const file = `${name || `my-${parameters ? "airframe" : frame}`}.toml`;
+  const more = [...(pair ? ["--pair", pair.name] : []), ...(arm ? ["--arm", arm] : []), ...(name ? ["--name", name] : [])];
+  if (parameters) return [file, ["import", parameters.name, ...more, "-o", file]];
+  if (!arm && frame !== "single") return null;
+  return [file, ["new", "--frame", frame, ...more, ...(outputs ? ["--outputs", outputs] : []), "-o", file]];
+}
+
+let turn = 0;
+async function remake() {
+  const mine = turn += 1, lines = [];
+  const run = async (words, more) => {
+    lines.push(["cargo mixer", ...words, ...more].map((word, k) => (k ? quoted(word) : word)).join(" "));
+    return ask("make", [...words, ...more], ...named([...state.files, ...(pair ? [pair] : [])]), today());
+  };
+  let report = "", notes = [], made = null, faults = [];
+  [pair] = of("pair");
+  try {
+    const command = pairCommand(), options = await ask("words", state.form.options);
+    if (command) {
+      const answer = await run(command, ["-o", "pair.toml", ...options]);
+      [pair, report, notes] = [{ name: "pair.toml", text: answer.toml }, answer.report, answer.notes];
+    }
+    const airframe = airframeCommand();
+    if (airframe) {
+      const answer = await run(airframe[1], command ? [] : options);
+      made = { name: airframe[0], text: answer.toml };
+      notes = [...notes, ...answer.notes];
+    } else if (command) notes = [...notes, "the arm is missing: with a frame and its arm these tables become an airframe"];
+  } catch (error) {
+    if (!(error instanceof Refused)) return say(error.message, true);
+    faults = error.faults.map((fault) => ({ severity: "error", ...fault }));
+  }
+  if (mine !== turn) return;
+  // Notes about rows name them as errors do.
+  benchFaults = [...faults, ...notes.map((note) => {
+    const [, file, line] = note.match(/^(?:warning: )?(.+?):(\d+): /) ?? [];
+    return { severity: "warning", file: file ?? "", line: line && Number(line), message: note, help: "" };
+  })];
+  $("command-name").textContent = pairCommand()?.[0] ?? airframeCommand()?.[1][0] ?? "identify";
+  $("help").textContent = await ask("help", $("command-name").textContent);
+  $("command").textContent = lines.join(" && ");
+  $("made-by").hidden = !lines.length;
+  $("pair-report").textContent = report;
+  $("pair-report").hidden = !report;
+  const theirs = state.airframe && state.airframe.text !== state.made && state.airframe.text !== made?.text;
+  offered = theirs && made?.text !== state.made ? made : null;
+  if (made && !theirs && made.text !== state.airframe?.text) adopt(made, made.text);
+  else show();
+}
+const remakeSoon = later(250, remake);
+
+// --- the airframe
+
+function adopt(airframe, made) {
+  if (state.airframe && state.airframe.text !== state.made && state.airframe.text !== airframe.text) state.before = state.airframe;
+  [state.airframe, state.made, state.tab, offered] = [airframe, made, "", null];
+  show();
+  return check();
+}
+
+let checking = 0;
+async function check() {
+  if (!state.airframe) return;
+  const mine = checking += 1, began = performance.now();
+  let answer;
+  try {
+    answer = await ask("check", state.airframe.name, state.airframe.text);
+  } catch (error) {
+    return say(error.message, true);
+  }
+  if (mine !== checking) return;
+  told = answer;
+  const [errors, warnings] = [told.errors.length, told.warnings.length];
+  const count = (n, word) => `${n || "no"} ${word}${n === 1 ? "" : "s"}`;
+  show();
+  if (errors) return say(`${count(errors, "error")} in ${state.airframe.name}`, true);
+  say(`${told.name} compiles: ${count(warnings, "warning")}, ${Math.round(performance.now() - began)} ms`);
+  await hand.show(state.hand);
+  reportSoon();
+}
+const checkSoon = later(250, check);
+
+const reportSoon = later(400, async () => {
+  const mine = checking;
+  const answer = await ask("report", ...named(of("map")), today()).catch((error) => ({ body: "", refused: error.message }));
+  if (mine !== checking) return;
+  $("report").innerHTML = answer.body;
+  if (answer.refused) $("report").prepend(element("p", { className: "warnings", textContent: `Bench files are not shown: ${answer.refused}` }));
+  if (answer.model) report($("report"), JSON.parse(answer.model));
+});
+
+const editor = new Editor($("editor"), (text) => {
+  const file = state.files.find(({ name }) => name === state.tab);
+  if (file) {
+    file.text = text;
+    remakeSoon();
+  } else {
+    state.airframe ??= { name: "airframe.toml", text: "" };
+    state.airframe.text = text;
+    checkSoon();
+  }
+  keepSoon();
+});
+
+const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); }, async (key, value) => {
+  try {
+    state.airframe.text = await ask("set", state.airframe.text, "allocation", key, value);
+    state.tab = "";
+    await check();
+  } catch (error) {
+    say(error.message, true);
+  }
+});
+
+// --- what is shown of the state
+
+function show() {
+  keepSoon();
+  const edited = [...state.files, ...(state.airframe ? [{ name: "", label: state.airframe.name, text: state.airframe.text }] : [])];
+  if (!edited.some(({ name }) => name === state.tab)) state.tab = state.airframe ? "" : (edited[0]?.name ?? "");
+  $("tabs").replaceChildren(...edited.map(({ name, label }) => {
+    const tab = element("button", { type: "button", role: "tab", textContent: label ?? name });
+    tab.setAttribute("aria-selected", name === state.tab);
+    tab.addEventListener("click", () => { state.tab = name; show(); });
+    return tab;
+  }));
+  const records = ["error", "warning"].flatMap((severity) => (told?.[`${severity}s`] ?? []).map((record) => ({ severity, ...record })));
+  const faults = [...benchFaults, ...(state.airframe ? records : [])];
+  editor.text = edited.find(({ name }) => name === state.tab)?.text ?? "";
+  editor.mark(faults.filter(({ file }) => file === (state.tab || state.airframe?.name)));
+  $("faults").replaceChildren(...faults.map(({ severity, code, file, line, column, message, help }) => {
+    const item = element("li", { className: severity }, element("b", { textContent: `${severity}${code ? ` ${code}` : ""} ` }));
+    if (line) {
+      const place = element("button", { type: "button", className: "place", textContent: `${file}:${line}` });
+      place.addEventListener("click", () => { state.tab = file === state.airframe?.name ? "" : file; show(); editor.go(line, column ?? 1); });
+      item.append(place, " ");
+    } else if (file) item.append(`${file} `);
+    item.append(message, ...(help ? [element("br"), `Mend: ${help}`] : []));
+    return item;
+  }));
+  $("dropped").replaceChildren(...state.files.map((file) => {
+    const kinds = element("select", { ariaLabel: `What ${file.name} is` }, ...Object.entries(KINDS).map(([value, textContent]) => element("option", { value, textContent })));
+    kinds.value = file.kind;
+    kinds.addEventListener("change", () => { file.kind = kinds.value; remake(); });
+    const remove = element("button", { type: "button", textContent: "Remove", ariaLabel: `Remove ${file.name}` });
+    remove.addEventListener("click", () => { state.files = state.files.filter((other) => other !== file); remake(); });
+    return element("li", {}, element("b", { textContent: file.name }), kinds, remove);
+  }));
+  const compiles = Boolean(state.airframe && told?.verdict);
+  $("verdict").textContent = compiles ? told.verdict : "";
+  for (const id of ["verdict", "hand", "save"]) $(id).hidden = !compiles;
+  if (!compiles) $("report").replaceChildren();
+  $("replace").hidden = !offered;
+  $("back").hidden = !state.before;
+  for (const key of FIELDS) if (document.activeElement !== $(key)) $(key).value = state.form[key];
+  const file = state.airframe?.name ?? "airframe.toml";
+  $("library").textContent = `cargo install cargo-mixer\ncargo mixer library ${quoted(file)} --target thumbv7em-none-eabihf -o lib`;
+  $("downloads").querySelector("[data-output=pair]").hidden = !pair;
+}
+
+// --- saving
+
+async function saved(what) {
+  if (what === "airframe") return state.airframe;
+  if (what === "pair") return pair;
+  if (what === "report") return { name: `${told.name}.html`, text: (await ask("report", ...named(of("map")), today())).page };
+  return ask("output", what, state.form.pulses);
+}
+async function save(what) {
+  const note = (className, textContent) => element("li", { className, textContent });
+  try {
+    const { name, text, notes = [] } = await saved(what);
+    const url = URL.createObjectURL(new Blob([text], { type: "application/octet-stream" }));
+    element("a", { href: url, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 10000);
+    $("notes").replaceChildren(...notes.map((text) => note("warning", `${name}: ${text}`)));
+  } catch (error) {
+    $("notes").replaceChildren(note("error", error.message));
+  }
+}
+
+// --- events
+
+$("downloads").append(...OUTPUTS.map(([what, label]) => {
+  const button = element("button", { type: "button", textContent: label });
+  button.dataset.output = what;
+  button.addEventListener("click", () => save(what));
+  return element("li", {}, button);
+}));
+$("choose").addEventListener("change", () => { drop([...$("choose").files]); $("choose").value = ""; });
+for (const kind of ["dragover", "dragleave", "drop"]) {
+  addEventListener(kind, (event) => {
+    event.preventDefault();
+    $("drop").classList.toggle("over", kind === "dragover");
+    if (kind === "drop") drop([...event.dataTransfer.files]);
+  });
+}
+for (const key of FIELDS) {
+  $(key).addEventListener("input", () => { state.form[key] = $(key).value.trim(); keepSoon(); if (key !== "pulses") remakeSoon(); });
+}
+$("frame-form").addEventListener("submit", (event) => event.preventDefault());
+$("example").addEventListener("click", () => { Object.assign(state.form, { frame: "x8", arm: "0.45" }); remake(); });
+$("replace").addEventListener("click", () => adopt(offered, offered.text));
+$("back").addEventListener("click", () => { const { before } = state; state.before = null; adopt(before, ""); });
+$("share").addEventListener("click", async () => {
+  const text = await link();
+  await navigator.clipboard?.writeText(text).catch(() => {});
+  history.replaceState(null, "", text);
+  say("The link is in the clipboard and in the address.");
+});
+$("forget").addEventListener("click", () => { [state, told, benchFaults] = [fresh(), null, []]; history.replaceState(null, "", location.href.split("#")[0]); say("Forgotten."); remake(); });
+
+(async () => {
+  try {
+    state = { ...state, ...JSON.parse(localStorage.getItem(KEY) ?? "{}") };
+  } catch {
+    // What another version kept, or what cannot be read, is no reason not to begin.
+  }
+  await loaded;
+  say("Ready: drop a file, or begin with a frame.");
+  await linked();
+  await check();
+  await remake();
+  if (location.protocol.startsWith("http")) navigator.serviceWorker?.register("sw.js").catch(() => {});
+})();

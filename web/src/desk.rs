@@ -1,0 +1,162 @@
+//! The airframe on the desk: what `check`, `report`, `params`, `expand` and `golden` give of it.
+
+use cargo_mixer::bench_args::pwm_range;
+use cargo_mixer::commands::report::{bench_points, sha256};
+use isolated_rotors::IsolatedTables;
+use mixer_compiler::diagnostic::Record;
+use mixer_compiler::{Compiled, Source};
+use mixer_files::golden;
+use mixer_files::params::{Options, params};
+use mixer_files::stack::Stack;
+use mixer_identify::identified::Settings;
+use mixer_report::origin::Origin;
+use mixer_report::page;
+use mixer_report::study::Study;
+use serde::Serialize;
+
+use crate::make::Files;
+
+/// An airframe that compiled.
+pub struct Checked {
+    /// What came of it.
+    pub compiled: Compiled,
+    /// The mixer that takes its rotors for isolated.
+    pub isolated: IsolatedTables,
+}
+
+/// What came of an airframe file.
+#[derive(Debug, Serialize)]
+pub struct Told {
+    /// Why it does not compile.
+    pub errors: Vec<Record>,
+    /// What is probably a mistake in it.
+    pub warnings: Vec<Record>,
+    /// The verdict of `cargo mixer check`; empty where it does not compile.
+    pub verdict: String,
+    /// The airframe's name, likewise.
+    pub name: String,
+}
+
+/// Compiles an airframe file.
+pub fn check(name: &str, text: &str) -> (Option<Checked>, Told) {
+    match mixer_facts::check(&Source::new(name, text)) {
+        Ok(checked) => {
+            let told = Told {
+                errors: Vec::new(),
+                warnings: checked.warnings.records(),
+                verdict: checked.verdict(),
+                name: checked.compiled.airframe.name.clone(),
+            };
+            let isolated = IsolatedTables::new(&checked.compiled);
+            let compiled = checked.compiled;
+            (Some(Checked { compiled, isolated }), told)
+        }
+        Err(faults) => {
+            let told = Told {
+                errors: faults.records(),
+                warnings: Vec::new(),
+                verdict: String::new(),
+                name: String::new(),
+            };
+            (None, told)
+        }
+    }
+}
+
+/// A report to be shown.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    /// The markup of the page's body.
+    pub body: String,
+    /// What its script needs, JSON.
+    pub model: String,
+    /// The whole page, as `cargo mixer report` writes it.
+    pub page: String,
+    /// Why the bench files are not shown; empty where they are.
+    pub refused: String,
+}
+
+/// A file to save.
+#[derive(Debug, Serialize)]
+pub struct Output {
+    /// Its name.
+    pub name: String,
+    /// Its content.
+    pub text: String,
+    /// What its user has to know.
+    pub notes: Vec<String>,
+}
+
+impl Checked {
+    /// The report with bench files of the pair, read as `identify` read them.
+    ///
+    /// # Errors
+    /// None; bench files that cannot be shown are said in the report.
+    pub fn report(&self, bench: &Files, today: String) -> Result<Report, String> {
+        let texts = bench.texts();
+        let shown = match texts.as_slice() {
+            [] => Ok(None),
+            texts => bench_points(&self.compiled, texts, Settings::default()).map(Some),
+        };
+        let (bench, refused) = match shown {
+            Ok(bench) => (bench, String::new()),
+            Err(refused) => (None, refused),
+        };
+        let origin = Origin {
+            sha256: Some(sha256(self.compiled.source.text.as_bytes())),
+            date: Some(today),
+        };
+        let study = Study::new(&self.compiled, None);
+        let content = page::content(&study, bench.as_ref(), &origin);
+        Ok(Report {
+            page: page::page(&study, bench.as_ref(), &origin),
+            body: content.body,
+            model: content.model,
+            refused,
+        })
+    }
+
+    /// A file: `px4` or `ardupilot`, parameters for this mixer, with `-own` those for the stack's own;
+    /// `rs`, `report.txt`, `vectors.csv` or `rotors-out.csv`, a golden output. `pulses` are pulse widths
+    /// of throttle 0 and 1, as `1000,2000`, or empty.
+    ///
+    /// # Errors
+    /// Parameters that cannot be, and a word that is none of these.
+    pub fn output(&self, what: &str, pulses: &str) -> Result<Output, String> {
+        let file = self.compiled.source.file_name();
+        let name = &self.compiled.airframe.name;
+        let (stack, own) = match what.strip_suffix("-own") {
+            Some(stack) => (stack, true),
+            None => (what, false),
+        };
+        if let Some(&(stack, ..)) = Stack::ALL.iter().find(|(_, word, _)| *word == stack) {
+            let pulses_us = match pulses.trim() {
+                "" => None,
+                given => Some(pwm_range(given)?),
+            };
+            let options = Options {
+                own,
+                pulses_us,
+                ..Options::of(stack)
+            };
+            let made = params(&self.compiled, &file, &options)?;
+            let ending = match stack {
+                Stack::Px4 => "params",
+                Stack::Ardupilot => "parm",
+            };
+            return Ok(Output {
+                name: format!("{name}.{ending}"),
+                text: made.text,
+                notes: made.notes,
+            });
+        }
+        let mut outputs = golden::outputs(&self.compiled).into_iter();
+        let found = outputs.find(|(file, _)| file.strip_prefix(&format!("{name}.")) == Some(what));
+        let (name, text) = found.ok_or_else(|| format!("there is no output {what}"))?;
+        Ok(Output {
+            name,
+            text,
+            notes: Vec::new(),
+        })
+    }
+}

@@ -1,0 +1,196 @@
+//! Commands that make a pair's tables or an airframe file, by the arguments of the command line.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use cargo_mixer::bench_files::Outside;
+use cargo_mixer::commands::identify::{IdentifyArgs, NoAnswer};
+use cargo_mixer::commands::import::ImportArgs;
+use cargo_mixer::commands::new::NewArgs;
+use cargo_mixer::commands::predict::PredictArgs;
+use cargo_mixer::place::tables_or_airframe;
+use clap::{CommandFactory as _, Parser};
+use mixer_compiler::Source;
+use mixer_files::import;
+use mixer_files::plain::printable_lines;
+use mixer_identify::bench::read;
+use mixer_identify::refusal::Refusal;
+use mixer_identify::texts::{Answer, Text};
+use serde::Serialize;
+
+/// The commands, with the arguments that they have on the command line.
+#[derive(Parser)]
+#[command(name = "cargo mixer", bin_name = "cargo mixer")]
+enum Make {
+    Identify(Box<IdentifyArgs>),
+    Predict(Box<PredictArgs>),
+    Import(ImportArgs),
+    New(NewArgs),
+}
+
+/// The files that words can name.
+#[derive(Debug, Default)]
+pub struct Files(BTreeMap<String, String>);
+
+impl Files {
+    /// Files with their names and texts.
+    pub fn new(names: Vec<String>, texts: Vec<String>) -> Self {
+        Files(names.into_iter().zip(texts).collect())
+    }
+
+    /// A bench file, or that there is none of this name.
+    fn text(&self, path: &Path) -> Text {
+        let name = path.to_string_lossy().into_owned();
+        let content = match self.0.get(&name) {
+            Some(text) => Ok(text.clone().into_bytes()),
+            None => Err(read::unreadable(&name, "the page has no such file")),
+        };
+        Text { name, content }
+    }
+
+    /// All of them as bench files.
+    pub fn texts(&self) -> Vec<Text> {
+        self.0.keys().map(|name| self.text(Path::new(name))).collect()
+    }
+
+    fn source(&self, path: &Path) -> Result<Source, Fault> {
+        let name = path.to_string_lossy().into_owned();
+        let text = self.0.get(&name);
+        text.map(|text| Source::new(name.as_str(), text.as_str()))
+            .ok_or_else(|| Fault::general(format!("{name}: the page has no such file")))
+    }
+}
+
+/// A file that was made.
+#[derive(Debug, Serialize)]
+pub struct Made {
+    /// The tables of a pair, or an airframe file.
+    pub toml: String,
+    /// What is said of it.
+    pub report: String,
+    /// What its user has to know.
+    pub notes: Vec<String>,
+}
+
+/// Why nothing was made.
+#[derive(Debug, Serialize)]
+pub struct Fault {
+    /// The file; empty where none is to blame.
+    pub file: String,
+    /// Its line, from 1.
+    pub line: Option<u64>,
+    /// What is wrong.
+    pub message: String,
+    /// What would mend it.
+    pub help: String,
+}
+
+impl Fault {
+    fn general(message: impl Into<String>) -> Self {
+        Fault {
+            file: String::new(),
+            line: None,
+            message: message.into(),
+            help: String::new(),
+        }
+    }
+
+    fn of(refusal: &Refusal) -> Self {
+        let (file, line) = refusal.file_and_line();
+        Fault {
+            file: file.to_owned(),
+            line,
+            message: refusal.reason.clone(),
+            help: refusal.needed.clone(),
+        }
+    }
+}
+
+/// Runs `identify`, `predict`, `import` or `new` with the words of the command line, the command
+/// first. Nothing is written: what `-o` would hold is the result.
+///
+/// # Errors
+/// Words that are none of the command's, files that cannot serve.
+pub fn make(words: &[String], files: &Files, today: String) -> Result<Made, Vec<Fault>> {
+    let words = ["cargo mixer"]
+        .into_iter()
+        .chain(words.iter().map(String::as_str));
+    let command = Make::try_parse_from(words)
+        .map_err(|error| vec![Fault::general(error.render().to_string().trim_end().to_owned())])?;
+    let outside = Outside {
+        text: &|path| files.text(path),
+        today: Some(today),
+    };
+    let general = |message: String| vec![Fault::general(message)];
+    let refused = |refusals: Vec<Refusal>| refusals.iter().map(Fault::of).collect::<Vec<_>>();
+    match command {
+        Make::Identify(args) => {
+            let (answer, notes) = args.answer(&outside).map_err(|none| match none {
+                NoAnswer::Usage(message) => general(message.to_owned()),
+                NoAnswer::Refused(refusals) => refused(refusals),
+            })?;
+            let text = tables_or_airframe(&answer, args.frame.as_ref(), args.output.as_deref());
+            Ok(answered(text.map_err(general)?, &answer, notes))
+        }
+        Make::Predict(args) => {
+            let answer = args.answer(&outside).map_err(refused)?;
+            let text = tables_or_airframe(&answer, args.frame.as_ref(), args.output.as_deref());
+            Ok(answered(text.map_err(general)?, &answer, Vec::new()))
+        }
+        Make::Import(args) => {
+            let source = |path| files.source(path).map_err(|fault| vec![fault]);
+            let parameters = source(&args.file)?;
+            let pair = args.pair.as_deref().map(source).transpose()?;
+            let made = import::import(&parameters, pair.as_ref(), &args.options()).map_err(general)?;
+            Ok(Made {
+                toml: made.text,
+                report: String::new(),
+                notes: made.notes,
+            })
+        }
+        Make::New(args) => {
+            let pair = args.pair.as_deref().map(|path| files.source(path)).transpose();
+            let pair = pair.map_err(|fault| vec![fault])?;
+            Ok(Made {
+                toml: args
+                    .text(pair.as_ref())
+                    .map_err(|error| general(error.to_string()))?,
+                report: String::new(),
+                notes: Vec::new(),
+            })
+        }
+    }
+}
+
+fn answered<T>(toml: String, answer: &Answer<T>, notes: Vec<String>) -> Made {
+    Made {
+        toml,
+        report: printable_lines(&answer.report),
+        notes,
+    }
+}
+
+/// The options of a command as its `--help` tells them; nothing of a command that is none.
+pub fn help(command: &str) -> String {
+    let mut all = Make::command();
+    let found = all.find_subcommand_mut(command);
+    found.map_or_else(String::new, |command| command.render_long_help().to_string())
+}
+
+/// The words of a line: blanks part them, but not between quotes.
+pub fn words(line: &str) -> Vec<String> {
+    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
+    for c in line.chars() {
+        match quote {
+            Some(open) if c == open => quote = None,
+            None if c == '"' || c == '\'' => {
+                quote = Some(c);
+                word.get_or_insert_default();
+            }
+            None if c.is_whitespace() => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(c),
+        }
+    }
+    words.extend(word);
+    words
+}
