@@ -12,16 +12,18 @@ function drawn(name, attributes = {}, text = "") {
 
 // The text of a number of a table: all the digits that the command line prints.
 const exact = (x) => String(x);
-const short = (x) => Number(x.toPrecision(4)).toString();
+const short = (x) => (Math.abs(x) < 1e-9 ? "0" : Number(x.toPrecision(4)).toString());
+// Keys of the airframe file that have a field, each with its table.
+const KEYS = { mass_kg: "vehicle", airmode: "allocation", yaw_reserve_nm: "allocation", power_bias_nm_per_n: "allocation" };
 
 class Hand {
-  // `moved` is told of every new position, `edited` of a key of [allocation] with its new value.
+  // `moved` is told of every new position, `edited` of the table and the key of a new value.
   constructor(ask, moved, edited) {
     Object.assign(this, { ask, moved, edited, busy: false, stale: false, frames: 0 });
     document.getElementById("hover").addEventListener("click", () => this.put({ wrench: [0, 0, 0, this.scene.hover_n] }));
-    for (const key of ["airmode", "yaw_reserve_nm", "power_bias_nm_per_n"]) {
+    for (const [key, table] of Object.entries(KEYS)) {
       const field = document.getElementById(key);
-      field.addEventListener("change", () => edited(key, key === "airmode" ? JSON.stringify(field.value) : field.value.trim()));
+      field.addEventListener("change", () => edited(table, key, key === "airmode" ? JSON.stringify(field.value) : field.value.trim()));
     }
   }
 
@@ -67,7 +69,7 @@ class Hand {
     document.getElementById("sliders").replaceChildren(
       ...AXES.map((name, k) => largest[k] > 0 && axis(name, k)).filter(Boolean),
       ...[volts && condition("volts", "voltage, V", volts), density && condition("density", "density, kg/m\u00b3", density)].filter(Boolean));
-    for (const key of ["airmode", "yaw_reserve_nm", "power_bias_nm_per_n"]) document.getElementById(key).value = this.scene[key];
+    for (const key of Object.keys(KEYS)) document.getElementById(key).value = this.scene[key] ?? "";
   }
 
   // Every rotor as { channel, layer (0 upper, 1 lower), unit }, by output.
@@ -100,20 +102,20 @@ class Hand {
     const far = Math.max(1e-9, ...units.map(({ place_m }) => Math.hypot(...place_m)));
     const place = ({ place_m: [x, y] }) => [150 + 98 * y / far, 150 - 98 * x / far];
     const apart = units.flatMap((a, k) => units.slice(k + 1).map((b) => Math.hypot(place(a)[0] - place(b)[0], place(a)[1] - place(b)[1])));
-    const radius = Math.min(40, 0.44 * Math.min(90, ...apart));
+    const radius = Math.min(52, 0.46 * Math.min(...apart, 300));
     top.setAttribute("viewBox", "0 0 300 300");
     top.replaceChildren(...units.map((unit) => drawn("path", { class: "arm", d: `M150 150L${place(unit)}` })),
       drawn("path", { class: "forward", d: "M150 128v-26m-7 9l7 -9l7 9" }));
     this.rings = [];
     for (const unit of units) {
-      const [x, y] = place(unit);
+      const [x, y] = place(unit), size = Math.min(13, radius / 3.6);
       top.append(drawn("circle", { class: "disk", cx: x, cy: y, r: radius }));
       unit.channels.forEach((channel, layer) => {
-        const at = { cx: x, cy: y, r: radius - 15 + 10 * layer, pathLength: 1 };
+        const at = { cx: x, cy: y, r: radius - 16 + 10 * layer, pathLength: 1 };
         const clockwise = (unit.upper_spin === "cw") === (layer === 0);
         const turn = `rotate(-90 ${x} ${y})${clockwise ? "" : ` matrix(1 0 0 -1 0 ${2 * y})`}`;
         const ring = drawn("circle", { ...at, class: layer ? "ring lower" : "ring", transform: turn });
-        const text = drawn("text", { class: "middle", x, y: y - 2 + 13 * layer });
+        const text = drawn("text", { class: "middle", x, y: y + (layer ? 1.2 : -0.3) * size, "font-size": size });
         top.append(drawn("circle", { ...at, class: "track" }), ring, text);
         this.rings[channel] = { ring, text, spin: clockwise ? "\u21bb" : "\u21ba" };
       });

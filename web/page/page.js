@@ -163,7 +163,7 @@ async function remake() {
   $("help").textContent = await ask("help", $("command-name").textContent);
   $("command").textContent = lines.join(" && ");
   $("made-by").hidden = !lines.length;
-  $("pair-report").textContent = report;
+  fill($("pair-report"), report);
   $("pair-report").hidden = !report;
   const theirs = state.airframe && state.airframe.text !== state.made && state.airframe.text !== made?.text;
   offered = theirs && made?.text !== state.made ? made : null;
@@ -225,9 +225,9 @@ const editor = new Editor($("editor"), (text) => {
   keepSoon();
 });
 
-const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); }, async (key, value) => {
+const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); }, async (...set) => {
   try {
-    state.airframe.text = await ask("set", state.airframe.text, "allocation", key, value);
+    state.airframe.text = await ask("set", state.airframe.text, ...set);
     state.tab = "";
     await check();
   } catch (error) {
@@ -237,13 +237,24 @@ const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); }, async (key,
 
 // --- what is shown of the state
 
+// Lines of a word and what it means, some of them continued below.
+function fill(table, text) {
+  const rows = [];
+  for (const line of text.trimEnd().split("\n")) {
+    const [, head, rest] = line.match(/^(\S.*?)\s{2,}(.*)$/) ?? [];
+    if (head) rows.push([head, rest]);
+    else if (rows.length) rows.at(-1)[1] += /^\s*\*/.test(line) ? `\n${line.trim()}` : ` ${line.trim()}`;
+  }
+  const cells = ([head, rest]) => [element("th", { scope: "row", textContent: head }), element("td", {}, ...rest.split("\n").flatMap((line) => [line, element("br")]).slice(0, -1))];
+  table.replaceChildren(element("tbody", {}, ...rows.map((row) => element("tr", {}, ...cells(row)))));
+}
+
 function show() {
   keepSoon();
   const edited = [...state.files, ...(state.airframe ? [{ name: "", label: state.airframe.name, text: state.airframe.text }] : [])];
   if (!edited.some(({ name }) => name === state.tab)) state.tab = state.airframe ? "" : (edited[0]?.name ?? "");
   $("tabs").replaceChildren(...edited.map(({ name, label }) => {
-    const tab = element("button", { type: "button", role: "tab", textContent: label ?? name });
-    tab.setAttribute("aria-selected", name === state.tab);
+    const tab = element("button", { type: "button", ariaPressed: String(name === state.tab), textContent: label ?? name });
     tab.addEventListener("click", () => { state.tab = name; show(); });
     return tab;
   }));
@@ -270,7 +281,7 @@ function show() {
     return element("li", {}, element("b", { textContent: file.name }), kinds, remove);
   }));
   const compiles = Boolean(state.airframe && told?.verdict);
-  $("verdict").textContent = compiles ? told.verdict : "";
+  fill($("verdict"), compiles ? told.verdict : "");
   for (const id of ["verdict", "hand", "save"]) $(id).hidden = !compiles;
   if (!compiles) $("report").replaceChildren();
   $("replace").hidden = !offered;
@@ -286,7 +297,7 @@ function show() {
 async function saved(what) {
   if (what === "airframe") return state.airframe;
   if (what === "pair") return pair;
-  if (what === "report") return { name: `${told.name}.html`, text: (await ask("report", ...named(of("map")), today())).page };
+  if (what === "report") return { name: `${told.name}.html`, text: await ask("page", ...named(of("map")), today()) };
   return ask("output", what, state.form.pulses);
 }
 async function save(what) {
@@ -327,11 +338,12 @@ $("replace").addEventListener("click", () => adopt(offered, offered.text));
 $("back").addEventListener("click", () => { const { before } = state; state.before = null; adopt(before, ""); });
 $("share").addEventListener("click", async () => {
   const text = await link();
+  $("link").value = text;
+  $("linked").hidden = false;
+  $("link").select();
   await navigator.clipboard?.writeText(text).catch(() => {});
-  history.replaceState(null, "", text);
-  say("The link is in the clipboard and in the address.");
 });
-$("forget").addEventListener("click", () => { [state, told, benchFaults] = [fresh(), null, []]; history.replaceState(null, "", location.href.split("#")[0]); say("Forgotten."); remake(); });
+$("forget").addEventListener("click", () => { [state, told, benchFaults] = [fresh(), null, []]; say("Forgotten."); remake(); });
 
 (async () => {
   try {

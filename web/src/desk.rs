@@ -9,6 +9,7 @@ use mixer_files::golden;
 use mixer_files::params::{Options, params};
 use mixer_files::stack::Stack;
 use mixer_identify::identified::Settings;
+use mixer_report::bench::BenchPoints;
 use mixer_report::origin::Origin;
 use mixer_report::page;
 use mixer_report::study::Study;
@@ -70,8 +71,6 @@ pub struct Report {
     pub body: String,
     /// What its script needs, JSON.
     pub model: String,
-    /// The whole page, as `cargo mixer report` writes it.
-    pub page: String,
     /// Why the bench files are not shown; empty where they are.
     pub refused: String,
 }
@@ -88,11 +87,27 @@ pub struct Output {
 }
 
 impl Checked {
-    /// The report with bench files of the pair, read as `identify` read them.
-    ///
-    /// # Errors
-    /// None; bench files that cannot be shown are said in the report.
-    pub fn report(&self, bench: &Files, today: String) -> Result<Report, String> {
+    /// The report with bench files of the pair, read as `identify` read them, as markup to show.
+    pub fn report(&self, bench: &Files, today: String) -> Report {
+        self.draw(bench, today, |study, bench, origin, refused| {
+            let page::Content { body, model } = page::content(study, bench, origin);
+            Report { body, model, refused }
+        })
+    }
+
+    /// The same as a whole page, as `cargo mixer report` writes it.
+    pub fn page(&self, bench: &Files, today: String) -> String {
+        self.draw(bench, today, |study, bench, origin, _| {
+            page::page(study, bench, origin)
+        })
+    }
+
+    fn draw<T>(
+        &self,
+        bench: &Files,
+        today: String,
+        draw: impl FnOnce(&Study<'_>, Option<&BenchPoints>, &Origin, String) -> T,
+    ) -> T {
         let texts = bench.texts();
         let shown = match texts.as_slice() {
             [] => Ok(None),
@@ -106,14 +121,12 @@ impl Checked {
             sha256: Some(sha256(self.compiled.source.text.as_bytes())),
             date: Some(today),
         };
-        let study = Study::new(&self.compiled, None);
-        let content = page::content(&study, bench.as_ref(), &origin);
-        Ok(Report {
-            page: page::page(&study, bench.as_ref(), &origin),
-            body: content.body,
-            model: content.model,
+        draw(
+            &Study::new(&self.compiled, None),
+            bench.as_ref(),
+            &origin,
             refused,
-        })
+        )
     }
 
     /// A file: `px4` or `ardupilot`, parameters for this mixer, with `-own` those for the stack's own;

@@ -32,6 +32,8 @@ pub struct Scene {
     pub density: Option<[f64; 3]>,
     /// Least throttle.
     pub idle: f64,
+    /// `mass_kg`.
+    pub mass_kg: Option<f64>,
     /// The word of `[allocation] airmode`.
     pub airmode: &'static str,
     /// `yaw_reserve_nm`.
@@ -102,6 +104,7 @@ pub fn scene(checked: &Checked, volts: f32, density: f32) -> Scene {
         volts: airframe.voltage.as_ref().map(of),
         density: airframe.air.as_ref().map(of),
         idle: airframe.throttle.min,
+        mass_kg: airframe.vehicle.as_ref().map(|vehicle| vehicle.mass_kg),
         airmode: match airframe.allocation.airmode {
             Airmode::Disabled => "disabled",
             Airmode::RollPitch => "roll-pitch",

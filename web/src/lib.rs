@@ -73,7 +73,12 @@ impl Desk {
 
     /// The report, and what of the bench files could not be shown in it: see [`Checked::report`].
     pub fn report(&self, names: Vec<String>, texts: Vec<String>, today: String) -> String {
-        json(&self.ask(|checked| checked.report(&Files::new(names, texts), today)))
+        json(&self.ask(|checked| Ok(checked.report(&Files::new(names, texts), today))))
+    }
+
+    /// The report as a whole page: see [`Checked::page`].
+    pub fn page(&self, names: Vec<String>, texts: Vec<String>, today: String) -> String {
+        json(&self.ask(|checked| Ok(checked.page(&Files::new(names, texts), today))))
     }
 
     /// A file to save: see [`Checked::output`].
