@@ -129,7 +129,7 @@ class Hand {
     this.dots = [dots("unit-dot"), dots("unit-hollow")];
     set.replaceChildren(this.border, drawn("path", { class: "frame", d: `M${left} ${above}V${bottom}H${right}` }),
       drawn("path", { class: "grid", d: `M${left} ${this.toY(0)}H${right}` }),
-      ...[low_n, high_n].map((n) => drawn("text", { class: "tick middle", x: this.toX(n), y: 206 }, short(n))),
+      ...[low_n, high_n].map((n, k) => drawn("text", { class: k ? "tick end" : "tick middle", x: this.toX(n), y: 206 }, short(n))),
       ...[low_nm, 0, high_nm].map((nm) => drawn("text", { class: "tick end", x: 50, y: this.toY(nm) + 4 }, short(nm))),
       drawn("text", { class: "middle", x: 181, y: 222 }, "thrust, N"), drawn("text", { x: 60, y: 24 }, "torque, N m"),
       ...this.dots.flat());
