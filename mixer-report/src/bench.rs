@@ -138,21 +138,6 @@ impl BenchPoints {
         }
     }
 
-    /// A point in words with its numbers.
-    pub fn text(&self, point: &BenchPoint, effort: Effort) -> String {
-        let [u, l] = point.throttles;
-        let unit = effort.unit();
-        format!(
-            "{}: u {}, l {}: measured {} {unit}, model {} {unit}, model less measured {} {unit}",
-            self.place(point),
-            significant(u, 3),
-            significant(l, 3),
-            significant(point.measured[effort as usize], 4),
-            significant(point.model[effort as usize], 4),
-            significant(point.residual(effort), 2)
-        )
-    }
-
     /// What remains in thrust or in torque; `None` without points.
     pub fn misfit(&self, effort: Effort) -> Option<Misfit> {
         let count = self.points.len() as f64;

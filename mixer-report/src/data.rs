@@ -5,6 +5,7 @@ use mixer_compiler::airframe::Axis;
 use crate::authority;
 use crate::bench::BenchPoints;
 use crate::comparison::Comparison;
+use crate::effort::Effort;
 use crate::level;
 use crate::maps::ERROR_SIDE;
 use crate::number::{cell, line, range};
@@ -62,7 +63,7 @@ impl Data {
 }
 
 /// Points per side of the maps.
-const SIDE: usize = 41;
+const SIDE: usize = 31;
 
 /// The data of `figure` as CSV with a header.
 ///
@@ -94,21 +95,6 @@ fn no_yaw(study: &Study<'_>) -> String {
     } else {
         format!("{name} does not serve yaw (allocation.axes)")
     }
-}
-
-/// Some columns of a CSV of numbers.
-pub(crate) fn columns(csv: &str, names: &[&str]) -> String {
-    let header: Vec<&str> = csv.lines().next().unwrap_or_default().split(',').collect();
-    let kept = |name: &&str| header.iter().position(|column| column == name);
-    let kept: Vec<usize> = names.iter().filter_map(kept).collect();
-    let mut out = String::new();
-    for row in csv.lines() {
-        let cells: Vec<&str> = row.split(',').collect();
-        let cells = kept.iter().filter_map(|k| cells.get(*k).copied());
-        out.push_str(&cells.collect::<Vec<_>>().join(","));
-        out.push('\n');
-    }
-    out
 }
 
 fn yaw(comparison: &Comparison) -> Vec<String> {
@@ -184,12 +170,14 @@ fn hover(study: &Study<'_>) -> Result<Vec<String>, String> {
     Ok(lines)
 }
 
-/// The bench points beside the model, those outside the throttle range last.
-pub fn bench(bench: &BenchPoints) -> String {
-    let mut csv = "file_index,line,upper_throttle,lower_throttle,measured_thrust_n,measured_torque_nm,model_thrust_n,model_torque_nm\n".to_owned();
+/// One effort of the bench points beside the model's, those outside the throttle range last.
+pub(crate) fn bench(bench: &BenchPoints, effort: Effort) -> String {
+    let column = ["thrust_n", "torque_nm"][effort as usize];
+    let mut csv = format!("file_index,line,upper_throttle,lower_throttle,measured_{column},model_{column}\n");
     for point in bench.points.iter().chain(&bench.outside) {
-        let values = [point.throttles, point.measured, point.model];
-        let values = line(values.into_iter().flatten());
+        let [u, l] = point.throttles;
+        let [measured, model] = [point.measured, point.model].map(|efforts| efforts[effort as usize]);
+        let values = line([u, l, measured, model]);
         csv.push_str(&format!("{},{},{values}\n", point.file, point.line));
     }
     csv
@@ -253,8 +241,8 @@ fn inverse(study: &Study<'_>) -> Vec<String> {
 fn error(study: &Study<'_>) -> Vec<String> {
     let header = "thrust_n,torque_nm,upper_throttle,lower_throttle,thrust_error_n,torque_error_nm";
     let mut lines = vec![header.to_owned()];
-    // Every other node of the figure's grid.
-    lines.extend(square(ERROR_SIDE / 2 + 1).map(|point| {
+    // Every third node of the figure's grid.
+    lines.extend(square(ERROR_SIDE / 3 + 1).map(|point| {
         let [u, l] = study.throttles(point);
         let [f, q] = study.pair.efforts([u, l]);
         let [error_f, error_q] = study.error([u, l]);

@@ -8,20 +8,25 @@ mod bar;
 mod curves;
 mod legend;
 mod mark;
-mod path;
+pub(crate) mod path;
 mod reading;
 
 use std::fmt::Write as _;
 
 use self::bar::Bar;
 use self::path::Label;
-use crate::number::{Ticks, escaped, pixel};
+use crate::number::{Ticks, escaped};
+
+/// Width of every picture, px: no less than it is shown at on a phone, or in a column of the page,
+/// so that its type of 12 px is no smaller there.
+pub(crate) const WIDTH: f64 = 360.0;
 
 /// Room around the plot for labels, px: left, top, right, bottom.
-const MARGIN: [f64; 4] = [74.0, 14.0, 16.0, 46.0];
+const MARGIN: [f64; 4] = [66.0, 12.0, 14.0, 44.0];
 
-/// Values of iso-curves keep this distance, px.
-const LABEL_ROOM: f64 = 15.0;
+/// Distances of an iso-curve's value from others and from points, px: below the first it is left
+/// out, and beyond the second a place nearer the curve's middle is preferred.
+const LABEL_ROOM: [f64; 2] = [11.0, 18.0];
 
 /// Where on a curve its value is tried, as shares of the length.
 const LABEL_PLACES: [f64; 9] = [0.5, 0.45, 0.55, 0.4, 0.6, 0.33, 0.67, 0.25, 0.75];
@@ -41,7 +46,8 @@ pub struct Figure {
     title: String,
     axes: [Axis; 2],
     size: [f64; 2],
-    below: String,
+    /// Areas of colour, the later ones above.
+    areas: String,
     layers: String,
     above: String,
     legend: Vec<legend::Entry>,
@@ -70,15 +76,22 @@ impl Figure {
         Figure {
             title: title.into(),
             axes: [axis(x), axis(y)],
-            size: [372.0, 290.0],
+            size: [WIDTH - MARGIN[0] - MARGIN[2], 220.0],
             ..Figure::default()
         }
     }
 
-    /// The size of the plot itself without its labels, px.
+    /// The height of the plot itself without its labels, px.
     #[must_use]
-    pub fn sized(mut self, width: f64, height: f64) -> Self {
-        self.size = [width, height];
+    pub fn high(mut self, height: f64) -> Self {
+        self.size[1] = height;
+        self
+    }
+
+    /// A plot that leaves room for a colour bar, `height` px high without its labels.
+    #[must_use]
+    pub fn beside_bar(mut self, height: f64) -> Self {
+        self.size = [WIDTH - MARGIN[0] - bar::ROOM, height];
         self
     }
 
@@ -107,19 +120,8 @@ impl Figure {
     /// SVG path data through points; closed for an area. Points that are not finite break it.
     pub fn path(&self, points: &[[f64; 2]], closed: bool) -> String {
         let pixels: Vec<[f64; 2]> = points.iter().map(|&point| self.at(point)).collect();
-        let mut data = String::new();
-        for part in pixels.split(|pixel| !pixel.iter().all(|x| x.is_finite())) {
-            for (index, [x, y]) in path::simplified(part).into_iter().enumerate() {
-                data.push(if index == 0 { 'M' } else { 'L' });
-                pixel(&mut data, x);
-                data.push(' ');
-                pixel(&mut data, y);
-            }
-            if closed && !part.is_empty() {
-                data.push('Z');
-            }
-        }
-        data
+        let parts = pixels.split(|pixel| !pixel.iter().all(|x| x.is_finite()));
+        parts.map(|part| path::data(part, closed)).collect()
     }
 
     /// A curve of a series, with its name in the legend where it has one.
@@ -161,11 +163,7 @@ impl Figure {
         for ring in rings {
             data.push_str(&self.path(ring, true));
         }
-        // The stroke closes the hairline between neighbours.
-        let _ = writeln!(
-            self.below,
-            "<path fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\".6\" fill-rule=\"evenodd\" d=\"{data}\"/>"
-        );
+        let _ = writeln!(self.areas, "<path fill=\"{colour}\" d=\"{data}\"/>");
     }
 
     /// Iso-curves in a given ink with their value written on the longest of them.
@@ -182,13 +180,20 @@ impl Figure {
             return;
         };
         let pixels: Vec<[f64; 2]> = longest.iter().map(|&p| self.at(p)).collect();
-        let is_free = |Label { at: [x, y], .. }: &Label| {
-            let far = |other: &[f64; 2]| libm::hypot(other[0] - x, other[1] - y) >= LABEL_ROOM;
-            self.labels.iter().all(far)
+        let [least, enough] = LABEL_ROOM;
+        let room = |[x, y]: [f64; 2]| {
+            let others = self
+                .labels
+                .iter()
+                .map(|other| libm::hypot(other[0] - x, other[1] - y));
+            others.fold(enough, f64::min)
         };
-        let places = LABEL_PLACES.iter();
-        let mut places = places.filter_map(|share| Label::along(&pixels, *share));
-        let Some(label) = places.find(is_free) else {
+        let places = LABEL_PLACES.iter().rev();
+        let places = places.filter_map(|share| Label::along(&pixels, *share));
+        let places = places.map(|label| (room(label.at), label));
+        // Of equals the last, which is that nearest the middle.
+        let best = places.max_by(|(a, _), (b, _)| a.total_cmp(b));
+        let Some((_, label)) = best.filter(|(room, _)| *room >= least) else {
             return;
         };
         self.labels.push(label.at);
@@ -201,25 +206,17 @@ impl Figure {
         );
     }
 
-    /// A point with its numbers for the pointer.
-    pub fn dot(&mut self, class: &str, radius: f64, point: [f64; 2], title: &str) {
-        let [x, y] = self.at(point);
-        let _ = writeln!(
-            self.above,
-            "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"><title>{}</title></circle>",
-            escaped(title)
-        );
-    }
-
     /// Points without numbers.
     pub fn cloud(&mut self, class: &str, radius: f64, points: &[[f64; 2]]) {
+        if points.is_empty() {
+            return;
+        }
+        let _ = writeln!(self.above, "<g class=\"{class}\">");
         for point in points {
             let [x, y] = self.at(*point);
-            let _ = writeln!(
-                self.above,
-                "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"
-            );
+            let _ = writeln!(self.above, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>");
         }
+        self.above.push_str("</g>\n");
     }
 
     /// A point whose values the read-out shows, in the order of its quantities; `paint` is a class
@@ -282,20 +279,21 @@ impl Figure {
     }
 
     fn drawn(&self, entries: &[legend::Entry]) -> String {
-        let [width, height] = self.size;
-        let rows = legend::rows(entries, width + MARGIN[2] + 18.0);
-        let full_width = MARGIN[0] + width + self.bar.as_ref().map_or(MARGIN[2], Bar::room);
+        let height = self.size[1];
+        let rows = legend::rows(entries, WIDTH - MARGIN[0]);
         let full_height = MARGIN[1] + height + MARGIN[3] + legend::ROW * rows.len() as f64;
         let mut svg = String::new();
         let _ = writeln!(
             svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 {full_width} {full_height}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 {WIDTH} {full_height}\" \
              role=\"{}\" aria-label=\"{}\"{}>",
             if self.is_along_curves() { "group" } else { "img" },
             escaped(&self.title),
             self.attributes()
         );
-        svg.push_str(&self.below);
+        if !self.areas.is_empty() {
+            let _ = write!(svg, "<g class=\"areas\">\n{}</g>\n", self.areas);
+        }
         self.frame(&mut svg);
         svg.push_str(&self.layers);
         svg.push_str(&self.above);
@@ -313,7 +311,7 @@ impl Figure {
         let [width, height] = self.size;
         let (right, bottom) = (left + width, top + height);
         let (mut grid, mut marks, mut words) = (String::new(), String::new(), String::new());
-        let ticks = Ticks::within(self.axes[0].range, (width / 62.0) as usize);
+        let ticks = Ticks::within(self.axes[0].range, (width / 50.0) as usize);
         for &value in &ticks.values {
             let [x, _] = self.at([value, self.axes[1].range[0]]);
             let (y, text) = (bottom + 18.0, ticks.text(value));
@@ -322,7 +320,7 @@ impl Figure {
             let place = format!("x=\"{x:.1}\" y=\"{y}\" text-anchor=\"middle\"");
             let _ = writeln!(words, "<text class=\"tick\" {place}>{text}</text>");
         }
-        let ticks = Ticks::within(self.axes[1].range, (height / 42.0) as usize);
+        let ticks = Ticks::within(self.axes[1].range, (height / 36.0) as usize);
         for &value in &ticks.values {
             let [_, y] = self.at([self.axes[0].range[0], value]);
             let (x, text) = (left - 8.0, ticks.text(value));
@@ -338,7 +336,7 @@ impl Figure {
             svg,
             "<path class=\"frame\" d=\"{marks}M{left} {top}H{right}V{bottom}H{left}Z\"/>\n{words}\
              <text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n\
-             <text class=\"label\" transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+             <text class=\"label\" transform=\"translate(13 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
             left + width / 2.0,
             bottom + 38.0,
             escaped(&self.axes[0].label),

@@ -16,19 +16,23 @@ pub fn layout(airframe: &Airframe) -> Figure {
         .map(|unit| [unit.position_m[1], unit.position_m[0]]);
     let places: Vec<[f64; 2]> = places.collect();
     let radius = disk_radius(&places);
+    // Where rotors cover the centre, as on a vehicle of one unit, the arrow stands in front of
+    // them.
+    let covered = places.iter().any(|p| libm::hypot(p[0], p[1]) < radius);
+    let margin = radius * if covered { 1.45 } else { 1.2 };
     let extent = |k: usize| {
         // The centre of gravity is always in view.
         let [low, high] = places.iter().fold([0.0f64; 2], |[low, high], place| {
             [low.min(place[k]), high.max(place[k])]
         });
-        [low - 1.45 * radius, high + 1.45 * radius]
+        [low - margin, high + margin]
     };
     let mut figure = Figure::new(
         "Layout seen from above: units, spins and output channels",
         ("y, right (m)", extent(0)),
         ("x, forward (m)", extent(1)),
     )
-    .sized(372.0, 372.0)
+    .high(280.0)
     .equal_scales();
 
     let [cx, cy] = figure.at([0.0, 0.0]);
@@ -43,9 +47,6 @@ pub fn layout(airframe: &Airframe) -> Figure {
         let crowded = covers_centre || tilted(unit);
         figure.raw(&drawn(unit, index, [x, y], radius * per_metre, crowded));
     }
-    // Where rotors cover the centre, as on a vehicle of one unit, the arrow stands in front of
-    // them.
-    let covered = places.iter().any(|p| libm::hypot(p[0], p[1]) < radius);
     let (start, length) = if covered {
         (1.06 * radius * per_metre, 0.3 * radius * per_metre)
     } else {
@@ -74,7 +75,7 @@ fn disk_radius(places: &[[f64; 2]]) -> f64 {
     }
     // Units above one another have no distance from above.
     if nearest.is_finite() && nearest > 0.02 {
-        0.38 * nearest
+        0.44 * nearest
     } else {
         0.15
     }

@@ -39,7 +39,7 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     };
     let title = format!("{} of one unit over both throttles", effort.name());
     let mut figure = Figure::new(title, (UPPER, throttles(0)), (LOWER, throttles(1)))
-        .sized(300.0, 300.0)
+        .beside_bar(200.0)
         .reading("forward", &[(UPPER, ""), (LOWER, ""), EFFORTS[0], EFFORTS[1]]);
     let painting = Painting {
         scale: match effort {
@@ -47,20 +47,22 @@ pub fn forward(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
             Effort::Torque => Scale::signed(values),
         },
         range: values,
-        levels: 8,
+        levels: 7,
         bands: 4,
         iso_curves: true,
         ticks: None,
         label: effort.label(),
     };
-    figure.keep_clear(points.iter().map(|point| point.throttles));
+    figure.keep_clear(
+        points
+            .iter()
+            .map(|point| point.throttles)
+            .chain(study.hover_throttles()),
+    );
     paint(&mut figure, &field, &painting, |square| study.throttles(square));
     figure.cloud("flown-dot", 1.6, flown);
-    if let Some(bench) = bench {
-        for point in points {
-            figure.dot("bench-dot", 3.0, point.throttles, &bench.text(point, effort));
-        }
-    }
+    let measured: Vec<[f64; 2]> = points.iter().map(|point| point.throttles).collect();
+    figure.cloud("bench-dot", 2.6, &measured);
     figure.mark(&study.hover_throttles(), "hover");
     figure
 }
@@ -87,7 +89,7 @@ pub fn residuals(study: &Study<'_>, effort: Effort, bench: &BenchPoints) -> Opti
     let [measured, model, difference] = ["measured", "model", "difference"].map(|name| (name, unit));
     let quantities = [place, upper, lower, measured, model, difference, ("that is", "%")];
     let mut figure = Figure::new(title, (UPPER, throttles(0)), (LOWER, throttles(1)))
-        .sized(300.0, 300.0)
+        .beside_bar(200.0)
         .reading("dots", &quantities);
     let [low, high] = study.pair.range();
     let corners = [[low, low], [high, low], [high, high], [low, high]];
@@ -144,17 +146,18 @@ pub fn inverse(study: &Study<'_>, rotor: usize) -> Figure {
     let field = Field::new(SIDE, |square| study.throttles(square)[rotor]);
     let title = format!("{} throttle over the attainable set", ["Upper", "Lower"][rotor]);
     let mut figure = over_efforts(study, &title, [1.0, 1.0])
-        .sized(300.0, 260.0)
+        .beside_bar(200.0)
         .reading("inverse", &[EFFORTS[0], EFFORTS[1], (UPPER, ""), (LOWER, "")]);
     let painting = Painting {
         scale: Scale::sequential(study.pair.range()),
         range: study.pair.range(),
-        levels: 9,
-        bands: 4,
+        levels: 5,
+        bands: 6,
         iso_curves: true,
         ticks: None,
         label: [UPPER, LOWER][rotor],
     };
+    figure.keep_clear(study.hover_efforts());
     paint(&mut figure, &field, &painting, |square| study.efforts(square));
     outline(study, &mut figure);
     figure.mark(&study.hover_efforts(), "hover");
@@ -174,7 +177,7 @@ pub fn error(study: &Study<'_>, effort: Effort, field: &Field) -> Figure {
     let hover = ["error-thrust", "error-torque"][effort as usize];
     let quantities = [EFFORTS[0], EFFORTS[1], ("error about", effort.unit())];
     let mut figure = over_efforts(study, &title, [1.0, 1.0])
-        .sized(300.0, 260.0)
+        .beside_bar(200.0)
         .reading(hover, &quantities);
     let bound = error_bound(study, effort);
     let decades = |x: f64| libm::log10(x / bound).max(-DECADES);

@@ -1,7 +1,5 @@
 //! Numbers as people read them: round ticks, few digits, a true minus sign.
 
-use std::fmt::Write as _;
-
 use mixer_compiler::diagnostic::is_plain;
 
 /// `x` with `digits` significant digits, without trailing zeros of an exponent form; `-0` is `0`.
@@ -148,17 +146,11 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
-/// A coordinate in an SVG: tenths are enough for any screen and printer.
-pub fn pixel(out: &mut String, x: f64) {
-    let rounded = libm::round(x * 10.0) / 10.0 + 0.0;
-    let _ = write!(out, "{rounded}");
-}
-
-/// A number with nine significant digits at most, as short as it can be read back.
+/// A number with seven significant digits at most, those of single precision.
 pub(crate) fn cell(x: f64) -> String {
     // Rounding residues of sums are zeros.
     let x = if x.abs() < 1e-12 { 0.0 } else { x };
-    let rounded: f64 = format!("{x:.8e}").parse().unwrap_or(x);
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
     format!("{}", rounded + 0.0)
 }
 

@@ -17,7 +17,7 @@ use crate::authority;
 use crate::bench::{BenchPoint, BenchPoints};
 use crate::bench_check::bench_check;
 use crate::comparison::Comparison;
-use crate::data::{self, Data, THRUSTS, YAW_COMMANDS};
+use crate::data::{Data, THRUSTS, YAW_COMMANDS};
 use crate::effort::Effort;
 use crate::figure::Figure;
 use crate::layout;
@@ -113,7 +113,7 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) 
     let body = html! {
         h1 { (printable(&airframe.name)) }
         p.lead { (printable(&airframe.description)) }
-        nav { @for (anchor, title) in SECTIONS { a href={ "#" (anchor) } { (title) } " " } }
+        nav id="contents" aria-label="Contents" { @for (anchor, title) in SECTIONS { a href={ "#" (anchor) } { (title) } " " } }
         (warnings(study, bench))
         (table::summary(study, &facts, origin))
         @for (anchor, title) in SECTIONS {
@@ -125,6 +125,7 @@ pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) 
             ". Body frame FRD, SI units; clockwise yaw seen from above is positive, thrust is positive upwards; the torque \
              of a unit is positive where its lower rotor outweighs the upper one."
         }
+        a.back href="#contents" { "Contents" }
     };
     Content {
         body: body.into_string(),
@@ -170,15 +171,22 @@ fn curves(study: &Study<'_>, figure: &Figure, caption: &str, word: &str) -> Mark
     shown(figure, caption, &link::curves(study, word, figure))
 }
 
+/// A small figure with the table of what it shows.
+fn beside(figure: &Markup, table: &Markup) -> Markup {
+    html! { div.beside { (figure) (table) } }
+}
+
+/// Figures and tables in rows that are full: of three where three go into their number, else of two.
 fn figures(figures: &[Markup]) -> Markup {
-    html! { div.figures { @for figure in figures { (figure) } } }
+    let three = figures.len().is_multiple_of(3);
+    html! { div.figures.three[three] { @for figure in figures { (figure) } } }
 }
 
 fn layout_section(study: &Study<'_>) -> Markup {
     let figure = layout::layout(&study.compiled.airframe);
     let caption = "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.";
     html! {
-        (figures(&[still(&figure.svg(), caption, &link::sweep(study, Data::Layout)), table::units(study)]))
+        (beside(&still(&figure.svg(), caption, &link::sweep(study, Data::Layout)), &table::units(study)))
     }
 }
 
@@ -296,7 +304,7 @@ fn authority_section(study: &Study<'_>) -> Markup {
                 (off.join(", ")) "."
             }
         }
-        div.figures.three { @for plot in &plots { (plot) } }
+        (figures(&plots))
     }
 }
 
@@ -307,54 +315,46 @@ fn attainable_section(study: &Study<'_>) -> Markup {
         "What one unit can give. The airframe has no voltage correction."
     };
     html! {
-        (figures(&[shown(&plots::attainable(study), caption, &link::sweep(study, Data::Attainable))]))
+        (beside(
+            &shown(&plots::attainable(study), caption, &link::sweep(study, Data::Attainable)),
+            &table::attainable(study),
+        ))
     }
-}
-
-/// The column of an effort in files.
-fn column(effort: Effort) -> &'static str {
-    ["thrust_n", "torque_nm"][effort as usize]
 }
 
 fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
     let points = bench.map_or("", |_| " Bench points with their distance from it.");
     let flown = study.flown.as_ref();
     let where_flown = flown.map_or("", |_| " Small dots: where the pairs flew.");
-    let csv = data::sweep(study, Data::Forward).unwrap_or_default();
     let maps = Effort::BOTH.map(|effort| {
-        let (quantity, column) = (effort.name(), column(effort));
+        let quantity = effort.name();
         let surface = still(
             &surface::surface(study, effort, bench),
             &format!("{quantity} of one unit by the model.{points} (Fig. 3 of the paper)"),
             &html! {},
         );
-        let columns = ["upper_throttle", "lower_throttle", column];
-        let word = format!("forward-{}", effort.word());
         let map = shown(
             &maps::forward(study, effort, bench),
             &format!("{quantity} with iso-curves.{where_flown} (Fig. 4)"),
-            &link::columns(study, &word, &csv, &columns, "Data of both pictures (CSV)"),
+            &html! {},
         );
-        html! { (surface) (map) }
+        [surface, map]
     });
     let residual = |effort: Effort| {
         let figure = maps::residuals(study, effort, bench?)?;
-        let (quantity, measured, column) = (effort.name(), effort.word(), column(effort));
-        let [measured_column, model_column] = ["measured", "model"].map(|of| format!("{of}_{column}"));
-        let [u, l] = ["upper_throttle", "lower_throttle"];
-        let columns = ["file_index", "line", u, l, &measured_column, &model_column];
         let caption = format!(
-            "{quantity} by the model less {measured} measured, in % of the pair\u{2019}s largest; + is too much by the model."
+            "{} by the model less {} measured, in % of the pair\u{2019}s largest; + is too much by the model.",
+            effort.name(),
+            effort.word()
         );
-        let word = format!("bench-{measured}");
-        let data = link::columns(study, &word, &data::bench(bench?), &columns, link::OF_THE_FIGURE);
-        Some(shown(&figure, &caption, &data))
+        Some(shown(&figure, &caption, &link::bench(study, bench?, effort)))
     };
     let residuals: Vec<Markup> = Effort::BOTH.into_iter().filter_map(residual).collect();
     html! {
         @if let Some(bench) = bench { (bench_points(study, bench)) }
         @if let Some(flown) = flown { (table::flown(flown)) }
-        (figures(&maps))
+        (figures(maps.as_flattened()))
+        (link::sweep_of_all(study, Data::Forward))
         @if !residuals.is_empty() { (figures(&residuals)) }
         (table::coefficients(study))
     }
@@ -392,23 +392,18 @@ fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
 }
 
 fn inverse_section(study: &Study<'_>) -> Markup {
-    let csv = data::sweep(study, Data::Inverse).unwrap_or_default();
-    let maps = [0, 1].map(|rotor| {
-        let name = ["upper", "lower"][rotor];
-        let (word, column) = (format!("inverse-{name}"), format!("{name}_throttle"));
-        let columns = ["thrust_n", "torque_nm", &column];
-        let caption = [
-            "The upper rotor\u{2019}s throttle. (Fig. 5 of the paper)",
-            "The lower rotor\u{2019}s throttle.",
-        ][rotor];
-        let data = link::columns(study, &word, &csv, &columns, link::OF_THE_FIGURE);
-        shown(&maps::inverse(study, rotor), caption, &data)
-    });
-    html! { (figures(&maps)) }
+    let captions = [
+        "The upper rotor\u{2019}s throttle. (Fig. 5 of the paper)",
+        "The lower rotor\u{2019}s throttle.",
+    ];
+    let maps = [0, 1].map(|rotor| shown(&maps::inverse(study, rotor), captions[rotor], &html! {}));
+    html! {
+        (figures(&maps))
+        (link::sweep_of_all(study, Data::Inverse))
+    }
 }
 
 fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2]) -> Markup {
-    let csv = data::sweep(study, Data::Error).unwrap_or_default();
     let observed = &study.compiled.residual;
     let at = match study.at_reference().as_str() {
         "" => " with the pair\u{2019}s map".to_owned(),
@@ -422,11 +417,7 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2]) -> Markup
             rounded_up(observed.efforts[effort as usize]),
             unit = effort.unit()
         );
-        let column = ["thrust_error_n", "torque_error_nm"][effort as usize];
-        let columns = ["thrust_n", "torque_nm", column];
-        let word = format!("error-{}", effort.word());
-        let data = link::columns(study, &word, &csv, &columns, link::OF_THE_FIGURE);
-        shown(&maps::error(study, effort, field), &caption, &data)
+        shown(&maps::error(study, effort, field), &caption, &html! {})
     };
     let plots: Vec<Markup> = Effort::BOTH.into_iter().zip(fields).map(plot).collect();
     html! {
@@ -436,6 +427,7 @@ fn error_section(study: &Study<'_>, fields: &[crate::field::Field; 2]) -> Markup
              proven bound."
         }
         (figures(&plots))
+        (link::sweep_of_all(study, Data::Error))
     }
 }
 

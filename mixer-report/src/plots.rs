@@ -208,7 +208,7 @@ pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis:
         ("total thrust (N)", range(all.iter().map(|at| at.thrust_n))),
         (&format!("{} (N m)", axis.name()), torques),
     )
-    .sized(300.0, 240.0)
+    .high(200.0)
     .reading_curves();
     let voltage = study.compiled.airframe.voltage.as_ref();
     let volts = voltage.map_or_else(String::new, |voltage| format!("{} V, ", voltage.reference));
@@ -238,7 +238,7 @@ pub fn authority(study: &Study<'_>, all: &[Authority], cases: &[Case<'_>], axis:
 /// A plot of level flight against thrust, at which hover is marked.
 fn over_thrust(study: &Study<'_>, title: &str, levels: &[Level], y: (&str, [f64; 2])) -> Figure {
     let x = ("total thrust (N)", range(levels.iter().map(|level| level.at)));
-    let mut figure = Figure::new(title, x, y).sized(372.0, 240.0).reading_curves();
+    let mut figure = Figure::new(title, x, y).high(200.0).reading_curves();
     if let Some(weight_n) = study.hover_n() {
         figure.mark_x(weight_n, "hover");
     }
@@ -275,7 +275,7 @@ pub fn hover_throttle(study: &Study<'_>, levels: &[Level]) -> Option<Figure> {
     let x = ("voltage (V)", range(levels.iter().map(|level| level.at)));
     let title = "Throttles in hover against voltage";
     let mut figure = Figure::new(title, x, ("throttle in hover", [0.0, 1.0]))
-        .sized(372.0, 240.0)
+        .high(200.0)
         .reading_curves();
     for (rotor, name, class) in [(0, "upper rotors", "series-1"), (1, "lower rotors", "series-2")] {
         figure.curve(class, name, &curve(levels, |level| level.throttles[rotor]));

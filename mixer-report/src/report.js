@@ -74,9 +74,15 @@ function report(root, model) {
     // Curves are drawn to a tenth of a pixel: no more digits than that.
     const decimals = (range, size) => Math.max(0, -Math.floor(Math.log10((range[1] - range[0]) / size / 10)) - 1);
     const [decimalsX, decimalsY] = [decimals(rangeX, width), decimals(rangeY, height)];
-    // Curves as drawn, back in pixels; a break begins with a move.
-    const curves = [...svg.querySelectorAll("path[data-name]")].map((path) =>
-      path.getAttribute("d").split(/(?=[ML])/).map((part) => [...part.slice(1).split(" ").map(Number), part[0] === "M"]));
+    // Curves as drawn, back in pixels; a break begins with a move, and every other step is from the last point.
+    const curves = [...svg.querySelectorAll("path[data-name]")].map((path) => {
+      let [x, y] = [0, 0];
+      return path.getAttribute("d").replace("Z", "").split(/(?=[Ml])/).map((part) => {
+        const [dx, dy] = part.slice(1).split(" ").map(Number), begins = part[0] === "M";
+        [x, y] = begins ? [dx, dy] : [x + dx, y + dy];
+        return [x, y, begins];
+      });
+    });
     const dots = [...svg.querySelectorAll("circle[data-values]")].map((circle) => ({
       at: [Number(circle.getAttribute("cx")), Number(circle.getAttribute("cy"))],
       texts: circle.dataset.values.split("|"),

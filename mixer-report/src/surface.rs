@@ -10,23 +10,24 @@ use std::fmt::Write as _;
 use crate::bench::BenchPoints;
 use crate::colour::Scale;
 use crate::effort::Effort;
+use crate::figure::{WIDTH, path};
 use crate::number::{Ticks, escaped, fixed, range};
 use crate::study::Study;
 
 /// Patches per side.
-const PATCHES: usize = 18;
+const PATCHES: usize = 16;
 
 /// Half the width of the box, px.
-const W: f64 = 170.0;
+const W: f64 = 134.0;
 
 /// Half the height of its floor, px.
-const D: f64 = 62.0;
+const D: f64 = 48.0;
 
 /// Its height, px.
-const H: f64 = 190.0;
+const H: f64 = 150.0;
 
 /// The middle of the near corner, px.
-const ORIGIN: [f64; 2] = [225.0, 352.0];
+const ORIGIN: [f64; 2] = [194.0, 276.0];
 
 struct View {
     throttle: [f64; 2],
@@ -61,13 +62,14 @@ pub fn surface(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
     };
     let title = format!("{} of one unit as a surface", effort.name());
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 450 398\" role=\"img\" aria-label=\"{title}\">\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 {WIDTH} 312\" role=\"img\" aria-label=\"{title}\">\n"
     );
     axes(&mut svg, &view, effort);
 
     let patches = (0..PATCHES).flat_map(|i| (0..PATCHES).map(move |j| [i, j]));
     let mut patches: Vec<[usize; 2]> = patches.collect();
     patches.sort_by_key(|[i, j]| std::cmp::Reverse(i + j));
+    svg.push_str("<g class=\"surface\">\n");
     for [i, j] in patches {
         let node = |di: usize, dj: usize| {
             let throttles = study.throttles([corner(i + di), corner(j + dj)]);
@@ -75,21 +77,20 @@ pub fn surface(study: &Study<'_>, effort: Effort, bench: Option<&BenchPoints>) -
         };
         let middle = [i, j].map(|k| corner(k) + 0.5 / PATCHES as f64);
         let fill = scale.hex(at(study.throttles(middle)));
-        let corners = [node(0, 0), node(1, 0), node(1, 1), node(0, 1)];
-        let ring = corners.map(|[x, y]| format!("{x:.1} {y:.1}")).join("L");
-        let _ = writeln!(svg, "<path class=\"surface\" fill=\"{fill}\" d=\"M{ring}Z\"/>");
+        let ring = path::data(&[node(0, 0), node(1, 0), node(1, 1), node(0, 1)], true);
+        let _ = writeln!(svg, "<path fill=\"{fill}\" d=\"{ring}\"/>");
     }
+    svg.push_str("</g>\n");
+    svg.push_str("<g class=\"bench-dot\">\n");
     for point in points {
         let (measured, model) = (point.measured[effort as usize], point.model[effort as usize]);
         let [[x, y], [_, foot]] = [measured, model].map(|effort| view.at(point.throttles, effort));
         let _ = writeln!(
             svg,
-            "<path class=\"stem\" d=\"M{x:.1} {y:.1}V{foot:.1}\"/><circle class=\"bench-dot\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.2\">\
-             <title>{}</title></circle>",
-            escaped(&bench.map_or_else(String::new, |bench| bench.text(point, effort)))
+            "<path d=\"M{x:.1} {y:.1}V{foot:.1}\"/><circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>"
         );
     }
-    svg.push_str("</svg>\n");
+    svg.push_str("</g>\n</svg>\n");
     svg
 }
 

@@ -8,7 +8,7 @@ use mixer_facts::Fact;
 use crate::bench::BenchPoints;
 use crate::comparison::{Answer, Comparison};
 use crate::effort::Effort;
-use crate::number::{fixed, shortest, significant};
+use crate::number::{fixed, range, shortest, significant};
 use crate::origin::Origin;
 use crate::rows::table;
 use crate::study::{Flown, Study};
@@ -60,6 +60,28 @@ pub fn units(study: &Study<'_>) -> Markup {
     table(caption, &header, &rows)
 }
 
+/// The ends of the attainable set by voltage.
+pub fn attainable(study: &Study<'_>) -> Markup {
+    let border = study.border_efforts();
+    let header = ["", "thrust f, N", "torque Q, N m"];
+    let rows: Vec<Vec<String>> = study
+        .voltages()
+        .into_iter()
+        .map(|(volts, k)| {
+            let between = |effort: Effort, decimals| {
+                let values = border
+                    .iter()
+                    .map(|efforts| efforts[effort as usize] * k[effort as usize]);
+                let [least, largest] = range(values);
+                format!("{} to {}", fixed(least, decimals), fixed(largest, decimals))
+            };
+            let name = volts.map_or_else(|| "at every voltage".to_owned(), |volts| format!("{volts} V"));
+            vec![name, between(Effort::Thrust, 2), between(Effort::Torque, 4)]
+        })
+        .collect();
+    table("Least to largest of one unit", &header, &rows)
+}
+
 /// M and M+.
 pub fn matrices(study: &Study<'_>, facts: &[Fact]) -> Markup {
     let effectiveness = &study.compiled.effectiveness;
@@ -82,8 +104,10 @@ pub fn matrices(study: &Study<'_>, facts: &[Fact]) -> Markup {
     let caption = html! { "M" sup { "T" } ": wrench (N m, N m, N m, N) = M \u{b7} efforts (f in N, Q in N m); a row is what one unit\u{2019}s thrust or torque adds" };
     let inverse_caption = html! { "M" sup { "+" } ": least-norm efforts = M" sup { "+" } " \u{b7} wrench" };
     html! {
-        (table(caption, &header, &m))
-        (table(inverse_caption, &header, &m_plus))
+        div.figures {
+            (table(caption, &header, &m))
+            (table(inverse_caption, &header, &m_plus))
+        }
         (self::facts(facts.iter().filter(|fact| !fact.in_verdict && !fact.is_cost()), &[]))
     }
 }

@@ -70,6 +70,15 @@ fn named<'a, 'd>(node: Node<'a, 'd>, tag: &'static str) -> impl Iterator<Item = 
         .filter(move |node| node.tag_name().name() == tag)
 }
 
+/// How many points each group of a class has.
+fn points(document: &Document<'_>, class: &str) -> Vec<usize> {
+    let groups = named(document.root(), "g").filter(|group| group.attribute("class") == Some(class));
+    groups.map(|group| named(group, "circle").count()).collect()
+}
+
+/// Largest page of an airframe without bench points, bytes.
+const LARGEST_PAGE: usize = 500_000;
+
 #[test]
 fn pages_are_well_formed_and_complete() {
     // The fixtures have tilted axes, other bases, other evaluators and voltage laws.
@@ -77,6 +86,7 @@ fn pages_are_well_formed_and_complete() {
         let name = &compiled.airframe.name;
         let study = Study::new(&compiled, None);
         let page = page(&study, None, &Origin::default());
+        assert!(page.len() < LARGEST_PAGE, "{name}: {} bytes", page.len());
         let document = parsed(&page);
         let sections: Vec<(&str, Node)> = named(document.root(), "section")
             .map(|section| (section.attribute("id").unwrap(), section))
@@ -298,11 +308,8 @@ fn bench_points_stand_beside_the_model() {
     assert_status(&told, 0, "");
     let page = fs::read_to_string(&output).unwrap();
     let document = parsed(&page);
-    let dots = document
-        .descendants()
-        .filter(|n| n.attribute("class") == Some("bench-dot"));
     // Thrust and torque, each as a surface and as a map.
-    assert_eq!(dots.count(), 4 * 100);
+    assert_eq!(points(&document, "bench-dot"), [100; 4]);
     assert!(page.contains("1 more lie below the idle of 0.1"));
     let cells: Vec<&str> = named(document.root(), "td")
         .filter_map(|cell| cell.text())

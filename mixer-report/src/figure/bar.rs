@@ -4,11 +4,15 @@ use std::fmt::Write as _;
 
 use crate::number::escaped;
 
+/// Room that a bar takes at the right of its plot, px: ticks of seven digits, each 7.2 px wide on
+/// average in 12 px type, and the label.
+pub(super) const ROOM: f64 = 94.0;
+
 /// From the plot to the bar, px.
-const GAP: f64 = 14.0;
+const GAP: f64 = 12.0;
 
 /// From the left of the bar to its ticks, px.
-const TICKS: f64 = 17.0;
+const TICKS: f64 = 16.0;
 
 /// Bands of colour with ticks and a label.
 #[derive(Clone, Debug)]
@@ -37,29 +41,18 @@ impl Bar {
         })
     }
 
-    /// From the left of the bar to the middle of its label, px: clear of the longest tick, whose
-    /// digits of 12 px type are 7.2 px wide on average.
-    fn label_at(&self) -> f64 {
-        let letters = self.ticks.iter().map(|(_, text)| text.chars().count()).max();
-        (TICKS + 7.2 * letters.unwrap_or(0) as f64 + 12.0).max(66.0)
-    }
-
-    /// Room that the bar takes at the right of its plot, px.
-    pub(super) fn room(&self) -> f64 {
-        GAP + self.label_at() + 6.0
-    }
-
     /// Draws the bar at the right of a plot with this top right corner, `height` px high.
     pub(super) fn draw(&self, svg: &mut String, [right, top]: [f64; 2], height: f64) {
         let left = right + GAP;
         let span = self.range[1] - self.range[0];
         let y = |value: f64| top + height * (1.0 - (value - self.range[0]) / span);
-        for (low, high, colour) in &self.bands {
+        // From the top; each reaches a pixel into the next, which is painted over it: no gaps.
+        for (low, high, colour) in self.bands.iter().rev() {
             let _ = writeln!(
                 svg,
-                "<rect x=\"{left}\" y=\"{:.1}\" width=\"12\" height=\"{:.1}\" fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\".5\"/>",
+                "<path fill=\"{colour}\" d=\"M{left} {:.1}h12V{:.1}h-12\"/>",
                 y(*high),
-                y(*low) - y(*high)
+                (y(*low) + 1.0).min(top + height)
             );
         }
         for (value, text) in &self.ticks {
@@ -71,10 +64,12 @@ impl Bar {
                 text
             );
         }
+        let letters = self.ticks.iter().map(|(_, text)| text.chars().count()).max();
+        let letters = letters.unwrap_or(0);
         let _ = writeln!(
             svg,
             "<text class=\"label\" transform=\"translate({} {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-            left + self.label_at(),
+            left + (TICKS + 7.2 * letters as f64 + 18.0).min(ROOM - GAP - 5.0),
             top + height / 2.0,
             escaped(&self.label)
         );

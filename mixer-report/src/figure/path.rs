@@ -1,8 +1,33 @@
-//! Polylines in pixels: fewer points where they are not seen, and a place for the value of an
-//! iso-curve.
+//! Polylines in pixels: their path data, fewer points where they are not seen, and a place for the
+//! value of an iso-curve.
+
+use std::fmt::Write as _;
 
 /// Points nearer than this to a chord are left out, px.
 const UNSEEN: f64 = 0.1;
+
+/// SVG path data through the points that are seen, from point to point in tenths of a pixel, which
+/// are enough for any screen and printer.
+pub(crate) fn data(pixels: &[[f64; 2]], closed: bool) -> String {
+    let mut data = String::new();
+    let mut last: Option<[i32; 2]> = None;
+    for point in simplified(pixels) {
+        let tenths = point.map(|x| libm::round(10.0 * x) as i32);
+        let step = match last {
+            Some(last) if last == tenths => continue,
+            Some(last) => [tenths[0] - last[0], tenths[1] - last[1]],
+            None => tenths,
+        };
+        data.push(if last.is_none() { 'M' } else { 'l' });
+        last = Some(tenths);
+        let [x, y] = step.map(|tenths| f64::from(tenths) / 10.0);
+        let _ = write!(data, "{x} {y}");
+    }
+    if closed && !data.is_empty() {
+        data.push('Z');
+    }
+    data
+}
 
 /// The points that are seen: Douglas and Peucker's selection, ends kept.
 pub(super) fn simplified(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
@@ -95,6 +120,18 @@ mod tests {
             [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 0.0]]
         );
         assert!(simplified(&[]).is_empty());
+    }
+
+    /// Rounding does not add up along a path.
+    #[test]
+    fn steps_are_between_rounded_points() {
+        let zigzag: Vec<[f64; 2]> = (0..5).map(|k| [1.04 * f64::from(k), f64::from(k % 2)]).collect();
+        assert_eq!(data(&zigzag, false), "M0 0l1 1l1.1 -1l1 1l1.1 -1");
+        assert_eq!(
+            data(&[[1.0, 2.0], [1.0, 3.0], [4.0, 3.04], [1.0, 2.0]], true),
+            "M1 2l0 1l3 0l-3 -1Z"
+        );
+        assert_eq!(data(&[], true), "");
     }
 
     #[test]

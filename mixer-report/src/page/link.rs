@@ -5,12 +5,14 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 use mixer_compiler::diagnostic::printable;
 
+use crate::bench::BenchPoints;
 use crate::data::{self, Data};
+use crate::effort::Effort;
 use crate::figure::Figure;
 use crate::study::Study;
 
 /// Text of a link to the data of one figure.
-pub(super) const OF_THE_FIGURE: &str = "Data (CSV)";
+const OF_THE_FIGURE: &str = "Data (CSV)";
 
 /// The curves of a figure; `word` is the end of the file's name.
 pub(super) fn curves(study: &Study<'_>, word: &str, figure: &Figure) -> Markup {
@@ -19,12 +21,22 @@ pub(super) fn curves(study: &Study<'_>, word: &str, figure: &Figure) -> Markup {
 
 /// The file that `cargo mixer sweep` writes.
 pub(super) fn sweep(study: &Study<'_>, of: Data) -> Markup {
-    html! { @if let Ok(csv) = data::sweep(study, of) { (link(study, of.word(), &csv, OF_THE_FIGURE)) } }
+    swept(study, of, OF_THE_FIGURE)
 }
 
-/// Some columns of `csv`.
-pub(super) fn columns(study: &Study<'_>, word: &str, csv: &str, names: &[&str], text: &str) -> Markup {
-    link(study, word, &data::columns(csv, names), text)
+/// The same, of the figures above.
+pub(super) fn sweep_of_all(study: &Study<'_>, of: Data) -> Markup {
+    html! { p { (swept(study, of, "Data of these pictures (CSV)")) } }
+}
+
+fn swept(study: &Study<'_>, of: Data, text: &str) -> Markup {
+    html! { @if let Ok(csv) = data::sweep(study, of) { (link(study, of.word(), &csv, text)) } }
+}
+
+/// What was measured of one effort at the bench points, and what the model has.
+pub(super) fn bench(study: &Study<'_>, bench: &BenchPoints, effort: Effort) -> Markup {
+    let word = format!("bench-{}", effort.word());
+    link(study, &word, &data::bench(bench, effort), OF_THE_FIGURE)
 }
 
 fn link(study: &Study<'_>, word: &str, csv: &str, text: &str) -> Markup {

@@ -47,14 +47,17 @@ addEventListener("load", () => setTimeout(() => {
 }, 500));
 </script></body>"#;
 
-/// A page in a window of a phone's width, and what of it is wider than that.
-const PHONE: &str = r#"<iframe src="PAGE" style="width:390px;height:30000px;border:0"></iframe><script>
+/// A page in a window WIDTH px wide, what of it is wider than that, and the height of the smallest
+/// type in its pictures, px.
+const FRAMED: &str = r#"<iframe src="PAGE" style="width:WIDTHpx;height:30000px;border:0"></iframe><script>
 addEventListener("load", () => {
   const page = document.querySelector("iframe").contentDocument;
   const wide = [...page.querySelectorAll(".wide")].filter((box) => box.scrollWidth > box.clientWidth);
   const names = wide.map((box) => box.closest("section").querySelector("h2").textContent);
+  const type = [...page.querySelectorAll("svg.figure text")].map((text) =>
+    parseFloat(page.defaultView.getComputedStyle(text).fontSize) * Math.sqrt(Math.abs(text.getScreenCTM().a ** 2 + text.getScreenCTM().b ** 2)));
   const root = page.documentElement;
-  document.body.textContent = `${root.scrollWidth} of ${root.clientWidth}: ${[...new Set(names)].join("; ")}`;
+  document.body.textContent = `${root.scrollWidth} of ${root.clientWidth}: ${[...new Set(names)].join("; ")}, ${Math.min(...type)}`;
 });
 </script>"#;
 
@@ -197,24 +200,34 @@ fn a_check_is_kept_where_the_content_is_shown_again() {
     );
 }
 
-/// No table is cut.
+/// On a phone and on a desk no table is cut, and the type of pictures is 12 px at least.
 #[test]
-fn pages_fit_a_phone() {
+fn pages_fit_their_window_with_type_that_can_be_read() {
     let Some(browser) = wanted_browser() else {
         return;
     };
+    let origin = Origin {
+        sha256: Some("0123456789abcdef".repeat(4)),
+        date: None,
+    };
     for compiled in shown() {
         let name = compiled.airframe.name.clone();
-        let path = scratch(&format!("{name}-narrow.html"));
-        let html = page(&Study::new(&compiled, None), None, &Origin::default());
-        fs::write(&path, html).unwrap();
-        let phone = scratch(&format!("{name}-phone.html"));
+        let path = scratch(&format!("{name}-framed.html"));
+        fs::write(&path, page(&Study::new(&compiled, None), None, &origin)).unwrap();
         let framed = path.file_name().unwrap().to_string_lossy();
-        fs::write(&phone, PHONE.replace("PAGE", &framed)).unwrap();
-        let (dom, _) = open(&browser, &phone);
-        let (_, told) = dom.split_once("<body>").expect("a body");
-        let told = told.split("</body>").next().unwrap_or_default();
-        let told = told.strip_prefix("390 of 390: ").unwrap_or(told);
-        assert!(told.trim().is_empty(), "{name}: {told}");
+        for width in ["390", "1400"] {
+            let frame = scratch(&format!("{name}-{width}.html"));
+            fs::write(&frame, FRAMED.replace("PAGE", &framed).replace("WIDTH", width)).unwrap();
+            let (dom, _) = open(&browser, &frame);
+            let (_, told) = dom.split_once("<body>").expect("a body");
+            let told = told.split("</body>").next().unwrap_or_default().trim();
+            let (fits, smallest) = told.rsplit_once(", ").expect("what was measured");
+            assert_eq!(fits, format!("{width} of {width}: "), "{name}");
+            let smallest: f64 = smallest.parse().unwrap();
+            assert!(
+                smallest >= 12.0,
+                "{name}: {smallest} px in a window of {width} px"
+            );
+        }
     }
 }

@@ -67,8 +67,7 @@ fn a_flight_is_shown_over_the_model() {
     });
     let page = page(&study, None, &Origin::default());
     let document = parsed(&page);
-    let dots = named(document.root(), "circle").filter(|dot| dot.attribute("class") == Some("flown-dot"));
-    assert_eq!(dots.count(), 6);
+    assert_eq!(points(&document, "flown-dot"), [3, 3]);
     let text = text_of(document.root());
     for what in ["a<b>.ulg", "model over measured 1.02", "where the pairs flew"] {
         assert!(text.contains(what), "{what}");
@@ -133,7 +132,7 @@ fn residuals_are_mapped() {
     }
 }
 
-/// Every figure has the data of its own, and every plot that is read is reached by the Tab key:
+/// Every figure has data, its own or with those above the link, and every plot that is read is reached by the Tab key:
 /// itself or each of its curves.
 #[test]
 fn figures_have_data_and_are_reached_by_keyboard() {
@@ -142,30 +141,41 @@ fn figures_have_data_and_are_reached_by_keyboard() {
         let study = Study::new(&compiled, None);
         let page = page(&study, None, &Origin::default());
         let document = parsed(&page);
-        let (mut files, mut surfaces) = (BTreeSet::new(), 0);
-        for figure in named(document.root(), "figure") {
-            let Some(link) = named(figure, "a").find(|link| link.has_attribute("download")) else {
-                // A surface has that of the map beside it.
-                let next = figure.next_siblings().filter(Node::is_element).nth(1).unwrap();
-                assert!(text_of(next).contains("Data of both pictures (CSV)"), "{name}");
-                surfaces += 1;
-                continue;
-            };
+        let is_link = |node: &Node| node.has_attribute("download");
+        let of_all: Vec<&str> = named(document.root(), "figure")
+            .filter(|figure| !figure.descendants().any(|node| is_link(&node)))
+            .map(|figure| {
+                let below = figure.parent().unwrap().next_sibling().unwrap();
+                let link = below.descendants().find(is_link).unwrap();
+                assert_eq!(text_of(link), "Data of these pictures (CSV)", "{name}");
+                link.attribute("download").unwrap()
+            })
+            .collect();
+        let [forward, inverse, error] =
+            ["forward", "inverse", "error"].map(|word| format!("{name}-{word}.csv"));
+        assert_eq!(
+            of_all,
+            [
+                &forward, &forward, &forward, &forward, &inverse, &inverse, &error, &error
+            ],
+            "{name}"
+        );
+        let mut files = BTreeSet::new();
+        for link in document.descendants().filter(is_link) {
             let file = link.attribute("download").unwrap();
             assert!(files.insert(file), "{name}: {file} twice");
             let csv = link.attribute("href").unwrap().split_once(',').unwrap().1;
             let csv = csv.replace("%0A", "\n").replace("%22", "\"").replace("%20", " ");
             let mut reader = csv::Reader::from_reader(csv.as_bytes());
-            assert!(reader.headers().unwrap().len() >= 3, "{file}: {csv:.100}");
+            assert!(reader.headers().unwrap().len() >= 2, "{file}: {csv:.100}");
             let least = if file.ends_with("-layout.csv") {
                 compiled.airframe.units.len()
             } else {
-                41
+                25
             };
             let rows: Result<Vec<_>, _> = reader.records().collect();
             assert!(rows.unwrap().len() >= least, "{file}: {csv:.100}");
         }
-        assert_eq!(surfaces, 2, "{name}");
         let read: Vec<Node> = named(document.root(), "svg")
             .filter(|svg| svg.has_attribute("data-hover"))
             .collect();
@@ -187,9 +197,11 @@ fn figures_have_data_and_are_reached_by_keyboard() {
             let outputs = named(svg.parent().unwrap(), "output").count();
             assert!(outputs >= 2, "{name}: {outputs}");
         }
-        // Some hold what the command writes.
-        let csv = sweep(&study, Data::Attainable).unwrap();
-        assert!(page.contains(&csv.replace('\n', "%0A")), "{name}");
+        // Maps and the attainable set have what the command writes.
+        for data in [Data::Attainable, Data::Forward, Data::Inverse, Data::Error] {
+            let csv = sweep(&study, data).unwrap();
+            assert!(page.contains(&csv.replace('\n', "%0A")), "{name}: {data:?}");
+        }
     }
 }
 
