@@ -46,7 +46,7 @@ const ask = (method, ...words) => new Promise((...both) => {
 
 const fresh = () => ({ files: [], form: Object.fromEntries(FIELDS.map((key) => [key, key === "frame" ? "x8" : ""])), airframe: null, made: "", before: null, tab: "", hand: null });
 let state = fresh();
-let pair = null, offered = null, benchFaults = [], told = null;
+let pair = null, offered = null, refused = [], benchFaults = [], told = null;
 
 function keep() {
   try {
@@ -80,29 +80,38 @@ async function linked() {
     const { name, text } = JSON.parse(new TextDecoder().decode(await packed(bytes, new DecompressionStream("deflate-raw"))));
     adopt({ name: String(name), text: String(text) }, "");
   } catch {
-    say("The link holds no whole airframe: copy all of it.", true);
+    refused = [{ severity: "error", file: "", message: "the link holds no whole airframe", help: "copy all of it" }];
   }
 }
 
 // --- files
 
 async function drop(files) {
+  refused = [];
   for (const file of files) {
-    const bytes = new Uint8Array(await file.arrayBuffer());
-    let text;
-    try {
-      text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes);
-    } catch {
-      text = Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""); // Latin-1, as the command line reads it
-    }
-    const { kind, points } = await ask("kind", file.name, text);
-    if (kind === "airframe") adopt({ name: file.name, text }, "");
+    const text = decoded(new Uint8Array(await file.arrayBuffer()));
+    if (text === null) refused.push({ severity: "error", file: file.name, message: "this is no text: flight logs are read by cargo mixer review, spreadsheets are saved as CSV", help: "" });
+    else if ((await ask("kind", file.name, text, [])).kind === "airframe") adopt({ name: file.name, text }, "");
     else {
-      state.files = [...state.files.filter(({ name }) => name !== file.name), { name: file.name, text, kind, points }];
+      state.files = [...state.files.filter(({ name }) => name !== file.name), { name: file.name, text, chosen: "" }];
       state.tab = file.name;
     }
   }
   await remake();
+}
+
+// The text of a file, in the encodings that the command line reads; null of what is none.
+function decoded(bytes) {
+  const encodings = bytes[0] === 0xff && bytes[1] === 0xfe ? ["utf-16le"] : bytes[0] === 0xfe && bytes[1] === 0xff ? ["utf-16be"] : ["utf-8", "latin1"];
+  for (const encoding of encodings) {
+    try {
+      const text = new TextDecoder(encoding, { fatal: true, ignoreBOM: encoding === "utf-8" }).decode(bytes);
+      return text.includes("\0") ? null : text;
+    } catch {
+      // The next encoding.
+    }
+  }
+  return null;
 }
 
 const of = (kind) => state.files.filter((file) => file.kind === kind);
@@ -135,10 +144,15 @@ async function remake() {
     lines.push(["cargo mixer", ...words, ...more].map((word, k) => (k ? quoted(word) : word)).join(" "));
     return ask("make", [...words, ...more], ...named([...state.files, ...(pair ? [pair] : [])]), today());
   };
-  let report = "", notes = [], made = null, faults = [];
-  [pair] = of("pair");
+  let report = "", notes = [], made = null, faults = refused;
   try {
-    const command = pairCommand(), options = await ask("words", state.form.options);
+    const options = await ask("words", state.form.options);
+    for (const file of state.files) {
+      const { kind, points } = await ask("kind", file.name, file.text, options);
+      Object.assign(file, { kind: file.chosen || kind, points });
+    }
+    [pair] = of("pair");
+    const command = pairCommand();
     if (command) {
       const answer = await run(command, ["-o", "pair.toml", ...options]);
       [pair, report, notes] = [{ name: "pair.toml", text: answer.toml }, answer.report, answer.notes];
@@ -151,7 +165,7 @@ async function remake() {
     } else if (command) notes = [...notes, "the arm is missing: with a frame and its arm these tables become an airframe"];
   } catch (error) {
     if (!(error instanceof Refused)) return say(error.message, true);
-    faults = error.faults.map((fault) => ({ severity: "error", ...fault }));
+    faults = [...refused, ...error.faults.map((fault) => ({ severity: "error", ...fault }))];
   }
   if (mine !== turn) return;
   // Notes about rows name them as errors do.
@@ -167,8 +181,9 @@ async function remake() {
   $("pair-report").hidden = !report;
   const theirs = state.airframe && state.airframe.text !== state.made && state.airframe.text !== made?.text;
   offered = theirs && made?.text !== state.made ? made : null;
-  if (made && !theirs && made.text !== state.airframe?.text) adopt(made, made.text);
+  if (made && !theirs && made.text !== state.airframe?.text) await adopt(made, made.text);
   else show();
+  sum();
 }
 const remakeSoon = later(250, remake);
 
@@ -181,7 +196,7 @@ function adopt(airframe, made) {
   return check();
 }
 
-let checking = 0;
+let checking = 0, spent = 0;
 async function check() {
   if (!state.airframe) return;
   const mine = checking += 1, began = performance.now();
@@ -193,11 +208,10 @@ async function check() {
   }
   if (mine !== checking) return;
   told = answer;
-  const [errors, warnings] = [told.errors.length, told.warnings.length];
-  const count = (n, word) => `${n || "no"} ${word}${n === 1 ? "" : "s"}`;
   show();
-  if (errors) return say(`${count(errors, "error")} in ${state.airframe.name}`, true);
-  say(`${told.name} compiles: ${count(warnings, "warning")}, ${Math.round(performance.now() - began)} ms`);
+  spent = Math.round(performance.now() - began);
+  sum();
+  if (told.errors.length) return;
   await hand.show(state.hand);
   reportSoon();
 }
@@ -237,6 +251,16 @@ const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); }, async (...s
 
 // --- what is shown of the state
 
+// The sum of it all, which a screen reader says.
+function sum() {
+  const count = (n, word) => `${n || "no"} ${word}${n === 1 ? "" : "s"}`;
+  const errors = benchFaults.filter(({ severity }) => severity === "error");
+  const bench = errors.length ? [`${count(errors.length, "error")} in ${errors[0].file || "what the files say"}`] : [];
+  const airframe = told && state.airframe ? [told.errors.length ? `${count(told.errors.length, "error")} in ${state.airframe.name}`
+    : `${told.name} compiles: ${count(told.warnings.length, "warning")}, ${spent} ms`] : [];
+  say([...bench, ...airframe].join("; ") || "Ready: drop a file, or begin with a frame.", Boolean(errors.length || told?.errors.length));
+}
+
 // Lines of a word and what it means, some of them continued below.
 function fill(table, text) {
   const rows = [];
@@ -275,7 +299,7 @@ function show() {
   $("dropped").replaceChildren(...state.files.map((file) => {
     const kinds = element("select", { ariaLabel: `What ${file.name} is` }, ...Object.entries(KINDS).map(([value, textContent]) => element("option", { value, textContent })));
     kinds.value = file.kind;
-    kinds.addEventListener("change", () => { file.kind = kinds.value; remake(); });
+    kinds.addEventListener("change", () => { file.chosen = kinds.value; remake(); });
     const remove = element("button", { type: "button", textContent: "Remove", ariaLabel: `Remove ${file.name}` });
     remove.addEventListener("click", () => { state.files = state.files.filter((other) => other !== file); remake(); });
     return element("li", {}, element("b", { textContent: file.name }), kinds, remove);
@@ -343,7 +367,7 @@ $("share").addEventListener("click", async () => {
   $("link").select();
   await navigator.clipboard?.writeText(text).catch(() => {});
 });
-$("forget").addEventListener("click", () => { [state, told, benchFaults] = [fresh(), null, []]; say("Forgotten."); remake(); });
+$("forget").addEventListener("click", () => { [state, told, refused] = [fresh(), null, []]; remake(); });
 
 (async () => {
   try {
@@ -352,7 +376,6 @@ $("forget").addEventListener("click", () => { [state, told, benchFaults] = [fres
     // What another version kept, or what cannot be read, is no reason not to begin.
   }
   await loaded;
-  say("Ready: drop a file, or begin with a frame.");
   await linked();
   await check();
   await remake();

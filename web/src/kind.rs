@@ -3,11 +3,11 @@
 use mixer_compiler::Source;
 use mixer_files::import;
 use mixer_identify::bench::Kind as Rotors;
-use mixer_identify::bench::header::Offers;
-use mixer_identify::identified::Settings;
 use mixer_identify::texts::{self, Text};
 use serde::Serialize;
 use toml_edit::DocumentMut;
+
+use crate::make;
 
 /// What a file is, and how many points a bench file has.
 #[derive(Debug, Serialize, PartialEq, Eq)]
@@ -18,48 +18,66 @@ pub struct Kind {
     pub points: usize,
 }
 
-/// Tells a file by its content. What cannot be told is taken for a pair's bench file, whose reader says
-/// best what is wrong with it.
-pub fn kind(name: &str, text: &str) -> Kind {
+/// Words of parameter files that say which rotors there are.
+const PARAMETERS: [&str; 3] = ["CA_ROTOR", "FRAME_CLASS", "mmix"];
+
+/// Tells a file by its content; a bench file is read with these options of the command line.
+pub fn kind(name: &str, text: &str, options: &[String]) -> Kind {
     let is = |kind| Kind { kind, points: 0 };
     if let Ok(document) = text.parse::<DocumentMut>() {
         let has = |key| document.contains_key(key);
-        if has("unit") || has("layout") {
-            return is("airframe");
-        }
-        if has("pair") {
+        if has("pair") && !has("unit") && !has("layout") {
             return is("pair");
         }
+        if has("pair") || has("unit") || has("layout") {
+            return is("airframe");
+        }
     }
-    let source = Source::new(name, text);
-    if name.ends_with(".toml") {
+    let ends = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+    if ends(&[".toml"]) {
         return is("airframe");
     }
-    let states = |word| text.contains(word);
-    if import::stated(&source).is_ok() || ["CA_ROTOR", "FRAME_CLASS", "mmix"].into_iter().any(states) {
+    let states = PARAMETERS.into_iter().any(|word| text.contains(word));
+    if states || ends(&[".params", ".param", ".parm"]) || import::stated(&Source::new(name, text)).is_ok() {
         return is("parameters");
     }
+    bench(name, text, options)
+}
+
+/// A bench file is what the reading takes it for that gets furthest: of a pair, of one rotor, of a pair
+/// without torque.
+fn bench(name: &str, text: &str, options: &[String]) -> Kind {
     let bytes = Text {
         name: name.to_owned(),
         content: Ok(text.as_bytes().to_vec()),
     };
-    let rotors = |settings: &Settings| {
-        Some(texts::read(&bytes, settings).ok()?).map(|bench| (bench.kind, bench.points_used))
+    let [pair, run] = ["identify", "predict"].map(|command| make::settings(command, options));
+    let mut without_torque = pair.clone();
+    without_torque.preparation.torque_may_lack = true;
+    let mut best = Kind {
+        kind: "map",
+        points: 0,
     };
-    let mut of_one_rotor = Settings::default();
-    of_one_rotor.reading.by_hand.offers = Offers::OneRotor;
-    of_one_rotor.preparation.own_columns = true;
-    let lacks_torque = {
-        let mut settings = Settings::default();
-        settings.preparation.torque_may_lack = true;
-        settings
-    };
-    match rotors(&lacks_torque) {
-        Some((Rotors::Pair, points)) => Kind { kind: "map", points },
-        Some((Rotors::SingleRotor, points)) => Kind { kind: "run", points },
-        None => match rotors(&of_one_rotor) {
-            Some((Rotors::SingleRotor, points)) => Kind { kind: "run", points },
-            _ => is("map"),
-        },
+    let mut furthest = 0;
+    for (settings, kind) in [(pair, "map"), (run, "run"), (without_torque, "map")] {
+        match texts::read(&bytes, &settings) {
+            Ok(bench) => {
+                return Kind {
+                    kind: match bench.kind {
+                        Rotors::Pair => "map",
+                        Rotors::SingleRotor => "run",
+                    },
+                    points: bench.points_used,
+                };
+            }
+            Err(refusal) => {
+                let (_, line) = refusal.file_and_line();
+                if line > Some(furthest) {
+                    furthest = line.unwrap_or_default();
+                    best.kind = kind;
+                }
+            }
+        }
     }
+    best
 }

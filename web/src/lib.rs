@@ -39,8 +39,8 @@ impl Desk {
     }
 
     /// What a dropped file is: see [`kind::kind`].
-    pub fn kind(&self, name: &str, text: &str) -> String {
-        json(&kind::kind(name, text))
+    pub fn kind(&self, name: &str, text: &str, options: Vec<String>) -> String {
+        json(&kind::kind(name, text, &options))
     }
 
     /// Runs a command that makes a pair or an airframe: see [`make::make`]. `names` and `texts` are the

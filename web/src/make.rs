@@ -14,6 +14,7 @@ use mixer_compiler::Source;
 use mixer_files::import;
 use mixer_files::plain::printable_lines;
 use mixer_identify::bench::read;
+use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{Answer, Text};
 use serde::Serialize;
@@ -167,6 +168,18 @@ fn answered<T>(toml: String, answer: &Answer<T>, notes: Vec<String>) -> Made {
         toml,
         report: printable_lines(&answer.report),
         notes,
+    }
+}
+
+/// How a command reads a bench file with these options; with options that are none of its own, as
+/// without.
+pub(crate) fn settings(command: &str, options: &[String]) -> Settings {
+    let words = ["cargo mixer", command, "FILE"].into_iter();
+    let given = Make::try_parse_from(words.clone().chain(options.iter().map(String::as_str)));
+    match given.or_else(|_| Make::try_parse_from(words)) {
+        Ok(Make::Identify(args)) => args.settings(),
+        Ok(Make::Predict(args)) => args.settings(),
+        _ => Settings::default(),
     }
 }
 

@@ -180,7 +180,8 @@ fn single_role(text: &str) -> Result<(String, String), String> {
 }
 
 impl PredictArgs {
-    fn settings(&self) -> Settings {
+    /// The settings that the arguments ask for.
+    pub fn settings(&self) -> Settings {
         let mut settings = self.rotors.reading(self.air.air(), self.rpm_at_full);
         settings.reading.by_hand.columns = self.columns.clone();
         settings.reading.by_hand.units = self.units.clone();
