@@ -312,7 +312,7 @@ function show() {
   $("back").hidden = !state.before;
   for (const key of FIELDS) if (document.activeElement !== $(key)) $(key).value = state.form[key];
   const file = state.airframe?.name ?? "airframe.toml";
-  $("library").textContent = `cargo install cargo-mixer\ncargo mixer library ${quoted(file)} --target thumbv7em-none-eabihf -o lib`;
+  $("library").textContent = `cargo mixer library ${quoted(file)} --target thumbv7em-none-eabihf -o lib`;
   $("downloads").querySelector("[data-output=pair]").hidden = !pair;
 }
 
