@@ -12,6 +12,11 @@ const OUTPUTS = [
   ["rs", "Generated Rust"], ["vectors.csv", "Golden outputs"], ["rotors-out.csv", "Golden, rotors out"], ["report.txt", "Every number"],
 ];
 
+const EXAMPLES = {
+  identify: "--cells 6 --pwm-range 1000,2000 --unit thrust=gf", predict: "--diameter 0.457 --spacing 0.1",
+  import: "--upper 0,1,2,3", new: "",
+};
+
 const today = () => new Date().toISOString().slice(0, 10);
 const later = (wait, run) => { let timer; return (...words) => { clearTimeout(timer); timer = setTimeout(run, wait, ...words); }; };
 const quoted = (word) => (/^[\w./,=:+-]+$/.test(word) ? word : `'${word}'`);
@@ -174,6 +179,7 @@ async function remake() {
     return { severity: "warning", file: file ?? "", line: line && Number(line), message: note, help: "" };
   })];
   $("command-name").textContent = pairCommand()?.[0] ?? airframeCommand()?.[1][0] ?? "identify";
+  $("options").placeholder = EXAMPLES[$("command-name").textContent];
   $("help").textContent = await ask("help", $("command-name").textContent);
   $("command").textContent = lines.join(" && ");
   $("made-by").hidden = !lines.length;
@@ -257,7 +263,7 @@ function sum() {
   const errors = benchFaults.filter(({ severity }) => severity === "error");
   const bench = errors.length ? [`${count(errors.length, "error")} in ${errors[0].file || "what the files say"}`] : [];
   const airframe = told && state.airframe ? [told.errors.length ? `${count(told.errors.length, "error")} in ${state.airframe.name}`
-    : `${told.name} compiles: ${count(told.warnings.length, "warning")}, ${spent} ms`] : [];
+    : `${told.name} compiles: ${count(told.warnings.length, "warning")}, ${spent} ms`] : pair ? ["The pair is ready: the airframe needs its frame and arm"] : [];
   say([...bench, ...airframe].join("; ") || "Ready: drop a file, or begin with a frame.", Boolean(errors.length || told?.errors.length));
 }
 

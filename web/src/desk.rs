@@ -158,7 +158,7 @@ impl Checked {
                 Stack::Ardupilot => "parm",
             };
             return Ok(Output {
-                name: format!("{name}.{ending}"),
+                name: format!("{name}{}.{ending}", if own { "-own" } else { "" }),
                 text: made.text,
                 notes: made.notes,
             });

@@ -96,6 +96,16 @@ impl Fault {
         }
     }
 
+    /// The first line of what clap says; the others are about a command line.
+    fn usage(error: &clap::Error) -> Self {
+        let told = error.render().to_string();
+        let first = told.lines().next().unwrap_or_default();
+        Fault {
+            help: "the field of the options takes those of the list below it".to_owned(),
+            ..Fault::general(first.trim_start_matches("error: "))
+        }
+    }
+
     fn of(refusal: &Refusal) -> Self {
         let (file, line) = refusal.file_and_line();
         Fault {
@@ -116,8 +126,7 @@ pub fn make(words: &[String], files: &Files, today: String) -> Result<Made, Vec<
     let words = ["cargo mixer"]
         .into_iter()
         .chain(words.iter().map(String::as_str));
-    let command = Make::try_parse_from(words)
-        .map_err(|error| vec![Fault::general(error.render().to_string().trim_end().to_owned())])?;
+    let command = Make::try_parse_from(words).map_err(|error| vec![Fault::usage(&error)])?;
     let outside = Outside {
         text: &|path| files.text(path),
         today: Some(today),
