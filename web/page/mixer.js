@@ -27,13 +27,17 @@ class Hand {
     }
   }
 
-  // A new airframe; `at` is the position { wrench, volts, density, failed } of the one before, or null.
-  async show(at) {
+  // The airframe of a name; `at` is the position { name, wrench, volts, density, failed } of the one before, or null. One of
+  // another name begins in hover.
+  async show(name, before) {
+    const at = before?.name === name ? before : null;
     this.scene = await this.ask("scene", at?.volts ?? NaN, at?.density ?? NaN);
+    this.scene.largest = this.scene.largest.map((x) => Number(x.toPrecision(4)));
     const { largest, hover_n, volts, density, units } = this.scene;
     const within = (x, ends) => (ends ? Math.min(ends[2], Math.max(ends[0], x ?? ends[1])) : 0);
     const limit = (x, k) => (k === 3 ? Math.min(largest[3], Math.max(0, x)) : Math.min(largest[k], Math.max(-largest[k], x)));
     this.at = {
+      name,
       wrench: (at?.wrench ?? [0, 0, 0, hover_n]).map(limit),
       volts: within(at?.volts, volts),
       density: within(at?.density, density),
@@ -108,7 +112,7 @@ class Hand {
       drawn("path", { class: "forward", d: "M150 128v-26m-7 9l7 -9l7 9" }));
     this.rings = [];
     for (const unit of units) {
-      const [x, y] = place(unit), size = Math.min(13, radius / 3.6);
+      const [x, y] = place(unit), size = Math.min(13, radius / (units.length > 4 ? 4.4 : 3.6));
       top.append(drawn("circle", { class: "disk", cx: x, cy: y, r: radius }));
       unit.channels.forEach((channel, layer) => {
         const at = { cx: x, cy: y, r: radius - 16 + 10 * layer, pathLength: 1 };

@@ -218,7 +218,7 @@ async function check() {
   spent = Math.round(performance.now() - began);
   sum();
   if (told.errors.length) return;
-  await hand.show(state.hand);
+  await hand.show(told.name, state.hand);
   reportSoon();
 }
 const checkSoon = later(250, check);
