@@ -167,7 +167,7 @@ async function remake() {
       const answer = await run(airframe[1], command ? [] : options);
       made = { name: airframe[0], text: answer.toml };
       notes = [...notes, ...answer.notes];
-    } else if (command) notes = [...notes, "the arm is missing: with a frame and its arm these tables become an airframe"];
+    }
   } catch (error) {
     if (!(error instanceof Refused)) return say(error.message, true);
     faults = [...refused, ...error.faults.map((fault) => ({ severity: "error", ...fault }))];
@@ -175,8 +175,9 @@ async function remake() {
   if (mine !== turn) return;
   // Notes about rows name them as errors do.
   benchFaults = [...faults, ...notes.map((note) => {
-    const [, file, line] = note.match(/^(?:warning: )?(.+?):(\d+): /) ?? [];
-    return { severity: "warning", file: file ?? "", line: line && Number(line), message: note, help: "" };
+    const { name = "" } = state.files.find(({ name }) => note.includes(`${name}:`)) ?? {};
+    const [, line, message] = note.split(`${name}:`).slice(1).join(`${name}:`).match(/^(\d+): (.*)/s) ?? [];
+    return { severity: "warning", file: name, line: line && Number(line), message: message ?? note, help: "" };
   })];
   $("command-name").textContent = pairCommand()?.[0] ?? airframeCommand()?.[1][0] ?? "identify";
   $("options").placeholder = EXAMPLES[$("command-name").textContent];
@@ -289,7 +290,7 @@ function show() {
     return tab;
   }));
   const records = ["error", "warning"].flatMap((severity) => (told?.[`${severity}s`] ?? []).map((record) => ({ severity, ...record })));
-  const faults = [...benchFaults, ...(state.airframe ? records : [])];
+  const faults = [...benchFaults, ...(state.airframe ? records : [])].sort((a, b) => (a.severity < b.severity ? -1 : a.severity > b.severity ? 1 : 0));
   editor.text = edited.find(({ name }) => name === state.tab)?.text ?? "";
   editor.mark(faults.filter(({ file }) => file === (state.tab || state.airframe?.name)));
   $("faults").replaceChildren(...faults.map(({ severity, code, file, line, column, message, help }) => {
