@@ -2,7 +2,8 @@
 
 use toml_edit::{DocumentMut, Item, Table, Value};
 
-/// The text with `key = value` in `[table]`; the rest stays as it is written.
+/// The text with `key = value` in `[table]`, without the key where there is no value; the rest stays as it
+/// is written.
 ///
 /// # Errors
 /// A text that is no TOML, a value that is none.
@@ -10,6 +11,12 @@ pub fn set(text: &str, table: &str, key: &str, value: &str) -> Result<String, St
     let mut document: DocumentMut = text
         .parse()
         .map_err(|error| format!("the file is no TOML yet: {error}"))?;
+    if value.is_empty() {
+        if let Some(table) = document.get_mut(table).and_then(Item::as_table_like_mut) {
+            table.remove(key);
+        }
+        return Ok(document.to_string());
+    }
     let mut value: Value = value
         .parse()
         .map_err(|error| format!("{value} is no value: {error}"))?;
