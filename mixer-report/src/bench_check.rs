@@ -34,7 +34,7 @@ pub(crate) fn bench_check(study: &Study<'_>) -> Markup {
              classes test motors in orders of their own."
         }
         div.wide.words {
-            table {
+            table.outputs {
                 caption { "Outputs" }
                 (header(["output", "drives", "turns", "PX4", "ArduPilot", "seen"]))
                 tbody {
@@ -43,7 +43,7 @@ pub(crate) fn bench_check(study: &Study<'_>) -> Markup {
                             th scope="row" { (output) }
                             td { (drives) }
                             td { (spin.in_words()) }
-                            @for line in lines(*output, &airframe.throttle) { td { code.line { (line) } } }
+                            @for line in lines(*output, &airframe.throttle) { td.drive { code.line { (line) } } }
                             (seen())
                         }
                     }

@@ -167,7 +167,7 @@ function report(root, model) {
     const guarded = (action, otherwise) => { try { return action(); } catch { return otherwise; } };
     const kept = guarded(() => new Set(JSON.parse(localStorage.getItem(key) ?? "[]")), new Set());
     for (const row of root.querySelectorAll("tr.check")) {
-      const said = [...row.cells].filter((cell) => !cell.matches(".seen, :has(.line)")).map((cell) => cell.textContent).join(", ");
+      const said = [...row.cells].filter((cell) => !cell.matches(".drive, .seen")).map((cell) => cell.textContent).join(", ");
       const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: kept.has(said) });
       box.setAttribute("aria-label", `seen: ${said}`);
       box.addEventListener("change", () => {
