@@ -6,6 +6,8 @@ const FIELDS = ["frame", "arm", "name", "outputs", "options", "pulses"];
 const KINDS = { map: "bench file of a pair", run: "run of one rotor", pair: "pair's tables", parameters: "vehicle's parameters" };
 // From this many points on a pair's bench file needs no prediction to stand on (cargo mixer identify --prior).
 const ENOUGH = 16;
+// Bytes of a file, beyond which an editor and the browser's storage are the wrong place for it.
+const LARGEST = 4 << 20;
 const OUTPUTS = [
   ["airframe", "Airframe file"], ["pair", "Pair's tables"], ["report", "Report page"], ["px4", "PX4 parameters"],
   ["ardupilot", "ArduPilot parameters"], ["px4-own", "PX4, its own mixer"], ["ardupilot-own", "ArduPilot, its own mixer"],
@@ -19,7 +21,7 @@ const EXAMPLES = {
 
 const today = () => new Date().toISOString().slice(0, 10);
 const later = (wait, run) => { let timer; return (...words) => { clearTimeout(timer); timer = setTimeout(run, wait, ...words); }; };
-const quoted = (word) => (/^[\w./,=:+-]+$/.test(word) ? word : `'${word}'`);
+const quoted = (word) => (/^[\w./,=:+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
 // --- the worker
 
@@ -39,18 +41,17 @@ worker.onmessage = ({ data: { id, value, error } }) => {
   else if (value?.Err !== undefined) reject(new Refused(value.Err));
   else resolve(value?.Ok ?? value);
 };
-const loaded = new Promise((...both) => waiting.set(0, both));
-worker.postMessage(Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0)));
-$("module").remove();
 const ask = (method, ...words) => new Promise((...both) => {
   waiting.set(asked += 1, both);
   worker.postMessage({ id: asked, method, words });
 });
+const loaded = ask("open", Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0)));
+$("module").remove();
 
 // --- the state, which a reload keeps
 
 const fresh = () => ({ files: [], form: Object.fromEntries(FIELDS.map((key) => [key, key === "frame" ? "x8" : ""])), airframe: null, made: "", before: null, tab: "", hand: null });
-let state = fresh();
+let state = kept();
 let pair = null, offered = null, refused = [], benchFaults = [], told = null;
 
 function keep() {
@@ -62,6 +63,18 @@ function keep() {
 }
 const keepSoon = later(200, keep);
 addEventListener("pagehide", keep);
+
+// What was kept; a fresh state where that is another version's, or cannot be read.
+function kept() {
+  const isText = (text) => typeof text === "string", isFile = (file) => isText(file?.name) && isText(file?.text);
+  try {
+    const state = JSON.parse(localStorage.getItem(KEY)), { files, form, airframe, made, before, tab, hand } = state;
+    const sound = [made, tab, ...FIELDS.map((key) => form[key])].every(isText) && files.every(isFile)
+      && [airframe, before].every((file) => file === null || isFile(file)) && (hand === null || hand.wrench.length === 4 && Array.isArray(hand.failed));
+    if (sound) return state;
+  } catch {}
+  return fresh();
+}
 
 function say(text, wrong = false) {
   $("status").textContent = text;
@@ -94,12 +107,17 @@ async function linked() {
 async function drop(files) {
   refused = [];
   for (const file of files) {
-    const text = decoded(new Uint8Array(await file.arrayBuffer()));
-    if (text === null) refused.push({ severity: "error", file: file.name, message: "this is no text: flight logs are read by cargo mixer review, spreadsheets are saved as CSV", help: "" });
-    else if ((await ask("kind", file.name, text, [])).kind === "airframe") adopt({ name: file.name, text }, "");
-    else {
-      state.files = [...state.files.filter(({ name }) => name !== file.name), { name: file.name, text, chosen: "" }];
-      state.tab = file.name;
+    try {
+      if (file.size > LARGEST) throw new Error("above 4 MB, as no bench file is: flight logs are read by cargo mixer review");
+      const text = decoded(new Uint8Array(await file.arrayBuffer()));
+      if (text === null) throw new Error("this is no text: flight logs are read by cargo mixer review, spreadsheets are saved as CSV");
+      if ((await ask("kind", file.name, text, [])).kind === "airframe") adopt({ name: file.name, text }, "");
+      else {
+        state.files = [...state.files.filter(({ name }) => name !== file.name), { name: file.name, text, chosen: "" }];
+        state.tab = file.name;
+      }
+    } catch ({ message }) {
+      refused.push({ severity: "error", file: file.name, message, help: "" });
     }
   }
   await remake();
@@ -133,10 +151,10 @@ function pairCommand() {
 }
 
 // The command that makes the airframe, and its file; null where the frame is not told.
-function airframeCommand() {
+function airframeCommand(tables) {
   const { frame, arm, name, outputs } = state.form, [parameters] = of("parameters");
   const file = `${name || `my-${parameters ? "airframe" : frame}`}.toml`;
-  const more = [...(pair ? ["--pair", pair.name] : []), ...(arm ? ["--arm", arm] : []), ...(name ? ["--name", name] : [])];
+  const more = [...(tables ? ["--pair", tables.name] : []), ...(arm ? ["--arm", arm] : []), ...(name ? ["--name", name] : [])];
   if (parameters) return [file, ["import", parameters.name, ...more, "-o", file]];
   if (!arm && frame !== "single") return null;
   return [file, ["new", "--frame", frame, ...more, ...(outputs ? ["--outputs", outputs] : []), "-o", file]];
@@ -147,22 +165,22 @@ async function remake() {
   const mine = turn += 1, lines = [];
   const run = async (words, more) => {
     lines.push(["cargo mixer", ...words, ...more].map((word, k) => (k ? quoted(word) : word)).join(" "));
-    return ask("make", [...words, ...more], ...named([...state.files, ...(pair ? [pair] : [])]), today());
+    return ask("make", [...words, ...more], ...named([...state.files, ...(tables ? [tables] : [])]), today());
   };
-  let report = "", notes = [], made = null, faults = refused;
+  let report = "", notes = [], made = null, faults = refused, tables;
   try {
     const options = await ask("words", state.form.options);
     for (const file of state.files) {
       const { kind, points } = await ask("kind", file.name, file.text, options);
       Object.assign(file, { kind: file.chosen || kind, points });
     }
-    [pair] = of("pair");
+    [tables] = of("pair");
     const command = pairCommand();
     if (command) {
       const answer = await run(command, ["-o", "pair.toml", ...options]);
-      [pair, report, notes] = [{ name: "pair.toml", text: answer.toml }, answer.report, answer.notes];
+      [tables, report, notes] = [{ name: "pair.toml", text: answer.toml }, answer.report, answer.notes];
     }
-    const airframe = airframeCommand();
+    const airframe = airframeCommand(tables);
     if (airframe) {
       const answer = await run(airframe[1], command ? [] : options);
       made = { name: airframe[0], text: answer.toml };
@@ -173,6 +191,7 @@ async function remake() {
     faults = [...refused, ...error.faults.map((fault) => ({ severity: "error", ...fault }))];
   }
   if (mine !== turn) return;
+  pair = tables;
   // Notes about rows name them as errors do.
   benchFaults = [...faults, ...notes.map((note) => {
     const { name = "" } = state.files.find(({ name }) => note.includes(`${name}:`)) ?? {};
@@ -188,7 +207,8 @@ async function remake() {
   $("pair-report").hidden = !report;
   const theirs = state.airframe && state.airframe.text !== state.made && state.airframe.text !== made?.text;
   offered = theirs && made?.text !== state.made ? made : null;
-  if (made && !theirs && made.text !== state.airframe?.text) await adopt(made, made.text);
+  const tab = document.activeElement === editor.area ? state.tab : "";
+  if (made && !theirs && made.text !== state.airframe?.text) await adopt(made, made.text, tab);
   else show();
   sum();
 }
@@ -196,9 +216,9 @@ const remakeSoon = later(250, remake);
 
 // --- the airframe
 
-function adopt(airframe, made) {
+function adopt(airframe, made, tab = "") {
   if (state.airframe && state.airframe.text !== state.made && state.airframe.text !== airframe.text) state.before = state.airframe;
-  [state.airframe, state.made, state.tab, offered] = [airframe, made, "", null];
+  [state.airframe, state.made, state.tab, offered] = [airframe, made, tab, null];
   show();
   return check();
 }
@@ -378,11 +398,10 @@ $("forget").addEventListener("click", () => { [state, told, refused] = [fresh(),
 
 (async () => {
   try {
-    state = { ...state, ...JSON.parse(localStorage.getItem(KEY) ?? "{}") };
-  } catch {
-    // What another version kept, or what cannot be read, is no reason not to begin.
+    await loaded;
+  } catch (error) {
+    return say(error.message, true);
   }
-  await loaded;
   await linked();
   await check();
   await remake();
