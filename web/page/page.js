@@ -288,16 +288,17 @@ function sum() {
   say([...bench, ...airframe].join("; ") || "Ready: drop a file, or begin with a frame.", Boolean(errors.length || told?.errors.length));
 }
 
-// Lines of a word and what it means, some of them continued below.
+// Lines of a word and what it means, some of them continued below; a line above them all is the caption.
 function fill(table, text) {
-  const rows = [];
+  const above = [], rows = [];
   for (const line of text.trimEnd().split("\n")) {
     const [, head, rest] = line.match(/^(\S.*?)\s{2,}(.*)$/) ?? [];
     if (head) rows.push([head, rest]);
     else if (rows.length) rows.at(-1)[1] += /^\s*\*/.test(line) ? `\n${line.trim()}` : ` ${line.trim()}`;
+    else above.push(line);
   }
   const cells = ([head, rest]) => [element("th", { scope: "row", textContent: head }), element("td", {}, ...rest.split("\n").flatMap((line) => [line, element("br")]).slice(0, -1))];
-  table.replaceChildren(element("tbody", {}, ...rows.map((row) => element("tr", {}, ...cells(row)))));
+  table.replaceChildren(element("caption", { textContent: above.join(" "), hidden: above.join("") === "" }), element("tbody", {}, ...rows.map((row) => element("tr", {}, ...cells(row)))));
 }
 
 function show() {
