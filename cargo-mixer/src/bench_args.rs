@@ -1,7 +1,7 @@
 //! Values of arguments that the commands about benches share.
 
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, FromArgMatches as _};
 use mixer_identify::bench::air;
 use mixer_identify::bench::header::{ByHand, ROLES, unknown_role};
 use mixer_identify::bench::read::Reading;
@@ -182,16 +182,29 @@ impl ReadingArgs {
     /// # Errors
     /// Words that are no such options.
     pub fn remembered(options: &[String]) -> Result<ReadingArgs, String> {
-        let words = ["identify"].into_iter().chain(options.iter().map(String::as_str));
-        let command = ReadingArgs::augment_args(clap::Command::new("identify"));
-        let matches = command.try_get_matches_from(words);
-        let read = matches.and_then(|matches| ReadingArgs::from_arg_matches(&matches));
-        read.map_err(|error| {
-            let told = error.render().to_string();
-            let first = told.lines().next().unwrap_or_default();
-            first.trim_start_matches("error: ").to_owned()
-        })
+        let read = parsed("identify", options.iter().map(String::as_str));
+        read.map_err(|told: String| told.lines().next().unwrap_or_default().to_owned())
     }
+}
+
+/// The arguments of a command from its words.
+///
+/// # Errors
+/// Words that are no such arguments.
+pub fn parsed<'a, A: Args>(
+    command: &'static str,
+    words: impl IntoIterator<Item = &'a str>,
+) -> Result<A, String> {
+    let words = [command].into_iter().chain(words);
+    let command = A::augment_args(clap::Command::new(command));
+    let matches = command.try_get_matches_from(words);
+    let read = matches.and_then(|matches| A::from_arg_matches(&matches));
+    read.map_err(|error| {
+        let told = error.render().to_string();
+        let ends = ["\n\nUsage:", "\n\nFor more information"].map(|end| told.find(end).unwrap_or(told.len()));
+        let told = &told[..ends[0].min(ends[1])];
+        told.trim_start_matches("error: ").to_owned()
+    })
 }
 
 fn part(text: &str) -> Result<f64, String> {

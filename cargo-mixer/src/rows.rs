@@ -30,7 +30,7 @@ pub struct RowArgs {
     force: bool,
     /// The rotor at this output is out; several with commas between
     #[arg(long, value_name = "CHANNEL", value_delimiter = ',')]
-    failed: Vec<u8>,
+    failed: Vec<usize>,
 }
 
 /// What such a command makes of a row.
@@ -61,15 +61,16 @@ pub(crate) fn fields(values: impl IntoIterator<Item = impl std::fmt::Debug>) -> 
 ///
 /// # Errors
 /// A channel that it does not have.
-pub fn health(airframe: &Airframe, failed: &[u8]) -> Result<Health, String> {
+pub fn health(airframe: &Airframe, failed: impl IntoIterator<Item = usize>) -> Result<Health, String> {
     let last = airframe.rotors() - 1;
-    match failed.iter().find(|channel| usize::from(**channel) > last) {
-        Some(channel) => Err(format!(
+    let without = |health: Health, channel| match u8::try_from(channel) {
+        Ok(small) if channel <= last => Ok(health.with_failed(small)),
+        _ => Err(format!(
             "failed {channel}: the channels of {} are 0 to {last}",
             airframe.name
         )),
-        None => Ok(failed.iter().copied().fold(Health::GOOD, Health::with_failed)),
-    }
+    };
+    failed.into_iter().try_fold(Health::GOOD, without)
 }
 
 /// Runs the command.
@@ -79,7 +80,7 @@ pub(crate) fn run<T: FromStr>(args: &RowArgs, task: &Task<T>) -> Done {
         file::writable(output, args.force, inputs)?;
     }
     let compiled = crate::compile(&args.airframe)?;
-    let health = health(&compiled.airframe, &args.failed)
+    let health = health(&compiled.airframe, args.failed.iter().copied())
         .map_err(|message| crate::bad_usage(format_args!("--{message}")))?;
     let columns = (task.required)(&compiled.airframe);
     let (input, name) = input(args.rows.as_deref(), &columns).map_err(print_error)?;

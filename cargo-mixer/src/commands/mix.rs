@@ -45,15 +45,20 @@ pub const MIX: Task<f32> = Task {
     },
 };
 
+/// The setpoint of a row of [`MIX`].
+pub fn setpoint(row: &Row<f32>) -> Wrench {
+    let mut wrench = [0.0; 4];
+    for (axis, value) in wrench.iter_mut().zip(&row.values) {
+        *axis = *value;
+    }
+    Wrench::from_array(wrench)
+}
+
 /// Mixes a row of [`MIX`].
 ///
 /// # Errors
 /// A wrench or a voltage that is not finite.
 pub fn mix(compiled: &Compiled, health: Health, row: &Row<f32>) -> Result<AnyMix, SetpointError> {
-    let mut wrench = [0.0; 4];
-    for (axis, value) in wrench.iter_mut().zip(&row.values) {
-        *axis = *value;
-    }
     let reference = compiled
         .tables
         .view()
@@ -62,9 +67,7 @@ pub fn mix(compiled: &Compiled, health: Health, row: &Row<f32>) -> Result<AnyMix
         voltage_v: row.voltage_v.unwrap_or(reference.voltage_v),
         density_kg_m3: row.density_kg_m3.unwrap_or(reference.density_kg_m3),
     };
-    compiled
-        .tables
-        .mix_in(&Wrench::from_array(wrench), conditions, health)
+    compiled.tables.mix_in(&setpoint(row), conditions, health)
 }
 
 /// Runs the command.

@@ -2,7 +2,7 @@
 //! physics: the judge of any mixer.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Correction;
+use mixer_compiler::airframe::{Airframe, Correction};
 use mixer_compiler::model::Physics;
 use mixer_rt::Health;
 
@@ -39,18 +39,38 @@ pub const GIVEN: Task<f64> = Task {
 /// # Errors
 /// A throttle outside 0 to 1, a voltage or a density outside the airframe's range.
 pub fn wrench(compiled: &Compiled, health: Health, row: &Row<f64>) -> Result<[f64; 4], String> {
-    let airframe = &compiled.airframe;
+    let factors = factors(&compiled.airframe, row)?;
+    Ok(physics(compiled).wrench(&row.values, factors, health))
+}
+
+/// `[f, Q]` (N, N m) of every unit, of a row of [`GIVEN`].
+///
+/// # Errors
+/// As [`wrench`].
+pub fn efforts(compiled: &Compiled, health: Health, row: &Row<f64>) -> Result<Vec<[f64; 2]>, String> {
+    let [by_f, by_q] = factors(&compiled.airframe, row)?;
+    let physics = physics(compiled);
+    let units = compiled.airframe.units.iter();
+    let efforts = units.map(|unit| physics.efforts(unit, &row.values, health));
+    Ok(efforts.map(|[f, q]| [by_f * f, by_q * q]).collect())
+}
+
+fn physics(compiled: &Compiled) -> Physics<'_> {
+    Physics {
+        airframe: &compiled.airframe,
+        map: &compiled.pair,
+    }
+}
+
+/// `[k_f, k_Q]` of a row of throttles.
+fn factors(airframe: &Airframe, row: &Row<f64>) -> Result<[f64; 2], String> {
     let mut throttles = row.values.iter().enumerate();
     if let Some((channel, throttle)) = throttles.find(|(_, throttle)| !(0.0..=1.0).contains(*throttle)) {
         return Err(format!("throttle_{channel} {throttle:?} is outside 0 to 1"));
     }
     let volts = within("voltage_v", row.voltage_v, airframe.voltage.as_ref())?;
     let density = within("density_kg_m3", row.density_kg_m3, airframe.air.as_ref())?;
-    let physics = Physics {
-        airframe,
-        map: &compiled.pair,
-    };
-    Ok(physics.wrench(&row.values, airframe.factors(volts, density), health))
+    Ok(airframe.factors(volts, density))
 }
 
 /// A condition in its declared range, without a value that of the bench; what the file declares

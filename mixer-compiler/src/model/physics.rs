@@ -38,7 +38,7 @@ impl Physics<'_> {
         wrench
     }
 
-    /// `[f, Q]` of a unit. A rotor that is out gives nothing; its partner gives what the file says
+    /// `[f, Q]` (N, N m) of a unit at the reference voltage. A rotor that is out gives nothing; its partner gives what the file says
     /// of a rotor alone, else the pair's polynomial at throttle 0 of the other.
     pub fn efforts<T: Copy + Into<f64>>(&self, unit: &Unit, throttle: &[T], health: Health) -> [f64; 2] {
         let channels = [unit.upper_channel, unit.lower_channel];
