@@ -118,6 +118,7 @@ fn firmware_builds_nothing_of_the_command_line() {
             "mixer-files",
             "mixer-review",
             "cargo-mixer",
+            "mixer-python",
             "faer",
             "csv",
             "clap",

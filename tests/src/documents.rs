@@ -85,11 +85,12 @@ pub fn pages() -> std::io::Result<Vec<PathBuf>> {
             let name = entry.file_name();
             let path = entry.path();
             // Links are left out: `cargo-mixer/airframes` leads back to `airframes/`.
-            if entry.file_type()?.is_dir() {
+            let kind = entry.file_type()?;
+            if kind.is_dir() {
                 if name != "target" && !name.to_string_lossy().starts_with('.') {
                     folders.push(path);
                 }
-            } else if path.extension().is_some_and(|extension| extension == "md") {
+            } else if kind.is_file() && path.extension().is_some_and(|extension| extension == "md") {
                 pages.push(path);
             }
         }

@@ -1,0 +1,248 @@
+"""Mixers of coaxial multirotors on numpy arrays: what ``cargo mixer`` does, with the same results.
+
+Wrenches have the columns roll, pitch, yaw (N m, forward-right-down) and thrust (N, upwards). Throttles are
+0 to 1, a column per output. Arrays have a row per setpoint; one setpoint may be given alone.
+
+>>> mixer = coaxial_mixer.compile("airframes/isae-x8.toml")
+>>> mixer.mix([0.5, 0.0, 0.1, 40.0]).throttles
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._native import MixerError, Native
+
+__all__ = [
+    "Conventional",
+    "ConventionalMix",
+    "Identified",
+    "Mix",
+    "Mixer",
+    "MixerError",
+    "compile",
+    "conventional",
+    "identify",
+    "predict",
+]
+
+Path = Union[str, "os.PathLike[str]"]
+F32 = npt.NDArray[np.float32]
+F64 = npt.NDArray[np.float64]
+
+
+class Mix(NamedTuple):
+    """What a mixer makes of N setpoints, to the bit as the firmware does."""
+
+    throttles: F32
+    """Throttle per output, (N, rotors); 0 of a rotor that is out."""
+    achieved: F32
+    """The wrench that the throttles give, (N, 4)."""
+    saturation: npt.NDArray[np.uint16]
+    """Sums of flags, (N,); 0 where everything was delivered: 1 roll, 4 pitch, 16 yaw, 64 thrust is below the
+    setpoint; 2, 8, 32, 128 above it; 256 the voltage was clamped into its range, 512 the density."""
+
+
+class ConventionalMix(NamedTuple):
+    """What the conventional mixer makes of N setpoints."""
+
+    throttles: F32
+    """Throttle per output, (N, rotors)."""
+    within: npt.NDArray[np.bool_]
+    """Whether no throttle was clipped, (N,)."""
+
+
+class Identified(NamedTuple):
+    """A pair that was identified or predicted."""
+
+    tables: str
+    """The tables of an airframe file; with ``frame`` a whole airframe for :func:`compile`."""
+    report: str
+    """What the command prints."""
+    details: str
+    """What it prints with ``--verbose``."""
+    json: dict[str, Any]
+    """What it prints with ``--json``."""
+    notes: list[str]
+    """Rows that were refused."""
+
+
+class _Airframe:
+    """An airframe with its physics."""
+
+    def __init__(self, native: Native) -> None:
+        self._native = native
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}, {self.rotors} rotors>"
+
+    @property
+    def name(self) -> str:
+        """The airframe's name."""
+        return self._native.name
+
+    @property
+    def channels(self) -> list[tuple[int, int]]:
+        """Outputs of the upper and of the lower rotor of every unit."""
+        return self._native.channels
+
+    @property
+    def rotors(self) -> int:
+        """The number of rotors, and of outputs."""
+        return 2 * len(self._native.channels)
+
+    def wrench(
+        self,
+        throttles: npt.ArrayLike,
+        volts: npt.ArrayLike | None = None,
+        failed: Sequence[int] = (),
+        density: npt.ArrayLike | None = None,
+    ) -> F64:
+        """The wrench that throttles (N, rotors) of any mixer give by the airframe's physics: (N, 4).
+
+        Without ``volts`` (V) and ``density`` (kg/m3), a number or (N,), those of the bench are taken. ``failed``
+        has the outputs of rotors that stand still. Raises :class:`MixerError` outside the airframe's ranges.
+        """
+        return self._native.wrench(self._rows(np.float64, throttles, self.rotors, volts, density, failed))
+
+    def efforts(
+        self,
+        throttles: npt.ArrayLike,
+        volts: npt.ArrayLike | None = None,
+        failed: Sequence[int] = (),
+        density: npt.ArrayLike | None = None,
+    ) -> F64:
+        """Thrust (N) and torque (N m, as on the bench) of every unit: (N, units, 2). Arguments as :meth:`wrench`."""
+        return self._native.efforts(self._rows(np.float64, throttles, self.rotors, volts, density, failed))
+
+    @staticmethod
+    def _rows(
+        dtype: Any, table: Any, columns: int, volts: Any, density: Any = None, failed: Sequence[int] = ()
+    ) -> _native.Rows:
+        rows = np.atleast_2d(np.asarray(table, dtype))
+        if rows.ndim != 2 or rows.shape[1] != columns:
+            raise MixerError(f"an array of shape {np.shape(table)} where (N, {columns}) is needed")
+
+        def column(name: str, values: Any) -> Any:
+            if values is None:
+                return None
+            values = np.asarray(values, dtype)
+            if values.shape not in [(), (1,), (len(rows),)]:
+                raise MixerError(f"{name} of shape {values.shape} where a number or ({len(rows)},) is needed")
+            return np.broadcast_to(values, (len(rows),))
+
+        return rows, column("volts", volts), column("density", density), list(failed)
+
+
+class Mixer(_Airframe):
+    """A compiled airframe: :func:`compile` makes it."""
+
+    @property
+    def verdict(self) -> str:
+        """What ``cargo mixer check`` says: thrust, hover, margins."""
+        return self._native.verdict
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is probably a mistake, a line each."""
+        return self._native.warnings
+
+    @property
+    def json(self) -> dict[str, Any]:
+        """What ``cargo mixer check --json`` prints, without the time."""
+        numbers: dict[str, Any] = json.loads(self._native.json)
+        return numbers
+
+    @property
+    def rust(self) -> str:
+        """The generated Rust, as ``cargo mixer expand`` prints it."""
+        return self._native.rust
+
+    def mix(
+        self,
+        wrenches: npt.ArrayLike,
+        volts: npt.ArrayLike | None = None,
+        failed: Sequence[int] = (),
+        density: npt.ArrayLike | None = None,
+    ) -> Mix:
+        """The throttles for wrenches (N, 4), by the runtime and the tables of the firmware.
+
+        Without ``volts`` (V) and ``density`` (kg/m3), a number or (N,), those of the bench are taken. ``failed``
+        has the outputs of rotors that are out. Raises :class:`MixerError` for what is not finite.
+        """
+        return Mix(*self._native.mix(self._rows(np.float32, wrenches, 4, volts, density, failed)))
+
+
+class Conventional(_Airframe):
+    """The mixer of today's flight stacks on an airframe: :func:`conventional` makes it."""
+
+    def mix(self, wrenches: npt.ArrayLike, volts: npt.ArrayLike | None = None) -> ConventionalMix:
+        """The throttles for wrenches (N, 4), every rotor taken as isolated. Arguments as :meth:`Mixer.mix`."""
+        return ConventionalMix(*self._native.conventional(self._rows(np.float32, wrenches, 4, volts)))
+
+
+def _read(toml: Path) -> Native:
+    if isinstance(toml, str) and "\n" in toml:
+        return Native("airframe", toml.encode())
+    name = os.fspath(toml)
+    try:
+        with open(name, "rb") as file:
+            return Native(name, file.read())
+    except OSError as error:
+        raise MixerError(str(error)) from error
+
+
+def compile(toml: Path) -> Mixer:
+    """Compiles an airframe: the path of a file, or its text, which has several lines.
+
+    Raises :class:`MixerError` with all faults of the file, each at its line.
+    """
+    return Mixer(_read(toml))
+
+
+def conventional(toml: Path) -> Conventional:
+    """The conventional mixer of an airframe, to compare with. The argument is that of :func:`compile`."""
+    return Conventional(_read(toml))
+
+
+def identify(*files: Path, **options: Any) -> Identified:
+    """The pair that bench files hold, by the options of ``cargo mixer identify``.
+
+    ``identify("few.csv", prior="single.csv", spacing_ratio=0.25)`` is ``cargo mixer identify few.csv --prior
+    single.csv --spacing-ratio 0.25``. ``True`` gives an option without a value, a tuple values with commas between, a
+    list an option several times. Raises :class:`MixerError` with what the command says.
+    """
+    return _identified(_native.identify(_words(files, options)))
+
+
+def predict(single: Path, **options: Any) -> Identified:
+    """The pair of a run of one rotor or of its data sheet, by the options of ``cargo mixer predict``."""
+    return _identified(_native.predict(_words([single], options)))
+
+
+def _words(files: Sequence[Path], options: dict[str, Any]) -> list[str]:
+    """The words of a command line."""
+    words = []
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        if option in ("--output", "--force", "--json", "--help"):
+            raise MixerError(f"{name}: nothing is written or printed; the result has tables, report and json")
+        for one in value if isinstance(value, list) else [value]:
+            parts = one if isinstance(one, tuple) else [one]
+            if one is True:
+                words.append(option)
+            elif one is not False and one is not None:
+                words.append(f"{option}={','.join(str(part) for part in parts)}")
+    return [*words, "--", *(os.fspath(file) for file in files)]
+
+
+def _identified(texts: tuple[str, str, str, str, list[str]]) -> Identified:
+    tables, report, details, numbers, notes = texts
+    return Identified(tables, report, details, json.loads(numbers), notes)

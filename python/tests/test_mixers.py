@@ -1,0 +1,96 @@
+"""Arrays in, arrays out: the bits of the command line on every shipped airframe."""
+
+import tomllib
+
+import coaxial_mixer
+import numpy as np
+import pytest
+
+AXES = ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n"]
+CONDITIONS = ["voltage_v", "density_kg_m3"]
+
+
+def csv(columns, rows):
+    # The shortest text of a number reads back to the same bits.
+    lines = (",".join(str(value) for value in row) for row in rows)
+    return "\n".join([",".join(columns), *lines])
+
+
+def table(text, dtype):
+    return np.array([line.split(",") for line in text.splitlines()[1:]]).astype(dtype)
+
+
+def size(mixer):
+    return np.array([mixer.json["normalised"][axis] for axis in AXES])
+
+
+def setpoints(mixer):
+    """Wrenches from attainable to far beyond, voltages and densities in and around their ranges."""
+    draw = np.random.default_rng(1)
+    wrenches = draw.uniform([-1, -1, -1, 0], 1, (300, 4)) * size(mixer) * draw.choice([0.05, 0.3, 1.0], (300, 1))
+    conditions = draw.uniform([10, 0.7], [18, 1.5], (300, 2))
+    return wrenches.astype(np.float32), conditions.astype(np.float32)
+
+
+def bits(array):
+    return np.ascontiguousarray(array).view(f"u{array.itemsize}")
+
+
+@pytest.mark.parametrize("failed", [[], [1]], ids=["all", "out"])
+def test_mix_gives_the_bits_of_the_command(airframe, mixer, printed, failed):
+    wrenches, conditions = setpoints(mixer)
+    rows = csv(AXES + CONDITIONS, np.column_stack([wrenches, conditions]))
+    option = [f"--failed={channel}" for channel in failed]
+    expected = table(printed("mix", airframe, *option, stdin=rows), np.float32)
+    mixed = mixer.mix(wrenches, conditions[:, 0], failed, conditions[:, 1])
+    n = mixer.rotors
+    assert np.array_equal(bits(mixed.throttles), bits(expected[:, :n]))
+    assert np.array_equal(bits(mixed.achieved), bits(expected[:, n : n + 4]))
+    assert np.array_equal(mixed.saturation, expected[:, n + 4])
+    assert (mixed.saturation != 0).sum() > 5 and len(np.unique(mixed.throttles)) > 50
+
+
+@pytest.mark.parametrize("failed", [[], [1]], ids=["all", "out"])
+def test_wrench_gives_the_bits_of_the_command(airframe, mixer, printed, failed):
+    throttles = np.random.default_rng(2).uniform(0, 1, (200, mixer.rotors))
+    rows = csv([f"throttle_{k}" for k in range(mixer.rotors)], throttles)
+    option = [f"--failed={channel}" for channel in failed]
+    expected = table(printed("wrench", airframe, *option, stdin=rows), np.float64)
+    given = mixer.wrench(throttles, failed=failed)
+    assert np.array_equal(bits(given), bits(expected))
+    # The axes of the shipped airframes are vertical.
+    assert np.allclose(mixer.efforts(throttles, failed=failed)[..., 0].sum(axis=1), given[:, 3], rtol=1e-12)
+
+
+def test_throttles_of_mix_give_its_wrench(airframe, mixer):
+    wrenches, _ = setpoints(mixer)
+    voltage = tomllib.loads(airframe.read_text()).get("voltage", {"range_v": [1, 2]})
+    volts = np.linspace(*voltage["range_v"], 302)[1:-1]
+    mixed = mixer.mix(wrenches, volts)
+    missed = np.abs(mixer.wrench(mixed.throttles, volts) - mixed.achieved)
+    assert (missed <= 2e-5 * size(mixer)).all(), missed.max(axis=0)
+
+
+def test_the_conventional_mixer_is_that_of_the_report(printed):
+    airframe = "airframes/isae-x8.toml"
+    rows = [line.split(",") for line in printed("sweep", airframe, "--figure", "yaw").splitlines()]
+    rows = [dict(zip(rows[0], row)) for row in rows[1:] if row[0] == "conventional"]
+    mixer = coaxial_mixer.conventional(airframe)
+    mixed = mixer.mix([[0, 0, float(row["yaw_asked_nm"]), 40] for row in rows])
+    given = mixer.wrench(mixed.throttles)
+    for k, row in enumerate(rows):
+        assert mixed.within[k] == (row["throttle_limited"] == "0")
+        assert given[k, 2:] == pytest.approx([float(row["yaw_given_nm"]), float(row["thrust_given_n"])], abs=1e-5)
+        for unit, channels in enumerate(mixer.channels):
+            expected = [float(row[f"unit_{unit}_{rotor}_throttle"]) for rotor in ["upper", "lower"]]
+            assert mixed.throttles[k, channels] == pytest.approx(expected, rel=1e-6)
+    assert len(rows) == 25 and 0 < mixed.within.sum() < 25
+
+
+def test_one_setpoint_none_and_slices(mixer):
+    one = mixer.mix([0, 0, 0, 10.0])
+    assert one.throttles.shape == (1, mixer.rotors) and one.throttles.dtype == np.float32
+    none = mixer.mix(np.empty((0, 4)))
+    assert [len(part) for part in none] == [0, 0, 0] and none.throttles.shape == (0, mixer.rotors)
+    rows = np.arange(80.0).reshape(10, 8)[::2, ::2] % 7
+    assert np.array_equal(mixer.mix(rows).throttles, mixer.mix(rows.copy()).throttles)
