@@ -69,6 +69,26 @@ fn packages_hold_readme_and_licences() {
 }
 
 #[test]
+fn the_workflow_packs_what_is_published() {
+    let workflow = fs::read_to_string(root().join(".github/workflows/ci.yml")).expect("a workflow");
+    let line = workflow
+        .lines()
+        .find(|line| line.contains("cargo package"))
+        .expect("a line");
+    let (_, packages) = line.split_once(" -p ").expect("packages");
+    assert_eq!(packages.split(" -p ").collect::<Vec<_>>(), PUBLISHED);
+}
+
+/// Who cites the software names the version at hand.
+#[test]
+fn the_citation_has_the_version() {
+    let version = &manifest(".")["workspace"]["package"]["version"];
+    let citation = fs::read_to_string(root().join("CITATION.cff")).expect("a file");
+    let line = format!("version: {}", version.as_str().expect("a version"));
+    assert!(citation.lines().any(|text| text == line), "no line `{line}`");
+}
+
+#[test]
 fn packages_use_those_published_before() {
     for (index, package) in PUBLISHED.iter().enumerate() {
         let manifest = manifest(package);

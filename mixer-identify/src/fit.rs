@@ -121,7 +121,11 @@ impl Design {
         let places = throttle_box.square(20);
         places.fold((0.0, [0.0; 2]), |worst, [u, l]| {
             let factor = self.factor(u, l);
-            if factor > ALIKE * worst.0 { (factor, [u, l]) } else { worst }
+            if factor > ALIKE * worst.0 {
+                (factor, [u, l])
+            } else {
+                worst
+            }
         })
     }
 
