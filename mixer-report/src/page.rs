@@ -83,7 +83,7 @@ pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> 
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n{}\n\
-         <style>\n{STYLE}{PAGE_STYLE}</style>\n</head>\n<body>\n<main class=\"report\">{body}</main>\n\
+         <style>\n{STYLE}</style>\n<style>\n{PAGE_STYLE}</style>\n</head>\n<body>\n<main class=\"report\">{body}</main>\n\
          <script type=\"application/json\" id=\"model\">{model}</script>\n<script>//<![CDATA[\n{SCRIPT}\
          report(document.querySelector(\".report\"), JSON.parse(document.getElementById(\"model\").textContent));\n\
          //]]></script>\n</body>\n</html>\n",

@@ -25,7 +25,8 @@ for (const svg of document.querySelectorAll("svg[data-hover]")) {
 </script></body>"#;
 
 /// Ticks the third box, shows the same content anew in an element that is made for it, and lists
-/// which boxes are ticked there, how often one value is told, and what a copy button makes of itself.
+/// which boxes are ticked there, pictures with more than one cross, what a copy button selects, and
+/// selectors of the report's style that do not begin at it.
 const AGAIN: &str = r#"<script>
 const model = JSON.parse(document.getElementById("model").textContent);
 const main = document.querySelector("main");
@@ -38,12 +39,14 @@ main.replaceWith(fresh);
 report(fresh, model);
 const boxes = [...fresh.querySelectorAll(".seen input")];
 fresh.querySelector(".copy").click();
+const rules = (list) => [...list].flatMap((rule) => rule.media ? rules(rule.cssRules) : rule.selectorText.split(", "));
+const outside = rules(document.styleSheets[0].cssRules).filter((selector) => !/^(svg\.figure|\.report$|:root$)/.test(selector));
 addEventListener("load", () => setTimeout(() => {
   const ticked = boxes.flatMap((box, k) => box.checked ? [k] : []);
   const rows = fresh.querySelectorAll("tr.check").length;
   const crosses = fresh.querySelectorAll("svg[data-hover] .cross").length - fresh.querySelectorAll("svg[data-hover]").length;
   document.body.textContent = [ticked, boxes.length === rows, crosses, getSelection().toString(),
-    fresh.querySelector(".copy").textContent !== "copy"].join("; ");
+    fresh.querySelector(".copy").textContent !== "copy", document.styleSheets.length, outside].join("; ");
 }, 500));
 </script></body>"#;
 
@@ -128,7 +131,8 @@ fn pages_open_without_errors_and_show_values() {
     };
     for compiled in shown() {
         let name = compiled.airframe.name.clone();
-        let html = page(&Study::new(&compiled, None), None, &Origin::default());
+        let study = Study::new(&compiled, None);
+        let html = page(&study, None, &Origin::default());
         let path = scratch(&format!("{name}.html"));
         fs::write(&path, html.replace("</body>", POINTER)).unwrap();
         let (dom, messages) = open(&browser, &path);
@@ -155,6 +159,20 @@ fn pages_open_without_errors_and_show_values() {
             answers.iter().any(|text| text.contains("error about")),
             "{name}: {answers:#?}"
         );
+        // The first picture is read off where it is drawn, to a pixel of 200.
+        let mut read = answers[0].split("<output>").skip(1);
+        let mut next = || -> f64 { read.next().unwrap().split('<').next().unwrap().parse().unwrap() };
+        let thrust_n = next();
+        for (volts, _) in study.voltages() {
+            let (throttles, delivered) = study.mix([0.0, 0.0, 0.0, thrust_n], &study.at(volts));
+            let upper = throttles.iter().map(|pair| pair[0]).sum::<f64>() / throttles.len() as f64;
+            let shown = next();
+            assert!(delivered, "{name}: {thrust_n} N at {volts:?} V");
+            assert!(
+                (shown - upper).abs() < 0.005,
+                "{name}: {shown} at {thrust_n} N and {volts:?} V, {upper}"
+            );
+        }
     }
 
     // The test can fail: a broken script and a reference to outside are both told.
@@ -196,7 +214,7 @@ fn a_check_is_kept_where_the_content_is_shown_again() {
     let told = told.split("</body>").next().unwrap_or_default();
     assert_eq!(
         told.trim(),
-        "2; true; 0; actuator_test set -m 1 -v 0.15 -t 2; true"
+        "2; true; 0; actuator_test set -m 1 -v 0.15 -t 2; true; 2;"
     );
 }
 
