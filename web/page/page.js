@@ -395,7 +395,11 @@ $("share").addEventListener("click", async () => {
   $("link").select();
   await navigator.clipboard?.writeText(text).catch(() => {});
 });
-$("forget").addEventListener("click", () => { [state, told, refused] = [fresh(), null, []]; remake(); });
+$("forget").addEventListener("click", () => {
+  for (const key of Object.keys(localStorage)) if (key === KEY || key.startsWith("checks of ")) localStorage.removeItem(key);
+  [state, told, refused] = [fresh(), null, []];
+  remake();
+});
 
 (async () => {
   try {
