@@ -1,0 +1,183 @@
+"""What is kept: over a reload, without a network, in a link; and how soon there is a verdict."""
+
+import json
+import re
+import shutil
+import statistics
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+ROOT = Path(__file__).parents[2]
+BENCH = ROOT / "examples/bench/sweep.csv"
+X8 = ROOT / "airframes/isae-x8.toml"
+
+FIELDS = ["#frame", "#arm", "#name", "#outputs", "#options", "#pulses"]
+
+
+def seen(desk):
+    desk.still()
+    fields = [desk.see(field).input_value() for field in FIELDS]
+    texts = [desk.see(part).text_content() for part in ["#dropped", "#tabs", "#verdict", "#pair-report", "#command", "#wrench", "#throttles"]]
+    return fields, texts, desk.text(), desk.save("airframe")
+
+
+def test_a_reload_keeps_everything(desk):
+    desk.drop(BENCH)
+    for field, value in [("#arm", "0.4"), ("#name", "kept"), ("#options", "--basis cubic")]:
+        desk.page.fill(field, value)
+    desk.compiles("kept").shows("#report", "sweep.csv")
+    desk.page.fill("#pulses", "1000,2000")
+    desk.page.fill("#roll-number", "0.5")
+    desk.page.keyboard.press("Enter")
+    desk.see("#rotors button").nth(2).click()
+    before = seen(desk)
+    desk.page.reload()
+    desk.compiles("kept").shows("#report", "sweep.csv")
+    assert seen(desk) == before
+
+
+def test_an_edited_airframe_is_not_replaced_unasked(desk):
+    desk.drop(BENCH)
+    desk.page.fill("#arm", "0.4")
+    desk.compiles()
+    desk.see("#tabs button").last.click()
+    made = desk.text()
+    desk.replace("0.01", "0.02")
+    edited = desk.text()
+    desk.page.fill("#arm", "0.5")
+    expect(desk.see("#replace")).to_be_visible()
+    desk.page.reload()
+    desk.compiles()
+    assert desk.text() == edited
+    desk.click("#replace")
+    desk.until(lambda: "0.5" in desk.see("#command").text_content() and desk.text() not in (made, edited))
+    desk.click("#back")
+    desk.until(lambda: desk.text() == edited)
+
+
+def kept_offline(desk):
+    """Waits until the page is kept for visits without a network."""
+    kept = """async () => {
+        await navigator.serviceWorker.ready;
+        return Boolean(navigator.serviceWorker.controller && await caches.match('./'));
+    }"""
+    desk.until(lambda: desk.page.evaluate(kept))
+
+
+def test_without_a_network_the_page_is_the_same(desk, server):
+    desk.drop(X8).compiles("isae-x8")
+    kept_offline(desk)
+    before = seen(desk)
+    desk.page.context.set_offline(True)
+    asked = len(server.paths)
+    desk.page.reload()
+    desk.compiles("isae-x8")
+    assert seen(desk) == before
+    assert len(server.paths) == asked
+    desk.page.fill("#arm", "0.6")
+    desk.click("#replace")
+    desk.compiles("my-x8")
+
+
+def test_a_copy_of_the_file_works(visit, site, tmp_path):
+    shutil.copy(site / "index.html", tmp_path / "index.html")
+    desk = visit((tmp_path / "index.html").as_uri()).ready()
+    desk.drop(X8).compiles("isae-x8").shows("#report", "isae")
+    desk.save("rs")
+    desk.page.reload()
+    desk.compiles("isae-x8")
+
+
+def shared(desk):
+    desk.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    desk.click("#share")
+    expect(desk.see("#link")).to_be_visible()
+    link = desk.see("#link").input_value()
+    desk.until(lambda: desk.page.evaluate("() => navigator.clipboard.readText()") == link)
+    return link
+
+
+def test_a_link_holds_the_airframe(desk, visit):
+    desk.drop(X8).compiles()
+    desk.replace("isae-x8", "mine")
+    desk.compiles("mine")
+    link = shared(desk)
+    other = visit(link).compiles("mine")
+    assert other.save("airframe") == desk.save("airframe")
+    assert "#airframe" not in other.page.url
+    other.page.reload()
+    other.compiles("mine")
+
+
+def test_a_link_that_was_cut_is_said(desk, visit):
+    desk.drop(X8).compiles()
+    link = shared(desk)
+    for part in [link[:-20], link[: len(link) // 2], link.split("=")[0] + "=AAAA"]:
+        other = visit(part).shows("#faults .error", "the link holds no whole airframe")
+        other.drop(X8).compiles("isae-x8")
+
+
+def test_forget_forgets(desk):
+    desk.drop(BENCH)
+    desk.page.fill("#arm", "0.4")
+    desk.compiles()
+    shared(desk)
+    desk.click("#forget")
+    desk.ready()
+    for _ in range(2):
+        expect(desk.see("#dropped li")).to_have_count(0)
+        for part in ["#hand", "#save", "#verdict", "#pair-report", "#back"]:
+            expect(desk.see(part)).to_be_hidden()
+        assert desk.text() == "" and desk.see("#arm").input_value() == "" and "#" not in desk.page.url
+        desk.until(lambda: "sweep" not in json.dumps(desk.page.evaluate("() => ({ ...localStorage })")))
+        desk.page.reload()
+        desk.ready()
+
+
+UNSOUND = [
+    "",
+    "null",
+    "7",
+    "[]",
+    "{",
+    '"text"',
+    '{"files":[],"form":{"frame":"x8"},"airframe":null,"made":"","before":null,"tab":"","hand":null}',
+    '{"files":7,"form":null,"airframe":"x","hand":3}',
+]
+
+
+def test_an_unsound_state_begins_afresh(visit, server):
+    """What another version of the page kept, or what cannot be read."""
+    [key] = re.findall(r'^const KEY = "(.+)";', (ROOT / "web/page/page.js").read_text(), re.M)
+    origin = {"origin": server.address.rstrip("/"), "localStorage": [{"name": key, "value": UNSOUND[-1]}]}
+    desk = visit(storage_state={"cookies": [], "origins": [origin]}).ready()
+    read = "(texts) => texts.map((text) => { localStorage.setItem(KEY, text); return JSON.stringify(kept()) === JSON.stringify(fresh()); })"
+    assert desk.page.evaluate(read, UNSOUND) == [True] * len(UNSOUND)
+    desk.drop(X8).compiles("isae-x8").still()
+
+
+def first_verdicts(capsys, what, times):
+    with capsys.disabled():
+        print(f"\n{what}: {', '.join(f'{time / 1000:.2f}' for time in times)} s, median {statistics.median(times) / 1000:.2f} s")
+    assert statistics.median(times) < 6000
+
+
+def test_the_first_verdict_of_a_visit(visit, capsys):
+    """From the beginning of the navigation in a fresh context, the page's compilation included."""
+    times = []
+    for _ in range(5):
+        desk = visit()
+        desk.click("#example")
+        times.append(desk.compiles().page.evaluate("() => verdictMs"))
+    first_verdicts(capsys, "navigation, `Try`, verdict", times)
+
+
+def test_the_verdict_of_a_kept_airframe(desk, capsys):
+    desk.drop(X8).compiles()
+    times = []
+    for _ in range(5):
+        desk.page.reload()
+        times.append(desk.compiles().page.evaluate("() => verdictMs"))
+    first_verdicts(capsys, "navigation, kept airframe, verdict", times)
