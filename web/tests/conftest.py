@@ -24,8 +24,9 @@ PROGRAM = Path(os.environ.get("MIXER_COMMAND", TARGET / "debug/cargo-mixer"))
 QUIET = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"]
 
 # A policy's refusal becomes a message of the console; the moment of the first verdict is kept.
-WATCH = """
-addEventListener("securitypolicyviolation", (event) => console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`));
+POLICY = """addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) =>
+  console.error(`policy: ${violatedDirective} ${blockedURI}`));"""
+VERDICT = """
 addEventListener("DOMContentLoaded", () => {
   const status = document.getElementById("status");
   const look = () => { if (status.textContent.includes("compiles")) globalThis.verdictMs ??= performance.now(); };
@@ -97,12 +98,14 @@ def visit(browser, server, shell):
         if context is None:
             context = browser.new_context(**{"viewport": {"width": 1400, "height": 900}, **options})
             contexts.append(context)
-            context.add_init_script(WATCH)
+            context.add_init_script(POLICY + VERDICT)
             context.on("console", lambda message: wrong.append(f"console: {message.text}"))
             context.on("weberror", lambda error: wrong.append(f"error: {error.error}"))
             context.on("request", lambda request: asked(request.url))
         desk = Desk(context.new_page(), shell)
         desk.page.goto(address)
+        for worker in desk.page.workers:
+            worker.evaluate(POLICY)
         return desk
 
     def asked(url):
@@ -198,4 +201,4 @@ class Desk:
         end = time.monotonic() + seconds
         while not holds():
             assert time.monotonic() < end, told()
-            time.sleep(0.02)
+            time.sleep(0.05)
