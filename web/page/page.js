@@ -86,7 +86,7 @@ async function packed(text, stream) {
 }
 async function link() {
   const bytes = await packed(JSON.stringify(state.airframe), new CompressionStream("deflate-raw"));
-  const text = btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  const text = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
   return `${location.href.split("#")[0]}#airframe=${text}`;
 }
 async function linked() {
@@ -396,7 +396,11 @@ $("share").addEventListener("click", async () => {
   await navigator.clipboard?.writeText(text).catch(() => {});
 });
 $("forget").addEventListener("click", () => {
-  for (const key of Object.keys(localStorage)) if (key === KEY || key.startsWith("checks of ")) localStorage.removeItem(key);
+  try {
+    for (const key of Object.keys(localStorage)) if (key === KEY || key.startsWith("checks of ")) localStorage.removeItem(key);
+  } catch {
+    // Where the browser keeps nothing there is nothing to forget.
+  }
   [state, told, refused] = [fresh(), null, []];
   remake();
 });
