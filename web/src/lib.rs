@@ -49,7 +49,7 @@ impl Desk {
         json(&make::make(&words, &Files::new(names, texts), today))
     }
 
-    /// A line of the command line as words, quotes taken off.
+    /// A line of the command line as words: see [`make::words`].
     pub fn words(&self, line: &str) -> String {
         json(&make::words(line))
     }

@@ -199,20 +199,10 @@ pub fn help(command: &str) -> String {
     found.map_or_else(String::new, |command| command.render_long_help().to_string())
 }
 
-/// The words of a line: blanks part them, but not between quotes.
-pub fn words(line: &str) -> Vec<String> {
-    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
-    for c in line.chars() {
-        match quote {
-            Some(open) if c == open => quote = None,
-            None if c == '"' || c == '\'' => {
-                quote = Some(c);
-                word.get_or_insert_default();
-            }
-            None if c.is_whitespace() => words.extend(word.take()),
-            _ => word.get_or_insert_default().push(c),
-        }
-    }
-    words.extend(word);
-    words
+/// The words of a line as a POSIX shell parts them.
+///
+/// # Errors
+/// A quote that is open.
+pub fn words(line: &str) -> Result<Vec<String>, String> {
+    shlex::split(line).ok_or_else(|| format!("a quote is open in {line}"))
 }
