@@ -31,7 +31,7 @@ class Hand {
   // another name begins in hover.
   async show(name, before) {
     const at = before?.name === name ? before : null;
-    this.scene = await this.ask("scene", at?.volts ?? NaN, at?.density ?? NaN);
+    this.scene = await this.ask("scene");
     this.scene.largest = this.scene.largest.map((x) => Number(x.toPrecision(4)));
     const { largest, hover_n, volts, density, units } = this.scene;
     const within = (x, ends) => (ends ? Math.min(ends[2], Math.max(ends[0], x ?? ends[1])) : 0);
@@ -154,9 +154,9 @@ class Hand {
       this.stale = false;
       const { wrench, volts, density, failed } = this.at;
       try {
-        const [scene, mixed] = await Promise.all([this.ask("scene", volts, density), this.ask("mix", wrench, volts, density, failed)]);
+        const mixed = await this.ask("mix", wrench, volts, density, failed);
         await new Promise(requestAnimationFrame);
-        this.draw(scene, mixed);
+        this.draw(mixed);
       } catch (error) {
         this.flag(String(error.message), true);
       }
@@ -170,7 +170,7 @@ class Hand {
     flags.classList.toggle("error", wrong);
   }
 
-  draw(scene, { throttles, achieved, saturation: [bits, words], efforts, isolated }) {
+  draw({ throttles, achieved, saturation: [bits, words], factors: [byThrust, byTorque], efforts, isolated }) {
     this.frames += 1;
     const told = words.split(" ").map((word) => SATURATED[word.at(-1)]?.(word.slice(0, -1)) ?? `${word} outside its range and clamped`);
     this.flag(bits === 0 ? "Delivered in full" : told.join(", "), bits !== 0);
@@ -185,7 +185,8 @@ class Hand {
       ring.setAttribute("stroke-dasharray", out ? ".02 .02" : `${throttle} 1`);
       text.textContent = out ? `${channel} out` : `${channel}${spin} ${Math.round(100 * throttle)}`;
     });
-    this.border.setAttribute("d", `M${scene.border.map(([n, nm]) => `${this.toX(n).toFixed(1)} ${this.toY(nm).toFixed(1)}`).join("L")}Z`);
+    const corner = ([n, nm]) => `${this.toX(byThrust * n).toFixed(1)} ${this.toY(byTorque * nm).toFixed(1)}`;
+    this.border.setAttribute("d", `M${this.scene.border.map(corner).join("L")}Z`);
     [efforts, isolated.efforts].forEach((of, kind) => of.forEach(([n, nm], unit) => {
       this.dots[kind][unit].setAttribute("cx", this.toX(n));
       this.dots[kind][unit].setAttribute("cy", this.toY(nm));

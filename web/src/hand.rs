@@ -1,11 +1,12 @@
 //! The mixer under sliders: setpoint, voltage, density and rotors out in; throttles, wrenches and the
 //! units' efforts out, beside those of a mixer that takes the rotors for isolated.
 
+use cargo_mixer::rows;
 use mixer_compiler::airframe::{Airmode, Axis, Correction, Unit};
 use mixer_compiler::model::Physics;
 use mixer_facts::checklist::Checklist;
 use mixer_report::study::Study;
-use mixer_rt::{Conditions, Health, Wrench};
+use mixer_rt::{Conditions, Wrench};
 use serde::Serialize;
 
 use crate::desk::Checked;
@@ -18,7 +19,8 @@ const BORDER: usize = 96;
 pub struct Scene {
     /// The units in the order of the file.
     pub units: Vec<Drawn>,
-    /// Border of a unit's attainable set `[N, N m]`, at the voltage and the density asked for.
+    /// Border of a unit's attainable set `[N, N m]` at the reference voltage and density;
+    /// [`Mixed::factors`] bring it to others.
     pub border: Vec<[f64; 2]>,
     /// Ends of the border at the highest voltage and density, `[[low, high] of N, of N m]`.
     pub box_n_nm: [[f64; 2]; 2],
@@ -30,8 +32,6 @@ pub struct Scene {
     pub volts: Option<[f64; 3]>,
     /// The same of the density, kg/m3.
     pub density: Option<[f64; 3]>,
-    /// Least throttle.
-    pub idle: f64,
     /// `mass_kg`.
     pub mass_kg: Option<f64>,
     /// The word of `[allocation] airmode`.
@@ -55,11 +55,10 @@ pub struct Drawn {
     pub upper_spin: &'static str,
 }
 
-/// The scene at a voltage (V) and a density (kg/m3), which are clamped into their ranges.
-pub fn scene(checked: &Checked, volts: f32, density: f32) -> Scene {
+/// The scene of an airframe.
+pub fn scene(checked: &Checked) -> Scene {
     let compiled = &checked.compiled;
     let airframe = &compiled.airframe;
-    let factors = airframe.factors(f64::from(volts), f64::from(density));
     let border: Vec<[f64; 2]> = compiled
         .pair
         .border(BORDER)
@@ -76,7 +75,6 @@ pub fn scene(checked: &Checked, volts: f32, density: f32) -> Scene {
             *high = f64::max(*high, top[k] * point[k]);
         }
     }
-    let at = |[f, q]: &[f64; 2]| [factors[0] * f, factors[1] * q];
     let list = Checklist(compiled);
     let drawn = |unit: &Unit| Drawn {
         place_m: [unit.position_m[0], unit.position_m[1]],
@@ -97,13 +95,12 @@ pub fn scene(checked: &Checked, volts: f32, density: f32) -> Scene {
     };
     Scene {
         units: airframe.units.iter().map(drawn).collect(),
-        border: border.iter().map(at).collect(),
+        border,
         box_n_nm: extent,
         largest,
         hover_n: Study::new(compiled, None).thrust_n,
         volts: airframe.voltage.as_ref().map(of),
         density: airframe.air.as_ref().map(of),
-        idle: airframe.throttle.min,
         mass_kg: airframe.vehicle.as_ref().map(|vehicle| vehicle.mass_kg),
         airmode: match airframe.allocation.airmode {
             Airmode::Disabled => "disabled",
@@ -124,6 +121,8 @@ pub struct Mixed {
     pub achieved: [f32; 4],
     /// The flags, likewise, and in words.
     pub saturation: (u16, String),
+    /// `[k_f, k_Q]` at the voltage and the density.
+    pub factors: [f64; 2],
     /// `[N, N m]` of every unit by the airframe's physics.
     pub efforts: Vec<[f64; 2]>,
     /// The same of a mixer that takes the rotors for isolated, whose rotors that are out give nothing.
@@ -157,13 +156,7 @@ pub fn mix(
     let airframe = &compiled.airframe;
     let setpoint = <[f32; 4]>::try_from(wrench).map_err(|_| "a setpoint has four numbers")?;
     let setpoint = Wrench::from_array(setpoint);
-    if failed
-        .iter()
-        .any(|channel| usize::from(*channel) >= airframe.rotors())
-    {
-        return Err(format!("the outputs are 0 to {}", airframe.rotors() - 1));
-    }
-    let health = failed.iter().copied().fold(Health::GOOD, Health::with_failed);
+    let health = rows::health(airframe, failed.iter().copied().map(usize::from))?;
     let conditions = Conditions {
         voltage_v: volts,
         density_kg_m3: density,
@@ -183,6 +176,7 @@ pub fn mix(
         airframe.units.iter().map(of).map(at).collect()
     };
     Ok(Mixed {
+        factors,
         efforts: efforts(&throttles),
         isolated: Isolated {
             given: physics.wrench(&isolated, factors, health),

@@ -86,9 +86,9 @@ impl Desk {
         json(&self.ask(|checked| checked.output(what, pulses)))
     }
 
-    /// What is drawn of the airframe at a voltage and a density: see [`hand::scene`].
-    pub fn scene(&self, volts: f32, density: f32) -> String {
-        json(&self.ask(|checked| Ok(hand::scene(checked, volts, density))))
+    /// What is drawn of the airframe: see [`hand::scene`].
+    pub fn scene(&self) -> String {
+        json(&self.ask(|checked| Ok(hand::scene(checked))))
     }
 
     /// One mix: see [`hand::mix`].
