@@ -199,12 +199,15 @@ pub fn parsed<'a, A: Args>(
     let command = A::augment_args(clap::Command::new(command));
     let matches = command.try_get_matches_from(words);
     let read = matches.and_then(|matches| A::from_arg_matches(&matches));
-    read.map_err(|error| {
-        let told = error.render().to_string();
-        let ends = ["\n\nUsage:", "\n\nFor more information"].map(|end| told.find(end).unwrap_or(told.len()));
-        let told = &told[..ends[0].min(ends[1])];
-        told.trim_start_matches("error: ").to_owned()
-    })
+    read.map_err(|error| said(&error))
+}
+
+/// What clap says of arguments, without what is about a command line.
+pub fn said(error: &clap::Error) -> String {
+    let told = error.render().to_string();
+    let ends = ["\n\nUsage:", "\n\nFor more information"].map(|end| told.find(end).unwrap_or(told.len()));
+    let told = &told[..ends[0].min(ends[1])];
+    told.trim_start_matches("error: ").to_owned()
 }
 
 fn part(text: &str) -> Result<f64, String> {

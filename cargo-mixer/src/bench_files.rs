@@ -10,7 +10,7 @@ use mixer_identify::texts::{self, Text};
 
 use crate::today::today;
 
-/// What a command about benches takes from outside: the files, and the day.
+/// Inputs of a bench command from outside of its arguments: files and the day.
 pub struct Outside<'a> {
     /// A file by its path.
     pub text: &'a dyn Fn(&Path) -> Text,

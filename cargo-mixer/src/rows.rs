@@ -15,7 +15,7 @@ mod read;
 pub use self::read::{BadLine, Line, Row, Rows, Stopped};
 use crate::{Done, file, print_error};
 
-/// What such a command is called with.
+/// Arguments of a command that answers rows.
 #[derive(clap::Args, Debug)]
 pub struct RowArgs {
     /// The airframe file
@@ -33,7 +33,7 @@ pub struct RowArgs {
     failed: Vec<usize>,
 }
 
-/// What such a command makes of a row.
+/// Work of such a command: columns in, columns out, an answer per row.
 #[derive(Debug)]
 pub struct Task<T> {
     /// The columns that it needs.

@@ -69,7 +69,7 @@ pub(crate) fn bench_check(study: &Study<'_>) -> Markup {
     }
 }
 
-/// What drives an output for two seconds: in PX4's shell, `actuator_test` with the motor from 1 on
+/// Lines that drive an output for two seconds: in PX4's shell, `actuator_test` with the motor from 1 on
 /// and the share of the output's range; in MAVProxy, `motortest` with the motor from 1 on, 0 for
 /// percent, and the percentage.
 fn lines(output: usize, throttle: &Throttle) -> [String; 2] {

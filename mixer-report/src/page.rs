@@ -41,7 +41,7 @@ pub const STYLE: &str = concat!(include_str!("style.css"), include_str!("report.
 /// pointer and the keyboard; called again for new content.
 pub const SCRIPT: &str = include_str!("report.js");
 
-/// What the content leaves to its page.
+/// Style of a page of its own around the content.
 const PAGE_STYLE: &str = include_str!("page.css");
 
 /// Thrusts at which it is found with every rotor out in turn.

@@ -43,7 +43,7 @@ impl Flight {
     }
 }
 
-/// What a file is that is no log.
+/// Kind of a file that is no log.
 fn what_else(bytes: &[u8]) -> &'static str {
     const FORMS: [(&[u8], &str); 6] = [
         (b"\xfd7zXZ", "a compressed file: unpack it first (xz -dk)"),

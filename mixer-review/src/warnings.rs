@@ -1,4 +1,4 @@
-//! What of a review deserves a look.
+//! Warnings of a review, a rule each.
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;

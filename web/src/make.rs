@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use cargo_mixer::bench_args::said;
 use cargo_mixer::bench_files::Outside;
 use cargo_mixer::commands::identify::{IdentifyArgs, NoAnswer};
 use cargo_mixer::commands::import::ImportArgs;
@@ -98,11 +99,11 @@ impl Fault {
 
     /// The first line of what clap says; the others are about a command line.
     fn usage(error: &clap::Error) -> Self {
-        let told = error.render().to_string();
+        let told = said(error);
         let first = told.lines().next().unwrap_or_default();
         Fault {
             help: "the field of the options takes those of the list below it".to_owned(),
-            ..Fault::general(first.trim_start_matches("error: "))
+            ..Fault::general(first)
         }
     }
 

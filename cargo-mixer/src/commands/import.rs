@@ -57,7 +57,7 @@ pub fn run(args: &ImportArgs) -> Done {
 }
 
 impl ImportArgs {
-    /// What the parameters do not say, as far as the arguments say it.
+    /// The options of the import that the arguments state.
     pub fn options(&self) -> Options<'_> {
         Options {
             arm_m: self.arm,
