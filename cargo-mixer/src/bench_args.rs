@@ -112,6 +112,10 @@ pub struct ReadingArgs {
     /// Exchange upper and lower rotor.
     #[arg(long)]
     pub swap: bool,
+    /// Take off all rows what the load cells read at rest, in the mean of the rows at rest: throttle 0
+    /// with speeds of 0 or several rows that agree.
+    #[arg(long)]
+    pub tare: bool,
     /// Sign of thrust: auto, + or -; +,- and the like for a column per rotor (upper, lower).
     #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
     pub thrust_sign: SignChoice,
@@ -137,6 +141,7 @@ impl ReadingArgs {
             preparation: Preparation {
                 stop_throttle: self.stop_throttle,
                 settle: self.settle,
+                tare: self.tare,
                 signs: SignPolicy {
                     thrust: self.thrust_sign,
                     torque: self.torque_sign,
@@ -173,8 +178,9 @@ impl ReadingArgs {
             .chain(of_roles("--unit", &self.units))
             .chain(one);
         let given = all.filter_map(|(option, value)| Some([option.to_owned(), value?]));
-        let swap = self.swap.then(|| "--swap".to_owned());
-        given.flatten().chain(swap).collect()
+        let flags = [("--swap", self.swap), ("--tare", self.tare)].into_iter();
+        let flags = flags.filter_map(|(flag, is)| is.then(|| flag.to_owned()));
+        given.flatten().chain(flags).collect()
     }
 
     /// Those that [`Settings::options`] has as words.

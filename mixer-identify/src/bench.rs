@@ -1,6 +1,6 @@
 //! From the samples of a log to the bench points that are fitted.
 //!
-//! In this order: find out whether both rotors turned; drop start and stop rows (a rotor at or
+//! In this order: find out whether both rotors turned; examine rows at rest; drop start and stop rows (a rotor at or
 //! below `stop_throttle`); reduce a streaming log to one mean per plateau of constant command; make
 //! signs and sums; refuse rows with a missing value.
 
@@ -59,6 +59,9 @@ pub struct Point {
     pub imbalance: f64,
     /// Electrical power of the whole, W; NaN where not measured.
     pub power_w: f64,
+    /// Thrust of the upper and of the lower rotor, N, and torque likewise, N m, as their load cells have
+    /// them; NaN where they have none.
+    pub cells: [f64; 4],
 }
 
 impl Point {
@@ -77,6 +80,7 @@ impl Point {
             thrust: self.thrust / thrust,
             torque: self.torque / torque,
             power_w: self.power_w / power,
+            cells: [0, 1, 2, 3].map(|k| self.cells[k] / [thrust, torque][k / 2]),
             ..*self
         }
     }
@@ -113,6 +117,8 @@ pub struct Bench {
     pub air: Option<Known>,
     /// What the load cells read at rest, where it was taken off.
     pub tare: Vec<String>,
+    /// Offsets of the load cells at rest that remain in the points.
+    pub offsets: Vec<String>,
     /// Remarks for the report.
     pub notes: Vec<String>,
     /// Why there is no electrical power, where columns are missing for it.
@@ -127,8 +133,16 @@ impl Bench {
     pub(crate) fn passed_over(&self) -> Vec<String> {
         const MOST: usize = 5;
         let tare = self.tare.iter().map(|tare| format!("{}: {tare}", self.file));
+        let tare = tare.chain(self.offsets_told());
         let rows = refused_told(self.refused_rows.iter(), MOST);
         tare.chain(self.notes.iter().cloned()).chain(rows).collect()
+    }
+
+    /// [`Bench::offsets`] with the file's name.
+    pub(crate) fn offsets_told(&self) -> impl Iterator<Item = String> {
+        self.offsets
+            .iter()
+            .map(|offset| format!("{}: {offset}", self.file))
     }
 }
 
@@ -153,6 +167,8 @@ pub struct Preparation {
     pub settle: f64,
     /// Signs of thrust and torque.
     pub signs: SignPolicy,
+    /// Whether what the load cells read at rest is taken off.
+    pub tare: bool,
     /// Whether these are a few rows of a pair on top of a prediction: they may lack their torque, and one
     /// throttle is that of both rotors.
     pub torque_may_lack: bool,
@@ -179,6 +195,7 @@ impl Default for Preparation {
                 thrust: SignChoice::Auto,
                 torque: SignChoice::Auto,
             },
+            tare: false,
             torque_may_lack: false,
             own_columns: false,
             date: None,
@@ -242,7 +259,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             .iter()
             .all(|&t| stands(t))
     };
-    let tare = tare::take_off(&mut samples, both);
+    let tare = tare::examine(&mut samples, both, how);
 
     // An empty throttle is no start or stop row: it stays and is refused later, with its line.
     let before = samples.len();
@@ -301,6 +318,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
                     voltage,
                     imbalance,
                     power_w: sample.power_w,
+                    cells: [0, 1, 2, 3].map(|k| [sample.thrust, sample.torque][k / 2].rotors[k % 2]),
                 })
             }
         }
@@ -340,7 +358,8 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
         refused_rows: refused,
         signs,
         air,
-        tare,
+        tare: tare.taken_off,
+        offsets: tare.warnings,
         notes,
         points,
     })

@@ -1,11 +1,14 @@
 //! What there is to say of a result, once: the report prints it, and the tables have it as comments.
 
+use std::collections::BTreeSet;
+
 use mixer_compiler::model::PairMap;
 
 use super::air::Air;
 use super::bench::{Bench, Kind};
 use super::fit::Fit;
 use super::fit::pair::Pair;
+use super::fit::pair::drift::Shown;
 use super::fit::power::{LeastPower, Power};
 use super::fit::voltage::{Estimate, Exponent, Voltage};
 use super::identified::Identified;
@@ -183,6 +186,7 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
         [thrust, torque].map(|fit| (fit.residual_max, 100.0 * fit.residual_max / fit.full_scale));
     let text = format!("{f:.2} N ({of_f:.1} %) and {q:.4} N m ({of_q:.1} %) off; {standing_out}");
     facts.always("worst row", text);
+    of_drift(facts, pair);
     for o in &pair.outliers {
         let (f, of_f) = (o.thrust_residual, o.thrust_deviations);
         let (q, of_q) = (o.torque_residual, o.torque_deviations);
@@ -210,6 +214,36 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
         facts.add(Told::Reported, "rotor out", text);
     }
     runs(pair).for_each(|(turning, alone)| of_alone(facts, turning, alone));
+}
+
+/// What the order of the rows shows, or that it shows nothing.
+fn of_drift(facts: &mut Facts, pair: &Pair) {
+    let wholes = pair
+        .drift
+        .iter()
+        .filter(|shown| ["thrust", "torque"].contains(&shown.of));
+    let (seen, hidden): (Vec<&Shown>, Vec<&Shown>) = wholes.partition(|shown| shown.drift.is_some());
+    let of = |shown: &&Shown| Some(format!("{} t = {:.1}", shown.of, shown.drift?.t));
+    let told: Vec<String> = seen.iter().filter_map(of).collect();
+    if !told.is_empty() {
+        let all = pair.drift.iter().filter_map(|shown| shown.drift);
+        let what = if all.clone().any(|drift| drift.told) {
+            "seen"
+        } else {
+            "none"
+        };
+        facts.always(
+            "drift",
+            format!("{what} in the order of the rows: {}", told.join(", ")),
+        );
+    }
+    if !hidden.is_empty() {
+        let files: BTreeSet<&str> = hidden.iter().map(|shown| shown.file.as_str()).collect();
+        let files: Vec<&str> = files.into_iter().collect();
+        let text =
+            "cannot be told from throttle in the order of the rows; cargo mixer plan draws one that shows it";
+        facts.always("drift", format!("{}: {text}", files.join(", ")));
+    }
 }
 
 fn of_fit(fit: &Fit, unit: &str) -> String {

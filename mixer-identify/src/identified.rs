@@ -101,7 +101,8 @@ pub fn with_runs(
     let benches = if exponents.is_some() { balanced } else { benches };
     air.exponents = exponents.map_or(of_air, |k| k.map(|k| k - 1.0));
     let has = |kind| benches.iter().any(|b| b.kind == kind);
-    let mut warnings = Vec::new();
+    let read = benches.iter().chain(runs.iter().flatten());
+    let mut warnings: Vec<String> = read.flat_map(Bench::offsets_told).collect();
     let pair = if has(Kind::Pair) {
         two_signals(&benches)?;
         let pair = pair::identify(&benches, voltage.as_ref(), wishes)?;

@@ -36,6 +36,13 @@ pub fn plan(levels: usize, min: f64, max: f64) -> Vec<[f64; 2]> {
     with_stride(best.unwrap_or(1))
 }
 
+/// The pairs with two rows at rest before, in the middle and after: they tell the tare and its drift.
+pub fn with_rests(pairs: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    const REST: [[f64; 2]; 2] = [[0.0; 2]; 2];
+    let (before, after) = pairs.split_at(pairs.len() / 2);
+    [&REST, before, &REST, after, &REST].concat()
+}
+
 fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }

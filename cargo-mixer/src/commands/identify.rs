@@ -173,8 +173,10 @@ impl IdentifyArgs {
         if let Some(single) = &prior {
             let held = self.reading.rpm_at_full.is_some();
             let exponents = predict::exponents(self.voltage_exponent, held);
+            let mut run = self.rotors.reading(self.air.air(), self.reading.rpm_at_full);
+            run.preparation.tare = self.reading.tare;
             let how = Prediction {
-                run: self.rotors.reading(self.air.air(), self.reading.rpm_at_full),
+                run,
                 map: settings,
                 known: self.rotors.known(self.reference_voltage, exponents),
                 wishes: self.rotors.wishes(self.throttle, held, outside),

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use mixer_identify::plan::{CORRECTING, flight_stand, plan, rcbenchmark, template};
+use mixer_identify::bench::STOP_THROTTLE;
+use mixer_identify::plan::{CORRECTING, flight_stand, plan, rcbenchmark, template, with_rests};
 
 use crate::Done;
 
@@ -65,6 +66,12 @@ fn throttle(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub fn run(args: &PlanArgs) -> Done {
     let pairs = match args.min {
+        Some(min) if min <= STOP_THROTTLE => {
+            let message = format_args!(
+                "--min {min}: a rotor at rest is no row of a map; the least throttle at which both turn steadily, 0.05 to 0.15"
+            );
+            return Err(crate::bad_usage(message));
+        }
         Some(min) if min < args.max => plan(usize::from(args.levels), min, args.max),
         Some(min) => {
             let message = format_args!("--min {min} is not below --max {}", args.max);
@@ -73,6 +80,7 @@ pub fn run(args: &PlanArgs) -> Done {
         // clap asks for one of the two.
         None => CORRECTING.to_vec(),
     };
+    let pairs = with_rests(&pairs);
     if args.rpm_at_full.is_some() && args.format != Format::Template {
         let message = "--rpm-at-full writes speeds into the template; the scripts command pulse widths";
         return Err(crate::bad_usage(message));

@@ -69,6 +69,10 @@ pub struct PredictArgs {
     /// A unit by hand, as throttle=% or thrust=gf, for a header without one.
     #[arg(long = "unit", value_name = "ROLE=UNIT", value_parser = single_role)]
     pub units: Vec<(String, String)>,
+    /// Take off all rows what the load cells read at rest, in the mean of the rows at rest: throttle 0
+    /// with speeds of 0 or several rows that agree.
+    #[arg(long)]
+    pub tare: bool,
     /// Sign of thrust: auto, + or -.
     #[arg(long, value_name = "SIGN", default_value = "auto", value_parser = sign_choice, allow_hyphen_values = true)]
     pub thrust_sign: SignChoice,
@@ -188,6 +192,7 @@ impl PredictArgs {
         settings.reading.by_hand.offers = Offers::OneRotor;
         settings.reading.pwm_range = self.pwm_range;
         settings.preparation.signs.thrust = self.thrust_sign;
+        settings.preparation.tare = self.tare;
         settings
     }
 

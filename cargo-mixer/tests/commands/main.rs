@@ -5,6 +5,7 @@
 mod bench_to_flight;
 #[cfg(target_os = "linux")]
 mod cases;
+mod drift;
 mod flights;
 mod identify;
 mod library;

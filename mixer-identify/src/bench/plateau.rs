@@ -29,7 +29,7 @@ pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
     for run in runs(samples) {
         let skip = match run.len() {
             n if n < PLATEAU_ROWS => n,
-            n => ((n as f64 * settle).ceil() as usize).min(n - 1),
+            n => settling(n, settle),
         };
         dropped += skip;
         let rows = &run[skip..];
@@ -52,9 +52,18 @@ pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
             torque: split(|s| s.torque),
             voltage: [0, 1].map(|r| mean(&|s| s.voltage[r])),
             power_w: mean(&|s| s.power_w),
+            speed: [0, 1].map(|r| mean(&|s| s.speed[r])),
         });
     }
     (points, dropped)
+}
+
+/// The rows that settle of a plateau of `rows`; none of a few.
+pub(super) fn settling(rows: usize, settle: f64) -> usize {
+    match rows {
+        n if n < PLATEAU_ROWS => 0,
+        n => ((n as f64 * settle).ceil() as usize).min(n - 1),
+    }
 }
 
 /// Stretches of rows with one command, compared with the stretch's first row.
@@ -88,6 +97,7 @@ mod tests {
             },
             voltage: [f64::NAN; 2],
             power_w: f64::NAN,
+            speed: [f64::NAN; 2],
         }
     }
 

@@ -90,6 +90,8 @@ pub struct Sample {
     pub voltage: [f64; 2],
     /// Electrical power of the whole, W.
     pub power_w: f64,
+    /// Speeds of the upper and of the lower rotor, in the file's unit.
+    pub speed: [f64; 2],
 }
 
 /// All samples of one file.
@@ -288,8 +290,9 @@ const AT_REST: f64 = 0.3;
 impl Cells {
     fn sample(&self, line: u64, columns: &Columns, record: &csv::StringRecord) -> Result<Sample, Fault> {
         self.in_columns(record)?;
-        let rpm = self.value(&columns[Quantity::Speed].rotors[0], record, f64::NAN);
-        let rpm = rpm.unwrap_or(f64::NAN);
+        let speeds = &columns[Quantity::Speed].rotors;
+        let speed = [0, 1].map(|rotor| self.value(&speeds[rotor], record, f64::NAN).unwrap_or(f64::NAN));
+        let rpm = speed[0];
         let split = |quantity: Quantity| -> Result<Split<f64>, Fault> {
             let Split {
                 whole,
@@ -325,6 +328,7 @@ impl Cells {
                 .into_iter()
                 .find(|power| !power.is_nan())
                 .unwrap_or(f64::NAN),
+            speed,
         })
     }
 

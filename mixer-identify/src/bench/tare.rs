@@ -1,177 +1,153 @@
 //! The tare: what the load cells read while no rotor turns.
 //!
-//! Rows at rest before, between and after the measurements tell the offset of every load cell, and
-//! how it drifted. It is taken off all rows, on a straight line between two stops. A rotor that still
-//! runs out gives thrust, so that the last row of a stop is an upper bound of the offset; a lower one
-//! is below it by what the stop still lost at its end, or by [`RUN_OUT`] where it has one row. Only an
-//! offset that these bounds prove to be none of noise is taken off.
+//! Commands of 0 do not prove rest, since a rotor runs out for seconds. A stop is at rest where its
+//! speeds are 0 or, without speeds, where several rows in a row agree. Any other stop tells nothing. An
+//! offset is told; only `--tare` takes it off, one constant per load cell.
 
 use std::ops::Range;
 
 use crate::bench::read::Sample;
+use crate::bench::{Preparation, plateau};
+use crate::statistics::{extent, rms};
 
-/// Thrust and torque that a rotor running out gives, as a share of the greatest value: up to
-/// 0.027 and 0.036 in single rows of the stops of 15 real runs.
-const RUN_OUT: [f64; 2] = [0.03, 0.05];
-
-/// An offset that is left alone, likewise; load cells that were set to zero read up to 0.004 in those.
+/// The share of the greatest reading that rows at rest may scatter by and an offset may have: load cells
+/// that were set to zero read less.
 const NOISE: f64 = 0.005;
 
-/// A reading above this is of rotors that have not stopped, unless the stop is steady.
-const STOPPED: f64 = 0.15;
+/// Fewest rows that show by their agreement that a rotor without a speed is at rest.
+const SEVERAL: usize = 2;
 
-/// The load cells: name, quantity (thrust, torque) and the cell of a row.
+/// The load cells: name, unit, quantity (thrust, torque) and the cell of a row. A whole stands before its
+/// parts.
 type Cell = fn(&mut Sample) -> &mut f64;
-const CELLS: [(&str, usize, Cell); 6] = [
-    ("thrust", 0, |s| &mut s.thrust.whole),
-    ("thrust of the upper rotor", 0, |s| &mut s.thrust.rotors[0]),
-    ("thrust of the lower rotor", 0, |s| &mut s.thrust.rotors[1]),
-    ("torque", 1, |s| &mut s.torque.whole),
-    ("torque of the upper rotor", 1, |s| &mut s.torque.rotors[0]),
-    ("torque of the lower rotor", 1, |s| &mut s.torque.rotors[1]),
+const CELLS: [(&str, &str, usize, Cell); 6] = [
+    ("thrust", "N", 0, |s| &mut s.thrust.whole),
+    ("thrust of the upper rotor", "N", 0, |s| &mut s.thrust.rotors[0]),
+    ("thrust of the lower rotor", "N", 0, |s| &mut s.thrust.rotors[1]),
+    ("torque", "N m", 1, |s| &mut s.torque.whole),
+    ("torque of the upper rotor", "N m", 1, |s| &mut s.torque.rotors[0]),
+    ("torque of the lower rotor", "N m", 1, |s| &mut s.torque.rotors[1]),
 ];
 
-/// What a load cell reads at the end of a stop, and the bounds of its offset there.
-#[derive(Clone, Copy)]
-struct Stop {
-    line: f64,
-    /// Whether it has several rows.
-    steady: bool,
-    reads: f64,
-    bounds: [f64; 2],
+/// What rows at rest tell.
+#[derive(Default)]
+pub(super) struct Tare {
+    /// What was taken off.
+    pub(super) taken_off: Vec<String>,
+    /// Offsets that remain in the rows.
+    pub(super) warnings: Vec<String>,
 }
 
-/// Takes the offsets that the rows at rest tell off all rows; what was taken off.
-pub(super) fn take_off(samples: &mut [Sample], at_rest: impl Fn(&Sample) -> bool) -> Vec<String> {
-    let stops = stops(samples, at_rest);
-    let mut told = Vec::new();
-    let lines: Vec<f64> = samples.iter().map(|s| s.line as f64).collect();
-    let mut greatest = [0.0_f64; 2];
-    for (_, quantity, cell) in CELLS {
-        let sizes = samples
-            .iter_mut()
-            .map(|s| cell(s).abs())
-            .filter(|x| x.is_finite());
-        greatest[quantity] = sizes.fold(greatest[quantity], f64::max);
-    }
-    let mut whole = [false; 2];
-    for (k, (name, quantity, cell)) in CELLS.into_iter().enumerate() {
-        let column: Vec<f64> = samples.iter_mut().map(|s| *cell(s)).collect();
-        let greatest = greatest[quantity];
-        // Of a rotor that never turns nothing is used.
-        if !column.iter().any(|x| x.abs() > STOPPED * greatest) {
+/// Finds the offsets of the load cells in the stops, rows that are `commanded_off`, and takes them off
+/// where `how` asks for it.
+pub(super) fn examine(
+    samples: &mut [Sample],
+    commanded_off: impl Fn(&Sample) -> bool,
+    how: &Preparation,
+) -> Tare {
+    let columns = CELLS.map(|(_, _, _, cell)| samples.iter_mut().map(|s| *cell(s)).collect::<Vec<f64>>());
+    let greatest = [0, 1].map(|quantity| {
+        let cells = columns.iter().zip(CELLS).filter(|(_, cell)| cell.2 == quantity);
+        let readings = cells.flat_map(|(column, _)| column).map(|x| x.abs());
+        readings.filter(|x| x.is_finite()).fold(0.0, f64::max)
+    });
+    let scatters = |rows: &[usize]| {
+        columns.iter().zip(CELLS).any(|(column, cell)| {
+            let middle = mean(column, rows);
+            let about = rows.iter().map(|&k| column[k] - middle);
+            rms(about.filter(|x| x.is_finite())) > NOISE * greatest[cell.2]
+        })
+    };
+    let mut rests = at_rest(samples, commanded_off, how.settle);
+    rests.retain(|rows| !scatters(rows));
+    let mut tare = Tare::default();
+    let mut whole_told = [false; 2];
+    for ((name, unit, quantity, cell), column) in CELLS.into_iter().zip(&columns) {
+        let offsets: Vec<f64> = rests.iter().map(|rows| mean(column, rows)).collect();
+        let [low, high] = extent(offsets.iter().copied());
+        let share = |x: f64| x / greatest[quantity];
+        let most = share(low.abs().max(high.abs()));
+        if !offsets.iter().all(|x| x.is_finite()) || offsets.is_empty() || most <= NOISE {
             continue;
         }
-        let upward = column.iter().filter(|x| x.is_finite()).sum::<f64>().signum();
-        let stop = |rows: &Range<usize>| {
-            let cells: Vec<f64> = column[rows.clone()]
-                .iter()
-                .copied()
-                .filter(|x| x.is_finite())
-                .collect();
-            Stop::of(lines[rows.end - 1], &cells, quantity, upward, greatest)
-        };
-        let Some(offset) = Offset::of(stops.iter().filter_map(stop).collect(), NOISE * greatest) else {
+        let offset = mean(column, &rests.concat());
+        if how.tare {
+            samples.iter_mut().for_each(|s| *cell(s) -= offset);
+        }
+        if whole_told[quantity] {
             continue;
+        }
+        whole_told[quantity] = name == ["thrust", "torque"][quantity];
+        let percent = 100.0 * most;
+        let lines = |rows: &[usize]| {
+            let [first, last] = [rows[0], rows[rows.len() - 1]].map(|k| samples[k].line);
+            if first == last {
+                format!("line {first}")
+            } else {
+                format!("lines {first} to {last}")
+            }
         };
-        for (sample, line) in samples.iter_mut().zip(&lines) {
-            *cell(sample) -= offset.at(*line);
+        let reads: Vec<String> = offsets
+            .iter()
+            .zip(&rests)
+            .map(|(offset, rows)| format!("{offset:+.4} {unit} ({})", lines(rows)))
+            .collect();
+        let reads = format!(
+            "at rest the {name} reads {}, up to {percent:.1} % of the greatest",
+            reads.join(", ")
+        );
+        let differ = share(high - low) > NOISE;
+        match how.tare {
+            true => tare.taken_off.push(format!(
+                "{reads}: {offset:+.4} {unit}, the mean, is taken off all rows"
+            )),
+            false if !differ => tare
+                .warnings
+                .push(format!("{reads}: --tare takes it off all rows")),
+            false => {}
         }
-        // The whole, which stands before the rotors' parts, speaks for them.
-        if !whole[quantity] {
-            told.push(offset.told(name, ["N", "N m"][quantity], greatest));
+        if differ {
+            tare.warnings.push(format!(
+                "{reads}: the load cell drifts during the run; --tare takes off the mean of the rows at rest, no drift"
+            ));
         }
-        whole[quantity] |= k % 3 == 0;
     }
-    told
+    if how.tare && rests.is_empty() {
+        tare.warnings.push(
+            "--tare: no rows at rest, nothing is taken off; a stop is at rest where its speeds are 0, or where several rows at \
+             throttle 0 agree"
+                .into(),
+        );
+    }
+    tare
 }
 
-/// The stretches of rows at rest.
-fn stops(samples: &[Sample], at_rest: impl Fn(&Sample) -> bool) -> Vec<Range<usize>> {
+/// The mean of what these rows have in a column; NaN where they have nothing.
+fn mean(column: &[f64], rows: &[usize]) -> f64 {
+    let read = rows.iter().map(|&k| column[k]).filter(|x| x.is_finite());
+    let (sum, count) = read.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
+    sum / count
+}
+
+/// The rows of each stop in which every speed is 0 or, without speeds, which are several; of a streaming
+/// log without those that settle.
+fn at_rest(samples: &[Sample], commanded_off: impl Fn(&Sample) -> bool, settle: f64) -> Vec<Vec<usize>> {
     let mut stops: Vec<Range<usize>> = Vec::new();
-    for k in (0..samples.len()).filter(|&k| at_rest(&samples[k])) {
+    for k in (0..samples.len()).filter(|&k| commanded_off(&samples[k])) {
         match stops.last_mut().filter(|stop| stop.end == k) {
             Some(stop) => stop.end += 1,
             None => stops.push(k..k + 1),
         }
     }
-    stops
-}
-
-impl Stop {
-    fn of(line: f64, cells: &[f64], quantity: usize, upward: f64, greatest: f64) -> Option<Stop> {
-        let part = (cells.len() / 4).max(1);
-        let mean = |cells: &[f64]| cells.iter().sum::<f64>() / cells.len() as f64;
-        let (before, last) = cells.split_at_checked(cells.len().checked_sub(part)?)?;
-        let reads = mean(last);
-        let run_out = match before.len() {
-            0 => RUN_OUT[quantity] * greatest,
-            n => (mean(&before[n.saturating_sub(part)..]) - reads).abs(),
-        };
-        // Thrust falls while a rotor runs out; its torque may be of either sign.
-        let bounds = match (quantity, upward > 0.0) {
-            (0, true) => [reads - run_out, reads],
-            (0, false) => [reads, reads + run_out],
-            _ => [reads - run_out, reads + run_out],
-        };
-        let stopped = reads.abs() <= STOPPED * greatest || run_out <= NOISE * greatest;
-        let steady = !before.is_empty();
-        stopped.then_some(Stop {
-            line,
-            steady,
-            reads,
-            bounds,
-        })
-    }
-}
-
-/// The offset of a load cell: one for all rows, or a line from stop to stop.
-struct Offset(Vec<Stop>);
-
-impl Offset {
-    fn of(stops: Vec<Stop>, noise: f64) -> Option<Offset> {
-        let low = stops
-            .iter()
-            .map(|s| s.bounds[0])
-            .fold(f64::NEG_INFINITY, f64::max);
-        let high = stops.iter().map(|s| s.bounds[1]).fold(f64::INFINITY, f64::min);
-        if low > high + noise {
-            return Some(Offset(stops));
-        }
-        // Of a stop of several rows the last is surely at rest.
-        let sharpest = *stops.iter().max_by_key(|stop| stop.steady)?;
-        let reads = sharpest.reads.clamp(low.min(high), high.max(low));
-        (low > noise || high < -noise).then(|| Offset(vec![Stop { reads, ..sharpest }]))
-    }
-
-    fn at(&self, line: f64) -> f64 {
-        let Offset(stops) = self;
-        let after = stops.partition_point(|stop| stop.line < line);
-        match (after.checked_sub(1).map(|k| stops[k]), stops.get(after)) {
-            (Some(a), Some(b)) => a.reads + (b.reads - a.reads) * (line - a.line) / (b.line - a.line),
-            (Some(only), None) => only.reads,
-            (None, first) => first.map_or(0.0, |first| first.reads),
-        }
-    }
-
-    fn told(&self, name: &str, unit: &str, greatest: f64) -> String {
-        let Offset(stops) = self;
-        let reading = |s: &Stop| format!("{:+.3} {unit} (line {})", s.reads, s.line);
-        let largest = stops.iter().fold(0.0_f64, |most, s| most.max(s.reads.abs()));
-        let percent = 100.0 * largest / greatest;
-        match &stops[..] {
-            [only] => format!(
-                "at rest the {name} reads {}, {percent:.1} % of the greatest: taken off all rows",
-                reading(only)
-            ),
-            [first, .., last] => format!(
-                "at rest the {name} drifts from {} to {}, {percent:.1} % of the greatest: taken off row by row",
-                reading(first),
-                reading(last)
-            ),
-            [] => String::new(),
-        }
-    }
+    // A speed that is 0 throughout is none.
+    let told = [0, 1].map(|rotor| samples.iter().any(|s| s.speed[rotor].abs() > 0.0));
+    let stands = |k: &usize| (0..2).all(|rotor| !told[rotor] || samples[*k].speed[rotor] == 0.0);
+    let least = if told == [false; 2] { SEVERAL } else { 1 };
+    let settled = stops.into_iter().map(|stop| {
+        let start = stop.start + plateau::settling(stop.len(), settle);
+        (start..stop.end).filter(stands).collect::<Vec<usize>>()
+    });
+    settled.filter(|rows| rows.len() >= least).collect()
 }
 
 #[cfg(test)]
@@ -179,77 +155,98 @@ mod tests {
     use super::*;
     use crate::bench::header::Split;
 
-    /// Rows of (throttle, thrust); the torque is 0.01 of the true thrust.
-    fn rows(rows: &[(f64, f64)]) -> Vec<Sample> {
-        let sample = |(k, (throttle, thrust)): (usize, &(f64, f64))| Sample {
+    /// A row of (throttle, thrust, speed); the torque is 0.1 of the throttle.
+    type Row = (f64, f64, f64);
+    const X: f64 = f64::NAN;
+
+    fn samples(rows: &[Row]) -> Vec<Sample> {
+        let rotors = [f64::NAN; 2];
+        let row = |(k, &(throttle, whole, speed)): (usize, &Row)| Sample {
             line: 2 + k as u64,
-            throttle: [*throttle; 2],
-            thrust: Split {
-                whole: *thrust,
-                rotors: [f64::NAN; 2],
-            },
+            throttle: [throttle; 2],
+            thrust: Split { whole, rotors },
             torque: Split {
                 whole: 0.1 * throttle,
-                rotors: [f64::NAN; 2],
+                rotors,
             },
-            voltage: [f64::NAN; 2],
+            voltage: rotors,
             power_w: f64::NAN,
+            speed: [speed; 2],
         };
-        rows.iter().enumerate().map(sample).collect()
+        rows.iter().enumerate().map(row).collect()
     }
 
     #[test]
-    fn rows_at_rest_tell_the_offset_and_its_drift() {
-        let turning = [(0.5, 3.0), (1.0, 10.0)];
-        // Rows before and after the two that turn; the offsets of these; what is told.
-        type Case = (
-            &'static [(f64, f64)],
-            &'static [(f64, f64)],
-            [f64; 2],
-            &'static str,
-        );
-        let cases: [Case; 9] = [
-            (&[(0.0, 0.3), (0.0, 0.0)], &[(0.0, 0.25)], [0.0, 0.0], ""),
+    fn rows_that_are_surely_at_rest_tell_the_tare_and_no_others() {
+        // Rows before and after two that turn; the offset that --tare takes off; what is told without it.
+        type Case = (&'static [Row], &'static [Row], f64, &'static str);
+        let cases: [Case; 11] = [
+            (&[(0.0, 0.3, X), (0.0, 0.0, X)], &[(0.0, 0.25, X)], 0.0, ""),
             (
-                &[(0.0, -0.4), (0.0, -0.5)],
-                &[(0.0, -0.45)],
-                [-0.5, -0.5],
-                "reads -0.500 N (line 3), 5.0 %",
-            ),
-            (
-                &[(0.0, 0.5), (0.0, 0.5)],
+                &[(0.0, -0.5, X), (0.0, -0.5, X)],
                 &[],
-                [0.5, 0.5],
-                "reads +0.500 N (line 3)",
+                -0.5,
+                "reads -0.5000 N (lines 2 to 3), up to 5.0 % of the greatest: --tare",
             ),
-            // A single row may be of rotors that run out; below zero it is not.
-            (&[(0.0, 0.25)], &[], [0.0, 0.0], ""),
-            (&[(0.0, -0.25)], &[], [-0.25, -0.25], "reads -0.250 N (line 2)"),
-            (&[], &[(0.0, 0.5)], [0.5, 0.5], "reads +0.500 N (line 4)"),
+            (&[(0.0, 0.01, X), (0.0, 0.01, X)], &[], 0.0, ""),
+            // One row may be of rotors that run out, unless its speed is 0.
+            (&[(0.0, -0.5, X)], &[], 0.0, ""),
+            (&[(0.0, -0.5, 0.0)], &[], -0.5, "reads -0.5000 N (line 2)"),
             (
-                &[(0.0, 0.0), (0.0, 0.0)],
-                &[(0.0, -0.6)],
-                [-0.2, -0.4],
-                "drifts from +0.000 N (line 3) to -0.600 N (line 6), 6.0 %",
+                &[(0.0, 0.8, 540.0), (0.0, 0.5, 0.0)],
+                &[],
+                0.5,
+                "reads +0.5000 N (line 3)",
             ),
-            // A rotor that still turns, and a command that was lost for a row.
-            (&[(0.0, 4.0)], &[(0.0, 0.0), (0.0, 0.0)], [0.0, 0.0], ""),
-            (&[], &[], [0.0, 0.0], ""),
+            (&[], &[(0.0, 0.9, 1100.0), (0.0, 0.9, 1100.0)], 0.0, ""),
+            // A stand that rings at a speed of 0.
+            (&[], &[(0.0, 0.2, 0.0), (0.0, 0.7, 0.0), (0.0, 0.3, 0.0)], 0.0, ""),
+            (
+                &[(0.0, 0.0, 0.0)],
+                &[(0.0, -0.6, 0.0)],
+                -0.3,
+                "reads +0.0000 N (line 2), -0.6000 N (line 5), up to 6.0 % of the greatest: the load cell drifts",
+            ),
+            // A column of speeds that was not recorded.
+            (&[(0.0, 0.5, X)], &[(0.0, 0.5, X)], 0.0, ""),
+            (&[], &[], 0.0, ""),
         ];
-        for (before, after, offsets, wanted) in cases {
-            let all: Vec<(f64, f64)> = [before, &turning, after].concat();
-            let mut samples = rows(&all);
-            let told = take_off(&mut samples, |s| s.throttle[0] <= 0.0).join("; ");
-            assert!(
-                told.contains(wanted) && told.is_empty() == wanted.is_empty(),
-                "{told} for {wanted}"
-            );
-            for ((sample, (_, read)), offset) in samples[before.len()..].iter().zip(turning).zip(offsets) {
-                assert!(
-                    (sample.thrust.whole - (read - offset)).abs() < 1e-9,
-                    "{told}: {sample:?}"
+        for (before, after, offset, wanted) in cases {
+            let turning = [(0.5, 3.0, 5000.0), (1.0, 10.0, 9000.0)];
+            let speeds = |row: &Row| {
+                if before.iter().chain(after).any(|r| !r.2.is_nan()) {
+                    *row
+                } else {
+                    (row.0, row.1, X)
+                }
+            };
+            let all: Vec<Row> = [before, &turning, after].concat().iter().map(speeds).collect();
+            for taken in [false, true] {
+                let how = Preparation {
+                    tare: taken,
+                    ..Preparation::default()
+                };
+                let mut rows = samples(&all);
+                let tare = examine(&mut rows, |s| s.throttle[0] <= 0.0, &how);
+                let told = tare.warnings.join("; ");
+                if !taken {
+                    assert!(
+                        told.contains(wanted) && told.is_empty() == wanted.is_empty(),
+                        "{told} for {wanted}"
+                    );
+                    assert!(tare.taken_off.is_empty());
+                }
+                assert_eq!(
+                    tare.taken_off.is_empty(),
+                    offset == 0.0 || !taken,
+                    "{:?}",
+                    tare.taken_off
                 );
-                assert!(!sample.torque.whole.is_nan());
+                let by = if taken { offset } else { 0.0 };
+                for (row, (_, read, _)) in rows[before.len()..].iter().zip(turning) {
+                    assert!((row.thrust.whole - (read - by)).abs() < 1e-9, "{wanted}: {row:?}");
+                    assert!(!row.torque.whole.is_nan());
+                }
             }
         }
     }

@@ -4,6 +4,7 @@ use mixer_compiler::airframe::Basis;
 use mixer_compiler::model::injectivity::EnclosedPairMap;
 use serde::Serialize;
 
+use self::drift::Shown;
 use self::placed::{Placed, at_reference, channels, confirmed, places, suspects, without};
 use crate::bench::sign::AUTO;
 use crate::bench::{Bench, Kind, mean_voltage};
@@ -19,6 +20,7 @@ use crate::refusal::Refusal;
 use crate::rotor::Alone;
 
 mod doubts;
+pub mod drift;
 mod placed;
 
 /// The identified map, as in `[throttle]` and `[pair]`.
@@ -55,6 +57,8 @@ pub struct Pair {
     pub outliers: Vec<Outlier>,
     /// Whether they were left out.
     pub outliers_left_out: bool,
+    /// What the order of the rows shows of drifts.
+    pub drift: Vec<Shown>,
     /// The fold of the map before `throttle.min` was raised.
     pub fold: Fold,
     /// Reference voltage, V, to which the points were brought by the exponents.
@@ -96,9 +100,17 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     let [thrust, torque] = fits;
     let sign_is_found = benches.iter().any(|bench| bench.signs.torque_policy == AUTO);
     doubts::units(&points, [&thrust, &torque], &mut warnings);
+    // Other causes are judged by what a drift leaves: it looks like them.
+    let (drift, undrifted) = drift::examine(&design, &points, &mut warnings);
+    let torque_is_steady = undrifted[1] == channels(&points)[1];
+    for (k, point) in points.iter_mut().enumerate() {
+        (point.thrust, point.torque) = (undrifted[0][k], undrifted[1][k]);
+    }
+    let judged = undrifted.map(|values| fit(&design, &values, throttle_box));
     // A constant in the torque looks as exchanged rotors do.
-    if !doubts::tare(&points, [&thrust, &torque], &mut warnings) {
-        doubts::exchanged(basis, &torque, throttle_box, sign_is_found, &mut warnings);
+    if !doubts::tare(&points, judged.each_ref(), &mut warnings) {
+        let asks = sign_is_found && torque_is_steady;
+        doubts::exchanged(basis, &judged[1], throttle_box, asks, &mut warnings);
     }
     Ok(Pair {
         basis,
@@ -119,6 +131,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
         cross_validation,
         outliers_left_out: wishes.robust,
         outliers,
+        drift,
         fold,
         normalised_to_v,
         mean_v: mean_voltage(points.iter().map(|p| p.point)).map(|(mean, _)| mean),

@@ -146,7 +146,7 @@ const AT_LOWEST: [f64; 2] = [0.03, 0.2];
 /// told.
 pub(super) fn tare(points: &[Placed], [thrust, torque]: [&Fit; 2], warnings: &mut Vec<String>) -> bool {
     const MEND: &str = "set the load cells to zero at rest, or record some rows at rest (throttle 0) \
-                        before and after, which identify takes off";
+                        before and after, which --tare takes off";
     let near = |p: &&Placed| (p.point.u - p.point.l).abs() < EQUAL;
     let throttle = |p: &Placed| 0.5 * (p.point.u + p.point.l);
     let by_throttle = |a: &&Placed, b: &&Placed| throttle(a).total_cmp(&throttle(b));

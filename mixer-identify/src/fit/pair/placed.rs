@@ -18,6 +18,8 @@ pub(super) struct Placed<'a> {
     pub(super) file: &'a str,
     pub(super) thrust: f64,
     pub(super) torque: f64,
+    /// [`Point::cells`], brought to one voltage as both channels are.
+    pub(super) cells: [f64; 4],
 }
 
 pub(super) fn places(points: &[Placed]) -> Vec<[f64; 2]> {
@@ -70,6 +72,7 @@ pub(super) fn at_reference<'a>(
             file: &bench.file,
             thrust: at.thrust,
             torque: at.torque,
+            cells: at.cells,
         }
     };
     let rows = benches.iter().flat_map(|b| b.points.iter().map(move |p| (b, p)));

@@ -21,6 +21,7 @@ fn bench(kind: Kind, points: Vec<Point>) -> Bench {
         },
         air: None,
         tare: Vec::new(),
+        offsets: Vec::new(),
         notes: Vec::new(),
         no_power: None,
         turning: None,
@@ -43,6 +44,7 @@ fn sweep(volts: f64, sag: f64, k: f64, throttles: impl Iterator<Item = f64>, noi
             voltage,
             imbalance: 0.0,
             power_w: f64::NAN,
+            cells: [f64::NAN; 4],
         }
     };
     throttles.enumerate().map(point).collect()
@@ -124,6 +126,7 @@ fn torque_that_changes_its_sign_has_an_exponent_too() {
                 voltage: volts,
                 imbalance: 0.0,
                 power_w: f64::NAN,
+                cells: [f64::NAN; 4],
             }
         };
         (0..25).map(at).collect()

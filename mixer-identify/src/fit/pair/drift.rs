@@ -1,0 +1,266 @@
+//! Drift in the order of the rows: a load cell's zero or its scale, a battery that runs empty, motors that
+//! warm up.
+//!
+//! One regressor more beside the terms of the basis: x, the position of a row in its run from -1/2 to
+//! 1/2, or x times the fitted value. With the fit's orthonormal columns Q, residual e and x' = x - Q Q'x the
+//! change over the run is b = x'e / x'x', its standard error s / |x'|, s2 = (e'e - b2 x'x') / (n - p - 1).
+//! In the order of a grid x is nearly a term of the throttles: |x'| is small against |x|, and any lack of
+//! fit looks like a drift. There nothing can be told.
+
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::placed::{Placed, channels};
+use crate::fit::Design;
+use crate::statistics::{dot, greatest};
+
+/// Least |t| that is told, and the chance at which as large a one is noise of few rows.
+const CERTAIN: f64 = 5.0;
+const CHANCE: f64 = 1e-4;
+
+/// Least change over the run that is told, as a share of the greatest value.
+const MATTERS: f64 = 0.01;
+
+/// Least share of x that the throttles must leave unexplained: |x'|2 / |x|2.
+const OWN: f64 = 0.2;
+
+/// How a value changes over the run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// By a constant: the zero of a load cell.
+    Offset,
+    /// By a share of it: a scale, a voltage, a temperature.
+    Scale,
+}
+
+/// The drift that explains most of what a fit leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Drift {
+    /// Of which kind.
+    pub kind: Kind,
+    /// Change from the first row to the last: in the value's unit, or as a share of it.
+    pub change: f64,
+    /// The change over its standard error.
+    pub t: f64,
+    /// Greatest change of any row, as a share of the greatest value.
+    pub share: f64,
+    /// Whether it is larger than chance and matters.
+    pub told: bool,
+}
+
+impl Drift {
+    /// The drift of `y` over the rows of `run`; none where the order of the rows cannot show one.
+    pub fn of(design: &Design, y: &[f64], run: &[bool]) -> Option<Drift> {
+        let rows = run.iter().filter(|is| **is).count();
+        let freedom = y.len().checked_sub(design.centred.basis.exponents().len() + 1)?;
+        let positions = run.iter().scan(0, |before, is| {
+            let x = *before as f64 / (rows as f64 - 1.0) - 0.5;
+            *before += usize::from(*is);
+            Some(if *is { x } else { 0.0 })
+        });
+        let x: Vec<f64> = positions.collect();
+        let left = design.residuals(&x, &design.coordinates(&x));
+        if rows < 2 || freedom == 0 || dot(&left, &left) < OWN * dot(&x, &x) {
+            return None;
+        }
+        let z = design.coordinates(y);
+        let e = design.residuals(y, &z);
+        let fitted: Vec<f64> = y.iter().zip(&e).map(|(y, e)| y - e).collect();
+        let scaled = x.iter().zip(&fitted).map(|(x, f)| x * f).collect();
+        let tried = [(Kind::Offset, x, 1.0), (Kind::Scale, scaled, greatest(&fitted))];
+        let drifts = tried.map(|(kind, x, most)| {
+            let own = design.residuals(&x, &design.coordinates(&x));
+            let size = dot(&own, &own);
+            let change = dot(&own, &e) / size;
+            let sigma = ((dot(&e, &e) - change * change * size).max(0.0) / freedom as f64).sqrt();
+            let (t, share) = (change * size.sqrt() / sigma, (change * most / greatest(y)).abs());
+            let told = t.abs() > certain(freedom) && share > MATTERS;
+            Drift {
+                kind,
+                change,
+                t,
+                share,
+                told,
+            }
+        });
+        drifts.into_iter().max_by(|a, b| a.t.abs().total_cmp(&b.t.abs()))
+    }
+
+    fn in_words(&self, file: &str, of: &str, unit: &str) -> String {
+        let (change, t, share) = (self.change, self.t, 100.0 * self.share);
+        let half = match self.kind {
+            Kind::Offset => 0.5 * change.abs(),
+            Kind::Scale => 50.0 * change.abs(),
+        };
+        let (how, hover) = match (self.kind, unit) {
+            (Kind::Offset, "N") => (
+                format!("by {change:+.3} N"),
+                format!("a hover at half of full thrust is off by up to {share:.1} %"),
+            ),
+            (Kind::Offset, _) => (
+                format!("by {change:+.4} N m"),
+                format!("yaw in hover is off by up to {half:.4} N m a unit"),
+            ),
+            (Kind::Scale, "N") => (
+                format!("in scale by {:+.1} %", 100.0 * change),
+                format!("a hover is off by up to {half:.1} % of its thrust"),
+            ),
+            (Kind::Scale, _) => (
+                format!("in scale by {:+.1} %", 100.0 * change),
+                format!("yaw in hover is off by up to {half:.1} %"),
+            ),
+        };
+        let mend = match self.kind {
+            Kind::Offset => {
+                "rows at rest before, in between and after with --tare, or measuring again in the order of cargo mixer plan"
+            }
+            Kind::Scale => {
+                "a supply of one voltage, or its column with --voltage-exponent; else measuring again in the order of cargo mixer plan"
+            }
+        };
+        format!(
+            "{file}: the {of} drifts with the order of the rows {how} from the first to the last (t = {t:.1}), {share:.1} % of the \
+             greatest: {hover}; what helps: {mend}"
+        )
+    }
+
+    /// `y` as it would be without the drift, from the run's beginning on.
+    pub fn taken_off(&self, y: &[f64], run: &[bool]) -> Vec<f64> {
+        let last = run.iter().filter(|is| **is).count() as f64 - 1.0;
+        let mut before = 0.0;
+        let rows = y.iter().zip(run).map(|(y, is)| {
+            let by = if *is { self.change * before / last } else { 0.0 };
+            before += f64::from(u8::from(*is));
+            match self.kind {
+                Kind::Offset => y - by,
+                Kind::Scale => y / (1.0 + by),
+            }
+        });
+        rows.collect()
+    }
+}
+
+/// What the order of a file's rows shows of one of its quantities.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Shown {
+    /// The file.
+    pub file: String,
+    /// `thrust`, `torque`, or that of one rotor's load cell.
+    pub of: &'static str,
+    /// The drift; none where the order cannot show one.
+    pub drift: Option<Drift>,
+}
+
+/// The load cells of the rotors, as [`Placed::cells`] has them.
+const CELLS: [&str; 4] = [
+    "thrust of the upper rotor",
+    "thrust of the lower rotor",
+    "torque of the upper rotor",
+    "torque of the lower rotor",
+];
+
+/// Drifts of both channels and of each load cell in every file, and both channels without those that are
+/// told: what other causes are judged by.
+pub(super) fn examine(
+    design: &Design,
+    points: &[Placed],
+    warnings: &mut Vec<String>,
+) -> (Vec<Shown>, [Vec<f64>; 2]) {
+    let (mut shown, mut judged) = (Vec::new(), channels(points));
+    let mut files: Vec<&str> = points.iter().map(|p| p.file).collect();
+    files.dedup();
+    for file in files {
+        let run: Vec<bool> = points.iter().map(|p| p.file == file).collect();
+        for (quantity, (name, unit)) in [("thrust", "N"), ("torque", "N m")].into_iter().enumerate() {
+            let whole = Drift::of(design, &judged[quantity], &run);
+            let of_cell = |cell: usize| {
+                let y: Vec<f64> = points.iter().map(|p| p.cells[cell]).collect();
+                let is_read = y.iter().all(|y| y.is_finite()) && greatest(&y) > 0.0;
+                is_read.then(|| (CELLS[cell], Drift::of(design, &y, &run)))
+            };
+            let cells = [2 * quantity, 2 * quantity + 1].into_iter().filter_map(of_cell);
+            let all: Vec<(&'static str, Option<Drift>)> = [(name, whole)].into_iter().chain(cells).collect();
+            let told = all
+                .iter()
+                .filter_map(|(of, drift)| Some((of, drift.filter(|drift| drift.told)?)));
+            if let Some((of, drift)) = told.max_by(|(_, a), (_, b)| a.t.abs().total_cmp(&b.t.abs())) {
+                warnings.push(drift.in_words(file, of, unit));
+            }
+            if let Some(drift) = whole.filter(|drift| drift.told) {
+                judged[quantity] = drift.taken_off(&judged[quantity], &run);
+            }
+            let of_file = |(of, drift)| Shown {
+                file: file.to_owned(),
+                of,
+                drift,
+            };
+            shown.extend(all.into_iter().map(of_file));
+        }
+    }
+    (shown, judged)
+}
+
+fn certain(freedom: usize) -> f64 {
+    let t =
+        StudentsT::new(0.0, 1.0, freedom as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(1.0 - 0.5 * CHANCE));
+    t.max(CERTAIN)
+}
+
+#[cfg(test)]
+mod tests {
+    use mixer_compiler::airframe::Basis;
+
+    use super::*;
+    use crate::fit::basis::ThrottleBox;
+    use crate::plan::plan;
+
+    /// Thrust of a pair with noise, drifted by `change` of (row of the run, thrust).
+    fn found(points: &[[f64; 2]], change: impl Fn(f64, f64) -> f64) -> Option<Drift> {
+        let noise = |k: usize| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5;
+        let last = points.len() as f64 - 1.0;
+        let y = points.iter().enumerate().map(|(k, [u, l])| {
+            let thrust = 12.0 * u * u + 9.0 * l * l + 2.0 * u * l + 0.1 * noise(k);
+            change(k as f64 / last, thrust)
+        });
+        let design = Design::new(Basis::Cubic, points, ThrottleBox { min: 0.1, max: 1.0 }).expect("a design");
+        Drift::of(&design, &y.collect::<Vec<f64>>(), &vec![true; points.len()])
+    }
+
+    #[test]
+    fn the_plans_order_shows_a_drift_of_either_kind_and_a_grids_none() {
+        for levels in 5..=10 {
+            let points = plan(levels, 0.1, 1.0);
+            let clean = found(&points, |_, f| f).expect("a plan");
+            assert!(!clean.told, "{levels}: {clean:?}");
+            let offset = found(&points, |x, f| f + 1.5 * x).expect("a plan");
+            assert!(
+                offset.told && (offset.change - 1.5).abs() < 0.2,
+                "{levels}: {offset:?}"
+            );
+            let scale = found(&points, |x, f| f * (1.0 - 0.08 * x)).expect("a plan");
+            assert_eq!(
+                (scale.told, scale.kind),
+                (true, Kind::Scale),
+                "{levels}: {scale:?}"
+            );
+            let mut grid = points;
+            grid.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+            assert_eq!(found(&grid, |x, f| f + 1.5 * x), None, "{levels}");
+        }
+    }
+
+    #[test]
+    fn a_drift_that_is_taken_off_leaves_the_values_of_the_beginning() {
+        let drift = |kind, change| Drift {
+            kind,
+            change,
+            t: 9.0,
+            share: 0.1,
+            told: true,
+        };
+        let (y, run) = ([5.0, 2.0, 3.0, 4.0], [false, true, true, true]);
+        assert_eq!(drift(Kind::Offset, 1.0).taken_off(&y, &run), [5.0, 2.0, 2.5, 3.0]);
+        assert_eq!(drift(Kind::Scale, -0.5).taken_off(&y, &run), [5.0, 2.0, 4.0, 8.0]);
+    }
+}
