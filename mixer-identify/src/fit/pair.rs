@@ -101,15 +101,12 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
     let sign_is_found = benches.iter().any(|bench| bench.signs.torque_policy == AUTO);
     doubts::units(&points, [&thrust, &torque], &mut warnings);
     // Other causes are judged by what a drift leaves: it looks like them.
-    let (drift, undrifted) = drift::examine(&design, &points, &mut warnings);
-    let torque_is_steady = undrifted[1] == channels(&points)[1];
-    for (k, point) in points.iter_mut().enumerate() {
-        (point.thrust, point.torque) = (undrifted[0][k], undrifted[1][k]);
-    }
-    let judged = undrifted.map(|values| fit(&design, &values, throttle_box));
+    let drift = drift::examine(basis, &mut points, &mut warnings);
+    let judged = channels(&points).map(|values| fit(&design, &values, throttle_box));
     // A constant in the torque looks as exchanged rotors do.
     if !doubts::tare(&points, judged.each_ref(), &mut warnings) {
-        let asks = sign_is_found && torque_is_steady;
+        let torque_drifts = drift.iter().any(|shown| shown.of == "torque" && shown.is_told());
+        let asks = sign_is_found && !torque_drifts;
         doubts::exchanged(basis, &judged[1], throttle_box, asks, &mut warnings);
     }
     Ok(Pair {

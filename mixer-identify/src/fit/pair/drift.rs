@@ -7,10 +7,11 @@
 //! In the order of a grid x is nearly a term of the throttles: |x'| is small against |x|, and any lack of
 //! fit looks like a drift. There nothing can be told.
 
+use mixer_compiler::airframe::Basis;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::placed::{Placed, channels};
+use super::placed::{Placed, channels, places};
 use crate::fit::Design;
 use crate::statistics::{dot, greatest};
 
@@ -50,38 +51,32 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// The drift of `y` over the rows of `run`; none where the order of the rows cannot show one.
-    pub fn of(design: &Design, y: &[f64], run: &[bool]) -> Option<Drift> {
-        let rows = run.iter().filter(|is| **is).count();
+    /// The drift of `y` over the rows of a run; none where their order cannot show one.
+    pub fn of(design: &Design, y: &[f64]) -> Option<Drift> {
         let freedom = y.len().checked_sub(design.centred.basis.exponents().len() + 1)?;
-        let positions = run.iter().scan(0, |before, is| {
-            let x = *before as f64 / (rows as f64 - 1.0) - 0.5;
-            *before += usize::from(*is);
-            Some(if *is { x } else { 0.0 })
-        });
-        let x: Vec<f64> = positions.collect();
-        let left = design.residuals(&x, &design.coordinates(&x));
-        if rows < 2 || freedom == 0 || dot(&left, &left) < OWN * dot(&x, &x) {
+        let x: Vec<f64> = (0..y.len())
+            .map(|k| k as f64 / (y.len() as f64 - 1.0) - 0.5)
+            .collect();
+        let own = |x: &[f64]| design.residuals(x, &design.coordinates(x));
+        if freedom == 0 || dot(&own(&x), &own(&x)) < OWN * dot(&x, &x) {
             return None;
         }
-        let z = design.coordinates(y);
-        let e = design.residuals(y, &z);
+        let e = own(y);
         let fitted: Vec<f64> = y.iter().zip(&e).map(|(y, e)| y - e).collect();
         let scaled = x.iter().zip(&fitted).map(|(x, f)| x * f).collect();
         let tried = [(Kind::Offset, x, 1.0), (Kind::Scale, scaled, greatest(&fitted))];
         let drifts = tried.map(|(kind, x, most)| {
-            let own = design.residuals(&x, &design.coordinates(&x));
+            let own = own(&x);
             let size = dot(&own, &own);
             let change = dot(&own, &e) / size;
             let sigma = ((dot(&e, &e) - change * change * size).max(0.0) / freedom as f64).sqrt();
             let (t, share) = (change * size.sqrt() / sigma, (change * most / greatest(y)).abs());
-            let told = t.abs() > certain(freedom) && share > MATTERS;
             Drift {
                 kind,
                 change,
                 t,
                 share,
-                told,
+                told: t.abs() > certain(freedom) && share > MATTERS,
             }
         });
         drifts.into_iter().max_by(|a, b| a.t.abs().total_cmp(&b.t.abs()))
@@ -126,12 +121,10 @@ impl Drift {
     }
 
     /// `y` as it would be without the drift, from the run's beginning on.
-    pub fn taken_off(&self, y: &[f64], run: &[bool]) -> Vec<f64> {
-        let last = run.iter().filter(|is| **is).count() as f64 - 1.0;
-        let mut before = 0.0;
-        let rows = y.iter().zip(run).map(|(y, is)| {
-            let by = if *is { self.change * before / last } else { 0.0 };
-            before += f64::from(u8::from(*is));
+    pub fn taken_off(&self, y: &[f64]) -> Vec<f64> {
+        let last = y.len() as f64 - 1.0;
+        let rows = y.iter().enumerate().map(|(k, y)| {
+            let by = self.change * k as f64 / last;
             match self.kind {
                 Kind::Offset => y - by,
                 Kind::Scale => y / (1.0 + by),
@@ -152,6 +145,13 @@ pub struct Shown {
     pub drift: Option<Drift>,
 }
 
+impl Shown {
+    /// Whether there is a drift to tell.
+    pub fn is_told(&self) -> bool {
+        self.drift.is_some_and(|drift| drift.told)
+    }
+}
+
 /// The load cells of the rotors, as [`Placed::cells`] has them.
 const CELLS: [&str; 4] = [
     "thrust of the upper rotor",
@@ -160,27 +160,23 @@ const CELLS: [&str; 4] = [
     "torque of the lower rotor",
 ];
 
-/// Drifts of both channels and of each load cell in every file, and both channels without those that are
-/// told: what other causes are judged by.
-pub(super) fn examine(
-    design: &Design,
-    points: &[Placed],
-    warnings: &mut Vec<String>,
-) -> (Vec<Shown>, [Vec<f64>; 2]) {
-    let (mut shown, mut judged) = (Vec::new(), channels(points));
-    let mut files: Vec<&str> = points.iter().map(|p| p.file).collect();
-    files.dedup();
-    for file in files {
-        let run: Vec<bool> = points.iter().map(|p| p.file == file).collect();
+/// Drifts of both channels and of each load cell in every file, a run of its own; takes those of the
+/// channels that are told off `points`, by which other causes are judged.
+pub(super) fn examine(basis: Basis, points: &mut [Placed], warnings: &mut Vec<String>) -> Vec<Shown> {
+    let mut shown = Vec::new();
+    for run in points.chunk_by_mut(|a, b| a.file == b.file) {
+        let (file, mut both) = (run[0].file, channels(run));
+        let design = Design::within_its_points(basis, &places(run)).ok();
+        let of = |y: &[f64]| design.as_ref().and_then(|design| Drift::of(design, y));
         for (quantity, (name, unit)) in [("thrust", "N"), ("torque", "N m")].into_iter().enumerate() {
-            let whole = Drift::of(design, &judged[quantity], &run);
-            let of_cell = |cell: usize| {
-                let y: Vec<f64> = points.iter().map(|p| p.cells[cell]).collect();
-                let is_read = y.iter().all(|y| y.is_finite()) && greatest(&y) > 0.0;
-                is_read.then(|| (CELLS[cell], Drift::of(design, &y, &run)))
-            };
-            let cells = [2 * quantity, 2 * quantity + 1].into_iter().filter_map(of_cell);
-            let all: Vec<(&'static str, Option<Drift>)> = [(name, whole)].into_iter().chain(cells).collect();
+            let whole = of(&both[quantity]);
+            let mut all = vec![(name, whole)];
+            for cell in [2 * quantity, 2 * quantity + 1] {
+                let y: Vec<f64> = run.iter().map(|p| p.cells[cell]).collect();
+                if y.iter().all(|y| y.is_finite()) && greatest(&y) > 0.0 {
+                    all.push((CELLS[cell], of(&y)));
+                }
+            }
             let told = all
                 .iter()
                 .filter_map(|(of, drift)| Some((of, drift.filter(|drift| drift.told)?)));
@@ -188,17 +184,20 @@ pub(super) fn examine(
                 warnings.push(drift.in_words(file, of, unit));
             }
             if let Some(drift) = whole.filter(|drift| drift.told) {
-                judged[quantity] = drift.taken_off(&judged[quantity], &run);
+                both[quantity] = drift.taken_off(&both[quantity]);
             }
-            let of_file = |(of, drift)| Shown {
-                file: file.to_owned(),
+            let file = || file.to_owned();
+            shown.extend(all.into_iter().map(|(of, drift)| Shown {
+                file: file(),
                 of,
                 drift,
-            };
-            shown.extend(all.into_iter().map(of_file));
+            }));
+        }
+        for (k, point) in run.iter_mut().enumerate() {
+            (point.thrust, point.torque) = (both[0][k], both[1][k]);
         }
     }
-    (shown, judged)
+    shown
 }
 
 fn certain(freedom: usize) -> f64 {
@@ -209,8 +208,6 @@ fn certain(freedom: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use mixer_compiler::airframe::Basis;
-
     use super::*;
     use crate::fit::basis::ThrottleBox;
     use crate::plan::plan;
@@ -224,7 +221,7 @@ mod tests {
             change(k as f64 / last, thrust)
         });
         let design = Design::new(Basis::Cubic, points, ThrottleBox { min: 0.1, max: 1.0 }).expect("a design");
-        Drift::of(&design, &y.collect::<Vec<f64>>(), &vec![true; points.len()])
+        Drift::of(&design, &y.collect::<Vec<f64>>())
     }
 
     #[test]
@@ -259,8 +256,13 @@ mod tests {
             share: 0.1,
             told: true,
         };
-        let (y, run) = ([5.0, 2.0, 3.0, 4.0], [false, true, true, true]);
-        assert_eq!(drift(Kind::Offset, 1.0).taken_off(&y, &run), [5.0, 2.0, 2.5, 3.0]);
-        assert_eq!(drift(Kind::Scale, -0.5).taken_off(&y, &run), [5.0, 2.0, 4.0, 8.0]);
+        assert_eq!(
+            drift(Kind::Offset, 1.0).taken_off(&[2.0, 3.0, 4.0]),
+            [2.0, 2.5, 3.0]
+        );
+        assert_eq!(
+            drift(Kind::Scale, -0.5).taken_off(&[2.0, 3.0, 4.0]),
+            [2.0, 4.0, 8.0]
+        );
     }
 }
