@@ -1,7 +1,5 @@
 //! What there is to say of a result, once: the report prints it, and the tables have it as comments.
 
-use std::collections::BTreeSet;
-
 use mixer_compiler::model::PairMap;
 
 use super::air::Air;
@@ -238,11 +236,16 @@ fn of_drift(facts: &mut Facts, pair: &Pair) {
         );
     }
     if !hidden.is_empty() {
-        let files: BTreeSet<&str> = hidden.iter().map(|shown| shown.file.as_str()).collect();
-        let files: Vec<&str> = files.into_iter().collect();
+        let mut files: Vec<&str> = hidden.iter().map(|shown| shown.file.as_str()).collect();
+        files.dedup();
+        let of = if seen.is_empty() {
+            String::new()
+        } else {
+            format!("{}: ", files.join(", "))
+        };
         let text =
             "cannot be told from throttle in the order of the rows; cargo mixer plan draws one that shows it";
-        facts.always("drift", format!("{}: {text}", files.join(", ")));
+        facts.always("drift", of + text);
     }
 }
 
