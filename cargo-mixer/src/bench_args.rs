@@ -179,7 +179,7 @@ impl ReadingArgs {
             .chain(one);
         let given = all.filter_map(|(option, value)| Some([option.to_owned(), value?]));
         let flags = [("--swap", self.swap), ("--tare", self.tare)].into_iter();
-        let flags = flags.filter_map(|(flag, is)| is.then(|| flag.to_owned()));
+        let flags = flags.filter(|(_, is)| *is).map(|(flag, _)| flag.to_owned());
         given.flatten().chain(flags).collect()
     }
 
