@@ -7,8 +7,8 @@ use mixer_compiler::diagnostic::printable;
 use toml_edit::{DocumentMut, value};
 
 use super::fact::{Fact, Told, of_identified, of_predicted, runs};
-use super::fit::Fit;
 use super::fit::power::Power;
+use super::fit::{Fit, hundredths};
 use super::identified::Identified;
 use super::report::wrapped;
 use super::rotor::predict::Predicted;
@@ -89,7 +89,16 @@ pub fn tables(id: &Identified) -> String {
         }
         document.insert("pair", table(&(about("pair") + SIGN), entries));
     }
-    voltage(&mut document, &mut tail, &about("voltage"), id);
+    let of = id.voltage.as_ref();
+    let supply = Supply {
+        reference_v: id.reference_v,
+        range_v: of.map(|v| v.range_v),
+        pack_v: id.pack_v,
+        exponents: of.map_or([None; 2], |v| [v.thrust.value(), v.torque.value()]),
+        of_a_pair: id.pair.is_some(),
+        closed_loop: id.closed_loop,
+    };
+    voltage(&mut document, &mut tail, &about("voltage"), &supply);
     let mut head = format!("# Identified by {}.\n{}", id.generator, about(""));
     for warning in &id.warnings {
         head += &comment("! ", warning);
@@ -107,30 +116,40 @@ const SIGN: &str = "# Torque is positive where the lower rotor outweighs the upp
 const MEASURED: &str = "# The voltage of the flight must be measured where the bench's was: at the same point of the wiring, under load.\n\
                         # Behind other leads, or at no load, k is wrong by what the voltage drops in between.\n";
 
+/// What `[voltage]` is made of.
+struct Supply {
+    reference_v: Option<f64>,
+    /// Of the rows.
+    range_v: Option<[f64; 2]>,
+    pack_v: Option<[f64; 2]>,
+    exponents: [Option<f64>; 2],
+    of_a_pair: bool,
+    closed_loop: bool,
+}
+
 /// `[voltage]`. Beside a pair it must be complete, or `check` would refuse the airframe: with one
 /// exponent only, or without the voltage of the map, it is a comment for the user to complete.
-fn voltage(document: &mut DocumentMut, tail: &mut String, about: &str, id: &Identified) {
+fn voltage(document: &mut DocumentMut, tail: &mut String, about: &str, of: &Supply) {
     let thousandths = |x: f64| (1000.0 * x).round() / 1000.0;
-    let of = id.voltage.as_ref();
-    let exponents = of.map_or([None; 2], |v| {
-        [v.thrust.value(), v.torque.value()].map(|e| e.map(thousandths))
-    });
+    let exponents = of.exponents.map(|e| e.map(thousandths));
     let known = exponents.iter().flatten().count();
-    let measured = of.filter(|_| known > 0).map(|v| v.range_v);
+    let measured = of.range_v.filter(|_| known > 0);
     // Outwards to hundredths, and around the reference.
-    let range = id.pack_v.or(measured).map(|[low, high]| {
-        let at = id.reference_v.filter(|_| known > 0);
+    let range = of.pack_v.or(measured).map(|[low, high]| {
+        let at = of.reference_v.filter(|_| known > 0);
         let low = at.map_or(low, |v| v.min(low));
         let high = at.map_or(high, |v| v.max(high));
         [(100.0 * low).floor() / 100.0, (100.0 * high).ceil() / 100.0]
     });
+    // One voltage is no range.
+    let range = range.filter(|[low, high]| low < high);
     let about = if known > 0 {
         format!("{about}{MEASURED}")
     } else {
         about.to_owned()
     };
-    match (id.reference_v, range) {
-        (Some(reference), Some(range)) if known == 2 || (known > 0 && id.pair.is_none()) => {
+    match (of.reference_v, range) {
+        (Some(reference), Some(range)) if known == 2 || (known > 0 && !of.of_a_pair) => {
             let mut entries = vec![("reference_v", value(reference)), ("range_v", numbers(range))];
             for (key, exponent) in ["thrust_exponent", "torque_exponent"].into_iter().zip(exponents) {
                 match exponent {
@@ -141,7 +160,7 @@ fn voltage(document: &mut DocumentMut, tail: &mut String, about: &str, id: &Iden
             document.insert("voltage", table(&about, entries));
         }
         // A speed that is held does not follow the voltage.
-        _ if id.closed_loop => {}
+        _ if of.closed_loop => {}
         (reference, range) => {
             *tail += &format!("\n{about}{}", to_fill_in(reference, range, exponents));
         }
@@ -185,14 +204,22 @@ pub fn of_prediction(predicted: &Predicted) -> String {
     if !predicted.options.is_empty() {
         document["pair"][BENCH_OPTIONS] = texts(&predicted.options);
     }
-    let reference = predicted.reference_v.map(|volts| (100.0 * volts).round() / 100.0);
-    // A speed that is held does not follow the voltage.
-    let held = predicted.runs.iter().all(|run| run.exponents == [0.0; 2]);
-    let voltage = match held {
-        true => String::new(),
-        false => format!("\n{}", to_fill_in(reference, None, [None; 2])),
+    let run = &predicted.runs[0];
+    let reference_v = predicted.reference_v.map(hundredths);
+    let supply = Supply {
+        reference_v,
+        range_v: run.range_v,
+        pack_v: predicted.pack_v,
+        exponents: run.exponents.map(|exponent| reference_v.map(|_| exponent)),
+        of_a_pair: true,
+        closed_loop: run.exponents == [0.0; 2],
     };
-    format!("{head}{document}{voltage}{}", predicted.air.table(false))
+    let mut tail = String::new();
+    if !supply.closed_loop {
+        voltage(&mut document, &mut tail, &comments(&facts, "voltage"), &supply);
+    }
+    let air = predicted.air.table(document.contains_key("voltage"));
+    format!("{head}{document}{tail}{air}")
 }
 
 /// The facts about a table.

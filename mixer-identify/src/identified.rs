@@ -213,10 +213,10 @@ fn reference(
 const FAR: f64 = 2.0;
 
 /// Refuses a pack whose voltages leave out the bench's: `[voltage]` holds around its reference.
-fn in_pack(reference_v: Option<f64>, pack_v: Option<[f64; 2]>) -> Result<(), Refusal> {
+pub(crate) fn in_pack(reference_v: Option<f64>, pack_v: Option<[f64; 2]>) -> Result<(), Refusal> {
     match (reference_v, pack_v) {
         (Some(reference), Some([low, high])) if !(low..=high).contains(&reference) => Err(Refusal::general(
-            format!("the pack has {low:.1} to {high:.1} V, the bench had {reference} V"),
+            format!("the pack has {low:.1} to {high:.1} V, the bench had {reference:.2} V"),
             "the cells and chemistry of the pack that the rotors were measured for, or --reference-voltage within its range",
         )),
         _ => Ok(()),
@@ -355,6 +355,13 @@ fn sag(benches: &[Bench], voltage: &Voltage) -> Option<String> {
     })
 }
 
+/// A warning of a `range_v` that is not the pack's.
+pub(crate) fn bench_range([low, high]: [f64; 2]) -> String {
+    format!(
+        "range_v is {low:.2}..{high:.2} V, what the bench had, and a voltage outside is clamped: --cells N gives the pack's"
+    )
+}
+
 fn voltage_warnings(voltage: &Voltage, pack_is_known: bool) -> Vec<String> {
     let ([low, high], [least, most]) = (voltage.range_v, PLAUSIBLE);
     let channels = voltage.channels().into_iter();
@@ -378,10 +385,7 @@ fn voltage_warnings(voltage: &Voltage, pack_is_known: bool) -> Vec<String> {
         .collect();
     let sag = 1.0 - low / high;
     if matches!(voltage.thrust, Exponent::Declared { .. }) {
-        let range = format!(
-            "range_v is {low:.2}..{high:.2} V, what the bench had, and a voltage outside is clamped: --cells N gives the pack's"
-        );
-        told.extend((!pack_is_known).then_some(range));
+        told.extend((!pack_is_known).then(|| bench_range(voltage.range_v)));
     } else if !voltage.varies() && 0.02 < sag && sag <= SAG {
         let sag = 100.0 * sag;
         told.push(format!(

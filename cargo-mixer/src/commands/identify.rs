@@ -179,7 +179,7 @@ impl IdentifyArgs {
                 run,
                 map: settings,
                 known: self.rotors.known(self.reference_voltage, exponents),
-                wishes: self.rotors.wishes(self.throttle, held, outside),
+                wishes: self.rotors.wishes(self.throttle, held, &self.pack, outside),
             };
             let answer = self.rotors.predict(single, &maps, &how, outside);
             return Ok((answer.map_err(NoAnswer::Refused)?.texts(), Vec::new()));
@@ -217,7 +217,7 @@ pub fn run(args: &IdentifyArgs) -> Done {
 const LARGEST_EXPONENT: f64 = 4.0;
 
 /// Of thrust and of torque.
-fn exponents(text: &str) -> Result<[f64; 2], String> {
+pub(crate) fn exponents(text: &str) -> Result<[f64; 2], String> {
     let (thrust, torque) = text.split_once(',').unwrap_or((text, text));
     let exponent = |text| match positive(text)? {
         x if x > LARGEST_EXPONENT => Err(format!(

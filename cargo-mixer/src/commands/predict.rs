@@ -19,6 +19,7 @@ use crate::Done;
 use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box};
 use crate::bench_files::Outside;
 use crate::frame_args::FrameArgs;
+use crate::pack::PackArgs;
 use crate::place::Place;
 
 /// Predict a pair's thrust and torque from a run of one rotor, or the table of its data sheet
@@ -39,9 +40,16 @@ pub struct PredictArgs {
     /// Throttle is then the column of the speed over it, or --column throttle=HEADER.
     #[arg(long, value_name = "RPM", value_parser = positive)]
     pub rpm_at_full: Option<f64>,
-    /// Bring the rows of the run to this voltage, V, by an exponent of 1.75 [default: their mean].
+    /// Bring the rows of the run to this voltage, V [default: their mean].
     #[arg(long, value_name = "VOLT", value_parser = positive)]
     pub reference_voltage: Option<f64>,
+    /// Exponent of thrust and of torque in (V / reference)^k, or one for both [default: 1.75, the
+    /// median of 104 motors with propellers].
+    #[arg(long, value_name = "K[,K]", value_parser = super::identify::exponents, conflicts_with = "rpm_at_full")]
+    pub voltage_exponent: Option<[f64; 2]>,
+    /// The battery of the vehicle
+    #[command(flatten)]
+    pub pack: PackArgs,
     /// The air at the bench
     #[command(flatten)]
     pub air: AirArgs,
@@ -146,6 +154,7 @@ impl RotorArgs {
         &self,
         throttle: Option<ThrottleBox>,
         closed_loop: bool,
+        pack: &PackArgs,
         outside: &Outside<'_>,
     ) -> Wishes {
         Wishes {
@@ -153,6 +162,7 @@ impl RotorArgs {
             closed_loop,
             throttle,
             date: outside.today.clone(),
+            pack_v: pack.range_v(),
         }
     }
 
@@ -201,14 +211,13 @@ impl PredictArgs {
     /// # Errors
     /// Files that cannot serve.
     pub fn answer(&self, outside: &Outside<'_>) -> Result<Answer<Predicted>, Vec<Refusal>> {
-        let exponents = exponents(None, self.rpm_at_full.is_some());
+        let held = self.rpm_at_full.is_some();
+        let exponents = exponents(self.voltage_exponent, held);
         let how = Prediction {
             run: self.settings(),
             map: Settings::default(),
             known: self.rotors.known(self.reference_voltage, exponents),
-            wishes: self
-                .rotors
-                .wishes(self.throttle, self.rpm_at_full.is_some(), outside),
+            wishes: self.rotors.wishes(self.throttle, held, &self.pack, outside),
         };
         self.rotors
             .predict(&(outside.text)(&self.single), &[], &how, outside)

@@ -17,6 +17,7 @@ use crate::fit::balance::throttles;
 use crate::fit::basis::ThrottleBox;
 use crate::fit::uncertainty::Uncertainty;
 use crate::fit::{Design, ten_digits};
+use crate::identified::{bench_range, in_pack};
 use crate::refusal::Refusal;
 use crate::rotor::agreement::agreed;
 use crate::rotor::curve::Rotor;
@@ -64,6 +65,8 @@ pub struct Wishes {
     pub throttle: Option<ThrottleBox>,
     /// `YYYY-MM-DD`, for the comment of the tables.
     pub date: Option<String>,
+    /// Voltage of the empty and of the full pack, V, or nothing for what the run had.
+    pub pack_v: Option<[f64; 2]>,
 }
 
 /// All that `--json` prints.
@@ -89,6 +92,8 @@ pub struct Predicted {
     pub factors: [f64; 3],
     /// Voltage at which the map holds, V, where it is known.
     pub reference_v: Option<f64>,
+    /// Voltage of the empty and of the full pack, V, where the user said so.
+    pub pack_v: Option<[f64; 2]>,
     /// The air.
     pub air: Air,
     /// What the user should know.
@@ -149,6 +154,7 @@ pub fn correct(
         max: 1.0,
     });
     remarks(&runs, wishes, throttle, &mut warnings);
+    in_pack(runs[0].voltage_v, wishes.pack_v)?;
     let alone = rotors(&runs);
     let spacing_ratio = wishes.spacing_ratio.unwrap_or(SPACING_RATIO);
     let general = match wishes.closed_loop {
@@ -179,6 +185,7 @@ pub fn correct(
         date: wishes.date.clone(),
         pair,
         reference_v: runs[0].voltage_v,
+        pack_v: wishes.pack_v,
         air,
         runs,
         corrected_by: maps.iter().map(|m| (m.file.clone(), m.points.len())).collect(),
@@ -212,6 +219,9 @@ fn remarks(runs: &[Single], wishes: &Wishes, throttle: ThrottleBox, warnings: &m
             "the rotors alone give {upper:.2} and {lower:.2} N at full throttle: the interaction was measured on equal \
              rotors, so trust this the less, and look whether one run was blocked or at another voltage"
         ));
+    }
+    if let (Some(range), None, false) = (runs[0].range_v, wishes.pack_v, wishes.closed_loop) {
+        warnings.push(bench_range(range));
     }
     let volts: Vec<f64> = runs.iter().filter_map(|run| run.voltage_v).collect();
     if let [a, b] = volts[..]
