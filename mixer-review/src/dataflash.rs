@@ -1,5 +1,6 @@
 //! ArduPilot's DataFlash log in its binary form.
 
+use std::borrow::Cow;
 use std::io::Cursor;
 
 use ardupilot_binlog::{Entry, Reader};
@@ -12,10 +13,22 @@ pub(crate) const MAGIC: &[u8] = &[0xa3, 0x95, 0x80];
 /// Fields that number the sensors of a kind.
 const INSTANCES: [&str; 4] = ["I", "Inst", "Instance", "C"];
 
+/// The bytes without formats whose messages would be shorter than their header of three bytes, which the
+/// reader subtracts unchecked: without its mark it passes them over as any damage.
+fn sound(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let is_short = |at: &usize| matches!(bytes[*at..], [0xa3, 0x95, 0x80, _, length, ..] if length < 3);
+    let mut sound = Cow::Borrowed(bytes);
+    for at in (0..bytes.len()).filter(is_short) {
+        sound.to_mut()[at] = 0;
+    }
+    sound
+}
+
 /// The wanted channels of a log. Damaged messages are passed over.
 pub(crate) fn read(bytes: &[u8], wanted: &[Channel]) -> Log {
     let mut log = Log::default();
-    let mut input = Cursor::new(bytes);
+    let sound = sound(bytes);
+    let mut input = Cursor::new(&sound[..]);
     let mut failed = None;
     for entry in Reader::new(&mut input) {
         match entry {
@@ -30,6 +43,9 @@ pub(crate) fn read(bytes: &[u8], wanted: &[Channel]) -> Log {
     let missing = bytes.len() as u64 - input.position();
     log.damage = match failed {
         Some(error) => Some(format!("the log is damaged: {error}; what stands before is used")),
+        None if matches!(sound, Cow::Owned(_)) => {
+            Some("the log is damaged: a format shorter than its header is passed over".to_owned())
+        }
         None if missing > 0 => Some(format!(
             "the log is damaged: its last {missing} bytes are not read"
         )),

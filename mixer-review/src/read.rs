@@ -32,14 +32,20 @@ impl Flight {
         } else {
             return Err(format!("{name}: {}", what_else(bytes)));
         };
-        let vehicle = vehicle(name, &log)?;
-        same_vehicle(name, &vehicle, airframe)?;
-        let bench_us = bench_us.or_else(|| bench_pulses(airframe)).unwrap_or(USUAL_US);
-        let flight = match stack {
-            Stack::Px4 => px4::flight(log, &vehicle, bench_us),
-            Stack::ArduPilot => ardupilot::flight(log, &vehicle, bench_us),
-        };
-        flight.map_err(|error| format!("{name}: {error}"))
+        // What is missing may stand behind the damage.
+        let damage = log.damage.clone();
+        let flight = vehicle(&log).and_then(|vehicle| {
+            same_vehicle(&vehicle, airframe)?;
+            let bench_us = bench_us.or_else(|| bench_pulses(airframe)).unwrap_or(USUAL_US);
+            match stack {
+                Stack::Px4 => px4::flight(log, &vehicle, bench_us),
+                Stack::ArduPilot => ardupilot::flight(log, &vehicle, bench_us),
+            }
+        });
+        flight.map_err(|error| match damage {
+            Some(damage) => format!("{name}: {damage}; {error}"),
+            None => format!("{name}: {error}"),
+        })
     }
 }
 
@@ -70,26 +76,26 @@ fn what_else(bytes: &[u8]) -> &'static str {
 }
 
 /// The vehicle by the log's parameters.
-fn vehicle(name: &str, log: &Log) -> Result<Stated, String> {
+fn vehicle(log: &Log) -> Result<Stated, String> {
     if log.parameters.is_empty() {
-        return Err(format!(
-            "{name}: the log has no parameters, so nothing says of which vehicle it is: its beginning is missing"
-        ));
+        let why =
+            "the log has no parameters, so nothing says of which vehicle it is: its beginning is missing";
+        return Err(why.to_owned());
     }
     let lines = log.parameters.iter().filter(|(_, value)| value.is_finite());
     let text = lines
         .map(|(name, value)| format!("{name} {value:?}\n"))
         .collect::<String>();
-    stated(&Source::new(name, text))
+    stated(&Source::new("parameters", text))
 }
 
 /// Refuses a log of another frame.
-fn same_vehicle(name: &str, vehicle: &Stated, airframe: &Airframe) -> Result<(), String> {
+fn same_vehicle(vehicle: &Stated, airframe: &Airframe) -> Result<(), String> {
     let of = &airframe.name;
     let motors = vehicle.rotors.as_ref().map_or(vehicle.pins.len(), Vec::len);
     if motors != airframe.rotors() {
         return Err(format!(
-            "{name}: a log of another vehicle: it has {motors} motors, {of} {} rotors",
+            "a log of another vehicle: it has {motors} motors, {of} {} rotors",
             airframe.rotors()
         ));
     }
@@ -111,7 +117,7 @@ fn same_vehicle(name: &str, vehicle: &Stated, airframe: &Airframe) -> Result<(),
         });
         let Some((unit, spin)) = unit else {
             return Err(format!(
-                "{name}: a log of another vehicle: {of} has no output for motor {motor}"
+                "a log of another vehicle: {of} has no output for motor {motor}"
             ));
         };
         let ([x, y, _], [of_x, of_y, _]) = (rotor.position_m, unit.position_m);
@@ -119,14 +125,14 @@ fn same_vehicle(name: &str, vehicle: &Stated, airframe: &Airframe) -> Result<(),
         if off > SAME_PLACE {
             let [x, y] = [x, y].map(|at| at / arm_there * arm_here);
             return Err(format!(
-                "{name}: a log of another vehicle, or other `channels`: motor {motor} is {x:.2} m forward and {y:.2} m right there, \
+                "a log of another vehicle, or other `channels`: motor {motor} is {x:.2} m forward and {y:.2} m right there, \
                  output {} of {of} {of_x:.2} and {of_y:.2} m",
                 rotor.channel
             ));
         }
         if rotor.spin != spin {
             return Err(format!(
-                "{name}: a log of another vehicle, or other spins: motor {motor} turns {} there, output {} of {of} {}",
+                "a log of another vehicle, or other spins: motor {motor} turns {} there, output {} of {of} {}",
                 rotor.spin.name(),
                 rotor.channel,
                 spin.name()

@@ -41,6 +41,46 @@ fn places(format: &FlattenedFormat) -> Places {
     format.field_iter().map(place).collect()
 }
 
+/// Bytes of the header, and of a message before its payload: length and kind.
+const HEADER: usize = 16;
+const HEAD: usize = 3;
+
+/// More formats than any vehicle logs; the decoder's stack grows with those that stand in one another.
+const MOST_FORMATS: usize = 500;
+
+/// How many of the bytes the decoder can be given, and what is wrong with the message behind them. It
+/// indexes subscriptions and parameters by lengths that it does not check, and loops over arrays without
+/// a size.
+fn sound(bytes: &[u8]) -> (usize, Option<&'static str>) {
+    let (mut at, mut formats) = (HEADER, 0);
+    while let Some(&[low, high, kind]) = bytes.get(at..at + HEAD) {
+        let end = at + HEAD + usize::from(u16::from_le_bytes([low, high]));
+        let Some(payload) = bytes.get(at + HEAD..end) else {
+            break;
+        };
+        let wrong = match kind {
+            b'A' if payload.len() < 4 => "a subscription without a name",
+            b'P' if payload
+                .first()
+                .is_none_or(|key| payload.len() < 1 + usize::from(*key)) =>
+            {
+                "a parameter shorter than its name"
+            }
+            b'F' if payload.ends_with(b":") || payload.windows(2).any(|two| two == b"[0" || two == b"[-") => {
+                "a format without a size"
+            }
+            b'F' if formats == MOST_FORMATS => "more formats than any vehicle has",
+            _ => {
+                formats += usize::from(kind == b'F');
+                at = end;
+                continue;
+            }
+        };
+        return (at, Some(wrong));
+    }
+    (bytes.len(), None)
+}
+
 /// The wanted channels of a ULog. A log that breaks off keeps what is before.
 pub(crate) fn read(bytes: &[u8], wanted: &[Channel]) -> Log {
     let mut log = Log::default();
@@ -70,14 +110,17 @@ pub(crate) fn read(bytes: &[u8], wanted: &[Channel]) -> Log {
     let mut parser = LogParser::default();
     parser.set_data_message_callback(&mut on_data);
     parser.set_parameter_message_callback(&mut on_parameter);
-    let read = parser.consume_bytes(bytes);
+    let (end, wrong) = sound(bytes);
+    let read = parser.consume_bytes(&bytes[..end]);
     let is_cut = parser.has_leftover();
     drop(parser);
     log.parameters = parameters.into_iter().collect();
-    log.damage = match read {
-        Err(error) => Some(format!("the log is damaged: {error}; what stands before is used")),
-        Ok(()) if is_cut => Some("the log ends within a message: its end is missing".to_owned()),
-        Ok(()) => None,
+    let damaged = |what: String| Some(format!("the log is damaged: {what}; what stands before is used"));
+    log.damage = match (read, wrong) {
+        (Err(error), _) => damaged(error.to_string()),
+        (Ok(()), Some(wrong)) => damaged(format!("{wrong} at byte {end}")),
+        (Ok(()), None) if is_cut => Some("the log ends within a message: its end is missing".to_owned()),
+        (Ok(()), None) => None,
     };
     log
 }

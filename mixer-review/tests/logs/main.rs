@@ -7,7 +7,7 @@ mod writers;
 use mixer_compiler::airframe::GRAVITY;
 use mixer_compiler::model::Physics;
 use mixer_compiler::{Compiled, Source};
-use mixer_review::{Options, Review, scaled};
+use mixer_review::{Flight, Options, Review, scaled};
 use mixer_rt::{Health, Wrench};
 use writers::{Message, Rows, Topic, dataflash, ulog};
 
@@ -364,6 +364,9 @@ fn a_log_of_the_ground_is_refused() {
     assert!(error.contains("a log of the ground: 30 s"), "{error}");
 }
 
+/// Damages drawn of each log; `MIXER_DRAWS` draws more.
+const DRAWS: usize = 60;
+
 /// A damaged log is read as far as it goes, or refused; nothing panics.
 #[test]
 fn damaged_logs_do_no_harm() {
@@ -375,13 +378,21 @@ fn damaged_logs_do_no_harm() {
                 .wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) as usize % below
         };
-        for _ in 0..60 {
-            let mut damaged = log[..next(log.len())].to_vec();
+        let draws = std::env::var("MIXER_DRAWS").map_or(DRAWS, |draws| draws.parse().expect("a number"));
+        // Formats, parameters and subscriptions stand at the beginning: half of the damages are there.
+        let definitions = 4000;
+        for draw in 0..draws {
+            let end = [log.len(), definitions][draw % 2];
+            let mut damaged = log[..next(end).max(1)].to_vec();
             for _ in 0..next(20) {
-                let at = next(damaged.len().max(1));
-                if let Some(byte) = damaged.get_mut(at) {
-                    *byte ^= 1 << next(8);
+                let at = next(damaged.len());
+                match next(4) {
+                    0 => damaged[at] ^= 1 << next(8),
+                    1 => damaged[at] = [0, 1, 2, 0x7f, 0xff][next(5)],
+                    2 => drop(damaged.remove(at)),
+                    _ => damaged.insert(at, damaged[next(damaged.len())]),
                 }
+                damaged.push(0);
             }
             let _ = review(&damaged);
         }
@@ -394,4 +405,39 @@ fn damaged_logs_do_no_harm() {
             .any(|warning| warning.contains("ends within a message")),
         "{cut}"
     );
+}
+
+/// Messages shorter than what their own lengths say, on which decoders index: the file is named with what
+/// is wrong.
+#[test]
+fn lengths_are_checked_before_they_are_believed() {
+    let compiled = compiled();
+    let ulog = |kind: u8, payload: &[u8]| {
+        let mut bytes = b"ULog\x01\x12\x35\x01\0\0\0\0\0\0\0\0".to_vec();
+        bytes.extend((payload.len() as u16).to_le_bytes());
+        bytes.push(kind);
+        bytes.extend(payload);
+        bytes.extend([0; 60]);
+        bytes
+    };
+    let short_format = [&[0xa3, 0x95, 0x80, 0x81, 2][..], &[b'B'; 200]].concat();
+    let cases = [
+        (ulog(b'P', &[]), "a parameter shorter than its name at byte 16"),
+        (
+            ulog(b'P', b"\xc8int32_t A1234"),
+            "a parameter shorter than its name at byte 16",
+        ),
+        (ulog(b'A', &[]), "a subscription without a name at byte 16"),
+        (ulog(b'A', &[0, 1]), "a subscription without a name at byte 16"),
+        (ulog(b'F', b"a:"), "a format without a size at byte 16"),
+        (ulog(b'F', b"a:b[0] c;"), "a format without a size at byte 16"),
+        (short_format, "a format shorter than its header"),
+    ];
+    for (log, wanted) in cases {
+        let refused = Flight::read("my.log", &log, &compiled.airframe, None).unwrap_err();
+        assert!(
+            refused.starts_with("my.log: the log is damaged") && refused.contains(wanted),
+            "{refused}"
+        );
+    }
 }
