@@ -2,6 +2,7 @@
 //! mend it.
 
 mod code;
+pub mod kind;
 pub mod source;
 mod wording;
 
@@ -35,6 +36,12 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
+    /// The fault of a file of another kind, which has no place.
+    pub(crate) fn of_another_kind(what: &str) -> Self {
+        let fault = Self::new(Code::Syntax, "", 0..0, format!("not TOML: this is {what}"));
+        Self { span: None, ..fault }.help("an airframe file, as `cargo mixer new` writes one")
+    }
+
     /// A fault of kind `code` in `key`, without label and help yet.
     pub(crate) fn new(
         code: Code,
@@ -143,10 +150,11 @@ impl Source {
             valid..valid + char::REPLACEMENT_CHARACTER.len_utf8(),
             format!("the file is not UTF-8: byte 0x{byte:02x} at offset {valid}"),
         );
-        Err(Diagnostics::new(
-            source,
-            vec![fault.help("save the file as UTF-8")],
-        ))
+        let fault = match kind::foreign(bytes.as_bytes()) {
+            Some(what) => Diagnostic::of_another_kind(what),
+            None => fault.help("save the file as UTF-8"),
+        };
+        Err(Diagnostics::new(source, vec![fault]))
     }
 }
 

@@ -77,7 +77,12 @@ fn faults_are_complete() {
             writeln!(complaints, "{name}: refused without a fault").unwrap();
         }
         for (fault, record) in faults.faults().iter().zip(faults.records()) {
+            // The whole file is another one; its first line would be no help, and may have no end.
+            let of_the_file = faults.faults().len() == 1 && fault.message.starts_with("not TOML: this is");
             let (Some(line), Some(column)) = (record.line, record.column) else {
+                if of_the_file && !fault.help.is_empty() {
+                    continue;
+                }
                 writeln!(complaints, "{name}: no place: {}", fault.message).unwrap();
                 continue;
             };

@@ -259,7 +259,7 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             .iter()
             .all(|&t| stands(t))
     };
-    let tare = tare::examine(&mut samples, both, how);
+    let tare = tare::examine(&mut samples, both, how.settle, how.tare);
 
     // An empty throttle is no start or stop row: it stays and is refused later, with its line.
     let before = samples.len();

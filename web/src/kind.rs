@@ -1,6 +1,7 @@
 //! What a dropped file is.
 
 use mixer_compiler::Source;
+use mixer_compiler::diagnostic::kind::PARAMETERS;
 use mixer_files::import;
 use mixer_identify::bench::Kind as Rotors;
 use mixer_identify::texts::{self, Text};
@@ -17,9 +18,6 @@ pub struct Kind {
     /// Points of a bench file.
     pub points: usize,
 }
-
-/// Words of parameter files that say which rotors there are.
-const PARAMETERS: [&str; 3] = ["CA_ROTOR", "FRAME_CLASS", "mmix"];
 
 /// Tells a file by its content; a bench file is read with these options of the command line.
 pub fn kind(name: &str, text: &str, options: &[String]) -> Kind {

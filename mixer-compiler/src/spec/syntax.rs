@@ -7,6 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
 use super::value::place_of;
+use crate::diagnostic::kind;
 use crate::diagnostic::source::Source;
 use crate::diagnostic::{Code, Diagnostic, quoted};
 
@@ -33,6 +34,10 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     };
 
     errors.sort_by_key(start);
+    if !errors.is_empty() && is_no_toml(&source.text, &errors) {
+        faults.push(Diagnostic::of_another_kind(kind::of_text(&source.text)));
+        return None;
+    }
     // Lines are counted on from error to error: from the start for each it would take the square of
     // the text's length.
     let (mut line, mut counted) = (1, 0);
@@ -57,6 +62,31 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
         }
     }
     sound.then_some(table)
+}
+
+/// Whether a text is of another kind: no line is the header of a table, which every airframe file has, and
+/// half of the lines or more have a fault.
+fn is_no_toml(text: &str, errors: &[Error]) -> bool {
+    let in_name = |c: char| c.is_ascii_alphanumeric() || "_-.[] \"'".contains(c);
+    let is_header = |line: &str| {
+        let name = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
+        name.is_some_and(|name| !name.is_empty() && name.chars().all(in_name))
+    };
+    let mut lines = text
+        .lines()
+        .map(|line| line.split('#').next().unwrap_or(line).trim());
+    if lines.clone().any(is_header) {
+        return false;
+    }
+    let filled = lines.by_ref().filter(|line| !line.is_empty()).count();
+    let mut faulty = 0;
+    let mut from = 0;
+    for at in errors.iter().map(start) {
+        let between = text.as_bytes().get(from..at);
+        faulty += usize::from(from == 0 || between.is_some_and(|between| between.contains(&b'\n')));
+        from = at;
+    }
+    2 * faulty >= filled
 }
 
 fn start(error: &Error) -> usize {

@@ -6,8 +6,8 @@
 
 use std::ops::Range;
 
+use crate::bench::plateau;
 use crate::bench::read::Sample;
-use crate::bench::{Preparation, plateau};
 use crate::statistics::{extent, rms};
 
 /// The share of the greatest reading that rows at rest may scatter by and an offset may have: load cells
@@ -39,11 +39,12 @@ pub(super) struct Tare {
 }
 
 /// Finds the offsets of the load cells in the stops, rows that are `commanded_off`, and takes them off
-/// where `how` asks for it.
+/// where that is asked for. `settle` is that of plateaus.
 pub(super) fn examine(
     samples: &mut [Sample],
     commanded_off: impl Fn(&Sample) -> bool,
-    how: &Preparation,
+    settle: f64,
+    takes_off: bool,
 ) -> Tare {
     let columns = CELLS.map(|(_, _, _, cell)| samples.iter_mut().map(|s| *cell(s)).collect::<Vec<f64>>());
     let greatest = [0, 1].map(|quantity| {
@@ -58,7 +59,7 @@ pub(super) fn examine(
             rms(about.filter(|x| x.is_finite())) > NOISE * greatest[cell.2]
         })
     };
-    let mut rests = at_rest(samples, commanded_off, how.settle);
+    let mut rests = at_rest(samples, commanded_off, settle);
     rests.retain(|rows| !scatters(rows));
     let mut tare = Tare::default();
     let mut whole_told = [false; 2];
@@ -71,7 +72,7 @@ pub(super) fn examine(
             continue;
         }
         let offset = mean(column, &rests.concat());
-        if how.tare {
+        if takes_off {
             samples.iter_mut().for_each(|s| *cell(s) -= offset);
         }
         if whole_told[quantity] {
@@ -97,7 +98,7 @@ pub(super) fn examine(
             reads.join(", ")
         );
         let differ = share(high - low) > NOISE;
-        match how.tare {
+        match takes_off {
             true => tare.taken_off.push(format!(
                 "{reads}: {offset:+.4} {unit}, the mean, is taken off all rows"
             )),
@@ -112,7 +113,7 @@ pub(super) fn examine(
             ));
         }
     }
-    if how.tare && rests.is_empty() {
+    if takes_off && rests.is_empty() {
         tare.warnings.push(
             "--tare: no rows at rest, nothing is taken off; a stop is at rest where its speeds are 0, or where several rows at \
              throttle 0 agree"
@@ -222,12 +223,8 @@ mod tests {
             };
             let all: Vec<Row> = [before, &turning, after].concat().iter().map(speeds).collect();
             for taken in [false, true] {
-                let how = Preparation {
-                    tare: taken,
-                    ..Preparation::default()
-                };
                 let mut rows = samples(&all);
-                let tare = examine(&mut rows, |s| s.throttle[0] <= 0.0, &how);
+                let tare = examine(&mut rows, |s| s.throttle[0] <= 0.0, 0.33, taken);
                 let told = tare.warnings.join("; ");
                 if !taken {
                     assert!(

@@ -4,32 +4,22 @@
 //! byte-order mark; "Unicode text" of spreadsheets is UTF-16. A line that is not UTF-8 is Latin-1, in
 //! which every byte is a character. Blanks and signs that spreadsheets put into numbers become ASCII.
 
-use crate::refusal::Refusal;
+use mixer_compiler::diagnostic::kind::foreign;
 
-/// Beginnings of files that are no table of text, and what they are. Other binary files hold zero
-/// bytes.
-const FOREIGN: [(&[u8], &str); 6] = [
-    (b"PK\x03\x04", "a workbook (.xlsx, .ods)"),
-    (b"\xd0\xcf\x11\xe0", "a workbook (.xls)"),
-    (b"%PDF", "a PDF document"),
-    (b"{", "JSON"),
-    (b"[{", "JSON"),
-    (b"<", "a page of HTML or XML"),
-];
+use crate::refusal::Refusal;
 
 /// The text of the file `name` with LF line ends, also behind the last line, and no byte-order mark.
 ///
 /// # Errors
 /// What is no text.
 pub fn normalised(name: &str, bytes: &[u8]) -> Result<String, Refusal> {
-    let foreign = FOREIGN
-        .iter()
-        .find(|(begin, _)| bytes.trim_ascii_start().starts_with(begin));
+    let foreign = foreign(bytes);
     let utf16 = utf16(bytes);
     let bytes = utf16.as_ref().map_or(bytes, String::as_bytes);
     let what = match foreign {
-        Some((_, what)) => what,
+        Some(what) => what,
         None if name.ends_with(".toml") => "a TOML file",
+        // Other binary files hold zero bytes.
         None if bytes[..bytes.len().min(1000)].contains(&0) => "no text",
         None => {
             let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -112,7 +102,8 @@ mod tests {
             (b" {\"a\": 1}", "JSON"),
             (b"[{\"a\": 1}]", "JSON"),
             (b"<!DOCTYPE html>", "HTML"),
-            (b"ULog\x01\x00", "no text"),
+            (b"ULog\x01\x00", "a flight log"),
+            (b"ab\x01\x00", "no text"),
         ] {
             assert!(text(bytes).is_err_and(|told| told.contains(what)), "{what}");
         }

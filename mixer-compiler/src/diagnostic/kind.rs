@@ -1,0 +1,43 @@
+//! Files that were meant for something else, by their content.
+
+/// Beginnings of files, and what these are.
+const BEGINNINGS: [(&[u8], &str); 9] = [
+    (b"PK\x03\x04", "a workbook (.xlsx, .ods)"),
+    (b"\xd0\xcf\x11\xe0", "a workbook (.xls)"),
+    (b"%PDF", "a PDF document"),
+    (b"{", "JSON"),
+    (b"[{", "JSON"),
+    (b"<", "a page of HTML or XML"),
+    (b"ULog", "a flight log, which cargo mixer review reads"),
+    (b"\xa3\x95", "a flight log, which cargo mixer review reads"),
+    (b"\xfd7zXZ", "a packed file: unpack it first"),
+];
+
+/// Words of parameter files that say which rotors there are.
+pub const PARAMETERS: [&str; 3] = ["CA_ROTOR", "FRAME_CLASS", "mmix"];
+
+/// What bytes are that are neither a table of text nor TOML; `None` where their beginning does not tell.
+#[must_use]
+pub fn foreign(bytes: &[u8]) -> Option<&'static str> {
+    let bytes = bytes.trim_ascii_start();
+    let known = BEGINNINGS.iter().find(|(begin, _)| bytes.starts_with(begin));
+    known.map(|(_, what)| *what)
+}
+
+/// What a text is that is no airframe file.
+pub(crate) fn of_text(text: &str) -> &'static str {
+    let first = text
+        .lines()
+        .find(|line| !line.trim().is_empty())
+        .unwrap_or_default();
+    match foreign(text.as_bytes()) {
+        Some(what) => what,
+        None if PARAMETERS.iter().any(|word| text.contains(word)) => {
+            "a parameter file, which cargo mixer import reads"
+        }
+        None if first.contains([',', ';', '\t']) => {
+            "a table: cargo mixer identify reads the bench file of a pair, cargo mixer predict the run of one rotor"
+        }
+        None => "a text of another kind",
+    }
+}
