@@ -16,6 +16,10 @@ pub mod wake;
 pub use self::pair_map::PairMap;
 pub use self::physics::Physics;
 
+/// The range of torque per thrust, m, beyond which no propeller is: open ones of 4 to 40 inch with an ample
+/// margin.
+pub const TORQUE_PER_THRUST_M: [f64; 2] = [0.002, 0.12];
+
 /// The range of Q over the largest f of one unit, m: 0.016 to 0.034 on maps of 11 to 22 inch. It is
 /// about the propeller's diameter over 17, so that these limits stand for 4 to 40 inch. The nearest
 /// unit that may be mistaken, pounds of force, is a factor of 4.4 away.

@@ -247,9 +247,13 @@ pub fn prepare(log: Log, how: &Preparation) -> Result<Bench, Refusal> {
             "the {} rotor stands still throughout: a single rotor",
             ["lower", "upper"][rotor]
         )),
-        Kind::Pair if !columns.sides_named && !one_signal => notes.push(
-            "the header does not say which rotor is above: the first is taken (--swap exchanges)".into(),
-        ),
+        Kind::Pair if !columns.sides_named && !one_signal => {
+            let upper = columns[Quantity::Throttle].rotors[0].as_ref();
+            notes.push(format!(
+                "the header does not say which rotor is above: that of {:?} is taken (--swap exchanges)",
+                upper.map_or("", |column| column.name.as_str())
+            ));
+        }
         _ => {}
     }
 

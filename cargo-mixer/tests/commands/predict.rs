@@ -156,7 +156,8 @@ fn predicted_airframes_lift_what_is_asked() {
                 thrust_n: asked as f32,
                 ..Wrench::default()
             };
-            let (throttles, ..) = compiled.tables.mix(&setpoint, 0.0).expect("a mix");
+            let volts = predicted.reference_v.unwrap_or_default() as f32;
+            let (throttles, ..) = compiled.tables.mix(&setpoint, volts).expect("a mix");
             let units = &compiled.airframe.units;
             let places = units.iter().map(|unit| {
                 [unit.upper_channel, unit.lower_channel].map(|channel| f64::from(throttles[channel]))

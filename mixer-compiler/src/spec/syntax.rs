@@ -34,7 +34,7 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     };
 
     errors.sort_by_key(start);
-    if !errors.is_empty() && is_no_toml(&source.text, &errors) {
+    if !errors.is_empty() && is_of_another_kind(&source.text) {
         faults.push(Diagnostic::of_another_kind(kind::of_text(&source.text)));
         return None;
     }
@@ -64,29 +64,20 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     sound.then_some(table)
 }
 
-/// Whether a text is of another kind: no line is the header of a table, which every airframe file has, and
-/// half of the lines or more have a fault.
-fn is_no_toml(text: &str, errors: &[Error]) -> bool {
+/// Whether no line of a text is the header of a table or the name, which every airframe file has.
+fn is_of_another_kind(text: &str) -> bool {
     let in_name = |c: char| c.is_ascii_alphanumeric() || "_-.[] \"'".contains(c);
-    let is_header = |line: &str| {
-        let name = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
-        name.is_some_and(|name| !name.is_empty() && name.chars().all(in_name))
+    let is_ours = |line: &str| {
+        let table = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
+        table.is_some_and(|name| !name.is_empty() && name.chars().all(in_name))
+            || line
+                .strip_prefix("name")
+                .is_some_and(|rest| rest.trim_start().starts_with('='))
     };
     let mut lines = text
         .lines()
         .map(|line| line.split('#').next().unwrap_or(line).trim());
-    if lines.clone().any(is_header) {
-        return false;
-    }
-    let filled = lines.by_ref().filter(|line| !line.is_empty()).count();
-    let mut faulty = 0;
-    let mut from = 0;
-    for at in errors.iter().map(start) {
-        let between = text.as_bytes().get(from..at);
-        faulty += usize::from(from == 0 || between.is_some_and(|between| between.contains(&b'\n')));
-        from = at;
-    }
-    2 * faulty >= filled
+    !lines.any(is_ours)
 }
 
 fn start(error: &Error) -> usize {

@@ -388,7 +388,15 @@ impl Columns {
                 let (first, raw, shown) = (&first.name, &name.raw, by_hand.offers.role(role));
                 let both = format!("both look like the {shown}");
                 if !aside && !lacks.iter().any(|(what, _)| what.ends_with(&both)) {
-                    let mend = by_hand.offers.column(role, &format!("{raw:?}"));
+                    // Of names that say no side the one that is told of may be either rotor's.
+                    let mend = match (by_hand.offers, quantity, name.side(&prefixes)) {
+                        (Offers::Pair, Throttle, None) => {
+                            let [upper, lower] =
+                                ["upper", "lower"].map(|role| by_hand.offers.column(role, "HEADER"));
+                            format!("{upper} and {lower}")
+                        }
+                        _ => by_hand.offers.column(role, &format!("{raw:?}")),
+                    };
                     lacks.push((format!("the columns {first:?} and {raw:?} {both}"), mend));
                 }
                 continue;

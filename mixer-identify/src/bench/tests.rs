@@ -398,7 +398,11 @@ fn maps_of_pairs() {
         ),
         (
             with("front throttle,rear throttle,thrust_n,torque_nm"),
-            Refused(&["both look like the upper", "--column upper="]),
+            Noted("that of \"front throttle\" is taken"),
+        ),
+        (
+            with("north throttle,south throttle,thrust_n,torque_nm"),
+            Refused(&["both look like the upper", "--column upper=HEADER and --column lower=HEADER"]),
         ),
         (
             with("M1 throttle,M2 throttle,thrust_n,torque_nm"),

@@ -99,7 +99,7 @@ pub fn identify(benches: &[Bench], voltage: Option<&Voltage>, wishes: &Wishes) -
 
     let [thrust, torque] = fits;
     let sign_is_found = benches.iter().any(|bench| bench.signs.torque_policy == AUTO);
-    doubts::units(&points, [&thrust, &torque], &mut warnings);
+    doubts::units(&files, &points, [&thrust, &torque], &mut warnings)?;
     // Other causes are judged by what a drift leaves: it looks like them.
     let drift = drift::examine(basis, &mut points, &mut warnings);
     let judged = channels(&points).map(|values| fit(&design, &values, throttle_box));

@@ -1,5 +1,6 @@
 //! A run of one rotor, or the table of its data sheet, as thrust and torque over throttle.
 
+use mixer_compiler::model::TORQUE_PER_THRUST_M;
 use serde::Serialize;
 
 use crate::bench::{Bench, Kind, Point, equal_commands, mean_voltage};
@@ -166,8 +167,7 @@ fn plausible(
     let ideal = |p: &Point| libm::pow(p.thrust, 1.5) / (2.0 * 1.2 * area).sqrt() / p.power_w;
     let power = points.iter().filter(|p| p.u > REACHES && p.power_w > 0.0);
     let all = [
-        // Open propellers of 4 to 40 inch with an ample margin.
-        ("torque per thrust in m", torque / thrust, [0.002, 0.12]),
+        ("torque per thrust in m", torque / thrust, TORQUE_PER_THRUST_M),
         // Real runs of 11 to 28 inch: 0.045 to 0.062.
         (
             "torque per thrust in diameters",

@@ -22,11 +22,30 @@ const WORDS: [(Quantity, &str); 6] = [
         Quantity::Thrust,
         "thrust schub pouss\u{e9}e poussee empuje spinta",
     ),
-    (Quantity::Torque, "torque drehmoment couple par coppia"),
+    (Quantity::Torque, "torque drehmoment moment couple par coppia"),
     (Quantity::Voltage, "voltage spannung tension voltaje tensione"),
     (Quantity::Time, "time zeit temps tiempo tempo"),
     (Quantity::Current, "current strom courant corriente corrente"),
 ];
+
+/// Words of the upper and of the lower rotor: those that say which is above; those of the first and of the
+/// second in the air's way, on a stand that lies; those of a stand's own.
+const ABOVE: [&str; 2] = [
+    "upper top oben oberer obere haut sup\u{e9}rieur superieur arriba superior",
+    "lower bottom unten unterer untere bas inf\u{e9}rieur inferieur abajo inferior",
+];
+const BEFORE: [&str; 2] = [
+    "front fore vorn vorne vorderer avant delantero",
+    "rear back aft hinten hinterer arri\u{e8}re arriere trasero",
+];
+const FIRST: [&str; 2] = ["left a", "right b"];
+
+/// Which of the two a word is of.
+fn side_of(words: [&str; 2], word: &str) -> Option<usize> {
+    words
+        .iter()
+        .position(|words| words.split(' ').any(|known| known == word))
+}
 
 impl Name {
     pub(super) fn new(raw: &str) -> Self {
@@ -98,7 +117,10 @@ impl Name {
         if OTHERS.split('|').any(|other| padded.contains(other)) {
             return None;
         }
-        if matches!(self.text.as_str(), "upper" | "lower") {
+        if [ABOVE, BEFORE]
+            .into_iter()
+            .any(|words| side_of(words, &self.text).is_some())
+        {
             return Some(Quantity::Throttle);
         }
         let is_of = |words: &str| self.words().any(|own| words.split(' ').any(|word| word == own));
@@ -114,17 +136,16 @@ impl Name {
     }
 
     pub(super) fn says_upper_or_lower(&self) -> bool {
-        self.all_words()
-            .any(|w| matches!(w, "upper" | "lower" | "top" | "bottom"))
+        self.all_words().any(|word| side_of(ABOVE, word).is_some())
     }
 
     /// 0 or 1 for a column of one rotor, nothing for the whole.
     pub(super) fn side(&self, prefixes: &[&str]) -> Option<usize> {
-        let named = self.all_words().find_map(|w| match w {
-            "upper" | "top" | "left" | "a" => Some(0),
-            "lower" | "bottom" | "right" | "b" => Some(1),
-            _ => None,
-        });
+        let named = [ABOVE, FIRST]
+            .into_iter()
+            .find_map(|words| self.all_words().find_map(|word| side_of(words, word)));
+        // Prefixes are names of the stand's own, in their order: only a column's own words count.
+        let named = named.or_else(|| self.words().find_map(|word| side_of(BEFORE, word)));
         let numbered = || {
             self.words()
                 .find_map(|w| ["1", "2"].iter().position(|number| *number == w))

@@ -208,3 +208,26 @@ fn missing_and_unknown_units_and_doubles() {
         .to_string();
     assert!(error.contains("both look like the thrust"), "{error}");
 }
+
+#[test]
+fn sides_by_words_of_three_languages_and_in_the_airs_way() {
+    for (upper, lower, is_above) in [
+        ("top", "bottom", true),
+        ("Gas oben (%)", "Gas unten (%)", true),
+        ("Gaz haut (%)", "Gaz bas (%)", true),
+        ("front", "rear", false),
+        ("Gas vorn (%)", "Gas hinten (%)", false),
+        ("Gaz avant (%)", "Gaz arri\u{e8}re (%)", false),
+    ] {
+        for [first, second] in [[upper, lower], [lower, upper]] {
+            let columns = find(&format!("{first},{second},thrust_n,Moment (Nm)"));
+            let throttles = columns[Quantity::Throttle].rotors.each_ref();
+            let names = throttles.map(|column| column.as_ref().map(|column| column.name.as_str()));
+            assert_eq!(names, [Some(upper), Some(lower)]);
+            assert_eq!(columns.sides_named, is_above, "{upper}");
+        }
+    }
+    // A side that no word says: the mend names no column for it.
+    let refused = find_by_hand("gas nord,gas sud,thrust_n,torque_nm", &ByHand::default()).unwrap_err();
+    assert_eq!(refused.needed, "--column upper=HEADER and --column lower=HEADER");
+}

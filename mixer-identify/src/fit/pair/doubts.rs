@@ -2,8 +2,8 @@
 //! not measured, exchanged rotors, a missing tare.
 
 use mixer_compiler::airframe::Basis;
-use mixer_compiler::model::TORQUE_SPAN_M;
 use mixer_compiler::model::wake::{Wake, mean_torque};
+use mixer_compiler::model::{TORQUE_PER_THRUST_M, TORQUE_SPAN_M};
 
 use super::placed::Placed;
 use crate::fit::Fit;
@@ -88,18 +88,30 @@ pub(super) fn unexplained(
     Ok(())
 }
 
-/// Torque over thrust of no propeller: a unit.
-pub(super) fn units(points: &[Placed], [thrust, torque]: [&Fit; 2], warnings: &mut Vec<String>) {
+/// Refuses torque over thrust that no propeller has, and warns of one that few have: a unit.
+pub(super) fn units(
+    files: &str,
+    points: &[Placed],
+    [thrust, torque]: [&Fit; 2],
+    warnings: &mut Vec<String>,
+) -> Result<(), Refusal> {
     let [least, most] = extent(points.iter().map(|p| p.torque));
     let ratio = (most - least) / thrust.full_scale;
+    let within = |[low, high]: [f64; 2]| (low..=high).contains(&ratio);
     let [low, high] = TORQUE_SPAN_M;
-    if !(low..=high).contains(&ratio) {
-        warnings.push(format!(
+    if !within(TORQUE_SPAN_M) {
+        let told = format!(
             "the torque of up to {:.3} N m spans {ratio:.2e} m times the greatest thrust, {:.2} N; propellers of 4 to 40 inch have {low} \
-             to {high} m: a unit is another one (--unit thrust=UNIT, --unit torque=UNIT)",
+             to {high} m: a unit is another one",
             torque.full_scale, thrust.full_scale
-        ));
+        );
+        let mend = "--unit thrust=UNIT, --unit torque=UNIT";
+        if !within(TORQUE_PER_THRUST_M) {
+            return Err(Refusal::of(files, told, format!("the units of both: {mend}")));
+        }
+        warnings.push(format!("{told} ({mend})"));
     }
+    Ok(())
 }
 
 /// Says whether the rotors are exchanged, by the mean torque; asks where that does not tell and
