@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from importlib.metadata import version
 from typing import Any, NamedTuple, Union
 
 import numpy as np
@@ -27,13 +28,17 @@ __all__ = [
     "Mix",
     "Mixer",
     "MixerError",
+    "__version__",
     "compile",
     "conventional",
     "identify",
     "predict",
 ]
 
+__version__ = version("coaxial-mixer")
+
 Path = Union[str, "os.PathLike[str]"]
+Failed = Iterable[Union[int, bool]]
 F32 = npt.NDArray[np.float32]
 F64 = npt.NDArray[np.float64]
 
@@ -77,8 +82,13 @@ class Identified(NamedTuple):
 class _Airframe:
     """An airframe with its physics."""
 
-    def __init__(self, native: Native) -> None:
-        self._native = native
+    def __init__(self, name: str, text: bytes) -> None:
+        self._source = (name, text)
+        self._native = Native(name, text)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Compiled anew: the same text gives the same tables.
+        return type(self), self._source
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name}, {self.rotors} rotors>"
@@ -102,13 +112,13 @@ class _Airframe:
         self,
         throttles: npt.ArrayLike,
         volts: npt.ArrayLike | None = None,
-        failed: Sequence[int] = (),
+        failed: Failed = (),
         density: npt.ArrayLike | None = None,
     ) -> F64:
         """The wrench that throttles (N, rotors) of any mixer give by the airframe's physics: (N, 4).
 
         Without ``volts`` (V) and ``density`` (kg/m3), a number or (N,), those of the bench are taken. ``failed``
-        has the outputs of rotors that stand still. Raises :class:`MixerError` outside the airframe's ranges.
+        has the outputs of rotors that stand still, or a boolean for every output. Raises :class:`MixerError` outside the airframe's ranges.
         """
         return self._native.wrench(self._rows(np.float64, throttles, self.rotors, volts, density, failed))
 
@@ -116,15 +126,29 @@ class _Airframe:
         self,
         throttles: npt.ArrayLike,
         volts: npt.ArrayLike | None = None,
-        failed: Sequence[int] = (),
+        failed: Failed = (),
         density: npt.ArrayLike | None = None,
     ) -> F64:
         """Thrust (N) and torque (N m, as on the bench) of every unit: (N, units, 2). Arguments as :meth:`wrench`."""
         return self._native.efforts(self._rows(np.float64, throttles, self.rotors, volts, density, failed))
 
-    @staticmethod
+    def _out(self, failed: Failed) -> list[int]:
+        """The outputs of rotors that are out, of outputs or of a mask of all of them."""
+        needed = f"outputs, 0 to {self.rotors - 1}, or {self.rotors} booleans"
+        try:
+            out = list(failed)
+        except TypeError:
+            raise MixerError(f"failed = {failed!r} where a list is needed: {needed}") from None
+        if any(isinstance(one, (bool, np.bool_)) for one in out):
+            if len(out) != self.rotors or not all(isinstance(one, (bool, np.bool_)) for one in out):
+                raise MixerError(f"failed = {failed!r} is no mask: {needed}")
+            return [channel for channel, one in enumerate(out) if one]
+        if not all(isinstance(one, (int, np.integer)) and one >= 0 for one in out):
+            raise MixerError(f"failed = {failed!r} has what is no output: {needed}")
+        return [int(one) for one in out]
+
     def _rows(
-        dtype: Any, table: Any, columns: int, volts: Any, density: Any = None, failed: Sequence[int] = ()
+        self, dtype: Any, table: Any, columns: int, volts: Any, density: Any = None, failed: Failed = ()
     ) -> _native.Rows:
         rows = np.atleast_2d(np.asarray(table, dtype))
         if rows.ndim != 2 or rows.shape[1] != columns:
@@ -138,7 +162,7 @@ class _Airframe:
                 raise MixerError(f"{name} of shape {values.shape} where a number or ({len(rows)},) is needed")
             return np.broadcast_to(values, (len(rows),))
 
-        return rows, column("volts", volts), column("density", density), list(failed)
+        return rows, column("volts", volts), column("density", density), self._out(failed)
 
 
 class Mixer(_Airframe):
@@ -169,13 +193,13 @@ class Mixer(_Airframe):
         self,
         wrenches: npt.ArrayLike,
         volts: npt.ArrayLike | None = None,
-        failed: Sequence[int] = (),
+        failed: Failed = (),
         density: npt.ArrayLike | None = None,
     ) -> Mix:
         """The throttles for wrenches (N, 4), by the runtime and the tables of the firmware.
 
         Without ``volts`` (V) and ``density`` (kg/m3), a number or (N,), those of the bench are taken. ``failed``
-        has the outputs of rotors that are out. Raises :class:`MixerError` for what is not finite.
+        has the outputs of rotors that are out, or a boolean for every output. Raises :class:`MixerError` for what is not finite.
         """
         return Mix(*self._native.mix(self._rows(np.float32, wrenches, 4, volts, density, failed)))
 
@@ -188,28 +212,30 @@ class Conventional(_Airframe):
         return ConventionalMix(*self._native.conventional(self._rows(np.float32, wrenches, 4, volts)))
 
 
-def _read(toml: Path) -> Native:
+def _read(toml: Path | bytes) -> tuple[str, bytes]:
+    if isinstance(toml, bytes):
+        return "airframe", toml
     if isinstance(toml, str) and "\n" in toml:
-        return Native("airframe", toml.encode())
+        return "airframe", toml.encode()
     name = os.fspath(toml)
     try:
         with open(name, "rb") as file:
-            return Native(name, file.read())
+            return name, file.read()
     except OSError as error:
         raise MixerError(str(error)) from error
 
 
-def compile(toml: Path) -> Mixer:
-    """Compiles an airframe: the path of a file, or its text, which has several lines.
+def compile(toml: Path | bytes) -> Mixer:
+    """Compiles an airframe: the path of a file, its text, which has several lines, or its bytes.
 
     Raises :class:`MixerError` with all faults of the file, each at its line.
     """
-    return Mixer(_read(toml))
+    return Mixer(*_read(toml))
 
 
-def conventional(toml: Path) -> Conventional:
+def conventional(toml: Path | bytes) -> Conventional:
     """The conventional mixer of an airframe, to compare with. The argument is that of :func:`compile`."""
-    return Conventional(_read(toml))
+    return Conventional(*_read(toml))
 
 
 def identify(*files: Path, **options: Any) -> Identified:

@@ -1,5 +1,6 @@
 """Arrays in, arrays out: the bits of the command line on every shipped airframe."""
 
+import pickle
 import tomllib
 
 import coaxial_mixer
@@ -94,3 +95,29 @@ def test_one_setpoint_none_and_slices(mixer):
     assert [len(part) for part in none] == [0, 0, 0] and none.throttles.shape == (0, mixer.rotors)
     rows = np.arange(80.0).reshape(10, 8)[::2, ::2] % 7
     assert np.array_equal(mixer.mix(rows).throttles, mixer.mix(rows.copy()).throttles)
+
+
+def test_rotors_out_are_channels_or_a_mask(mixer):
+    at = [0, 0, 0, 0.3 * size(mixer)[3]]
+    mask = [channel == 1 for channel in range(mixer.rotors)]
+    by_channel = mixer.mix(at, failed=[1])
+    for failed in (mask, np.array(mask), (1,), np.array([1])):
+        assert np.array_equal(mixer.mix(at, failed=failed).throttles, by_channel.throttles)
+    none_out = mixer.mix(at, failed=[False] * mixer.rotors)
+    assert np.array_equal(none_out.throttles, mixer.mix(at).throttles)
+
+
+def test_a_mixer_is_kept_by_pickle_and_made_of_bytes(airframe):
+    mixer = coaxial_mixer.compile(airframe)
+    with open(airframe, "rb") as file:
+        of_bytes = coaxial_mixer.compile(file.read())
+    for made in (pickle.loads(pickle.dumps(mixer)), of_bytes):
+        assert made.rust.splitlines()[4:] == mixer.rust.splitlines()[4:]
+        assert np.array_equal(made.mix([0.1, 0, 0, 20]).throttles, mixer.mix([0.1, 0, 0, 20]).throttles)
+    kept = pickle.loads(pickle.dumps(coaxial_mixer.conventional(airframe)))
+    assert kept.name == mixer.name
+
+
+def test_the_package_names_what_it_has():
+    assert all(hasattr(coaxial_mixer, name) for name in coaxial_mixer.__all__)
+    assert coaxial_mixer.__version__.count(".") == 2
