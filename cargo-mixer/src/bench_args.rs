@@ -32,6 +32,25 @@ pub(crate) fn quantity(text: &str, units: &str) -> Result<f64, String> {
     positive(text).map_err(|_| format!("{text:?} is not a positive number of {units}"))
 }
 
+/// A number within `range` of `unit`; of another one the unit, with its size, in which it would be.
+pub(crate) fn within(
+    text: &str,
+    [low, high]: [f64; 2],
+    unit: &str,
+    others: &[(f64, &str)],
+) -> Result<f64, String> {
+    let given = positive(text)?;
+    let holds = |x: f64| (low..=high).contains(&x);
+    if holds(given) {
+        return Ok(given);
+    }
+    let other = others.iter().find(|(size, _)| holds(size * given));
+    let mend = other.map_or(String::new(), |(size, of)| {
+        format!("; in {of} it is {:.3}", size * given)
+    });
+    Err(format!("{given} is not within {low} to {high}{unit}{mend}"))
+}
+
 fn two(text: &str) -> Result<[f64; 2], String> {
     let (a, b) = text
         .split_once(',')

@@ -16,7 +16,7 @@ use mixer_identify::rotor::single::{self, EXPONENT};
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
-use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box};
+use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box, within};
 use crate::bench_files::Outside;
 use crate::frame_args::FrameArgs;
 use crate::pack::PackArgs;
@@ -86,6 +86,9 @@ pub struct PredictArgs {
     pub thrust_sign: SignChoice,
 }
 
+/// Units in which lengths are given by mistake.
+const LENGTHS: [(f64, &str); 3] = [(0.0254, "inches"), (0.001, "mm"), (0.01, "cm")];
+
 /// What is known of the rotors beside the run.
 #[derive(Debug, Clone, Default, Args)]
 pub struct RotorArgs {
@@ -93,13 +96,13 @@ pub struct RotorArgs {
     #[arg(long, value_name = "RUN.csv")]
     pub lower_single: Option<PathBuf>,
     /// Distance of the rotors over their diameter, z/D [default: 0.25].
-    #[arg(long, value_name = "RATIO", value_parser = positive, conflicts_with = "spacing")]
+    #[arg(long, value_name = "RATIO", value_parser = |text: &str| within(text, [0.02, 3.0], "", &[(0.01, "per cent")]), conflicts_with = "spacing")]
     pub spacing_ratio: Option<f64>,
     /// Distance of the rotors, m.
-    #[arg(long, value_name = "METRE", value_parser = positive, requires = "diameter")]
+    #[arg(long, value_name = "METRE", value_parser = |text: &str| within(text, [0.005, 2.0], " m", &LENGTHS), requires = "diameter")]
     pub spacing: Option<f64>,
     /// Diameter of the propeller, m.
-    #[arg(long, value_name = "METRE", value_parser = positive)]
+    #[arg(long, value_name = "METRE", value_parser = |text: &str| within(text, [0.03, 3.0], " m", &LENGTHS))]
     pub diameter: Option<f64>,
     /// Torque per thrust, m, for a run without torque [default: 0.048 of the diameter].
     #[arg(long, value_name = "METRE", value_parser = positive)]

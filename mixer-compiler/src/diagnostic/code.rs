@@ -176,6 +176,8 @@ catalogue! {
     HoversHigh = 342,
     /// Hover leaves less of an axis than the pair may be off by.
     MarginBelowBand = 343,
+    /// A vehicle of far less weight than its rotors lift.
+    TooLight = 344,
 }
 
 impl Code {

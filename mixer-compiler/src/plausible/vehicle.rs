@@ -7,6 +7,9 @@ use crate::diagnostic::{Code, number, rounded};
 /// Share of the largest bare thrust above which hover leaves too little for control.
 const HIGH: f64 = 0.8;
 
+/// Thrust over weight above which no vehicle is built: racing quadrotors have up to 14.
+const LIFTS: f64 = 20.0;
+
 /// Too heavy to hover at the lowest voltage, or so light that it rises at idle at the highest, or
 /// with little thrust left at the reference voltage, in the thinnest air that it is to fly in.
 pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
@@ -68,5 +71,17 @@ pub(super) fn hover(facts: &Facts<'_>) -> Vec<Rule> {
                 "roll, pitch and yaw come out of what hover leaves; frames hover at 30 to 60 %",
             )
             .unless_told(&[Code::TooHeavy, Code::FloatsAtIdle]),
+        Rule::at_most(Code::TooLight, KEY, ceiling / weight, LIFTS)
+            .says(
+                format!(
+                    "{weighs}, the largest thrust{} is {} N, {:.0} times as much",
+                    reference.0,
+                    rounded(ceiling),
+                    ceiling / weight
+                ),
+                "too light",
+                "check the mass, in kg with battery and payload, and the units of thrust_n",
+            )
+            .unless_told(&[Code::PairUnits, Code::FloatsAtIdle]),
     ]
 }
