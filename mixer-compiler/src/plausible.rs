@@ -25,11 +25,12 @@ use crate::diagnostic::Diagnostic;
 use crate::model::PairMap;
 
 /// The rules of one part of an airframe, those that may be the reason of others before these.
-const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 16] = [
+const RULES: [fn(&Facts<'_>) -> Vec<Rule>; 17] = [
     pair::units,
     rotors::order,
     pair::thrust,
     rotors::sizes,
+    pair::shape,
     pair::power,
     geometry::odd_place,
     geometry::arms,

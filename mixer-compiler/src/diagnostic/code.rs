@@ -136,6 +136,8 @@ catalogue! {
     RotorAloneScale = 306,
     /// An idle above the largest with which ArduPilot arms.
     SpinMin = 307,
+    /// A map whose growth with the throttles, or whose rotors' hold on one another, no pair has.
+    PairShape = 308,
     /// An arm far longer than the thrust makes plausible.
     LongArm = 310,
     /// An angle that looks like radians.

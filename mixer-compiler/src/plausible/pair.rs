@@ -125,6 +125,62 @@ pub(super) fn thrust(facts: &Facts<'_>) -> Vec<Rule> {
     ]
 }
 
+/// The power of the throttle with which thrust grows along equal throttles, from the middle to full: 1.53 to
+/// 1.91 on real maps.
+const GROWTH: [f64; 2] = [1.4, 2.05];
+
+/// The thrust that a rotor adds with the other at full throttle, over what it adds with the other at idle:
+/// less in a wake, 0.75 to 0.94 on real maps.
+const LEFT: [f64; 2] = [0.65, 1.0];
+
+/// How thrust grows, and what either rotor leaves of the other: a coefficient that is off or out of order
+/// shows there, whatever its size.
+pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
+    const OTHERS: &[Code] = &[
+        Code::PairUnits,
+        Code::RotorsExchanged,
+        Code::NotCoaxial,
+        Code::LopsidedPair,
+        Code::PairShape,
+    ];
+    const MEND: &str = "check each coefficient and their order, which that of the basis fixes";
+    let [idle, full] = facts.map.range();
+    let middle = 0.5 * (idle + full);
+    let half = facts.map.efforts([middle; 2])[0];
+    let growth = libm::log(facts.full[0] / half) / libm::log(full / middle);
+    let left = |own: [f64; 2], other: [f64; 2]| (facts.full[0] - other[0]) / (own[0] - facts.idle[0]);
+    let [upper, lower] = [left(facts.upper, facts.lower), left(facts.lower, facts.upper)];
+    let holds = [upper, lower]
+        .iter()
+        .all(|share| (LEFT[0]..=LEFT[1]).contains(share));
+    let rule = |holds, message: String| {
+        let rule = Rule::holds(Code::PairShape, "pair.thrust_n", holds);
+        rule.says(message, "a coefficient off?", MEND).unless_told(OTHERS)
+    };
+    let [least, most] = GROWTH;
+    vec![
+        rule(
+            (least..=most).contains(&growth),
+            format!(
+                "from throttles of {} to {} the thrust grows with their power {growth:.2}; pairs have {least} to {most}",
+                rounded(middle),
+                number(full)
+            ),
+        ),
+        rule(
+            holds,
+            format!(
+                "with the other rotor at full throttle the upper one adds {:.0} % of the thrust that it adds with the other \
+                 at idle, the lower one {:.0} %; pairs have {:.0} to {:.0} %",
+                100.0 * upper,
+                100.0 * lower,
+                100.0 * LEFT[0],
+                100.0 * LEFT[1]
+            ),
+        ),
+    ]
+}
+
 /// Thrust over power tells the unit of the power; its growth and its two rotors, coefficients that
 /// are off.
 pub(super) fn power(facts: &Facts<'_>) -> Vec<Rule> {
