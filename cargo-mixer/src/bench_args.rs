@@ -32,23 +32,36 @@ pub(crate) fn quantity(text: &str, units: &str) -> Result<f64, String> {
     positive(text).map_err(|_| format!("{text:?} is not a positive number of {units}"))
 }
 
-/// A number within `range` of `unit`; of another one the unit, with its size, in which it would be.
+/// A number within a range of `unit`; of another one the unit in which it would be, of `others` with
+/// factor and offset.
 pub(crate) fn within(
     text: &str,
     [low, high]: [f64; 2],
     unit: &str,
-    others: &[(f64, &str)],
+    others: &[(f64, f64, &str)],
 ) -> Result<f64, String> {
     let given = positive(text)?;
-    let holds = |x: f64| (low..=high).contains(&x);
-    if holds(given) {
+    if (low..=high).contains(&given) {
         return Ok(given);
     }
-    let other = others.iter().find(|(size, _)| holds(size * given));
-    let mend = other.map_or(String::new(), |(size, of)| {
-        format!("; in {of} it is {:.3}", size * given)
-    });
+    let mend = air::meant(given, [low, high], others);
+    let mend = mend.map_or(String::new(), |(x, of)| format!("; in {of} it is {x:.3}"));
     Err(format!("{given} is not within {low} to {high}{unit}{mend}"))
+}
+
+/// Largest exponent that is taken: a propeller has 2.5 at most.
+const LARGEST_EXPONENT: f64 = 4.0;
+
+/// Exponents of thrust and of torque.
+pub(crate) fn exponents(text: &str) -> Result<[f64; 2], String> {
+    let (thrust, torque) = text.split_once(',').unwrap_or((text, text));
+    let exponent = |text| match positive(text)? {
+        x if x > LARGEST_EXPONENT => Err(format!(
+            "{x} is above {LARGEST_EXPONENT}; propellers have 1 to 2.5"
+        )),
+        x => Ok(x),
+    };
+    Ok([exponent(thrust)?, exponent(torque)?])
 }
 
 fn two(text: &str) -> Result<[f64; 2], String> {

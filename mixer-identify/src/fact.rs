@@ -214,7 +214,7 @@ fn of_pair(facts: &mut Facts, pair: &Pair) {
     runs(pair).for_each(|(turning, alone)| of_alone(facts, turning, alone));
 }
 
-/// What the order of the rows shows, or that it shows nothing.
+/// Drifts by the order of the rows, or that it shows none.
 fn of_drift(facts: &mut Facts, pair: &Pair) {
     let wholes = pair
         .drift

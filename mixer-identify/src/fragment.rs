@@ -116,7 +116,7 @@ const SIGN: &str = "# Torque is positive where the lower rotor outweighs the upp
 const MEASURED: &str = "# The voltage of the flight must be measured where the bench's was: at the same point of the wiring, under load.\n\
                         # Behind other leads, or at no load, k is wrong by what the voltage drops in between.\n";
 
-/// What `[voltage]` is made of.
+/// The supply that `[voltage]` describes.
 struct Supply {
     reference_v: Option<f64>,
     /// Of the rows.

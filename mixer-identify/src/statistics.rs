@@ -21,6 +21,13 @@ pub(crate) fn greatest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
+/// The mean of the finite ones; NaN where there are none.
+pub(crate) fn mean_of_finite(values: impl IntoIterator<Item = f64>) -> f64 {
+    let finite = values.into_iter().filter(|x| x.is_finite());
+    let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
+    sum / count
+}
+
 /// Root of the mean square.
 pub(crate) fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
     let values = values.into_iter();

@@ -14,7 +14,7 @@ use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{Answer, Prediction, identify};
 
-use crate::bench_args::{AirArgs, ReadingArgs, positive, throttle_box};
+use crate::bench_args::{AirArgs, ReadingArgs, exponents, positive, throttle_box};
 use crate::bench_files::Outside;
 use crate::commands::predict::{self, RotorArgs};
 use crate::frame_args::FrameArgs;
@@ -211,21 +211,6 @@ pub fn run(args: &IdentifyArgs) -> Done {
         })?;
     notes.iter().for_each(print_note);
     place.write(&answer, args.verbose)
-}
-
-/// Largest exponent that is taken: a propeller has 2.5 at most.
-const LARGEST_EXPONENT: f64 = 4.0;
-
-/// Of thrust and of torque.
-pub(crate) fn exponents(text: &str) -> Result<[f64; 2], String> {
-    let (thrust, torque) = text.split_once(',').unwrap_or((text, text));
-    let exponent = |text| match positive(text)? {
-        x if x > LARGEST_EXPONENT => Err(format!(
-            "{x} is above {LARGEST_EXPONENT}; propellers have 1 to 2.5"
-        )),
-        x => Ok(x),
-    };
-    Ok([exponent(thrust)?, exponent(torque)?])
 }
 
 fn date_given(text: &str) -> Result<String, String> {

@@ -16,6 +16,7 @@ use mixer_identify::rotor::single::{self, EXPONENT};
 use mixer_identify::texts::{self, Answer, Prediction, Text};
 
 use crate::Done;
+use crate::bench_args;
 use crate::bench_args::{AirArgs, positive, pwm_range, role, sign_choice, throttle_box, within};
 use crate::bench_files::Outside;
 use crate::frame_args::FrameArgs;
@@ -45,7 +46,7 @@ pub struct PredictArgs {
     pub reference_voltage: Option<f64>,
     /// Exponent of thrust and of torque in (V / reference)^k, or one for both [default: 1.75, the
     /// median of 104 motors with propellers].
-    #[arg(long, value_name = "K[,K]", value_parser = super::identify::exponents, conflicts_with = "rpm_at_full")]
+    #[arg(long, value_name = "K[,K]", value_parser = bench_args::exponents, conflicts_with = "rpm_at_full")]
     pub voltage_exponent: Option<[f64; 2]>,
     /// The battery of the vehicle
     #[command(flatten)]
@@ -87,7 +88,7 @@ pub struct PredictArgs {
 }
 
 /// Units in which lengths are given by mistake.
-const LENGTHS: [(f64, &str); 3] = [(0.0254, "inches"), (0.001, "mm"), (0.01, "cm")];
+const LENGTHS: [(f64, f64, &str); 3] = [(0.0254, 0.0, "inches"), (0.001, 0.0, "mm"), (0.01, 0.0, "cm")];
 
 /// What is known of the rotors beside the run.
 #[derive(Debug, Clone, Default, Args)]
@@ -96,7 +97,7 @@ pub struct RotorArgs {
     #[arg(long, value_name = "RUN.csv")]
     pub lower_single: Option<PathBuf>,
     /// Distance of the rotors over their diameter, z/D [default: 0.25].
-    #[arg(long, value_name = "RATIO", value_parser = |text: &str| within(text, [0.02, 3.0], "", &[(0.01, "per cent")]), conflicts_with = "spacing")]
+    #[arg(long, value_name = "RATIO", value_parser = |text: &str| within(text, [0.02, 3.0], "", &[(0.01, 0.0, "per cent")]), conflicts_with = "spacing")]
     pub spacing_ratio: Option<f64>,
     /// Distance of the rotors, m.
     #[arg(long, value_name = "METRE", value_parser = |text: &str| within(text, [0.005, 2.0], " m", &LENGTHS), requires = "diameter")]

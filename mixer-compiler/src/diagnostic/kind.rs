@@ -16,7 +16,7 @@ const BEGINNINGS: [(&[u8], &str); 9] = [
 /// Words of parameter files that say which rotors there are.
 pub const PARAMETERS: [&str; 3] = ["CA_ROTOR", "FRAME_CLASS", "mmix"];
 
-/// What bytes are that are neither a table of text nor TOML; `None` where their beginning does not tell.
+/// The kind of a file that is neither a table of text nor TOML, by its beginning; `None` where that does not tell.
 #[must_use]
 pub fn foreign(bytes: &[u8]) -> Option<&'static str> {
     let bytes = bytes.trim_ascii_start();
@@ -24,7 +24,7 @@ pub fn foreign(bytes: &[u8]) -> Option<&'static str> {
     known.map(|(_, what)| *what)
 }
 
-/// What a text is that is no airframe file.
+/// The kind of a text that is no airframe file.
 pub(crate) fn of_text(text: &str) -> &'static str {
     let first = text
         .lines()

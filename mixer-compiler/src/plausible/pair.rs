@@ -125,6 +125,11 @@ pub(super) fn thrust(facts: &Facts<'_>) -> Vec<Rule> {
     ]
 }
 
+/// The power of the throttle with which a value grows from the first throttle to the second.
+fn power_law([from, to]: [f64; 2], [low, high]: [f64; 2]) -> f64 {
+    libm::log(to / from) / libm::log(high / low)
+}
+
 /// The power of the throttle with which thrust grows along equal throttles, from the middle to full: 1.53 to
 /// 1.91 on real maps.
 const GROWTH: [f64; 2] = [1.4, 2.05];
@@ -147,7 +152,7 @@ pub(super) fn shape(facts: &Facts<'_>) -> Vec<Rule> {
     let [idle, full] = facts.map.range();
     let middle = 0.5 * (idle + full);
     let half = facts.map.efforts([middle; 2])[0];
-    let growth = libm::log(facts.full[0] / half) / libm::log(full / middle);
+    let growth = power_law([half, facts.full[0]], [middle, full]);
     let left = |own: [f64; 2], other: [f64; 2]| (facts.full[0] - other[0]) / (own[0] - facts.idle[0]);
     let [upper, lower] = [left(facts.upper, facts.lower), left(facts.lower, facts.upper)];
     let holds = [upper, lower]
@@ -199,7 +204,7 @@ pub(super) fn power(facts: &Facts<'_>) -> Vec<Rule> {
         None => "check the unit of power_w (W, of both rotors)".to_owned(),
     };
     let [upper, lower] = [[full, idle], [idle, full]].map(|at| power.at(at));
-    let growth = libm::log(watts / power.at([idle; 2])) / libm::log(full / idle);
+    let growth = power_law([power.at([idle; 2]), watts], [idle, full]);
     let [least, most] = POWER_GROWTH;
     let is_even = (1.0 / POWERS..=POWERS).contains(&(upper / lower));
     let key = "pair.power.power_w";

@@ -26,6 +26,10 @@ const MOST: usize = 100;
 /// Parses the text and notes its faults. `None` where they leave the values in doubt.
 pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Option<DeTable<'a>> {
     let (table, mut errors) = DeTable::parse_recoverable(&source.text);
+    if !errors.is_empty() && is_of_another_kind(&source.text) {
+        faults.push(Diagnostic::of_another_kind(kind::of_text(&source.text)));
+        return None;
+    }
     let table = table.into_inner();
     let sound = errors.iter().all(|error| error.message() == DUPLICATE);
     let long_values = match errors.is_empty() {
@@ -34,10 +38,6 @@ pub(crate) fn parse<'a>(source: &'a Source, faults: &mut Vec<Diagnostic>) -> Opt
     };
 
     errors.sort_by_key(start);
-    if !errors.is_empty() && is_of_another_kind(&source.text) {
-        faults.push(Diagnostic::of_another_kind(kind::of_text(&source.text)));
-        return None;
-    }
     // Lines are counted on from error to error: from the start for each it would take the square of
     // the text's length.
     let (mut line, mut counted) = (1, 0);

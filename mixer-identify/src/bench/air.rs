@@ -34,16 +34,20 @@ impl Known {
     }
 }
 
+/// A value in the first other unit (factor, offset, name) in which it is within the range, with that name.
+pub fn meant<'a>(value: f64, [low, high]: [f64; 2], units: &[(f64, f64, &'a str)]) -> Option<(f64, &'a str)> {
+    let mut values = units
+        .iter()
+        .map(|(factor, offset, of)| (factor * value + offset, *of));
+    values.find(|(x, _)| (low..=high).contains(x))
+}
+
 fn within(value: f64, [low, high]: [f64; 2], unit: &str, mends: &[(f64, f64, &str)]) -> Result<f64, String> {
-    let holds = |x: f64| (low..=high).contains(&x);
-    if holds(value) {
+    if (low..=high).contains(&value) {
         return Ok(value);
     }
-    let mut mends = mends
-        .iter()
-        .map(|(factor, offset, of)| (factor * value + offset, of));
-    let mend = mends.find(|(x, _)| holds(*x));
-    let mend = mend.map_or(String::new(), |(x, of)| format!("; in {of} it is {x:.1} {unit}"));
+    let mend = meant(value, [low, high], mends)
+        .map_or(String::new(), |(x, of)| format!("; in {of} it is {x:.1} {unit}"));
     Err(format!("{value} is not within {low} to {high} {unit}{mend}"))
 }
 

@@ -8,6 +8,7 @@
 
 use crate::bench::header::Split;
 use crate::bench::read::Sample;
+use crate::statistics::mean_of_finite;
 
 /// Fewer rows than this make no plateau.
 const PLATEAU_ROWS: usize = 5;
@@ -36,11 +37,7 @@ pub fn means(samples: &[Sample], settle: f64) -> (Vec<Sample>, usize) {
         if rows.is_empty() {
             continue;
         }
-        let mean = |of: &dyn Fn(&Sample) -> f64| {
-            let measured = rows.iter().map(of).filter(|x| !x.is_nan());
-            let (sum, count) = measured.fold((0.0, 0), |(sum, count), x| (sum + x, count + 1));
-            if count == 0 { f64::NAN } else { sum / count as f64 }
-        };
+        let mean = |of: &dyn Fn(&Sample) -> f64| mean_of_finite(rows.iter().map(of));
         let split = |of: fn(&Sample) -> Split<f64>| Split {
             whole: mean(&|s| of(s).whole),
             rotors: [0, 1].map(|r| mean(&|s| of(s).rotors[r])),

@@ -94,6 +94,14 @@ pub struct Sample {
     pub speed: [f64; 2],
 }
 
+/// The rotors' load cells in the order of thrust and torque, each of the upper and of the lower rotor.
+pub(crate) const ROTOR_CELLS: [&str; 4] = [
+    "thrust of the upper rotor",
+    "thrust of the lower rotor",
+    "torque of the upper rotor",
+    "torque of the lower rotor",
+];
+
 /// All samples of one file.
 #[derive(Debug, Clone)]
 pub struct Log {

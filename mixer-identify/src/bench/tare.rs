@@ -7,8 +7,8 @@
 use std::ops::Range;
 
 use crate::bench::plateau;
-use crate::bench::read::Sample;
-use crate::statistics::{extent, rms};
+use crate::bench::read::{ROTOR_CELLS, Sample};
+use crate::statistics::{extent, mean_of_finite, rms};
 
 /// The share of the greatest reading that rows at rest may scatter by and an offset may have: load cells
 /// that were set to zero read less.
@@ -22,19 +22,19 @@ const SEVERAL: usize = 2;
 type Cell = fn(&mut Sample) -> &mut f64;
 const CELLS: [(&str, &str, usize, Cell); 6] = [
     ("thrust", "N", 0, |s| &mut s.thrust.whole),
-    ("thrust of the upper rotor", "N", 0, |s| &mut s.thrust.rotors[0]),
-    ("thrust of the lower rotor", "N", 0, |s| &mut s.thrust.rotors[1]),
+    (ROTOR_CELLS[0], "N", 0, |s| &mut s.thrust.rotors[0]),
+    (ROTOR_CELLS[1], "N", 0, |s| &mut s.thrust.rotors[1]),
     ("torque", "N m", 1, |s| &mut s.torque.whole),
-    ("torque of the upper rotor", "N m", 1, |s| &mut s.torque.rotors[0]),
-    ("torque of the lower rotor", "N m", 1, |s| &mut s.torque.rotors[1]),
+    (ROTOR_CELLS[2], "N m", 1, |s| &mut s.torque.rotors[0]),
+    (ROTOR_CELLS[3], "N m", 1, |s| &mut s.torque.rotors[1]),
 ];
 
-/// What rows at rest tell.
+/// Offsets of the load cells, in words.
 #[derive(Default)]
 pub(super) struct Tare {
-    /// What was taken off.
+    /// Those that were taken off.
     pub(super) taken_off: Vec<String>,
-    /// Offsets that remain in the rows.
+    /// Those that remain in the rows.
     pub(super) warnings: Vec<String>,
 }
 
@@ -52,6 +52,7 @@ pub(super) fn examine(
         let readings = cells.flat_map(|(column, _)| column).map(|x| x.abs());
         readings.filter(|x| x.is_finite()).fold(0.0, f64::max)
     });
+    let mean = |column: &[f64], rows: &[usize]| mean_of_finite(rows.iter().map(|&k| column[k]));
     let scatters = |rows: &[usize]| {
         columns.iter().zip(CELLS).any(|(column, cell)| {
             let middle = mean(column, rows);
@@ -121,13 +122,6 @@ pub(super) fn examine(
         );
     }
     tare
-}
-
-/// The mean of what these rows have in a column; NaN where they have nothing.
-fn mean(column: &[f64], rows: &[usize]) -> f64 {
-    let read = rows.iter().map(|&k| column[k]).filter(|x| x.is_finite());
-    let (sum, count) = read.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
-    sum / count
 }
 
 /// The rows of each stop in which every speed is 0 or, without speeds, which are several; of a streaming

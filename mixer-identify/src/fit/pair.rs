@@ -57,7 +57,7 @@ pub struct Pair {
     pub outliers: Vec<Outlier>,
     /// Whether they were left out.
     pub outliers_left_out: bool,
-    /// What the order of the rows shows of drifts.
+    /// Drifts by the order of the rows, of every file.
     pub drift: Vec<Shown>,
     /// The fold of the map before `throttle.min` was raised.
     pub fold: Fold,

@@ -12,6 +12,7 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::placed::{Placed, channels, places};
+use crate::bench::read::ROTOR_CELLS;
 use crate::fit::Design;
 use crate::statistics::{dot, greatest};
 
@@ -134,7 +135,7 @@ impl Drift {
     }
 }
 
-/// What the order of a file's rows shows of one of its quantities.
+/// One quantity of a file, and the drift that the order of the rows shows of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Shown {
     /// The file.
@@ -152,14 +153,6 @@ impl Shown {
     }
 }
 
-/// The load cells of the rotors, as [`Placed::cells`] has them.
-const CELLS: [&str; 4] = [
-    "thrust of the upper rotor",
-    "thrust of the lower rotor",
-    "torque of the upper rotor",
-    "torque of the lower rotor",
-];
-
 /// Drifts of both channels and of each load cell in every file, a run of its own; takes those of the
 /// channels that are told off `points`, by which other causes are judged.
 pub(super) fn examine(basis: Basis, points: &mut [Placed], warnings: &mut Vec<String>) -> Vec<Shown> {
@@ -174,7 +167,7 @@ pub(super) fn examine(basis: Basis, points: &mut [Placed], warnings: &mut Vec<St
             for cell in [2 * quantity, 2 * quantity + 1] {
                 let y: Vec<f64> = run.iter().map(|p| p.cells[cell]).collect();
                 if y.iter().all(|y| y.is_finite()) && greatest(&y) > 0.0 {
-                    all.push((CELLS[cell], of(&y)));
+                    all.push((ROTOR_CELLS[cell], of(&y)));
                 }
             }
             let told = all
