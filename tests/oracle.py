@@ -10,7 +10,7 @@
                                                 airmode, then desaturated after PX4
 
 It shares nothing with the compiler but the file: its own reading of the file, its own effectiveness, pseudo-inverse,
-inverse of the pair's map and voltage law, in double precision, standard library only (Python 3.11 or later).
+inverse of the pair's map and laws of voltage and density, in double precision, standard library only (Python 3.11 or later).
 
 What it asks of every row:
   * throttles within [min, max]; one row per setpoint
@@ -69,6 +69,7 @@ class Airframe:
         # Of the upper and of the lower rotor alone, by the rotor that is out: a1 x + a2 x^2 + a3 x^3.
         self.alone = [pair.get("lower_out"), pair.get("upper_out")]
         self.voltage = spec.get("voltage")
+        self.air = spec.get("air")
         inverse = spec.get("inverse", {})
         self.tolerance = [inverse.get("thrust_tolerance_n", 0.01), inverse.get("torque_tolerance_nm", 1e-4)]
         allocation = spec.get("allocation", {})
@@ -134,12 +135,23 @@ class Airframe:
             rows.append((by_u, by_l))
         return rows
 
-    def factors(self, volts):
-        if self.voltage is None:
-            return [1.0, 1.0]
-        low, high = self.voltage["range_v"]
-        volts = min(max(volts, low), high)
-        return [self.factor(quantity, volts) for quantity in ("thrust", "torque")]
+    def factors(self, volts, density=None):
+        k = [1.0, 1.0]
+        if self.voltage is not None:
+            low, high = self.voltage["range_v"]
+            volts = min(max(volts, low), high)
+            k = [self.factor(quantity, volts) for quantity in ("thrust", "torque")]
+        # A density that is none is the bench's.
+        if self.air is not None and density is not None and 0.0 < density < math.inf:
+            low, high = self.air["range_kg_m3"]
+            ratio = min(max(density, low), high) / self.air["reference_density_kg_m3"]
+            k = [factor * ratio ** self.exponent_of_density(q) for factor, q in zip(k, ("thrust", "torque"))]
+        return k
+
+    def exponent_of_density(self, quantity):
+        """Thin air acts like a lower voltage: the exponent of the voltage less 1, where the file has none."""
+        key = quantity + "_exponent"
+        return self.air[key] if key in self.air else self.voltage[key] - 1.0
 
     def factor(self, quantity, volts):
         ratio = volts / self.voltage["reference_v"]
@@ -253,18 +265,19 @@ def has_room(airframe, wanted, shift, k):
     return all(airframe.attains([f + a * by_f, q + b * by_q]) for f, q in at for a in (-1, 1) for b in (-1, 1))
 
 
-def judge_row(airframe, request, volts, throttles, achieved, saturation, failed):
-    """Faults of one row, and whether its least-norm efforts are attainable."""
+def judge_row(airframe, request, conditions, throttles, achieved, saturation, failed):
+    """Faults of one row, and whether its least-norm efforts are attainable. `conditions` are volts and density."""
     n = airframe.units
-    k = airframe.factors(volts)
+    k = airframe.factors(*conditions)
     faults = []
     if any(t != 0.0 if c in failed else not airframe.low <= t <= airframe.high for c, t in enumerate(throttles)):
         faults.append(f"a throttle leaves [{airframe.low}, {airframe.high}], or 0 where a rotor is out: {throttles}")
     given = [airframe.given(unit, throttles, failed) for unit in range(n)]
     efforts = [k[0] * f for f, _ in given] + [k[1] * q for _, q in given]
     truth = airframe.wrench(efforts)
-    # A fitted voltage law may be a millionth off.
-    noise = [a + 2e-6 * sum(abs(m * e) for m, e in zip(row, efforts)) for a, row in zip(rounding(airframe, k), airframe.m)]
+    # Each fitted law, of the voltage and of the density, may be a millionth off.
+    fitted = 2e-6 * max(1, (airframe.voltage is not None) + (airframe.air is not None))
+    noise = [a + fitted * sum(abs(m * e) for m, e in zip(row, efforts)) for a, row in zip(rounding(airframe, k), airframe.m)]
     for axis, was, said, allowed in zip(AXES, truth, achieved, noise):
         if abs(was - said) > allowed:
             faults.append(f"achieved {axis} is {was!r}, the mixer says {said!r}")
@@ -328,10 +341,13 @@ def judge_row(airframe, request, volts, throttles, achieved, saturation, failed)
             # The bound that is proven, from which on misses are flagged, is not in the file: below the tolerance.
             if missed < 0.05 * budget[axis] - 8 * noise[axis] and saturation & bit:
                 faults.append(f"{AXES[axis]} misses {missed!r} only and is flagged")
-    if airframe.voltage:
-        low, high = airframe.voltage["range_v"]
-        if abs(volts - low) > 1e-5 and abs(volts - high) > 1e-5 and (not low <= volts <= high) != bool(saturation & 256):
-            faults.append(f"{volts} V and saturation {saturation} do not agree")
+    laws = (airframe.voltage, "range_v", 256), (airframe.air, "range_kg_m3", 512)
+    for value, (law, key, flag) in zip(conditions, laws):
+        if law and value is not None:
+            low, high = law[key]
+            is_at_an_end = min(abs(value - low), abs(value - high)) <= 1e-5
+            if not is_at_an_end and (not low <= value <= high) != bool(saturation & flag):
+                faults.append(f"{key}: {value} and saturation {saturation} do not agree")
     return faults, attainable
 
 
@@ -345,10 +361,10 @@ def judge(airframe, setpoints_path, mixed_path, failed=()):
         faults.append(f"{len(setpoints)} setpoints, {len(mixed)} answers")
     for index, (asked, row) in enumerate(zip(setpoints, mixed)):
         request = [float(asked[column]) for column in COLUMNS]
-        volts = float(asked["voltage_v"])
+        conditions = float(asked["voltage_v"]), float(asked["density_kg_m3"]) if "density_kg_m3" in asked else None
         throttles = [float(row[f"throttle_{channel}"]) for channel in range(2 * airframe.units)]
         achieved = [float(row["achieved_" + column]) for column in COLUMNS]
-        found, attainable = judge_row(airframe, request, volts, throttles, achieved, int(row["saturation"]), failed)
+        found, attainable = judge_row(airframe, request, conditions, throttles, achieved, int(row["saturation"]), failed)
         delivered += attainable
         faults += [f"row {index + 2}: {fault}" for fault in found]
     print(f"{len(mixed)} rows, {delivered} with attainable least-norm efforts, {len(faults)} faults")

@@ -20,6 +20,16 @@ const SETPOINTS: usize = 1500;
 const SEED: u64 = 1;
 const FRAMES: u64 = 12;
 
+/// The columns of a golden table that a mixer is asked.
+const ASKED: [&str; 6] = [
+    "roll_nm",
+    "pitch_nm",
+    "yaw_nm",
+    "thrust_n",
+    "voltage_v",
+    "density_kg_m3",
+];
+
 fn oracle(arguments: &[&str]) -> Output {
     Command::new("python3")
         .arg(root().join("tests/oracle.py"))
@@ -128,15 +138,16 @@ fn random_setpoints_are_mixed_as_the_physics_demand() {
 fn golden_vectors_are_as_the_physics_demand() {
     for name in airframes().expect("airframes/") {
         let table = fs::read_to_string(golden::folder().join(format!("{name}.vectors.csv"))).expect("golden");
-        let mut rows = table.lines();
-        let header: Vec<&str> = rows.next().expect("header").split(',').collect();
+        let header = table.lines().next().expect("header");
+        let split = |line: &str, is_asked: bool| {
+            let cells = line.split(',').zip(header.split(','));
+            let cells = cells.filter(|(_, column)| is_asked == ASKED.contains(column));
+            cells.map(|(cell, _)| decimal(cell)).collect::<Vec<_>>().join(",")
+        };
         let (mut setpoints, mut mixed) = (String::new(), String::new());
-        let _ = writeln!(setpoints, "{}", header[..5].join(","));
-        let _ = writeln!(mixed, "{}", header[5..].join(","));
-        for row in rows {
-            let cells: Vec<String> = row.split(',').map(decimal).collect();
-            let _ = writeln!(setpoints, "{}", cells[..5].join(","));
-            let _ = writeln!(mixed, "{}", cells[5..].join(","));
+        for line in table.lines() {
+            let _ = writeln!(setpoints, "{}", split(line, true));
+            let _ = writeln!(mixed, "{}", split(line, false));
         }
         judge(
             &format!("airframes/{name}.toml"),
@@ -195,6 +206,22 @@ fn the_oracle_finds_planted_faults() {
             &answered.display().to_string(),
         ]);
         assert!(!verdict.status.success(), "{what} went unnoticed");
+    }
+}
+
+/// A mixer that ignores the density, or does not say that it clamped it, is condemned.
+#[test]
+fn the_oracle_finds_an_ignored_density() {
+    let file = "airframes/x8-11in-least-power.toml";
+    let setpoints = "roll_nm,pitch_nm,yaw_nm,thrust_n,voltage_v,density_kg_m3\n0.5,-0.3,0.1,31.0,11.0,0.9\n";
+    judge(file, "density.own", setpoints, &mix(file, setpoints));
+    for other in [setpoints.replace("0.9", "1.2"), setpoints.replace("0.9", "0.0")] {
+        let (asked, answered) = (scratch("density.setpoints.csv"), scratch("density.mixed.csv"));
+        fs::write(&asked, setpoints).expect("scratch folder");
+        fs::write(&answered, mix(file, &other)).expect("scratch folder");
+        let files = [&asked, &answered].map(|path| path.display().to_string());
+        let verdict = oracle(&["judge", file, &files[0], &files[1]]);
+        assert!(!verdict.status.success(), "{other}");
     }
 }
 

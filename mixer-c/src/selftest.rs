@@ -1,26 +1,22 @@
-//! The self-test: setpoints with the bits that the command line gives for them.
+//! The self-test: golden vectors, and setpoints that are refused, with the bits that the command line
+//! gives for them.
 
 use std::fmt::Write as _;
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Correction;
+use mixer_compiler::vectors::{self, Vector};
 use mixer_rt::{Conditions, Health, SetpointError, Wrench};
 
 use crate::airframe::Airframe;
 use crate::header::{VERSION, fill};
 
-/// Rows of random setpoints.
-const RANDOM: usize = 96;
-
-/// Thrusts of the regular rows as shares of full thrust.
-const THRUSTS: [f32; 6] = [0.0, 0.1, 0.3, 0.45, 0.7, 1.2];
-/// Torques of the regular rows as shares of a normalised setpoint's unit.
-const TORQUES: [f32; 4] = [-1.5, -0.1, 0.1, 1.5];
+/// One in so many golden vectors: the table goes into the firmware's flash.
+const EVERY: usize = 3;
 
 /// `M_selftest.c`.
 pub(crate) fn text(airframe: &Airframe, health: bool) -> String {
     let Airframe { compiled, module, .. } = airframe;
-    let rows = setpoints(compiled);
+    let rows = rows(compiled);
     let mut table = String::new();
     for (index, (wrench, conditions)) in rows.iter().enumerate() {
         let failed = health.then(|| mask(index, compiled.airframe.rotors()));
@@ -94,72 +90,36 @@ fn mask(index: usize, rotors: usize) -> u64 {
     }
 }
 
-/// Setpoints and conditions: every axis alone, at once, in and far out of what is attainable, and not
-/// finite.
-fn setpoints(compiled: &Compiled) -> Vec<(Wrench, Conditions)> {
-    let unit = compiled.scale();
-    let airframe = &compiled.airframe;
-    // At the reference, at both ends and beyond; one that is not there is ignored.
-    let values = |correction: &Option<Correction>| match correction {
-        Some(correction) => {
-            let [low, high] = correction.range.map(|x| x as f32);
-            vec![correction.reference as f32, low, high, 0.9 * low, 1.1 * high]
-        }
-        None => vec![12.0],
-    };
-    let mut densities = values(&airframe.air);
-    densities.extend([f32::NAN, f32::INFINITY, 0.0, -1.0]);
-    let (mut voltages, mut densities) = (
-        values(&airframe.voltage).into_iter().cycle(),
-        densities.into_iter().cycle(),
-    );
-    let mut conditions = std::iter::from_fn(move || {
-        Some(Conditions {
-            voltage_v: voltages.next()?,
-            density_kg_m3: densities.next()?,
-        })
-    });
-    let mut rows = Vec::new();
-    let mut push = |normalised: [f32; 4]| {
-        let setpoint = Wrench::from_normalised(normalised, &unit);
-        rows.extend(conditions.next().map(|conditions| (setpoint, conditions)));
-    };
-    for thrust in THRUSTS {
-        push([0.0, 0.0, 0.0, thrust]);
-        for axis in 0..3 {
-            for torque in TORQUES {
-                let mut normalised = [0.0, 0.0, 0.0, thrust];
-                normalised[axis] = torque;
-                push(normalised);
-            }
-        }
+/// A choice of the golden vectors; densities that are none; setpoints and voltages that are refused.
+fn rows(compiled: &Compiled) -> Vec<Vector> {
+    let mut rows: Vec<Vector> = vectors::healthy(compiled).into_iter().step_by(EVERY).collect();
+    let finite = Wrench::from_normalised([0.1, 0.1, 0.1, 0.4], &compiled.scale());
+    let volts = compiled
+        .airframe
+        .voltage
+        .as_ref()
+        .map_or(12.0, |law| law.reference as f32);
+    let conditions = compiled.tables.view().at_reference_density(volts);
+    for density_kg_m3 in [f32::NAN, f32::INFINITY, 0.0, -1.0] {
+        let conditions = Conditions {
+            density_kg_m3,
+            ..conditions
+        };
+        rows.push((finite, conditions));
     }
-    let mut random = Random(1);
-    for _ in 0..RANDOM {
-        let torque = random.below_one() * 1.5;
-        let mut torques = || torque * (2.0 * random.below_one() - 1.0);
-        let [roll, pitch, yaw] = [torques(), torques(), torques()];
-        push([roll, pitch, yaw, 1.2 * random.below_one()]);
-    }
-    let at = |voltage_v| compiled.tables.view().at_reference_density(voltage_v);
-    let finite = Wrench::from_normalised([0.1, 0.1, 0.1, 0.4], &unit);
-    for axis in 0..4 {
-        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for axis in 0..4 {
             let mut wrench = finite.to_array();
             wrench[axis] = bad;
-            rows.push((Wrench::from_array(wrench), at(12.0)));
+            rows.push((Wrench::from_array(wrench), conditions));
         }
+        rows.push((
+            finite,
+            Conditions {
+                voltage_v: bad,
+                ..conditions
+            },
+        ));
     }
-    rows.extend([f32::NAN, f32::INFINITY].map(|voltage| (finite, at(voltage))));
     rows
-}
-
-/// Numerical Recipes' generator: always the same rows.
-struct Random(u32);
-
-impl Random {
-    fn below_one(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (self.0 >> 8) as f32 / (1 << 24) as f32
-    }
 }

@@ -4,11 +4,10 @@
 //! `NAME.vectors.csv`, setpoints with the bits that the mixer gives; `NAME.rotors-out.csv`, the
 //! same with rotors out.
 
-use mixer_compiler::Compiled;
+use mixer_compiler::{Compiled, vectors};
 use mixer_facts::Checked;
 
 mod table;
-pub mod vectors;
 
 /// The golden outputs of one airframe: file name and content.
 pub fn outputs(compiled: &Compiled) -> [(String, String); 4] {

@@ -1,18 +1,18 @@
 //! Vectors as tables: setpoints with what the mixer makes of them. Floats are the hexadecimal digits
-//! of their bits.
+//! of their bits. A density stands only in the tables of airframes with `[air]`, as in the setpoints of
+//! `cargo mixer mix`.
 
 use std::fmt::Write as _;
 
 use mixer_compiler::Compiled;
+use mixer_compiler::vectors::Vector;
 use mixer_rt::{Health, Wrench};
-
-use super::vectors::Vector;
 
 /// A row per vector, with all rotors.
 pub(super) fn healthy(compiled: &Compiled, vectors: &[Vector]) -> String {
     let mut table = header(compiled);
-    for (setpoint, voltage_v) in vectors {
-        push_row(&mut table, compiled, setpoint, *voltage_v, Health::GOOD);
+    for vector in vectors {
+        push_row(&mut table, compiled, vector, Health::GOOD);
     }
     table
 }
@@ -20,10 +20,10 @@ pub(super) fn healthy(compiled: &Compiled, vectors: &[Vector]) -> String {
 /// A row per vector; `failed` is the output of the rotor that is out.
 pub(super) fn rotors_out(compiled: &Compiled, vectors: &[(u8, Vector)]) -> String {
     let mut table = format!("failed,{}", header(compiled));
-    for (failed, (setpoint, voltage_v)) in vectors {
+    for (failed, vector) in vectors {
         let _ = write!(table, "{failed},");
         let health = Health::GOOD.with_failed(*failed);
-        push_row(&mut table, compiled, setpoint, *voltage_v, health);
+        push_row(&mut table, compiled, vector, health);
     }
     table
 }
@@ -32,18 +32,24 @@ fn header(compiled: &Compiled) -> String {
     let axes = ["roll_nm", "pitch_nm", "yaw_nm", "thrust_n"];
     let mut columns: Vec<String> = axes.map(str::to_owned).to_vec();
     columns.push("voltage_v".to_owned());
+    if compiled.airframe.air.is_some() {
+        columns.push("density_kg_m3".to_owned());
+    }
     columns.extend((0..compiled.airframe.rotors()).map(|channel| format!("throttle_{channel}")));
     columns.extend(axes.map(|axis| format!("achieved_{axis}")));
     columns.join(",") + ",saturation\n"
 }
 
-fn push_row(table: &mut String, compiled: &Compiled, setpoint: &Wrench, voltage_v: f32, health: Health) {
-    let mixed = compiled.tables.mix_with_health(setpoint, voltage_v, health);
+fn push_row(table: &mut String, compiled: &Compiled, vector: &Vector, health: Health) {
+    let (setpoint, conditions) = vector;
+    let mixed = compiled.tables.mix_in(setpoint, *conditions, health);
     // Vectors are finite, so the mixer takes them; one that it refused would show as zeros.
     let zeros = vec![0.0; compiled.airframe.rotors()];
     let refused = (zeros, Wrench::default(), Default::default());
     let (throttle, achieved, saturation) = mixed.unwrap_or(refused);
-    let inputs = setpoint.to_array().into_iter().chain([voltage_v]);
+    let density = compiled.airframe.air.as_ref().map(|_| conditions.density_kg_m3);
+    let inputs = setpoint.to_array().into_iter();
+    let inputs = inputs.chain([conditions.voltage_v]).chain(density);
     for value in inputs.chain(throttle).chain(achieved.to_array()) {
         let _ = write!(table, "0x{:08x},", value.to_bits());
     }

@@ -92,15 +92,13 @@ impl Golden {
             let _ = writeln!(text, "#include \"{module}.h\"");
         }
         for (file, module) in self.files.iter().zip(&self.modules) {
-            let prefix = module.to_uppercase();
             let name = file.trim_end_matches(".toml");
             let vectors = root().join(format!("tests/golden/{name}.vectors.csv"));
             let vectors = fs::read_to_string(vectors).unwrap();
-            let _ = writeln!(
-                text,
-                "static const uint32_t {module}_rows[][{prefix}_CHANNELS + 10] = {{"
-            );
-            for row in vectors.lines().skip(1) {
+            let mut rows = vectors.lines();
+            let columns = rows.next().unwrap().split(',').count();
+            let _ = writeln!(text, "static const uint32_t {module}_rows[][{columns}] = {{");
+            for row in rows {
                 let _ = writeln!(text, "    {{{row}}},");
             }
             text += "};\n";

@@ -7,7 +7,7 @@
 //! every bit agrees and every non-finite setpoint is refused.
 //!
 //! A count runs from the call of the mixer to its return, both included. The voltage and two
-//! pointers (setpoint, result) go in registers.
+//! pointers (setpoint with density, result) go in registers.
 #![no_std]
 #![no_main]
 
@@ -16,11 +16,14 @@ use core::mem::MaybeUninit;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hprintln;
 use harness::{agrees, differing_with_rotors_out, request, rows};
-use mixer_rt::{Health, Mix, SetpointError, Wrench};
+use mixer_rt::{Conditions, Health, Mix, SetpointError, Wrench};
 use probe::{Counter, Mixer};
 
 #[path = "../vectors/harness.rs"]
 mod harness;
+
+/// A setpoint and the air's density, kg/m3.
+type Asked = (Wrench, f32);
 
 /// What a mixer returns.
 type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
@@ -30,19 +33,24 @@ macro_rules! check {
     ($check:ident, $name:literal, $module:ident, $vectors:expr, $rotors_out:expr) => {{
         /// # Safety
         ///
-        /// `setpoint` is valid to read, `output` to write a [`Mixed`] of this airframe.
-        unsafe extern "C" fn mix(setpoint: *const Wrench, output: *mut (), voltage_v: f32) {
+        /// `asked` is valid to read, `output` to write a [`Mixed`] of this airframe.
+        unsafe extern "C" fn mix(asked: *const Asked, output: *mut (), voltage_v: f32) {
             // SAFETY: the caller's promise.
             unsafe {
+                let (setpoint, density_kg_m3) = &*asked;
+                let conditions = Conditions {
+                    voltage_v,
+                    density_kg_m3: *density_kg_m3,
+                };
                 output
                     .cast::<Mixed<{ $module::CHANNELS }>>()
-                    .write($module::mix(&*setpoint, voltage_v))
+                    .write($module::mix_in(setpoint, &conditions))
             }
         }
         let mut different = 0;
         let raised = probe::exceptions(|| {
-            different = differing_with_rotors_out($rotors_out, |setpoint, voltage_v, failed| {
-                $module::mix_with_health(setpoint, voltage_v, Health::GOOD.with_failed(failed))
+            different = differing_with_rotors_out($rotors_out, |setpoint, conditions, failed| {
+                $module::mix_in_with_health(setpoint, conditions, Health::GOOD.with_failed(failed))
             });
         });
         $check.rotors_out($name, different);
@@ -80,7 +88,7 @@ impl Check {
         &mut self,
         name: &str,
         table: &str,
-        mix: Mixer,
+        mix: Mixer<Asked>,
         raised_with_rotors_out: u32,
     ) {
         let vectors = rows(table);
@@ -88,19 +96,21 @@ impl Check {
         let (mut mismatches, mut sum, mut worst, mut stack) = (0, 0_u64, 0, 0);
         let raised = probe::exceptions(|| {
             for (row, vector) in vectors.clone().enumerate() {
-                let Some((setpoint, voltage_v)) = request(vector) else {
+                let Some((setpoint, conditions)) = request(vector, CHANNELS) else {
                     hprintln!("{}: row {} of the vectors is too short", name, row);
                     self.passed = false;
                     continue;
                 };
                 let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
                 let pointer = output.as_mut_ptr().cast();
+                let asked = (setpoint, conditions.density_kg_m3);
+                let voltage_v = conditions.voltage_v;
                 // SAFETY: the output is of the type that `mix` writes, which it does in every call; no
                 // interrupt is enabled.
                 let (instructions, bytes, mixed) = unsafe {
-                    let bytes = probe::high_water(mix, &setpoint, pointer, voltage_v);
+                    let bytes = probe::high_water(mix, &asked, pointer, voltage_v);
                     (
-                        self.counter.count(mix, &setpoint, pointer, voltage_v),
+                        self.counter.count(mix, &asked, pointer, voltage_v),
                         bytes,
                         output.assume_init(),
                     )
@@ -145,8 +155,12 @@ impl Check {
 
 fn show<const CHANNELS: usize>(name: &str, row: usize, expected: &str, mixed: &Mixed<CHANNELS>) {
     // Line 1 of the file is the header.
-    hprintln!("{}.vectors.csv:{}: throttle, achieved, saturation", name, row + 2);
-    hprintln!("  host   {}", expected.splitn(6, ',').last().unwrap_or_default());
+    hprintln!(
+        "{}.vectors.csv:{}: request, throttle, achieved, saturation",
+        name,
+        row + 2
+    );
+    hprintln!("  host   {}", expected);
     match mixed {
         Ok(mix) => hprintln!(
             "  target {:08x?} {:08x?} {:08x}",
@@ -165,10 +179,11 @@ fn show<const CHANNELS: usize>(name: &str, row: usize, expected: &str, mixed: &M
 /// `mix` must write a [`Mixed`] for `CHANNELS` channels.
 unsafe fn accepted_non_finite<'a, const CHANNELS: usize>(
     vectors: impl Iterator<Item = &'a str>,
-    mix: Mixer,
+    mix: Mixer<Asked>,
 ) -> u32 {
     let mut accepted = 0;
-    for (setpoint, voltage_v) in vectors.take(1).filter_map(request) {
+    let requests = vectors.take(1).filter_map(|row| request(row, CHANNELS));
+    for (setpoint, conditions) in requests {
         for axis in 0..4 {
             for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 let mut setpoint = setpoint.to_array();
@@ -176,11 +191,8 @@ unsafe fn accepted_non_finite<'a, const CHANNELS: usize>(
                 let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
                 // SAFETY: the output is of the type that `mix` writes, which it does in every call.
                 let mixed = unsafe {
-                    mix(
-                        &Wrench::from_array(setpoint),
-                        output.as_mut_ptr().cast(),
-                        voltage_v,
-                    );
+                    let asked = (Wrench::from_array(setpoint), conditions.density_kg_m3);
+                    mix(&asked, output.as_mut_ptr().cast(), conditions.voltage_v);
                     output.assume_init()
                 };
                 accepted += u32::from(mixed.is_ok());

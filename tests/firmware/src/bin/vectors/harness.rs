@@ -1,7 +1,7 @@
 //! Golden vectors on the target: rows of the tables that `cargo mixer golden` writes. Copy this
 //! file.
 
-use mixer_rt::{Mix, SetpointError, Wrench};
+use mixer_rt::{Conditions, Mix, SetpointError, Wrench};
 
 /// What a mixer returns.
 type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
@@ -10,24 +10,25 @@ type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
 #[allow(dead_code)] // The golden image, which counts instructions, goes through the rows itself.
 pub(crate) fn differing<const CHANNELS: usize>(
     table: &str,
-    mix: impl Fn(&Wrench, f32) -> Mixed<CHANNELS>,
+    mix: impl Fn(&Wrench, &Conditions) -> Mixed<CHANNELS>,
 ) -> usize {
     let agrees = |row: &&str| {
-        request(row).is_some_and(|(setpoint, voltage_v)| agrees(row, &mix(&setpoint, voltage_v)))
+        let (setpoint, conditions) = request(row, CHANNELS)?;
+        Some(agrees(row, &mix(&setpoint, &conditions)))
     };
-    rows(table).filter(|row| !agrees(row)).count()
+    rows(table).filter(|row| agrees(row) != Some(true)).count()
 }
 
 /// How many rows of `NAME.rotors-out.csv` `mix` gives other bits for with the rotor out that it is
 /// given.
 pub(crate) fn differing_with_rotors_out<const CHANNELS: usize>(
     table: &str,
-    mix: impl Fn(&Wrench, f32, u8) -> Mixed<CHANNELS>,
+    mix: impl Fn(&Wrench, &Conditions, u8) -> Mixed<CHANNELS>,
 ) -> usize {
     let agrees = |row: &&str| {
         let (failed, row) = row.split_once(',')?;
-        let (failed, (setpoint, voltage_v)) = (failed.parse().ok()?, request(row)?);
-        Some(agrees(row, &mix(&setpoint, voltage_v, failed)))
+        let (setpoint, conditions) = request(row, CHANNELS)?;
+        Some(agrees(row, &mix(&setpoint, &conditions, failed.parse().ok()?)))
     };
     rows(table).filter(|row| agrees(row) != Some(true)).count()
 }
@@ -37,12 +38,24 @@ pub(crate) fn rows(table: &str) -> impl Iterator<Item = &str> + Clone {
     table.lines().skip(1)
 }
 
-/// The setpoint and the voltage of a row; `None` of a row that has none.
-pub(crate) fn request(row: &str) -> Option<(Wrench, f32)> {
-    let mut cells = cells(row).map(|cell| cell.map(f32::from_bits));
+/// How many cells of a row are the request: four axes, the voltage and, of an airframe with `[air]`, the
+/// density. Behind them are the throttles, the achieved wrench and the saturation.
+fn inputs(row: &str, channels: usize) -> usize {
+    cells(row).count().saturating_sub(channels + 5)
+}
+
+/// The setpoint and the conditions of a row of an airframe with as many channels; `None` of a row that
+/// is too short.
+pub(crate) fn request(row: &str, channels: usize) -> Option<(Wrench, Conditions)> {
+    let cells = cells(row).take(inputs(row, channels));
+    let mut cells = cells.map(|cell| cell.map(f32::from_bits));
     let mut next = || cells.next().flatten();
     let wrench = [next()?, next()?, next()?, next()?];
-    Some((Wrench::from_array(wrench), next()?))
+    let conditions = Conditions {
+        voltage_v: next()?,
+        density_kg_m3: next().unwrap_or(0.0), // an airframe without `[air]` ignores it
+    };
+    Some((Wrench::from_array(wrench), conditions))
 }
 
 /// Whether what a mixer gives has the bits of a row.
@@ -50,7 +63,7 @@ pub(crate) fn agrees<const CHANNELS: usize>(row: &str, mixed: &Mixed<CHANNELS>) 
     mixed.as_ref().is_ok_and(|mix| {
         let floats = mix.throttle.into_iter().chain(mix.achieved.to_array());
         let given = floats.map(f32::to_bits).chain([mix.saturation.bits().into()]);
-        given.map(Some).eq(cells(row).skip(5))
+        given.map(Some).eq(cells(row).skip(inputs(row, CHANNELS)))
     })
 }
 

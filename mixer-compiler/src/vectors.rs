@@ -1,26 +1,29 @@
-//! The setpoints of an airframe's golden vectors: always the same for one airframe, all finite.
+//! The setpoints and conditions of an airframe's golden vectors and of its C self-test: always the
+//! same for one airframe, all finite.
 //!
 //! They depend on the airframe and not on the mixer, so that a mixer that changes is asked the same
 //! as before.
 
-use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Axis;
-use mixer_compiler::model::PairMap;
-use mixer_rt::Wrench;
+use mixer_rt::{Conditions, Wrench};
 
-/// A setpoint and the battery's voltage, V.
-pub type Vector = (Wrench, f32);
+use crate::Compiled;
+use crate::airframe::{Axis, Correction};
+use crate::model::PairMap;
+
+/// A setpoint and the conditions it is asked under. The density is 0 without `[air]`.
+pub type Vector = (Wrench, Conditions);
 
 /// The kind of a golden vector. The table holds the kinds in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// Zero, thrusts to beyond the ceiling at voltages to beyond the range, each axis alone.
+    /// Zero, thrusts to beyond the ceiling at voltages and densities to beyond their ranges, each axis
+    /// alone.
     ByHand,
     /// Wrenches of throttles within the range: anywhere, near its ends (where least-norm efforts
     /// often do not suffice), and about one throttle for all, as in hover.
     Attainable,
-    /// Corners of the attainable set at the ends of the voltage's range, and a little inside and
-    /// outside.
+    /// Corners of the attainable set at the ends of the ranges of voltage and density, and a little
+    /// inside and outside.
     Border,
     /// One axis or several far beyond what there is.
     Saturated,
@@ -86,6 +89,13 @@ pub fn rotors_out(compiled: &Compiled, vectors: &[Vector]) -> Vec<(u8, Vector)> 
         .collect()
 }
 
+fn conditions(volts: f64, density: f64) -> Conditions {
+    Conditions {
+        voltage_v: volts as f32,
+        density_kg_m3: density as f32,
+    }
+}
+
 /// Random setpoints of one airframe.
 struct Draw<'a> {
     compiled: &'a Compiled,
@@ -94,8 +104,10 @@ struct Draw<'a> {
     border: Vec<[f64; 2]>,
     /// Largest wrench on each axis: all units at their best, whatever the others lose.
     size: [f64; 4],
-    /// Lowest, reference and highest voltage; any where the airframe ignores it.
+    /// Lowest, reference and highest voltage, V; any where the airframe ignores it.
     volts: [f64; 3],
+    /// The same of the density, kg/m3; 0 where the airframe ignores it.
+    densities: [f64; 3],
     state: u64,
 }
 
@@ -105,17 +117,18 @@ impl<'a> Draw<'a> {
         let pair = &compiled.pair;
         let largest = |axis| compiled.effectiveness.largest(axis as usize, pair.scale());
         let size = Axis::ALL.map(largest);
-        let volts = airframe.voltage.as_ref().map_or([12.0, 14.0, 16.0], |voltage| {
-            let [low, high] = voltage.range;
-            [low, voltage.reference, high]
-        });
+        let values = |correction: &Correction| {
+            let [low, high] = correction.range;
+            [low, correction.reference, high]
+        };
         let border = pair.border(BORDER_POINTS).into_iter();
         Draw {
             compiled,
             border: border.map(|throttles| pair.efforts(throttles)).collect(),
             pair,
             size,
-            volts,
+            volts: airframe.voltage.as_ref().map_or([12.0, 14.0, 16.0], values),
+            densities: airframe.air.as_ref().map_or([0.0; 3], values),
             state: 0x9e37_79b9_7f4a_7c15,
         }
     }
@@ -134,9 +147,25 @@ impl<'a> Draw<'a> {
         low + (high - low) * self.share()
     }
 
-    /// Correction `[k_f, k_Q]` at a voltage of the range.
-    fn factors(&self, volts: f64) -> [f64; 2] {
-        self.compiled.airframe.voltage_factors(volts)
+    /// A density of the range.
+    fn density(&mut self) -> f64 {
+        let [low, _, high] = self.densities;
+        if low < high { self.between(low, high) } else { low }
+    }
+
+    /// One end of the density's range.
+    fn end_of_density(&mut self) -> f64 {
+        let [low, _, high] = self.densities;
+        if low < high && self.share() < 0.5 {
+            low
+        } else {
+            high
+        }
+    }
+
+    /// Correction `[k_f, k_Q]` at a voltage and a density of the ranges.
+    fn factors(&self, volts: f64, density: f64) -> [f64; 2] {
+        self.compiled.airframe.factors(volts, density)
     }
 
     /// A wrench in shares of the size.
@@ -144,12 +173,14 @@ impl<'a> Draw<'a> {
         Wrench::from_array(std::array::from_fn(|k| (shares[k] * self.size[k]) as f32))
     }
 
-    /// Wrenches in shares of the size, at the three voltages in turn.
+    /// Wrenches in shares of the size, at the three voltages in turn, each at the three densities in
+    /// turn.
     fn list(&self, shares: impl IntoIterator<Item = [f64; 4]>) -> Vec<Vector> {
-        let volts = self.volts.into_iter().cycle();
-        let vectors = shares.into_iter().zip(volts);
+        let all = self.densities.into_iter();
+        let all = all.flat_map(|density| self.volts.map(|volts| conditions(volts, density)));
+        let vectors = shares.into_iter().zip(all.cycle());
         vectors
-            .map(|(shares, volts)| (self.sized(shares), volts as f32))
+            .map(|(shares, conditions)| (self.sized(shares), conditions))
             .collect()
     }
 
@@ -169,16 +200,23 @@ impl<'a> Draw<'a> {
 
     fn by_hand(&self) -> Vec<Vector> {
         let [low, reference, high] = self.volts;
-        let mut list = vec![(Wrench::default(), reference as f32)];
+        let [thinnest, of_bench, densest] = self.densities;
+        let mut list = vec![(Wrench::default(), conditions(reference, of_bench))];
         for thrust in [0.02, 0.3, 0.6, 0.95, 1.2] {
             for volts in [low - 1.0, low, reference, high, high + 1.0] {
-                list.push((self.sized([0.0, 0.0, 0.0, thrust]), volts as f32));
+                list.push((self.sized([0.0, 0.0, 0.0, thrust]), conditions(volts, of_bench)));
+            }
+            // Zero is an unknown density.
+            let densities = [0.0, 0.9 * thinnest, thinnest, densest, 1.1 * densest];
+            for density in densities.into_iter().filter(|_| thinnest < densest) {
+                let shares = [0.02, -0.02, 0.02, thrust];
+                list.push((self.sized(shares), conditions(reference, density)));
             }
             for axis in 0..3 {
                 for torque in [-20.0, -1.0, -0.1, 0.1, 1.0, 20.0] {
                     let mut shares = [0.0, 0.0, 0.0, thrust];
                     shares[axis] = torque;
-                    list.push((self.sized(shares), reference as f32));
+                    list.push((self.sized(shares), conditions(reference, of_bench)));
                 }
             }
         }
@@ -189,6 +227,7 @@ impl<'a> Draw<'a> {
         let [low, high] = self.pair.range();
         let [lowest_v, _, highest_v] = self.volts;
         let volts = self.between(lowest_v, highest_v);
+        let density = self.density();
         let common = self.between(0.15, 0.85);
         let units = self.compiled.airframe.units.len();
         let mut throttle = || {
@@ -203,8 +242,11 @@ impl<'a> Draw<'a> {
         let throttles: Vec<[f64; 2]> = (0..units).map(|_| [throttle(), throttle()]).collect();
         let throttles = throttles.into_iter();
         let efforts = throttles.map(|throttles| self.pair.efforts(throttles));
-        let wrench = self.wrench(efforts, self.factors(volts));
-        (Wrench::from_array(wrench.map(|x| x as f32)), volts as f32)
+        let wrench = self.wrench(efforts, self.factors(volts, density));
+        (
+            Wrench::from_array(wrench.map(|x| x as f32)),
+            conditions(volts, density),
+        )
     }
 
     /// Every unit at the best point of its border in one direction, which is a corner of the
@@ -212,7 +254,8 @@ impl<'a> Draw<'a> {
     fn corner(&mut self) -> [Vector; 3] {
         let [low, _, high] = self.volts;
         let volts = if self.share() < 0.5 { low } else { high };
-        let factors = self.factors(volts);
+        let density = self.end_of_density();
+        let factors = self.factors(volts, density);
         let direction = Axis::ALL.map(|axis| {
             let part = self.between(-1.0, 1.0);
             let is_served = self.compiled.airframe.allocation.controls(axis);
@@ -237,7 +280,7 @@ impl<'a> Draw<'a> {
         STEPS.map(|step| {
             let wrench = |axis: usize| corner[axis] + step * direction[axis] * self.size[axis];
             let wrench = std::array::from_fn(|axis| wrench(axis) as f32);
-            (Wrench::from_array(wrench), volts as f32)
+            (Wrench::from_array(wrench), conditions(volts, density))
         })
     }
 
