@@ -13,17 +13,49 @@ function drawn(name, attributes = {}, text = "") {
 // The text of a number of a table: all the digits that the command line prints.
 const exact = (x) => String(x);
 const short = (x) => (Math.abs(x) < 1e-9 ? "0" : Number(x.toPrecision(4)).toString());
+// What people write behind a number, in the units that the labels of fields have.
+const UNITS = {
+  m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, inch: 0.0254, '"': 0.0254 }, kg: { kg: 1, g: 0.001, lb: 0.45359237 },
+  V: { V: 1, mV: 0.001 }, S: { S: 1, s: 1 }, N: { N: 1 }, "N m": { "N m": 1, Nm: 1 }, "N m/N": { "N m/N": 1, "Nm/N": 1, m: 1 },
+  "kg/m\u00b3": { "kg/m\u00b3": 1, "kg/m3": 1 },
+};
+
+// The number that was typed into a field with a label as `Arm, m`: `4,5` and `450 mm` are read. Of `1,500` nobody knows
+// which it is.
+function number(label, typed) {
+  const [name, unit] = label.split(", ");
+  const [, digits, behind] = typed.trim().match(/^([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[+-]?\d+)?)\s*(.*)$/i) ?? [];
+  const by = behind ? UNITS[unit][behind] : 1;
+  if (digits === undefined || by === undefined) throw new Error(`${name}: ${typed} is no number in ${unit}, as 4.5 or 4,5 is`);
+  if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(digits)) throw new Error(`${name}: ${typed} may mean two numbers; write ${digits.replace(",", ".")} or ${digits.replace(",", "")}`);
+  const plain = digits.replace(",", ".");
+  return by === 1 && /^-?\d+(\.\d+)?$/.test(plain) ? plain : String(Number((plain * by).toPrecision(12)));
+}
+const labelOf = (field) => field.labels[0].firstChild.textContent.trim();
+
 // Keys of the airframe file that have a field, each with its table.
 const KEYS = { mass_kg: "vehicle", airmode: "allocation", yaw_reserve_nm: "allocation", power_bias_nm_per_n: "allocation" };
 
 class Hand {
-  // `moved` is told of every new position, `edited` of the table and the key of a new value.
-  constructor(ask, moved, edited) {
-    Object.assign(this, { ask, moved, edited, busy: false, stale: false, frames: 0 });
+  // `moved` is told of every new position, `edited` of a key and its new value, `wrong` of a number that is none.
+  constructor(ask, moved, edited, wrong) {
+    Object.assign(this, { ask, moved, wrong, busy: false, stale: false, frames: 0 });
     document.getElementById("hover").addEventListener("click", () => this.put({ wrench: [0, 0, 0, this.scene.hover_n] }));
-    for (const [key, table] of Object.entries(KEYS)) {
+    for (const key of Object.keys(KEYS)) {
       const field = document.getElementById(key);
-      field.addEventListener("change", () => edited(table, key, key === "airmode" ? JSON.stringify(field.value) : field.value.trim()));
+      field.addEventListener("change", () => {
+        if (key === "airmode") edited(key, JSON.stringify(field.value));
+        else this.typed(labelOf(field), field.value, (value) => edited(key, value));
+      });
+    }
+  }
+
+  // Uses the number of a field; empty where the field is.
+  typed(label, text, use) {
+    try {
+      use(text.trim() && number(label, text));
+    } catch ({ message }) {
+      this.wrong(message, true);
     }
   }
 
@@ -54,17 +86,17 @@ class Hand {
     const one = (id, label, low, high, get, put) => {
       const step = 10 ** Math.floor(Math.log10((high - low) / 400));
       const range = element("input", { type: "range", id, min: low, max: high, step: "any", value: get() });
-      const number = element("input", { type: "number", id: `${id}-number`, step: "any", value: get(), ariaLabel: label });
+      const field = element("input", { inputMode: "decimal", id: `${id}-number`, value: get(), ariaLabel: label });
       range.addEventListener("input", () => put(Math.min(high, Math.max(low, Number((Math.round(range.value / step) * step).toPrecision(12))))));
-      number.addEventListener("change", () => put(Number(number.value)));
+      field.addEventListener("change", () => this.typed(label, field.value, (value) => put(Number(value))));
       range.addEventListener("keydown", (event) => {
         const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -20, PageUp: 20 }[event.key];
         if (!by) return;
         event.preventDefault();
         put(Math.min(high, Math.max(low, Number((get() + by * step).toPrecision(12)))));
       });
-      this.shown.push(() => { range.value = get(); if (document.activeElement !== number) number.value = get(); });
-      return element("label", {}, element("span", { textContent: label }), range, number);
+      this.shown.push(() => { range.value = get(); if (document.activeElement !== field) field.value = get(); });
+      return element("label", {}, element("span", { textContent: label }), range, field);
     };
     this.shown = [];
     const axis = ([name, unit], k) => one(name, `${name}, ${unit}`, k === 3 ? 0 : -largest[k], largest[k],

@@ -2,7 +2,8 @@
 "use strict";
 const $ = (id) => document.getElementById(id);
 const KEY = "coaxial-mixer";
-const FIELDS = ["frame", "arm", "name", "outputs", "options", "pulses"];
+const SHEET = ["diameter", "spacing", "cells"];
+const FIELDS = ["frame", "arm", "name", "outputs", "options", "pulses", ...SHEET];
 const KINDS = { map: "bench file of a pair", run: "run of one rotor", pair: "pair's tables", parameters: "vehicle's parameters" };
 // From this many points on a pair's bench file needs no prediction to stand on (cargo mixer identify --prior).
 const ENOUGH = 16;
@@ -15,7 +16,7 @@ const OUTPUTS = [
 ];
 
 const EXAMPLES = {
-  identify: "--cells 6 --pwm-range 1000,2000 --unit thrust=gf", predict: "--diameter 0.457 --spacing 0.1",
+  identify: "--cells 6 --pwm-range 1000,2000 --unit thrust=gf", predict: "--reference-voltage 22.2 --unit thrust=gf",
   import: "--upper 0,1,2,3", new: "",
 };
 
@@ -50,9 +51,11 @@ $("module").remove();
 
 // --- the state, which a reload keeps
 
-const fresh = () => ({ files: [], form: Object.fromEntries(FIELDS.map((key) => [key, key === "frame" ? "x8" : ""])), airframe: null, made: "", before: null, tab: "", hand: null });
+// `made` is the text that files and form gave last, `keys` are the keys that fields set in it.
+const fresh = () => ({ files: [], keys: {}, form: Object.fromEntries(FIELDS.map((key) => [key, key === "frame" ? "x8" : ""])), airframe: null, made: "", before: null, tab: "", hand: null });
 let state = kept();
-let pair = null, offered = null, refused = [], benchFaults = [], told = null;
+// `built` is the airframe of files, form and keys now; `told` is what came of the text `checked`.
+let pair = null, built = null, commands = [], refused = [], benchFaults = [], told = null, checked = null;
 
 function keep() {
   try {
@@ -68,10 +71,11 @@ addEventListener("pagehide", keep);
 function kept() {
   const isText = (text) => typeof text === "string", isFile = (file) => isText(file?.name) && isText(file?.text);
   try {
-    const state = JSON.parse(localStorage.getItem(KEY)), { files, form, airframe, made, before, tab, hand } = state;
-    const sound = [made, tab, ...FIELDS.map((key) => form[key])].every(isText) && files.every(isFile)
+    const state = JSON.parse(localStorage.getItem(KEY)), { files, airframe, made, before, tab, hand } = state;
+    const form = { ...(isText(state.form.arm) && fresh().form), ...state.form }, { keys = {} } = state; // of a version without some
+    const sound = [made, tab, ...FIELDS.map((key) => form[key]), ...Object.values(keys)].every(isText) && files.every(isFile)
       && [airframe, before].every((file) => file === null || isFile(file)) && (hand === null || hand.wrench.length === 4 && Array.isArray(hand.failed));
-    if (sound) return state;
+    if (sound) return { ...state, form, keys };
   } catch {}
   return fresh();
 }
@@ -96,7 +100,7 @@ async function linked() {
   try {
     const bytes = Uint8Array.from(atob(found[1].replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
     const { name, text } = JSON.parse(new TextDecoder().decode(await packed(bytes, new DecompressionStream("deflate-raw"))));
-    adopt({ name: String(name), text: String(text) }, "");
+    receive({ name: String(name), text: String(text) });
   } catch {
     refused = [{ severity: "error", file: "", message: "the link holds no whole airframe", help: "copy all of it" }];
   }
@@ -111,7 +115,7 @@ async function drop(files) {
       if (file.size > LARGEST) throw new Error("above 4 MB, as no bench file is: flight logs are read by cargo mixer review");
       const text = decoded(new Uint8Array(await file.arrayBuffer()));
       if (text === null) throw new Error("this is no text: flight logs are read by cargo mixer review, spreadsheets are saved as CSV");
-      if ((await ask("kind", file.name, text, [])).kind === "airframe") adopt({ name: file.name, text }, "");
+      if ((await ask("kind", file.name, text, [])).kind === "airframe") receive({ name: file.name, text });
       else {
         state.files = [...state.files.filter(({ name }) => name !== file.name), { name: file.name, text, chosen: "" }];
         state.tab = file.name;
@@ -150,13 +154,18 @@ function pairCommand() {
   return few && run ? ["identify", ...maps, "--prior", run, ...beside] : ["identify", ...maps, ...runs];
 }
 
+const isFramed = () => Boolean(state.form.arm || state.form.frame === "single");
+const commandName = () => pairCommand()?.[0] ?? (of("parameters").length ? "import" : isFramed() ? "new" : "identify");
+// A number of the form as an option; none where the field is empty.
+const option = (id) => (state.form[id] ? [`--${id}`, number(labelOf($(id)), state.form[id])] : []);
+
 // The command that makes the airframe, and its file; null where the frame is not told.
 function airframeCommand(tables) {
-  const { frame, arm, name, outputs } = state.form, [parameters] = of("parameters");
+  const { frame, name, outputs } = state.form, [parameters] = of("parameters");
   const file = `${name || `my-${parameters ? "airframe" : frame}`}.toml`;
-  const more = [...(tables ? ["--pair", tables.name] : []), ...(arm ? ["--arm", arm] : []), ...(name ? ["--name", name] : [])];
+  const more = [...(tables ? ["--pair", tables.name] : []), ...option("arm"), ...(name ? ["--name", name] : [])];
   if (parameters) return [file, ["import", parameters.name, ...more, "-o", file]];
-  if (!arm && frame !== "single") return null;
+  if (!isFramed()) return null;
   return [file, ["new", "--frame", frame, ...more, ...(outputs ? ["--outputs", outputs] : []), "-o", file]];
 }
 
@@ -177,7 +186,8 @@ async function remake() {
     [tables] = of("pair");
     const command = pairCommand();
     if (command) {
-      const answer = await run(command, ["-o", "pair.toml", ...options]);
+      const sheet = command[0] === "predict" ? SHEET.flatMap(option) : [];
+      const answer = await run(command, ["-o", "pair.toml", ...sheet, ...options]);
       [tables, report, notes] = [{ name: "pair.toml", text: answer.toml }, answer.report, answer.notes];
     }
     const airframe = airframeCommand(tables);
@@ -185,10 +195,11 @@ async function remake() {
       const answer = await run(airframe[1], command ? [] : options);
       made = { name: airframe[0], text: answer.toml };
       notes = [...notes, ...answer.notes];
+      for (const [key, value] of Object.entries(state.keys)) made.text = await ask("set", made.text, KEYS[key], key, value);
     }
   } catch (error) {
-    if (!(error instanceof Refused)) return say(error.message, true);
-    faults = [...refused, ...error.faults.map((fault) => ({ severity: "error", ...fault }))];
+    made = null;
+    faults = [...refused, ...(error.faults ?? [{ file: "", message: error.message, help: "" }]).map((fault) => ({ severity: "error", ...fault }))];
   }
   if (mine !== turn) return;
   pair = tables;
@@ -198,17 +209,18 @@ async function remake() {
     const [, line, message] = note.split(`${name}:`).slice(1).join(`${name}:`).match(/^(\d+): (.*)/s) ?? [];
     return { severity: "warning", file: name, line: line && Number(line), message: message ?? note, help: "" };
   })];
-  $("command-name").textContent = pairCommand()?.[0] ?? airframeCommand()?.[1][0] ?? "identify";
+  $("command-name").textContent = commandName();
+  $("sheet").hidden = commandName() !== "predict";
   $("options").placeholder = EXAMPLES[$("command-name").textContent];
-  $("help").textContent = await ask("help", $("command-name").textContent);
-  $("command").textContent = lines.join(" && ");
-  $("made-by").hidden = !lines.length;
+  $("help").textContent = await ask("help", commandName());
+  const keys = Object.entries(state.keys).filter(([, value]) => value).map(([key, value]) => `${key} = ${value} in [${KEYS[key]}]`);
+  $("command").textContent = lines.join(" && ") + (made && keys.length ? `  # then ${keys.join(", ")}` : "");
   fill($("pair-report"), report);
   $("pair-report").hidden = !report;
-  const theirs = state.airframe && state.airframe.text !== state.made && state.airframe.text !== made?.text;
-  offered = theirs && made?.text !== state.made ? made : null;
+  [built, commands] = [made, lines];
   const tab = document.activeElement === editor.area ? state.tab : "";
-  if (made && !theirs && made.text !== state.airframe?.text) await adopt(made, made.text, tab);
+  const isOwn = !state.airframe || state.airframe.text === state.made;
+  if (made && isOwn && made.text !== state.airframe?.text) await adopt(made, made.text, tab);
   else show();
   sum();
 }
@@ -218,23 +230,30 @@ const remakeSoon = later(250, remake);
 
 function adopt(airframe, made, tab = "") {
   if (state.airframe && state.airframe.text !== state.made && state.airframe.text !== airframe.text) state.before = state.airframe;
-  [state.airframe, state.made, state.tab, offered] = [airframe, made, tab, null];
+  [state.airframe, state.made, state.tab] = [{ ...airframe }, made, tab];
   show();
   return check();
 }
+// An airframe file from outside, which has its own keys.
+function receive(airframe) {
+  state.keys = {};
+  return adopt(airframe, "");
+}
+const differs = () => Boolean(state.airframe && built && state.airframe.text !== built.text);
 
 let checking = 0, spent = 0;
 async function check() {
   if (!state.airframe) return;
   const mine = checking += 1, began = performance.now();
+  const { name, text } = state.airframe;
   let answer;
   try {
-    answer = await ask("check", state.airframe.name, state.airframe.text);
+    answer = await ask("check", name, text);
   } catch (error) {
     return say(error.message, true);
   }
   if (mine !== checking) return;
-  told = answer;
+  [told, checked] = [answer, text];
   show();
   spent = Math.round(performance.now() - began);
   sum();
@@ -266,15 +285,20 @@ const editor = new Editor($("editor"), (text) => {
   keepSoon();
 });
 
-const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); }, async (...set) => {
+const hand = new Hand(ask, (at) => { state.hand = at; keepSoon(); }, async (key, value) => {
+  const { text } = state.airframe;
   try {
-    state.airframe.text = await ask("set", state.airframe.text, ...set);
-    state.tab = "";
-    await check();
+    state.airframe.text = await ask("set", text, KEYS[key], key, value);
   } catch (error) {
-    say(error.message, true);
+    return say(error.message, true);
   }
-});
+  if (text === state.made) state.made = state.airframe.text;
+  if (text === built?.text) built.text = state.airframe.text;
+  state.keys[key] = value;
+  state.tab = "";
+  await check();
+  await remake();
+}, say);
 
 // --- what is shown of the state
 
@@ -285,7 +309,8 @@ function sum() {
   const bench = errors.length ? [`${count(errors.length, "error")} in ${errors[0].file || "what the files say"}`] : [];
   const airframe = told && state.airframe ? [told.errors.length ? `${count(told.errors.length, "error")} in ${state.airframe.name}`
     : `${told.name} compiles: ${count(told.warnings.length, "warning")}, ${spent} ms`] : pair ? ["The pair is ready: the airframe needs its frame and arm"] : [];
-  say([...bench, ...airframe].join("; ") || "Ready: drop a file, or begin with a frame.", Boolean(errors.length || told?.errors.length));
+  const other = differs() ? ["the airframe is not the one of files and form"] : [];
+  say([...bench, ...airframe, ...other].join("; ") || "Ready: drop a file, or begin with a frame.", Boolean(errors.length || told?.errors.length));
 }
 
 // Lines of a word and what it means, some of them continued below; a line above them all is the caption.
@@ -336,7 +361,8 @@ function show() {
   fill($("verdict"), compiles ? told.verdict : "");
   for (const id of ["verdict", "hand", "save"]) $(id).hidden = !compiles;
   if (!compiles) $("report").replaceChildren();
-  $("replace").hidden = !offered;
+  $("differs").hidden = !differs();
+  $("made-by").hidden = !commands.length || differs();
   $("back").hidden = !state.before;
   for (const key of FIELDS) if (document.activeElement !== $(key)) $(key).value = state.form[key];
   const file = state.airframe?.name ?? "airframe.toml";
@@ -349,6 +375,8 @@ function show() {
 async function saved(what) {
   if (what === "airframe") return state.airframe;
   if (what === "pair") return pair;
+  if (checked !== state.airframe.text) await check();
+  if (checked !== state.airframe.text || told.errors.length) throw new Error(`${state.airframe.name} does not compile: nothing was saved`);
   if (what === "report") return { name: `${told.name}.html`, text: await ask("page", ...named(of("map")), today()) };
   return ask("output", what, state.form.pulses);
 }
@@ -386,7 +414,12 @@ for (const key of FIELDS) {
 }
 $("frame-form").addEventListener("submit", (event) => event.preventDefault());
 $("example").addEventListener("click", () => { Object.assign(state.form, { frame: "x8", arm: "0.45" }); remake(); });
-$("replace").addEventListener("click", () => adopt(offered, offered.text));
+$("example-sheet").addEventListener("click", () => {
+  state.files = [{ name: "rotor.csv", text: $("sample-sheet").textContent, chosen: "" }];
+  Object.assign(state.form, { frame: "x8", arm: "0.4", diameter: "0.305", spacing: "0.08" });
+  remake();
+});
+$("replace").addEventListener("click", () => adopt(built, built.text));
 $("back").addEventListener("click", () => { const { before } = state; state.before = null; adopt(before, ""); });
 $("share").addEventListener("click", async () => {
   const text = await link();
@@ -401,7 +434,7 @@ $("forget").addEventListener("click", () => {
   } catch {
     // Where the browser keeps nothing there is nothing to forget.
   }
-  [state, told, refused] = [fresh(), null, []];
+  [state, told, checked, refused] = [fresh(), null, null, []];
   remake();
 });
 

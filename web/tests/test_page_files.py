@@ -198,3 +198,18 @@ def test_an_airframe_can_be_typed(desk):
     desk.see("#editor textarea").press_sequentially(last)
     desk.compiles("isae-x8")
     assert desk.text() == head + "\n" + last
+
+
+def test_a_data_sheet_has_its_fields(desk):
+    expect(desk.see("#sheet")).to_be_hidden()
+    desk.click("#example-sheet")
+    desk.compiles("my-x8").shows("#command", "cargo mixer predict rotor.csv -o pair.toml --diameter 0.305 --spacing 0.08")
+    desk.page.fill("#cells", "6")
+    desk.page.fill("#options", "--reference-voltage 22.2 --run-voltage 22.2")
+    desk.shows("#command", "--cells 6").compiles("my-x8")
+    sheet = ROOT / "examples/no-bench/rotor.csv"
+    (desk.shell.folder / "rotor.csv").write_bytes(sheet.read_bytes())
+    desk.run_shown()
+    for output in ["pair", "airframe"]:
+        name, content = desk.save(output)
+        assert content == desk.file(name)

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 BENCH = ROOT / "examples/bench/sweep.csv"
 X8 = ROOT / "airframes/isae-x8.toml"
 
-FIELDS = ["#frame", "#arm", "#name", "#outputs", "#options", "#pulses"]
+FIELDS = ["#frame", "#arm", "#name", "#outputs", "#options", "#pulses", "#mass_kg"]
 
 
 def seen(desk):
@@ -55,6 +55,83 @@ def test_an_edited_airframe_is_not_replaced_unasked(desk):
     desk.until(lambda: "0.5" in desk.see("#command").text_content() and desk.text() not in (made, edited))
     desk.click("#back")
     desk.until(lambda: desk.text() == edited)
+
+
+def test_fields_survive_a_new_arm_and_frame(desk):
+    desk.page.fill("#arm", "0.45")
+    desk.compiles("my-x8")
+    desk.page.fill("#mass_kg", "4.5")
+    desk.page.keyboard.press("Enter")
+    desk.until(lambda: "mass_kg = 4.5" in desk.text())
+    desk.compiles("my-x8").shows("#command", "mass_kg = 4.5 in [vehicle]")
+    desk.page.fill("#arm", "0.3")
+    desk.page.select_option("#frame", "y6")
+    desk.compiles("my-y6")
+    desk.until(lambda: all(line in desk.text() for line in ["arm_m = 0.3", "mass_kg = 4.5"]))
+    expect(desk.see("#differs")).to_be_hidden()
+    desk.page.reload()
+    desk.compiles("my-y6")
+    assert desk.see("#mass_kg").input_value() == "4.5"
+    # The line that is shown makes the file but for the keys that it names.
+    desk.run_shown()
+    mine = desk.file("my-y6.toml").decode()
+    assert "arm_m = 0.3" in mine and "mass_kg = 4.5" not in mine
+    name, content = desk.save("airframe")
+    (desk.shell.folder / name).write_bytes(content)
+    name, parameters = desk.save("px4")
+    desk.shell(f"cargo mixer params my-y6.toml --stack px4 -o {name}")
+    assert parameters == desk.file(name)
+
+
+def test_an_edit_is_told_and_saved(desk):
+    desk.page.fill("#arm", "0.45")
+    desk.compiles("my-x8").replace("0.45", "0.35")
+    desk.says("the airframe is not the one of files and form")
+    expect(desk.see("#differs")).to_be_visible()
+    expect(desk.see("#made-by")).to_be_hidden()
+    # At once, before the text is checked by itself.
+    desk.replace("0.35", "0.25")
+    name, parameters = desk.save("px4")
+    (desk.shell.folder / "edited.toml").write_bytes(desk.save("airframe")[1])
+    desk.shell(f"cargo mixer params edited.toml --stack px4 -o {name}")
+    assert "0.25" in desk.file("edited.toml").decode()
+    # But for the line that names the airframe's file.
+    told = lambda text: [line for line in text.decode().splitlines() if not line.startswith("#")]
+    assert told(parameters) == told(desk.file(name))
+    desk.click("#replace")
+    desk.compiles("my-x8").until(lambda: "0.45" in desk.text())
+    expect(desk.see("#differs")).to_be_hidden()
+
+
+def test_another_airframe_has_its_own_keys(desk):
+    desk.page.fill("#arm", "0.45")
+    desk.compiles("my-x8")
+    desk.page.fill("#mass_kg", "9.5")
+    desk.page.keyboard.press("Enter")
+    desk.until(lambda: "mass_kg = 9.5" in desk.text())
+    desk.drop(X8).compiles("isae-x8")
+    assert "9.5" not in desk.text()
+    desk.click("#replace")
+    desk.compiles("my-x8")
+    assert "mass_kg = 9.5" not in desk.text()
+
+
+@pytest.mark.parametrize("typed, arm", [("0,45", "0.45"), ("450 mm", "0.45"), ("45cm", "0.45"), (".5", "0.5"), ('12"', "0.3048")])
+def test_numbers_are_read_as_people_type_them(desk, typed, arm):
+    desk.page.fill("#arm", typed)
+    desk.compiles("my-x8").shows("#command", f"--arm {arm} ")
+    desk.page.fill("#mass_kg", "4,5 kg")
+    desk.page.keyboard.press("Enter")
+    desk.until(lambda: "mass_kg = 4.5" in desk.text())
+    desk.page.fill("#roll-number", "0,5")
+    desk.page.keyboard.press("Enter")
+    desk.still().shows("#wrench tbody tr td:nth-of-type(1)", "0.5")
+
+
+@pytest.mark.parametrize("typed, told", [("long", "Arm: long is no number in m"), ("0.45 kg", "Arm: 0.45 kg"), ("1,500 mm", "write 1.500 or 1500")])
+def test_a_number_that_is_none_is_said(desk, typed, told):
+    desk.page.fill("#arm", typed)
+    desk.shows("#faults .error", told).says("1 error")
 
 
 def kept_offline(desk):

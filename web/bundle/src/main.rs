@@ -82,6 +82,7 @@ fn bundle(folder: &Path) -> Result<String, Box<dyn Error>> {
         ("{{style}}", &style),
         ("{{script}}", &script),
         ("{{worker}}", &worker),
+        ("{{sheet}}", &read("examples/no-bench/rotor.csv")?),
         ("{{module}}", &BASE64_STANDARD.encode(module)),
     ]
     .into_iter()
