@@ -143,7 +143,7 @@ class _Airframe:
             if len(out) != self.rotors or not all(isinstance(one, (bool, np.bool_)) for one in out):
                 raise MixerError(f"failed = {failed!r} is no mask: {needed}")
             return [channel for channel, one in enumerate(out) if one]
-        if not all(isinstance(one, (int, np.integer)) and one >= 0 for one in out):
+        if not all(isinstance(one, (int, np.integer)) and 0 <= one < self.rotors for one in out):
             raise MixerError(f"failed = {failed!r} has what is no output: {needed}")
         return [int(one) for one in out]
 
