@@ -37,12 +37,18 @@ impl Review {
         let mass_kg = mass_kg.or(of_file).ok_or(
             "the accelerometer measures thrust over mass: write `[vehicle] mass_kg` in the airframe file, or give --mass KG",
         )?;
+        let flight = &flight.believed(&compiled.airframe);
         if flight.throttle.is_empty() || flight.force.is_empty() {
-            return Err("the log has no outputs or no accelerometer".to_owned());
+            return Err("the log has no row of outputs or of the accelerometer that can be".to_owned());
         }
         let rows = Rows::new(flight, compiled, mass_kg);
         let whole = |row: &Row| row.health == Health::GOOD;
-        let (thrust, is_short) = Thrust::new(&rows, mass_kg).ok_or_else(|| {
+        // The thrust at the ends of the pack over that at its reference, where nobody knows the voltage.
+        let unknown = match (&flight.voltage, &compiled.airframe.voltage) {
+            (None, Some(law)) => law.range.map(|volts| law.factors(volts)[0]),
+            _ => [1.0, 1.0],
+        };
+        let (thrust, is_short) = Thrust::new(&rows, mass_kg, unknown).ok_or_else(|| {
             format!(
                 "a log of the ground: {:.0} s, of which the vehicle is in the air with all rotors for {:.1} s; some seconds of hover are \
                  the least",

@@ -2,9 +2,28 @@
 
 use std::fmt;
 
+use mixer_compiler::airframe::Airframe;
 use serde::Serialize;
 
 use crate::log::Series;
+
+/// What the quantities can be on a vehicle of this kind: throttle with outputs that are off, m/s2 per axis, m/s,
+/// rad/s, V without the pack of a file, kg/m3, and normalised setpoints.
+const THROTTLE: [f64; 2] = [-2.0, 2.0];
+const FORCE: [f64; 2] = [-100.0, 100.0];
+const VELOCITY: [f64; 2] = [-100.0, 100.0];
+const RATE: [f64; 2] = [-40.0, 40.0];
+const VOLTS: [f64; 2] = [2.0, 120.0];
+const DENSITY: [f64; 2] = [0.3, 1.7];
+const SETPOINT: [f64; 2] = [-100.0, 100.0];
+const UNIT: [f64; 2] = [-1.01, 1.01];
+
+/// Of the range of `[voltage]`, the lowest and the highest voltage that its pack can have.
+const PACK: [f64; 2] = [0.5, 2.0];
+
+/// Rows, and their share, up to which it is not told that they are left out.
+const FEW: usize = 3;
+const FEW_SHARE: f64 = 0.01;
 
 /// The stack that wrote a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -74,6 +93,48 @@ impl Flight {
             unallocated: None,
             failed: None,
             damage: None,
+        }
+    }
+
+    /// The flight without rows that are damaged: of times that do not go on, and of values that the quantity cannot
+    /// have. Where they are more than a few, `damage` says so.
+    pub(crate) fn believed(&self, airframe: &Airframe) -> Flight {
+        let pack = airframe
+            .voltage
+            .as_ref()
+            .map_or(VOLTS, |law| [0, 1].map(|k| PACK[k] * law.range[k]));
+        let mut damage: Vec<String> = self.damage.iter().cloned().collect();
+        let mut keep = |what: &str, series: &Series, [low, high]: [f64; 2], off: fn(f64) -> bool| {
+            let kept = series.believed(|row| row.iter().all(|x| off(*x) || (low..=high).contains(x)));
+            let [dropped, all] = kept.dropped();
+            if dropped > FEW && dropped as f64 > FEW_SHARE * all as f64 {
+                damage.push(format!(
+                    "{dropped} of {all} rows of the {what} cannot be (outside {low} to {high}, or of another time) and are left out"
+                ));
+            }
+            kept
+        };
+        let never = |_| false;
+        let throttle = keep("outputs", &self.throttle, THROTTLE, f64::is_nan);
+        let force = keep("accelerometer", &self.force, FORCE, never);
+        let mut some = |what, series: &Option<Series>, range| {
+            let kept = keep(what, series.as_ref()?, range, never);
+            (!kept.is_empty()).then_some(kept)
+        };
+        Flight {
+            stack: self.stack,
+            throttle,
+            force,
+            down: some("attitude", &self.down, UNIT),
+            velocity: some("velocity", &self.velocity, VELOCITY),
+            rates: some("rates", &self.rates, RATE),
+            voltage: some("voltage", &self.voltage, pack),
+            density: some("density", &self.density, DENSITY),
+            setpoint: some("setpoint", &self.setpoint, SETPOINT),
+            unallocated: some("unallocated setpoint", &self.unallocated, SETPOINT),
+            landed: self.landed.clone(),
+            failed: self.failed.clone(),
+            damage: (!damage.is_empty()).then(|| damage.join("; ")),
         }
     }
 }

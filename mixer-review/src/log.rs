@@ -10,18 +10,56 @@ pub(crate) type Channel = (&'static str, &'static [&'static str]);
 pub struct Series {
     time_s: Vec<f64>,
     values: Vec<Vec<f64>>,
+    /// Rows that were left out.
+    dropped: usize,
+}
+
+/// The longest choice of times, none before the one ahead of it, by their indices: one damaged time stamp is
+/// left out, not what stands behind it.
+fn going_on(times: &[f64]) -> Vec<usize> {
+    // Ends of the best choices of each length, and what stands before each index in its best choice.
+    let (mut ends, mut before): (Vec<usize>, Vec<Option<usize>>) = Default::default();
+    for (k, time) in times.iter().enumerate() {
+        let length = ends.partition_point(|end| times[*end] <= *time);
+        before.push(length.checked_sub(1).map(|at| ends[at]));
+        match ends.get_mut(length) {
+            Some(end) => *end = k,
+            None => ends.push(k),
+        }
+    }
+    let mut chosen: Vec<usize> = std::iter::successors(ends.last().copied(), |k| before[*k]).collect();
+    chosen.reverse();
+    chosen
 }
 
 impl Series {
-    /// Adds values at a time, s, which is not before the last one, as many as there were before.
+    /// Adds values at a time, s. A row before the last one, or with fewer values, is left out when the flight is
+    /// reviewed.
     pub fn push(&mut self, time_s: f64, values: Vec<f64>) {
-        // Damaged rows, and a clock that runs back, are of no use.
-        let is_alike = self.values.last().is_none_or(|last| last.len() == values.len());
-        let is_later = self.time_s.last().is_none_or(|last| *last <= time_s);
-        if time_s.is_finite() && is_alike && is_later {
-            self.time_s.push(time_s);
-            self.values.push(values);
+        self.time_s.push(time_s);
+        self.values.push(values);
+    }
+
+    /// The rows that are whole and sound, in times that go on; the others are counted.
+    pub(crate) fn believed(&self, is_sound: impl Fn(&[f64]) -> bool) -> Series {
+        let width = self.values.iter().map(Vec::len).max().unwrap_or_default();
+        let is_whole = |k: &usize| {
+            let row = &self.values[*k];
+            self.time_s[*k].is_finite() && row.len() == width && is_sound(row)
+        };
+        let whole: Vec<usize> = (0..self.time_s.len()).filter(is_whole).collect();
+        let times: Vec<f64> = whole.iter().map(|k| self.time_s[*k]).collect();
+        let kept: Vec<usize> = going_on(&times).into_iter().map(|at| whole[at]).collect();
+        Series {
+            time_s: kept.iter().map(|k| self.time_s[*k]).collect(),
+            values: kept.iter().map(|k| self.values[*k].clone()).collect(),
+            dropped: self.dropped + self.time_s.len() - kept.len(),
         }
+    }
+
+    /// Rows that were left out, and rows in all.
+    pub(crate) fn dropped(&self) -> [usize; 2] {
+        [self.dropped, self.dropped + self.time_s.len()]
     }
 
     /// Whether it has no values.
@@ -43,6 +81,13 @@ impl Series {
         self.values.get(after.saturating_sub(1)).map(Vec::as_slice)
     }
 
+    /// The values that hold at a time, s, where they are no older than `age_s`.
+    pub(crate) fn fresh(&self, time_s: f64, age_s: f64) -> Option<&[f64]> {
+        let after = self.time_s.partition_point(|time| *time <= time_s);
+        let last = after.checked_sub(1)?;
+        (time_s - self.time_s[last] <= age_s).then(|| self.values[last].as_slice())
+    }
+
     /// The values nearest to a time, s, where they are nearer than `within_s`.
     pub fn nearest(&self, time_s: f64, within_s: f64) -> Option<&[f64]> {
         let after = self.time_s.partition_point(|time| *time < time_s);
@@ -60,12 +105,13 @@ impl Series {
         &self.values[first..end]
     }
 
-    /// Means over the times from `from` to `to`, s; the values that hold at `to` where there are none between.
-    pub fn mean(&self, from: f64, to: f64) -> Option<Vec<f64>> {
+    /// Means over the times from `from` to `to`, s; the values that hold at `to` where there are none between, no
+    /// older than `age_s`.
+    pub(crate) fn mean(&self, from: f64, to: f64, age_s: f64) -> Option<Vec<f64>> {
         let [first, end] = [from, to].map(|limit| self.time_s.partition_point(|time| *time <= limit));
         let between = &self.values[first..end];
         let Some(width) = between.first().map(Vec::len) else {
-            return self.at(to).map(<[f64]>::to_vec);
+            return self.fresh(to, age_s).map(<[f64]>::to_vec);
         };
         let mean = |k: usize| between.iter().map(|row| row[k]).sum::<f64>() / between.len() as f64;
         Some((0..width).map(mean).collect())
@@ -76,6 +122,7 @@ impl Series {
         Series {
             time_s: self.time_s.clone(),
             values: self.values.iter().map(|row| values(row)).collect(),
+            dropped: self.dropped,
         }
     }
 }
@@ -111,7 +158,8 @@ impl Log {
 
     /// Takes a channel with the fields that the log has of it.
     pub(crate) fn some(&mut self, channel: Channel, instance: u8) -> Option<Series> {
-        self.channels.remove(&(channel, instance))
+        let series = self.channels.remove(&(channel, instance))?.believed(|_| true);
+        (!series.is_empty()).then_some(series)
     }
 
     /// Takes a channel; `None` where the log lacks one of its fields.

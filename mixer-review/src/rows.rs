@@ -36,6 +36,11 @@ const STRAIGHT: f64 = 0.1;
 /// there, and stacks see a landing late.
 const NEAR_GROUND_S: [f64; 2] = [1.0, 2.0];
 
+/// What is older than this says nothing of the present, s: of motion, of the voltage, and of the air.
+const MOTION_AGE_S: f64 = 0.5;
+const VOLTAGE_AGE_S: f64 = 3.0;
+const AIR_AGE_S: f64 = 60.0;
+
 /// Times between outputs that are further apart than this do not follow each other, s.
 const GAP_S: f64 = 0.5;
 
@@ -91,17 +96,19 @@ impl Rows {
         let mut before: Option<f64> = None;
         for (time_s, outputs) in flight.throttle.rows() {
             let last = before.replace(time_s);
-            rows.seconds += last.map_or(0.0, |last| time_s - last);
             let rotors = compiled.airframe.rotors();
             let (Some(last), true) = (last.filter(|last| time_s - last < GAP_S), outputs.len() >= rotors)
             else {
                 continue;
             };
+            rows.seconds += time_s - last;
             let throttle: Vec<f32> = outputs[..rotors]
                 .iter()
                 .map(|x| if x.is_finite() { *x as f32 } else { 0.0 })
                 .collect();
-            let conditions = conditions(flight, compiled, time_s);
+            let Some(conditions) = conditions(flight, compiled, time_s) else {
+                continue;
+            };
             let health = health(flight, &throttle, time_s);
             let factors = compiled
                 .airframe
@@ -115,26 +122,24 @@ impl Rows {
                 });
             // The accelerometer around the time of the outputs: half a step to each side.
             let half = 0.5 * (time_s - last);
-            let force = flight.force.mean(time_s - half, time_s + half);
-            let (Some(force), true) = (force, in_the_air) else {
+            let force = flight.force.mean(time_s - half, time_s + half, MOTION_AGE_S);
+            let upright: &[f64] = &[0.0, 0.0, 1.0];
+            let down = flight.down.as_ref();
+            let down = down.map_or(Some(upright), |down| down.fresh(time_s, MOTION_AGE_S));
+            let (Some(force), Some(down), true) = (force, down, in_the_air) else {
                 continue;
             };
-            let upright = vec![0.0, 0.0, 1.0];
-            let down = flight
-                .down
-                .as_ref()
-                .and_then(|down| down.at(time_s))
-                .map_or(upright, <[f64]>::to_vec);
-            let along: f64 = force.iter().zip(&down).map(|(f, d)| f * d).sum();
+            let along: f64 = force.iter().zip(down).map(|(f, d)| f * d).sum();
+            let is_slow = |v: &[f64]| libm::hypot(v[0], v[1]) < SLOW_HORIZONTAL && v[2].abs() < SLOW_VERTICAL;
             let slow = flight
                 .velocity
                 .as_ref()
-                .and_then(|velocity| velocity.at(time_s))
-                .is_none_or(|v| libm::hypot(v[0], v[1]) < SLOW_HORIZONTAL && v[2].abs() < SLOW_VERTICAL);
-            let turns = flight
-                .rates
-                .as_ref()
-                .and_then(|rates| rates.mean(time_s - half, time_s + half));
+                .is_none_or(|velocity| velocity.fresh(time_s, MOTION_AGE_S).is_some_and(is_slow));
+            let is_still = |rates: Vec<f64>| rates.iter().all(|rate| rate.abs() < STRAIGHT);
+            let still = flight.rates.as_ref().is_none_or(|rates| {
+                let mean = rates.mean(time_s - half, time_s + half, MOTION_AGE_S);
+                mean.is_some_and(is_still)
+            });
             let is_whole = health == Health::GOOD;
             let hovers = is_whole && slow && down[2] > LEVEL;
             rows.rows.push(Row {
@@ -145,8 +150,7 @@ impl Rows {
                 model,
                 measured: [-force[2], -along / down[2].max(0.1)],
                 hovers,
-                is_straight: hovers
-                    && turns.is_none_or(|rates| rates.iter().all(|rate| rate.abs() < STRAIGHT)),
+                is_straight: hovers && still,
                 follows: rows.rows.last().is_some_and(|row: &Row| row.time_s == last),
             });
         }
@@ -186,19 +190,23 @@ impl Rows {
     }
 }
 
-/// Voltage and density at a time; the reference where none was measured, as in flight.
-fn conditions(flight: &Flight, compiled: &Compiled, time_s: f64) -> Conditions {
-    let at = |series: &Option<Series>| {
-        let values = series.as_ref()?.at(time_s)?;
-        values
-            .first()
-            .copied()
-            .filter(|value| value.is_finite() && *value > 0.0)
+/// Voltage and density at a time; the reference of one that was never measured, or that thrust does not follow.
+/// `None` where one is missing at the time.
+fn conditions(flight: &Flight, compiled: &Compiled, time_s: f64) -> Option<Conditions> {
+    let at = |series: &Option<Series>, age_s: f64, is_followed: bool, reference: f64| {
+        let now = series.as_ref().and_then(|series| series.fresh(time_s, age_s));
+        let is_needed = is_followed && series.is_some();
+        let or_reference = if is_needed { None } else { Some(reference) };
+        now.map(|row| row[0]).or(or_reference)
     };
-    Conditions {
-        voltage_v: at(&flight.voltage).unwrap_or(compiled.airframe.reference_v()) as f32,
-        density_kg_m3: at(&flight.density).unwrap_or(compiled.airframe.reference_density()) as f32,
-    }
+    let airframe = &compiled.airframe;
+    let [of_voltage, of_air] = [&airframe.voltage, &airframe.air].map(Option::is_some);
+    let volts = at(&flight.voltage, VOLTAGE_AGE_S, of_voltage, airframe.reference_v())?;
+    let density = at(&flight.density, AIR_AGE_S, of_air, airframe.reference_density())?;
+    Some(Conditions {
+        voltage_v: volts as f32,
+        density_kg_m3: density as f32,
+    })
 }
 
 /// Rotors whose output is off, and those that the stack has found dead.

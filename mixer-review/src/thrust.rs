@@ -117,8 +117,8 @@ fn student(freedom: f64) -> f64 {
 
 impl Thrust {
     /// The scale over the rows of hover, or over all in the air where those are few; with whether they were few. `None` where the
-    /// log has not even those.
-    pub(crate) fn new(rows: &Rows, mass_kg: f64) -> Option<(Thrust, bool)> {
+    /// log has not even those. The model's thrust may be `[least, most]` times what it is at the reference voltage.
+    pub(crate) fn new(rows: &Rows, mass_kg: f64, [least, most]: [f64; 2]) -> Option<(Thrust, bool)> {
         let whole = |row: &Row| row.health == mixer_rt::Health::GOOD;
         let hover = blocks(rows, mass_kg, |row| row.hovers);
         let all = blocks(rows, mass_kg, whole);
@@ -140,7 +140,7 @@ impl Thrust {
         Some((
             Thrust {
                 scale: one,
-                interval: [one * (1.0 - half), one * (1.0 + half)],
+                interval: [one * (1.0 - half) * least, one * (1.0 + half) * most],
                 by_voltage: by_voltage(used),
                 by_thrust: by_thrust(&all, mass_kg, one),
             },

@@ -134,7 +134,8 @@ fn yaw(seen: &Seen<'_>) -> Vec<String> {
 /// Of voltage and density.
 fn conditions(seen: &Seen<'_>) -> Vec<String> {
     let (airframe, review) = (&seen.compiled.airframe, seen.review);
-    let of = |range: &Option<Range>, law: Option<f64>, key: &str, unit: &str| match range {
+    let of = |range: &Option<Range>, law: Option<f64>, key: &str, unit: &str, beyond: &str| {
+        match range {
         Some(Range {
             least,
             largest,
@@ -148,15 +149,22 @@ fn conditions(seen: &Seen<'_>) -> Vec<String> {
         Some(_) => Vec::new(),
         None => law.map_or_else(Vec::new, |reference| {
             vec![format!(
-                "what {key} is of was not logged: the scale is that at {reference} {unit}"
+                "what {key} is of was not logged, or cannot be: the scale is that at {reference} {unit}{beyond}"
             )]
         }),
+    }
     };
     let voltage = airframe.voltage.as_ref().map(|law| law.reference);
     let air = airframe.air.as_ref().map(|law| law.reference);
     [
-        of(&review.voltage, voltage, "range_v", "V"),
-        of(&review.density, air, "range_kg_m3", "kg/m3"),
+        of(
+            &review.voltage,
+            voltage,
+            "range_v",
+            "V",
+            ", and its interval that of the whole range",
+        ),
+        of(&review.density, air, "range_kg_m3", "kg/m3", ""),
     ]
     .concat()
 }

@@ -141,3 +141,146 @@ fn the_scale_is_found_to_one_percent_in_wind_and_noise() {
     assert!(held >= 19, "{held} of 20");
     assert!(worst < 0.01, "{worst}");
 }
+
+/// Rows that cannot be, and what is missing, are left out: none moves the scale out of its interval.
+#[test]
+fn damaged_rows_do_not_move_the_scale() {
+    let compiled = compiled();
+    let flight = fly(&compiled, 1.0, 2.0, 0.5, 3);
+    let of = |flight: &Flight| Review::of(flight, &compiled, Some(6.5)).unwrap();
+    let whole = of(&flight);
+    // The rows of a channel with another time or other values in some of them.
+    let changed = |series: &Series, change: &dyn Fn(usize, &mut f64, &mut Vec<f64>)| {
+        let mut made = Series::default();
+        for (k, (mut time_s, row)) in series.rows().enumerate() {
+            let mut row = row.to_vec();
+            change(k, &mut time_s, &mut row);
+            made.push(time_s, row);
+        }
+        made
+    };
+    let voltage = |change: &dyn Fn(usize, &mut f64, &mut Vec<f64>)| Flight {
+        voltage: flight.voltage.as_ref().map(|volts| changed(volts, change)),
+        ..flight.clone()
+    };
+    let outputs = |change: &dyn Fn(usize, &mut f64, &mut Vec<f64>)| Flight {
+        throttle: changed(&flight.throttle, change),
+        ..flight.clone()
+    };
+    let force = |change: &dyn Fn(usize, &mut f64, &mut Vec<f64>)| Flight {
+        force: changed(&flight.force, change),
+        ..flight.clone()
+    };
+    let cases = [
+        (
+            "the battery stops early",
+            voltage(&|k, _, row| {
+                if k > 150 {
+                    row[0] = 0.0
+                }
+            }),
+        ),
+        (
+            "it falls out",
+            voltage(&|k, _, row| {
+                if k % 50 > 10 {
+                    row[0] = 0.0
+                }
+            }),
+        ),
+        (
+            "one voltage",
+            voltage(&|k, _, row| {
+                if k == 200 {
+                    row[0] = 1e9
+                }
+            }),
+        ),
+        (
+            "one pulse",
+            outputs(&|k, _, row| {
+                if k == 200 {
+                    row[2] = 64.5
+                }
+            }),
+        ),
+        (
+            "one time far ahead",
+            outputs(&|k, time_s, _| {
+                if k == 100 {
+                    *time_s = 1e6
+                }
+            }),
+        ),
+        (
+            "the last time",
+            outputs(&|k, time_s, _| {
+                if k == 349 {
+                    *time_s = 1e6
+                }
+            }),
+        ),
+        (
+            "one time far back",
+            force(&|k, time_s, _| {
+                if k == 1000 {
+                    *time_s = -5.0
+                }
+            }),
+        ),
+        (
+            "one NaN",
+            force(&|k, _, row| {
+                if k == 1500 {
+                    row[1] = f64::NAN
+                }
+            }),
+        ),
+        (
+            "one force",
+            force(&|k, _, row| {
+                if k == 1500 {
+                    row[2] = -3e8
+                }
+            }),
+        ),
+    ];
+    for (what, damaged) in cases {
+        let review = of(&damaged);
+        let [low, high] = review.thrust.interval;
+        println!(
+            "{what}: {:.4} in {low:.4} to {high:.4}, {:?}",
+            review.thrust.scale, review.seconds
+        );
+        assert!(
+            (low..=high).contains(&whole.thrust.scale),
+            "{what}: {low} to {high}"
+        );
+        assert!(
+            (review.thrust.scale / whole.thrust.scale - 1.0).abs() < 0.01,
+            "{what}"
+        );
+        assert!(
+            (review.seconds[0] - whole.seconds[0]).abs() < 1.0,
+            "{what}: {:?}",
+            review.seconds
+        );
+    }
+    // Without any voltage the interval is that of the whole pack, and a sentence says so.
+    let none = of(&voltage(&|_, _, row| row[0] = 0.0));
+    let [low, high] = none.thrust.interval;
+    assert!(
+        (low..=high).contains(&whole.thrust.scale) && high - low > 0.1,
+        "{low} to {high}"
+    );
+    assert!(
+        none.warnings
+            .iter()
+            .any(|text| text.contains("rows of the voltage cannot be"))
+    );
+    assert!(
+        none.warnings
+            .iter()
+            .any(|text| text.contains("interval that of the whole range"))
+    );
+}

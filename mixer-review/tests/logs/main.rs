@@ -367,10 +367,13 @@ fn a_log_of_the_ground_is_refused() {
 /// Damages drawn of each log; `MIXER_DRAWS` draws more.
 const DRAWS: usize = 60;
 
-/// A damaged log is read as far as it goes, or refused; nothing panics.
+/// A damaged log is read as far as it goes, or refused; nothing panics, and an interval that misses the whole
+/// log's scale has a word of damage.
 #[test]
 fn damaged_logs_do_no_harm() {
     for log in logs() {
+        let whole = review(&log).unwrap().thrust.scale;
+        let (mut told, mut silent) = (0, Vec::new());
         let mut state = 1u64;
         let mut next = |below: usize| {
             state = state
@@ -382,8 +385,9 @@ fn damaged_logs_do_no_harm() {
         // Formats, parameters and subscriptions stand at the beginning: half of the damages are there.
         let definitions = 4000;
         for draw in 0..draws {
-            let end = [log.len(), definitions][draw % 2];
-            let mut damaged = log[..next(end).max(1)].to_vec();
+            // Cut off anywhere, cut off there, or whole but for the damage.
+            let end = [next(log.len()).max(1), next(definitions).max(1), log.len()][draw % 3];
+            let mut damaged = log[..end].to_vec();
             for _ in 0..next(20) {
                 let at = next(damaged.len());
                 match next(4) {
@@ -392,10 +396,29 @@ fn damaged_logs_do_no_harm() {
                     2 => drop(damaged.remove(at)),
                     _ => damaged.insert(at, damaged[next(damaged.len())]),
                 }
-                damaged.push(0);
+                if damaged.is_empty() {
+                    break;
+                }
             }
-            let _ = review(&damaged);
+            if let Ok(review) = review(&damaged) {
+                let words = ["damaged", "is missing", "cannot be", "left out"];
+                let is_told = review
+                    .warnings
+                    .iter()
+                    .any(|text| words.iter().any(|word| text.contains(word)));
+                let [low, high] = review.thrust.interval;
+                told += u32::from(is_told);
+                if !is_told && !(low..=high).contains(&whole) {
+                    silent.push(format!("{draw}: {low:.3} to {high:.3} {:?}", review.warnings));
+                }
+            }
         }
+        println!(
+            "{draws} damages: {told} reviewed with a word of damage, {} silent",
+            silent.len()
+        );
+        // A parameter or a format with another sound value is no damage that anything shows.
+        assert!(500 * silent.len() <= draws, "{silent:#?}");
     }
     let [log, _] = logs();
     let cut = review(&log[..log.len() - 5]).unwrap();
