@@ -7,8 +7,9 @@ use serde::Serialize;
 
 use crate::log::Series;
 
-/// What the quantities can be on a vehicle of this kind: throttle with outputs that are off, m/s2 per axis, m/s,
-/// rad/s, V without the pack of a file, kg/m3, and normalised setpoints.
+/// Least and largest value that a row may have. The throttle of an output that is off may be below 0; force in m/s2 per
+/// axis, velocity in m/s, rate in rad/s, voltage in V where the airframe has no `[voltage]`, density in kg/m3; the parts of a
+/// unit vector.
 const THROTTLE: [f64; 2] = [-2.0, 2.0];
 const FORCE: [f64; 2] = [-100.0, 100.0];
 const VELOCITY: [f64; 2] = [-100.0, 100.0];

@@ -36,7 +36,7 @@ const STRAIGHT: f64 = 0.1;
 /// there, and stacks see a landing late.
 const NEAR_GROUND_S: [f64; 2] = [1.0, 2.0];
 
-/// What is older than this says nothing of the present, s: of motion, of the voltage, and of the air.
+/// Ages beyond which a value counts as missing, s: of attitude, velocity, rates and force; of the voltage; of the density.
 const MOTION_AGE_S: f64 = 0.5;
 const VOLTAGE_AGE_S: f64 = 3.0;
 const AIR_AGE_S: f64 = 60.0;

@@ -26,8 +26,8 @@ function number(label, typed) {
   const [name, unit] = label.split(", ");
   const [, digits, behind] = typed.trim().match(/^([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[+-]?\d+)?)\s*(.*)$/i) ?? [];
   const by = behind ? UNITS[unit][behind] : 1;
-  if (digits === undefined || by === undefined) throw new Error(`${name}: ${typed} is no number in ${unit}, as 4.5 or 4,5 is`);
-  if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(digits)) throw new Error(`${name}: ${typed} may mean two numbers; write ${digits.replace(",", ".")} or ${digits.replace(",", "")}`);
+  if (digits === undefined || by === undefined) throw new Refused(`${name}: ${typed} is no number in ${unit}, as 4.5 or 4,5 is`);
+  if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(digits)) throw new Refused(`${name}: ${typed} may mean two numbers; write ${digits.replace(",", ".")} or ${digits.replace(",", "")}`);
   const plain = digits.replace(",", ".");
   return by === 1 && /^-?\d+(\.\d+)?$/.test(plain) ? plain : String(Number((plain * by).toPrecision(12)));
 }

@@ -198,8 +198,9 @@ async function remake() {
       for (const [key, value] of Object.entries(state.keys)) made.text = await ask("set", made.text, KEYS[key], key, value);
     }
   } catch (error) {
+    if (!(error instanceof Refused)) return say(error.message, true);
     made = null;
-    faults = [...refused, ...(error.faults ?? [{ file: "", message: error.message, help: "" }]).map((fault) => ({ severity: "error", ...fault }))];
+    faults = [...refused, ...error.faults.map((fault) => ({ severity: "error", ...fault }))];
   }
   if (mine !== turn) return;
   pair = tables;
@@ -209,10 +210,11 @@ async function remake() {
     const [, line, message] = note.split(`${name}:`).slice(1).join(`${name}:`).match(/^(\d+): (.*)/s) ?? [];
     return { severity: "warning", file: name, line: line && Number(line), message: message ?? note, help: "" };
   })];
-  $("command-name").textContent = commandName();
-  $("sheet").hidden = commandName() !== "predict";
-  $("options").placeholder = EXAMPLES[$("command-name").textContent];
-  $("help").textContent = await ask("help", commandName());
+  const command = commandName();
+  $("command-name").textContent = command;
+  $("sheet").hidden = command !== "predict";
+  $("options").placeholder = EXAMPLES[command];
+  $("help").textContent = await ask("help", command);
   const keys = Object.entries(state.keys).filter(([, value]) => value).map(([key, value]) => `${key} = ${value} in [${KEYS[key]}]`);
   $("command").textContent = lines.join(" && ") + (made && keys.length ? `  # then ${keys.join(", ")}` : "");
   fill($("pair-report"), report);

@@ -57,12 +57,17 @@ def test_an_edited_airframe_is_not_replaced_unasked(desk):
     desk.until(lambda: desk.text() == edited)
 
 
-def test_fields_survive_a_new_arm_and_frame(desk):
+def with_mass(desk, mass):
+    """Fills in the arm and the mass, which then stands in the file."""
     desk.page.fill("#arm", "0.45")
     desk.compiles("my-x8")
-    desk.page.fill("#mass_kg", "4.5")
+    desk.page.fill("#mass_kg", mass)
     desk.page.keyboard.press("Enter")
-    desk.until(lambda: "mass_kg = 4.5" in desk.text())
+    desk.until(lambda: f"mass_kg = {mass}" in desk.text())
+
+
+def test_fields_survive_a_new_arm_and_frame(desk):
+    with_mass(desk, "4.5")
     desk.compiles("my-x8").shows("#command", "mass_kg = 4.5 in [vehicle]")
     desk.page.fill("#arm", "0.3")
     desk.page.select_option("#frame", "y6")
@@ -104,11 +109,7 @@ def test_an_edit_is_told_and_saved(desk):
 
 
 def test_another_airframe_has_its_own_keys(desk):
-    desk.page.fill("#arm", "0.45")
-    desk.compiles("my-x8")
-    desk.page.fill("#mass_kg", "9.5")
-    desk.page.keyboard.press("Enter")
-    desk.until(lambda: "mass_kg = 9.5" in desk.text())
+    with_mass(desk, "9.5")
     desk.drop(X8).compiles("isae-x8")
     assert "9.5" not in desk.text()
     desk.click("#replace")
