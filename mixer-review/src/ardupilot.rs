@@ -16,12 +16,18 @@ const ATTITUDE: Channel = ("ATT", &["Roll", "Pitch"]);
 const VELOCITIES: [Channel; 2] = [("XKF1", &["VN", "VE", "VD"]), ("NKF1", &["VN", "VE", "VD"])];
 const EVENTS: Channel = ("EV", &["Id"]);
 const BATTERY: Channel = ("BAT", &["Volt"]);
+const CURRENT: Channel = ("BAT", &["Curr", "CurrTot"]);
+const SPEED: Channel = ("ESC", &["RPM"]);
 const AIR: Channel = ("BARO", &["Press", "GndTemp", "Alt"]);
-const SETPOINT: Channel = ("RATE", &["ROut", "POut", "YOut", "AOut"]);
+const FLAGS: [Channel; 3] = [("PIDR", &["Flags"]), ("PIDP", &["Flags"]), ("PIDY", &["Flags"])];
+
+/// Bit 0 of the flags: the mixer cuts the axis (`AP_PIDInfo`'s `limit`).
+const LIMIT: u64 = 1;
 
 #[rustfmt::skip]
 pub(crate) const WANTED: &[Channel] = &[
-    OUTPUTS, ACCELEROMETER, GYROSCOPE, ATTITUDE, VELOCITIES[0], VELOCITIES[1], EVENTS, BATTERY, AIR, SETPOINT,
+    OUTPUTS, ACCELEROMETER, GYROSCOPE, ATTITUDE, VELOCITIES[0], VELOCITIES[1], EVENTS, BATTERY, CURRENT, SPEED, AIR,
+    FLAGS[0], FLAGS[1], FLAGS[2],
 ];
 
 /// Events (`LogEvent`): disarmed, landed, flying.
@@ -54,7 +60,7 @@ pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Resu
     Ok(Flight {
         stack: Stack::ArduPilot,
         throttle: outputs.map(|row| pins.iter().map(|pin| throttle(row[*pin])).collect()),
-        force: force.ok_or("the log has no accelerometer (`IMU`): set bit 18 of LOG_BITMASK")?,
+        force: force.ok_or("the log has no accelerometer (`IMU`): set bit 7 of LOG_BITMASK")?,
         down: log.series(ATTITUDE, 0).map(|att| att.map(down)),
         velocity: VELOCITIES
             .into_iter()
@@ -62,15 +68,28 @@ pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Resu
         rates: log.series(GYROSCOPE, 0),
         landed: log.series(EVENTS, 0).and_then(|events| landed(&events)),
         voltage: log.series(BATTERY, 0),
+        current: log.series(CURRENT, 0),
+        capacity_mah: log.parameters.get("BATT_CAPACITY").copied(),
+        speeds: pins
+            .iter()
+            .map(|pin| log.series(SPEED, *pin as u8).unwrap_or_default())
+            .collect(),
         density: log.series(AIR, 0).map(|air| {
             // The barometer's own temperature is the board's.
             air.map(|row| vec![density(row[0], row[1] + ZERO_C - LAPSE * row[2])])
         }),
-        setpoint: log.series(SETPOINT, 0),
-        unallocated: None,
+        setpoint: None,
+        cut: cut(&mut log),
         failed: None,
         damage: log.damage,
     })
+}
+
+/// By the flags of the rate controllers; of thrust nothing is logged.
+fn cut(log: &mut Log) -> Option<Series> {
+    let [roll, pitch, yaw] = FLAGS.map(|flags| log.series(flags, 0));
+    let flags = roll?.with(&pitch?).with(&yaw?);
+    Some(flags.map(|row| row.iter().map(|flags| (*flags as u64 & LIMIT) as f64).collect()))
 }
 
 /// From roll and pitch, degrees.

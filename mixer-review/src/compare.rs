@@ -1,21 +1,30 @@
 //! A flight held against the model.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::GRAVITY;
+use mixer_compiler::airframe::{Correction, GRAVITY};
 use mixer_rt::{Conditions, Health, Wrench};
 
 use crate::flight::Flight;
-use crate::review::{Hover, Options, Range, Review, Stopped};
+use crate::log::Series;
+use crate::review::{Hover, Options, Power, Range, Review};
+use crate::rotors;
 use crate::rows::{Row, Rows};
-use crate::saturated::{Margin, Saturated};
-use crate::thrust::Thrust;
+use crate::saturated::Saturated;
+use crate::thrust::{Thrust, blocks, error, median, student};
 use crate::warnings::{Seen, warnings};
 
 /// Points of the map that are kept.
 const POINTS: usize = 400;
 
-/// How long a rotor is off that has stopped, s.
-const STOPPED_S: f64 = 1.0;
+/// Standard deviation of one rotor's thrust from its fellows' of the same kind, as a share.
+const ROTOR_OFF: f64 = 0.02;
+
+/// Height of the drag over the centre of gravity, as a share of the mean arm, that is not known: tilted against a wind
+/// the vehicle carries its moment.
+const DRAG_HEIGHT: f64 = 0.5;
+
+/// Coulombs of a mA h.
+const MAH: f64 = 3.6;
 
 impl Review {
     /// Reads a log and holds it against the model.
@@ -43,11 +52,14 @@ impl Review {
         }
         let rows = Rows::new(flight, compiled, mass_kg);
         let whole = |row: &Row| row.health == Health::GOOD;
-        // The thrust at the ends of the pack over that at its reference, where nobody knows the voltage.
-        let unknown = match (&flight.voltage, &compiled.airframe.voltage) {
-            (None, Some(law)) => law.range.map(|volts| law.factors(volts)[0]),
-            _ => [1.0, 1.0],
+        // The thrust at the ends of the range over that at the reference, of what nobody knows.
+        let unknown = |series: &Option<Series>, law: &Option<Correction>| match (series, law) {
+            (None, Some(law)) => law.range.map(|end| law.factors(end)[0]),
+            _ => [1.0; 2],
         };
+        let of_voltage = unknown(&flight.voltage, &compiled.airframe.voltage);
+        let of_air = unknown(&flight.density, &compiled.airframe.air);
+        let unknown = [0, 1].map(|end| of_voltage[end] * of_air[end]);
         let (thrust, is_short) = Thrust::new(&rows, mass_kg, unknown).ok_or_else(|| {
             format!(
                 "a log of the ground: {:.0} s, of which the vehicle is in the air with all rotors for {:.1} s; some seconds of hover are \
@@ -56,7 +68,6 @@ impl Review {
                 rows.seconds_of(whole)
             )
         })?;
-        let margin = Margin::new(&rows, compiled).ok_or("no rotor turns in the air")?;
         let mut review = Review {
             airframe: compiled.airframe.name.clone(),
             stack: flight.stack,
@@ -81,22 +92,13 @@ impl Review {
                     density.at(row.time_s).map_or(f64::NAN, |density| density[0])
                 })
             }),
+            power: Power::new(&rows, flight, compiled),
             saturated: Saturated::new(&rows, flight, compiled),
-            margin,
-            stopped: stopped(&rows),
+            speeds: rotors::speeds(&rows, compiled),
+            stopped: rotors::stopped(&rows),
             warnings: Vec::new(),
-            not_told: vec![
-                "the shape of the map: in flight both rotors of a pair move together".to_owned(),
-                "the scale of the torque: it takes fast yaw and a known inertia".to_owned(),
-            ],
             flown: flown(&rows, compiled),
         };
-        if let (Some(density), None) = (&review.density, &compiled.airframe.air) {
-            review.not_told.push(format!(
-                "the air's part: {:.3} kg/m3 in this flight, and without [air] the scale has it in it",
-                0.5 * (density.least + density.largest)
-            ));
-        }
         review.warnings = warnings(&Seen {
             review: &review,
             flight,
@@ -111,19 +113,17 @@ impl Review {
 impl Hover {
     fn new(rows: &Rows, compiled: &Compiled, mass_kg: f64) -> Hover {
         let units = &compiled.airframe.units;
-        let mean_of = |throttle: &[f32], channels: [usize; 2], k: usize| f64::from(throttle[channels[k]]);
         let mean = |throttle: &[f32], k: usize| {
-            let each = units
+            let of_unit = units
                 .iter()
-                .map(|unit| mean_of(throttle, [unit.upper_channel, unit.lower_channel], k));
-            each.sum::<f64>() / units.len() as f64
+                .map(|unit| [unit.upper_channel, unit.lower_channel][k]);
+            of_unit.map(|channel| f64::from(throttle[channel])).sum::<f64>() / units.len() as f64
         };
-        let hovers = |row: &Row| row.is_straight;
-        let [upper, lower] = [0, 1].map(|k| rows.mean(hovers, |row| mean(&row.throttle, k)));
-        let straight = |k: usize| rows.mean(|row| row.is_straight, |row| row.model[k]);
-        let [roll_nm, pitch_nm, yaw_nm, thrust] = [0, 1, 2, 3].map(straight);
-        let volts = rows.mean(hovers, |row| row.conditions.voltage_v.into());
-        let density = rows.mean(hovers, |row| row.conditions.density_kg_m3.into());
+        let straight = |number: &dyn Fn(&Row) -> f64| rows.median(|row| row.is_straight, number);
+        let [upper, lower] = [0, 1].map(|k| straight(&|row| mean(&row.throttle, k)));
+        let [roll_nm, pitch_nm, yaw_nm] = [0, 1, 2].map(|k| straight(&|row| row.model[k]));
+        let volts = straight(&|row| row.conditions.voltage_v.into());
+        let density = straight(&|row| row.conditions.density_kg_m3.into());
         let model = volts.zip(density).and_then(|(voltage_v, density_kg_m3)| {
             let weight = Wrench {
                 thrust_n: (mass_kg * GRAVITY) as f32,
@@ -137,6 +137,7 @@ impl Hover {
             let mixed = mixed.filter(|(_, _, saturation)| !saturation.any_axis());
             mixed.map(|(throttle, _, _)| [0, 1].map(|k| mean(&throttle, k)))
         });
+        let centre = centre(rows, compiled, mass_kg);
         Hover {
             upper,
             lower,
@@ -144,12 +145,70 @@ impl Hover {
             roll_nm,
             pitch_nm,
             yaw_nm,
-            // Roll is -y f and pitch x f: both vanish about the centre of gravity.
-            centre_m: roll_nm
-                .zip(pitch_nm)
-                .zip(thrust)
-                .map(|((roll, pitch), thrust)| [pitch / thrust, -roll / thrust]),
+            centre_m: centre.map(|axes| axes.map(|[at, _]| at)),
+            centre_interval_m: centre.map(|axes| axes.map(|[at, half]| [at - half, at + half])),
         }
+    }
+}
+
+/// Where the thrust acts in a straight hover, forward and right of the file's centre of gravity, with half of the interval, m.
+/// The interval has the scatter, rotors of one kind that differ, and the moment of a drag.
+fn centre(rows: &Rows, compiled: &Compiled, mass_kg: f64) -> Option<[[f64; 2]; 2]> {
+    let units = &compiled.airframe.units;
+    let blocks = blocks(rows, mass_kg, |row| row.is_straight);
+    (!blocks.is_empty()).then(|| {
+        [0, 1].map(|axis| {
+            let places: Vec<f64> = blocks.iter().map(|block| block.centre_m[axis]).collect();
+            let levers = units
+                .iter()
+                .map(|unit| unit.position_m[axis] * unit.position_m[axis])
+                .sum::<f64>();
+            let alike = ROTOR_OFF * (2.0 * levers).sqrt() / (2 * units.len()) as f64;
+            let tilt = rows
+                .median(|row| row.is_straight, |row| row.down[axis])
+                .unwrap_or_default();
+            let arm = (2.0 * levers / units.len() as f64).sqrt();
+            let off = student(blocks.len()) * libm::hypot(error(&places), alike);
+            let at = median(places.iter().copied());
+            [at, libm::hypot(off, DRAG_HEIGHT * arm * tilt)]
+        })
+    })
+}
+
+impl Power {
+    /// `None` without a current, or without `[pair.power]`.
+    fn new(rows: &Rows, flight: &Flight, compiled: &Compiled) -> Option<Power> {
+        let airframe = &compiled.airframe;
+        // The power of a rotor follows the cube of its speed, where its thrust follows the square; and the density.
+        let model = |row: &Row| {
+            let throttle: Vec<f64> = row.throttle.iter().copied().map(f64::from).collect();
+            let voltage = airframe.voltage_factors(row.conditions.voltage_v.into())[0];
+            let factors = airframe.factors(
+                row.conditions.voltage_v.into(),
+                row.conditions.density_kg_m3.into(),
+            );
+            airframe
+                .power_w(&throttle)
+                .map(|power_w| power_w * voltage.sqrt() * factors[0])
+        };
+        let measured = |row: &Row| Some(row.current_a? * f64::from(row.conditions.voltage_v));
+        let is_of = |row: &Row| row.hovers && row.current_a.is_some_and(|current_a| current_a > 0.0);
+        let mean =
+            |number: &dyn Fn(&Row) -> Option<f64>| rows.median(is_of, |row| number(row).unwrap_or(f64::NAN));
+        let [model_w, measured_w] = [mean(&model)?, mean(&measured)?];
+        let current_a = mean(&|row| row.current_a)?;
+        let used_mah = flight
+            .current
+            .as_ref()
+            .and_then(|current| Some(current.rows().last()?.1[1]));
+        let capacity_mah = flight.capacity_mah.filter(|capacity_mah| *capacity_mah > 0.0);
+        let left =
+            |(capacity_mah, used_mah): (f64, f64)| MAH * (capacity_mah - used_mah).max(0.0) / current_a;
+        model_w.is_finite().then(|| Power {
+            scale: model_w / measured_w,
+            measured_w,
+            hover_left_s: capacity_mah.zip(used_mah).map(left),
+        })
     }
 }
 
@@ -167,24 +226,6 @@ impl Range {
             outside: rows.share(is_outside),
         })
     }
-}
-
-/// Rotors that are off for [`STOPPED_S`] in the air: stock allocators take the throttle of one away for
-/// shorter.
-fn stopped(rows: &Rows) -> Vec<Stopped> {
-    let outputs = rows.rows.first().map_or(0, |row| row.throttle.len());
-    let first = |output: usize| {
-        let mut since = None;
-        rows.rows.iter().find_map(|row| {
-            since = row
-                .health
-                .has_failed(output as u8)
-                .then(|| since.unwrap_or(row.time_s));
-            let time_s = since.filter(|since| row.time_s - since >= STOPPED_S)?;
-            Some(Stopped { output, time_s })
-        })
-    };
-    (0..outputs).filter_map(first).collect()
 }
 
 /// Where on the pair's map the vehicle flew.

@@ -10,6 +10,9 @@ use crate::log::{Channel, Log};
 /// The first bytes of a DataFlash log: a message that describes a format.
 pub(crate) const MAGIC: &[u8] = &[0xa3, 0x95, 0x80];
 
+/// The first bytes of a whole DataFlash log: the format of formats.
+pub(crate) const BEGIN: &[u8] = b"\xa3\x95\x80\x80\x59FMT\0";
+
 /// Fields that number the sensors of a kind.
 const INSTANCES: [&str; 4] = ["I", "Inst", "Instance", "C"];
 

@@ -8,8 +8,8 @@ use serde::Serialize;
 use crate::log::Series;
 
 /// Least and largest value that a row may have. The throttle of an output that is off may be below 0; force in m/s2 per
-/// axis, velocity in m/s, rate in rad/s, voltage in V where the airframe has no `[voltage]`, density in kg/m3; the parts of a
-/// unit vector.
+/// axis, velocity in m/s, rate in rad/s, voltage in V where the airframe has no `[voltage]`, density in kg/m3; current in A beside charge in mA h;
+/// speeds of rotors in rpm; the parts of a unit vector.
 const THROTTLE: [f64; 2] = [-2.0, 2.0];
 const FORCE: [f64; 2] = [-100.0, 100.0];
 const VELOCITY: [f64; 2] = [-100.0, 100.0];
@@ -17,6 +17,8 @@ const RATE: [f64; 2] = [-40.0, 40.0];
 const VOLTS: [f64; 2] = [2.0, 120.0];
 const DENSITY: [f64; 2] = [0.3, 1.7];
 const SETPOINT: [f64; 2] = [-100.0, 100.0];
+const AMPERES: [f64; 2] = [-10.0, 1e5];
+const RPM: [f64; 2] = [0.0, 1e6];
 const UNIT: [f64; 2] = [-1.01, 1.01];
 
 /// Of the range of `[voltage]`, the lowest and the highest voltage that its pack can have.
@@ -27,10 +29,11 @@ const FEW: usize = 3;
 const FEW_SHARE: f64 = 0.01;
 
 /// The stack that wrote a log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stack {
     /// PX4.
+    #[default]
     Px4,
     /// ArduPilot.
     ArduPilot,
@@ -47,7 +50,7 @@ impl fmt::Display for Stack {
 
 /// A flight: SI units, body axes and the earth's forward or north, right or east, down. Whatever the
 /// log lacks is `None` or empty.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Flight {
     /// Who wrote it.
     pub stack: Stack,
@@ -65,12 +68,18 @@ pub struct Flight {
     pub landed: Option<Series>,
     /// Of the battery, V.
     pub voltage: Option<Series>,
+    /// Of the battery: the current, A, and the charge that was taken, mA h.
+    pub current: Option<Series>,
+    /// The battery's charge, mA h.
+    pub capacity_mah: Option<f64>,
     /// Of the air, kg/m3.
     pub density: Option<Series>,
-    /// Normalised setpoints of roll, pitch, yaw and thrust (upward), in the stack's units.
+    /// Speed of each output's rotor, rpm; of some or of none.
+    pub speeds: Vec<Series>,
+    /// Normalised setpoints of roll, pitch, yaw and thrust (upward), in PX4's units.
     pub setpoint: Option<Series>,
-    /// What the stack's allocator says that it left out, in the same units.
-    pub unallocated: Option<Series>,
+    /// Whether the stack itself says that it cuts roll, pitch, yaw and thrust: not 0.
+    pub cut: Option<Series>,
     /// Mask of the rotors that the stack has found dead.
     pub failed: Option<Series>,
     /// What is missing of a log that is damaged or cut off.
@@ -84,16 +93,7 @@ impl Flight {
             stack,
             throttle,
             force,
-            down: None,
-            velocity: None,
-            rates: None,
-            landed: None,
-            voltage: None,
-            density: None,
-            setpoint: None,
-            unallocated: None,
-            failed: None,
-            damage: None,
+            ..Flight::default()
         }
     }
 
@@ -118,6 +118,14 @@ impl Flight {
         let never = |_| false;
         let throttle = keep("outputs", &self.throttle, THROTTLE, f64::is_nan);
         let force = keep("accelerometer", &self.force, FORCE, never);
+        // A controller that never reports a speed has none to tell.
+        let turns = |speeds: &Series| speeds.rows().any(|(_, row)| row[0] > 0.0);
+        let speeds = self
+            .speeds
+            .iter()
+            .map(|speeds| keep("rotors' speeds", speeds, RPM, never));
+        let speeds = speeds.map(|speeds| if turns(&speeds) { speeds } else { Series::default() });
+        let speeds = speeds.collect();
         let mut some = |what, series: &Option<Series>, range| {
             let kept = keep(what, series.as_ref()?, range, never);
             (!kept.is_empty()).then_some(kept)
@@ -130,11 +138,14 @@ impl Flight {
             velocity: some("velocity", &self.velocity, VELOCITY),
             rates: some("rates", &self.rates, RATE),
             voltage: some("voltage", &self.voltage, pack),
+            current: some("current", &self.current, AMPERES),
             density: some("density", &self.density, DENSITY),
             setpoint: some("setpoint", &self.setpoint, SETPOINT),
-            unallocated: some("unallocated setpoint", &self.unallocated, SETPOINT),
+            cut: self.cut.clone(),
             landed: self.landed.clone(),
             failed: self.failed.clone(),
+            capacity_mah: self.capacity_mah,
+            speeds,
             damage: (!damage.is_empty()).then(|| damage.join("; ")),
         }
     }

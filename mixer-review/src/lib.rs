@@ -6,7 +6,7 @@
 //!   -> a flight, in one form for both stacks     flight.rs; px4.rs, ardupilot.rs
 //!   -> one of this vehicle, or refused           read.rs
 //!   -> instants in the air, and the model's wrench at the logged throttles    rows.rs
-//!   -> what that says of the model               compare.rs: thrust.rs, saturated.rs; review.rs is the result
+//!   -> what that says of the model               compare.rs: thrust.rs, rotors.rs, saturated.rs; review.rs is the result
 //!   -> what deserves a look                      warnings.rs
 //!   -> text; the airframe file with the scale    text.rs, scaled.rs
 //! ```
@@ -21,6 +21,7 @@ mod log;
 mod px4;
 mod read;
 mod review;
+mod rotors;
 mod rows;
 mod saturated;
 mod scaled;

@@ -117,6 +117,16 @@ impl Series {
         Some((0..width).map(mean).collect())
     }
 
+    /// Its rows, with those of another behind them that hold at their times.
+    pub(crate) fn with(&self, other: &Series) -> Series {
+        let mut all = Series::default();
+        for (time_s, row) in self.rows() {
+            let values = other.at(time_s).map(|more| [row, more].concat());
+            values.into_iter().for_each(|values| all.push(time_s, values));
+        }
+        all
+    }
+
     /// The same times with other values.
     pub(crate) fn map(&self, values: impl Fn(&[f64]) -> Vec<f64>) -> Series {
         Series {

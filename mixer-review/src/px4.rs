@@ -24,6 +24,7 @@ const ATTITUDE: Channel = ("vehicle_attitude", &["q[0]", "q[1]", "q[2]", "q[3]"]
 const VELOCITY: Channel = ("vehicle_local_position", &["vx", "vy", "vz"]);
 const LANDED: Channel = ("vehicle_land_detected", &["landed"]);
 const BATTERY: Channel = ("battery_status", &["voltage_v", "connected"]);
+const CURRENT: Channel = ("battery_status", &["current_a", "discharged_mah"]);
 const DENSITY: Channel = ("vehicle_air_data", &["rho"]);
 const TORQUE: Channel = ("vehicle_torque_setpoint", &["xyz[0]", "xyz[1]", "xyz[2]"]);
 const THRUST: Channel = ("vehicle_thrust_setpoint", &["xyz[2]"]);
@@ -32,11 +33,26 @@ const UNALLOCATED: Channel = ("control_allocator_status", &[
     "unallocated_torque[0]", "unallocated_torque[1]", "unallocated_torque[2]", "unallocated_thrust[2]",
 ]);
 const FAILED: Channel = ("failure_detector_status", &["motor_failure_mask"]);
+#[rustfmt::skip]
+const SPEEDS: Channel = ("esc_status", &[
+    "esc_online_flags", "esc[0].esc_rpm", "esc[1].esc_rpm", "esc[2].esc_rpm", "esc[3].esc_rpm", "esc[4].esc_rpm", "esc[5].esc_rpm",
+    "esc[6].esc_rpm", "esc[7].esc_rpm", "esc[0].actuator_function", "esc[1].actuator_function", "esc[2].actuator_function",
+    "esc[3].actuator_function", "esc[4].actuator_function", "esc[5].actuator_function", "esc[6].actuator_function",
+    "esc[7].actuator_function",
+]);
 
 #[rustfmt::skip]
 pub(crate) const WANTED: &[Channel] = &[
-    MOTORS, ACCELEROMETER, FILTERED, GYROSCOPE, ATTITUDE, VELOCITY, LANDED, BATTERY, DENSITY, TORQUE, THRUST, UNALLOCATED, FAILED,
+    MOTORS, ACCELEROMETER, FILTERED, GYROSCOPE, ATTITUDE, VELOCITY, LANDED, BATTERY, CURRENT, DENSITY, TORQUE, THRUST, UNALLOCATED,
+    FAILED, SPEEDS,
 ];
+
+/// A setpoint of which more than this was left out, in PX4's units, is cut.
+const LEFT_OUT: f64 = 1e-3;
+
+/// Rotors with a speed in `esc_status`, and the function of an output that drives the first motor.
+const ESCS: usize = 8;
+const MOTOR_1: f64 = 101.0;
 
 /// Batteries that PX4 knows.
 const BATTERIES: u8 = 4;
@@ -58,6 +74,8 @@ pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Resu
     };
     let force = log.series(ACCELEROMETER, 0).or_else(|| log.series(FILTERED, 0));
     let (torque, thrust) = (log.series(TORQUE, 0), log.series(THRUST, 0));
+    let battery = (0..BATTERIES).find_map(|battery| Some((battery, voltage(&mut log, battery)?)));
+    let (number, voltage) = battery.map_or((0, None), |(number, voltage)| (number, Some(voltage)));
     Ok(Flight {
         stack: Stack::Px4,
         throttle: motors.map(|row| row.iter().map(on_bench).collect()),
@@ -67,12 +85,27 @@ pub(crate) fn flight(mut log: Log, vehicle: &Stated, bench_us: [f64; 2]) -> Resu
         velocity: log.series(VELOCITY, 0),
         rates: log.series(GYROSCOPE, 0),
         landed: log.series(LANDED, 0),
-        voltage: (0..BATTERIES).find_map(|battery| voltage(&mut log, battery)),
+        voltage,
+        current: log.series(CURRENT, number),
+        capacity_mah: log
+            .parameters
+            .get(&format!("BAT{}_CAPACITY", number + 1))
+            .copied(),
         density: log.series(DENSITY, 0),
-        setpoint: torque
-            .zip(thrust)
-            .map(|(torque, thrust)| with_thrust(&torque, &thrust)),
-        unallocated: log.series(UNALLOCATED, 0),
+        speeds: log.some(SPEEDS, 0).map_or_else(Vec::new, |escs| {
+            (0..ESCS).map(|motor| speed(&escs, motor)).collect()
+        }),
+        setpoint: torque.zip(thrust).map(|(torque, thrust)| {
+            let upward = thrust.map(|row| vec![-row[0]]);
+            torque.with(&upward)
+        }),
+        cut: log.series(UNALLOCATED, 0).map(|left| {
+            left.map(|row| {
+                row.iter()
+                    .map(|x| f64::from(u8::from(x.abs() > LEFT_OUT)))
+                    .collect()
+            })
+        }),
         failed: log.series(FAILED, 0),
         damage: log.damage,
     })
@@ -113,12 +146,23 @@ fn voltage(log: &mut Log, battery: u8) -> Option<Series> {
     Some(both.map(|row| vec![row[0]]))
 }
 
-fn with_thrust(torque: &Series, thrust: &Series) -> Series {
-    let mut all = Series::default();
-    for (time_s, row) in torque.rows() {
-        if let Some(thrust) = thrust.at(time_s) {
-            all.push(time_s, row.iter().copied().chain([-thrust[0]]).collect());
+/// Of a motor, rpm, while its controller is online; that of the same number in logs that do not say which is whose.
+fn speed(escs: &Series, motor: usize) -> Series {
+    let mut speed = Series::default();
+    for (time_s, row) in escs.rows() {
+        let drives = |esc: &usize| {
+            row.get(1 + ESCS + esc)
+                .is_some_and(|function| *function == MOTOR_1 + motor as f64)
+        };
+        let esc = if row.len() > 1 + ESCS {
+            (0..ESCS).find(drives)
+        } else {
+            Some(motor)
+        };
+        let online = esc.filter(|esc| (row[0] as u64 >> esc) & 1 == 1);
+        if let Some(rpm) = online.and_then(|esc| row.get(1 + esc)) {
+            speed.push(time_s, vec![rpm.abs()]);
         }
     }
-    all
+    speed
 }

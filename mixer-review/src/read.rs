@@ -13,6 +13,9 @@ use crate::{ardupilot, dataflash, px4, ulog};
 /// the next arm of a dodecahexa.
 const SAME_PLACE: f64 = 0.3;
 
+/// What messages call the parameters of a log.
+const PARAMETERS: &str = "the log's parameters";
+
 impl Flight {
     /// Reads a log of a vehicle.
     ///
@@ -25,13 +28,41 @@ impl Flight {
         airframe: &Airframe,
         bench_us: Option<[f64; 2]>,
     ) -> Result<Flight, String> {
-        let (stack, log) = if bytes.starts_with(ulog::MAGIC) {
-            (Stack::Px4, ulog::read(bytes, px4::WANTED))
+        let (stack, magic) = if bytes.starts_with(ulog::MAGIC) {
+            (Stack::Px4, ulog::MAGIC)
         } else if bytes.starts_with(dataflash::MAGIC) {
-            (Stack::ArduPilot, dataflash::read(bytes, ardupilot::WANTED))
+            (Stack::ArduPilot, dataflash::BEGIN)
         } else {
             return Err(format!("{name}: {}", what_else(bytes)));
         };
+        let second = bytes
+            .windows(magic.len())
+            .skip(1)
+            .position(|window| window == magic)
+            .map(|before| before + 1);
+        let first = &bytes[..second.unwrap_or(bytes.len())];
+        let mut log = match stack {
+            Stack::Px4 => ulog::read(first, px4::WANTED),
+            Stack::ArduPilot => dataflash::read(first, ardupilot::WANTED),
+        };
+        let is_sound = |name: &str, value: f64| {
+            value.is_finite()
+                && name
+                    .bytes()
+                    .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+        };
+        let all = log.parameters.len();
+        log.parameters.retain(|name, value| is_sound(name, *value));
+        let unsound = all - log.parameters.len();
+        let told = [
+            log.damage,
+            (unsound > 0)
+                .then(|| format!("the log is damaged: {unsound} parameters that cannot be are left out")),
+            second.map(|at| {
+                format!("a second log begins at byte {at} of the file and is left out: cut the file there")
+            }),
+        ];
+        log.damage = told.into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
         // What is missing may stand behind the damage.
         let damage = log.damage.clone();
         let flight = vehicle(&log).and_then(|vehicle| {
@@ -51,7 +82,9 @@ impl Flight {
 
 /// Kind of a file that is no log.
 fn what_else(bytes: &[u8]) -> &'static str {
-    const FORMS: [(&[u8], &str); 6] = [
+    const TELEMETRY: &str =
+        "a telemetry log (.tlog): give the log of the vehicle's own memory card (.bin, .ulg)";
+    const FORMS: [(&[u8], &str); 5] = [
         (b"\xfd7zXZ", "a compressed file: unpack it first (xz -dk)"),
         (b"\x1f\x8b", "a compressed file: unpack it first (gunzip -k)"),
         (b"PK", "a zip archive: unpack it first"),
@@ -60,17 +93,25 @@ fn what_else(bytes: &[u8]) -> &'static str {
             "ArduPilot's log as text: give the .bin file that it was made of",
         ),
         (
-            b"\xfe",
-            "a telemetry log: give the log of the vehicle's own memory card (.bin, .ulg)",
-        ),
-        (
-            b"\xfd",
-            "a telemetry log: give the log of the vehicle's own memory card (.bin, .ulg)",
+            b"ULogEnc",
+            "an encrypted log: decrypt it first with the key of the vehicle (PX4: Tools/decrypt_ulog.py)",
         ),
     ];
+    // A time of eight bytes, and the first byte of a MAVLink message.
+    let is_telemetry = |bytes: &[u8]| {
+        [0, 8]
+            .iter()
+            .any(|at| matches!(bytes.get(*at), Some(0xfd | 0xfe)))
+    };
+    if bytes.is_empty() {
+        return "the file is empty";
+    }
     let form = FORMS.iter().find(|(magic, _)| bytes.starts_with(magic));
-    form.map_or(
-        "neither PX4's ULog (.ulg) nor ArduPilot's DataFlash log (.bin)",
+    form.map_or_else(
+        || match is_telemetry(bytes) {
+            true => TELEMETRY,
+            false => "neither PX4's ULog (.ulg) nor ArduPilot's DataFlash log (.bin)",
+        },
         |(_, what)| what,
     )
 }
@@ -82,11 +123,16 @@ fn vehicle(log: &Log) -> Result<Stated, String> {
             "the log has no parameters, so nothing says of which vehicle it is: its beginning is missing";
         return Err(why.to_owned());
     }
-    let lines = log.parameters.iter().filter(|(_, value)| value.is_finite());
+    let lines = log.parameters.iter();
     let text = lines
         .map(|(name, value)| format!("{name} {value:?}\n"))
         .collect::<String>();
-    stated(&Source::new("parameters", text))
+    // A log has no lines.
+    let placeless = |error: String| match error.split_once(": ") {
+        Some((place, words)) if place.starts_with(PARAMETERS) => format!("{PARAMETERS}: {words}"),
+        _ => error,
+    };
+    stated(&Source::new(PARAMETERS, text)).map_err(placeless)
 }
 
 /// Refuses a log of another frame.
@@ -127,6 +173,24 @@ fn same_vehicle(vehicle: &Stated, airframe: &Airframe) -> Result<(), String> {
             return Err(format!(
                 "a log of another vehicle, or other `channels`: motor {motor} is {x:.2} m forward and {y:.2} m right there, \
                  output {} of {of} {of_x:.2} and {of_y:.2} m",
+                rotor.channel
+            ));
+        }
+        let mate = rotors.iter().find(|other| {
+            let pair = [unit.upper_channel, unit.lower_channel];
+            other.channel != rotor.channel && pair.contains(&other.channel)
+        });
+        let below = mate.map_or(0.0, |mate| rotor.position_m[2] - mate.position_m[2]);
+        let is_upper = rotor.channel == unit.upper_channel;
+        if below != 0.0 && (below < 0.0) != is_upper {
+            let [there, here] = if is_upper {
+                ["lower", "upper"]
+            } else {
+                ["upper", "lower"]
+            };
+            return Err(format!(
+                "a log of another vehicle, or `channels` with the layers exchanged: motor {motor} is the {there} rotor there, output {} of \
+                 {of} the {here} one",
                 rotor.channel
             ));
         }

@@ -21,6 +21,7 @@ use mixer_rt::{Conditions, Health};
 
 use crate::flight::Flight;
 use crate::log::Series;
+use crate::thrust::median;
 
 /// Cosine of the largest tilt in hover: 10 degrees.
 const LEVEL: f64 = 0.985;
@@ -36,10 +37,18 @@ const STRAIGHT: f64 = 0.1;
 /// there, and stacks see a landing late.
 const NEAR_GROUND_S: [f64; 2] = [1.0, 2.0];
 
-/// Ages beyond which a value counts as missing, s: of attitude, velocity, rates and force; of the voltage; of the density.
+/// Time on the ground from which on what follows is another flight, s: both of [`NEAR_GROUND_S`], less a step of the outputs.
+const ON_GROUND_S: f64 = 2.5;
+
+/// Ages beyond which a value counts as missing, s: of attitude, velocity, rates and force; of voltage and current; of the density; of a
+/// rotor's speed.
 const MOTION_AGE_S: f64 = 0.5;
 const VOLTAGE_AGE_S: f64 = 3.0;
 const AIR_AGE_S: f64 = 60.0;
+const SPEED_AGE_S: f64 = 1.0;
+
+/// Share of the other rotors' speed below which one has stopped.
+const STOPS: f64 = 0.1;
 
 /// Times between outputs that are further apart than this do not follow each other, s.
 const GAP_S: f64 = 0.5;
@@ -51,15 +60,23 @@ const CARRIES: f64 = 0.7;
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) time_s: f64,
+    /// Number of the take-off, from 1.
+    pub(crate) flight: usize,
     /// Throttle of each output, 0 where it is off.
     pub(crate) throttle: Vec<f32>,
     /// Rotors that are off.
     pub(crate) health: Health,
     pub(crate) conditions: Conditions,
+    /// Speed of each rotor, rpm; NaN where it is not known.
+    pub(crate) speeds: Vec<f64>,
+    /// Of the battery, A.
+    pub(crate) current_a: Option<f64>,
     /// Roll, pitch, yaw (N m) and thrust (N) of the model.
     pub(crate) model: [f64; 4],
     /// Thrust over mass by the accelerometer, m/s2: by the body's axis, and by the vertical part.
     pub(crate) measured: [f64; 2],
+    /// The earth's downward direction in body axes.
+    pub(crate) down: [f64; 3],
     /// Whether the vehicle hovers, all rotors turning; and whether without turning about any axis.
     pub(crate) hovers: bool,
     pub(crate) is_straight: bool,
@@ -94,6 +111,7 @@ impl Rows {
         };
         let mut rows = Rows::default();
         let mut before: Option<f64> = None;
+        let (mut take_offs, mut on_ground_s) = (0, f64::INFINITY);
         for (time_s, outputs) in flight.throttle.rows() {
             let last = before.replace(time_s);
             let rotors = compiled.airframe.rotors();
@@ -106,27 +124,28 @@ impl Rows {
                 .iter()
                 .map(|x| if x.is_finite() { *x as f32 } else { 0.0 })
                 .collect();
-            let Some(conditions) = conditions(flight, compiled, time_s) else {
+            let speeds = speeds(flight, rotors, time_s);
+            let health = health(flight, &throttle, &speeds, time_s);
+            let known = conditions(flight, compiled, time_s).map(|conditions| {
+                let airframe = &compiled.airframe;
+                let factors = airframe.factors(conditions.voltage_v.into(), conditions.density_kg_m3.into());
+                (conditions, physics.wrench(&throttle, factors, health))
+            });
+            let carries = || known.is_some_and(|(_, model)| model[3] > CARRIES * mass_kg * GRAVITY);
+            let landed = flight.landed.as_ref();
+            if !landed.map_or_else(carries, |landed| flies(landed, time_s)) {
+                on_ground_s += time_s - last;
                 continue;
-            };
-            let health = health(flight, &throttle, time_s);
-            let factors = compiled
-                .airframe
-                .factors(conditions.voltage_v.into(), conditions.density_kg_m3.into());
-            let model = physics.wrench(&throttle, factors, health);
-            let in_the_air = flight
-                .landed
-                .as_ref()
-                .map_or(model[3] > CARRIES * mass_kg * GRAVITY, |landed| {
-                    flies(landed, time_s)
-                });
+            }
+            take_offs += usize::from(on_ground_s > ON_GROUND_S);
+            on_ground_s = 0.0;
             // The accelerometer around the time of the outputs: half a step to each side.
             let half = 0.5 * (time_s - last);
             let force = flight.force.mean(time_s - half, time_s + half, MOTION_AGE_S);
             let upright: &[f64] = &[0.0, 0.0, 1.0];
             let down = flight.down.as_ref();
             let down = down.map_or(Some(upright), |down| down.fresh(time_s, MOTION_AGE_S));
-            let (Some(force), Some(down), true) = (force, down, in_the_air) else {
+            let (Some(force), Some(down), Some((conditions, model))) = (force, down, known) else {
                 continue;
             };
             let along: f64 = force.iter().zip(down).map(|(f, d)| f * d).sum();
@@ -142,13 +161,21 @@ impl Rows {
             });
             let is_whole = health == Health::GOOD;
             let hovers = is_whole && slow && down[2] > LEVEL;
+            let current = flight
+                .current
+                .as_ref()
+                .and_then(|current| current.fresh(time_s, VOLTAGE_AGE_S));
             rows.rows.push(Row {
                 time_s,
+                flight: take_offs,
+                speeds,
+                current_a: current.map(|row| row[0]),
                 throttle,
                 health,
                 conditions,
                 model,
                 measured: [-force[2], -along / down[2].max(0.1)],
+                down: std::array::from_fn(|axis| down[axis]),
                 hovers,
                 is_straight: hovers && still,
                 follows: rows.rows.last().is_some_and(|row: &Row| row.time_s == last),
@@ -165,14 +192,10 @@ impl Rows {
         rows
     }
 
-    /// Mean of a number over the rows that are chosen; `None` where none is.
-    pub(crate) fn mean(&self, is_of: impl Fn(&Row) -> bool, number: impl Fn(&Row) -> f64) -> Option<f64> {
-        let (mut count, mut sum) = (0.0, 0.0);
-        for row in self.rows.iter().filter(|row| is_of(row)) {
-            count += 1.0;
-            sum += number(row);
-        }
-        (count > 0.0).then(|| sum / count)
+    /// Median of a number over the rows that are chosen; `None` where none is.
+    pub(crate) fn median(&self, is_of: impl Fn(&Row) -> bool, number: impl Fn(&Row) -> f64) -> Option<f64> {
+        let chosen = self.rows.iter().filter(|row| is_of(row));
+        Some(median(chosen.map(number))).filter(|median| median.is_finite())
     }
 
     /// Share of the rows.
@@ -186,7 +209,8 @@ impl Rows {
             .rows
             .windows(2)
             .filter(|pair| pair[1].follows && is_of(&pair[1]));
-        pairs.map(|pair| pair[1].time_s - pair[0].time_s).sum()
+        // The sum of nothing is -0.
+        pairs.map(|pair| pair[1].time_s - pair[0].time_s).sum::<f64>() + 0.0
     }
 }
 
@@ -209,11 +233,22 @@ fn conditions(flight: &Flight, compiled: &Compiled, time_s: f64) -> Option<Condi
     })
 }
 
-/// Rotors whose output is off, and those that the stack has found dead.
-fn health(flight: &Flight, throttle: &[f32], time_s: f64) -> Health {
+/// Speed of each rotor; NaN where it is not known.
+fn speeds(flight: &Flight, rotors: usize, time_s: f64) -> Vec<f64> {
+    let speed = |output: usize| Some(flight.speeds.get(output)?.fresh(time_s, SPEED_AGE_S)?[0]);
+    (0..rotors)
+        .map(|output| speed(output).unwrap_or(f64::NAN))
+        .collect()
+}
+
+/// Rotors whose output is off, those that the stack has found dead, and those that stand while others turn.
+fn health(flight: &Flight, throttle: &[f32], speeds: &[f64], time_s: f64) -> Health {
+    let usual = median(speeds.iter().copied().filter(|speed| speed.is_finite()));
     let found = flight.failed.as_ref().and_then(|failed| failed.at(time_s));
     let found = found.map_or(0, |mask| mask[0] as u64);
-    let is_out = |channel: &usize| throttle[*channel] <= 0.0 || (found >> channel) & 1 == 1;
+    let is_out = |channel: &usize| {
+        throttle[*channel] <= 0.0 || (found >> channel) & 1 == 1 || speeds[*channel] < STOPS * usual
+    };
     let out = (0..throttle.len()).filter(is_out);
     out.fold(Health::GOOD, |health, channel| health.with_failed(channel as u8))
 }

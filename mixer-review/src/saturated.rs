@@ -1,4 +1,4 @@
-//! How often the vehicle got less than its controllers asked for, and what was left.
+//! How often the vehicle got less than its controllers asked for.
 
 use mixer_compiler::Compiled;
 use mixer_rt::{Axis, Health, Wrench};
@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::flight::{Flight, Stack};
 use crate::rows::{Row, Rows};
+use crate::thrust::median;
 
 /// Largest time between a setpoint and the outputs that it is taken to give, s.
 const SAME_TIME_S: f64 = 0.03;
@@ -16,9 +17,6 @@ const SAME_THROTTLE: f64 = 0.01;
 /// Least number of rows for that.
 const LEAST_ROWS: usize = 20;
 
-/// A setpoint of which more than this was left out, in the stack's units, is cut.
-const LEFT_OUT: f64 = 1e-3;
-
 /// Throttles this near a limit are on it.
 const ON_LIMIT: f64 = 0.005;
 
@@ -26,10 +24,12 @@ const ON_LIMIT: f64 = 0.005;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Source {
-    /// This mixer, run on the logged setpoints: the log was flown with it.
+    /// This mixer, run on PX4's logged setpoints: the log was flown with it.
     Mixer,
     /// PX4's `control_allocator_status`.
     Allocator,
+    /// The flags of ArduPilot's rate controllers.
+    Controllers,
     /// Nobody: the log does not say it.
     None,
 }
@@ -53,26 +53,14 @@ pub struct Saturated {
     pub at_idle: f64,
 }
 
-/// The least that was left to a rotor.
-#[derive(Clone, Debug, Serialize)]
-pub struct Margin {
-    /// Throttle up to the largest.
-    pub throttle: f64,
-    /// The rotor's output.
-    pub output: usize,
-    /// When, s of the log.
-    pub time_s: f64,
-}
-
 impl Saturated {
     pub(crate) fn new(rows: &Rows, flight: &Flight, compiled: &Compiled) -> Saturated {
-        let shares = by_mixer(rows, flight, compiled).map(|shares| (Source::Mixer, shares));
-        let shares = shares.or_else(|| Some((Source::Allocator, by_allocator(rows, flight)?)));
-        let (by, shares) = shares.map_or((Source::None, [None; 4]), |(by, shares)| (by, shares.map(Some)));
-        let [roll, pitch, yaw, thrust] = shares;
+        let shares = by_mixer(rows, flight, compiled).map(|shares| (Source::Mixer, shares.map(Some)));
+        let (by, [roll, pitch, yaw, thrust]) = shares
+            .or_else(|| by_stack(rows, flight))
+            .unwrap_or((Source::None, [None; 4]));
         let [min, max] = compiled.pair.range();
-        let any =
-            |is_of: &dyn Fn(f64) -> bool| rows.share(|row| turning(row).any(|(_, throttle)| is_of(throttle)));
+        let any = |is_of: &dyn Fn(f64) -> bool| rows.share(|row| turning(row).any(is_of));
         Saturated {
             by,
             roll,
@@ -85,54 +73,32 @@ impl Saturated {
     }
 }
 
-impl Margin {
-    /// `None` without rows.
-    pub(crate) fn new(rows: &Rows, compiled: &Compiled) -> Option<Margin> {
-        let [_, max] = compiled.pair.range();
-        let all = rows.rows.iter().flat_map(|row| {
-            turning(row).map(|(output, throttle)| Margin {
-                throttle: max - throttle,
-                output,
-                time_s: row.time_s,
-            })
-        });
-        all.min_by(|a, b| a.throttle.total_cmp(&b.throttle))
-    }
-}
-
-/// The rotors that turn, with their throttles.
-fn turning(row: &Row) -> impl Iterator<Item = (usize, f64)> {
-    let throttles = row
-        .throttle
-        .iter()
-        .map(|throttle| f64::from(*throttle))
-        .enumerate();
-    throttles.filter(|(output, _)| !row.health.has_failed(*output as u8))
-}
-
-/// By this mixer, where it gives the logged throttles.
-fn by_mixer(rows: &Rows, flight: &Flight, compiled: &Compiled) -> Option<[f64; 4]> {
-    let scale = match flight.stack {
-        Stack::Px4 => compiled.scale(),
-        Stack::ArduPilot => compiled.ardupilot_scale(),
+/// Throttles of the rotors that turn.
+fn turning(row: &Row) -> impl Iterator<Item = f64> {
+    let turns = |(output, throttle): (usize, &f32)| {
+        (!row.health.has_failed(output as u8)).then_some(f64::from(*throttle))
     };
-    let setpoints = flight.setpoint.as_ref()?;
+    row.throttle.iter().enumerate().filter_map(turns)
+}
+
+/// By this mixer, where it gives the throttles that PX4 logged.
+fn by_mixer(rows: &Rows, flight: &Flight, compiled: &Compiled) -> Option<[f64; 4]> {
     let (mut differences, mut flagged, mut count) = (Vec::new(), [0.0; 4], 0.0);
     for row in &rows.rows {
-        let Some(setpoint) = setpoints.nearest(row.time_s, SAME_TIME_S) else {
+        let Some(setpoint) = flight.setpoint.as_ref()?.nearest(row.time_s, SAME_TIME_S) else {
             continue;
         };
         let normalised = [0, 1, 2, 3].map(|k| setpoint[k] as f32);
-        let wrench = Wrench::from_normalised(normalised, &scale);
+        let wrench = Wrench::from_normalised(normalised, &compiled.scale());
         let Ok((throttle, _, saturation)) = compiled.tables.mix_in(&wrench, row.conditions, row.health)
         else {
             continue;
         };
-        let off = throttle
-            .iter()
-            .zip(&row.throttle)
-            .map(|(a, b)| f64::from((a - b).abs()));
         if row.health == Health::GOOD {
+            let off = throttle
+                .iter()
+                .zip(&row.throttle)
+                .map(|(a, b)| (a - b).abs().into());
             differences.push(off.fold(0.0, f64::max));
         }
         for (flagged, axis) in flagged
@@ -143,20 +109,19 @@ fn by_mixer(rows: &Rows, flight: &Flight, compiled: &Compiled) -> Option<[f64; 4
         }
         count += 1.0;
     }
-    differences.sort_by(f64::total_cmp);
-    let median = differences.get(differences.len() / 2)?;
-    (differences.len() >= LEAST_ROWS && *median < SAME_THROTTLE)
-        .then(|| flagged.map(|flagged| flagged / count))
+    let is_own = differences.len() >= LEAST_ROWS && median(differences.into_iter()) < SAME_THROTTLE;
+    is_own.then(|| flagged.map(|flagged| flagged / count))
 }
 
-/// By PX4's own word.
-fn by_allocator(rows: &Rows, flight: &Flight) -> Option<[f64; 4]> {
-    let unallocated = flight.unallocated.as_ref()?;
-    let share = |axis: usize| {
-        rows.share(|row| {
-            let left_out = unallocated.at(row.time_s).map(|row| row[axis].abs());
-            left_out.is_some_and(|left_out| left_out > LEFT_OUT)
-        })
+/// By the stack's own word.
+fn by_stack(rows: &Rows, flight: &Flight) -> Option<(Source, [Option<f64>; 4])> {
+    let cut = flight.cut.as_ref()?;
+    let width = cut.rows().next()?.1.len();
+    let is_cut = |row: &Row, axis: usize| cut.at(row.time_s).is_some_and(|row| row[axis] != 0.0);
+    let shares = [0, 1, 2, 3].map(|axis| (axis < width).then(|| rows.share(|row| is_cut(row, axis))));
+    let by = match flight.stack {
+        Stack::Px4 => Source::Allocator,
+        Stack::ArduPilot => Source::Controllers,
     };
-    Some([0, 1, 2, 3].map(share))
+    Some((by, shares))
 }

@@ -2,9 +2,7 @@
 
 use std::fmt;
 
-use mixer_compiler::diagnostic::rounded;
-
-use crate::review::{Hover, Range, Review};
+use crate::review::{Hover, Power, Range, Review};
 use crate::saturated::{Saturated, Source};
 use crate::thrust::Part;
 
@@ -19,18 +17,19 @@ pub(crate) fn beside([x, y]: [f64; 2]) -> String {
     )
 }
 
+/// Parts of a log that have a line.
+const MOST_PARTS: usize = 10;
+
 /// A line: its name and its text.
 type Line = (&'static str, String);
 
-/// Parts of a flight: `1.012 at 21.1 V (14 s)`.
-fn parts(parts: &[Part], unit: &str) -> String {
-    let part = |part: &Part| {
-        format!(
-            "{:.3} at {:.2}{unit} ({:.0} s)",
-            part.scale, part.at, part.seconds
-        )
-    };
-    parts.iter().map(part).collect::<Vec<_>>().join(", ")
+/// A part of a log: `1.012 (1.001 to 1.023) from 14 to 82 s, 21.1 V`.
+fn part(part: &Part) -> String {
+    let [low, high] = part.interval;
+    format!(
+        "{:.3} ({low:.3} to {high:.3}) in take-off {}, from {:.0} to {:.0} s, {:.1} V",
+        part.scale, part.flight, part.from_s, part.to_s, part.voltage_v
+    )
 }
 
 fn range(range: &Range, unit: &str, key: &str) -> String {
@@ -53,12 +52,19 @@ fn hover(hover: &Hover) -> Vec<Line> {
         [hover.upper, upper, hover.lower, lower].map(|throttle| or_dash(throttle, 3));
     let throttle = format!("upper {upper} flown, {by_upper} by this mixer; lower {lower}, {by_lower}");
     let torque = hover.roll_nm.zip(hover.pitch_nm).zip(hover.yaw_nm).map(|((roll, pitch), yaw)| {
-        let [roll, pitch, yaw] = [roll, pitch, yaw].map(rounded);
+        let [roll, pitch, yaw] = [roll, pitch, yaw].map(|torque_nm| (1e3 * torque_nm).round() / 1e3 + 0.0);
         format!("roll {roll}, pitch {pitch}, yaw {yaw} N m by the model in a straight hover, where there is none")
     });
     let centre = hover
         .centre_m
-        .map(|centre| format!("{} of the file's, by roll and pitch", beside(centre)));
+        .zip(hover.centre_interval_m)
+        .map(|(centre, interval)| {
+            let [x, y] = interval.map(|[low, high]| format!("{:.0}", 500.0 * (high - low)));
+            format!(
+                "{} of the file's, +- {x} and {y} mm, by roll and pitch",
+                beside(centre)
+            )
+        });
     let all = [
         ("hover throttle", Some(throttle)),
         ("torque left", torque),
@@ -69,12 +75,23 @@ fn hover(hover: &Hover) -> Vec<Line> {
         .collect()
 }
 
+fn power(power: &Power) -> String {
+    let left = power.hover_left_s.map_or(String::new(), |left_s| {
+        format!("; at the log's end charge for {:.1} min of hover", left_s / 60.0)
+    });
+    format!(
+        "model over measured {:.3}: {:.0} W are measured in hover{left}",
+        power.scale, power.measured_w
+    )
+}
+
 fn saturated(cut: &Saturated) -> String {
     let [roll, pitch, yaw, thrust] =
         [cut.roll, cut.pitch, cut.yaw, cut.thrust].map(|share| or_dash(share.map(|share| 100.0 * share), 1));
     let by = match cut.by {
         Source::Mixer => "by this mixer",
         Source::Allocator => "by control_allocator_status",
+        Source::Controllers => "by the flags of PIDR, PIDP and PIDY",
         Source::None => "the log does not say of which axis",
     };
     let [full, idle] = [cut.at_full, cut.at_idle].map(|share| 100.0 * share);
@@ -89,34 +106,28 @@ impl Review {
         let [log, air, hovers] = self.seconds;
         let [low, high] = self.thrust.interval;
         let with = match self.saturated.by {
-            Source::Mixer => "with this mixer: it gives the logged throttles",
-            _ => "with another mixer than this",
+            Source::Mixer => "; this mixer gives the logged throttles",
+            _ => "",
         };
+        let scale = self.thrust.scale.map_or_else(
+            || format!("no one scale: {low:.3} to {high:.3}"),
+            |scale| format!("{scale:.3}; in 19 of 20 flights between {low:.3} and {high:.3}"),
+        );
         let mut lines = vec![
             (
                 "flight",
                 format!(
-                    "{} of {log:.0} s: {air:.0} s in the air, {hovers:.0} s of them hover; {with}",
+                    "{} of {log:.0} s: {air:.0} s in the air, {hovers:.0} s of them hover{with}",
                     self.stack
                 ),
             ),
             (
                 "thrust",
-                format!(
-                    "model over measured {:.3}; in 19 of 20 flights between {low:.3} and {high:.3}, at {} kg +- 0.5 %",
-                    self.thrust.scale, self.mass_kg
-                ),
+                format!("model over measured {scale}, at {} kg +- 0.5 %", self.mass_kg),
             ),
         ];
-        if !self.thrust.by_voltage.is_empty() {
-            lines.push(("  by voltage", parts(&self.thrust.by_voltage, " V")));
-        }
-        if !self.thrust.by_thrust.is_empty() {
-            lines.push((
-                "  by thrust",
-                format!("{} of the weight", parts(&self.thrust.by_thrust, "")),
-            ));
-        }
+        let parts = self.thrust.parts.iter().filter(|_| self.thrust.parts.len() > 1);
+        lines.extend(parts.take(MOST_PARTS).map(|of| ("  part", part(of))));
         lines.extend(hover(&self.hover));
         lines.extend(
             self.voltage
@@ -128,17 +139,9 @@ impl Review {
                 .iter()
                 .map(|density| ("density", range(density, "kg/m3", "range_kg_m3"))),
         );
+        lines.extend(self.power.iter().map(|of| ("power", power(of))));
         lines.push(("saturated", saturated(&self.saturated)));
-        let margin = &self.margin;
-        lines.push((
-            "least margin",
-            format!(
-                "{:.3} of throttle, output {} at {:.1} s",
-                margin.throttle, margin.output, margin.time_s
-            ),
-        ));
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
-        lines.extend(self.not_told.iter().map(|what| ("not told", what.clone())));
         lines
     }
 }

@@ -1,4 +1,4 @@
-//! The scale of the thrust: the model's over the measured one.
+//! The scale of the thrust: the model's over the measured one, by parts of the log.
 
 use mixer_compiler::airframe::GRAVITY;
 use serde::Serialize;
@@ -14,48 +14,62 @@ pub(crate) const MASS_OFF: f64 = 0.005;
 /// Standard deviation of an accelerometer's offset that could not be found, m/s2.
 const OFFSET_OFF: f64 = 0.1;
 
-/// Least time that a scale of its own rests on, s, and least ratio of the voltages that it spans.
+/// Least time that a scale of its own rests on, s.
 const LEAST_S: f64 = 3.0;
-const LEAST_SPAN: f64 = 1.04;
 
-/// Thrusts over the weight between which a scale of its own is stated.
-const THRUSTS: [f64; 4] = [0.0, 0.9, 1.1, f64::MAX];
+/// A change of the scale within a flight: its least share, how many standard errors it has, and the least number of blocks
+/// on both sides.
+const CHANGE: f64 = 0.03;
+const CHANGE_ERRORS: f64 = 3.0;
+const CHANGE_BLOCKS: usize = 10;
 
 /// The model's thrust over the measured one.
 #[derive(Clone, Debug, Serialize)]
 pub struct Thrust {
-    /// The one scale of the flight.
-    pub scale: f64,
-    /// Where it lies in 19 of 20 flights, the mass' own error included.
+    /// The one scale; `None` where the intervals of the parts have no value in common.
+    pub scale: Option<f64>,
+    /// Where it lies in 19 of 20 flights, the mass' own error included; where there is no one scale, from the least to the
+    /// largest of the parts.
     pub interval: [f64; 2],
-    /// By the battery's voltage, V; empty where the log does not span them.
-    pub by_voltage: Vec<Part>,
-    /// By the thrust over the weight; empty likewise.
-    pub by_thrust: Vec<Part>,
+    /// A part per take-off, and more where the thrust changes in a flight.
+    pub parts: Vec<Part>,
+    /// Median over the whole log, whether its parts agree or not.
+    #[serde(skip)]
+    pub(crate) median: f64,
 }
 
-/// A scale of a part of the flight.
+/// A flight, or a part of one over which the scale is the same.
 #[derive(Clone, Debug, Serialize)]
 pub struct Part {
-    /// Mean over the part of what it is a part by.
-    pub at: f64,
+    /// Number of the take-off, from 1.
+    pub flight: usize,
+    /// Begin and end, s of the log.
+    pub from_s: f64,
+    /// Likewise.
+    pub to_s: f64,
+    /// Mean of the battery's voltage, V.
+    pub voltage_v: f64,
     /// The model's thrust over the measured one.
     pub scale: f64,
-    /// Its length, s.
-    pub seconds: f64,
+    /// Where it lies in 19 of 20 flights.
+    pub interval: [f64; 2],
 }
 
-/// Half a second.
-#[derive(Clone, Copy, Debug)]
-struct Block {
-    model_n: f64,
-    measured_n: [f64; 2],
+/// Means over half a second.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    flight: usize,
+    from_s: f64,
+    to_s: f64,
     volts: f64,
-    seconds: f64,
+    /// The model's thrust over the measured one, by both of its measures.
+    ratios: [f64; 2],
+    /// Where the model's thrust acts, forward and right of the file's centre, m.
+    pub(crate) centre_m: [f64; 2],
 }
 
 /// Means over blocks of rows that are chosen and follow each other.
-fn blocks(rows: &Rows, mass_kg: f64, is_of: impl Fn(&Row) -> bool) -> Vec<Block> {
+pub(crate) fn blocks(rows: &Rows, mass_kg: f64, is_of: impl Fn(&Row) -> bool) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut of_one: Vec<&Row> = Vec::new();
     for row in &rows.rows {
@@ -77,32 +91,40 @@ fn blocks(rows: &Rows, mass_kg: f64, is_of: impl Fn(&Row) -> bool) -> Vec<Block>
 /// The mean of a block that is at least half full.
 fn block(rows: &[&Row], mass_kg: f64) -> Option<Block> {
     let (first, last) = (rows.first()?, rows.last()?);
-    let seconds = last.time_s - first.time_s;
     let mean =
         |number: &dyn Fn(&Row) -> f64| rows.iter().map(|row| number(row)).sum::<f64>() / rows.len() as f64;
-    (seconds >= 0.5 * BLOCK_S).then(|| Block {
-        model_n: mean(&|row| row.model[3]),
-        measured_n: [0, 1].map(|k| mass_kg * mean(&|row| row.measured[k])),
+    let model: [f64; 4] = std::array::from_fn(|k| mean(&|row| row.model[k]));
+    (last.time_s - first.time_s >= 0.5 * BLOCK_S).then(|| Block {
+        flight: first.flight,
+        from_s: first.time_s,
+        to_s: last.time_s,
         volts: mean(&|row| row.conditions.voltage_v.into()),
-        seconds,
+        ratios: [0, 1].map(|k| model[3] / (mass_kg * mean(&|row| row.measured[k]))),
+        // Roll is -y f and pitch x f: both vanish about the centre of gravity.
+        centre_m: [model[1] / model[3], -model[0] / model[3]],
     })
 }
 
-fn scale(blocks: &[Block], k: usize) -> f64 {
-    let sum = |number: &dyn Fn(&Block) -> f64| blocks.iter().map(number).sum::<f64>();
-    sum(&|block| block.model_n) / sum(&|block| block.measured_n[k])
+fn seconds(blocks: &[Block]) -> f64 {
+    blocks.iter().map(|block| block.to_s - block.from_s).sum()
 }
 
-/// Standard error of the scale by the scatter of the blocks, as a share. Blocks are alike over some
-/// seconds (gusts, the pack's state), so covariances of neighbours count, with Bartlett's weights
-/// (Newey and West 1987).
-fn scatter(blocks: &[Block], scale: f64) -> f64 {
-    let n = blocks.len();
-    let mean = blocks.iter().map(|block| block.model_n).sum::<f64>() / n as f64;
-    let off: Vec<f64> = blocks
-        .iter()
-        .map(|block| (block.model_n - scale * block.measured_n[0]) / mean)
-        .collect();
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// The middle value; of none NaN.
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Standard error of a mean. Blocks are alike over some seconds (gusts, the pack's state), so covariances of
+/// neighbours count, with Bartlett's weights (Newey and West 1987).
+pub(crate) fn error(values: &[f64]) -> f64 {
+    let (n, mean) = (values.len(), mean(values));
+    let off: Vec<f64> = values.iter().map(|value| value - mean).collect();
     let covariance = |lag: usize| off.iter().zip(&off[lag..]).map(|(a, b)| a * b).sum::<f64>() / n as f64;
     let lags = (n / 4).min(8);
     let weighted = |lag: usize| 2.0 * (1.0 - lag as f64 / (lags + 1) as f64) * covariance(lag);
@@ -110,75 +132,95 @@ fn scatter(blocks: &[Block], scale: f64) -> f64 {
     (variance.max(covariance(0) / 4.0) / n as f64).sqrt()
 }
 
-/// Student's t at 97.5 % for a number of degrees of freedom, within 2 % from 3 on.
-fn student(freedom: f64) -> f64 {
+/// Student's t at 97.5 % for the degrees of freedom of a number of blocks that are alike in pairs, within 2 % from 3 on.
+pub(crate) fn student(blocks: usize) -> f64 {
+    let freedom = blocks as f64 / 2.0;
     1.96 + 2.4 / freedom + 4.0 / (freedom * freedom)
+}
+
+fn ratios(blocks: &[Block]) -> Vec<f64> {
+    blocks.iter().map(|block| block.ratios[0]).collect()
+}
+
+/// Parts of a flight over which the scale is the same: it is cut where the means on both sides differ most, as long as
+/// they do (binary segmentation; Scott and Knott 1974).
+fn parts(blocks: &[Block]) -> Vec<&[Block]> {
+    let ratios = ratios(blocks);
+    let gain = |at: &usize| {
+        let (left, right) = ratios.split_at(*at);
+        (left.len() * right.len()) as f64 * (mean(left) - mean(right)) * (mean(left) - mean(right))
+    };
+    let places = CHANGE_BLOCKS..(blocks.len() + 1).saturating_sub(CHANGE_BLOCKS);
+    let Some(at) = places.max_by(|a, b| gain(a).total_cmp(&gain(b))) else {
+        return vec![blocks];
+    };
+    let (left, right) = ratios.split_at(at);
+    let change = (mean(left) - mean(right)).abs();
+    match change > CHANGE * mean(left) && change > CHANGE_ERRORS * libm::hypot(error(left), error(right)) {
+        true => [parts(&blocks[..at]), parts(&blocks[at..])].concat(),
+        false => vec![blocks],
+    }
 }
 
 impl Thrust {
     /// The scale over the rows of hover, or over all in the air where those are few; with whether they were few. `None` where the
     /// log has not even those. The model's thrust may be `[least, most]` times what it is at the reference voltage.
     pub(crate) fn new(rows: &Rows, mass_kg: f64, [least, most]: [f64; 2]) -> Option<(Thrust, bool)> {
-        let whole = |row: &Row| row.health == mixer_rt::Health::GOOD;
         let hover = blocks(rows, mass_kg, |row| row.hovers);
-        let all = blocks(rows, mass_kg, whole);
-        let seconds = |blocks: &[Block]| blocks.iter().map(|block| block.seconds).sum::<f64>();
         let is_short = seconds(&hover) < LEAST_S;
-        let used = if is_short { &all } else { &hover };
-        if seconds(used) < LEAST_S {
+        let whole = |row: &Row| row.health == mixer_rt::Health::GOOD;
+        let used = if is_short {
+            blocks(rows, mass_kg, whole)
+        } else {
+            hover
+        };
+        if seconds(&used) < LEAST_S {
             return None;
         }
-        let one = scale(used, 0);
-        let by_axis = (scale(used, 1) / one - 1.0) / 2.0;
         let no_offset = if rows.offset.is_some() {
             0.0
         } else {
             OFFSET_OFF / GRAVITY
         };
-        let off = [scatter(used, one), by_axis, MASS_OFF, no_offset];
-        let half = student(used.len() as f64 / 2.0) * off.iter().map(|x| x * x).sum::<f64>().sqrt();
-        Some((
-            Thrust {
-                scale: one,
-                interval: [one * (1.0 - half) * least, one * (1.0 + half) * most],
-                by_voltage: by_voltage(used),
-                by_thrust: by_thrust(&all, mass_kg, one),
-            },
-            is_short,
-        ))
+        let estimate = |blocks: &[Block]| {
+            let [scale, other] = [0, 1].map(|k| median(blocks.iter().map(|block| block.ratios[k])));
+            let by_axis = (other / scale - 1.0) / 2.0;
+            let off = [error(&ratios(blocks)) / scale, by_axis, MASS_OFF, no_offset];
+            let half = student(blocks.len()) * off.iter().map(|x| x * x).sum::<f64>().sqrt();
+            (scale, [scale * (1.0 - half) * least, scale * (1.0 + half) * most])
+        };
+        let part = |blocks: &[Block]| {
+            let (scale, interval) = estimate(blocks);
+            Part {
+                flight: blocks[0].flight,
+                from_s: blocks[0].from_s,
+                to_s: blocks[blocks.len() - 1].to_s,
+                voltage_v: mean(&blocks.iter().map(|block| block.volts).collect::<Vec<_>>()),
+                scale,
+                interval,
+            }
+        };
+        let flights = used.chunk_by(|a, b| a.flight == b.flight).flat_map(parts);
+        let parts: Vec<Part> = flights
+            .filter(|blocks| seconds(blocks) >= LEAST_S)
+            .map(part)
+            .collect();
+        let (median, interval) = estimate(&used);
+        let [lows, highs] = [0, 1].map(|end| parts.iter().map(move |part| part.interval[end]));
+        let [common, hull] = [
+            [
+                lows.clone().fold(f64::MIN, f64::max),
+                highs.clone().fold(f64::MAX, f64::min),
+            ],
+            [lows.fold(f64::MAX, f64::min), highs.fold(f64::MIN, f64::max)],
+        ];
+        let agree = common[0] <= common[1] || parts.is_empty();
+        let thrust = Thrust {
+            scale: agree.then_some(median),
+            interval: if agree { interval } else { hull },
+            parts,
+            median,
+        };
+        Some((thrust, is_short))
     }
-}
-
-/// Parts of at least [`LEAST_S`]; none where only one is left.
-fn parts(parts: impl Iterator<Item = Vec<Block>>, at: impl Fn(&Block) -> f64) -> Vec<Part> {
-    let part = |blocks: Vec<Block>| Part {
-        at: blocks.iter().map(&at).sum::<f64>() / blocks.len() as f64,
-        scale: scale(&blocks, 0),
-        seconds: blocks.iter().map(|block| block.seconds).sum(),
-    };
-    let of_time = |blocks: &Vec<Block>| blocks.iter().map(|block| block.seconds).sum::<f64>() >= LEAST_S;
-    let parts: Vec<Part> = parts.filter(of_time).map(part).collect();
-    if parts.len() > 1 { parts } else { Vec::new() }
-}
-
-/// Thirds of the voltage's range.
-fn by_voltage(blocks: &[Block]) -> Vec<Part> {
-    let volts = blocks.iter().map(|block| block.volts);
-    let (low, high) = volts.fold((f64::MAX, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
-    if high < LEAST_SPAN * low {
-        return Vec::new();
-    }
-    let third = |block: &Block| ((3.0 * (block.volts - low) / (high - low)) as usize).min(2);
-    let of = |k: usize| blocks.iter().filter(|block| third(block) == k).copied().collect();
-    parts((0..3).map(of), |block| block.volts)
-}
-
-/// By the mean of both thrusts, so that the noise of neither sorts its own readings.
-fn by_thrust(blocks: &[Block], mass_kg: f64, one: f64) -> Vec<Part> {
-    let share = |block: &Block| 0.5 * (block.model_n / one + block.measured_n[0]) / (mass_kg * GRAVITY);
-    let between = |k: usize| {
-        let is_of = |block: &&Block| (THRUSTS[k]..THRUSTS[k + 1]).contains(&share(block));
-        blocks.iter().filter(is_of).copied().collect()
-    };
-    parts((0..THRUSTS.len() - 1).map(between), share)
 }

@@ -48,6 +48,18 @@ const HEAD: usize = 3;
 /// More formats than any vehicle logs; the decoder's stack grows with those that stand in one another.
 const MOST_FORMATS: usize = 500;
 
+/// Where data are appended to a log (a crash dump), by the flags of its first message: what is before may end within a
+/// message.
+fn appended(bytes: &[u8]) -> Option<usize> {
+    let first = bytes
+        .get(HEADER..HEADER + HEAD + 24)
+        .filter(|first| first[2] == b'B' && first[HEAD + 8] & 1 == 1)?;
+    let offset = u64::from_le_bytes(first[HEAD + 16..].try_into().ok()?);
+    usize::try_from(offset)
+        .ok()
+        .filter(|offset| (HEADER..bytes.len()).contains(offset))
+}
+
 /// How many of the bytes the decoder can be given, and what is wrong with the message behind them. It
 /// indexes subscriptions and parameters by lengths that it does not check, and loops over arrays without
 /// a size.
@@ -110,6 +122,8 @@ pub(crate) fn read(bytes: &[u8], wanted: &[Channel]) -> Log {
     let mut parser = LogParser::default();
     parser.set_data_message_callback(&mut on_data);
     parser.set_parameter_message_callback(&mut on_parameter);
+    let appended = appended(bytes);
+    let bytes = &bytes[..appended.unwrap_or(bytes.len())];
     let (end, wrong) = sound(bytes);
     let read = parser.consume_bytes(&bytes[..end]);
     let is_cut = parser.has_leftover();
@@ -119,6 +133,9 @@ pub(crate) fn read(bytes: &[u8], wanted: &[Channel]) -> Log {
     log.damage = match (read, wrong) {
         (Err(error), _) => damaged(error.to_string()),
         (Ok(()), Some(wrong)) => damaged(format!("{wrong} at byte {end}")),
+        (Ok(()), None) if appended.is_some() => {
+            Some("data that are appended to the log (a crash dump) are left out".to_owned())
+        }
         (Ok(()), None) if is_cut => Some("the log ends within a message: its end is missing".to_owned()),
         (Ok(()), None) => None,
     };

@@ -1,17 +1,14 @@
 //! Warnings of a review, a rule each.
 
 use mixer_compiler::Compiled;
-use mixer_compiler::airframe::Axis;
+use mixer_compiler::airframe::{Axis, Correction};
 use mixer_compiler::diagnostic::rounded;
 use mixer_compiler::hover::band;
 
 use crate::flight::Flight;
 use crate::review::{Range, Review};
+use crate::rotors::Speed;
 use crate::text::beside;
-use crate::thrust::Part;
-
-/// Share of the scale by which parts of one flight may differ.
-const PARTS_OFF: f64 = 0.04;
 
 /// Distance of the centre of gravity that is worth a word, m.
 const CENTRE_M: f64 = 0.01;
@@ -35,7 +32,7 @@ pub(crate) struct Seen<'a> {
 
 type Rule = fn(&Seen<'_>) -> Vec<String>;
 
-const RULES: [Rule; 8] = [damage, hover, scale, parts, centre, yaw, conditions, rotors];
+const RULES: [Rule; 8] = [damage, hover, scale, changes, rotors, centre, yaw, conditions];
 
 /// A sentence each.
 pub(crate) fn warnings(seen: &Seen<'_>) -> Vec<String> {
@@ -73,8 +70,8 @@ fn scale(seen: &Seen<'_>) -> Vec<String> {
             100.0 * band / weight
         )
     });
-    let percent = 100.0 * (thrust.scale - 1.0);
-    when(!(low..=high).contains(&1.0), || {
+    let percent = 100.0 * (thrust.median - 1.0);
+    when(thrust.scale.is_some() && !(low..=high).contains(&1.0), || {
         format!(
             "the model gives {:.1} % {} thrust than the vehicle{expected}: -o writes the file with the scale in it. Other reasons: the \
              mass, where the voltage is measured, the air's density, another propeller",
@@ -84,37 +81,47 @@ fn scale(seen: &Seen<'_>) -> Vec<String> {
     })
 }
 
-fn parts(seen: &Seen<'_>) -> Vec<String> {
+/// Take-offs that disagree, and flights within which the scale changes.
+fn changes(seen: &Seen<'_>) -> Vec<String> {
     let thrust = &seen.review.thrust;
-    let of = |parts: &[Part], what: &str, mend: &str| {
-        let scales = parts.iter().map(|part| part.scale);
-        let (least, most) = scales.fold((f64::MAX, 0.0f64), |(low, high), scale| {
-            (low.min(scale), high.max(scale))
-        });
-        when(most > (1.0 + PARTS_OFF) * least, || {
-            format!(
-                "the scale is {least:.3} to {most:.3} by {what}: one scale does not mend the model; {mend}"
-            )
-        })
-    };
-    let voltage = "look at [voltage], and at where the voltage is measured";
-    let shape = "measure the pair on the bench (docs/bench.md)";
-    [
-        of(&thrust.by_voltage, "voltage", voltage),
-        of(&thrust.by_thrust, "thrust", shape),
-    ]
-    .concat()
+    let told = thrust
+        .parts
+        .windows(2)
+        .filter(|pair| pair[0].flight == pair[1].flight);
+    let told = told.map(|pair| {
+        let [before, after] = [&pair[0], &pair[1]];
+        format!(
+            "the thrust changes at the same acceleration: the scale is {:.3} to {:.0} s ({:.1} V) and {:.3} from {:.0} s on ({:.1} V). A load \
+             that is taken up or released does that (--mass is that of one part), ageing of rotors and motors, and a [voltage] that is \
+             not the vehicle's",
+            before.scale, before.to_s, before.voltage_v, after.scale, after.from_s, after.voltage_v
+        )
+    });
+    let differ = when(thrust.scale.is_none(), || {
+        "the intervals of the log's parts have no value in common, so there is no one scale: another load or battery, or damage".to_owned()
+    });
+    told.chain(differ).collect()
 }
 
+/// The centre of gravity, where its interval is beside the file's; not where a rotor is the cause.
 fn centre(seen: &Seen<'_>) -> Vec<String> {
-    let off = seen
-        .review
-        .hover
+    let hover = &seen.review.hover;
+    let is_off = |[low, high]: &[f64; 2]| *low > 0.0 || *high < 0.0;
+    let beyond = hover
+        .centre_interval_m
+        .is_some_and(|axes| axes.iter().any(is_off));
+    let off = hover
         .centre_m
-        .filter(|[x, y]| libm::hypot(*x, *y) > CENTRE_M);
-    off.map_or_else(Vec::new, |centre| {
+        .filter(|[x, y]| beyond && libm::hypot(*x, *y) > CENTRE_M);
+    let speeds = &seen.review.speeds;
+    let cause = match speeds.is_empty() {
+        true => ", or a rotor there is the stronger one (the log has no speeds of the rotors)",
+        false => ": the rotors' speeds are alike",
+    };
+    let named = off.filter(|_| speeds.iter().all(Speed::is_alike));
+    named.map_or_else(Vec::new, |centre| {
         vec![format!(
-            "the centre of gravity is {} of the file's: move the pack, or the units' position_m",
+            "the centre of gravity is {} of the file's{cause}; move the pack, or correct the units' position_m",
             beside(centre)
         )]
     })
@@ -131,45 +138,28 @@ fn yaw(seen: &Seen<'_>) -> Vec<String> {
     })
 }
 
-/// Of voltage and density.
+/// Voltage and density beyond the mixer's range, or unknown.
 fn conditions(seen: &Seen<'_>) -> Vec<String> {
     let (airframe, review) = (&seen.compiled.airframe, seen.review);
-    let of = |range: &Option<Range>, law: Option<f64>, key: &str, unit: &str, beyond: &str| {
-        match range {
-        Some(Range {
-            least,
-            largest,
-            range: Some([low, high]),
-            outside,
-        }) => when(*outside > 0.0, || {
-            format!(
-                "{key} is {low} to {high} {unit}, and the flight had {least:.2} to {largest:.2}: outside the mixer holds the range's end"
-            )
-        }),
-        Some(_) => Vec::new(),
-        None => law.map_or_else(Vec::new, |reference| {
-            vec![format!(
-                "what {key} is of was not logged, or cannot be: the scale is that at {reference} {unit}{beyond}"
-            )]
-        }),
-    }
+    let of = |name: &str, measured: &Option<Range>, law: &Option<Correction>| match (measured, law) {
+        (Some(measured), Some(law)) if measured.outside > 0.0 => Some(format!(
+            "the flight had a {name} of {:.2} to {:.2}, beyond the file's {} to {}: outside the mixer holds the range's end",
+            measured.least, measured.largest, law.range[0], law.range[1]
+        )),
+        (None, Some(law)) => Some(format!(
+            "no {name} was logged, or none that can be: the scale is that at {}, and its interval that of the whole range",
+            law.reference
+        )),
+        _ => None,
     };
-    let voltage = airframe.voltage.as_ref().map(|law| law.reference);
-    let air = airframe.air.as_ref().map(|law| law.reference);
-    [
-        of(
-            &review.voltage,
-            voltage,
-            "range_v",
-            "V",
-            ", and its interval that of the whole range",
-        ),
-        of(&review.density, air, "range_kg_m3", "kg/m3", ""),
-    ]
-    .concat()
+    let voltage = of("voltage", &review.voltage, &airframe.voltage);
+    voltage
+        .into_iter()
+        .chain(of("density", &review.density, &airframe.air))
+        .collect()
 }
 
-/// Rotors that stop, and axes that are cut.
+/// Rotors that stop or differ from their fellows, and axes that are cut.
 fn rotors(seen: &Seen<'_>) -> Vec<String> {
     let review = seen.review;
     let stops = review.stopped.iter();
@@ -177,10 +167,22 @@ fn rotors(seen: &Seen<'_>) -> Vec<String> {
         .map(|stop| format!("output {} at {:.1} s", stop.output, stop.time_s))
         .collect();
     let stopped = when(!stops.is_empty(), || format!("rotors stop: {}", stops.join(", ")));
+    let unlike = review.speeds.iter().filter(|speed| !speed.is_alike()).map(|speed| {
+        let percent = 100.0 * (speed.ratio - 1.0);
+        let (sense, parts) = match percent > 0.0 {
+            true => ("faster", "propeller: worn, smaller or of less pitch"),
+            false => ("slower", "motor, its controller, a heavier or larger propeller"),
+        };
+        format!(
+            "the rotor of output {} turns {:.1} % {sense} than its fellows at one throttle: look at its {parts}",
+            speed.output,
+            percent.abs()
+        )
+    });
     let cut = [("roll", review.saturated.roll), ("pitch", review.saturated.pitch)];
     let cut = cut.into_iter().filter_map(|(axis, share)| {
         let share = share.filter(|share| *share > OFTEN)?;
         Some(format!("{axis} is cut for {:.1} % of the time", 100.0 * share))
     });
-    stopped.into_iter().chain(cut).collect()
+    stopped.into_iter().chain(unlike).chain(cut).collect()
 }

@@ -25,6 +25,9 @@ const OUTPUTS: usize = 10;
 
 const TAKE_OFF_S: f64 = 3.0;
 const END_S: f64 = 35.0;
+const RELEASED_S: f64 = 20.0;
+
+const MASS_KG: f64 = 6.5;
 
 /// Offset of the accelerometer's vertical axis, m/s2.
 const OFFSET_M_S2: f64 = 0.15;
@@ -54,9 +57,9 @@ fn controller(world: &World, sum: &mut Vector3<f64>) -> [f64; 4] {
     ]
 }
 
-/// A flight of a vehicle whose pairs give `scale` times the thrust of the file.
-fn fly(compiled: &Compiled, scale: f64, wind_m_s: f64, noise: f64, seed: u64) -> Flight {
-    let text = [scale, wind_m_s].map(|x| x.to_string());
+/// A vehicle of a mass, kg, whose pairs give `scale` times the thrust of the file.
+fn vehicle(scale: f64, wind_m_s: f64, mass_kg: f64) -> Vehicle {
+    let text = [scale, wind_m_s, mass_kg].map(|x| x.to_string());
     let flags = [
         "--thrust-scale",
         &text[0],
@@ -66,10 +69,29 @@ fn fly(compiled: &Compiled, scale: f64, wind_m_s: f64, noise: f64, seed: u64) ->
         "3",
         "--volts",
         "24",
+        "--mass-kg",
+        &text[2],
     ];
     let arguments = ["sitl", X8, "--px4"].into_iter().chain(flags);
-    let vehicle = Vehicle::new(&Arguments::try_parse_from(arguments).unwrap()).unwrap();
-    let mut world = World::new(vehicle, Some(Wind::new(wind_m_s, 1.15, seed)));
+    Vehicle::new(&Arguments::try_parse_from(arguments).unwrap()).unwrap()
+}
+
+/// A flight of the vehicle of the file but for its thrust.
+fn fly(compiled: &Compiled, scale: f64, wind_m_s: f64, noise: f64, seed: u64) -> Flight {
+    let vehicle = vehicle(scale, wind_m_s, MASS_KG);
+    fly_with(compiled, &vehicle, &vehicle, wind_m_s, noise, seed)
+}
+
+/// A flight of a vehicle that becomes another one, as a load is released, at [`RELEASED_S`].
+fn fly_with(
+    compiled: &Compiled,
+    before: &Vehicle,
+    after: &Vehicle,
+    wind_m_s: f64,
+    noise: f64,
+    seed: u64,
+) -> Flight {
+    let mut world = World::new(before.clone(), Some(Wind::new(wind_m_s, 1.15, seed)));
     let mut sensors = Sensors::new(noise, seed);
     let mut sum = Vector3::zeros();
     let [
@@ -83,6 +105,9 @@ fn fly(compiled: &Compiled, scale: f64, wind_m_s: f64, noise: f64, seed: u64) ->
     for step in 0..(END_S / STEP_S) as usize {
         let time_s = world.time_s();
         let flies = time_s > TAKE_OFF_S;
+        if time_s > RELEASED_S {
+            world.vehicle = after.clone();
+        }
         let [roll, pitch, yaw, thrust] = controller(&world, &mut sum);
         let setpoint = Wrench {
             roll_nm: roll as f32,
@@ -131,15 +156,97 @@ fn the_scale_is_found_to_one_percent_in_wind_and_noise() {
         // The mass as it is weighed: 0.5 % off.
         let mass_kg = 6.5 * (1.0 + 0.005 * normal(&mut scales));
         let review = Review::of(&flight, &compiled, Some(mass_kg)).unwrap();
-        let found = review.thrust.scale * scale * mass_kg / 6.5 - 1.0;
+        let found = review.thrust.scale.unwrap() * scale * mass_kg / 6.5 - 1.0;
         let [low, high] = review.thrust.interval.map(|end| end * scale);
         println!("{scale:.3} {wind_m_s} {noise} {found:+.4} {low:.4} {high:.4}");
         held += u32::from((low..=high).contains(&1.0));
         worst = worst.max(found.abs());
         assert!(high - low < 0.05, "{seed}: {low} to {high}");
+        assert_eq!(review.thrust.parts.len(), 1, "{seed}: {review}");
     }
     assert!(held >= 19, "{held} of 20");
     assert!(worst < 0.01, "{worst}");
+}
+
+/// One log of two flights, the second behind the first.
+fn one_log(first: &Flight, second: &Flight) -> Flight {
+    let behind = |first: &Series, second: &Series| {
+        let mut all = first.clone();
+        second
+            .rows()
+            .for_each(|(time_s, row)| all.push(time_s + END_S, row.to_vec()));
+        all
+    };
+    let some = |of: fn(&Flight) -> &Option<Series>| {
+        let both = of(first).as_ref().zip(of(second).as_ref());
+        both.map(|(first, second)| behind(first, second))
+    };
+    Flight {
+        down: some(|flight| &flight.down),
+        velocity: some(|flight| &flight.velocity),
+        landed: some(|flight| &flight.landed),
+        voltage: some(|flight| &flight.voltage),
+        ..Flight::new(
+            Stack::Px4,
+            behind(&first.throttle, &second.throttle),
+            behind(&first.force, &second.force),
+        )
+    }
+}
+
+/// Loads that are known: each take-off has its scale, a release in the air is found, and there is one number only where
+/// all agree.
+#[test]
+fn take_offs_and_loads_have_their_own_scales() {
+    let compiled = compiled();
+    for (seed, wind_m_s, noise) in [(1, 0.0, 0.25), (2, 3.0, 0.5), (3, 6.0, 1.0)] {
+        let [bare, loaded] = [MASS_KG, MASS_KG + 0.8].map(|mass_kg| vehicle(1.0, wind_m_s, mass_kg));
+        let fly = |before: &Vehicle, after: &Vehicle, seed: u64| {
+            fly_with(&compiled, before, after, wind_m_s, noise, seed)
+        };
+        let first = fly(&bare, &bare, seed);
+        let factor = 1.0 + 0.8 / MASS_KG;
+        for (second, wanted) in [
+            (fly(&bare, &bare, seed + 10), vec![(1, 1.0), (2, 1.0)]),
+            (fly(&loaded, &loaded, seed + 10), vec![(1, 1.0), (2, factor)]),
+            (
+                fly(&loaded, &bare, seed + 10),
+                vec![(1, 1.0), (2, factor), (2, 1.0)],
+            ),
+        ] {
+            let review = Review::of(&one_log(&first, &second), &compiled, Some(MASS_KG)).unwrap();
+            let parts = &review.thrust.parts;
+            println!("{seed} {wanted:?}: {:?} {parts:?}", review.thrust.scale);
+            assert_eq!(
+                parts.iter().map(|part| part.flight).collect::<Vec<_>>(),
+                wanted.iter().map(|of| of.0).collect::<Vec<_>>()
+            );
+            for (part, (_, scale)) in parts.iter().zip(&wanted) {
+                let [low, high] = part.interval;
+                assert!(
+                    (low..=high).contains(scale) && (part.scale / scale - 1.0).abs() < 0.01,
+                    "{part:?}"
+                );
+            }
+            let all_alike = wanted.iter().all(|(_, scale)| *scale == 1.0);
+            assert_eq!(review.thrust.scale.is_some(), all_alike, "{review}");
+            assert!(
+                review
+                    .undecided()
+                    .unwrap()
+                    .contains(if all_alike { "holds 1" } else { "not one" })
+            );
+            let released = parts.len() > 2;
+            let told = review
+                .warnings
+                .iter()
+                .any(|warning| warning.contains("A load that is taken up or released"));
+            assert_eq!(told, released, "{review}");
+            if released {
+                assert!((parts[1].to_s - END_S - RELEASED_S).abs() < 1.5, "{parts:?}");
+            }
+        }
+    }
 }
 
 /// Rows that cannot be, and what is missing, are left out: none moves the scale out of its interval.
@@ -250,14 +357,15 @@ fn damaged_rows_do_not_move_the_scale() {
         let [low, high] = review.thrust.interval;
         println!(
             "{what}: {:.4} in {low:.4} to {high:.4}, {:?}",
-            review.thrust.scale, review.seconds
+            review.thrust.scale.unwrap(),
+            review.seconds
         );
         assert!(
-            (low..=high).contains(&whole.thrust.scale),
+            (low..=high).contains(&whole.thrust.scale.unwrap()),
             "{what}: {low} to {high}"
         );
         assert!(
-            (review.thrust.scale / whole.thrust.scale - 1.0).abs() < 0.01,
+            (review.thrust.scale.unwrap() / whole.thrust.scale.unwrap() - 1.0).abs() < 0.01,
             "{what}"
         );
         assert!(
@@ -270,7 +378,7 @@ fn damaged_rows_do_not_move_the_scale() {
     let none = of(&voltage(&|_, _, row| row[0] = 0.0));
     let [low, high] = none.thrust.interval;
     assert!(
-        (low..=high).contains(&whole.thrust.scale) && high - low > 0.1,
+        (low..=high).contains(&whole.thrust.scale.unwrap()) && high - low > 0.1,
         "{low} to {high}"
     );
     assert!(

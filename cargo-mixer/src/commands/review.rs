@@ -20,10 +20,10 @@ pub struct ReviewArgs {
     log: PathBuf,
     /// The airframe file
     airframe: PathBuf,
-    /// Write the airframe file with its thrust over the scale that the log gives
+    /// Write the airframe file with its thrust over the scale that the log gives: one scale, to 5 %, that is not 1
     #[arg(short, long, value_name = "SCALED.toml")]
     output: Option<PathBuf>,
-    /// Overwrite the file if it is there
+    /// Overwrite the file if it is there, and write a scale that the log leaves open
     #[arg(long)]
     force: bool,
     /// Print JSON
@@ -69,6 +69,10 @@ pub fn run(args: &ReviewArgs) -> Done {
     let Some(output) = &args.output else {
         return Ok(());
     };
+    if let Some(reason) = review.undecided().filter(|_| !args.force) {
+        let message = format!("{reason}; --force writes {} all the same", output.display());
+        return Err(print_error(message));
+    }
     let log = args.log.file_name().unwrap_or_default().to_string_lossy();
     let text = scaled(&compiled.source.text, &review, &log).map_err(print_error)?;
     airframe_file::write(output, &text, Some(&args.airframe))?;

@@ -169,7 +169,7 @@ fn an_ordinary_mixer_asks_for_more_than_the_weight_in_hover() {
         println!("{name}: {mean:.4} +- {deviation:.4}, {rows} rows");
         assert!((mean - told).abs() < 0.01, "{name}: {mean}");
         let thrust = reviewed(&logs.join(name), &logs.join("log_20240613_121802.csv"), &folder).thrust;
-        let (scale, [low, high]) = (thrust.scale, thrust.interval);
+        let (scale, [low, high]) = (thrust.scale.unwrap(), thrust.interval);
         println!("{name}: {thrust:?}");
         text += &format!("{flight},{mean:.2},{deviation:.2},{rows},{scale:.3},{low:.3},{high:.3}\n");
     }

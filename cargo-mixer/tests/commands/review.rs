@@ -34,9 +34,9 @@ fn both_stacks_logs_have_the_scale_of_their_plant() {
             .and_then(Value::as_f64)
             .unwrap_or_else(|| panic!("{at} in {json}"))
     };
-    for (name, stack, stopped) in [
-        ("px4-x8-lower-stopped.ulg", "px4", 1),
-        ("ardupilot-x8-yaw.bin", "ardupilot", 0),
+    for (name, stack, stopped, by) in [
+        ("px4-x8-lower-stopped.ulg", "px4", 1, "mixer"),
+        ("ardupilot-x8-yaw.bin", "ardupilot", 0, "controllers"),
     ] {
         let log = unpacked(&data, name, &folder);
         let (json, status) = of(&log, &[]);
@@ -57,7 +57,7 @@ fn both_stacks_logs_have_the_scale_of_their_plant() {
             "{json}"
         );
         assert!(number(&json, "/hover/yaw_nm").abs() < 0.01, "{json}");
-        assert_eq!(json["saturated"]["by"], "mixer");
+        assert_eq!(json["saturated"]["by"], by);
         assert_eq!(json["stopped"].as_array().unwrap().len(), stopped);
         // A mass that is 10 % off is 10 % of the scale.
         let (heavy, _) = of(&log, &["--mass", "6.6"]);
@@ -110,4 +110,18 @@ fn the_airframe_with_the_scale_compiles() {
     assert!((scale - 1.0).abs() < 1e-3, "{scale}");
     // Not over a file without being told to.
     assert_eq!(run_with(&arguments, b"").status.code(), Some(1));
+    // Nor what the log does not contradict.
+    let other = folder.join("other.toml").display().to_string();
+    let arguments = ["review", &log, &airframe, "-o", &other];
+    let output = run_with(&arguments, b"");
+    assert_eq!(output.status.code(), Some(1));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(error.contains("holds 1: the log does not contradict"), "{error}");
+    assert!(!std::path::Path::new(&other).exists());
+    assert_eq!(
+        run_with(&[&arguments[..], &["--force"]].concat(), b"")
+            .status
+            .code(),
+        Some(0)
+    );
 }

@@ -88,6 +88,11 @@ fn px4_log(compiled: &Compiled, parameters: &[(String, f64)]) -> Vec<u8> {
 }
 
 fn px4_log_of(parameters: &[(String, f64)], motors: Rows<'_>) -> Vec<u8> {
+    px4_log_with(parameters, motors, Vec::new())
+}
+
+/// The log with more topics, or others of the same name.
+fn px4_log_with<'a>(parameters: &[(String, f64)], motors: Rows<'a>, more: Vec<Topic<'a>>) -> Vec<u8> {
     let topics = [
         Topic {
             name: "actuator_motors",
@@ -126,6 +131,9 @@ fn px4_log_of(parameters: &[(String, f64)], motors: Rows<'_>) -> Vec<u8> {
             rows: &|_| vec![VOLTS as f32, 1.0],
         },
     ];
+    let is_other = |topic: &Topic<'_>| more.iter().all(|other| other.name != topic.name);
+    let mut topics: Vec<Topic<'_>> = topics.into_iter().filter(is_other).collect();
+    topics.extend(more);
     ulog(parameters, &topics, SECONDS)
 }
 
@@ -201,7 +209,7 @@ fn logs() -> [Vec<u8>; 2] {
 fn both_stacks_logs_tell_what_was_flown() {
     for log in logs() {
         let review = review(&log).unwrap();
-        let off = review.thrust.scale / SCALE - 1.0;
+        let off = review.thrust.scale.unwrap() / SCALE - 1.0;
         assert!(off.abs() < 2e-3, "{off}\n{review}");
         let [low, high] = review.thrust.interval;
         assert!(
@@ -249,13 +257,19 @@ fn a_scaled_file_gives_the_measured_thrust() {
         physics.wrench(&[0.6; 8], [1.0, 1.0], Health::GOOD)
     };
     let [before, after] = [&compiled, &scaled].map(wrench);
+    // Intervals in comments follow.
+    let commented = "[pair]\nthrust_n = [\n  10.6,   # u2   +- 2.120e0\n  5.3,  # l2   +- 1.070e-1\n]\n";
+    let divided = mixer_review::scaled(commented, &review, "a.ulg").unwrap();
+    for half in ["# u2   +- 2.000e0\n", "# l2   +- 1.009e-1\n"] {
+        assert!(divided.contains(half), "{divided}");
+    }
     assert!(
-        (before[3] / after[3] / review.thrust.scale - 1.0).abs() < 1e-6,
+        (before[3] / after[3] / review.thrust.scale.unwrap() - 1.0).abs() < 1e-6,
         "{before:?} {after:?}"
     );
     assert_eq!(before[2], after[2]);
     let again = Review::new("a.log", &log, &scaled, &Options::default()).unwrap();
-    assert!((again.thrust.scale - 1.0).abs() < 1e-3, "{again}");
+    assert!((again.thrust.scale.unwrap() - 1.0).abs() < 1e-3, "{again}");
     assert!(
         again.warnings.iter().all(|warning| !warning.contains("-o")),
         "{again}"
@@ -279,8 +293,162 @@ fn a_rotor_that_stops_is_told() {
         "{stopped:?}"
     );
     // What follows is not hover.
-    assert!((review.thrust.scale / SCALE - 1.0).abs() < 2e-3, "{review}");
+    assert!(
+        (review.thrust.scale.unwrap() / SCALE - 1.0).abs() < 2e-3,
+        "{review}"
+    );
     assert!((15.0..18.0).contains(&review.seconds[2]), "{review}");
+}
+
+/// Share of its throttle that the weak rotor lacks.
+const WEAK: f32 = 0.06;
+
+/// PX4's speeds of the rotors, with a time of eight bytes, a speed and the function of the output for each of them.
+fn speeds<'a>(format: &'a Topic<'a>, rows: Rows<'a>) -> Vec<Topic<'a>> {
+    let escs = Topic {
+        name: "esc_status",
+        fields: "float esc_online_flags;esc_report[8] esc;",
+        period_s: 0.1,
+        rows,
+    };
+    vec![Topic { ..*format }, escs]
+}
+
+/// A throttle and a speed per rotor as PX4 logs them: online, and of each a time, the speed and who it is.
+fn esc_row(speed: &[f32]) -> Vec<f32> {
+    let each = speed.iter().zip(101u8..);
+    let each = each.flat_map(|(speed, function)| [0.0, 0.0, *speed, f32::from(function)]);
+    [255.0].into_iter().chain(each).collect()
+}
+
+#[test]
+fn a_weak_rotor_is_told_from_a_moved_centre() {
+    let compiled = compiled();
+    let format = Topic {
+        name: "esc_report",
+        fields: "float esc_rpm;float actuator_function;",
+        period_s: f64::INFINITY,
+        rows: &|_| Vec::new(),
+    };
+    // What turns the rotors, with the speed that it gives them: output 2 has less of it where it is weak.
+    let logged = |is_weak: bool, stops_s: f64| {
+        let of = |time_s: f64| -> Vec<[f32; 2]> {
+            let throttles = throttles(&compiled, time_s).into_iter().enumerate();
+            let both = throttles.map(|(rotor, turns)| match rotor {
+                2 if is_weak => [turns / (1.0 - WEAK), turns],
+                _ => [turns; 2],
+            });
+            let speed = |rotor: usize, turns: f32| match rotor == 5 && time_s > stops_s {
+                true => 0.0,
+                false => 6000.0 * libm::powf(turns, 0.9),
+            };
+            both.enumerate()
+                .map(|(rotor, [told, turns])| [told, speed(rotor, turns)])
+                .collect()
+        };
+        let motors = |time_s: f64| of(time_s).iter().map(|[told, _]| *told).collect();
+        let escs = |time_s: f64| esc_row(&of(time_s).iter().map(|[_, speed]| *speed).collect::<Vec<_>>());
+        review(&px4_log_with(
+            &px4_frame(&compiled),
+            &motors,
+            speeds(&format, &escs),
+        ))
+        .unwrap()
+    };
+    let has = |review: &Review, words: &str| review.warnings.iter().any(|warning| warning.contains(words));
+    let moved = logged(false, SECONDS);
+    assert_eq!(moved.speeds.len(), 8, "{moved}");
+    assert!(
+        has(&moved, "the centre of gravity is 12 mm forward and 7 mm left"),
+        "{moved}"
+    );
+    assert!(
+        has(&moved, "speeds are alike") && !has(&moved, "turns"),
+        "{moved}"
+    );
+    let [[low, high], _] = moved.hover.centre_interval_m.unwrap();
+    assert!(
+        low < CENTRE_M[0] && CENTRE_M[0] < high && high - low < 0.02,
+        "{low} to {high}"
+    );
+    let weak = logged(true, SECONDS);
+    assert!(
+        has(&weak, "the rotor of output 2 turns") && has(&weak, "slower"),
+        "{weak}"
+    );
+    assert!(!has(&weak, "centre of gravity"), "{weak}");
+    // Its output goes on, its speed does not.
+    let stopped = logged(false, 20.0).stopped;
+    assert!(
+        matches!(&stopped[..], [one] if one.output == 5 && (20.0..20.3).contains(&one.time_s)),
+        "{stopped:?}"
+    );
+}
+
+/// The battery's power over the model's, and what is left of its charge.
+#[test]
+fn power_has_a_scale() {
+    let compiled = compiled();
+    let power_w = |time_s: f64| {
+        let throttle: Vec<f64> = throttles(&compiled, time_s).into_iter().map(f64::from).collect();
+        let voltage = compiled.airframe.voltage_factors(VOLTS)[0];
+        compiled.airframe.power_w(&throttle).unwrap() * libm::pow(voltage, 1.5)
+    };
+    let battery = Topic {
+        name: "battery_status",
+        fields: "float voltage_v;float connected;float current_a;float discharged_mah;",
+        period_s: 0.1,
+        rows: &|time_s| vec![VOLTS as f32, 1.0, (1.1 * power_w(time_s) / VOLTS) as f32, 3000.0],
+    };
+    let mut frame = px4_frame(&compiled);
+    frame.push(("BAT1_CAPACITY".to_owned(), 8000.0));
+    let motors = |time_s: f64| throttles(&compiled, time_s);
+    let log = px4_log_with(&frame, &motors, vec![battery]);
+    let power = Review::new("a.log", &log, &compiled, &Options::default())
+        .unwrap()
+        .power
+        .unwrap();
+    assert!((power.scale * 1.1 - 1.0).abs() < 0.01, "{power:?}");
+    let left_s = 3.6 * 5000.0 * VOLTS / power.measured_w;
+    assert!(
+        (power.hover_left_s.unwrap() / left_s - 1.0).abs() < 0.01,
+        "{power:?}"
+    );
+}
+
+/// Two logs in one file: the first is read, and the second is told; what PX4 appends after a crash likewise.
+#[test]
+fn what_follows_a_log_is_left_out_and_told() {
+    for log in logs() {
+        let twice = [&log[..], &log].concat();
+        let both = review(&twice).unwrap();
+        assert_eq!(both.seconds, review(&log).unwrap().seconds);
+        let told = format!("a second log begins at byte {} of the file", log.len());
+        assert!(
+            both.warnings.iter().any(|warning| warning.contains(&told)),
+            "{both}"
+        );
+    }
+    let [log, _] = logs();
+    let offset = log.len() as u64 - 7 + 43;
+    let flags = [
+        &[40, 0, b'B'][..],
+        &[0; 8],
+        &[1],
+        &[0; 7],
+        &offset.to_le_bytes(),
+        &[0; 16],
+    ]
+    .concat();
+    let crashed = [&log[..16], &flags, &log[16..log.len() - 7], &[9, 0, b'I', 1, 2]].concat();
+    let review = review(&crashed).unwrap();
+    assert!(
+        review
+            .warnings
+            .iter()
+            .any(|warning| warning.contains("(a crash dump) are left out")),
+        "{review}"
+    );
 }
 
 #[test]
@@ -332,13 +500,48 @@ fn what_is_no_log_of_this_vehicle_is_refused_by_name() {
         (b"\xfd7zXZ\0".to_vec(), "xz -dk"),
         (b"FMT, 128, 89, FMT".to_vec(), ".bin"),
         (b"hello".to_vec(), "neither PX4's ULog"),
-        (Vec::new(), "neither PX4's ULog"),
+        (Vec::new(), "the file is empty"),
+        (b"ULogEnc\x01".to_vec(), "an encrypted log"),
+        (
+            b"\0\x05\x9f\xd6\x3a\x4c\0\0\xfd\x09".to_vec(),
+            "a telemetry log (.tlog)",
+        ),
+        (b"\xfe\x09".to_vec(), "a telemetry log (.tlog)"),
         (short[..2000].to_vec(), "no accelerometer (`IMU`)"),
     ] {
         let error = review(&log).unwrap_err();
         assert!(
             error.starts_with("a.log: ") && error.contains(message),
             "{message}: {error}"
+        );
+    }
+}
+
+/// The upper and the lower outputs of the file exchanged, with the spins that the log has.
+#[test]
+fn exchanged_layers_are_another_vehicle() {
+    let text = compiled().source.text;
+    let exchanged = text
+        .replace(
+            "[[0, 5], [3, 6], [2, 7], [1, 4]]",
+            "[[5, 0], [6, 3], [7, 2], [4, 1]]",
+        )
+        .replace("first_spin = \"ccw\"", "first_spin = \"cw\"");
+    let exchanged = mixer_compiler::compile(&Source::new("x8.toml", exchanged)).unwrap();
+    let mut frame = px4_frame(&compiled());
+    for unit in &compiled().airframe.units {
+        frame.push((format!("CA_ROTOR{}_PZ", unit.upper_channel), -0.05));
+        frame.push((format!("CA_ROTOR{}_PZ", unit.lower_channel), 0.05));
+    }
+    for log in [
+        px4_log(&compiled(), &frame),
+        ardupilot_log(&compiled(), &ardupilot_frame()),
+    ] {
+        review(&log).unwrap();
+        let refused = Flight::read("a.log", &log, &exchanged.airframe, None).unwrap_err();
+        assert!(
+            refused.contains("with the layers exchanged: motor 1 is the upper rotor there"),
+            "{refused}"
         );
     }
 }
@@ -367,13 +570,15 @@ fn a_log_of_the_ground_is_refused() {
 /// Damages drawn of each log; `MIXER_DRAWS` draws more.
 const DRAWS: usize = 60;
 
+/// Where the definitions of both logs end, in bytes.
+const DEFINITIONS: usize = 4000;
+
 /// A damaged log is read as far as it goes, or refused; nothing panics, and an interval that misses the whole
 /// log's scale has a word of damage.
 #[test]
 fn damaged_logs_do_no_harm() {
-    for log in logs() {
-        let whole = review(&log).unwrap().thrust.scale;
-        let (mut told, mut silent) = (0, Vec::new());
+    for (format, log) in ["ULog", "DataFlash"].into_iter().zip(logs()) {
+        let whole = review(&log).unwrap().thrust.scale.unwrap();
         let mut state = 1u64;
         let mut next = |below: usize| {
             state = state
@@ -382,42 +587,59 @@ fn damaged_logs_do_no_harm() {
             (state >> 33) as usize % below
         };
         let draws = std::env::var("MIXER_DRAWS").map_or(DRAWS, |draws| draws.parse().expect("a number"));
-        // Formats, parameters and subscriptions stand at the beginning: half of the damages are there.
-        let definitions = 4000;
+        let (mut drawn, mut refused, mut told, mut sound) = ([0; 5], [0; 5], [0; 5], [0; 5]);
+        let mut silent: [Vec<String>; 5] = Default::default();
         for draw in 0..draws {
-            // Cut off anywhere, cut off there, or whole but for the damage.
-            let end = [next(log.len()).max(1), next(definitions).max(1), log.len()][draw % 3];
-            let mut damaged = log[..end].to_vec();
-            for _ in 0..next(20) {
-                let at = next(damaged.len());
-                match next(4) {
-                    0 => damaged[at] ^= 1 << next(8),
-                    1 => damaged[at] = [0, 1, 2, 0x7f, 0xff][next(5)],
-                    2 => drop(damaged.remove(at)),
-                    _ => damaged.insert(at, damaged[next(damaged.len())]),
-                }
-                if damaged.is_empty() {
-                    break;
-                }
+            let kind = draw % 5;
+            // Formats, parameters and subscriptions stand at the beginning: half of the damages are there.
+            let end = [log.len(), DEFINITIONS][next(2)];
+            let mut damaged = log.clone();
+            match kind {
+                0 => damaged.truncate(next(end)),
+                _ => (0..1 + next(20)).for_each(|_| {
+                    let at = next(end);
+                    match kind {
+                        1 => damaged[at] ^= 1 << next(8),
+                        2 => damaged[at] = [0, 1, 2, 0x7f, 0xff][next(5)],
+                        3 => drop(damaged.remove(at)),
+                        _ => damaged.insert(at, damaged[next(end)]),
+                    }
+                }),
             }
-            if let Ok(review) = review(&damaged) {
-                let words = ["damaged", "is missing", "cannot be", "left out"];
-                let is_told = review
-                    .warnings
-                    .iter()
-                    .any(|text| words.iter().any(|word| text.contains(word)));
-                let [low, high] = review.thrust.interval;
-                told += u32::from(is_told);
-                if !is_told && !(low..=high).contains(&whole) {
-                    silent.push(format!("{draw}: {low:.3} to {high:.3} {:?}", review.warnings));
+            drawn[kind] += 1;
+            let Ok(review) = review(&damaged) else {
+                refused[kind] += 1;
+                continue;
+            };
+            let words = ["damage", "is missing", "cannot be", "left out"];
+            let is_told = review
+                .warnings
+                .iter()
+                .any(|text| words.iter().any(|word| text.contains(word)));
+            let [low, high] = review.thrust.interval;
+            match (is_told, (low..=high).contains(&whole)) {
+                (true, _) => told[kind] += 1,
+                (false, true) => sound[kind] += 1,
+                (false, false) => {
+                    silent[kind].push(format!("{draw}: {low:.3} to {high:.3} {:?}", review.warnings))
                 }
             }
         }
         println!(
-            "{draws} damages: {told} reviewed with a word of damage, {} silent",
-            silent.len()
+            "{format}: damage, drawn, refused, told, scale in the interval without a word, scale missed without a word"
         );
+        for (kind, name) in ["cut off", "a bit", "a byte", "bytes missing", "bytes too many"]
+            .iter()
+            .enumerate()
+        {
+            let missed = silent[kind].len();
+            println!(
+                "| {name} | {} | {} | {} | {} | {missed} |",
+                drawn[kind], refused[kind], told[kind], sound[kind]
+            );
+        }
         // A parameter or a format with another sound value is no damage that anything shows.
+        let silent = silent.concat();
         assert!(500 * silent.len() <= draws, "{silent:#?}");
     }
     let [log, _] = logs();
