@@ -176,7 +176,7 @@ fn centre(rows: &Rows, compiled: &Compiled, mass_kg: f64) -> Option<[[f64; 2]; 2
 }
 
 impl Power {
-    /// `None` without a current, or without `[pair.power]`.
+    /// `None` without current and voltage, or without `[pair.power]`.
     fn new(rows: &Rows, flight: &Flight, compiled: &Compiled) -> Option<Power> {
         let airframe = &compiled.airframe;
         // The power of a rotor follows the cube of its speed, where its thrust follows the square; and the density.
@@ -196,7 +196,7 @@ impl Power {
         let mean =
             |number: &dyn Fn(&Row) -> Option<f64>| rows.median(is_of, |row| number(row).unwrap_or(f64::NAN));
         let [model_w, measured_w] = [mean(&model)?, mean(&measured)?];
-        let current_a = mean(&|row| row.current_a)?;
+        let (_, current_a) = (flight.voltage.as_ref()?, mean(&|row| row.current_a)?);
         let used_mah = flight
             .current
             .as_ref()
