@@ -2,4 +2,5 @@
 //! thrust.
 
 pub(crate) mod closed_form;
+pub(crate) mod level_yaw;
 pub(crate) mod thrust_range;

@@ -5,6 +5,7 @@ use mixer_rt::Wrench;
 use serde::Serialize;
 
 use crate::airframe::Axis;
+use crate::allocation::level_yaw::level_yaw;
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 
@@ -65,6 +66,45 @@ pub struct HoverAt {
     /// Largest torques `[negative, positive]` about the served axes that are delivered with the
     /// weight, each alone, N m.
     pub margins: Vec<Margin>,
+    /// With an upper and with a lower rotor out, of those the one that leaves least yaw in its weaker sense; empty where
+    /// yaw is not served.
+    pub rotor_out: Vec<RotorOut>,
+}
+
+/// Hover with a rotor out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RotorOut {
+    /// `upper` or `lower`.
+    pub layer: &'static str,
+    /// The rotor's output.
+    pub output: usize,
+    /// Least and largest yaw, N m; `None` where the weight is not carried level.
+    pub yaw_nm: Option<[f64; 2]>,
+}
+
+impl RotorOut {
+    /// Yaw in the weaker sense, N m; 0 where the vehicle turns by itself.
+    pub fn weaker_nm(&self) -> f64 {
+        self.yaw_nm.map_or(0.0, |[least, most]| most.min(-least).max(0.0))
+    }
+
+    fn of(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Vec<RotorOut> {
+        if !compiled.airframe.allocation.controls(Axis::Yaw) {
+            return Vec::new();
+        }
+        let volts = voltage_v.unwrap_or(0.0) as f32;
+        let worst = |side: usize| {
+            let units = compiled.tables.units.iter();
+            let all = units.map(|unit| RotorOut {
+                layer: ["upper", "lower"][side],
+                output: unit.channels[side].into(),
+                yaw_nm: level_yaw(&compiled.tables, volts, weight_n as f32, unit.channels[side])
+                    .map(|yaw| yaw.map(f64::from)),
+            });
+            all.min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))
+        };
+        [0, 1].into_iter().filter_map(worst).collect()
+    }
 }
 
 /// What is left of an axis.
@@ -80,8 +120,39 @@ pub struct Margin {
     pub band_nm: Option<f64>,
 }
 
-/// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.
+/// A yaw reserve beyond what hover has with a rotor out, at the reference voltage.
+fn reserve(compiled: &Compiled) -> Option<Diagnostic> {
+    let airframe = &compiled.airframe;
+    let reserve = airframe.allocation.yaw_reserve_nm;
+    let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
+    let out = RotorOut::of(compiled, airframe.weight_n()?, reference_v).into_iter();
+    let least = out.min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))?;
+    let has = rounded(least.weaker_nm());
+    (reserve > least.weaker_nm()).then(|| {
+        airframe.diagnostic(
+            Code::YawReserveRotorOut,
+            "allocation.yaw_reserve_nm",
+            format!(
+                "a yaw reserve of {} N m, where hover has {has} N m in both senses with the {} rotor of output {} out",
+                rounded(reserve),
+                least.layer,
+                least.output
+            ),
+            "not there with a rotor out",
+            format!("the mixer then keeps what there is; with {has} N m or less it keeps the same with all rotors"),
+        )
+    })
+}
+
+/// What hover lacks: yaw for the reserve, and an axis that is left less than the pair may be off by at the lowest voltage.
 pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
+    let reserve = Some(()).filter(|()| compiled.airframe.allocation.yaw_reserve_nm > 0.0);
+    let reserve = reserve.and_then(|()| self::reserve(compiled));
+    reserve.into_iter().chain(margins(compiled)).collect()
+}
+
+/// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.
+fn margins(compiled: &Compiled) -> Vec<Diagnostic> {
     let airframe = &compiled.airframe;
     let (Some(weight_n), Some(_)) = (airframe.weight_n(), &airframe.pair.uncertainty) else {
         return Vec::new();
@@ -130,6 +201,7 @@ impl HoverAt {
                 lower_throttle: None,
                 throttle_band: None,
                 margins: Vec::new(),
+                rotor_out: Vec::new(),
             };
         };
         let units = &compiled.airframe.units;
@@ -174,6 +246,7 @@ impl HoverAt {
             lower_throttle: Some(lower),
             throttle_band,
             margins: margins.collect(),
+            rotor_out: RotorOut::of(compiled, weight_n, voltage_v),
         }
     }
 }

@@ -234,6 +234,22 @@ fn hover(list: &mut List, compiled: &Compiled) {
         list.say(name, format!("{upper:.3}, {lower:.3}"), "", words)
             .first();
     }
+    let Some(at) = hover.at.last().filter(|at| !at.rotor_out.is_empty()) else {
+        return;
+    };
+    let each = at.rotor_out.iter().map(|out| {
+        let yaw = out.yaw_nm.map_or("no level flight".to_owned(), |[least, most]| {
+            format!("yaw {least:.3} to {most:.3} N m")
+        });
+        format!("{yaw} with an {} rotor out (output {})", out.layer, out.output)
+            .replace("an lower", "a lower")
+    });
+    let reserve = compiled.airframe.allocation.yaw_reserve_nm;
+    let words = format!(
+        "{}; yaw reserve {reserve} N m",
+        each.collect::<Vec<_>>().join(", ")
+    );
+    list.say("hover, rotor out", "", "", words).first();
 }
 
 /// A rotor out, and power in level flight.

@@ -2,7 +2,7 @@
 
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::Axis;
-use mixer_compiler::hover::HoverAt;
+use mixer_compiler::hover::{HoverAt, RotorOut};
 use serde::Serialize;
 
 /// The vehicle in hover.
@@ -45,7 +45,7 @@ impl Hover {
 const KEPT_YAW: f64 = 0.2;
 
 /// A yaw reserve to begin with, N m: a fifth of the yaw that is left in hover either way, at the
-/// reference voltage. Hover is the weight, without a mass half of the largest bare thrust. `None`
+/// reference voltage, and no more than hover has with any one rotor out. Hover is the weight, without a mass half of the largest bare thrust. `None`
 /// where nothing is left or yaw is not served.
 pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let airframe = &compiled.airframe;
@@ -56,6 +56,7 @@ pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let mut margins = hover.margins.iter();
     let yaw = margins.find(|margin| margin.axis == Axis::Yaw.name())?;
     let [least, most] = yaw.torque_nm;
-    let reserve = KEPT_YAW * most.min(-least);
+    let out = hover.rotor_out.iter().map(RotorOut::weaker_nm);
+    let reserve = out.fold(KEPT_YAW * most.min(-least), f64::min);
     (reserve > 0.0).then_some(reserve)
 }

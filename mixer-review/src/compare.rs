@@ -5,12 +5,12 @@ use mixer_compiler::airframe::{Correction, GRAVITY};
 use mixer_rt::{Conditions, Health, Wrench};
 
 use crate::flight::Flight;
-use crate::log::Series;
+use crate::log::{Series, median};
 use crate::review::{Hover, Options, Power, Range, Review};
 use crate::rotors;
 use crate::rows::{Row, Rows};
 use crate::saturated::Saturated;
-use crate::thrust::{Thrust, blocks, error, median, student};
+use crate::thrust::{Thrust, blocks, error, student};
 use crate::warnings::{Seen, warnings};
 
 /// Points of the map that are kept.

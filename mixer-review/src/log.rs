@@ -32,6 +32,13 @@ fn going_on(times: &[f64]) -> Vec<usize> {
     chosen
 }
 
+/// The middle value; of none NaN.
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
 impl Series {
     /// Adds values at a time, s. A row before the last one, or with fewer values, is left out when the flight is
     /// reviewed.

@@ -5,8 +5,8 @@ use mixer_compiler::model::Physics;
 use mixer_rt::Health;
 use serde::Serialize;
 
+use crate::log::median;
 use crate::rows::{Row, Rows};
-use crate::thrust::median;
 
 /// Ratio of speeds at one throttle within which rotors of one kind are alike: thrusts within 6 %.
 const ALIKE: f64 = 0.03;

@@ -20,8 +20,7 @@ use mixer_compiler::model::Physics;
 use mixer_rt::{Conditions, Health};
 
 use crate::flight::Flight;
-use crate::log::Series;
-use crate::thrust::median;
+use crate::log::{Series, median};
 
 /// Cosine of the largest tilt in hover: 10 degrees.
 const LEVEL: f64 = 0.985;

@@ -5,8 +5,8 @@ use mixer_rt::{Axis, Health, Wrench};
 use serde::Serialize;
 
 use crate::flight::{Flight, Stack};
+use crate::log::median;
 use crate::rows::{Row, Rows};
-use crate::thrust::median;
 
 /// Largest time between a setpoint and the outputs that it is taken to give, s.
 const SAME_TIME_S: f64 = 0.03;

@@ -3,6 +3,7 @@
 use mixer_compiler::airframe::GRAVITY;
 use serde::Serialize;
 
+use crate::log::median;
 use crate::rows::{Row, Rows};
 
 /// Length of what is taken for one reading, s: longer than the rotors' lag and a step between outputs.
@@ -111,13 +112,6 @@ fn seconds(blocks: &[Block]) -> f64 {
 
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
-}
-
-/// The middle value; of none NaN.
-pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// Standard error of a mean. Blocks are alike over some seconds (gusts, the pack's state), so covariances of

@@ -19,7 +19,8 @@
 //! all rotors     least norm, eq. (8)                                  allocate/least_norm.rs
 //!                up to four vertical units: in closed form            allocate/closed_form.rs
 //!                else an interior point method on the throttles       allocate/interior.rs
-//! rotors out     nearest the whole frame's least norm                 allocate/rotors_out.rs
+//! rotors out     with one, yaw no larger than what can be braked      allocate/level_yaw.rs
+//!                nearest the whole frame's least norm                 allocate/rotors_out.rs
 //!                else the interior point method
 //! ```
 
@@ -27,6 +28,7 @@ pub(crate) mod closed_form;
 mod frame;
 pub(crate) mod interior;
 mod least_norm;
+mod level_yaw;
 pub(crate) mod power_bias;
 pub(crate) mod priorities;
 mod request;
@@ -63,8 +65,11 @@ pub(crate) fn allocate<P: Quantity, I: Inverse, S, const VERTICAL: bool>(
         if !frame.cut(wrench, units, is_whole) {
             frame.level(wrench[3], units);
         }
-    } else if !frame.serve_with_rotors_out(wrench, units) {
-        frame.cut(wrench, units, is_whole);
+    } else {
+        let wrench = &frame.braked(wrench, units);
+        if !frame.serve_with_rotors_out(wrench, units) {
+            frame.cut(wrench, units, is_whole);
+        }
     }
     false
 }

@@ -9,6 +9,7 @@
 //! | `authority.rs` | an X12 against an X8 of the same real pair: as much yaw and thrust per unit |
 //! | `optimum.rs` | linear programmes: frames in closed form reach the optimum |
 //! | `regressions.rs`, `.toml` | requests that an earlier mixer answered badly, as data |
+//! | `braked.rs` | closed loops with a rotor out: a vehicle brakes what it turns |
 //! | `failure.rs` | an X8 that loses a rotor: still flies |
 //! | `properties.rs` | any layout and request: sound and truthful (proptest; `PROPTEST_CASES=1000` runs more) |
 //! | `rotors_out.rs` | one and two rotors out, real pairs: nothing is reversed or exceeded |
@@ -21,6 +22,7 @@
 #![allow(missing_docs)]
 
 mod authority;
+mod braked;
 mod degenerate;
 mod failure;
 // On other hosts `cargo-mixer/tests/commands/library/exceptions.c` alone watches the exceptions.

@@ -36,7 +36,7 @@ fn pair(path: &str) -> String {
 }
 
 /// A regular frame with a file's pair.
-fn frame(path: &str, units: usize, airmode: &'static str, reserve: f64) -> Frame {
+pub(crate) fn frame(path: &str, units: usize, airmode: &'static str, reserve: f64) -> Frame {
     let first_deg = 180.0 / units as f64;
     let of = |yaw_reserve_nm| {
         let options = Options {

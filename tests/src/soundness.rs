@@ -164,7 +164,7 @@ fn flags(frame: &Frame, request: &Request, answer: &Answer) -> Option<Fault> {
 /// is attainable at all within the yaw asked, with rotors out at the thrust asked.
 fn overstepping(frame: &Frame, request: &Request, answer: &Answer) -> Result<Vec<Fault>, microlp::Error> {
     let served = frame.served();
-    let mut asked = request.asked();
+    let mut asked = request.braked(frame);
     for (asked, _) in asked.iter_mut().zip(served).filter(|(_, served)| !served) {
         *asked = 0.0;
     }

@@ -101,7 +101,7 @@ macro_rules! parts {
 }
 
 parts! {
-    Unit { allocation, effectiveness, channels };
+    Unit { allocation, effectiveness, channels, level_yaw_nm };
     Pair<QuantityTable> { thrust, torque };
     SingleRotor { thrust, torque };
     ThrottleRange { min, max };

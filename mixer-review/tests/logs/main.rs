@@ -597,12 +597,12 @@ fn damaged_logs_do_no_harm() {
             match kind {
                 0 => damaged.truncate(next(end)),
                 _ => (0..1 + next(20)).for_each(|_| {
-                    let at = next(end);
+                    let at = next(end.min(damaged.len()));
                     match kind {
                         1 => damaged[at] ^= 1 << next(8),
                         2 => damaged[at] = [0, 1, 2, 0x7f, 0xff][next(5)],
                         3 => drop(damaged.remove(at)),
-                        _ => damaged.insert(at, damaged[next(end)]),
+                        _ => damaged.insert(at, damaged[at / 2]),
                     }
                 }),
             }

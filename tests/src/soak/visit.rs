@@ -138,7 +138,9 @@ impl<'a> Visit<'a> {
         let frame = draw.frame;
         for _ in 0..attainable {
             let request = draw.attainable();
-            if let Some(answer) = self.sound(frame, &request)? {
+            // Beside the yaw that cannot be braked, the rest of the wrench may not be attainable.
+            let is_whole = request.braked(frame) == request.asked();
+            if let Some(answer) = self.sound(frame, &request)?.filter(|_| is_whole) {
                 let size = missed(frame, &request, &answer);
                 let achieved = answer.achieved;
                 self.look(Check::Delivered, size, &[request], || {
@@ -252,7 +254,7 @@ fn missed(frame: &Frame, request: &Request, answer: &Answer) -> f64 {
     (0..4)
         .filter(|&axis| frame.served()[axis])
         .map(|axis| {
-            let missed = (request.asked()[axis] - answer.achieved[axis]).abs();
+            let missed = (request.braked(frame)[axis] - answer.achieved[axis]).abs();
             (missed - tolerance[axis]) / frame.size(axis)
         })
         .fold(0.0, f64::max)
@@ -262,7 +264,7 @@ fn missed(frame: &Frame, request: &Request, answer: &Answer) -> f64 {
 fn has_level(frame: &Frame, request: &Request) -> Result<bool, Error> {
     let factors = request.factors(frame);
     let oracle = Oracle::exact(&frame.physics, frame.allocation(), factors, request.health);
-    let [.., yaw, thrust] = request.asked();
+    let [.., yaw, thrust] = request.braked(frame);
     oracle.has_level(yaw, thrust)
 }
 
