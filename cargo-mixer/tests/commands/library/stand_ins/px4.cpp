@@ -176,13 +176,26 @@ int main()
 	CHECK(published<actuator_motors_s>() == motors && published<control_allocator_status_s>() == 1);
 	publish(vehicle_control_mode_s{0, true, true});
 
-	// A parameter that is changed in flight waits for the ground.
-	set("CA_ROTOR3_PX", 1.1f * place_m);
+	// A parameter that is changed in flight waits for its end.
+	set("MC_BAT_SCALE_EN", 1.f);
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(same(0.f, 0.f, 0.f, 0.3f) && may_arm(3) == 1);
-	set("CA_ROTOR3_PX", place_m);
+	publish(vehicle_control_mode_s{0, false, true});
+	cycle(0.f, 0.f, 0.f, 0.3f);
+	CHECK(may_arm(3) == 0);
+	set("MC_BAT_SCALE_EN", 0.f);
+	CHECK(may_arm(3) == 1);
+
+	// A fifth more of a pair's torque over thrust is another pair.
+	const float ratio = stand_in::parameters()["CA_ROTOR0_KM"];
+	set("CA_ROTOR0_KM", ratio + 0.004f);
+	CHECK(may_arm(3) == 0);
+	set("CA_ROTOR0_KM", 1.005f * ratio);
+	CHECK(may_arm(3) == 1);
+	publish(vehicle_control_mode_s{0, true, true});
 
 	// Status at 200 Hz at most.
+	cycle(0.f, 0.f, 0.f, 0.3f);
 	const unsigned told = published<control_allocator_status_s>();
 	cycle(0.f, 0.f, 0.f, 0.3f, 2500);
 	CHECK(published<control_allocator_status_s>() == told);
@@ -208,6 +221,29 @@ int main()
 	measure(full_v - 2.f);
 	cycle(0.f, 0.f, 0.f, 0.4f);
 	CHECK(same(0.f, 0.f, 0.f, 0.4f) && std::fabs(voltage_v - (full_v - 1.f)) < 0.03f);
+
+	// Outside the range it is told once in flight, and on the ground the vehicle does not arm.
+	const float inside_v = voltage_v;
+
+	for (int i = 0; i < 20; ++i) {
+		stand_in::now_us() += 100000;
+		measure(0.8f * ISAE_X8_MIN_V);
+		cycle(0.f, 0.f, 0.f, 0.4f);
+	}
+
+	CHECK(same(0.f, 0.f, 0.f, 0.4f) && strstr(stand_in::told(), "V, isae-x8 has 12.80 to 16.80 V") && may_arm(3) == 1);
+	publish(vehicle_control_mode_s{0, false, true});
+	cycle(0.f, 0.f, 0.f, 0.4f);
+	CHECK(may_arm(3) == 0);
+
+	for (int i = 0; i < 40; ++i) {
+		stand_in::now_us() += 100000;
+		measure(inside_v);
+		cycle(0.f, 0.f, 0.f, 0.4f);
+	}
+
+	CHECK(may_arm(3) == 1);
+	publish(vehicle_control_mode_s{0, true, true});
 
 	// A voltage that is not measured is the last one that was.
 	const battery_status_s unusable[] = {{0, 13.f, false}, {0, 0.f, true}, {0, NAN, true}, {0, INFINITY, true}};
@@ -332,6 +368,11 @@ int main()
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	cycle(0.f, 0.f, 0.f, 0.3f);
 	CHECK(published<actuator_motors_s>() == alone + 1);
+
+	// What another module flies is not this one's to refuse.
+	publish(vehicle_control_mode_s{0, false, true});
+	set("CA_ROTOR3_PX", 1.1f * place_m);
+	CHECK(may_arm(3) != 0);
 
 	printf("%u faults\n", faults);
 	return faults != 0;

@@ -42,6 +42,7 @@ constexpr hrt_abstime operator""_ms(unsigned long long milliseconds) { return mi
 typedef void *orb_advert_t;
 
 #define mavlink_log_critical(publication, ...) ((void)(publication), snprintf(stand_in::told(), 128, __VA_ARGS__))
+#define mavlink_log_warning(publication, ...) mavlink_log_critical(publication, __VA_ARGS__)
 
 // Performance counters: cycles begun and not ended.
 typedef int *perf_counter_t;

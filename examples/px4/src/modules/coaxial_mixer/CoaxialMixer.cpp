@@ -16,7 +16,7 @@ CoaxialMixer::CoaxialMixer() : ModuleParams(nullptr), ScheduledWorkItem(MODULE_N
 	// What was published before this module started.
 	actuator_motors_s before;
 	_motors_sub.update(&before);
-	update_parameters();
+	updateParams();
 }
 
 CoaxialMixer::~CoaxialMixer()
@@ -52,12 +52,19 @@ void CoaxialMixer::cycle()
 	if (_parameter_update_sub.updated()) {
 		parameter_update_s update;
 		_parameter_update_sub.copy(&update);
-		update_parameters();
+		updateParams();
+		_is_compared = false;
 	}
 
+	if (!_is_compared && !_mode.flag_armed) {
+		_is_compared = true;
+		compare_parameters();
+	}
+
+	const bool displaced = is_displaced();
 	answer_arming_check();
 
-	if (is_displaced()) {
+	if (displaced) {
 		return;
 	}
 
@@ -74,14 +81,8 @@ void CoaxialMixer::cycle()
 
 // Library and parameters must be of one vehicle: those of its frame as `cargo mixer params` writes them, and no
 // correction of what the mixer corrects itself.
-void CoaxialMixer::update_parameters()
+void CoaxialMixer::compare_parameters()
 {
-	updateParams();
-
-	if (_mode.flag_armed) {
-		return;
-	}
-
 	_mismatch[0] = '\0';
 	expect("CA_ROTOR_COUNT", _param_rotor_count.get(), ISAE_X8_CHANNELS);
 	expect("THR_MDL_FAC", _param_thrust_curve.get(), 0.f);
@@ -107,8 +108,9 @@ void CoaxialMixer::update_parameters()
 
 void CoaxialMixer::expect(const char *name, float value, float of_airframe)
 {
-	// Ground stations show two decimals.
-	const float tolerance = 0.005f + 0.01f * std::fabs(of_airframe);
+	// Ground stations show two decimals, which are a fifth of a CA_ROTORn_KM.
+	const bool is_ratio = strstr(name, "_KM") != nullptr;
+	const float tolerance = (is_ratio ? 1e-4f : 0.005f) + 0.01f * std::fabs(of_airframe);
 
 	if (!_mismatch[0] && !(std::fabs(value - of_airframe) <= tolerance)) {
 		snprintf(_mismatch, sizeof(_mismatch), "%s is %.4f, must be %.4f for %s", name, static_cast<double>(value),
@@ -116,13 +118,61 @@ void CoaxialMixer::expect(const char *name, float value, float of_airframe)
 	}
 }
 
-// Keeps the vehicle from arming with another vehicle's parameters, by an arming check that the commander has for
-// components outside it. It drops one that does not answer, so a question that stays away is asked for again.
+// How far a voltage is outside the airframe's range_v, as a share; 0 inside, and where the airframe has no [voltage].
+static float beyond_range(float voltage_v)
+{
+	const float beyond_v = fmaxf(ISAE_X8_MIN_V - voltage_v, voltage_v - ISAE_X8_MAX_V);
+	return ISAE_X8_REFERENCE_V > 0.f ? fmaxf(beyond_v, 0.f) / voltage_v : 0.f;
+}
+
+// Why the vehicle must not arm: another vehicle's parameters, or a battery that is not the airframe's; null where it may.
+// Where another module flies the vehicle, that is not this one's to say.
+const char *CoaxialMixer::refusal()
+{
+	const float voltage_v = _conditions.voltage_v;
+
+	if (_displaced || _mode.flag_armed) {
+		return nullptr;
+	}
+
+	if (_mismatch[0]) {
+		return _mismatch;
+	}
+
+	if (beyond_range(voltage_v) <= VOLTAGE_ERROR) {
+		return nullptr;
+	}
+
+	snprintf(_outside, sizeof(_outside), "%.2f V, %s has %.2f to %.2f V", static_cast<double>(voltage_v), ISAE_X8_AIRFRAME,
+		 static_cast<double>(ISAE_X8_MIN_V), static_cast<double>(ISAE_X8_MAX_V));
+	return _outside;
+}
+
+// Outside its range the model is that of the range's end. In flight that is told once, and again after the voltage was inside.
+void CoaxialMixer::tell_voltage()
+{
+	const float beyond = beyond_range(_conditions.voltage_v);
+
+	if (!_mode.flag_armed || beyond <= 0.f) {
+		_told_voltage = false;
+
+	} else if (!_told_voltage && beyond > VOLTAGE_ERROR) {
+		_told_voltage = true;
+		mavlink_log_warning(&_mavlink_log_pub, "Coaxial mixer: %.2f V, %s has %.2f to %.2f V",
+				    static_cast<double>(_conditions.voltage_v), ISAE_X8_AIRFRAME, static_cast<double>(ISAE_X8_MIN_V),
+				    static_cast<double>(ISAE_X8_MAX_V));
+	}
+}
+
+// Keeps the vehicle from arming, by an arming check that the commander has for components outside it. It drops one that
+// does not answer, so a question that stays away is asked for again.
 void CoaxialMixer::answer_arming_check()
 {
-	if (_mismatch[0] && !_mode.flag_armed && (_last_told == 0 || hrt_elapsed_time(&_last_told) > 10_s)) {
+	const char *why = refusal();
+
+	if (why && (_last_told == 0 || hrt_elapsed_time(&_last_told) > 10_s)) {
 		_last_told = hrt_absolute_time();
-		mavlink_log_critical(&_mavlink_log_pub, "Coaxial mixer: %s", _mismatch);
+		mavlink_log_critical(&_mavlink_log_pub, "Coaxial mixer: %s", why);
 	}
 
 	register_ext_component_reply_s registered;
@@ -141,10 +191,10 @@ void CoaxialMixer::answer_arming_check()
 		reply.timestamp = _last_asked;
 		reply.request_id = request.request_id;
 		reply.registration_id = _check_id;
-		reply.can_arm_and_run = !_mismatch[0];
+		reply.can_arm_and_run = !why;
 		_arming_check_pub.publish(reply);
 
-	} else if (_mismatch[0] && !_mode.flag_armed && hrt_elapsed_time(&_last_asked) > 1_s) {
+	} else if (why && hrt_elapsed_time(&_last_asked) > 1_s) {
 		_last_asked = hrt_absolute_time();
 		register_ext_component_request_s component{};
 		component.timestamp = _last_asked;
@@ -266,6 +316,7 @@ void CoaxialMixer::update_conditions()
 		const float dt_s = 1e-6f * (battery.timestamp - _last_battery);
 		_conditions.voltage_v += (battery.voltage_v - _conditions.voltage_v) * dt_s / (dt_s + VOLTAGE_TIME_CONSTANT_S);
 		_last_battery = battery.timestamp;
+		tell_voltage();
 	}
 
 	vehicle_air_data_s air;
@@ -354,13 +405,15 @@ int CoaxialMixer::task_spawn(int, char *[])
 int CoaxialMixer::print_status()
 {
 	// 0 V: the airframe has no voltage law, and none was measured.
-	PX4_INFO("%s %s, %.2f V, %.3f kg/m3", ISAE_X8_AIRFRAME, ISAE_X8_VERSION, static_cast<double>(_conditions.voltage_v),
-		 static_cast<double>(_conditions.density_kg_m3));
+	PX4_INFO("%s %s of a file with SHA-256 %.12s, %.2f V, %.3f kg/m3", ISAE_X8_AIRFRAME, ISAE_X8_VERSION, ISAE_X8_SHA256,
+		 static_cast<double>(_conditions.voltage_v), static_cast<double>(_conditions.density_kg_m3));
 	PX4_INFO("saturation 0x%x, rotors out 0x%x, refused %u%s", static_cast<unsigned>(_saturation), static_cast<unsigned>(_failed),
 		 _refused, _displaced ? ", displaced by another module" : "");
 
-	if (_mismatch[0]) {
-		PX4_INFO("arming refused: %s", _mismatch);
+	const char *why = refusal();
+
+	if (why) {
+		PX4_INFO("arming refused: %s", why);
 	}
 
 	perf_print_counter(_loop_perf);

@@ -59,9 +59,11 @@ public:
 private:
 	void Run() override;
 	void cycle();
-	void update_parameters();
+	void compare_parameters();
 	void expect(const char *name, float value, float of_airframe);
+	const char *refusal();
 	void answer_arming_check();
+	void tell_voltage();
 	void update_conditions();
 	void update_failed(const mixer_wrench_t &setpoint);
 	bool mix_setpoint(const vehicle_torque_setpoint_s &torque);
@@ -77,6 +79,8 @@ private:
 	static constexpr hrt_abstime STATUS_INTERVAL = 5_ms;
 	// Of the low-pass on the battery's voltage: a step of thrust must not change the throttles by its own sag at once.
 	static constexpr float VOLTAGE_TIME_CONSTANT_S = 0.1f;
+	// Error of a measured voltage, as a share: only what is further out is told.
+	static constexpr float VOLTAGE_ERROR = 0.01f;
 	// More rotors than these are not believed to be dead: the mixer is tested with up to two out.
 	static constexpr int MOST_OUT = 2;
 	static constexpr uint16_t ALL_ROTORS = (1u << ISAE_X8_CHANNELS) - 1;
@@ -108,6 +112,11 @@ private:
 	hrt_abstime _last_battery{0};
 	// The first parameter that is of another vehicle than the library; empty where all are of this one.
 	char _mismatch[100] {};
+	// Why arming is refused by the battery.
+	char _outside[100] {};
+	// Whether the parameters have been compared since the last of them changed: what is changed in flight waits for its end.
+	bool _is_compared{false};
+	bool _told_voltage{false};
 	hrt_abstime _last_told{0};
 	// Of the arming check with the commander, which asks every 300 ms; -1 without one.
 	int _check_id{-1};
