@@ -124,8 +124,8 @@ void AP_MotorsCoaxialMixer::mixed(const isae_x8_mix_t &mix, float throttle)
     _refused_s = 0.0f;
     for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
         _throttle[i] = mix.throttle[i];
-        // What logs, notch filter and the check for a failed motor read.
-        _thrust_rpyt_out[i] = mix.throttle[i];
+        // What logs, notch filter and the check for a failed motor read: a share of the range from MOT_SPIN_MIN to _MAX.
+        _thrust_rpyt_out[i] = thr_lin.actuator_to_thrust(mix.throttle[i]);
     }
     // Idle gives thrust where none is asked for: landed, ArduPilot expects 0.
     _throttle_out = MIN(throttle, mix.achieved.thrust_n / ISAE_X8_ARDUPILOT_THRUST_N);

@@ -88,7 +88,8 @@ impl RotorOut {
         self.yaw_nm.map_or(0.0, |[least, most]| most.min(-least).max(0.0))
     }
 
-    fn of(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Vec<RotorOut> {
+    /// That of both layers beside a thrust of `weight_n` N at a voltage, V; empty where yaw is not served.
+    pub fn of(compiled: &Compiled, weight_n: f64, voltage_v: Option<f64>) -> Vec<RotorOut> {
         if !compiled.airframe.allocation.controls(Axis::Yaw) {
             return Vec::new();
         }
@@ -139,7 +140,7 @@ fn reserve(compiled: &Compiled) -> Option<Diagnostic> {
                 least.output
             ),
             "not there with a rotor out",
-            format!("the mixer then keeps what there is; with {has} N m or less it keeps the same with all rotors"),
+            "the mixer then keeps what there is; no more than that, written here, is the same with all rotors",
         )
     })
 }

@@ -3,7 +3,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::{Correction, Spin};
 
-use crate::parameter::{Parameters, curve, hundredths, on_curve, slope_in_hover};
+use crate::parameter::{Parameters, curve, hundredths, on_curve, rotor_out, slope_in_hover};
 
 /// Most rotors that PX4 has parameters for.
 const MOST_ROTORS: usize = 12;
@@ -61,6 +61,7 @@ pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parame
         all.note(DENSITY);
     }
     all.note(gains(compiled));
+    rotor_out("MC_YAWRATE_MAX", compiled, all);
 }
 
 /// Accuracy of PX4's density.

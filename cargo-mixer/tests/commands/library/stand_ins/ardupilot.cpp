@@ -118,7 +118,7 @@ public:
             return false;
         }
         for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
-            const bool close = std::fabs(_actuator[i] - mix.throttle[i]) < error && std::fabs(_thrust_rpyt_out[i] - mix.throttle[i]) < error;
+            const bool close = std::fabs(_actuator[i] - mix.throttle[i]) < error && std::fabs(_thrust_rpyt_out[i] - thr_lin.actuator_to_thrust(mix.throttle[i])) < 2.0f * error;
             if (!close || _written[i] != static_cast<uint16_t>(1000.0f + 1000.0f * _actuator[i])) {
                 return false;
             }

@@ -60,6 +60,7 @@ public:
     float get_spin_min() const { return spin_min; }
     float get_spin_max() const { return spin_max; }
     int8_t get_battery_index() const { return battery; }
+    float actuator_to_thrust(float actuator) const { return (actuator - spin_min) / (spin_max - spin_min); }
 
     // Protected there, with the class above for a friend.
     float spin_min = 0.15f;
