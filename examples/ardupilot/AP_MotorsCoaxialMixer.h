@@ -1,7 +1,10 @@
 // ArduCopter's motors by a compiled coaxial mixer: channel 0 of the airframe is Motor1.
 #pragma once
 
+// Since early 2026.
+#if __has_include("AP_Motors_config.h")
 #include "AP_Motors_config.h"
+#endif
 
 // 0 leaves the class out.
 #ifndef AP_MOTORS_COAXIAL_MIXER_ENABLED
