@@ -124,7 +124,7 @@ pub struct Margin {
 /// A yaw reserve beyond what hover has with a rotor out, at the reference voltage.
 fn reserve(compiled: &Compiled) -> Option<Diagnostic> {
     let airframe = &compiled.airframe;
-    let reserve = airframe.allocation.yaw_reserve_nm;
+    let reserve = Some(airframe.allocation.yaw_reserve_nm).filter(|reserve| *reserve > 0.0)?;
     let reference_v = airframe.voltage.as_ref().map(|voltage| voltage.reference);
     let out = RotorOut::of(compiled, airframe.weight_n()?, reference_v).into_iter();
     let least = out.min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))?;
@@ -147,9 +147,7 @@ fn reserve(compiled: &Compiled) -> Option<Diagnostic> {
 
 /// What hover lacks: yaw for the reserve, and an axis that is left less than the pair may be off by at the lowest voltage.
 pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
-    let reserve = Some(()).filter(|()| compiled.airframe.allocation.yaw_reserve_nm > 0.0);
-    let reserve = reserve.and_then(|()| self::reserve(compiled));
-    reserve.into_iter().chain(margins(compiled)).collect()
+    reserve(compiled).into_iter().chain(margins(compiled)).collect()
 }
 
 /// Hover leaves less of an axis than the pair may be off by, at the lowest voltage.

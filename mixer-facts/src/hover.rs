@@ -45,8 +45,8 @@ impl Hover {
 const KEPT_YAW: f64 = 0.2;
 
 /// A yaw reserve to begin with, N m: a fifth of the yaw that is left in hover either way, at the
-/// reference voltage, and no more than hover has with any one rotor out. Hover is the weight, without a mass half of the largest bare thrust. `None`
-/// where nothing is left or yaw is not served.
+/// reference voltage, and no more than hover has with any one rotor out. Hover is the weight,
+/// without a mass half of the largest bare thrust. `None` where nothing is left or yaw is not served.
 pub fn yaw_reserve(compiled: &Compiled) -> Option<f64> {
     let airframe = &compiled.airframe;
     let half_n = 0.5 * f64::from(compiled.thrust_range_n[1]);

@@ -9,9 +9,10 @@
 //! as large as the most at lower thrusts.
 
 use super::frame::Frame;
+use super::priorities::REQUEST_LIMIT;
 use super::unit::UnitState;
 use crate::layout::LEVEL_YAWS;
-use crate::{clamp, divided, larger, smaller};
+use crate::{clamp, divided, divisor, larger, smaller};
 
 /// Intervals between the thrusts of the table.
 const CELLS: usize = LEVEL_YAWS - 1;
@@ -22,14 +23,11 @@ impl<P, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
     pub(super) fn braked(&self, wrench: &[f32; 4], units: &[UnitState]) -> [f32; 4] {
         let [roll, pitch, yaw, thrust] = *wrench;
         let tables = self.tables;
-        let share = divided(
-            thrust * self.per_factor[0],
-            larger(tables.level_n[1], f32::MIN_POSITIVE),
-        );
+        let share = divided(thrust * self.per_factor[0], divisor(tables.level_n[1]));
         let at = clamp(share * CELLS as f32, 0.0, CELLS as f32);
         let cell = (at as usize).min(CELLS - 1);
         let reserve = tables.priorities.yaw_reserve_nm * self.per_factor[1];
-        let (mut limit, mut out) = (f32::MAX, 0);
+        let (mut limit, mut out) = (REQUEST_LIMIT, 0);
         for (unit, table) in units.iter().zip(tables.units) {
             for (side, yaws) in table.level_yaw_nm.iter().enumerate() {
                 if unit.rotors.turns(side) {
