@@ -191,8 +191,6 @@ bool AP_MotorsCoaxialMixer::check_parameters(size_t buflen, char *buffer) const
     } parameters[] {
         {"SPIN_MIN", thr_lin.get_spin_min(), MIN(ISAE_X8_THROTTLE_MIN, MOST_SPIN_MIN), SAME_THROTTLE},
         {"SPIN_MAX", thr_lin.get_spin_max(), ISAE_X8_THROTTLE_MAX, SAME_THROTTLE},
-        {"PWM_MIN", float(get_pwm_output_min()), float(COAXIAL_MIXER_PWM_MIN), 0.5f},
-        {"PWM_MAX", float(get_pwm_output_max()), float(COAXIAL_MIXER_PWM_MAX), 0.5f},
         {"SLEW_UP_TIME", _slew_up_time.get(), 0.0f, SAME_THROTTLE},
         {"SLEW_DN_TIME", _slew_dn_time.get(), 0.0f, SAME_THROTTLE},
     };

@@ -18,14 +18,6 @@
 
 #include "isae_x8.h"
 
-// Pulse widths of throttle 0 and 1 on the bench, microseconds: those of the pair's bench file. Digital outputs have 1000 and 2000.
-#ifndef COAXIAL_MIXER_PWM_MIN
-#define COAXIAL_MIXER_PWM_MIN 1000
-#endif
-#ifndef COAXIAL_MIXER_PWM_MAX
-#define COAXIAL_MIXER_PWM_MAX 2000
-#endif
-
 class AP_MotorsCoaxialMixer : public AP_MotorsMatrix {
 public:
     using AP_MotorsMatrix::AP_MotorsMatrix;

@@ -119,7 +119,7 @@ public:
         }
         for (uint8_t i = 0; i < ISAE_X8_CHANNELS; i++) {
             const bool close = std::fabs(_actuator[i] - mix.throttle[i]) < error && std::fabs(_thrust_rpyt_out[i] - thr_lin.actuator_to_thrust(mix.throttle[i])) < 2.0f * error;
-            if (!close || _written[i] != static_cast<uint16_t>(1000.0f + 1000.0f * _actuator[i])) {
+            if (!close || _written[i] != static_cast<uint16_t>(_pwm_min + (_pwm_max - _pwm_min) * _actuator[i])) {
                 return false;
             }
         }
@@ -139,6 +139,8 @@ public:
     float actuator(uint8_t motor) const { return _actuator[motor]; }
 
     float output(uint8_t motor) const { return _thrust_rpyt_out[motor]; }
+
+    void set_pulses(int16_t least, int16_t most) { _pwm_min = least; _pwm_max = most; }
 };
 
 // What differs from the airframe is named, and where it is set.
@@ -178,8 +180,6 @@ void arming()
     } parameters[] {
         {[](Bench &motors) { motors.thr_lin.spin_min = 0.15f; }, "MOT_SPIN_MIN is 0.15, isae-x8 has 0.1"},
         {[](Bench &motors) { motors.thr_lin.spin_max = 0.95f; }, "MOT_SPIN_MAX"},
-        {[](Bench &motors) { motors._pwm_min = 1100; }, "MOT_PWM_MIN is 1100, isae-x8 has 1000"},
-        {[](Bench &motors) { motors._pwm_max = 1900; }, "MOT_PWM_MAX"},
         {[](Bench &motors) { motors._slew_up_time.value = 0.05f; }, "MOT_SLEW_UP_TIME"},
         {[](Bench &motors) { motors._slew_dn_time.value = 0.05f; }, "MOT_SLEW_DN_TIME"},
     };
@@ -237,6 +237,11 @@ int main()
     // Before a voltage is measured it is the reference voltage, and while it is not it is the last one that was.
     motors.cycle(State::THROTTLE_UNLIMITED, 0.05f, -0.02f, 0.1f, 0.3f);
     CHECK(motors.same(0.05f, -0.02f, 0.1f, 0.3f, ISAE_X8_REFERENCE_V));
+    // Within the pulse range of the parameters.
+    motors.set_pulses(1100, 1940);
+    motors.cycle(State::THROTTLE_UNLIMITED, 0.05f, -0.02f, 0.1f, 0.3f);
+    CHECK(motors.same(0.05f, -0.02f, 0.1f, 0.3f, ISAE_X8_REFERENCE_V));
+    motors.set_pulses(1000, 2000);
     CHECK(!motors.limit.roll && !motors.limit.pitch && !motors.limit.yaw && !motors.limit.throttle_upper && !motors.limit.throttle_lower);
     CHECK(std::fabs(motors.checked() - 0.3f) < 0.001f);
     AP::battery().volts = 15.5f;

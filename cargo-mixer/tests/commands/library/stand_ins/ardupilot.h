@@ -161,9 +161,6 @@ public:
         }
     }
 
-    int16_t get_pwm_output_min() const { return _pwm_min; }
-    int16_t get_pwm_output_max() const { return _pwm_max; }
-
     Thrust_Linearization thr_lin {};
 
     enum class SpoolState : uint8_t {
@@ -201,7 +198,7 @@ protected:
 
     virtual void rc_write(uint8_t channel, uint16_t pwm) { _written[channel] = pwm; }
 
-    int16_t output_to_pwm(float actuator) { return static_cast<int16_t>(1000.0f + 1000.0f * actuator); }
+    int16_t output_to_pwm(float actuator) { return static_cast<int16_t>(_pwm_min + (_pwm_max - _pwm_min) * actuator); }
 
     void set_actuator_with_slew(float &actuator, float input) { actuator = input; }
 
