@@ -5,7 +5,7 @@ use mixer_rt::Wrench;
 use serde::Serialize;
 
 use crate::airframe::Axis;
-use crate::allocation::level_yaw::level_yaw;
+use crate::allocation::level_yaw::{LevelYaw, in_both_senses};
 use crate::compiled::Compiled;
 use crate::diagnostic::{Code, Diagnostic, rounded};
 
@@ -85,7 +85,7 @@ pub struct RotorOut {
 impl RotorOut {
     /// Yaw in the weaker sense, N m; 0 where the vehicle turns by itself.
     pub fn weaker_nm(&self) -> f64 {
-        self.yaw_nm.map_or(0.0, |[least, most]| most.min(-least).max(0.0))
+        in_both_senses(self.yaw_nm)
     }
 
     /// That of both layers beside a thrust of `weight_n` N at a voltage, V; empty where yaw is not served.
@@ -93,14 +93,13 @@ impl RotorOut {
         if !compiled.airframe.allocation.controls(Axis::Yaw) {
             return Vec::new();
         }
-        let volts = voltage_v.unwrap_or(0.0) as f32;
+        let (asked, volts) = (LevelYaw::new(&compiled.tables), voltage_v.unwrap_or(0.0) as f32);
         let worst = |side: usize| {
             let units = compiled.tables.units.iter();
             let all = units.map(|unit| RotorOut {
                 layer: ["upper", "lower"][side],
                 output: unit.channels[side].into(),
-                yaw_nm: level_yaw(&compiled.tables, volts, weight_n as f32, unit.channels[side])
-                    .map(|yaw| yaw.map(f64::from)),
+                yaw_nm: asked.at(volts, weight_n as f32, unit.channels[side]),
             });
             all.min_by(|a, b| a.weaker_nm().total_cmp(&b.weaker_nm()))
         };
@@ -145,7 +144,8 @@ fn reserve(compiled: &Compiled) -> Option<Diagnostic> {
     })
 }
 
-/// What hover lacks: yaw for the reserve, and an axis that is left less than the pair may be off by at the lowest voltage.
+/// Warnings of hover: a yaw reserve that a rotor out leaves no yaw for, and an axis that is left less than the pair may be
+/// off by.
 pub(crate) fn warnings(compiled: &Compiled) -> Vec<Diagnostic> {
     reserve(compiled).into_iter().chain(margins(compiled)).collect()
 }

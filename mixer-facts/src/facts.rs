@@ -241,8 +241,11 @@ fn hover(list: &mut List, compiled: &Compiled) {
         let yaw = out.yaw_nm.map_or("no level flight".to_owned(), |[least, most]| {
             format!("yaw {least:.3} to {most:.3} N m")
         });
-        format!("{yaw} with an {} rotor out (output {})", out.layer, out.output)
-            .replace("an lower", "a lower")
+        let article = if out.layer == "upper" { "an" } else { "a" };
+        format!(
+            "{yaw} with {article} {} rotor out (output {})",
+            out.layer, out.output
+        )
     });
     let reserve = compiled.airframe.allocation.yaw_reserve_nm;
     let words = format!(

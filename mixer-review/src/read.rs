@@ -13,7 +13,7 @@ use crate::{ardupilot, dataflash, px4, ulog};
 /// the next arm of a dodecahexa.
 const SAME_PLACE: f64 = 0.3;
 
-/// What messages call the parameters of a log.
+/// Name of a log's parameters in messages.
 const PARAMETERS: &str = "the log's parameters";
 
 impl Flight {

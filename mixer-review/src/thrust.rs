@@ -140,12 +140,23 @@ fn ratios(blocks: &[Block]) -> Vec<f64> {
 /// they do (binary segmentation; Scott and Knott 1974).
 fn parts(blocks: &[Block]) -> Vec<&[Block]> {
     let ratios = ratios(blocks);
-    let gain = |at: &usize| {
-        let (left, right) = ratios.split_at(*at);
-        (left.len() * right.len()) as f64 * (mean(left) - mean(right)) * (mean(left) - mean(right))
-    };
-    let places = CHANGE_BLOCKS..(blocks.len() + 1).saturating_sub(CHANGE_BLOCKS);
-    let Some(at) = places.max_by(|a, b| gain(a).total_cmp(&gain(b))) else {
+    let (count, all) = (ratios.len(), ratios.iter().sum::<f64>());
+    let places = CHANGE_BLOCKS..(count + 1).saturating_sub(CHANGE_BLOCKS);
+    // Between the means left and right of each place, squared, by both counts.
+    let gains = ratios.iter().scan(0.0, |sum, ratio| {
+        let before = *sum;
+        *sum += ratio;
+        Some(before)
+    });
+    let gains = gains
+        .enumerate()
+        .filter(|(at, _)| places.contains(at))
+        .map(|(at, sum)| {
+            let (left, right) = (at as f64, (count - at) as f64);
+            let between = sum / left - (all - sum) / right;
+            (at, left * right * between * between)
+        });
+    let Some((at, _)) = gains.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
         return vec![blocks];
     };
     let (left, right) = ratios.split_at(at);

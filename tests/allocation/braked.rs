@@ -31,7 +31,7 @@ const PAIRS: [&str; 3] = [
     "airframes/x8-16in-quartic.toml",
 ];
 
-/// What a flight came to from the turn on.
+/// Extremes of a flight after its turn has begun.
 #[derive(Debug)]
 struct Flown {
     /// Least and largest heading in the sense of the turn, degrees.

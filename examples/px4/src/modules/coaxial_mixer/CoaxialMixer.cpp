@@ -129,8 +129,6 @@ static float beyond_range(float voltage_v)
 // Where another module flies the vehicle, that is not this one's to say.
 const char *CoaxialMixer::refusal()
 {
-	const float voltage_v = _conditions.voltage_v;
-
 	if (_displaced || _mode.flag_armed) {
 		return nullptr;
 	}
@@ -139,12 +137,13 @@ const char *CoaxialMixer::refusal()
 		return _mismatch;
 	}
 
-	if (beyond_range(voltage_v) <= VOLTAGE_ERROR) {
-		return nullptr;
-	}
+	return beyond_range(_conditions.voltage_v) > VOLTAGE_ERROR ? outside() : nullptr;
+}
 
-	snprintf(_outside, sizeof(_outside), "%.2f V, %s has %.2f to %.2f V", static_cast<double>(voltage_v), ISAE_X8_AIRFRAME,
-		 static_cast<double>(ISAE_X8_MIN_V), static_cast<double>(ISAE_X8_MAX_V));
+const char *CoaxialMixer::outside()
+{
+	snprintf(_outside, sizeof(_outside), "%.2f V, %s has %.2f to %.2f V", static_cast<double>(_conditions.voltage_v),
+		 ISAE_X8_AIRFRAME, static_cast<double>(ISAE_X8_MIN_V), static_cast<double>(ISAE_X8_MAX_V));
 	return _outside;
 }
 
@@ -158,9 +157,7 @@ void CoaxialMixer::tell_voltage()
 
 	} else if (!_told_voltage && beyond > VOLTAGE_ERROR) {
 		_told_voltage = true;
-		mavlink_log_warning(&_mavlink_log_pub, "Coaxial mixer: %.2f V, %s has %.2f to %.2f V",
-				    static_cast<double>(_conditions.voltage_v), ISAE_X8_AIRFRAME, static_cast<double>(ISAE_X8_MIN_V),
-				    static_cast<double>(ISAE_X8_MAX_V));
+		mavlink_log_warning(&_mavlink_log_pub, "Coaxial mixer: %s", outside());
 	}
 }
 

@@ -62,6 +62,7 @@ private:
 	void compare_parameters();
 	void expect(const char *name, float value, float of_airframe);
 	const char *refusal();
+	const char *outside();
 	void answer_arming_check();
 	void tell_voltage();
 	void update_conditions();
@@ -112,7 +113,7 @@ private:
 	hrt_abstime _last_battery{0};
 	// The first parameter that is of another vehicle than the library; empty where all are of this one.
 	char _mismatch[100] {};
-	// Why arming is refused by the battery.
+	// The voltage and the range that it is outside of.
 	char _outside[100] {};
 	// Whether the parameters have been compared since the last of them changed: what is changed in flight waits for its end.
 	bool _is_compared{false};
