@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{fs, mem};
 
-use mixer_tests::root;
+use mixer_tests::{folder, root};
 use syn::punctuated::Punctuated;
 use syn::visit::{self, Visit};
 use syn::{Attribute, Expr, Item, ItemMod, ItemUse, Macro, Token, UseTree, Visibility};
@@ -36,7 +36,7 @@ const PACKAGES: [(&str, usize); 14] = [
 /// The source files of a package with their modules.
 fn sources(package: &str) -> BTreeMap<Module, syn::File> {
     let mut found = BTreeMap::new();
-    files(&root().join(package).join("src"), &Vec::new(), &mut found);
+    files(&folder(package).join("src"), &Vec::new(), &mut found);
     // Roots of programs, and text that is compiled for other targets.
     let others = ["main", "bin::sitl", "support::memory"];
     found.retain(|module, _| !others.contains(&module.join("::").as_str()));

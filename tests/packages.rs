@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
-use mixer_tests::root;
+use mixer_tests::{folder, root};
 
 /// In the order of publication: each uses only those before it.
 const PUBLISHED: [&str; 11] = [
@@ -27,7 +27,7 @@ const PUBLISHED: [&str; 11] = [
 const MOST_CRATES: usize = 31;
 
 fn manifest(package: &str) -> toml::Table {
-    let path = root().join(package).join("Cargo.toml");
+    let path = folder(package).join("Cargo.toml");
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     text.parse()
         .unwrap_or_else(|error| panic!("{}: {error}", path.display()))
@@ -62,7 +62,7 @@ fn packages_hold_readme_and_licences() {
             );
         }
         for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
-            let [own, project] = [root().join(package), root()].map(|folder| fs::read(folder.join(licence)));
+            let [own, project] = [folder(package), root()].map(|folder| fs::read(folder.join(licence)));
             assert_eq!(own.ok(), project.ok(), "{package}/{licence}");
         }
     }
@@ -157,7 +157,7 @@ fn firmware_builds_nothing_of_the_command_line() {
 #[test]
 fn sources_stay_in_their_package() {
     for package in PUBLISHED {
-        let mut folders = vec![root().join(package).join("src")];
+        let mut folders = vec![folder(package).join("src")];
         while let Some(folder) = folders.pop() {
             for entry in fs::read_dir(&folder).expect("src").flatten() {
                 let path = entry.path();

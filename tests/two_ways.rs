@@ -66,7 +66,7 @@ where
 }
 
 /// The file of the build script is what the library generates, byte for byte. `cargo mixer expand`
-/// prints the same: see `cargo-mixer/tests/cases/expand`.
+/// prints the same: see `tools/cargo-mixer/tests/cases/expand`.
 fn assert_same_text(path: &str, by_build_script: &str) {
     // The working directory of tests is that of their package, as it is for build scripts.
     let text = fs::read_to_string(path).unwrap();

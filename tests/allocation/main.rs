@@ -25,7 +25,7 @@ mod authority;
 mod braked;
 mod degenerate;
 mod failure;
-// On other hosts `cargo-mixer/tests/commands/library/exceptions.c` alone watches the exceptions.
+// On other hosts `tools/cargo-mixer/tests/commands/library/exceptions.c` alone watches the exceptions.
 #[cfg(target_arch = "x86_64")]
 mod finite;
 mod flags;

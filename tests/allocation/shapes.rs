@@ -2,7 +2,7 @@
 //! `MIXER_BENCH_DATA` in three bases. On an X8, where yaw may have several peaks along the null
 //! space of the thrusts, and on a Y6.
 
-#[path = "../../cargo-mixer/tests/maps/mod.rs"]
+#[path = "../../tools/cargo-mixer/tests/maps/mod.rs"]
 mod maps;
 
 use mixer_compiler::Source;

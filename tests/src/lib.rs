@@ -42,6 +42,12 @@ pub fn root() -> PathBuf {
         .unwrap_or_default()
 }
 
+/// The folder of a package: what firmware users need lies on top, everything else in `tools/`.
+pub fn folder(package: &str) -> PathBuf {
+    let [top, tool] = [root(), root().join("tools")].map(|folder| folder.join(package));
+    if top.exists() { top } else { tool }
+}
+
 /// Names of the files `airframes/<name>.toml`, sorted.
 ///
 /// # Errors

@@ -6,7 +6,7 @@
 //! both together leave it positive. So the two signs tell which of the two happened.
 
 /// Size of the mean torque, in shares of the largest, from which its sign tells the wake. 159 fits
-/// of real maps have -0.143 to -0.039 (`cargo-mixer/tests/commands/maps_warn.rs`), with the rotors exchanged
+/// of real maps have -0.143 to -0.039 (`tools/cargo-mixer/tests/commands/maps_warn.rs`), with the rotors exchanged
 /// the same above zero; the paper's own table is between, at +0.015.
 const TELLS: f64 = 0.025;
 

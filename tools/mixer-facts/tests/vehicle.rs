@@ -1,0 +1,95 @@
+//! The vehicle in hover.
+
+use std::collections::BTreeSet;
+
+use mixer_compiler::airframe::GRAVITY;
+use mixer_compiler::{Compiled, Source, compile};
+use mixer_facts::Checked;
+use mixer_facts::hover::Hover;
+
+fn x8(vehicle: &str) -> Compiled {
+    let text = format!("{}\n{vehicle}", include_str!("../../../airframes/isae-x8.toml"));
+    compile(&Source::new("x8.toml", text)).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// The paper's vehicle: 3.2 kg. In hover all pairs give a quarter of the weight and no torque.
+#[test]
+fn hover_is_that_of_the_pair() {
+    let compiled = x8("[vehicle]\nmass_kg = 3.2\n");
+    let warnings = mixer_compiler::lint(&compiled);
+    assert!(warnings.is_empty(), "{warnings}");
+    let hover = Hover::new(&compiled).unwrap();
+    assert_eq!(hover.weight_n, GRAVITY * 3.2);
+    assert!((hover.thrust_over_weight - 3.159).abs() < 0.01, "{hover:?}");
+    let volts: Vec<_> = hover.at.iter().map(|at| at.voltage_v).collect();
+    assert_eq!(volts, [Some(12.8), Some(14.8)]);
+    let pair = &compiled.pair;
+    let voltage = compiled.airframe.voltage.as_ref().unwrap();
+    for at in &hover.at {
+        let [f, q] = pair.efforts([at.upper_throttle.unwrap(), at.lower_throttle.unwrap()]);
+        let volts = at.voltage_v.unwrap();
+        let lift = 4.0 * voltage.thrust_factor(volts) * f;
+        assert!((lift - hover.weight_n).abs() < 0.04, "{volts} V: {lift} N");
+        assert!(q.abs() < 2e-4, "{volts} V: {q} N m");
+        let axes: Vec<_> = at.margins.iter().map(|margin| margin.axis).collect();
+        assert_eq!(axes, ["roll", "pitch", "yaw"]);
+        for margin in &at.margins {
+            let [least, largest] = margin.torque_nm;
+            // Not quite a mirror image: the pair's torque reaches further to one side, and units
+            // share it.
+            assert!(
+                least < 0.0 && largest > 0.0 && (least + largest).abs() < 0.2 * largest,
+                "{margin:?}"
+            );
+        }
+    }
+    // Roll is what the weight gives on one side, less the idle on the other.
+    for at in &hover.at {
+        let roll = at.margins[0].torque_nm[1];
+        assert!((0.7..1.0).contains(&(roll / (0.3182 * hover.weight_n))), "{roll}");
+    }
+    let text = Checked::new(compiled).verdict();
+    for line in [
+        "\nmass                3.2 kg, a weight of 31.38 N\n",
+        "\nhover               0.5",
+        "\nhover, lowest V     0.6",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
+}
+
+#[test]
+fn hover_is_only_there_with_a_mass() {
+    let compiled = x8("");
+    assert!(Hover::new(&compiled).is_none());
+    let json = Checked::new(compiled).json(());
+    assert!(json["hover"].is_null());
+    let json = Checked::new(x8("[vehicle]\nmass_kg = 9\n")).json(());
+    assert!(json["hover"]["at"][0]["upper_throttle"].is_null(), "{json}");
+    assert!(json["hover"]["at"][1]["upper_throttle"].is_number(), "{json}");
+}
+
+/// No name and no key is said twice, and facts that one airframe lacks move none of the others'.
+#[test]
+fn facts_stand_side_by_side() {
+    let all = [x8(""), x8("[vehicle]\nmass_kg = 3.2\n")].map(Checked::new);
+    for checked in &all {
+        let names: Vec<&str> = checked.facts.iter().map(|fact| fact.name).collect();
+        let keys: Vec<&str> = checked
+            .facts
+            .iter()
+            .flat_map(|fact| &fact.json)
+            .map(|(key, _)| *key)
+            .collect();
+        for said in [names, keys] {
+            assert_eq!(BTreeSet::from_iter(&said).len(), said.len(), "{said:?}");
+        }
+    }
+    let text = mixer_facts::compare(&all);
+    let row = |name: &str| -> Vec<&str> {
+        let line = text.lines().find_map(|line| line.strip_prefix(name));
+        line.unwrap_or_default().split_whitespace().collect()
+    };
+    assert_eq!(row("mass (kg)"), ["-", "3.2"], "{text}");
+    assert_eq!(row("tables (bytes)"), ["1924", "1924"], "{text}");
+}

@@ -1,0 +1,346 @@
+//! The vehicle that flies: an airframe file, and what the flags say of it.
+
+use std::path::Path;
+
+use mixer_compiler::Source;
+use mixer_compiler::airframe::Airframe;
+use mixer_compiler::atmosphere;
+use nalgebra::{SVector, Vector3};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::SeedableRng;
+
+use super::arguments::Arguments;
+use crate::air::normal;
+use crate::battery::Battery;
+use crate::plant::Plant;
+use crate::state::State;
+use crate::vehicle::{Body, GRAVITY_M_S2};
+
+/// Most rotors: the channels of ArduPilot's larger packet.
+pub const MOST_ROTORS: usize = 32;
+
+/// A throttle per channel.
+pub type Throttles = SVector<f64, MOST_ROTORS>;
+
+/// Share of the mass at the units where the file has no inertia: so the paper's X8 has its own
+/// within 8 %.
+const MASS_AT_UNITS: f64 = 0.25;
+
+/// Least radius of gyration, m: what a single unit, all of it in the middle, is given.
+const LEAST_GYRATION_M: f64 = 0.05;
+
+/// Power in hover per mass where the file has no `[pair.power]`, W/kg: as the paper's vehicle.
+const HOVER_W_PER_KG: f64 = 80.0;
+
+/// Share of its voltage by which a pack falls over its capacity, without load: 4.2 V to 3.54 V per
+/// cell.
+const FALL_OVER_CAPACITY: f64 = 0.157;
+
+/// Altitude of home over the sea, m, where neither a flag nor `[air]` has one.
+const HOME_M: f64 = 488.0;
+
+/// Voltage where neither the file nor a flag has one, V.
+const ANY_VOLTAGE_V: f64 = 16.0;
+
+/// The vehicle.
+#[derive(Clone, Debug)]
+pub struct Vehicle {
+    /// Its name.
+    pub name: String,
+    /// Rotors of all units: channels 0 to `rotors` - 1.
+    pub rotors: usize,
+    /// The plant.
+    pub plant: Plant<MOST_ROTORS>,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// The battery.
+    pub battery: Battery,
+    /// Charge of the full pack, A h; `None` where its voltage does not fall.
+    pub capacity_ah: Option<f64>,
+    /// Altitude of home over the sea, m.
+    pub altitude_m: f64,
+    /// Throttle of all rotors that carries the weight, by the map that is flown at the voltage of the start.
+    pub hover_throttle: f64,
+}
+
+impl Vehicle {
+    /// Reads the airframe, and that of `--map`.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is refused; a mass that nobody states or that is too much.
+    pub fn new(arguments: &Arguments) -> Result<Vehicle, String> {
+        let own = read(&arguments.airframe)?;
+        let mut flown = own.clone();
+        if let Some(path) = &arguments.map {
+            let other = read(path)?;
+            // The battery is the vehicle's, what a voltage does to the pair is the other file's.
+            flown.pair = other.pair;
+            flown.throttle = other.throttle;
+            flown.voltage = other.voltage;
+            flown.air = other.air;
+        }
+        let rotors = own.rotors();
+        if rotors > MOST_ROTORS {
+            let most = MOST_ROTORS;
+            return Err(format!("{rotors} rotors: the stacks have outputs for {most}"));
+        }
+        let path = arguments.airframe.display();
+        let mass_kg = arguments
+            .mass_kg
+            .or(own.vehicle.as_ref().map(|vehicle| vehicle.mass_kg))
+            .ok_or_else(|| format!("{path} has no [vehicle] mass_kg: add it, or give --mass-kg"))?;
+        let stated = own.vehicle.as_ref().and_then(|vehicle| vehicle.inertia_kg_m2);
+        let stated = arguments.inertia.or(stated).map(Vector3::from);
+        let inertia_kg_m2 = stated.unwrap_or_else(|| inertia(&own, mass_kg));
+        let body = Body {
+            mass_kg,
+            inertia_kg_m2,
+            rotor_lag_s: arguments.rotor_lag,
+        };
+        let reference_v = own.voltage.as_ref().map(|voltage| voltage.reference);
+        let full_v = arguments.volts.or(reference_v).unwrap_or(ANY_VOLTAGE_V);
+        let fall_v = FALL_OVER_CAPACITY * full_v;
+        let mut battery = Battery {
+            full_v,
+            slope_v_per_ah: arguments.capacity.map_or(0.0, |capacity| fall_v / capacity),
+            resistance_ohm: 0.0,
+            full_throttle_a: 0.0,
+        };
+        let mismatch = spread(arguments.spread, arguments.seed, rotors);
+        let thin = arguments.density.map(atmosphere::altitude_of);
+        let thin = thin.or(arguments.altitude);
+        let bench_m = own.air.as_ref().map(|air| atmosphere::altitude_of(air.reference));
+        let plant = |battery: Battery| {
+            let plant = Plant::new(&flown, body, battery, mismatch).scaled(arguments.thrust_scale);
+            let Some(altitude_m) = thin else { return Ok(plant) };
+            let density = atmosphere::density_at(altitude_m);
+            plant
+                .in_air(density, arguments.no_load)
+                .map_err(|reason| format!("{path}: {reason}"))
+        };
+        // Without resistance first: the throttle in hover sets the current.
+        let rough = plant(battery)?;
+        let hover = |plant: &Plant<MOST_ROTORS>| {
+            hover(plant, rotors, mass_kg).map_err(|reason| format!("{path}: {reason}"))
+        };
+        let hover_throttle = hover(&rough)?;
+        let power_w = flown
+            .power_w(&vec![hover_throttle; rotors])
+            .unwrap_or(HOVER_W_PER_KG * mass_kg);
+        let cube = hover_throttle * hover_throttle * hover_throttle;
+        battery.full_throttle_a = power_w / (full_v * rotors as f64 * cube);
+        battery.resistance_ohm = arguments.resistance;
+        let plant = plant(battery)?;
+        let hover_throttle = hover(&plant)?;
+        Ok(Vehicle {
+            name: own.name,
+            rotors,
+            plant,
+            mass_kg,
+            battery,
+            capacity_ah: arguments.capacity,
+            altitude_m: thin.or(bench_m).unwrap_or(HOME_M),
+            hover_throttle,
+        })
+    }
+
+    /// Weight, N.
+    pub fn weight_n(&self) -> f64 {
+        self.mass_kg * GRAVITY_M_S2
+    }
+}
+
+fn read(path: &Path) -> Result<Airframe, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Airframe::read(&Source::new(path.display().to_string(), text)).map_err(|faults| faults.to_string())
+}
+
+/// Moments of inertia with [`MASS_AT_UNITS`] of the mass as points at the units.
+fn inertia(airframe: &Airframe, mass_kg: f64) -> Vector3<f64> {
+    let each = MASS_AT_UNITS * mass_kg / airframe.units.len() as f64;
+    let at_units = airframe.units.iter().map(|unit| {
+        let [x, y, z] = unit.position_m;
+        Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y) * each
+    });
+    let least = mass_kg * LEAST_GYRATION_M * LEAST_GYRATION_M;
+    at_units.sum::<Vector3<f64>>().map(|moment| moment.max(least))
+}
+
+/// Each rotor's relative deviation of the effective throttle.
+fn spread(size: f64, seed: u64, rotors: usize) -> Throttles {
+    let mut source = Pcg64Mcg::seed_from_u64(seed);
+    Throttles::from_fn(|rotor, _| {
+        let deviate = normal(&mut source);
+        if rotor < rotors { size * deviate } else { 0.0 }
+    })
+}
+
+/// All rotors at one throttle.
+pub fn alike(throttle: f64, rotors: usize) -> Throttles {
+    Throttles::from_fn(|rotor, _| if rotor < rotors { throttle } else { 0.0 })
+}
+
+/// Throttle of all rotors that carries the weight.
+fn hover(plant: &Plant<MOST_ROTORS>, rotors: usize, mass_kg: f64) -> Result<f64, String> {
+    let lift = |throttle: f64| {
+        let mut state = State::level(Vector3::zeros(), 0.0);
+        state.throttle = alike(throttle, rotors);
+        -plant.rotor_wrench(&state, &SVector::zeros()).0.z
+    };
+    let weight = mass_kg * GRAVITY_M_S2;
+    if lift(1.0) <= weight {
+        return Err(format!(
+            "the rotors lift {:.1} N at full throttle, the vehicle weighs {weight:.1} N: a smaller mass, or other rotors",
+            lift(1.0)
+        ));
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        (low, high) = if lift(middle) < weight {
+            (middle, high)
+        } else {
+            (low, middle)
+        };
+    }
+    Ok(0.5 * (low + high))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::vehicle::{INERTIA_KG_M2, MASS_KG};
+
+    fn vehicle(file: &Path, more: &[&str]) -> Result<Vehicle, String> {
+        let file = file.to_str().unwrap();
+        let arguments = ["sitl", file, "--px4"].into_iter().chain(more.iter().copied());
+        Vehicle::new(&Arguments::try_parse_from(arguments).unwrap())
+    }
+
+    fn airframes() -> impl Iterator<Item = std::path::PathBuf> {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../airframes");
+        let files = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().path());
+        files.filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+    }
+
+    #[test]
+    fn every_airframe_hovers_at_its_throttle() {
+        for file in airframes() {
+            let vehicle = vehicle(&file, &["--mass-kg", "1.5"]).unwrap();
+            let (force, torque) = wrench(&vehicle, vehicle.hover_throttle);
+            assert!(
+                (-force.z / vehicle.weight_n() - 1.0).abs() < 1e-9,
+                "{file:?}: {force}"
+            );
+            let level = torque.xy().norm() / vehicle.weight_n();
+            assert!(level < 1e-3, "{file:?}: {torque}");
+        }
+        assert!(airframes().count() >= 10);
+    }
+
+    #[test]
+    fn thin_air_takes_more_throttle() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/simulator/x8.toml");
+        let at = |flags: &[&str]| vehicle(Path::new(file), flags).unwrap();
+        let (plain, sea) = (at(&[]), at(&["--altitude", "0"]));
+        assert_eq!((plain.altitude_m, sea.altitude_m), (488.0, 0.0));
+        // At the reference the motors' model is the map.
+        assert_eq!(plain.hover_throttle, sea.hover_throttle);
+        let thin = [["--altitude", "3000"], ["--density", "0.9091"]].map(|flags| at(&flags));
+        for vehicle in &thin {
+            assert!(
+                (vehicle.altitude_m - 3000.0).abs() < 2.0,
+                "{}",
+                vehicle.altitude_m
+            );
+            // Thrust falls by sigma^0.8 and goes with the throttle's power 1.9.
+            let more = vehicle.hover_throttle / sea.hover_throttle;
+            assert!((1.10..1.17).contains(&more), "{more}");
+        }
+    }
+
+    /// Force and torque of all rotors at one throttle.
+    fn wrench(vehicle: &Vehicle, throttle: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let mut state = State::level(Vector3::zeros(), 0.0);
+        state.throttle = alike(throttle, vehicle.rotors);
+        vehicle.plant.rotor_wrench(&state, &SVector::zeros())
+    }
+
+    #[test]
+    fn a_scale_multiplies_thrust_and_torque() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/simulator/x8.toml");
+        let [plain, scaled] =
+            [&[][..], &["--thrust-scale", "1.07"]].map(|flags| vehicle(Path::new(file), flags).unwrap());
+        // Below idle, too.
+        for throttle in [0.1, 0.3, 0.9] {
+            let [(force, torque), (more, turned)] =
+                [&plain, &scaled].map(|vehicle| wrench(vehicle, throttle));
+            assert!((more - force * 1.07).norm() < 1e-9, "{force} {more}");
+            assert!((turned - torque * 1.07).norm() < 1e-9, "{torque} {turned}");
+        }
+        assert!(scaled.hover_throttle < 0.98 * plain.hover_throttle);
+    }
+
+    #[test]
+    fn a_map_of_another_file_keeps_its_own_reference() {
+        let file = |name: &str| format!("{}/../../{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let [own, other] = ["examples/simulator/x8", "airframes/isae-x8"].map(file);
+        for more in [&["--volts", "16"][..], &["--volts", "13.5", "--altitude", "2000"]] {
+            let flags = [&["--mass-kg", "3"], more].concat();
+            let mapped = vehicle(Path::new(&own), &[&flags[..], &["--map", &other]].concat()).unwrap();
+            let plain = vehicle(Path::new(&other), &flags).unwrap();
+            for throttle in [0.3, 0.9] {
+                let [(force, _), (same, _)] = [&plain, &mapped].map(|vehicle| wrench(vehicle, throttle));
+                assert!((force - same).norm() < 1e-9, "{force} {same}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_inertia_that_is_not_stated_is_estimated() {
+        let airframe = crate::vehicle::airframe().unwrap();
+        let estimated = inertia(&airframe, MASS_KG).component_div(&INERTIA_KG_M2);
+        assert!(
+            estimated.iter().all(|ratio| (ratio - 1.0).abs() < 0.08),
+            "{estimated}"
+        );
+    }
+
+    #[test]
+    fn the_battery_sags_and_falls() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../airframes/isae-x8.toml");
+        let flags = [
+            "--mass-kg",
+            "3.2",
+            "--volts",
+            "16.6",
+            "--resistance",
+            "0.025",
+            "--capacity",
+            "5",
+        ];
+        let vehicle = vehicle(Path::new(file), &flags).unwrap();
+        let mut state = State::level(Vector3::zeros(), 0.0);
+        state.throttle = alike(vehicle.hover_throttle, vehicle.rotors);
+        // 80 W/kg: some 15.4 A, which take 0.39 V.
+        let sag = 16.6 - vehicle.plant.voltage_v(&state);
+        assert!((0.38..0.45).contains(&sag), "{sag}");
+        state.charge_ah = 5.0;
+        let empty = vehicle.plant.voltage_v(&state);
+        assert!((16.6 - sag - empty - 0.157 * 16.6).abs() < 1e-9, "{empty}");
+    }
+
+    #[test]
+    fn a_mass_must_be_stated() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../airframes/isae-x8.toml");
+        let refusal = vehicle(Path::new(file), &[]).unwrap_err();
+        assert!(
+            refusal.contains("no [vehicle] mass_kg") && refusal.contains("--mass-kg"),
+            "{refusal}"
+        );
+    }
+}

@@ -1,0 +1,204 @@
+"""The page in headless Chromium, made by `cargo xtask web`, and the command line beside it, which is the judge.
+
+Every visit is held to one rule: no console message, no error, nothing that the content policy refuses, and no
+request but for the page itself.
+"""
+
+import functools
+import http.server
+import os
+import shutil
+import subprocess
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+ROOT = Path(__file__).parents[3]
+TARGET = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
+PROGRAM = Path(os.environ.get("MIXER_COMMAND", TARGET / "debug/cargo-mixer"))
+
+# What Chromium would fetch for itself is switched off: a test's machine may have no network.
+QUIET = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"]
+
+# A policy's refusal becomes a message of the console; the moment of the first verdict is kept.
+POLICY = """addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) =>
+  console.error(`policy: ${violatedDirective} ${blockedURI}`));"""
+VERDICT = """
+addEventListener("DOMContentLoaded", () => {
+  const status = document.getElementById("status");
+  const look = () => { if (status.textContent.includes("compiles")) globalThis.verdictMs ??= performance.now(); };
+  if (status) new MutationObserver(look).observe(status, { childList: true });
+});
+"""
+
+
+@pytest.fixture(scope="session")
+def site():
+    """The folder of the page."""
+    folder = TARGET / "web-tests"
+    subprocess.run(["cargo", "xtask", "web", "-o", folder], cwd=ROOT, check=True)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def server(site):
+    """Serves the page; `address`, and the paths that were asked for."""
+
+    class Handler(http.server.SimpleHTTPRequestHandler):
+        def log_message(self, *_):
+            pass
+
+        def do_GET(self):
+            self.server.paths.append(self.path)
+            super().do_GET()
+
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=site))
+    server.paths = []
+    server.address = f"http://127.0.0.1:{server.server_port}/"
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield server
+    server.shutdown()
+    assert set(server.paths) <= {"/", "/sw.js"}
+
+
+@pytest.fixture(scope="session")
+def browser():
+    names = [os.environ.get("MIXER_CHROMIUM"), "chromium", "chromium-browser", "google-chrome"]
+    found = next((path for name in names if name and (path := shutil.which(name))), None)
+    assert found, "no chromium in PATH or MIXER_CHROMIUM: apt-get install chromium"
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, args=QUIET)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def shell(tmp_path):
+    """Runs a line of the command line in a folder of its own."""
+
+    def run(line, text=""):
+        path = f"{PROGRAM.parent}{os.pathsep}{os.environ['PATH']}"
+        done = subprocess.run(["sh", "-ec", line], cwd=tmp_path, input=text, capture_output=True, text=True, env={**os.environ, "PATH": path})
+        assert done.returncode == 0, f"{line}\n{done.stderr}"
+        return done.stdout
+
+    run.folder = tmp_path
+    return run
+
+
+@pytest.fixture
+def visit(browser, server, shell):
+    """Opens the page as `visit(**options of the browser's context)`."""
+    contexts, wrong = [], []
+
+    def open_page(address=server.address, context=None, **options):
+        if context is None:
+            context = browser.new_context(**{"viewport": {"width": 1400, "height": 900}, **options})
+            contexts.append(context)
+            context.add_init_script(POLICY + VERDICT)
+            context.on("console", lambda message: wrong.append(f"console: {message.text}"))
+            context.on("weberror", lambda error: wrong.append(f"error: {error.error}"))
+            context.on("request", lambda request: asked(request.url))
+        desk = Desk(context.new_page(), shell)
+        desk.page.goto(address)
+        for worker in desk.page.workers:
+            worker.evaluate(POLICY)
+        return desk
+
+    def asked(url):
+        if not url.split("#")[0].removeprefix("blob:").startswith((server.address, "file:", "null/")):
+            wrong.append(f"request: {url}")
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert wrong == []
+
+
+@pytest.fixture
+def desk(visit):
+    """The page, as at a first visit."""
+    return visit().ready()
+
+
+class Desk:
+    """What a user does on the page, and what is seen of it."""
+
+    def __init__(self, page, shell):
+        self.page, self.shell = page, shell
+        self.see, self.click = page.locator, page.click
+
+    def says(self, text):
+        return self.shows("#status", text)
+
+    def ready(self):
+        return self.says("Ready")
+
+    def compiles(self, name=""):
+        """Waits until an airframe compiles and nothing more is asked of the worker."""
+        self.says(f"{name} compiles" if name else "compiles")
+        self.until(lambda: self.page.evaluate("() => waiting.size === 0"))
+        return self.says("compiles")
+
+    def shows(self, element, text):
+        """Waits for a text in one of the elements; what is there instead is told in few words."""
+        there = lambda: " | ".join(self.see(element).all_text_contents())
+        self.until(lambda: text in there(), lambda: f"{element} has no `{text}`: {there()[:600]}")
+        return self
+
+    def drop(self, *files):
+        """Drops files, each a path or (name, bytes), as a hand does; the command line has them, too."""
+        files = [(file.name, file.read_bytes()) if isinstance(file, Path) else file for file in files]
+        for name, content in files:
+            (self.shell.folder / name).write_bytes(content)
+        transfer = self.page.evaluate_handle(
+            """(files) => {
+                const transfer = new DataTransfer();
+                for (const [name, text] of files) transfer.items.add(new File([Uint8Array.from(text, (c) => c.charCodeAt(0))], name));
+                return transfer;
+            }""",
+            [[name, content.decode("latin-1")] for name, content in files],
+        )
+        self.see("#drop").dispatch_event("drop", {"dataTransfer": transfer})
+        return self
+
+    def save(self, output):
+        """Presses a button of the list of files; the name and the bytes of what was saved."""
+        with self.page.expect_download() as download:
+            self.click(f"[data-output='{output}']")
+        return download.value.suggested_filename, Path(download.value.path()).read_bytes()
+
+    def run_shown(self):
+        """Runs the very words that the page shows; what they print."""
+        return self.shell(self.see("#command").text_content())
+
+    def file(self, name):
+        return (self.shell.folder / name).read_bytes()
+
+    def text(self):
+        return self.see("#editor textarea").input_value()
+
+    def replace(self, old, new):
+        """Writes `new` over `old` in the editor, key by key."""
+        at = self.text().index(old)
+        self.see("#editor textarea").evaluate("(area, [from, to]) => { area.focus(); area.setSelectionRange(from, to); }", [at, at + len(old)])
+        self.page.keyboard.type(new) if new else self.page.keyboard.press("Delete")
+        return self
+
+    def faults(self):
+        return self.see("#faults li").all_text_contents()
+
+    def still(self):
+        """Waits until the sliders' newest position is drawn."""
+        self.until(lambda: self.page.evaluate("() => hand.frames > 0 && !hand.busy && !hand.stale"))
+        return self
+
+    @staticmethod
+    def until(holds, told=lambda: "it did not come to that", seconds=20):
+        end = time.monotonic() + seconds
+        while not holds():
+            assert time.monotonic() < end, told()
+            time.sleep(0.05)

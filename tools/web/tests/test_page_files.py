@@ -1,0 +1,215 @@
+"""Files dropped on the page: the airframe is the command line's to the byte, or the file is refused by name."""
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+ROOT = Path(__file__).parents[3]
+BENCH = ROOT / "examples/bench/sweep.csv"
+ROTOR = ROOT / "examples/no-bench/rotor.csv"
+X8 = ROOT / "airframes/isae-x8.toml"
+DIAGNOSTICS = ROOT / "mixer-compiler/tests/diagnostics"
+WARNINGS = ROOT / "mixer-compiler/tests/warnings"
+
+
+# Four points of a pair of the rotors of CASES/rotor.csv.
+FEW = ("few.csv", b"upper,lower,thrust_n,torque_nm\n.6,.6,14,-0.02\n.95,.4,17.5,-0.27\n.4,.95,21,0.22\n.95,.95,30,-0.03\n")
+CASES = ROOT / "tools/cargo-mixer/tests/cases/files"
+
+
+def parameters(desk):
+    desk.shell(f"cargo mixer params {X8} --stack px4 --own -o x8.params")
+    return "x8.params", desk.file("x8.params")
+
+
+def words(text):
+    """A table of the page or of the terminal."""
+    return text.split()
+
+
+def pair(desk):
+    desk.shell(f"cargo mixer identify {BENCH} -o tables.toml")
+    return "tables.toml", desk.file("tables.toml")
+
+
+@pytest.mark.parametrize(
+    "files, command, outputs",
+    [
+        (lambda _: [BENCH], "cargo mixer identify sweep.csv", ["pair", "airframe"]),
+        (lambda _: [ROTOR], "cargo mixer predict rotor.csv", ["pair", "airframe"]),
+        (lambda _: [FEW, CASES / "rotor.csv"], "cargo mixer identify few.csv --prior rotor.csv", ["pair", "airframe"]),
+        (lambda desk: [parameters(desk), BENCH], "--pair pair.toml --arm 0.45", ["pair", "airframe"]),
+        (lambda desk: [pair(desk)], "cargo mixer new --frame x8 --pair tables.toml", ["airframe"]),
+    ],
+    ids=["bench", "run", "bench-and-run", "parameters", "pair"],
+)
+def test_files_become_the_airframe_of_the_command_line(desk, files, command, outputs):
+    desk.page.fill("#arm", "0.45")
+    desk.drop(*files(desk)).shows("#command", command).compiles()
+    printed = desk.run_shown()
+    for output in outputs:
+        name, content = desk.save(output)
+        assert content == desk.file(name)
+    if "pair" in outputs:
+        assert words(desk.see("#pair-report").inner_text()) == words(printed)
+    expect(desk.see("#pair-report")).to_be_visible(visible="pair" in outputs)
+    expect(desk.see("#verdict")).to_be_visible()
+
+
+def test_an_airframe_file_stays_as_it_is(desk):
+    desk.drop(X8).compiles("isae-x8")
+    assert desk.save("airframe") == ("isae-x8.toml", X8.read_bytes())
+    assert words(desk.see("#verdict").inner_text()) == words(desk.shell("cargo mixer check isae-x8.toml").split("\nnext ")[0])
+
+
+def test_options_are_those_of_the_command_line(desk):
+    desk.drop(BENCH)
+    desk.click("#files summary")
+    desk.page.fill("#options", "--basis 'cubic' --temperature 18 --pressure 950")
+    desk.shows("#help", "--temperature").shows("#command", "--pressure 950")
+    desk.page.fill("#arm", "0.3")
+    desk.page.select_option("#frame", "y6")
+    desk.page.select_option("#outputs", "px4")
+    desk.page.fill("#name", "mine")
+    desk.shows("#command", "--name mine --outputs px4").compiles("mine")
+    desk.run_shown()
+    for output in ["pair", "airframe"]:
+        name, content = desk.save(output)
+        assert content == desk.file(name)
+    desk.page.fill("#options", "--bassis cubic")
+    desk.shows("#faults .error", "unexpected argument '--bassis'")
+
+
+def test_what_a_file_is_can_be_told(desk):
+    desk.drop(BENCH).shows("#dropped", "sweep.csv")
+    desk.page.get_by_label("What sweep.csv is").select_option("parameters")
+    desk.shows("#command", "cargo mixer import sweep.csv").shows("#faults .error", "sweep.csv")
+    desk.page.get_by_label("Remove sweep.csv").click()
+    expect(desk.see("#made-by")).to_be_hidden()
+
+
+def test_bad_cells_are_mended_in_the_editor(desk):
+    """Two rows of 36 are too many: an error. One is passed over with a warning, none is a good file."""
+    text = BENCH.read_text()
+    cells = [text.splitlines()[line - 1].split(",")[2] for line in (7, 9)]
+    desk.page.fill("#arm", "0.45")
+    bad = text.replace(f",{cells[0]},", ",1o.5,").replace(f",{cells[1]},", ",17..2,")
+    desk.drop(("bench.csv", bad.encode())).shows("#faults .error", "bench.csv:7").shows("#editor .marks .error", "1o.5")
+    desk.page.get_by_role("button", name="bench.csv:7").click()
+    line = "() => document.activeElement.value.slice(0, document.activeElement.selectionStart).split('\\n').length"
+    assert desk.page.evaluate(line) == 7
+    desk.replace("1o.5", cells[0]).shows("#faults .warning", "17..2").shows("#editor .marks .warning", "17..2")
+    expect(desk.see("#faults .error")).to_have_count(0)
+    desk.page.get_by_role("button", name="bench.csv:9").click()
+    desk.replace("17..2", cells[1])
+    expect(desk.see("#faults li")).to_have_count(0)
+    (desk.shell.folder / "bench.csv").write_text(text)
+    desk.compiles().run_shown()
+    name, content = desk.save("airframe")
+    assert content == desk.file(name)
+
+
+def test_faults_of_an_airframe_stand_at_their_lines(desk):
+    for name in ["fold", "unknown-key", "rank-no-pitch", "many-faults", "crlf", "multibyte-before-the-caret"]:
+        path = DIAGNOSTICS / f"{name}.toml"
+        told = path.with_suffix(".txt").read_text()
+        codes, places = re.findall(r"^(\w+)\[(MIX\d+)\]: ", told, re.M), re.findall(r"^ *--> (.*):\d+$", told, re.M)
+        desk.drop(path).says(f"in {path.name}")
+        assert [item.split()[:2] for item in desk.faults()] == [[severity, code] for severity, code in codes]
+        assert desk.see("#faults .place").all_text_contents() == places
+        assert desk.see("#editor .marks span").count() == len(set(places))
+        expect(desk.see("#hand")).to_be_hidden()
+
+
+def test_a_fold_is_typed_away(desk):
+    desk.drop(DIAGNOSTICS / "fold.toml").shows("#faults", "MIX201")
+    desk.replace("0.05", "0.1").compiles("isae-x8")
+    assert desk.faults() == []
+    expect(desk.see("#hand")).to_be_visible()
+    desk.replace("0.1", "").says("error").shows("#faults", "fold.toml:5")
+    expect(desk.see("#hand")).to_be_hidden()
+
+
+def test_warnings_stand_at_their_lines(desk):
+    path = WARNINGS / "arm-in-decimetres.toml"
+    desk.drop(path).says("warning").shows("#faults .warning", "arm-in-decimetres.toml:")
+    told = path.with_suffix(".txt").read_text()
+    assert all(code in told for code in (item.split()[1] for item in desk.faults()))
+    expect(desk.see("#editor .marks span.warning").first).to_be_visible()
+    expect(desk.see("#hand")).to_be_visible()
+
+
+ODD = {
+    "empty.csv": b"",
+    "letter.txt": b"Dear all,\nthe rotors arrived.\n",
+    "log_0.ulg": b"ULog\x01\x12\x35\x01" + bytes(range(256)) * 40,
+    "two words.csv": b"a,b\n1,2\n",
+    "it's \"mine\".csv": b"a,b\n1,2\n",
+    "<img src=x onerror=alert(1)>.csv": b"<img src=x onerror=alert(1)>,upper\n<script>alert(1)</script>,1\n",
+    "empty.toml": b"",
+    "long.csv": b"upper,lower,thrust_n,torque_nm\n" + b"0.5,0.5,x,0.1\n" * 5_000,
+    "one-line.csv": b"upper,lower,thrust_n" * 1_000,
+}
+
+
+def test_what_is_no_airframe_and_no_bench_is_refused_by_name(desk):
+    for name, content in ODD.items():
+        desk.drop((name, content)).shows("#faults .error", name)
+        assert desk.see("#files img, #airframe img").count() == 0
+        if desk.see("#dropped button").count():
+            desk.click("#dropped button")
+        desk.drop(X8).compiles("isae-x8")
+        expect(desk.see("#faults li")).to_have_count(0)
+
+
+def test_a_file_that_is_too_large_is_refused_by_name(desk):
+    path = desk.shell.folder / "log.csv"
+    path.write_bytes(b"upper,lower,thrust_n,torque_nm\n" + b"0.5,0.5,9,0.1\n" * 400_000)
+    desk.page.set_input_files("#choose", [path, X8])
+    desk.shows("#faults .error", "log.csv").shows("#faults .error", "4 MB").compiles("isae-x8")
+
+
+def test_a_name_with_quotes_is_a_word_of_the_shown_command(desk):
+    desk.page.fill("#arm", "0.45")
+    desk.drop(("it's \"my\" $bench.csv", BENCH.read_bytes())).compiles()
+    desk.run_shown()
+    name, content = desk.save("airframe")
+    assert content == desk.file(name)
+
+
+def test_the_newest_of_two_files_with_one_name_counts(desk):
+    desk.page.fill("#arm", "0.45")
+    desk.drop(("bench.csv", b"a,b\n1,2\n")).shows("#faults .error", "bench.csv")
+    desk.drop(("bench.csv", BENCH.read_bytes())).compiles()
+    assert desk.see("#dropped li").count() == 1
+
+
+def test_an_airframe_can_be_typed(desk):
+    """Every seventh beginning of a file is answered, and the last line key by key."""
+    text = X8.read_text()
+    answers = desk.page.evaluate(
+        "async (text) => { const of = []; for (let n = 0; n <= text.length; n += 7) of.push(await ask('check', 'x.toml', text.slice(0, n))); return of; }", text
+    )
+    assert all(answer["errors"] or answer["verdict"] for answer in answers)
+    head, last = text.rstrip("\n").rsplit("\n", 1)
+    desk.page.fill("#editor textarea", head + "\n")
+    desk.see("#editor textarea").press_sequentially(last)
+    desk.compiles("isae-x8")
+    assert desk.text() == head + "\n" + last
+
+
+def test_a_data_sheet_has_its_fields(desk):
+    expect(desk.see("#sheet")).to_be_hidden()
+    desk.click("#example-sheet")
+    desk.compiles("my-x8").shows("#command", "cargo mixer predict rotor.csv -o pair.toml --diameter 0.305 --spacing 0.08")
+    desk.page.fill("#cells", "6")
+    desk.page.fill("#options", "--reference-voltage 22.2 --run-voltage 22.2")
+    desk.shows("#command", "--cells 6").compiles("my-x8")
+    sheet = ROOT / "examples/no-bench/rotor.csv"
+    (desk.shell.folder / "rotor.csv").write_bytes(sheet.read_bytes())
+    desk.run_shown()
+    for output in ["pair", "airframe"]:
+        name, content = desk.save(output)
+        assert content == desk.file(name)
