@@ -27,7 +27,7 @@ fn tables_are_what_the_command_writes() {
             stale.push(format!("{}: {}", table.page, table.name));
         }
     }
-    assert!(stale.is_empty(), "{stale:?} are stale; run `cargo xtask tables`");
+    assert!(stale.is_empty(), "{stale:?} are stale; run `cargo tables`");
     for path in documents::pages().expect("documents") {
         for name in read(&path)
             .lines()
@@ -45,7 +45,7 @@ fn tables_are_what_the_command_writes() {
 fn allocators_measure_what_is_held() {
     let rows = allocators::measure().unwrap_or_else(|error| panic!("{error}"));
     let held = read(&allocators::file());
-    assert_eq!(held, allocators::text(&rows), "run `cargo xtask allocators`");
+    assert_eq!(held, allocators::text(&rows), "run `cargo allocators`");
 }
 
 #[test]
@@ -55,11 +55,7 @@ fn bases_measure_what_is_held() {
         return;
     };
     let rows = bases::measure(Path::new(&data)).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(
-        read(&bases::file()),
-        bases::text(&rows),
-        "run `cargo xtask bases`"
-    );
+    assert_eq!(read(&bases::file()), bases::text(&rows), "run `cargo bases`");
 }
 
 #[test]
@@ -70,7 +66,7 @@ fn predictions_measure_what_is_held() {
     };
     let measured = interaction::measure(Path::new(&data)).unwrap_or_else(|error| panic!("{error}"));
     for (path, text) in interaction::files().iter().zip(measured.texts()) {
-        assert_eq!(read(path), text, "run `cargo xtask interaction`");
+        assert_eq!(read(path), text, "run `cargo interaction`");
     }
     let mean = |name: &str, effort: usize| {
         let column = interaction::PREDICTIONS

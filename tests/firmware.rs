@@ -456,4 +456,4 @@ const BOUND_OVER_WORST: [f64; 2] = [1.8, 3.5];
 /// The largest error that an estimate may have, as a share of what was counted.
 const ESTIMATE_ERROR: f64 = 0.13;
 
-const MEND: &str = "if the change is meant, `cargo xtask counts --bless` and look at the difference";
+const MEND: &str = "if the change is meant, `cargo counts --bless` and look at the difference";

@@ -1,4 +1,4 @@
-//! A short soak: every answer of some frames of the zoo is held to the physics, as `cargo xtask
+//! A short soak: every answer of some frames of the zoo is held to the physics, as `cargo
 //! soak` does for hours. And what a soak must find is found.
 #![allow(missing_docs)]
 

@@ -16,7 +16,7 @@ use serde::Serialize;
 pub use self::code::{Code, Severity};
 use self::source::{BYTE_ORDER_MARK, Place, Source};
 pub(crate) use self::wording::{any_of, nearest, number, quoted};
-pub use self::wording::{is_plain, printable, rounded, rounded_up};
+pub use self::wording::{cut_to, is_plain, printable, printable_lines, rounded, rounded_up, wrapped};
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]

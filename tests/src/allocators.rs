@@ -1,7 +1,7 @@
 //! Allocators compared on wrenches that random throttles give, so that every one is attainable.
 //!
 //! `tests/measurements/allocators.csv` holds a [`Row`] per frame and allocator. It is written by
-//! `cargo xtask allocators` only.
+//! `cargo allocators` only.
 
 use std::fmt;
 use std::path::PathBuf;

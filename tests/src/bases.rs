@@ -1,7 +1,7 @@
 //! The three bases compared on full-range maps of real benches, where `MIXER_BENCH_DATA` names
 //! their folder.
 //!
-//! `tests/measurements/bases.csv` holds a [`Row`] per map and basis. It is written by `cargo xtask
+//! `tests/measurements/bases.csv` holds a [`Row`] per map and basis. It is written by `cargo
 //! bases` only: the bench files are no part of the project.
 
 use std::fmt;

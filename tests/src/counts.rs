@@ -2,7 +2,7 @@
 //! `tests/firmware`, and bytes of code, tables and stack.
 //!
 //! `tests/counts.csv` holds a [`Row`] per [`Subject`], `tests/worst.csv` the most expensive requests
-//! that a search found for each ([`worst`]). Both are written by `cargo xtask counts --bless` only;
+//! that a search found for each ([`worst`]). Both are written by `cargo counts --bless` only;
 //! the first begins with the compiler that built the firmware: another one gives other counts.
 
 mod image;
@@ -119,7 +119,7 @@ pub fn page() -> PathBuf {
 /// The text of that page.
 pub fn document(compiler: &str, rows: &[Row]) -> String {
     let mut text = format!(
-        "# Costs\n\nWritten by `cargo xtask counts --page` from `tests/counts.csv`. Instructions per mix on a \
+        "# Costs\n\nWritten by `cargo counts --page` from `tests/counts.csv`. Instructions per mix on a \
          Cortex-M4F, counted in QEMU with firmware of {compiler}; bytes of code, tables and stack of an image that holds this mixer only.\n\n\
          * attainable: 2,000 wrenches that random throttles give, at random voltages\n\
          * saturated: 2,000 requests up to four times the authority, one axis alone, on and beyond the border\n\

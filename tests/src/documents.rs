@@ -1,7 +1,7 @@
 //! Tables in the documents that commands write: each stands between two comments of its page,
 //! `<!-- table: NAME -->` and `<!-- end -->`.
 //!
-//! `cargo xtask tables` writes them all; `tests/documents.rs` holds the pages to them.
+//! `cargo tables` writes them all; `tests/documents.rs` holds the pages to them.
 
 mod tables;
 

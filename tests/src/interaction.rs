@@ -2,7 +2,7 @@
 //! `MIXER_BENCH_DATA` names their folder.
 //!
 //! `tests/measurements/interaction.csv` holds the errors of each map, and
-//! `tests/measurements/interaction-constants.csv` the constants. Both are written by `cargo xtask
+//! `tests/measurements/interaction-constants.csv` the constants. Both are written by `cargo
 //! interaction` only: the bench files are no part of the project.
 
 use std::path::{Path, PathBuf};

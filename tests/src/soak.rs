@@ -1,5 +1,5 @@
 //! Frames of the zoo and requests without end, each answer held to the physics of the airframe file
-//! in f64. `cargo xtask soak` runs it for minutes or hours, `tests/soak.rs` for some seconds.
+//! in f64. `cargo soak` runs it for minutes or hours, `tests/soak.rs` for some seconds.
 
 mod draw;
 mod failure;

@@ -56,6 +56,63 @@ pub fn printable(text: &str) -> String {
     shown
 }
 
+/// [`printable`] text, of which the ends of lines and tabs stay: names of files and comments of
+/// other files are in it.
+pub fn printable_lines(text: &str) -> String {
+    let is_kept = |c| matches!(c, '\n' | '\t');
+    let parts = text.split_inclusive(is_kept).map(|part| {
+        let plain = part.trim_end_matches(is_kept);
+        printable(plain) + &part[plain.len()..]
+    });
+    parts.collect()
+}
+
+/// The text, of which at most `longest` characters are left.
+pub fn cut_to(text: String, longest: usize) -> String {
+    match text.char_indices().nth(longest) {
+        Some((end, _)) => format!("{} ..", &text[..end]),
+        None => text,
+    }
+}
+
+/// Units that stay with their number, and the `m` of N m with its N.
+const UNITS: [&str; 10] = ["%", "N", "m", "V", "W", "A", "g", "kg", "mm", "degrees"];
+
+/// The words of a text, a number and its unit as one.
+fn words(text: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let bare = word.trim_end_matches([',', ';', '.', ':', ')']);
+        match words.last_mut() {
+            Some(last)
+                if UNITS.contains(&bare) && last.ends_with(|c: char| c.is_ascii_digit() || c == 'N') =>
+            {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
+/// Breaks text at blanks into lines of at most `width` characters. A unit stays with its number.
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in words(text) {
+        let line = lines.len() - 1;
+        if !lines[line].is_empty() && lines[line].chars().count() + 1 + word.chars().count() > width {
+            lines.push(word);
+        } else {
+            if !lines[line].is_empty() {
+                lines[line].push(' ');
+            }
+            lines[line].push_str(&word);
+        }
+    }
+    lines
+}
+
 /// Text of the user's between backticks, on one line and of bounded length.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST: usize = 48;
@@ -165,5 +222,11 @@ mod tests {
         assert_eq!(rounded_up(0.009_999), "0.01");
         assert_eq!(rounded_up(3.6e-5), "3.6e-5");
         assert_eq!(rounded_up(1234.5), "1240.0");
+    }
+
+    #[test]
+    fn a_unit_stays_with_its_number() {
+        let lines = wrapped("thrust of 12.5 N, 0.2 N m at 3 % or more", 12);
+        assert_eq!(lines, ["thrust of", "12.5 N,", "0.2 N m at", "3 % or more"]);
     }
 }

@@ -24,13 +24,13 @@
 //! the problem convex. All steps are cut to the same share, so that no unknown comes to its bound.
 //!
 //! The number of iterations is fixed: [`ITERATIONS`], and as many more where a row is still missed,
-//! about one request in a hundred. So the work is a product, which `cargo xtask counts` states. With
+//! about one request in a hundred. So the work is a product, which `cargo counts` states. With
 //! rotors out the further iterations serve yaw last where the first ones show that no level flight has
 //! the yaw asked: by weak duality lambda . missed is a lower bound of what any answer gives up, and it
 //! exceeds the cost of all of roll and pitch.
 //!
 //! Constants were chosen on 20,000 drawn requests per state of health, and on 50,000 pairs of requests
-//! 1e-4 apart; `cargo xtask soak` and the tests of `tests/allocation` show what they trade.
+//! 1e-4 apart; `cargo soak` and the tests of `tests/allocation` show what they trade.
 //! TinyMPC and Clarabel are built alike: one function per step.
 
 use core::hint::black_box;

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
 use mixer_compiler::{Compiled, Source};
-use mixer_review::Flight;
+use mixer_files::review::Flight;
 
 static X8: LazyLock<Compiled> = LazyLock::new(|| {
     let text = include_str!("../../../examples/simulator/x8.toml");

@@ -1,5 +1,5 @@
 //! Compares allocators on attainable wrenches and writes `tests/measurements/allocators.csv`:
-//! `cargo xtask allocators`.
+//! `cargo allocators`.
 
 use std::process::ExitCode;
 

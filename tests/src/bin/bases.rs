@@ -1,5 +1,5 @@
 //! Compares the three bases on real bench maps and writes `tests/measurements/bases.csv`:
-//! `MIXER_BENCH_DATA=FOLDER cargo xtask bases`.
+//! `MIXER_BENCH_DATA=FOLDER cargo bases`.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,12 +1,12 @@
 //! Prints what a mix costs on a Cortex-M4F, counted in QEMU.
 //!
 //! ```text
-//! cargo xtask counts                      all subjects
-//! cargo xtask counts isae-x8 regular-3    only these airframes
-//! cargo xtask counts c-interface,isae-x8  only this row, named as tests/counts.csv names it
-//! cargo xtask counts --search [..]        the same, after a search for more expensive requests
-//! cargo xtask counts --bless              all; writes tests/counts.csv, tests/worst.csv and docs/costs.md
-//! cargo xtask counts --page               counts nothing; writes docs/costs.md from tests/counts.csv
+//! cargo counts                      all subjects
+//! cargo counts isae-x8 regular-3    only these airframes
+//! cargo counts c-interface,isae-x8  only this row, named as tests/counts.csv names it
+//! cargo counts --search [..]        the same, after a search for more expensive requests
+//! cargo counts --bless              all; writes tests/counts.csv, tests/worst.csv and docs/costs.md
+//! cargo counts --page               counts nothing; writes docs/costs.md from tests/counts.csv
 //! ```
 //!
 //! With --search --bless what was found is written, too. It may be stopped: started again, it searches only

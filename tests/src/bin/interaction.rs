@@ -1,5 +1,5 @@
 //! Predicts real pairs from runs of one rotor and writes `interaction*.csv` of `tests/measurements`:
-//! `MIXER_BENCH_DATA=FOLDER cargo xtask interaction`.
+//! `MIXER_BENCH_DATA=FOLDER cargo interaction`.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
 //! Draws frames of the zoo and requests for some minutes and holds every answer to the physics:
-//! `cargo xtask soak --minutes 60 --seed 7`. With `MIXER_BENCH_DATA` pairs of its maps are drawn,
+//! `cargo soak --minutes 60 --seed 7`. With `MIXER_BENCH_DATA` pairs of its maps are drawn,
 //! too.
 
 use std::io::{self, IsTerminal as _, Write as _};

@@ -1,4 +1,4 @@
-//! Writes the tables of the documents from the airframes and the measurements held: `cargo xtask
+//! Writes the tables of the documents from the airframes and the measurements held: `cargo
 //! tables`.
 
 use std::fs;

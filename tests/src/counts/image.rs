@@ -4,8 +4,8 @@ use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::PathBuf;
 
-use mixer_c::{Airframe, Options};
 use mixer_compiler::Source;
+use mixer_files::library::{Airframe, Options};
 
 use super::Row;
 use super::subject::{C_INTERFACE, Subject};
@@ -150,7 +150,7 @@ fn library(toolchain: &Toolchain, airframe: &str) -> Result<(PathBuf, String), S
         target: Some(TARGET),
         health: false,
     };
-    let files = mixer_c::library(&[compiled], &options, |note| eprintln!("{note}"))
+    let files = mixer_files::library::library(&[compiled], &options, |note| eprintln!("{note}"))
         .map_err(|error| error.to_string())?;
     let name = format!("lib{module}.a");
     let archive = files.into_iter().find(|file| file.name == name);

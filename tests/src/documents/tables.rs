@@ -7,8 +7,8 @@ use mixer_compiler::diagnostic::rounded_up;
 use mixer_compiler::spec::keys::{Key, Kind, Shape};
 use mixer_compiler::{Compiled, Source};
 use mixer_facts::hover;
-use mixer_report::comparison::{Answer, Comparison, throttles};
-use mixer_report::study::Study;
+use mixer_files::report::comparison::{Answer, Comparison, throttles};
+use mixer_files::report::study::Study;
 use mixer_rt::Wrench;
 
 use super::Table;

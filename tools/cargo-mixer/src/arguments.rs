@@ -3,27 +3,28 @@
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use mixer_facts::command as check;
 
 use crate::commands::{
-    check, compare, expand, golden, identify, import, library, mix, new, params, plan, predict, report,
-    review, schema, shell, sweep, wrench,
+    compare, expand, golden, identify, import, library, mix, new, params, plan, predict, report, review,
+    schema, shell, sweep, wrench,
 };
 use crate::{Done, output};
 
 /// Compiler of mixers for coaxial multirotors (X8, Y6, X12: n stacked pairs of rotors)
-#[derive(Parser)]
+#[derive(Debug, Parser)]
 #[command(
     name = "cargo mixer",
     bin_name = "cargo mixer",
     version,
     after_help = "Exit status: 0; 1 for a bad input; 2 for bad usage. Errors go to stderr."
 )]
-struct Arguments {
+pub struct Arguments {
     #[command(subcommand)]
     command: Command,
 }
 
-#[derive(Subcommand)]
+#[derive(Debug, Subcommand)]
 enum Command {
     Check(check::CheckArgs),
     Compare(compare::CompareArgs),

@@ -1,6 +1,5 @@
 //! The commands: a file per command, each with its arguments and its function `run`.
 
-pub mod check;
 pub mod compare;
 pub mod expand;
 pub mod golden;

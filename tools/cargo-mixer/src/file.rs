@@ -1,11 +1,12 @@
 //! Files: read whole, and written whole or not at all.
 
-use std::fs::{self, File};
-use std::io::{self, Read as _, Write as _};
+use std::fs;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mixer_compiler::Source;
+use mixer_facts::input::{read_small, up_to};
 use tempfile::NamedTempFile;
 
 /// Largest bench file that is read, MB. A device without an end would fill the memory.
@@ -13,10 +14,6 @@ const LARGEST_MB: u64 = 64;
 
 /// Largest flight log, MB: an hour at PX4's high rates.
 const LARGEST_LOG_MB: u64 = 1024;
-
-/// Largest airframe or parameter file, MB. They have kilobytes; read, they take forty times their
-/// size.
-const LARGEST_SMALL_MB: u64 = 1;
 
 /// The bytes of a whole file.
 ///
@@ -34,26 +31,7 @@ pub(crate) fn read_log(path: &Path) -> Result<Vec<u8>, String> {
     up_to(path, LARGEST_LOG_MB).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-fn up_to(path: &Path, most_mb: u64) -> io::Result<Vec<u8>> {
-    let most = most_mb << 20;
-    let mut bytes = Vec::new();
-    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most {
-        let message = format!("it is above {most_mb} MB; name a smaller file");
-        return Err(io::Error::other(message));
-    }
-    Ok(bytes)
-}
-
-/// The bytes of an airframe or parameter file.
-///
-/// # Errors
-/// A file that cannot be read, or is above 1 MB; the message names it.
-pub fn read_small(path: &Path) -> Result<Vec<u8>, String> {
-    up_to(path, LARGEST_SMALL_MB).map_err(|error| format!("{}: {error}", path.display()))
-}
-
-/// [`read_small`] for text.
+/// The text of an airframe or parameter file.
 ///
 /// # Errors
 /// As [`read_small`]; what is not UTF-8.
@@ -234,6 +212,7 @@ fn new_file() -> Option<fs::Permissions> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
     use std::path::PathBuf;
 
     use super::*;

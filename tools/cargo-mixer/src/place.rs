@@ -6,8 +6,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use mixer_compiler::Source;
+use mixer_compiler::diagnostic::printable_lines;
 use mixer_files::new::new;
-use mixer_files::plain::printable_lines;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::Answer;
 

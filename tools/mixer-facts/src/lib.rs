@@ -14,9 +14,13 @@
 pub mod air;
 mod check;
 pub mod checklist;
+pub mod command;
 pub mod cost;
 mod facts;
 pub mod hover;
+pub mod input;
+pub mod params;
+pub mod terminal;
 
 pub use check::{Checked, check, compare, refusal};
 pub use facts::{Fact, facts};

@@ -9,7 +9,7 @@ use mixer_facts::hover;
 use mixer_identify::air::Air;
 
 use crate::schema::DIRECTIVE;
-use crate::stack::Stack;
+use mixer_facts::params::Stack;
 
 /// A frame of coaxial pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -23,8 +23,8 @@ use mixer_compiler::{Source, symmetry};
 use mixer_facts::checklist;
 use mixer_identify::pair_file::PairFile;
 
-use crate::frames::COAXIAL_MIXER;
-use crate::parameter::bench_pulses;
+use mixer_facts::params::bench_pulses;
+use mixer_facts::params::frames::COAXIAL_MIXER;
 pub use outputs::USUAL_US;
 use parameters::Parameters;
 use rotors::Imported;

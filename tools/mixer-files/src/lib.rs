@@ -6,8 +6,8 @@
 //! ```
 //! use mixer_compiler::Source;
 //! use mixer_files::frame::{Frame, NewFrame};
-//! use mixer_files::params::{Options, params};
-//! use mixer_files::stack::Stack;
+//! use mixer_facts::params::{Options, params};
+//! use mixer_facts::params::Stack;
 //!
 //! let frame = NewFrame { arm_m: Some(0.45), ..NewFrame::of(Frame::X8) };
 //! let text = mixer_files::new::new(&frame, None).unwrap();
@@ -16,18 +16,11 @@
 //! assert!(made.text.contains("CA_ROTOR_COUNT\t8"));
 //! ```
 
-mod ardupilot;
 pub mod frame;
-mod frames;
 pub mod golden;
 pub mod import;
+pub mod library;
 pub mod new;
-mod parameter;
-pub mod params;
-pub mod plain;
-mod px4;
+pub mod report;
+pub mod review;
 pub mod schema;
-pub mod settings;
-pub mod stack;
-
-pub use parameter::bench_pulses;

@@ -6,7 +6,7 @@ use mixer_compiler::Source;
 use mixer_identify::pair_file::PairFile;
 
 use crate::frame::NewFrame;
-use crate::plain::printable_lines;
+use mixer_compiler::diagnostic::printable_lines;
 
 /// The pair that stands in for the user's own.
 const STAND_IN: &str = include_str!("new/stand-in.toml");

@@ -3,14 +3,13 @@
 use std::fmt::Write as _;
 use std::iter::{once, repeat};
 
-use mixer_compiler::diagnostic::printable;
+use mixer_compiler::diagnostic::{printable, wrapped};
 use toml_edit::{DocumentMut, value};
 
 use super::fact::{Fact, Told, of_identified, of_predicted, runs};
 use super::fit::power::Power;
 use super::fit::{Fit, hundredths};
 use super::identified::Identified;
-use super::report::wrapped;
 use super::rotor::predict::Predicted;
 use super::rotor::single::EXPONENT;
 use super::table::{commented, numbers, table, texts};

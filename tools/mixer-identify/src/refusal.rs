@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use mixer_compiler::diagnostic::cut_to;
+
 /// A reason and what would be needed instead.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
@@ -27,14 +29,6 @@ pub(crate) fn cut(text: String) -> String {
 /// The text of a cell, of which at most 80 characters are left.
 pub(crate) fn cut_cell(text: String) -> String {
     cut_to(text, LONGEST_CELL)
-}
-
-/// The text, of which at most `longest` characters are left.
-pub fn cut_to(text: String, longest: usize) -> String {
-    match text.char_indices().nth(longest) {
-        Some((end, _)) => format!("{} ..", &text[..end]),
-        None => text,
-    }
 }
 
 impl Refusal {

@@ -1,5 +1,7 @@
 //! The report on standard output, at most 100 columns wide: facts, and what the user should know.
 
+use mixer_compiler::diagnostic::wrapped;
+
 use super::fact::{Fact, Told, of_identified, of_predicted};
 use super::fit::Fit;
 use super::fit::cross::Candidate;
@@ -132,53 +134,4 @@ fn coefficients(lines: &mut Vec<String>, pair: &Pair) {
         lines.push(format!("  {term:<6} {thrust}            {torque}"));
     }
     lines.push(String::new());
-}
-
-/// Units that stay with their number, and the `m` of N m with its N.
-const UNITS: [&str; 10] = ["%", "N", "m", "V", "W", "A", "g", "kg", "mm", "degrees"];
-
-/// The words of a text, a number and its unit as one.
-fn words(text: &str) -> Vec<String> {
-    let mut words: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        let bare = word.trim_end_matches([',', ';', '.', ':', ')']);
-        match words.last_mut() {
-            Some(last)
-                if UNITS.contains(&bare) && last.ends_with(|c: char| c.is_ascii_digit() || c == 'N') =>
-            {
-                last.push(' ');
-                last.push_str(word);
-            }
-            _ => words.push(word.to_owned()),
-        }
-    }
-    words
-}
-
-/// Breaks text at blanks into lines of at most `width` characters. A unit stays with its number.
-pub fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in words(text) {
-        let line = lines.len() - 1;
-        if !lines[line].is_empty() && lines[line].chars().count() + 1 + word.chars().count() > width {
-            lines.push(word);
-        } else {
-            if !lines[line].is_empty() {
-                lines[line].push(' ');
-            }
-            lines[line].push_str(&word);
-        }
-    }
-    lines
-}
-
-#[cfg(test)]
-mod tests {
-    use super::wrapped;
-
-    #[test]
-    fn a_unit_stays_with_its_number() {
-        let lines = wrapped("thrust of 12.5 N, 0.2 N m at 3 % or more", 12);
-        assert_eq!(lines, ["thrust of", "12.5 N,", "0.2 N m at", "3 % or more"]);
-    }
 }

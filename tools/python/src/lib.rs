@@ -29,7 +29,7 @@ mod _native {
     use isolated_rotors::IsolatedTables;
     use mixer_compiler::{Compiled, Source};
     use mixer_facts::Checked;
-    use mixer_files::settings::Stacks;
+    use mixer_facts::params::settings::Stacks;
     use mixer_identify::refusal::Refusal;
     use mixer_identify::texts::Answer;
     use mixer_rt::Health;

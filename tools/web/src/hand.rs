@@ -5,7 +5,7 @@ use cargo_mixer::rows;
 use mixer_compiler::airframe::{Airmode, Axis, Correction, Unit};
 use mixer_compiler::model::Physics;
 use mixer_facts::checklist::Checklist;
-use mixer_report::study::Study;
+use mixer_files::report::study::Study;
 use mixer_rt::{Conditions, Wrench};
 use serde::Serialize;
 

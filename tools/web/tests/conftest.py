@@ -1,4 +1,4 @@
-"""The page in headless Chromium, made by `cargo xtask web`, and the command line beside it, which is the judge.
+"""The page in headless Chromium, made by `cargo page`, and the command line beside it, which is the judge.
 
 Every visit is held to one rule: no console message, no error, nothing that the content policy refuses, and no
 request but for the page itself.
@@ -39,7 +39,7 @@ addEventListener("DOMContentLoaded", () => {
 def site():
     """The folder of the page."""
     folder = TARGET / "web-tests"
-    subprocess.run(["cargo", "xtask", "web", "-o", folder], cwd=ROOT, check=True)
+    subprocess.run(["cargo", "page", "-o", folder], cwd=ROOT, check=True)
     return folder
 
 

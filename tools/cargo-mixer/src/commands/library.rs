@@ -3,7 +3,7 @@
 use std::io::{IsTerminal as _, stderr};
 use std::path::{Path, PathBuf};
 
-use mixer_c::{Airframe, Options};
+use mixer_files::library::{Airframe, Options};
 
 use crate::{Done, Refusal, file, print_error, print_note};
 
@@ -57,7 +57,7 @@ pub fn run(args: &LibraryArgs) -> Done {
             print_note(note);
         }
     };
-    let files = mixer_c::library(&airframes, &options, note).map_err(print_error)?;
+    let files = mixer_files::library::library(&airframes, &options, note).map_err(print_error)?;
     let files = files.iter();
     let files = files.map(|file| (file.name.as_str(), file.bytes.as_slice()));
     file::save_all(&args.output, files, args.force).map_err(print_error)

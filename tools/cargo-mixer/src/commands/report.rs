@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
+use mixer_files::report::bench::BenchPoints;
+use mixer_files::report::origin::Origin;
+use mixer_files::report::page;
+use mixer_files::report::study::{Flown, Study};
+use mixer_files::review::Options;
 use mixer_identify::identified::Settings;
 use mixer_identify::texts::Text;
-use mixer_report::bench::BenchPoints;
-use mixer_report::origin::Origin;
-use mixer_report::page;
-use mixer_report::study::{Flown, Study};
-use mixer_review::Options;
 use sha2::{Digest as _, Sha256};
 
 use super::review::{mass, review};
@@ -117,7 +117,9 @@ pub fn run(args: &ReportArgs) -> Done {
 /// The origin of a page that is made now of this file.
 fn origin(airframe: &Path) -> Origin {
     Origin {
-        sha256: file::read_small(airframe).ok().map(|bytes| sha256(&bytes)),
+        sha256: mixer_facts::input::read_small(airframe)
+            .ok()
+            .map(|bytes| sha256(&bytes)),
         date: today(),
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mixer_compiler::Compiled;
-use mixer_review::{Options, Review, scaled};
+use mixer_files::review::{Options, Review, scaled};
 
 use crate::bench_args::{pwm_range, quantity};
 use crate::{Done, airframe_file, file, print_error, print_note};

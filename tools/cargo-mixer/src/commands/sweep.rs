@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use mixer_report::data::{Data, sweep};
-use mixer_report::study::Study;
+use mixer_files::report::data::{Data, sweep};
+use mixer_files::report::study::Study;
 
 use crate::bench_args::words;
 use crate::commands::report::thrust;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use mixer_compiler::Source;
-use mixer_review::{Flight, Review, Series, Stack};
+use mixer_files::review::{Flight, Review, Series, Stack};
 
 use crate::{bench_data, folder, measured, run_with};
 

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-/// Holds the file to this text. `cargo xtask bench-data` has it written instead.
+/// Holds the file to this text. `tests/run --stage bench-data` has it written instead.
 pub(crate) fn hold(name: &str, text: &str) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/measurements");
     let path = folder.join(name);
@@ -15,6 +15,6 @@ pub(crate) fn hold(name: &str, text: &str) {
     let held = fs::read_to_string(&path).map_err(fault).expect("a measurement");
     assert_eq!(
         held, text,
-        "run `cargo xtask bench-data` and `cargo xtask tables`"
+        "run `tests/run --stage bench-data` and `cargo tables`"
     );
 }

@@ -7,10 +7,10 @@ use std::process::Output;
 use std::{env, fs};
 
 use mixer_compiler::{Compiled, Source, compile};
-use mixer_report::data::{Data, sweep};
-use mixer_report::origin::Origin;
-use mixer_report::page::{SECTIONS, page};
-use mixer_report::study::Study;
+use mixer_files::report::data::{Data, sweep};
+use mixer_files::report::origin::Origin;
+use mixer_files::report::page::{SECTIONS, page};
+use mixer_files::report::study::Study;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::{root, run};

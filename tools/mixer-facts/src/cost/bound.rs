@@ -4,7 +4,7 @@
 //! facets in several steps where they change the request, or the climb along the null space where
 //! they do not; after either the retreat, and what a reserve of yaw asks for. Else it is least norm and
 //! the iterations of the interior point method, which are a constant: a product of their number and the
-//! cost of one (`cargo xtask counts`). The tests hold the sum to the counts of whole mixers.
+//! cost of one (`cargo counts`). The tests hold the sum to the counts of whole mixers.
 
 use mixer_rt::tables::{Facets, ITERATIONS, Outline};
 

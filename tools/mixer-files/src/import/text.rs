@@ -4,13 +4,13 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use mixer_compiler::Source;
+use mixer_compiler::diagnostic::wrapped;
 use mixer_identify::air::Air;
 use mixer_identify::pair_file::PairFile;
-use mixer_identify::report::wrapped;
 use toml::Value;
 
 use super::rotors::{Imported, UPWARD, Unit};
-use crate::plain::printable_lines;
+use mixer_compiler::diagnostic::printable_lines;
 
 /// Characters of a line of comment.
 const COMMENT: usize = 110;

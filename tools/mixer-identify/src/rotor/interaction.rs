@@ -31,7 +31,7 @@ pub struct Interaction {
 
 /// Throttle commands a share of the supply voltage, as most speed controllers do.
 ///
-/// Fitted on 52 maps of five systems of 11 to 22 inch at z/D 0.1 to 1. `cargo xtask interaction`
+/// Fitted on 52 maps of five systems of 11 to 22 inch at z/D 0.1 to 1. `cargo interaction`
 /// measures them on the bench data of `MIXER_BENCH_DATA` against constants that it fits there with
 /// one system left out; docs/no-bench.md has its table.
 pub const OPEN_LOOP: Interaction = Interaction {

@@ -1,4 +1,4 @@
-//! `cargo xtask web -o FOLDER`: the page of `web/` as static files.
+//! `cargo page -o FOLDER`: the page of `web/` as static files.
 //!
 //! ```text
 //! tools/web/src -> WebAssembly -> without what only the glue needs, packed by gzip, in base64
@@ -23,9 +23,9 @@ use wasm_bindgen_cli_support::Bindgen;
 
 /// The style and the script of a report, which the page shows and saves.
 const REPORT: [&str; 3] = [
-    "tools/mixer-report/src/style.css",
-    "tools/mixer-report/src/report.css",
-    "tools/mixer-report/src/report.js",
+    "tools/mixer-files/src/report/style.css",
+    "tools/mixer-files/src/report/report.css",
+    "tools/mixer-files/src/report/report.js",
 ];
 
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -33,7 +33,7 @@ const TARGET: &str = "wasm32-unknown-unknown";
 fn main() -> ExitCode {
     let words: Vec<String> = env::args().skip(1).collect();
     let ["-o", folder] = words.iter().map(String::as_str).collect::<Vec<_>>()[..] else {
-        eprintln!("usage: cargo xtask web -o FOLDER");
+        eprintln!("usage: cargo page -o FOLDER");
         return ExitCode::from(2);
     };
     match bundle(Path::new(folder)) {
@@ -66,7 +66,11 @@ fn bundle(folder: &Path) -> Result<String, Box<dyn Error>> {
     let [figures, report, report_script] = REPORT;
     let style = [figures, report, "tools/web/page/page.css"].map(read);
     let style = style.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
-    let parts = ["tools/web/page/editor.js", "tools/web/page/mixer.js", "tools/web/page/page.js"];
+    let parts = [
+        "tools/web/page/editor.js",
+        "tools/web/page/mixer.js",
+        "tools/web/page/page.js",
+    ];
     let script = [report_script].into_iter().chain(parts).map(read);
     let script = script.collect::<Result<Vec<_>, _>>()?.concat();
     let worker = [output.js(), &read("tools/web/page/worker.js")?].concat();

@@ -1,12 +1,12 @@
 //! Bench files for the report page, read as `identify` reads them.
 
 use mixer_compiler::Compiled;
+use mixer_files::report::bench::BenchPoints;
 use mixer_identify::bench::Kind;
 use mixer_identify::fit::balance::balanced;
 use mixer_identify::identified::Settings;
 use mixer_identify::refusal::Refusal;
 use mixer_identify::texts::{Text, read as ready};
-use mixer_report::bench::BenchPoints;
 
 /// Reads bench files of the airframe's pair.
 ///

@@ -163,7 +163,7 @@ fn sixteen_thousand_rows_are_read_in_well_under_a_second() {
     assert!(best < Duration::from_millis(700), "{best:?} without optimisation");
 }
 
-/// The run that docs/bench.md explains. `cargo xtask bench-data` writes it.
+/// The run that docs/bench.md explains. `tests/run --stage bench-data` writes it.
 #[test]
 fn the_report_of_the_documents_is_that_of_the_bench() {
     const FILE: &str =
@@ -186,6 +186,6 @@ fn the_report_of_the_documents_is_that_of_the_bench() {
     }
     assert!(
         fs::read_to_string(&page).expect("the page") == now,
-        "run `cargo xtask bench-data`"
+        "run `tests/run --stage bench-data`"
     );
 }

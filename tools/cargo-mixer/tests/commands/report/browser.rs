@@ -8,9 +8,9 @@ use std::process::Command;
 use std::{env, fs};
 
 use mixer_compiler::Compiled;
-use mixer_report::origin::Origin;
-use mixer_report::page::page;
-use mixer_report::study::Study;
+use mixer_files::report::origin::Origin;
+use mixer_files::report::page::page;
+use mixer_files::report::study::Study;
 
 use super::{compiled, root, scratch};
 

@@ -1,7 +1,7 @@
 //! What a page has: curves of authority, marks, folded tables, data and the keyboard. Its words are in
 //! `cases/report`.
 
-use mixer_report::study::Flown;
+use mixer_files::report::study::Flown;
 
 use super::*;
 
@@ -77,7 +77,7 @@ fn a_flight_is_shown_over_the_model() {
 /// Every bench point has its residual, small where it lies below the idle, within the frame.
 #[test]
 fn residuals_are_mapped() {
-    use mixer_report::bench::{BenchPoint, BenchPoints};
+    use mixer_files::report::bench::{BenchPoint, BenchPoints};
 
     let compiled = x8();
     let study = Study::new(&compiled, None);

@@ -1,8 +1,8 @@
 //! The static comparison of both mixers.
 
-use mixer_report::comparison::Comparison;
-use mixer_report::number::range;
-use mixer_report::study::Study;
+use mixer_files::report::comparison::Comparison;
+use mixer_files::report::number::range;
+use mixer_files::report::study::Study;
 
 use super::x8;
 

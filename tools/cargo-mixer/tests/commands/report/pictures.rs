@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use mixer_report::gallery;
+use mixer_files::report::gallery;
 use roxmltree::Document;
 
 use super::{airframes, root};
@@ -27,7 +27,7 @@ fn the_documents_pictures_are_current() {
             stale.push(name.clone());
         }
     }
-    assert!(stale.is_empty(), "{stale:?} are stale; run `cargo xtask gallery`");
+    assert!(stale.is_empty(), "{stale:?} are stale; run `cargo gallery`");
     let names: BTreeSet<String> = fs::read_dir(root().join("docs"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())

@@ -1,0 +1,156 @@
+//! ArduPilot's parameters.
+
+use mixer_compiler::airframe::Airmode;
+use mixer_compiler::{ARDUPILOT_MOST_SPIN_MIN as MOST_SPIN_MIN, Compiled};
+
+use crate::params::frames;
+use crate::params::parameter::{Parameters, curve, hundredths, on_curve, rotor_out, slope_in_hover};
+
+/// ArduPilot's own `MOT_SPIN_ARM`.
+const SPIN_ARM: f64 = 0.1;
+
+/// Range of `MOT_THST_HOVER` in ArduPilot.
+const HOVER_RANGE: [f64; 2] = [0.125, 0.6875];
+
+/// ArduPilot has no monitor by default, and no voltage without one.
+const MONITOR: &str = "BATT_MONITOR is your board's; 0 measures no voltage, the simulator has 4";
+
+/// ArduPilot's density goes by the ground's temperature.
+const GROUND_TEMPERATURE: &str = "BARO_GND_TEMP, the air's temperature, is set before every take-off, as ArduPilot forgets it at \
+                                  power-off: without it the density goes by the barometer chip's, and 20 K more are 5 % too much thrust";
+
+/// ArduPilot's parameters where this mixer puts out the throttles.
+pub(crate) fn settings(compiled: &Compiled, all: &mut Parameters) {
+    let airframe = &compiled.airframe;
+    all.because("The mixer inverts the rotors' curve; all else that reads this is linear then.")
+        .real("MOT_THST_EXPO", 0.0);
+    spin(compiled, all);
+    if airframe.voltage.is_some() {
+        all.because("The mixer follows the battery's voltage.")
+            .real("MOT_BAT_VOLT_MAX", 0.0)
+            .real("MOT_BAT_VOLT_MIN", 0.0);
+        all.note(MONITOR);
+    }
+    all.because("The rotors of a pair would slew apart.")
+        .real("MOT_SLEW_UP_TIME", 0.0)
+        .real("MOT_SLEW_DN_TIME", 0.0);
+    if airframe.air.is_some() {
+        all.note(GROUND_TEMPERATURE);
+    }
+    let full_n = f64::from(compiled.ardupilot_scale().thrust_n);
+    let hover = airframe.weight_n().map(|weight| weight / full_n);
+    let at = airframe
+        .voltage
+        .as_ref()
+        .map_or_else(String::new, |voltage| format!(" and {:?} V", voltage.range[1]));
+    let why = format!("Weight over the thrust of all rotors at full throttle{at}.");
+    hover_throttle(hover, &why, all);
+    all.note(gains(compiled));
+    rotor_out("ATC_RATE_Y_MAX", compiled, all);
+    if airframe.allocation.airmode == Airmode::Disabled {
+        all.note(
+            "the airmode is \"disabled\", which gives no roll and pitch at throttle 0; ArduPilot counts on them: \
+             `airmode = \"roll-pitch\"` in the airframe file",
+        );
+    }
+}
+
+/// ArduPilot's parameters where its own mixer puts out the throttles.
+pub(crate) fn own(compiled: &Compiled, all: &mut Parameters) {
+    let expo = hundredths(curve(compiled, true));
+    all.because("Fitted to the thrust of the pair with both rotors alike.")
+        .real("MOT_THST_EXPO", expo);
+    spin(compiled, all);
+    if let Some(voltage) = &compiled.airframe.voltage {
+        all.because("Range of the battery.")
+            .real("MOT_BAT_VOLT_MAX", voltage.range[1])
+            .real("MOT_BAT_VOLT_MIN", voltage.range[0]);
+        all.note(MONITOR);
+    }
+    let [min, max] = compiled.pair.range();
+    let throttle = compiled.equal_hover_throttle();
+    let hover = throttle.map(|throttle| on_curve(expo, (throttle - min) / (max - min)));
+    let why = "MOT_THST_EXPO's curve at the throttle that carries the weight at the reference voltage.";
+    hover_throttle(hover, why, all);
+}
+
+/// `FRAME_CLASS` of this mixer; of ArduPilot's `own`, `FRAME_CLASS` and `FRAME_TYPE`, if a frame has these rotors on
+/// these outputs.
+pub(crate) fn geometry(compiled: &Compiled, own: bool, all: &mut Parameters) {
+    if !own {
+        all.because(
+            "The motors class of the compiled airframe, which has its rotors; FRAME_TYPE has no effect.",
+        )
+        .whole("FRAME_CLASS", frames::COAXIAL_MIXER);
+        return;
+    }
+    let Some((class, kind, name)) = frames::find(compiled) else {
+        return all.note(
+            "no FRAME_CLASS has these rotors on these outputs: ArduPilot has X and plus frames of 4 and 6 pairs, and Y6; of \
+             those `cargo mixer new --outputs ardupilot` writes an airframe whose `channels` and spins are one's",
+        );
+    };
+    let [class, kind] = [class, kind].map(|value| i32::try_from(value).unwrap_or_default());
+    all.because(format!(
+        "ArduPilot's {name}: channel 0 of the airframe is motor 1."
+    ))
+    .whole("FRAME_CLASS", class)
+    .whole("FRAME_TYPE", kind);
+}
+
+/// Pulse widths of throttle 0 and 1, microseconds.
+pub(crate) fn pulses([low, high]: [f64; 2], all: &mut Parameters) {
+    all.because("Pulse widths of throttle 0 and 1 on the bench.")
+        .whole("MOT_PWM_MIN", low as i32)
+        .whole("MOT_PWM_MAX", high as i32);
+}
+
+fn spin(compiled: &Compiled, all: &mut Parameters) {
+    let throttle = &compiled.airframe.throttle;
+    let least = throttle.min.min(MOST_SPIN_MIN);
+    if least < throttle.min {
+        all.note(format!(
+            "throttle.min is {:?}, and ArduPilot does not arm with MOT_SPIN_MIN above {MOST_SPIN_MIN}: it is {MOST_SPIN_MIN}, \
+             and the motors step up by the rest at take-off",
+            throttle.min
+        ));
+    }
+    all.because("Idle of the airframe, throttle.min.")
+        .real("MOT_SPIN_MIN", least);
+    all.because("Largest throttle of the airframe, throttle.max.")
+        .real("MOT_SPIN_MAX", throttle.max);
+    all.because("At most MOT_SPIN_MIN.")
+        .real("MOT_SPIN_ARM", least.min(SPIN_ARM));
+}
+
+fn hover_throttle(hover: Option<f64>, why: &str, all: &mut Parameters) {
+    let [least, most] = HOVER_RANGE;
+    if let Some(hover) = hover.filter(|hover| !(least..=most).contains(hover)) {
+        all.note(format!(
+            "MOT_THST_HOVER {hover:.3} is outside {least} to {most}, which ArduPilot limits it to"
+        ));
+    }
+    all.hover("MOT_THST_HOVER", hover, why);
+}
+
+/// The note on gains of a vehicle that was tuned with ArduPilot's mixer.
+fn gains(compiled: &Compiled) -> String {
+    let Some(slope) = slope_in_hover(compiled) else {
+        return "ATC_RAT_RLL_*, _PIT_*, _YAW_*: which factor keeps the loop gain is known with `[vehicle] mass_kg` in the \
+                airframe file; one unit of yaw is then the pair's slope in hover"
+            .to_owned();
+    };
+    let voltage = match &compiled.airframe.voltage {
+        Some(voltage) => format!(
+            "; those tuned with MOT_BAT_VOLT_MAX 0 by {:.3} more, the thrust at {:?} V over that at {:?} V",
+            1.0 / voltage.thrust_factor(voltage.range[1]),
+            voltage.reference,
+            voltage.range[1]
+        ),
+        None => String::new(),
+    };
+    format!(
+        "ATC_RAT_RLL_*, _PIT_*, _YAW_*: gains that were tuned with a fitted MOT_THST_EXPO stay; those tuned with \
+         MOT_THST_EXPO 0 are multiplied by {slope:.3}, the slope of thrust over throttle in hover{voltage}"
+    )
+}

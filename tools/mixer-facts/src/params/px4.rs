@@ -1,0 +1,207 @@
+//! PX4's parameters.
+
+use mixer_compiler::Compiled;
+use mixer_compiler::airframe::{Correction, Spin};
+
+use crate::params::parameter::{Parameters, curve, hundredths, on_curve, rotor_out, slope_in_hover};
+
+/// Most rotors that PX4 has parameters for.
+const MOST_ROTORS: usize = 12;
+
+/// PX4's own `MPC_THR_MIN` and `MPC_MANTHR_MIN`.
+const LEAST_THRUST: f64 = 0.12;
+const LEAST_MANUAL_THRUST: f64 = 0.08;
+
+/// Largest of PX4's `FD_ACT_MOT_C2T` and `FD_ACT_HIGH_OFF`, A.
+const MOST_SLOPE: f64 = 50.0;
+const MOST_OFFSET: f64 = 30.0;
+
+/// Where the currents come from that PX4's failure detector compares with the outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Currents {
+    /// From the ESCs.
+    Measured,
+    /// From PX4's simulator, which makes them up of the outputs.
+    Simulated,
+}
+
+/// PX4's parameters where this mixer puts out the throttles.
+pub(crate) fn settings(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
+    let airframe = &compiled.airframe;
+    all.because("The mixer inverts the rotors' curve; the outputs would bend the throttles once more.")
+        .real("THR_MDL_FAC", 0.0);
+    if currents == Currents::Measured {
+        all.because("With DShot: throttle 0 is that of the bench's pulses; PX4's default lifts all throttles by up to 0.055.")
+            .real("DSHOT_MIN", 0.0);
+    }
+    if airframe.voltage.is_some() {
+        all.because(
+            "The mixer follows the battery's voltage; the rate controller would scale by it once more.",
+        )
+        .whole("MC_BAT_SCALE_EN", 0);
+    }
+    let full_n = f64::from(compiled.scale().thrust_n);
+    let hover = airframe.weight_n().map(|weight| weight / full_n);
+    let why = "Weight over the thrust of all rotors at full throttle.";
+    all.hover("MPC_THR_HOVER", hover, why);
+    all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
+    // Idle lifts most at the highest voltage, in the densest air.
+    let most = |law: &Option<Correction>| law.as_ref().map_or(1.0, |law| law.thrust_factor(law.range[1]));
+    let rise = most(&airframe.voltage) * most(&airframe.air);
+    let idle = rise * f64::from(compiled.thrust_range_n[0].max(0.0)) / full_n;
+    let idle = libm::ceil(100.0 * idle) / 100.0;
+    all.because("Thrust of all rotors at idle, or PX4's default where that is more: less is not to be had.")
+        .real("MPC_THR_MIN", idle.max(LEAST_THRUST))
+        .real("MPC_MANTHR_MIN", idle.max(LEAST_MANUAL_THRUST));
+    if hover.is_some_and(|hover| idle >= hover) {
+        all.note("all rotors at idle lift the vehicle: MPC_THR_MIN is above MPC_THR_HOVER");
+    }
+    failure_detection(compiled, currents, all);
+    if airframe.air.is_some() {
+        all.note(DENSITY);
+    }
+    all.note(gains(compiled));
+    rotor_out("MC_YAWRATE_MAX", compiled, all);
+}
+
+/// Accuracy of PX4's density.
+const DENSITY: &str = "vehicle_air_data.rho goes by 15 C where no airspeed sensor and no external barometer has the air's temperature: \
+                       thrust is then 7 % too high at -10 C, 6 % too low at 40 C (docs/air.md)";
+
+/// Why PX4's throttle curve is straight.
+const MIDDLE: &str = "Throttle stick in the middle is hover thrust.";
+
+/// PX4's parameters where its own allocator puts out the throttles.
+pub(crate) fn own(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
+    let factor = hundredths(curve(compiled, false));
+    all.because("Fitted to the thrust of the pair with both rotors alike.")
+        .real("THR_MDL_FAC", factor);
+    let throttle = compiled.equal_hover_throttle();
+    let hover = throttle.map(|throttle| on_curve(factor, throttle));
+    let why = "THR_MDL_FAC's curve at the throttle that carries the weight at the reference voltage.";
+    all.hover("MPC_THR_HOVER", hover, why);
+    all.because(MIDDLE).whole("MPC_THR_CURVE", 0);
+    failure_detection(compiled, currents, all);
+}
+
+/// The rotors for PX4's own allocator, which takes each as isolated and both of a pair as alike.
+///
+/// # Errors
+/// More rotors than PX4 has parameters for.
+pub(crate) fn geometry(compiled: &Compiled, all: &mut Parameters) -> Result<(), String> {
+    let airframe = &compiled.airframe;
+    let count = airframe.rotors();
+    if count > MOST_ROTORS {
+        return Err(format!("{count} rotors: PX4 has parameters for {MOST_ROTORS}"));
+    }
+    all.because("A multirotor.")
+        .whole("CA_AIRFRAME", 0)
+        .whole("CA_ROTOR_COUNT", i32::try_from(count).unwrap_or_default());
+    all.because("No rotor turns backwards.").whole("CA_R_REV", 0);
+    for (channel, values) in compiled.px4_rotors().into_iter().enumerate() {
+        let is_upper = airframe.units.iter().any(|unit| unit.upper_channel == channel);
+        let layer = if is_upper { "upper" } else { "lower" };
+        let spin = if values[7] > 0.0 { Spin::Ccw } else { Spin::Cw };
+        let why = format!("Motor {}: {layer} rotor, turns {}.", channel + 1, spin.name());
+        for (key, value) in ["PX", "PY", "PZ", "AX", "AY", "AZ", "CT", "KM"]
+            .iter()
+            .zip(values)
+        {
+            all.because(&why).real(format!("CA_ROTOR{channel}_{key}"), value);
+        }
+    }
+    Ok(())
+}
+
+/// PX4's parameters for a simulator that sends the battery, too: which output drives which motor,
+/// and what it can fail.
+pub(crate) fn simulated(compiled: &Compiled, all: &mut Parameters) {
+    for motor in 1..=compiled.airframe.rotors() {
+        let function = 100 + i32::try_from(motor).unwrap_or_default();
+        all.because("Motor n on the simulator's output n.")
+            .whole(format!("PWM_MAIN_FUNC{motor}"), function);
+    }
+    all.because(
+        "Failures can be injected: `failure motor stuck -i 1` takes away motor 1's telemetry, and the detector finds it dead.",
+    )
+    .whole("SYS_FAILURE_EN", 1);
+    all.because("The simulator sends the battery's state; 1 where it does not.")
+        .whole("SIM_BAT_ENABLE", 0);
+}
+
+/// Pulse widths of throttle 0 and 1, microseconds.
+pub(crate) fn pulses(compiled: &Compiled, [low, high]: [f64; 2], all: &mut Parameters) {
+    let why = "Pulse widths of throttle 0 and 1 on the bench; a board whose motors are on AUX has PWM_AUX_..";
+    for motor in 1..=compiled.airframe.rotors() {
+        all.because(why)
+            .whole(format!("PWM_MAIN_MIN{motor}"), low as i32)
+            .whole(format!("PWM_MAIN_MAX{motor}"), high as i32);
+    }
+}
+
+/// A motor is found out where it draws too little current for its throttle: below `FD_ACT_MOT_C2T`
+/// times throttle less `FD_ACT_LOW_OFF`. Half of the tangent to the current in hover lies below the
+/// current everywhere, as that is convex in the throttle, and above zero around hover.
+fn failure_detection(compiled: &Compiled, currents: Currents, all: &mut Parameters) {
+    all.because("Motors that the failure detector finds out are left out of the mix.")
+        .whole("CA_FAILURE_MODE", 1);
+    if currents == Currents::Simulated {
+        all.because("PX4's simulator reports 1 A + 15 A x output of every motor, failed or not.")
+            .whole("FD_ACT_EN", 1)
+            .real("FD_ACT_MOT_C2T", 15.0)
+            .real("FD_ACT_LOW_OFF", 3.0)
+            .real("FD_ACT_HIGH_OFF", MOST_OFFSET);
+        return;
+    }
+    let Some([slope, offset]) = current_tangent(compiled) else {
+        all.because("Without the motors' currents a healthy motor would be found out.")
+            .whole("FD_ACT_EN", 0);
+        all.note(
+            "FD_ACT_EN is off: `[pair.power]`, `[voltage]` and `[vehicle] mass_kg` of the airframe file would give \
+             FD_ACT_MOT_C2T and FD_ACT_LOW_OFF",
+        );
+        return;
+    };
+    let why = "Half of the tangent to a motor's current over its throttle in hover, from [pair.power]; needs ESCs that \
+               report their current.";
+    all.because(why)
+        .whole("FD_ACT_EN", 1)
+        .real("FD_ACT_MOT_C2T", (0.5 * slope).min(MOST_SLOPE))
+        .real("FD_ACT_LOW_OFF", (0.5 * offset).clamp(0.0, MOST_OFFSET));
+    all.because("As far as PX4 allows: a blocked motor is not looked for.")
+        .real("FD_ACT_HIGH_OFF", MOST_OFFSET);
+}
+
+/// Step of the throttle for a slope.
+const STEP: f64 = 1e-3;
+
+/// Slope (A) and offset (A) of the tangent to a motor's current over its throttle in hover.
+fn current_tangent(compiled: &Compiled) -> Option<[f64; 2]> {
+    let airframe = &compiled.airframe;
+    let throttle = compiled.equal_hover_throttle()?;
+    let voltage_v = airframe.voltage.as_ref()?.reference;
+    let units = airframe.units.iter();
+    let most = units
+        .map(|unit| unit.upper_channel.max(unit.lower_channel))
+        .max()?
+        + 1;
+    let current = |throttle: f64| {
+        let power_w = airframe.power_w(&vec![throttle; most])?;
+        Some(power_w / (airframe.rotors() as f64 * voltage_v))
+    };
+    let slope = (current(throttle + STEP)? - current(throttle - STEP)?) / (2.0 * STEP);
+    Some([slope, slope * throttle - current(throttle)?])
+}
+
+/// The note on gains of a vehicle that was tuned with PX4's allocator.
+fn gains(compiled: &Compiled) -> String {
+    match slope_in_hover(compiled) {
+        Some(factor) => format!(
+            "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K: gains that were tuned with a fitted THR_MDL_FAC stay; those tuned \
+             with THR_MDL_FAC 0 are multiplied by {factor:.3}, the slope of thrust over throttle in hover"
+        ),
+        None => "MC_ROLLRATE_K, MC_PITCHRATE_K, MC_YAWRATE_K: which factor keeps the loop gain is known with `[vehicle] \
+                 mass_kg` in the airframe file; one unit of yaw is then the pair's slope in hover"
+            .to_owned(),
+    }
+}

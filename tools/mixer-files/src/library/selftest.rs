@@ -1,0 +1,125 @@
+//! The self-test: golden vectors, and setpoints that are refused, with the bits that the command line
+//! gives for them.
+
+use std::fmt::Write as _;
+
+use mixer_compiler::Compiled;
+use mixer_compiler::vectors::{self, Vector};
+use mixer_rt::{Conditions, Health, SetpointError, Wrench};
+
+use crate::library::airframe::Airframe;
+use crate::library::header::{VERSION, fill};
+
+/// One in so many golden vectors: the table goes into the firmware's flash.
+const EVERY: usize = 3;
+
+/// `M_selftest.c`.
+pub(crate) fn text(airframe: &Airframe, health: bool) -> String {
+    let Airframe { compiled, module, .. } = airframe;
+    let rows = rows(compiled);
+    let mut table = String::new();
+    for (index, (wrench, conditions)) in rows.iter().enumerate() {
+        let failed = health.then(|| mask(index, compiled.airframe.rotors()));
+        row(&mut table, compiled, wrench, *conditions, failed);
+    }
+    // At the bench's density by the function that takes none.
+    let mix = format!(
+        "in[5] == {}_REFERENCE_DENSITY_KG_M3\n            ? {module}_mix(&setpoint, in[4], &out)\n            : {module}_mix_in(&setpoint, &conditions, &out)",
+        airframe.prefix()
+    );
+    let call = if health {
+        format!(
+            "rows[i].failed != 0u\n            ? {module}_mix_in_with_health(&setpoint, &conditions, rows[i].failed, &out)\n            : {mix}"
+        )
+    } else {
+        mix
+    };
+    let field = if health { "    uint64_t failed;\n" } else { "" };
+    fill(
+        include_str!("templates/selftest.c"),
+        &[
+            ("FAILED", &field),
+            ("CALL", &call),
+            ("TABLE", &table),
+            ("PREFIX", &airframe.prefix()),
+            ("VERSION", &VERSION),
+            ("M", module),
+        ],
+    )
+}
+
+/// One row of the table. A `health` row has a mask.
+fn row(
+    table: &mut String,
+    compiled: &Compiled,
+    wrench: &Wrench,
+    conditions: Conditions,
+    failed: Option<u64>,
+) {
+    let health = (0..64u8)
+        .filter(|channel| (failed.unwrap_or(0) >> channel) & 1 != 0)
+        .fold(Health::GOOD, Health::with_failed);
+    let (status, out) = match compiled.tables.mix_in(wrench, conditions, health) {
+        Ok((throttles, achieved, saturation)) => {
+            let floats = throttles.into_iter().chain(achieved.to_array());
+            let mut bits: Vec<u32> = floats.map(f32::to_bits).collect();
+            bits.push(u32::from(saturation.bits()));
+            (0, bits)
+        }
+        Err(SetpointError::NonFinite(axis)) => (1 + axis as u8, vec![0; compiled.airframe.rotors() + 5]),
+        Err(SetpointError::NonFiniteVoltage) => (5, vec![0; compiled.airframe.rotors() + 5]),
+    };
+    let list = |bits: &[u32]| -> String {
+        let words: Vec<String> = bits.iter().map(|bits| format!("{bits:#x}u")).collect();
+        words.join(", ")
+    };
+    let [roll, pitch, yaw, thrust] = wrench.to_array().map(f32::to_bits);
+    let [volts, density] = [conditions.voltage_v, conditions.density_kg_m3].map(f32::to_bits);
+    let input = list(&[roll, pitch, yaw, thrust, volts, density]);
+    let failed = failed.map_or(String::new(), |mask| format!("{mask:#x}u, "));
+    let output = list(&out);
+    let _ = writeln!(table, "    {{{{{input}}}, {failed}{status}, {{{output}}}}},");
+}
+
+/// Which rotors are out in a row: none, one or two.
+fn mask(index: usize, rotors: usize) -> u64 {
+    match index % 3 {
+        0 => 0,
+        1 => 1 << (index / 3 % rotors),
+        _ => 1 << (index / 3 % rotors) | 1 << (index / 7 % rotors),
+    }
+}
+
+/// A choice of the golden vectors; densities that are none; setpoints and voltages that are refused.
+fn rows(compiled: &Compiled) -> Vec<Vector> {
+    let mut rows: Vec<Vector> = vectors::healthy(compiled).into_iter().step_by(EVERY).collect();
+    let finite = Wrench::from_normalised([0.1, 0.1, 0.1, 0.4], &compiled.scale());
+    let volts = compiled
+        .airframe
+        .voltage
+        .as_ref()
+        .map_or(12.0, |law| law.reference as f32);
+    let conditions = compiled.tables.view().at_reference_density(volts);
+    for density_kg_m3 in [f32::NAN, f32::INFINITY, 0.0, -1.0] {
+        let conditions = Conditions {
+            density_kg_m3,
+            ..conditions
+        };
+        rows.push((finite, conditions));
+    }
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for axis in 0..4 {
+            let mut wrench = finite.to_array();
+            wrench[axis] = bad;
+            rows.push((Wrench::from_array(wrench), conditions));
+        }
+        rows.push((
+            finite,
+            Conditions {
+                voltage_v: bad,
+                ..conditions
+            },
+        ));
+    }
+    rows
+}

@@ -1,0 +1,112 @@
+//! The static comparison of the paper's section V-A: yaw commands over the available range at
+//! constant total thrust, through the compiled mixer and through the conventional one, and what
+//! each coaxial unit then really gives.
+
+use mixer_compiler::airframe::Axis;
+use mixer_rt::Wrench;
+
+use crate::report::authority;
+use crate::report::study::Study;
+use isolated_rotors::IsolatedTables;
+
+/// What one mixer makes of one yaw command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// Throttles `[u, l]` of every unit.
+    pub throttles: Vec<[f64; 2]>,
+    /// Thrust and torque `[f (N), Q (N m)]` that these throttles give by the pair's map, per unit.
+    pub efforts: Vec<[f64; 2]>,
+    /// The wrench of all units: roll, pitch, yaw (N m), thrust (N).
+    pub wrench: [f64; 4],
+    /// False where a throttle was limited or the request was cut.
+    pub within: bool,
+}
+
+/// One yaw command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Yaw asked, N m.
+    pub yaw_nm: f64,
+    /// The compiled mixer.
+    pub coaxial: Answer,
+    /// The conventional mixer.
+    pub conventional: Answer,
+}
+
+/// The whole sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Total thrust asked, N.
+    pub thrust_n: f64,
+    /// Thrust of each unit in the least-norm efforts for that thrust alone, N: T / n on vertical
+    /// axes alike.
+    pub share_n: Vec<f64>,
+    /// Torque per thrust that the conventional mixer assumes, m.
+    pub kappa_m: f64,
+    /// By ascending yaw.
+    pub rows: Vec<Row>,
+}
+
+impl Comparison {
+    /// `count` yaw commands from the least to the largest that the compiled mixer delivers at the
+    /// study's thrust; `None` where the airframe does not serve yaw, or the thrust leaves no room
+    /// for any.
+    pub fn sweep(study: &Study<'_>, count: usize) -> Option<Self> {
+        if !study.serves(Axis::Yaw) {
+            return None;
+        }
+        let [low, high] =
+            authority::at(study, &study.reference(), study.thrust_n).torque_nm[Axis::Yaw as usize];
+        if low.is_nan() || low >= high || count < 2 {
+            return None;
+        }
+        let conventional = IsolatedTables::new(study.compiled);
+        let m_plus = &study.compiled.effectiveness.pseudo_inverse;
+        let share = |unit: usize| m_plus[(unit, Axis::Thrust as usize)] * study.thrust_n;
+        let rows = (0..count)
+            .map(|k| {
+                // From both ends, so that a symmetric range has its zero exactly.
+                let share = k as f64 / (count - 1) as f64;
+                let yaw_nm = low * (1.0 - share) + high * share;
+                let wrench = [0.0, 0.0, yaw_nm, study.thrust_n];
+                Row {
+                    yaw_nm,
+                    coaxial: answer(study, study.mix(wrench, &study.reference())),
+                    conventional: answer(study, throttles(study, &conventional, wrench)),
+                }
+            })
+            .collect();
+        Some(Comparison {
+            thrust_n: study.thrust_n,
+            share_n: (0..study.compiled.airframe.units.len()).map(share).collect(),
+            kappa_m: conventional.kappa_m,
+            rows,
+        })
+    }
+}
+
+/// Throttles `[u, l]` of every unit by the conventional mixer at the reference voltage, and whether
+/// none was limited.
+pub fn throttles(
+    study: &Study<'_>,
+    conventional: &IsolatedTables,
+    wrench: [f64; 4],
+) -> (Vec<[f64; 2]>, bool) {
+    let reference_v = study.compiled.airframe.reference_v() as f32;
+    let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
+    // A study's wrenches are finite.
+    let (channels, within) = conventional
+        .conventional(&setpoint, reference_v)
+        .unwrap_or_default();
+    (study.by_unit(&channels), within)
+}
+
+fn answer(study: &Study<'_>, (throttles, within): (Vec<[f64; 2]>, bool)) -> Answer {
+    let efforts: Vec<[f64; 2]> = throttles.iter().map(|&pair| study.pair.efforts(pair)).collect();
+    Answer {
+        wrench: study.wrench(&efforts),
+        throttles,
+        efforts,
+        within,
+    }
+}

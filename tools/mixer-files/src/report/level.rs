@@ -1,0 +1,67 @@
+//! Level flight, with thrust and no torque: throttles and electrical power against thrust, and
+//! throttles in hover against voltage, by the compiled mixer itself.
+
+use crate::report::study::{Condition, Study};
+
+/// Voltages at which hover is looked at.
+const VOLTAGES: usize = 41;
+
+/// Level flight at one thrust or voltage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// Total thrust, N, or voltage, V.
+    pub at: f64,
+    /// Mean throttles `[upper, lower]` of all units; NaN where the thrust is not delivered.
+    pub throttles: [f64; 2],
+    /// Electrical power of all rotors at the reference voltage, W; NaN where the thrust is not
+    /// delivered, or the file has no power map.
+    pub power_w: f64,
+}
+
+/// Level flight at `count` thrusts from the floor to the ceiling of the reference voltage.
+pub fn against_thrust(study: &Study<'_>, voltage_v: Option<f64>, count: usize) -> Vec<Level> {
+    let condition = study.at(voltage_v);
+    let thrusts = study.thrusts(count);
+    thrusts
+        .map(|thrust_n| level(study, thrust_n, thrust_n, &condition))
+        .collect()
+}
+
+/// Hover over the voltage range; empty without a mass or without an effect of voltage.
+pub fn against_voltage(study: &Study<'_>) -> Vec<Level> {
+    let airframe = &study.compiled.airframe;
+    let (Some(weight_n), Some(voltage)) = (airframe.weight_n(), &airframe.voltage) else {
+        return Vec::new();
+    };
+    let [low, high] = voltage.range;
+    let voltages = (0..VOLTAGES).map(|k| low + (high - low) * k as f64 / (VOLTAGES - 1) as f64);
+    voltages
+        .map(|volts| level(study, volts, weight_n, &study.at(Some(volts))))
+        .collect()
+}
+
+fn level(study: &Study<'_>, at: f64, thrust_n: f64, condition: &Condition) -> Level {
+    let (throttles, delivered) = study.mix([0.0, 0.0, 0.0, thrust_n], condition);
+    if !delivered {
+        return Level {
+            at,
+            throttles: [f64::NAN; 2],
+            power_w: f64::NAN,
+        };
+    }
+    let airframe = &study.compiled.airframe;
+    let mut channels = vec![0.0; airframe.rotors()];
+    for (unit, pair) in airframe.units.iter().zip(&throttles) {
+        for (channel, throttle) in [unit.upper_channel, unit.lower_channel].into_iter().zip(pair) {
+            if let Some(place) = channels.get_mut(channel) {
+                *place = *throttle;
+            }
+        }
+    }
+    let mean = |rotor: usize| throttles.iter().map(|pair| pair[rotor]).sum::<f64>() / throttles.len() as f64;
+    Level {
+        at,
+        throttles: [mean(0), mean(1)],
+        power_w: airframe.power_w(&channels).unwrap_or(f64::NAN),
+    }
+}

@@ -1,0 +1,466 @@
+//! The page: one self-contained file that needs no network, no script to be read, and prints.
+//!
+//! It is written as XML that is also HTML (every element closed, every attribute quoted), so that
+//! it can be checked by machine. [`content`] is what another page shows in an element of its own,
+//! with [`STYLE`] and [`SCRIPT`].
+
+mod link;
+
+use maud::{Markup, PreEscaped, html};
+use mixer_compiler::airframe::Axis;
+use mixer_compiler::diagnostic::{printable, rounded_up};
+use mixer_compiler::hover;
+use mixer_facts::Fact;
+use mixer_facts::cost::Cost;
+
+use crate::report::authority;
+use crate::report::bench::{BenchPoint, BenchPoints};
+use crate::report::bench_check::bench_check;
+use crate::report::comparison::Comparison;
+use crate::report::data::{Data, THRUSTS, YAW_COMMANDS};
+use crate::report::effort::Effort;
+use crate::report::figure::Figure;
+use crate::report::layout;
+use crate::report::level;
+use crate::report::maps;
+use crate::report::number::{shortest, significant};
+use crate::report::origin::Origin;
+use crate::report::plots;
+use crate::report::study::Study;
+use crate::report::surface;
+use crate::report::table;
+
+/// The style of figures, in the page and in files of their own.
+pub const FIGURE_STYLE: &str = include_str!("style.css");
+
+/// The style of figures and of [`Content::body`] in an element of class `report`; nothing else is
+/// touched but custom properties of the root.
+pub const STYLE: &str = concat!(include_str!("style.css"), include_str!("report.css"));
+
+/// Defines `report(element, model)`, which makes a [`Content::body`] in an element answer to the
+/// pointer and the keyboard; called again for new content.
+pub const SCRIPT: &str = include_str!("report.js");
+
+/// Style of a page of its own around the content.
+const PAGE_STYLE: &str = include_str!("page.css");
+
+/// Thrusts at which it is found with every rotor out in turn.
+const THRUSTS_ROTOR_OUT: usize = 21;
+
+/// Every so many nodes of the error's grid are there for the pointer.
+const HOVER_STRIDE: usize = 2;
+
+/// Sections of the page in their order: anchor and title.
+pub const SECTIONS: [(&str, &str); 11] = [
+    ("layout", "Layout"),
+    ("bench-check", "Check list on the bench"),
+    ("level", "Throttle and power"),
+    ("authority", "Authority"),
+    ("comparison", "Yaw at constant thrust"),
+    ("attainable", "Attainable set"),
+    ("forward", "Forward maps"),
+    ("inverse", "Inverse maps"),
+    ("error", "Error of the inverse"),
+    ("cost", "Cost on the target"),
+    ("matrices", "Allocation"),
+];
+
+/// The report without the page around it.
+#[derive(Clone, Debug)]
+pub struct Content {
+    /// Markup, for an element of class `report`.
+    pub body: String,
+    /// JSON, for the script.
+    pub model: String,
+}
+
+/// The whole page.
+pub fn page(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> String {
+    let Content { body, model } = content(study, bench, origin);
+    let title = html! { title { (printable(&study.compiled.airframe.name)) ": coaxial mixer" } };
+    // The head's elements without content are closed, as XML demands.
+    format!(
+        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n{}\n\
+         <style>\n{STYLE}</style>\n<style>\n{PAGE_STYLE}</style>\n</head>\n<body>\n<main class=\"report\">{body}</main>\n\
+         <script type=\"application/json\" id=\"model\">{model}</script>\n<script>//<![CDATA[\n{SCRIPT}\
+         report(document.querySelector(\".report\"), JSON.parse(document.getElementById(\"model\").textContent));\n\
+         //]]></script>\n</body>\n</html>\n",
+        title.into_string(),
+    )
+}
+
+/// What stands in the page, and what its script needs.
+pub fn content(study: &Study<'_>, bench: Option<&BenchPoints>, origin: &Origin) -> Content {
+    let compiled = study.compiled;
+    let airframe = &compiled.airframe;
+    let errors = Effort::BOTH.map(|effort| maps::error_field(study, effort));
+    let facts = mixer_facts::facts(compiled);
+    let section = |anchor| match anchor {
+        "layout" => layout_section(study),
+        "bench-check" => bench_check(study),
+        "level" => level_section(study),
+        "comparison" => comparison_section(study),
+        "authority" => authority_section(study),
+        "attainable" => attainable_section(study),
+        "forward" => forward_section(study, bench),
+        "inverse" => inverse_section(study),
+        "error" => error_section(study, &errors),
+        "cost" => cost_section(study, &facts),
+        _ => table::matrices(study, &facts),
+    };
+    let body = html! {
+        h1 { (printable(&airframe.name)) }
+        p.lead { (printable(&airframe.description)) }
+        nav id="contents" aria-label="Contents" { @for (anchor, title) in SECTIONS { a href={ "#" (anchor) } { (title) } " " } }
+        (warnings(study, bench))
+        (table::summary(study, &facts, origin))
+        @for (anchor, title) in SECTIONS {
+            section id=(anchor) { h2 { (title) } (section(anchor)) }
+        }
+        footer {
+            "Made by " code { "cargo mixer report" } " " (env!("CARGO_PKG_VERSION")) " from "
+            code { (printable(&compiled.source.file_name())) }
+            ". Body frame FRD, SI units; clockwise yaw seen from above is positive, thrust is positive upwards; the torque \
+             of a unit is positive where its lower rotor outweighs the upper one."
+        }
+        a.back href="#contents" { "Contents" }
+    };
+    Content {
+        body: body.into_string(),
+        model: model(study, &errors).to_string(),
+    }
+}
+
+/// What is plausibly a mistake; nothing where there is none.
+fn warnings(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
+    let records = mixer_compiler::lint(study.compiled).records();
+    let doubts = bench.map_or_else(Vec::new, |bench| bench.doubts(study.compiled));
+    html! {
+        @if !records.is_empty() || !doubts.is_empty() {
+            ul.warnings {
+                @for record in &records {
+                    li {
+                        b {
+                            "Warning " (record.code)
+                            @if let Some(line) = record.line { ", line " (line) }
+                            ":"
+                        }
+                        " " (record.message) ". " (record.help) "."
+                    }
+                }
+                @for doubt in &doubts { li { b { "Warning:" } " " (printable(doubt)) "." } }
+            }
+        }
+    }
+}
+
+/// A figure with its caption, the link to its data, and a place for the values under the pointer.
+fn shown(figure: &Figure, caption: &str, data: &Markup) -> Markup {
+    still(&figure.with_readout().into_string(), caption, data)
+}
+
+/// A picture without values under the pointer.
+fn still(svg: &str, caption: &str, data: &Markup) -> Markup {
+    html! { figure { (PreEscaped(svg)) figcaption { (caption) " " (data) } } }
+}
+
+/// A figure whose data are its curves, in a file whose name ends in `word`.
+fn curves(study: &Study<'_>, figure: &Figure, caption: &str, word: &str) -> Markup {
+    shown(figure, caption, &link::curves(study, word, figure))
+}
+
+/// A small figure with the table of what it shows.
+fn beside(figure: &Markup, table: &Markup) -> Markup {
+    html! { div.beside { (figure) (table) } }
+}
+
+/// Figures and tables in rows that are full: of three where three go into their number, else of two.
+fn figures(figures: &[Markup]) -> Markup {
+    let three = figures.len().is_multiple_of(3);
+    html! { div.figures.three[three] { @for figure in figures { (figure) } } }
+}
+
+fn layout_section(study: &Study<'_>) -> Markup {
+    let figure = layout::layout(&study.compiled.airframe);
+    let caption = "Seen from above. \u{2191} output of the upper rotor, \u{2193} of the lower one. Disks are not to scale.";
+    html! {
+        (beside(&still(&figure.svg(), caption, &link::sweep(study, Data::Layout)), &table::units(study)))
+    }
+}
+
+fn level_section(study: &Study<'_>) -> Markup {
+    let voltages = study.voltages().into_iter();
+    let levels = voltages.map(|(volts, _)| (volts, level::against_thrust(study, volts, THRUSTS)));
+    let levels: Vec<_> = levels.collect();
+    let mut plots: Vec<Markup> = Vec::new();
+    for (rotor, name) in ["upper", "lower"].into_iter().enumerate() {
+        let figure = plots::throttle(study, &levels, rotor);
+        let caption = format!("Mean throttle of the {name} rotors.");
+        plots.push(curves(study, &figure, &caption, &format!("throttle-{name}")));
+    }
+    if let Some(figure) = plots::hover_throttle(study, &level::against_voltage(study)) {
+        let data = link::sweep(study, Data::Hover);
+        plots.push(shown(&figure, "Mean throttles in hover against voltage.", &data));
+    }
+    let reference_v = study.compiled.airframe.reference_v();
+    let is_reference = |volts: &Option<f64>| volts.is_none_or(|volts| volts == reference_v);
+    let reference = levels.iter().find(|(volts, _)| is_reference(volts));
+    if let Some(figure) = reference.and_then(|(_, levels)| plots::power(study, levels)) {
+        let at = study.at_reference();
+        let alone = match at.as_str() {
+            "" => "",
+            _ => " The map holds at this voltage alone: power against voltage is not known.",
+        };
+        let caption = format!("Electrical power of all rotors{at}, by the file\u{2019}s map.{alone}");
+        plots.push(curves(study, &figure, &caption, "power"));
+    }
+    html! {
+        p { "Level flight: thrust and no torque, as the mixer delivers it. A curve ends where the thrust is no longer delivered in full." }
+        (figures(&plots))
+    }
+}
+
+fn comparison_section(study: &Study<'_>) -> Markup {
+    let Some(comparison) = Comparison::sweep(study, YAW_COMMANDS) else {
+        return html! {
+            @if study.serves(Axis::Yaw) {
+                p { "At " (shortest(study.thrust_n)) " N no yaw is available." }
+            } @else {
+                p { "Yaw is not a served axis of this airframe." }
+            }
+        };
+    };
+    let curves = |figure: Figure, caption, word| curves(study, &figure, caption, word);
+    html! {
+        p {
+            "A total thrust of " (shortest(comparison.thrust_n)) " N"
+            @if study.hover_n() == Some(comparison.thrust_n) { ", the weight," }
+            " and yaw over the whole range that the coaxial mixer \
+             delivers there. The conventional mixer takes every rotor for isolated, with a torque proportional to its \
+             thrust. Both mixers\u{2019} throttles are put through the pair\u{2019}s map" (study.at_reference()) ": what \
+             is shown is what the rotors give by that map, not what the mixers believe. An isolated rotor is the \
+             map\u{2019}s upper one with the lower at rest, f(d, 0): an extrapolation where the bench kept both turning."
+        }
+        (figures(&[
+            shown(
+                &plots::yaw_plane(study, &comparison),
+                "Thrust and torque of every unit, one point per yaw command (Fig. 6 of the paper).",
+                &link::sweep(study, Data::Yaw),
+            ),
+            curves(plots::yaw_thrust(&comparison), "Thrust of every unit.", "yaw-thrust"),
+            curves(plots::yaw_total(&comparison), "Total thrust given.", "yaw-total"),
+            curves(plots::yaw_error(&comparison), "Yaw given less yaw asked.", "yaw-error"),
+        ]))
+        (table::comparison(&comparison))
+    }
+}
+
+fn authority_section(study: &Study<'_>) -> Markup {
+    let all = authority::against_thrust(study, &study.reference(), THRUSTS);
+    let voltage = study.compiled.airframe.voltage.as_ref();
+    let lowest = voltage.map(|voltage| {
+        let [lowest_v, _] = voltage.range;
+        let all = authority::against_thrust(study, &study.at(Some(lowest_v)), THRUSTS);
+        (format!("{lowest_v} V"), all)
+    });
+    let rotor_out = authority::with_a_rotor_out(study, THRUSTS_ROTOR_OUT);
+    let is_held = rotor_out
+        .iter()
+        .any(|at| at.torque_nm.iter().flatten().any(|torque| torque.abs() > 0.0));
+    let mut cases: Vec<plots::Case<'_>> = Vec::new();
+    if let Some((name, all)) = &lowest {
+        cases.push((name, "series-3", all));
+    }
+    if is_held {
+        cases.push(("any one rotor out", "series-2", &rotor_out));
+    }
+    let plot = |axis: Axis| {
+        let figure = plots::authority(study, &all, &cases, axis)?;
+        let caption = format!("{} against thrust.", ["Roll", "Pitch", "Yaw"][axis as usize]);
+        let word = format!("authority-{}", axis.name());
+        Some(curves(study, &figure, &caption, &word))
+    };
+    let plots: Vec<Markup> = study.torque_axes().into_iter().filter_map(plot).collect();
+    let at = study.at_reference();
+    let rotor_out = match is_held {
+        true => format!("With any one rotor out: what is left whichever it is{at}."),
+        false => "With one rotor out, whichever it is, no thrust is held without a torque.".to_owned(),
+    };
+    let reference_v = voltage.map(|voltage| voltage.reference);
+    let served = study.torque_axes().into_iter();
+    let off: Vec<String> = served
+        .filter_map(|axis| Some((axis, hover::band(study.compiled, axis, reference_v)?)))
+        .map(|(axis, band)| format!("\u{b1} {} N m of {}", significant(band, 2), axis.name()))
+        .collect();
+    html! {
+        p {
+            "The largest torque about one axis that the compiled mixer delivers in full, within its tolerance, while it \
+             holds the thrust and no other torque is asked, found by asking the mixer itself. "
+            (rotor_out)
+            @if let Some(uncertainty) = &study.compiled.airframe.pair.uncertainty {
+                " The pair is " (uncertainty.source()) ": by one standard deviation of its uncertainty the true torques are off by "
+                (off.join(", ")) "."
+            }
+        }
+        (figures(&plots))
+    }
+}
+
+fn attainable_section(study: &Study<'_>) -> Markup {
+    let caption = if study.compiled.airframe.voltage.is_some() {
+        "What one unit can give at the lowest, the reference and the highest voltage."
+    } else {
+        "What one unit can give. The airframe has no voltage correction."
+    };
+    html! {
+        (beside(
+            &shown(&plots::attainable(study), caption, &link::sweep(study, Data::Attainable)),
+            &table::attainable(study),
+        ))
+    }
+}
+
+fn forward_section(study: &Study<'_>, bench: Option<&BenchPoints>) -> Markup {
+    let points = bench.map_or("", |_| " Bench points with their distance from it.");
+    let flown = study.flown.as_ref();
+    let where_flown = flown.map_or("", |_| " Small dots: where the pairs flew.");
+    let maps = Effort::BOTH.map(|effort| {
+        let quantity = effort.name();
+        let surface = still(
+            &surface::surface(study, effort, bench),
+            &format!("{quantity} of one unit by the model.{points} (Fig. 3 of the paper)"),
+            &html! {},
+        );
+        let map = shown(
+            &maps::forward(study, effort, bench),
+            &format!("{quantity} with iso-curves.{where_flown} (Fig. 4)"),
+            &html! {},
+        );
+        [surface, map]
+    });
+    let residual = |effort: Effort| {
+        let figure = maps::residuals(study, effort, bench?)?;
+        let caption = format!(
+            "{} by the model less {} measured, in % of the pair\u{2019}s largest; + is too much by the model.",
+            effort.name(),
+            effort.word()
+        );
+        Some(shown(&figure, &caption, &link::bench(study, bench?, effort)))
+    };
+    let residuals: Vec<Markup> = Effort::BOTH.into_iter().filter_map(residual).collect();
+    html! {
+        @if let Some(bench) = bench { (bench_points(study, bench)) }
+        @if let Some(flown) = flown { (table::flown(flown)) }
+        (figures(maps.as_flattened()))
+        (link::sweep_of_all(study, Data::Forward))
+        @if !residuals.is_empty() { (figures(&residuals)) }
+        (table::coefficients(study))
+    }
+}
+
+/// What bench points there are, and how well the model meets them.
+fn bench_points(study: &Study<'_>, bench: &BenchPoints) -> Markup {
+    let voltage = match bench.corrected {
+        true => "brought to the model\u{2019}s voltage",
+        false => "as measured",
+    };
+    let [low, _] = study.pair.range();
+    let is_below = |point: &&BenchPoint| point.throttles.iter().any(|t| *t < low);
+    let (all, low) = (bench.outside.len(), shortest(low));
+    let outside = match bench.outside.iter().filter(is_below).count() {
+        0 => format!("{all} more lie outside the throttle range"),
+        below if below == all => format!("{all} more lie below the idle of {low}"),
+        below => {
+            format!("{all} more lie outside the throttle range, {below} of them below the idle of {low}")
+        }
+    };
+    html! {
+        p {
+            (bench.points.len()) " bench points of "
+            @for (index, file) in bench.files.iter().enumerate() {
+                @if index > 0 { ", " }
+                code { (printable(file)) }
+            }
+            ", " (voltage) "."
+            @if all > 0 { " " (outside) ": small in the maps of what the model misses, and in no number." }
+        }
+        @for row in &bench.refused { p { "Refused: " (printable(row)) } }
+        (table::bench(study, bench))
+    }
+}
+
+fn inverse_section(study: &Study<'_>) -> Markup {
+    let captions = [
+        "The upper rotor\u{2019}s throttle. (Fig. 5 of the paper)",
+        "The lower rotor\u{2019}s throttle.",
+    ];
+    let maps = [0, 1].map(|rotor| shown(&maps::inverse(study, rotor), captions[rotor], &html! {}));
+    html! {
+        (figures(&maps))
+        (link::sweep_of_all(study, Data::Inverse))
+    }
+}
+
+fn error_section(study: &Study<'_>, fields: &[crate::report::field::Field; 2]) -> Markup {
+    let observed = &study.compiled.residual;
+    let at = match study.at_reference().as_str() {
+        "" => " with the pair\u{2019}s map".to_owned(),
+        at => at.to_owned(),
+    };
+    let plot = |(effort, field)| {
+        let caption = format!(
+            "Proven for every point of the set: {} {unit} at most. Observed at {} points: {} {unit}, both{at}.",
+            rounded_up(maps::error_bound(study, effort)),
+            observed.points,
+            rounded_up(observed.efforts[effort as usize]),
+            unit = effort.unit()
+        );
+        shown(&maps::error(study, effort, field), &caption, &html! {})
+    };
+    let plots: Vec<Markup> = Effort::BOTH.into_iter().zip(fields).map(plot).collect();
+    html! {
+        p {
+            "What the emitted inverse misses when its throttles are put through the forward map: the inverse in single \
+             precision as on the target, the map in double precision. Colours are logarithmic over two decades up to the \
+             proven bound."
+        }
+        (figures(&plots))
+        (link::sweep_of_all(study, Data::Error))
+    }
+}
+
+fn cost_section(study: &Study<'_>, facts: &[Fact]) -> Markup {
+    let costs = Cost::new(study.compiled);
+    let facts = facts.iter().filter(|fact| fact.is_cost());
+    html! {
+        p {
+            (costs.target)
+            ". The inverse map is counted on its own; its cycles are its instructions and 13 more \
+             for every division and square root. The whole mix is estimated: the inverse map of all units, and for checks, \
+             voltage and allocation what counted mixers that desaturate "
+            (costs.desaturates())
+            " take per unit and per mix beside it. Memory that makes the core wait is not in it."
+        }
+        (table::facts(facts, &[]))
+    }
+}
+
+/// What the script needs: the forward map and the error on its grid.
+fn model(study: &Study<'_>, errors: &[crate::report::field::Field; 2]) -> serde_json::Value {
+    let pair = &study.compiled.airframe.pair;
+    let coefficients = pair.thrust_n.iter().zip(&pair.torque_nm);
+    let terms = pair.basis.exponents().iter().zip(coefficients);
+    let terms = terms.map(|(&(i, j), (&f, &q))| serde_json::json!([i, j, f, q]));
+    let terms: Vec<_> = terms.collect();
+    let grids = errors.each_ref().map(|field| {
+        let largest = field.values().iter().copied().fold(0.0, f64::max);
+        // Where nothing is missed, 0 / 0 is NaN, which becomes 0.
+        let share = |x: &f64| (1e3 * x / largest).round() as u16;
+        let thousandths: Vec<u16> = field.rows(HOVER_STRIDE).flatten().map(share).collect();
+        let side = (field.side() - 1) / HOVER_STRIDE + 1;
+        serde_json::json!({ "side": side, "largest": largest, "thousandths": thousandths })
+    });
+    serde_json::json!({ "throttle": study.pair.range(), "scale": study.pair.scale(), "terms": terms, "errors": grids })
+}

@@ -1,0 +1,114 @@
+//! Rotors against their fellows, by the speeds that their controllers report.
+
+use mixer_compiler::Compiled;
+use mixer_compiler::model::Physics;
+use mixer_rt::Health;
+use serde::Serialize;
+
+use crate::review::log::median;
+use crate::review::rows::{Row, Rows};
+
+/// Ratio of speeds at one throttle within which rotors of one kind are alike: thrusts within 6 %.
+const ALIKE: f64 = 0.03;
+
+/// How long a rotor is off that has stopped, s.
+const STOPPED_S: f64 = 1.0;
+
+/// Change of all throttles for the slope of the speed.
+const STEP: f32 = 0.01;
+
+/// A rotor that stopped.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stopped {
+    /// Its output.
+    pub output: usize,
+    /// When, s of the log.
+    pub time_s: f64,
+}
+
+/// A rotor's speed in a straight hover over that of the other upper or lower rotors at its throttle.
+#[derive(Clone, Debug, Serialize)]
+pub struct Speed {
+    /// Its output.
+    pub output: usize,
+    /// The ratio.
+    pub ratio: f64,
+}
+
+impl Speed {
+    pub(crate) fn is_alike(&self) -> bool {
+        (self.ratio - 1.0).abs() < ALIKE
+    }
+}
+
+/// Rotors that are off for [`STOPPED_S`] in the air: stock allocators take the throttle of one away for
+/// shorter.
+pub(crate) fn stopped(rows: &Rows) -> Vec<Stopped> {
+    let outputs = rows.rows.first().map_or(0, |row| row.throttle.len());
+    let first = |output: usize| {
+        let mut since = None;
+        rows.rows.iter().find_map(|row| {
+            since = row
+                .health
+                .has_failed(output as u8)
+                .then(|| since.unwrap_or(row.time_s));
+            let time_s = since.filter(|since| row.time_s - since >= STOPPED_S)?;
+            Some(Stopped { output, time_s })
+        })
+    };
+    (0..outputs).filter_map(first).collect()
+}
+
+/// The rotors of known speed, where a layer has at least three of them. Speeds are brought to one throttle by the model: a
+/// rotor's thrust follows the square of its speed.
+pub(crate) fn speeds(rows: &Rows, compiled: &Compiled) -> Vec<Speed> {
+    let hover = |row: &Row| row.is_straight;
+    let throttle = |output: usize| rows.median(hover, |row| f64::from(row.throttle[output]));
+    let units = &compiled.airframe.units;
+    let all: Option<Vec<f32>> = (0..2 * units.len())
+        .map(|output| Some(throttle(output)? as f32))
+        .collect();
+    let conditions = rows.rows.iter().find(|row| hover(row)).map(|row| row.conditions);
+    let Some((all, conditions)) = all.zip(conditions) else {
+        return Vec::new();
+    };
+    let physics = Physics {
+        airframe: &compiled.airframe,
+        map: &compiled.pair,
+    };
+    let factors = compiled
+        .airframe
+        .factors(conditions.voltage_v.into(), conditions.density_kg_m3.into());
+    let thrust = |scale: f32| {
+        let throttle: Vec<f32> = all.iter().map(|throttle| scale * throttle).collect();
+        physics.wrench(&throttle, factors, Health::GOOD)[3]
+    };
+    // Of the logarithms of speed and throttle.
+    let slope = 0.5 * libm::log(thrust(1.0 + STEP) / thrust(1.0 - STEP)) / (2.0 * f64::from(STEP));
+    let at_one_throttle = |output: usize| {
+        let known = |row: &Row| hover(row) && row.speeds[output] > 0.0;
+        let speed = rows.median(known, |row| libm::log(row.speeds[output]))?;
+        Some((output, speed - slope * libm::log(all[output].into())))
+    };
+    let layer = |of: fn([usize; 2]) -> usize| {
+        let outputs = units
+            .iter()
+            .map(|unit| of([unit.upper_channel, unit.lower_channel]));
+        let speeds: Vec<(usize, f64)> = outputs.filter_map(at_one_throttle).collect();
+        let against = |(output, speed): &(usize, f64)| {
+            let others = speeds
+                .iter()
+                .filter(|(other, _)| other != output)
+                .map(|(_, speed)| *speed);
+            Speed {
+                output: *output,
+                ratio: libm::exp(speed - median(others)),
+            }
+        };
+        match speeds.len() {
+            0..3 => Vec::new(),
+            _ => speeds.iter().map(against).collect(),
+        }
+    };
+    [layer(|[upper, _]| upper), layer(|[_, lower]| lower)].concat()
+}
