@@ -32,12 +32,12 @@ fn compilation_is_deterministic() {
 
 mod isae_x8 {
     mixer_macros::airframe!("../airframes/isae-x8.toml");
-    pub(super) use isae_x8::mix_in;
+    pub(super) use isae_x8::mix;
 }
 
 mod thin_air {
     mixer_macros::airframe!("../airframes/x8-11in-least-power.toml");
-    pub(super) use x8_11in_least_power::{mix, mix_in};
+    pub(super) use x8_11in_least_power::mix;
 }
 
 /// A row with another number in a cell.
@@ -53,16 +53,16 @@ fn altered(row: &str, cell: usize) -> String {
 #[test]
 fn the_harness_for_the_target_counts_what_differs() {
     let table = include_str!("golden/isae-x8.vectors.csv");
-    assert_eq!(harness::differing(table, isae_x8::mix_in), 0);
+    assert_eq!(harness::differing(table, isae_x8::mix), 0);
     let mut rows: Vec<String> = table.lines().map(str::to_owned).collect();
     let last = rows[0].split(',').count() - 1;
     for (row, cell) in [(4, 5), (201, last - 1), (454, last)] {
         rows[row] = altered(&rows[row], cell);
     }
-    assert_eq!(harness::differing(&rows.join("\n"), isae_x8::mix_in), 3);
+    assert_eq!(harness::differing(&rows.join("\n"), isae_x8::mix), 3);
 
     let table = include_str!("golden/isae-x8.rotors-out.csv");
-    let without = |setpoint: &Wrench, conditions: &Conditions, _| isae_x8::mix_in(setpoint, conditions);
+    let without = |setpoint: &Wrench, conditions: Conditions, _| isae_x8::mix(setpoint, conditions);
     let all = harness::rows(table).count();
     assert_eq!(harness::differing_with_rotors_out(table, without), all);
 }
@@ -71,8 +71,8 @@ fn the_harness_for_the_target_counts_what_differs() {
 #[test]
 fn a_mixer_that_ignores_the_density_differs() {
     let table = include_str!("golden/x8-11in-least-power.vectors.csv");
-    assert_eq!(harness::differing(table, thin_air::mix_in), 0);
-    let ignoring = |setpoint: &Wrench, conditions: &Conditions| thin_air::mix(setpoint, conditions.voltage_v);
+    assert_eq!(harness::differing(table, thin_air::mix), 0);
+    let ignoring = |setpoint: &Wrench, conditions: Conditions| thin_air::mix(setpoint, conditions.voltage_v);
     let (all, differing) = (harness::rows(table).count(), harness::differing(table, ignoring));
     assert!(differing > all / 3, "{differing} of {all}");
 }
@@ -84,13 +84,15 @@ fn golden_vectors_cover_what_they_should() {
         let compiled = golden::compile(&name).unwrap_or_else(|e| panic!("{e}"));
         let physics = Physics::new(&compiled);
         let is_saturated = |(setpoint, conditions): &Vector| {
-            let mixed = compiled.tables.mix_in(setpoint, *conditions, Health::GOOD);
+            let mixed = compiled
+                .tables
+                .mix_with_health(setpoint, *conditions, Health::GOOD);
             let (.., saturation) = mixed.expect("finite");
             saturation.any_axis()
         };
         let needs_null_space = |(setpoint, conditions): &Vector| {
             let wrench = setpoint.to_array().map(f64::from);
-            let factors = physics.factors_in(conditions.voltage_v, Some(conditions.density_kg_m3));
+            let factors = physics.factors_in(conditions.voltage_v, conditions.density_kg_m3);
             !physics.least_norm_attains(wrench, factors)
         };
         let (mut all, mut all_saturated) = (0, 0);

@@ -18,6 +18,7 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
     let channels = Literal::usize_unsuffixed(2 * compiled.tables.units.len());
     let scale = wrench(compiled.scale());
     let ardupilot_scale = wrench(compiled.ardupilot_scale());
+    let format = mixer_rt::tables::FORMAT;
     let ardupilot_doc = doc(&[match &compiled.airframe.voltage {
         Some(voltage) => format!(
             " The same for ArduPilot's inputs, at {:?} V as `MOT_BAT_VOLT_MAX`.",
@@ -30,6 +31,11 @@ pub(crate) fn module(compiled: &Compiled) -> TokenStream {
         #[allow(dead_code, unreachable_pub)]
         pub mod #module {
             use ::mixer_rt::{self as rt, tables};
+
+            const _: () = ::core::assert!(
+                tables::FORMAT == #format,
+                "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
+            );
 
             /// Number of coaxial units.
             pub const UNITS: usize = #units;
@@ -71,32 +77,17 @@ fn mixer_type(compiled: &Compiled) -> TokenStream {
             #[inline]
             fn mix(
                 setpoint: &rt::Wrench,
-                voltage_v: f32,
+                conditions: impl ::core::convert::Into<rt::Conditions>,
             ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
-                mix(setpoint, voltage_v)
+                mix(setpoint, conditions)
             }
             #[inline]
             fn mix_with_health(
                 setpoint: &rt::Wrench,
-                voltage_v: f32,
+                conditions: impl ::core::convert::Into<rt::Conditions>,
                 health: rt::Health,
             ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
-                mix_with_health(setpoint, voltage_v, health)
-            }
-            #[inline]
-            fn mix_in(
-                setpoint: &rt::Wrench,
-                conditions: &rt::Conditions,
-            ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
-                mix_in(setpoint, conditions)
-            }
-            #[inline]
-            fn mix_in_with_health(
-                setpoint: &rt::Wrench,
-                conditions: &rt::Conditions,
-                health: rt::Health,
-            ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
-                mix_in_with_health(setpoint, conditions, health)
+                mix_with_health(setpoint, conditions, health)
             }
         }
     }
@@ -106,7 +97,7 @@ fn mixer_type(compiled: &Compiled) -> TokenStream {
 fn functions() -> TokenStream {
     quote! {
         /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
-        /// (V) and the bench's air density.
+        /// (V) in the bench's air, or under `mixer_rt::Conditions` that have the air's density.
         ///
         /// # Errors
         /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
@@ -114,9 +105,9 @@ fn functions() -> TokenStream {
         #[inline]
         pub fn mix(
             setpoint: &rt::Wrench,
-            voltage_v: f32,
+            conditions: impl ::core::convert::Into<rt::Conditions>,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, TABLES.at_reference_density(voltage_v))
+            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into())
         }
 
         /// [`mix`] with the rotors out that `health` names by channel.
@@ -126,36 +117,10 @@ fn functions() -> TokenStream {
         #[inline]
         pub fn mix_with_health(
             setpoint: &rt::Wrench,
-            voltage_v: f32,
+            conditions: impl ::core::convert::Into<rt::Conditions>,
             health: rt::Health,
         ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            let conditions = TABLES.at_reference_density(voltage_v);
-            tables::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions, health)
-        }
-
-        /// [`mix`] under the present conditions: the battery's voltage and the air's density.
-        ///
-        /// # Errors
-        /// As [`mix`].
-        #[inline]
-        pub fn mix_in(
-            setpoint: &rt::Wrench,
-            conditions: &rt::Conditions,
-        ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions)
-        }
-
-        /// [`mix_in`] with the rotors out that `health` names by channel.
-        ///
-        /// # Errors
-        /// As [`mix`].
-        #[inline]
-        pub fn mix_in_with_health(
-            setpoint: &rt::Wrench,
-            conditions: &rt::Conditions,
-            health: rt::Health,
-        ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-            tables::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions, health)
+            tables::mix_with_health::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into(), health)
         }
     }
 }

@@ -227,12 +227,9 @@ impl<'a> At<'a> {
             ..
         } = self.compiled;
         let [voltage_v, density_kg_m3] = self.conditions.map(|x| x as f32);
-        let conditions = Conditions {
-            voltage_v,
-            density_kg_m3,
-        };
+        let conditions = Conditions::at_voltage(voltage_v).in_air(density_kg_m3);
         let (throttle, achieved, saturation) = tables
-            .mix_in(&Wrench::from_array(asked), conditions, self.health)
+            .mix_with_health(&Wrench::from_array(asked), conditions, self.health)
             .map_err(|error| error.to_string())?;
         Ok(Answer {
             at: self,

@@ -219,12 +219,12 @@ impl MixerTables {
         (&self.inverse).throttles(&self.pair, &self.throttle, efforts)
     }
 
-    /// Mixes at the bench's density with `mixer-rt`, operation by operation as the generated mixer does.
+    /// Mixes with `mixer-rt`, operation by operation as the generated mixer does.
     ///
     /// # Errors
     /// As [`mixer_rt::tables::mix`].
-    pub fn mix(&self, setpoint: &Wrench, voltage_v: f32) -> Result<AnyMix, SetpointError> {
-        self.mix_with_health(setpoint, voltage_v, Health::GOOD)
+    pub fn mix(&self, setpoint: &Wrench, conditions: impl Into<Conditions>) -> Result<AnyMix, SetpointError> {
+        self.mix_with_health(setpoint, conditions, Health::GOOD)
     }
 
     /// [`MixerTables::mix`] with some rotors out.
@@ -234,21 +234,7 @@ impl MixerTables {
     pub fn mix_with_health(
         &self,
         setpoint: &Wrench,
-        voltage_v: f32,
-        health: Health,
-    ) -> Result<AnyMix, SetpointError> {
-        let conditions = self.view().at_reference_density(voltage_v);
-        self.mix_in(setpoint, conditions, health)
-    }
-
-    /// Mixes under the present conditions with some rotors out.
-    ///
-    /// # Errors
-    /// As [`mixer_rt::tables::mix`].
-    pub fn mix_in(
-        &self,
-        setpoint: &Wrench,
-        conditions: Conditions,
+        conditions: impl Into<Conditions>,
         health: Health,
     ) -> Result<AnyMix, SetpointError> {
         let mut states = vec![UnitState::default(); self.units.len()];
@@ -256,7 +242,7 @@ impl MixerTables {
         let (achieved, saturation) = mixer_rt::tables::mix_into(
             &self.view(),
             setpoint,
-            conditions,
+            conditions.into(),
             health,
             &mut states,
             &mut throttle,

@@ -90,10 +90,7 @@ pub fn rotors_out(compiled: &Compiled, vectors: &[Vector]) -> Vec<(u8, Vector)> 
 }
 
 fn conditions(volts: f64, density: f64) -> Conditions {
-    Conditions {
-        voltage_v: volts as f32,
-        density_kg_m3: density as f32,
-    }
+    Conditions::at_voltage(volts as f32).in_air(density as f32)
 }
 
 /// Random setpoints of one airframe.

@@ -13,8 +13,7 @@ use quote::{quote, quote_spanned};
 use syn::LitStr;
 
 /// Compiles the airframe file at the given path into a module that is named after the airframe:
-/// `mix`, `mix_in` in air of a measured density, both `_with_health` for rotors that are out, the
-/// constants `UNITS`, `CHANNELS`, `SCALE` and
+/// `mix`, `mix_with_health` for rotors that are out, the constants `UNITS`, `CHANNELS`, `SCALE` and
 /// `ARDUPILOT_SCALE`, and the mixer as a type.
 ///
 /// The path is taken relative to the package (`CARGO_MANIFEST_DIR`) or, where there is no such
@@ -112,14 +111,10 @@ fn refusal(source: &Source, message: &str, span: Span) -> proc_macro2::TokenStre
     let [module, mixer] = Airframe::names_if_refused(source).map(|name| Ident::new(&name, Span::call_site()));
     let result = quote!(::core::result::Result<::mixer_rt::Mix<CHANNELS>, ::mixer_rt::SetpointError>);
     let functions = |visibility: proc_macro2::TokenStream| {
+        let conditions = quote!(impl ::core::convert::Into<::mixer_rt::Conditions>);
         let forms = [
-            ("mix", quote!(f32)),
-            ("mix_with_health", quote!(f32, _: ::mixer_rt::Health)),
-            ("mix_in", quote!(&::mixer_rt::Conditions)),
-            (
-                "mix_in_with_health",
-                quote!(&::mixer_rt::Conditions, _: ::mixer_rt::Health),
-            ),
+            ("mix", conditions.clone()),
+            ("mix_with_health", quote!(#conditions, _: ::mixer_rt::Health)),
         ];
         let functions = forms.map(|(name, parameters)| {
             let name = Ident::new(name, Span::call_site());

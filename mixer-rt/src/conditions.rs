@@ -6,18 +6,55 @@
 use crate::arithmetic::Scalar;
 use crate::{Saturation, SetpointError, clamp};
 
-/// Conditions that are measured in flight.
+/// Conditions that are measured in flight. A voltage alone makes them, too.
+///
+/// ```
+/// # use mixer_rt::Conditions;
+/// let conditions = Conditions::at_voltage(15.2).in_air(0.909);
+/// assert_eq!(conditions.density_kg_m3, Some(0.909));
+/// assert_eq!(Conditions::from(15.2), Conditions::at_voltage(15.2));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Conditions {
     /// The battery's present voltage, V: outside the airframe's range it is taken as the nearest
     /// within and flagged, zero as well. An airframe without `[voltage]` ignores it.
     pub voltage_v: f32,
-    /// The air's density, kg/m3: outside the airframe's range it is taken as the nearest within and
-    /// flagged. One that is NaN, infinite, zero or negative means the bench's, and is flagged. An
-    /// airframe without `[air]` ignores it.
-    pub density_kg_m3: f32,
+    /// The air's density, kg/m3; `None`, where nothing measures it, means the bench's. Outside the
+    /// airframe's range it is taken as the nearest within and flagged. One that is NaN, infinite,
+    /// zero or negative means the bench's, and is flagged. An airframe without `[air]` ignores it.
+    pub density_kg_m3: Option<f32>,
+}
+
+impl Conditions {
+    /// A battery's voltage, V, in the bench's air.
+    #[inline]
+    pub const fn at_voltage(voltage_v: f32) -> Self {
+        Conditions {
+            voltage_v,
+            density_kg_m3: None,
+        }
+    }
+
+    /// The same in air of a measured density, kg/m3.
+    #[inline]
+    #[must_use]
+    pub const fn in_air(self, density_kg_m3: f32) -> Self {
+        Conditions {
+            density_kg_m3: Some(density_kg_m3),
+            ..self
+        }
+    }
+}
+
+/// [`Conditions::at_voltage`].
+impl From<f32> for Conditions {
+    #[inline]
+    fn from(voltage_v: f32) -> Self {
+        Conditions::at_voltage(voltage_v)
+    }
 }
 
 /// How thrust and torque follow one measured quantity x, in its unit (V, or kg/m3). `powf` has no
@@ -103,7 +140,7 @@ impl Correction {
             correction = correction.by(law, conditions.voltage_v, Saturation::VOLTAGE);
         }
         if let Some(law) = air {
-            let density = conditions.density_kg_m3;
+            let density = conditions.density_kg_m3.unwrap_or(law.reference);
             let is_measured = density.is_finite() && density > 0.0;
             if !is_measured {
                 correction.clamped = correction.clamped.with(Saturation::DENSITY);

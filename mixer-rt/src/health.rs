@@ -12,6 +12,8 @@
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
 pub struct Health {
     failed: u64,
 }
@@ -20,8 +22,21 @@ impl Health {
     /// All rotors work.
     pub const GOOD: Health = Health { failed: 0 };
 
+    /// The rotors that a mask names: bit k is the rotor at output `k`.
+    #[inline]
+    pub const fn from_bits(failed: u64) -> Self {
+        Health { failed }
+    }
+
+    /// The inverse of [`Health::from_bits`].
+    #[inline]
+    pub const fn bits(self) -> u64 {
+        self.failed
+    }
+
     /// This health with the rotor at output `channel` (0..=63) failed as well; others are ignored.
     #[inline]
+    #[must_use]
     pub const fn with_failed(self, channel: u8) -> Self {
         let bit = match 1u64.checked_shl(channel as u32) {
             Some(bit) => bit,

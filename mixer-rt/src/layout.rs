@@ -2,7 +2,7 @@
 
 use crate::allocate::closed_form::NoClosedForm;
 use crate::allocate::priorities::Priorities;
-use crate::conditions::{Conditions, Law};
+use crate::conditions::Law;
 use crate::pair::{Pair, SingleRotor, ThrottleRange};
 
 /// Thrusts at which [`Unit::level_yaw_nm`] has a yaw.
@@ -93,15 +93,4 @@ pub struct Tables<'a, P, I, S = NoClosedForm> {
     pub closed_form: S,
     /// Largest errors of the mixer.
     pub tolerance: Tolerance,
-}
-
-impl<P, I, S> Tables<'_, P, I, S> {
-    /// The conditions of a voltage, V, at the bench's density.
-    #[inline(always)]
-    pub fn at_reference_density(&self, voltage_v: f32) -> Conditions {
-        Conditions {
-            voltage_v,
-            density_kg_m3: self.air.as_ref().map_or(0.0, |law| law.reference),
-        }
-    }
 }

@@ -5,8 +5,8 @@
 //! *both* throttles (Chebbi et al. 2020, eq. (1)). This crate evaluates what `mixer-compiler` has
 //! tabulated from an airframe file. Firmware calls the `mix` of the module that
 //! `mixer_macros::airframe!` or `mixer_compiler::build_script` makes of that file, which calls
-//! [`tables::mix`]. What firmware handles stands here, what the generated module needs in
-//! [`tables`]:
+//! `tables::mix`. What firmware handles is documented here. What the generated module needs is in
+//! `tables`, which is hidden: it changes with the compiler, and generated code asserts its format.
 //!
 //! ```text
 //! setpoint u = [roll, pitch, yaw, thrust]                                           wrench.rs
@@ -26,12 +26,15 @@
 
 mod allocate;
 mod arithmetic;
+#[cfg(feature = "serde")]
+mod array;
 mod conditions;
 mod health;
 mod layout;
 mod mix;
 mod pair;
 mod saturation;
+#[doc(hidden)]
 pub mod tables;
 mod wrench;
 
@@ -43,9 +46,11 @@ pub use saturation::{Direction, Saturation};
 pub use wrench::{Axis, SetpointError, Wrench};
 
 /// The text of this crate by path, for `cargo mixer library`, which compiles it for another target.
+#[doc(hidden)]
 #[cfg(feature = "sources")]
 pub static SOURCES: Sources = include_dir::include_dir!("$CARGO_MANIFEST_DIR/src");
 
 /// Type of [`SOURCES`].
+#[doc(hidden)]
 #[cfg(feature = "sources")]
 pub type Sources = include_dir::Dir<'static>;

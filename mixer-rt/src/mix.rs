@@ -24,8 +24,10 @@ use crate::{divided, rolled};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mix<const CHANNELS: usize> {
     /// Throttle per output channel, each within the airframe's range; 0 for a failed rotor.
+    #[cfg_attr(feature = "serde", serde(with = "crate::array"))]
     pub throttle: [f32; CHANNELS],
     /// The wrench that these throttles give, by the airframe's model under the given conditions.
     pub achieved: Wrench,
@@ -61,6 +63,7 @@ impl<const CHANNELS: usize> Mix<CHANNELS> {
     /// assert_eq!(mix.unallocated(&setpoint).to_array(), [0.0, 0.0, 0.3, 0.0]);
     /// ```
     #[inline]
+    #[must_use]
     pub fn unallocated(&self, setpoint: &Wrench) -> Wrench {
         let (asked, given) = (setpoint.to_array(), self.achieved.to_array());
         Wrench::from_array(Axis::ALL.map(|axis| {
@@ -375,32 +378,20 @@ pub trait Airframe {
     /// [`Mix`] for the airframe's number of channels.
     type Mix: Outputs;
 
-    /// As [`mix_in`](Self::mix_in) at the bench's density, with the battery's present voltage, V.
+    /// Throttles of all channels for a setpoint under the present [`Conditions`], or at a battery's
+    /// voltage, V, in the bench's air.
     ///
     /// # Errors
     /// A setpoint or voltage that is infinite or NaN: see [`SetpointError`].
-    fn mix(setpoint: &Wrench, voltage_v: f32) -> Result<Self::Mix, SetpointError>;
+    fn mix(setpoint: &Wrench, conditions: impl Into<Conditions>) -> Result<Self::Mix, SetpointError>;
 
     /// [`mix`](Self::mix) with the rotors out that `health` names.
     ///
     /// # Errors
     /// As [`mix`](Self::mix).
-    fn mix_with_health(setpoint: &Wrench, voltage_v: f32, health: Health)
-    -> Result<Self::Mix, SetpointError>;
-
-    /// Throttles of all channels for a setpoint under the present conditions.
-    ///
-    /// # Errors
-    /// As [`mix`](Self::mix).
-    fn mix_in(setpoint: &Wrench, conditions: &Conditions) -> Result<Self::Mix, SetpointError>;
-
-    /// [`mix_in`](Self::mix_in) with the rotors out that `health` names.
-    ///
-    /// # Errors
-    /// As [`mix`](Self::mix).
-    fn mix_in_with_health(
+    fn mix_with_health(
         setpoint: &Wrench,
-        conditions: &Conditions,
+        conditions: impl Into<Conditions>,
         health: Health,
     ) -> Result<Self::Mix, SetpointError>;
 }

@@ -56,6 +56,7 @@ impl Saturation {
 
     /// True where anything was given up on this axis in this direction.
     #[inline]
+    #[must_use]
     pub const fn is_saturated(self, axis: Axis, direction: Direction) -> bool {
         let bit = 2 * axis as u32 + direction as u32;
         self.0 & (1 << bit) != 0
@@ -63,12 +64,14 @@ impl Saturation {
 
     /// True where any axis is saturated.
     #[inline]
+    #[must_use]
     pub const fn any_axis(self) -> bool {
         self.0 & 0xff != 0
     }
 
     /// True where the voltage lay outside the airframe's range and was clamped into it.
     #[inline]
+    #[must_use]
     pub const fn voltage_clamped(self) -> bool {
         self.0 & Self::VOLTAGE.0 != 0
     }
@@ -76,12 +79,14 @@ impl Saturation {
     /// True where the air's density lay outside the airframe's range and was clamped into it, or was
     /// NaN, infinite, zero or negative and taken as the bench's.
     #[inline]
+    #[must_use]
     pub const fn density_clamped(self) -> bool {
         self.0 & Self::DENSITY.0 != 0
     }
 
     /// True where anything was given up on this axis, in either direction.
     #[inline]
+    #[must_use]
     pub const fn is_flagged(self, axis: Axis) -> bool {
         self.0 & (3 << (2 * axis as u32)) != 0
     }

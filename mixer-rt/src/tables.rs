@@ -1,6 +1,10 @@
 //! Contents of generated modules: the tables of one airframe, the forms that their parts have,
 //! and the functions that mix by them. Firmware that calls a generated module needs nothing of
-//! this.
+//! this, and no two versions of it need agree: [`FORMAT`] says which one a module was generated for.
+
+/// Format of these types and functions. It counts up with every change that a generated module can
+/// see; the module asserts it at compile time.
+pub const FORMAT: u32 = 1;
 
 pub use crate::allocate::closed_form::{
     AllocationMethod, Border, Cell, ClosedForm, ClosedFormUnit, Facets, Grid, Knot, NoClosedForm, Outline,

@@ -53,6 +53,7 @@ impl Wrench {
     /// assert_eq!((hover.pitch_nm, hover.thrust_n), (11.0, 49.5));
     /// ```
     #[inline]
+    #[must_use]
     pub fn from_normalised([roll, pitch, yaw, thrust]: [f32; 4], scale: &Wrench) -> Self {
         Self {
             roll_nm: roll * scale.roll_nm,
@@ -125,12 +126,27 @@ impl fmt::Display for Axis {
 // a Cortex-M.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 #[repr(align(4))]
 pub enum SetpointError {
     /// The setpoint is infinite or NaN on this axis (the first such axis is named).
     NonFinite(Axis),
     /// The voltage is infinite or NaN, and the airframe has a voltage correction.
     NonFiniteVoltage,
+}
+
+impl SetpointError {
+    /// The status that the C library returns: 1 to 4 for an axis in the order of [`Axis::ALL`], 5 for
+    /// the voltage.
+    #[inline]
+    pub const fn status(self) -> u8 {
+        match self {
+            SetpointError::NonFinite(axis) => 1 + axis as u8,
+            SetpointError::NonFiniteVoltage => 5,
+        }
+    }
 }
 
 impl fmt::Display for SetpointError {

@@ -51,10 +51,8 @@ fn fly(frame: &Frame, weight_n: f64, channel: u8, sense: f64) -> Flown {
         airframe,
         map: &compiled.pair,
     };
-    let conditions = Conditions {
-        voltage_v: airframe.reference_v() as f32,
-        density_kg_m3: airframe.reference_density() as f32,
-    };
+    let conditions =
+        Conditions::at_voltage(airframe.reference_v() as f32).in_air(airframe.reference_density() as f32);
     let health = Health::GOOD.with_failed(channel);
     let mass_kg = weight_n / GRAVITY;
     // A quarter of the mass at the units, as the paper's X8.
@@ -71,7 +69,7 @@ fn fly(frame: &Frame, weight_n: f64, channel: u8, sense: f64) -> Flown {
         let setpoint = Wrench::from_array(wrench.map(|x| x as f32));
         compiled
             .tables
-            .mix_in(&setpoint, conditions, health)
+            .mix_with_health(&setpoint, conditions, health)
             .expect("finite")
             .0
     };

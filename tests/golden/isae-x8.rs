@@ -16,6 +16,10 @@
 #[allow(dead_code, unreachable_pub)]
 pub mod isae_x8 {
     use ::mixer_rt::{self as rt, tables};
+    const _: () = ::core::assert!(
+        tables::FORMAT == 1u32,
+        "generated for another version of mixer-rt: use mixer-compiler or mixer-macros of its version, and generate the file anew"
+    );
     /// Number of coaxial units.
     pub const UNITS: usize = 4;
     /// Number of output channels, two per unit.
@@ -47,36 +51,21 @@ pub mod isae_x8 {
         #[inline]
         fn mix(
             setpoint: &rt::Wrench,
-            voltage_v: f32,
+            conditions: impl ::core::convert::Into<rt::Conditions>,
         ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
-            mix(setpoint, voltage_v)
+            mix(setpoint, conditions)
         }
         #[inline]
         fn mix_with_health(
             setpoint: &rt::Wrench,
-            voltage_v: f32,
+            conditions: impl ::core::convert::Into<rt::Conditions>,
             health: rt::Health,
         ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
-            mix_with_health(setpoint, voltage_v, health)
-        }
-        #[inline]
-        fn mix_in(
-            setpoint: &rt::Wrench,
-            conditions: &rt::Conditions,
-        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
-            mix_in(setpoint, conditions)
-        }
-        #[inline]
-        fn mix_in_with_health(
-            setpoint: &rt::Wrench,
-            conditions: &rt::Conditions,
-            health: rt::Health,
-        ) -> ::core::result::Result<Self::Mix, rt::SetpointError> {
-            mix_in_with_health(setpoint, conditions, health)
+            mix_with_health(setpoint, conditions, health)
         }
     }
     /// Throttles of all channels for a setpoint (N m, N; FRD) at the battery's present voltage
-    /// (V) and the bench's air density.
+    /// (V) in the bench's air, or under `mixer_rt::Conditions` that have the air's density.
     ///
     /// # Errors
     /// A setpoint that is infinite or NaN, or such a voltage where the airframe has a
@@ -84,15 +73,9 @@ pub mod isae_x8 {
     #[inline]
     pub fn mix(
         setpoint: &rt::Wrench,
-        voltage_v: f32,
+        conditions: impl ::core::convert::Into<rt::Conditions>,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<
-            UNITS,
-            CHANNELS,
-            _,
-            _,
-            _,
-        >(&TABLES, setpoint, TABLES.at_reference_density(voltage_v))
+        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, conditions.into())
     }
     /// [`mix`] with the rotors out that `health` names by channel.
     ///
@@ -101,37 +84,7 @@ pub mod isae_x8 {
     #[inline]
     pub fn mix_with_health(
         setpoint: &rt::Wrench,
-        voltage_v: f32,
-        health: rt::Health,
-    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        let conditions = TABLES.at_reference_density(voltage_v);
-        tables::mix_with_health::<
-            UNITS,
-            CHANNELS,
-            _,
-            _,
-            _,
-        >(&TABLES, setpoint, conditions, health)
-    }
-    /// [`mix`] under the present conditions: the battery's voltage and the air's density.
-    ///
-    /// # Errors
-    /// As [`mix`].
-    #[inline]
-    pub fn mix_in(
-        setpoint: &rt::Wrench,
-        conditions: &rt::Conditions,
-    ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
-        tables::mix::<UNITS, CHANNELS, _, _, _>(&TABLES, setpoint, *conditions)
-    }
-    /// [`mix_in`] with the rotors out that `health` names by channel.
-    ///
-    /// # Errors
-    /// As [`mix`].
-    #[inline]
-    pub fn mix_in_with_health(
-        setpoint: &rt::Wrench,
-        conditions: &rt::Conditions,
+        conditions: impl ::core::convert::Into<rt::Conditions>,
         health: rt::Health,
     ) -> ::core::result::Result<rt::Mix<CHANNELS>, rt::SetpointError> {
         tables::mix_with_health::<
@@ -140,7 +93,7 @@ pub mod isae_x8 {
             _,
             _,
             _,
-        >(&TABLES, setpoint, *conditions, health)
+        >(&TABLES, setpoint, conditions.into(), health)
     }
     /// The units: rows of M+, columns of M, output channels.
     const UNIT_TABLES: [tables::Unit; UNITS] = [

@@ -1,7 +1,7 @@
-//! Wrenches, axes and saturation flags come back from a file as they were written.
+//! What mixers take and give comes back from a file as it was written.
 #![allow(missing_docs)]
 
-use mixer_rt::{Axis, Direction, Saturation, Wrench};
+use mixer_rt::{Axis, Conditions, Direction, Health, Mix, Saturation, SetpointError, Wrench};
 use serde_json::{from_str, to_string};
 
 #[test]
@@ -56,4 +56,35 @@ fn saturation_is_its_bits() {
     let unknown = from_str::<Saturation>("65535").expect("flags");
     assert_eq!(unknown.bits(), 0x3ff, "unknown bits are dropped");
     assert!(from_str::<Saturation>("65536").is_err());
+}
+
+/// What a mixer takes and gives, for a log of flights.
+#[test]
+fn mixes_and_conditions_come_back() {
+    let mix = Mix {
+        throttle: std::array::from_fn::<f32, 40, _>(|channel| channel as f32 / 40.0),
+        achieved: Wrench::from_array([0.1, 0.2, 0.3, 31.4]),
+        saturation: Saturation::from_bits(1 << 4),
+    };
+    let text = to_string(&mix).expect("JSON");
+    assert_eq!(from_str::<Mix<40>>(&text).expect("a mix"), mix);
+    let shorter = from_str::<Mix<41>>(&text).expect_err("another number of rotors");
+    assert!(shorter.to_string().contains("expected 41 numbers"), "{shorter}");
+
+    let thin = Conditions::at_voltage(14.8).in_air(0.909);
+    for conditions in [thin, 14.8.into()] {
+        let text = to_string(&conditions).expect("JSON");
+        assert_eq!(from_str::<Conditions>(&text).expect("conditions"), conditions);
+    }
+    let health = Health::GOOD.with_failed(3).with_failed(63);
+    let text = to_string(&health).expect("JSON");
+    assert_eq!(text, (1_u64 << 3 | 1 << 63).to_string());
+    assert_eq!(from_str::<Health>(&text).expect("health"), health);
+    for error in [
+        SetpointError::NonFinite(Axis::Yaw),
+        SetpointError::NonFiniteVoltage,
+    ] {
+        let text = to_string(&error).expect("JSON");
+        assert_eq!(from_str::<SetpointError>(&text).expect("an error"), error);
+    }
 }

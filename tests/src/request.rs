@@ -145,17 +145,9 @@ impl Request {
     pub fn mix(&self, frame: &Frame) -> Result<Answer, SetpointError> {
         let setpoint = Wrench::from_array(self.wrench);
         let tables = &frame.compiled.tables;
-        let (throttle, achieved, saturation) = match self.density {
-            None => tables.mix_with_health(&setpoint, self.volts, self.health)?,
-            Some(density_kg_m3) => {
-                let voltage_v = self.volts;
-                let conditions = Conditions {
-                    voltage_v,
-                    density_kg_m3,
-                };
-                tables.mix_in(&setpoint, conditions, self.health)?
-            }
-        };
+        let mut conditions = Conditions::at_voltage(self.volts);
+        conditions.density_kg_m3 = self.density;
+        let (throttle, achieved, saturation) = tables.mix_with_health(&setpoint, conditions, self.health)?;
         Ok(Answer {
             throttle,
             achieved: achieved.to_array().map(f64::from),

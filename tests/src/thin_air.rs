@@ -209,15 +209,14 @@ pub fn fly() -> Result<Vec<Flight>, String> {
         let compiled = compile(&source).map_err(|faults| format!("{name}: {faults}"))?;
         for flight in &mut flights {
             let given = |thrust_n: f64, density: f64| -> Result<f64, String> {
-                let conditions = Conditions {
-                    voltage_v: system.volts as f32,
-                    density_kg_m3: density as f32,
-                };
+                let conditions = Conditions::at_voltage(system.volts as f32).in_air(density as f32);
                 let setpoint = Wrench {
                     thrust_n: thrust_n as f32,
                     ..Wrench::default()
                 };
-                let mixed = compiled.tables.mix_in(&setpoint, conditions, Health::GOOD);
+                let mixed = compiled
+                    .tables
+                    .mix_with_health(&setpoint, conditions, Health::GOOD);
                 let (throttles, ..) = mixed.map_err(|error| format!("{name}: {error}"))?;
                 let units = compiled.airframe.units.iter();
                 let thrusts = units.map(|unit| {

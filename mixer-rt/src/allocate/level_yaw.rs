@@ -38,7 +38,7 @@ impl<P, I, S, const VERTICAL: bool> Frame<'_, '_, P, I, S, VERTICAL> {
                     most = larger(*yaw, most);
                 }
                 let here = yaws[cell] + (at - cell as f32) * (yaws[cell + 1] - yaws[cell]);
-                limit = larger(here, smaller(reserve, larger(here, most)));
+                limit = larger(here, smaller(reserve, most));
                 out += 1;
             }
         }

@@ -73,10 +73,7 @@ pub struct Request {
 impl Request {
     /// Voltage and density.
     pub fn conditions(&self) -> Conditions {
-        Conditions {
-            voltage_v: self.volts,
-            density_kg_m3: self.density,
-        }
+        Conditions::at_voltage(self.volts).in_air(self.density)
     }
 }
 

@@ -75,7 +75,8 @@ fuzz_target!(|input: (u8, u8, [u32; 4], u32, [u8; 3])| {
         .iter()
         .take(usize::from(kind >> 2) % 4)
         .fold(Health::GOOD, |health, channel| health.with_failed(channel % 16));
-    let finite = wrench.iter().all(|x| x.is_finite()) && (volts.is_finite() || tables.corrections.voltage.is_none());
+    let finite =
+        wrench.iter().all(|x| x.is_finite()) && (volts.is_finite() || tables.corrections.voltage.is_none());
     let mixed = tables.mix_with_health(&Wrench::from_array(wrench), volts, health);
     assert_eq!(mixed.is_ok(), finite);
     let Ok((throttle, achieved, _)) = mixed else {

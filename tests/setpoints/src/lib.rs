@@ -46,10 +46,7 @@ pub struct Setpoint {
 impl Setpoint {
     /// Voltage and density.
     pub const fn conditions(&self) -> Conditions {
-        Conditions {
-            voltage_v: self.voltage_v,
-            density_kg_m3: self.density_kg_m3,
-        }
+        Conditions::at_voltage(self.voltage_v).in_air(self.density_kg_m3)
     }
 }
 

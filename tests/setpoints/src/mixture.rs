@@ -71,7 +71,7 @@ impl Digest {
                 self.word(saturation.bits().into());
             }
             Err(SetpointError::NonFinite(axis)) => self.word(0xffff_0000 | axis as u32),
-            Err(SetpointError::NonFiniteVoltage) => self.word(0xffff_ffff),
+            Err(_) => self.word(0xffff_ffff),
         }
     }
 }

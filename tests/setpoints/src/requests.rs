@@ -74,10 +74,7 @@ impl<'a, P: Quantity> Requests<'a, P> {
             let ([low, high], outside) = (air.range, 0.2 * outside);
             self.random.between([low - outside, high + outside])
         });
-        Conditions {
-            voltage_v,
-            density_kg_m3,
-        }
+        Conditions::at_voltage(voltage_v).in_air(density_kg_m3)
     }
 
     /// The wrench of throttles that `draw` gives for each rotor.
@@ -88,7 +85,7 @@ impl<'a, P: Quantity> Requests<'a, P> {
     ) -> [f32; 4] {
         let [of_voltage, of_air] = [
             (self.voltage, conditions.voltage_v),
-            (self.air, conditions.density_kg_m3),
+            (self.air, conditions.density_kg_m3.unwrap_or(0.0)),
         ]
         .map(|(law, x)| {
             law.map_or([1.0, 1.0], |law| {
@@ -216,14 +213,10 @@ impl<P: Quantity> Iterator for Requests<'_, P> {
                 (conditions, self.saturated(conditions))
             }
         };
-        let Conditions {
-            voltage_v,
-            density_kg_m3,
-        } = conditions;
         Some(Setpoint {
             wrench,
-            voltage_v,
-            density_kg_m3,
+            voltage_v: conditions.voltage_v,
+            density_kg_m3: conditions.density_kg_m3.unwrap_or(0.0),
         })
     }
 }

@@ -52,11 +52,9 @@ fn the_mixer_hovers_at_the_throttle_that_is_stated() {
             thrust_n: compiled.airframe.weight_n().unwrap() as f32,
             ..Wrench::default()
         };
-        let conditions = Conditions {
-            voltage_v: compiled.airframe.reference_v() as f32,
-            density_kg_m3: at.density_kg_m3 as f32,
-        };
-        let mixed = compiled.tables.mix_in(&weight, conditions, Health::GOOD);
+        let conditions =
+            Conditions::at_voltage(compiled.airframe.reference_v() as f32).in_air(at.density_kg_m3 as f32);
+        let mixed = compiled.tables.mix_with_health(&weight, conditions, Health::GOOD);
         let (throttle, ..) = mixed.unwrap();
         let mean = f64::from(throttle.iter().sum::<f32>()) / 8.0;
         assert!((mean - at.hover_throttle.unwrap()).abs() < 2e-5, "{mean} {at:?}");

@@ -3,7 +3,8 @@
 
 use clap::Parser;
 use mixer_compiler::{Compiled, Source};
-use mixer_files::review::{Flight, Review, Series, Stack};
+use mixer_facts::params::Stack;
+use mixer_files::review::{Flight, Review, Series};
 use mixer_rt::Wrench;
 use nalgebra::{UnitQuaternion, Vector3};
 use rand_pcg::Pcg64Mcg;

@@ -157,11 +157,8 @@ pub fn mix(
     let setpoint = <[f32; 4]>::try_from(wrench).map_err(|_| "a setpoint has four numbers")?;
     let setpoint = Wrench::from_array(setpoint);
     let health = rows::health(airframe, failed.iter().copied().map(usize::from))?;
-    let conditions = Conditions {
-        voltage_v: volts,
-        density_kg_m3: density,
-    };
-    let mixed = compiled.tables.mix_in(&setpoint, conditions, health);
+    let conditions = Conditions::at_voltage(volts).in_air(density);
+    let mixed = compiled.tables.mix_with_health(&setpoint, conditions, health);
     let (throttles, achieved, saturation) = mixed.map_err(|error| error.to_string())?;
     let isolated = checked.isolated.conventional(&setpoint, volts);
     let (isolated, _) = isolated.map_err(|error| error.to_string())?;

@@ -27,9 +27,9 @@ fn run() -> bool {
             for (setpoint, health) in setpoints.by_ref().take(tenth) {
                 let wrench = Wrench::from_array(setpoint.wrench);
                 let mixed = if rotors_out == 0 {
-                    airframe::mix_in(&wrench, &setpoint.conditions())
+                    airframe::mix(&wrench, setpoint.conditions())
                 } else {
-                    airframe::mix_in_with_health(&wrench, &setpoint.conditions(), health)
+                    airframe::mix_with_health(&wrench, setpoint.conditions(), health)
                 };
                 match mixed {
                     Ok(mix) => digest.mix(Ok((&mix.throttle, &mix.achieved, mix.saturation))),

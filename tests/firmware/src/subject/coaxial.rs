@@ -16,14 +16,11 @@ pub(crate) fn prepare() {}
 pub(crate) fn mix(setpoint: &Wrench, voltage_v: f32, health: Health) -> Mixed {
     // In thin air, which the compiler must not know.
     if let Some(air) = &airframe::TABLES.air {
-        let conditions = Conditions {
-            voltage_v,
-            density_kg_m3: black_box(0.9 * air.reference),
-        };
+        let conditions = Conditions::at_voltage(voltage_v).in_air(black_box(0.9 * air.reference));
         if ROTORS_OUT == 0 {
-            airframe::mix_in(setpoint, &conditions)
+            airframe::mix(setpoint, conditions)
         } else {
-            airframe::mix_in_with_health(setpoint, &conditions, health)
+            airframe::mix_with_health(setpoint, conditions, health)
         }
     } else if ROTORS_OUT == 0 {
         airframe::mix(setpoint, voltage_v)

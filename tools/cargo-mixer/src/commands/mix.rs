@@ -59,15 +59,12 @@ pub fn setpoint(row: &Row<f32>) -> Wrench {
 /// # Errors
 /// A wrench or a voltage that is not finite.
 pub fn mix(compiled: &Compiled, health: Health, row: &Row<f32>) -> Result<AnyMix, SetpointError> {
-    let reference = compiled
+    let reference_v = compiled.airframe.reference_v() as f32;
+    let mut conditions = Conditions::at_voltage(row.voltage_v.unwrap_or(reference_v));
+    conditions.density_kg_m3 = row.density_kg_m3;
+    compiled
         .tables
-        .view()
-        .at_reference_density(compiled.airframe.reference_v() as f32);
-    let conditions = Conditions {
-        voltage_v: row.voltage_v.unwrap_or(reference.voltage_v),
-        density_kg_m3: row.density_kg_m3.unwrap_or(reference.density_kg_m3),
-    };
-    compiled.tables.mix_in(&setpoint(row), conditions, health)
+        .mix_with_health(&setpoint(row), conditions, health)
 }
 
 /// Runs the command.

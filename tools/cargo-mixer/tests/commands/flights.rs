@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use mixer_compiler::Source;
-use mixer_files::review::{Flight, Review, Series, Stack};
+use mixer_facts::params::Stack;
+use mixer_files::review::{Flight, Review, Series};
 
 use crate::{bench_data, folder, measured, run_with};
 

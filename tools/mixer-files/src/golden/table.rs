@@ -42,12 +42,12 @@ fn header(compiled: &Compiled) -> String {
 
 fn push_row(table: &mut String, compiled: &Compiled, vector: &Vector, health: Health) {
     let (setpoint, conditions) = vector;
-    let mixed = compiled.tables.mix_in(setpoint, *conditions, health);
+    let mixed = compiled.tables.mix_with_health(setpoint, *conditions, health);
     // Vectors are finite, so the mixer takes them; one that it refused would show as zeros.
     let zeros = vec![0.0; compiled.airframe.rotors()];
     let refused = (zeros, Wrench::default(), Default::default());
     let (throttle, achieved, saturation) = mixed.unwrap_or(refused);
-    let density = compiled.airframe.air.as_ref().map(|_| conditions.density_kg_m3);
+    let density = compiled.airframe.air.as_ref().and(conditions.density_kg_m3);
     let inputs = setpoint.to_array().into_iter();
     let inputs = inputs.chain([conditions.voltage_v]).chain(density);
     for value in inputs.chain(throttle).chain(achieved.to_array()) {

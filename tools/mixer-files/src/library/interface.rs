@@ -17,14 +17,13 @@ pub(crate) fn rust(airframe: &Airframe, health: bool) -> String {
         (
             "failed: u64, ",
             "failed, ",
-            "airframe::mix_in_with_health(&setpoint, &conditions, health(failed))",
+            "airframe::mix_with_health(&setpoint, conditions, mixer_rt::Health::from_bits(failed))",
         )
     } else {
-        ("", "", "airframe::mix_in(&setpoint, &conditions)")
+        ("", "", "airframe::mix(&setpoint, conditions)")
     };
     let density = compiled.airframe.reference_density() as f32;
     let generated = compiled.rust();
-    let health = if health { HEALTH } else { "" };
     format!(
         "{HEAD}mod generated {{
 {generated}
@@ -37,7 +36,7 @@ pub struct Mix {{
     achieved: Wrench,
     saturation: u32,
 }}
-{health}
+
 /// # Safety
 /// `setpoint` and `out` point to their types.
 #[unsafe(no_mangle)]
@@ -57,7 +56,7 @@ pub unsafe extern \"C\" fn {mix_in}(setpoint: *const Wrench, conditions: *const 
 unsafe extern \"C\" fn mix(setpoint: *const Wrench, voltage_v: f32, density_kg_m3: f32, {parameter}out: *mut Mix) -> c_int {{
     let Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }} = unsafe {{ setpoint.read() }};
     let setpoint = mixer_rt::Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }};
-    let conditions = mixer_rt::Conditions {{ voltage_v, density_kg_m3 }};
+    let conditions = mixer_rt::Conditions::at_voltage(voltage_v).in_air(density_kg_m3);
     match {call} {{
         Ok(mix) => {{
             let mixer_rt::Wrench {{ roll_nm, pitch_nm, yaw_nm, thrust_n }} = mix.achieved;
@@ -74,8 +73,7 @@ unsafe extern \"C\" fn mix(setpoint: *const Wrench, voltage_v: f32, density_kg_m
             }}
             0
         }}
-        Err(SetpointError::NonFinite(axis)) => 1 + axis as c_int,
-        Err(SetpointError::NonFiniteVoltage) => 5,
+        Err(error) => error.status() as c_int,
     }}
 }}
 "
@@ -84,7 +82,6 @@ unsafe extern \"C\" fn mix(setpoint: *const Wrench, voltage_v: f32, density_kg_m
 
 const HEAD: &str = "#![no_std]
 use core::ffi::c_int;
-use mixer_rt::SetpointError;
 
 unsafe extern \"C\" {
     fn the_mixer_can_panic() -> !;
@@ -110,15 +107,4 @@ pub struct Conditions {
     density_kg_m3: f32,
 }
 
-";
-
-const HEALTH: &str = "
-fn health(mut failed: u64) -> mixer_rt::Health {
-    let mut health = mixer_rt::Health::GOOD;
-    while failed != 0 {
-        health = health.with_failed(failed.trailing_zeros() as u8);
-        failed &= failed - 1;
-    }
-    health
-}
 ";

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use mixer_compiler::Compiled;
 use mixer_compiler::vectors::{self, Vector};
-use mixer_rt::{Conditions, Health, SetpointError, Wrench};
+use mixer_rt::{Conditions, Health, Wrench};
 
 use crate::library::airframe::Airframe;
 use crate::library::header::{VERSION, fill};
@@ -56,25 +56,23 @@ fn row(
     conditions: Conditions,
     failed: Option<u64>,
 ) {
-    let health = (0..64u8)
-        .filter(|channel| (failed.unwrap_or(0) >> channel) & 1 != 0)
-        .fold(Health::GOOD, Health::with_failed);
-    let (status, out) = match compiled.tables.mix_in(wrench, conditions, health) {
+    let health = Health::from_bits(failed.unwrap_or(0));
+    let (status, out) = match compiled.tables.mix_with_health(wrench, conditions, health) {
         Ok((throttles, achieved, saturation)) => {
             let floats = throttles.into_iter().chain(achieved.to_array());
             let mut bits: Vec<u32> = floats.map(f32::to_bits).collect();
             bits.push(u32::from(saturation.bits()));
             (0, bits)
         }
-        Err(SetpointError::NonFinite(axis)) => (1 + axis as u8, vec![0; compiled.airframe.rotors() + 5]),
-        Err(SetpointError::NonFiniteVoltage) => (5, vec![0; compiled.airframe.rotors() + 5]),
+        Err(error) => (error.status(), vec![0; compiled.airframe.rotors() + 5]),
     };
     let list = |bits: &[u32]| -> String {
         let words: Vec<String> = bits.iter().map(|bits| format!("{bits:#x}u")).collect();
         words.join(", ")
     };
     let [roll, pitch, yaw, thrust] = wrench.to_array().map(f32::to_bits);
-    let [volts, density] = [conditions.voltage_v, conditions.density_kg_m3].map(f32::to_bits);
+    let [volts, density] =
+        [conditions.voltage_v, conditions.density_kg_m3.unwrap_or_default()].map(f32::to_bits);
     let input = list(&[roll, pitch, yaw, thrust, volts, density]);
     let failed = failed.map_or(String::new(), |mask| format!("{mask:#x}u, "));
     let output = list(&out);
@@ -99,13 +97,14 @@ fn rows(compiled: &Compiled) -> Vec<Vector> {
         .voltage
         .as_ref()
         .map_or(12.0, |law| law.reference as f32);
-    let conditions = compiled.tables.view().at_reference_density(volts);
-    for density_kg_m3 in [f32::NAN, f32::INFINITY, 0.0, -1.0] {
-        let conditions = Conditions {
-            density_kg_m3,
-            ..conditions
-        };
-        rows.push((finite, conditions));
+    let density = compiled
+        .airframe
+        .air
+        .as_ref()
+        .map_or(0.0, |law| law.reference as f32);
+    let conditions = Conditions::at_voltage(volts).in_air(density);
+    for density in [f32::NAN, f32::INFINITY, 0.0, -1.0] {
+        rows.push((finite, conditions.in_air(density)));
     }
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for axis in 0..4 {
@@ -113,13 +112,7 @@ fn rows(compiled: &Compiled) -> Vec<Vector> {
             wrench[axis] = bad;
             rows.push((Wrench::from_array(wrench), conditions));
         }
-        rows.push((
-            finite,
-            Conditions {
-                voltage_v: bad,
-                ..conditions
-            },
-        ));
+        rows.push((finite, Conditions::at_voltage(bad).in_air(density)));
     }
     rows
 }

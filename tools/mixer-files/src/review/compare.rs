@@ -83,9 +83,7 @@ impl Review {
                 .voltage
                 .as_ref()
                 .zip(compiled.airframe.voltage.as_ref())
-                .and_then(|(_, law)| {
-                    Range::new(&rows, Some(law.range), |row| row.conditions.voltage_v.into())
-                }),
+                .and_then(|(_, law)| Range::new(&rows, Some(law.range), |row| row.conditions[0].into())),
             density: flight.density.as_ref().and_then(|density| {
                 let range = compiled.airframe.air.as_ref().map(|law| law.range);
                 Range::new(&rows, range, |row| {
@@ -122,18 +120,18 @@ impl Hover {
         let straight = |number: &dyn Fn(&Row) -> f64| rows.median(|row| row.is_straight, number);
         let [upper, lower] = [0, 1].map(|k| straight(&|row| mean(&row.throttle, k)));
         let [roll_nm, pitch_nm, yaw_nm] = [0, 1, 2].map(|k| straight(&|row| row.model[k]));
-        let volts = straight(&|row| row.conditions.voltage_v.into());
-        let density = straight(&|row| row.conditions.density_kg_m3.into());
+        let volts = straight(&|row| row.conditions[0].into());
+        let density = straight(&|row| row.conditions[1].into());
         let model = volts.zip(density).and_then(|(voltage_v, density_kg_m3)| {
             let weight = Wrench {
                 thrust_n: (mass_kg * GRAVITY) as f32,
                 ..Wrench::default()
             };
-            let conditions = Conditions {
-                voltage_v: voltage_v as f32,
-                density_kg_m3: density_kg_m3 as f32,
-            };
-            let mixed = compiled.tables.mix_in(&weight, conditions, Health::GOOD).ok();
+            let conditions = Conditions::at_voltage(voltage_v as f32).in_air(density_kg_m3 as f32);
+            let mixed = compiled
+                .tables
+                .mix_with_health(&weight, conditions, Health::GOOD)
+                .ok();
             let mixed = mixed.filter(|(_, _, saturation)| !saturation.any_axis());
             mixed.map(|(throttle, _, _)| [0, 1].map(|k| mean(&throttle, k)))
         });
@@ -182,16 +180,14 @@ impl Power {
         // The power of a rotor follows the cube of its speed, where its thrust follows the square; and the density.
         let model = |row: &Row| {
             let throttle: Vec<f64> = row.throttle.iter().copied().map(f64::from).collect();
-            let voltage = airframe.voltage_factors(row.conditions.voltage_v.into())[0];
-            let factors = airframe.factors(
-                row.conditions.voltage_v.into(),
-                row.conditions.density_kg_m3.into(),
-            );
+            let [volts, density] = row.conditions.map(f64::from);
+            let voltage = airframe.voltage_factors(volts)[0];
+            let factors = airframe.factors(volts, density);
             airframe
                 .power_w(&throttle)
                 .map(|power_w| power_w * voltage.sqrt() * factors[0])
         };
-        let measured = |row: &Row| Some(row.current_a? * f64::from(row.conditions.voltage_v));
+        let measured = |row: &Row| Some(row.current_a? * f64::from(row.conditions[0]));
         let is_of = |row: &Row| row.hovers && row.current_a.is_some_and(|current_a| current_a > 0.0);
         let mean =
             |number: &dyn Fn(&Row) -> Option<f64>| rows.median(is_of, |row| number(row).unwrap_or(f64::NAN));

@@ -76,9 +76,8 @@ pub(crate) fn speeds(rows: &Rows, compiled: &Compiled) -> Vec<Speed> {
         airframe: &compiled.airframe,
         map: &compiled.pair,
     };
-    let factors = compiled
-        .airframe
-        .factors(conditions.voltage_v.into(), conditions.density_kg_m3.into());
+    let [volts, density] = conditions.map(f64::from);
+    let factors = compiled.airframe.factors(volts, density);
     let thrust = |scale: f32| {
         let throttle: Vec<f32> = all.iter().map(|throttle| scale * throttle).collect();
         physics.wrench(&throttle, factors, Health::GOOD)[3]

@@ -17,7 +17,7 @@
 use mixer_compiler::Compiled;
 use mixer_compiler::airframe::GRAVITY;
 use mixer_compiler::model::Physics;
-use mixer_rt::{Conditions, Health};
+use mixer_rt::Health;
 
 use crate::review::flight::Flight;
 use crate::review::log::{Series, median};
@@ -65,7 +65,8 @@ pub(crate) struct Row {
     pub(crate) throttle: Vec<f32>,
     /// Rotors that are off.
     pub(crate) health: Health,
-    pub(crate) conditions: Conditions,
+    /// Voltage, V, and density of the air, kg/m3.
+    pub(crate) conditions: [f32; 2],
     /// Speed of each rotor, rpm; NaN where it is not known.
     pub(crate) speeds: Vec<f64>,
     /// Of the battery, A.
@@ -126,8 +127,8 @@ impl Rows {
             let speeds = speeds(flight, rotors, time_s);
             let health = health(flight, &throttle, &speeds, time_s);
             let known = conditions(flight, compiled, time_s).map(|conditions| {
-                let airframe = &compiled.airframe;
-                let factors = airframe.factors(conditions.voltage_v.into(), conditions.density_kg_m3.into());
+                let [volts, density] = conditions.map(f64::from);
+                let factors = compiled.airframe.factors(volts, density);
                 (conditions, physics.wrench(&throttle, factors, health))
             });
             let carries = || known.is_some_and(|(_, model)| model[3] > CARRIES * mass_kg * GRAVITY);
@@ -215,7 +216,7 @@ impl Rows {
 
 /// Voltage and density at a time; the reference of one that was never measured, or that thrust does not follow.
 /// `None` where one is missing at the time.
-fn conditions(flight: &Flight, compiled: &Compiled, time_s: f64) -> Option<Conditions> {
+fn conditions(flight: &Flight, compiled: &Compiled, time_s: f64) -> Option<[f32; 2]> {
     let at = |series: &Option<Series>, age_s: f64, is_followed: bool, reference: f64| {
         let now = series.as_ref().and_then(|series| series.fresh(time_s, age_s));
         let is_needed = is_followed && series.is_some();
@@ -226,10 +227,7 @@ fn conditions(flight: &Flight, compiled: &Compiled, time_s: f64) -> Option<Condi
     let [of_voltage, of_air] = [&airframe.voltage, &airframe.air].map(Option::is_some);
     let volts = at(&flight.voltage, VOLTAGE_AGE_S, of_voltage, airframe.reference_v())?;
     let density = at(&flight.density, AIR_AGE_S, of_air, airframe.reference_density())?;
-    Some(Conditions {
-        voltage_v: volts as f32,
-        density_kg_m3: density as f32,
-    })
+    Some([volts as f32, density as f32])
 }
 
 /// Speed of each rotor; NaN where it is not known.

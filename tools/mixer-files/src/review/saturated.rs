@@ -1,7 +1,7 @@
 //! How often the vehicle got less than its controllers asked for.
 
 use mixer_compiler::Compiled;
-use mixer_rt::{Axis, Health, Wrench};
+use mixer_rt::{Axis, Conditions, Health, Wrench};
 use serde::Serialize;
 
 use mixer_facts::params::Stack;
@@ -92,7 +92,9 @@ fn by_mixer(rows: &Rows, flight: &Flight, compiled: &Compiled) -> Option<[f64; 4
         };
         let normalised = [0, 1, 2, 3].map(|k| setpoint[k] as f32);
         let wrench = Wrench::from_normalised(normalised, &compiled.scale());
-        let Ok((throttle, _, saturation)) = compiled.tables.mix_in(&wrench, row.conditions, row.health)
+        let [volts, density] = row.conditions;
+        let conditions = Conditions::at_voltage(volts).in_air(density);
+        let Ok((throttle, _, saturation)) = compiled.tables.mix_with_health(&wrench, conditions, row.health)
         else {
             continue;
         };

@@ -99,7 +99,7 @@ fn block(rows: &[&Row], mass_kg: f64) -> Option<Block> {
         flight: first.flight,
         from_s: first.time_s,
         to_s: last.time_s,
-        volts: mean(&|row| row.conditions.voltage_v.into()),
+        volts: mean(&|row| row.conditions[0].into()),
         ratios: [0, 1].map(|k| model[3] / (mass_kg * mean(&|row| row.measured[k]))),
         // Roll is -y f and pitch x f: both vanish about the centre of gravity.
         centre_m: [model[1] / model[3], -model[0] / model[3]],

@@ -38,19 +38,16 @@ macro_rules! check {
             // SAFETY: the caller's promise.
             unsafe {
                 let (setpoint, density_kg_m3) = &*asked;
-                let conditions = Conditions {
-                    voltage_v,
-                    density_kg_m3: *density_kg_m3,
-                };
+                let conditions = Conditions::at_voltage(voltage_v).in_air(*density_kg_m3);
                 output
                     .cast::<Mixed<{ $module::CHANNELS }>>()
-                    .write($module::mix_in(setpoint, &conditions))
+                    .write($module::mix(setpoint, conditions))
             }
         }
         let mut different = 0;
         let raised = probe::exceptions(|| {
             different = differing_with_rotors_out($rotors_out, |setpoint, conditions, failed| {
-                $module::mix_in_with_health(setpoint, conditions, Health::GOOD.with_failed(failed))
+                $module::mix_with_health(setpoint, conditions, Health::GOOD.with_failed(failed))
             });
         });
         $check.rotors_out($name, different);

@@ -10,11 +10,11 @@ type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
 #[allow(dead_code)] // The golden image, which counts instructions, goes through the rows itself.
 pub(crate) fn differing<const CHANNELS: usize>(
     table: &str,
-    mix: impl Fn(&Wrench, &Conditions) -> Mixed<CHANNELS>,
+    mix: impl Fn(&Wrench, Conditions) -> Mixed<CHANNELS>,
 ) -> usize {
     let agrees = |row: &&str| {
         let (setpoint, conditions) = request(row, CHANNELS)?;
-        Some(agrees(row, &mix(&setpoint, &conditions)))
+        Some(agrees(row, &mix(&setpoint, conditions)))
     };
     rows(table).filter(|row| agrees(row) != Some(true)).count()
 }
@@ -23,12 +23,12 @@ pub(crate) fn differing<const CHANNELS: usize>(
 /// given.
 pub(crate) fn differing_with_rotors_out<const CHANNELS: usize>(
     table: &str,
-    mix: impl Fn(&Wrench, &Conditions, u8) -> Mixed<CHANNELS>,
+    mix: impl Fn(&Wrench, Conditions, u8) -> Mixed<CHANNELS>,
 ) -> usize {
     let agrees = |row: &&str| {
         let (failed, row) = row.split_once(',')?;
         let (setpoint, conditions) = request(row, CHANNELS)?;
-        Some(agrees(row, &mix(&setpoint, &conditions, failed.parse().ok()?)))
+        Some(agrees(row, &mix(&setpoint, conditions, failed.parse().ok()?)))
     };
     rows(table).filter(|row| agrees(row) != Some(true)).count()
 }
@@ -51,10 +51,7 @@ pub(crate) fn request(row: &str, channels: usize) -> Option<(Wrench, Conditions)
     let mut cells = cells.map(|cell| cell.map(f32::from_bits));
     let mut next = || cells.next().flatten();
     let wrench = [next()?, next()?, next()?, next()?];
-    let conditions = Conditions {
-        voltage_v: next()?,
-        density_kg_m3: next().unwrap_or(0.0), // an airframe without `[air]` ignores it
-    };
+    let conditions = Conditions::at_voltage(next()?).in_air(next().unwrap_or(0.0));
     Some((Wrench::from_array(wrench), conditions))
 }
 

@@ -23,10 +23,10 @@ static ROTORS_OUT: &str = include_str!("../../../../golden/isae-x8.rotors-out.cs
 
 #[entry]
 fn main() -> ! {
-    let with_rotor_out = |setpoint: &Wrench, conditions: &Conditions, failed| {
-        isae_x8::mix_in_with_health(setpoint, conditions, Health::GOOD.with_failed(failed))
+    let with_rotor_out = |setpoint: &Wrench, conditions: Conditions, failed| {
+        isae_x8::mix_with_health(setpoint, conditions, Health::GOOD.with_failed(failed))
     };
-    let differ = differing(VECTORS, isae_x8::mix_in) + differing_with_rotors_out(ROTORS_OUT, with_rotor_out);
+    let differ = differing(VECTORS, isae_x8::mix) + differing_with_rotors_out(ROTORS_OUT, with_rotor_out);
     let count = rows(VECTORS).count() + rows(ROTORS_OUT).count();
     hprintln!("isae-x8: {} vectors, {} differ", count, differ);
     exit(differ == 0)
