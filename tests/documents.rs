@@ -135,7 +135,8 @@ fn links_lead_somewhere() {
     for path in documents::pages().expect("documents") {
         let page = read(&path);
         for link in links(&page) {
-            if link.contains("://") {
+            // The forge's own pages stand above the tree.
+            if link.contains("://") || link.contains("../releases/latest") {
                 continue;
             }
             count += 1;

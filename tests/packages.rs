@@ -76,6 +76,50 @@ fn the_workflow_packs_what_is_published() {
     assert_eq!(packages.split(" -p ").collect::<Vec<_>>(), PUBLISHED);
 }
 
+/// What whoever publishes has to fill in. A release refuses to be made without (`release.yml`).
+#[test]
+fn what_is_missing_for_a_release_is_said() {
+    let manifest = manifest(".");
+    let repository = manifest["workspace"]["package"]["repository"].as_str();
+    match repository.expect("a text") {
+        "" => println!(
+            "MISSING for a release: [workspace.package] repository of Cargo.toml; until then links of packed READMEs lead nowhere"
+        ),
+        address => assert!(address.starts_with("https://"), "{address}"),
+    }
+}
+
+/// The packages of ARCHITECTURE.md and what each uses.
+#[test]
+fn the_architecture_is_that_of_the_manifests() {
+    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a page");
+    let (_, table) = page.split_once("uses, of the others |").expect("a table");
+    let (table, _) = table.split_once("\n\n").expect("its end");
+    let names =
+        |cell: &str| -> BTreeSet<String> { cell.split('`').skip(1).step_by(2).map(str::to_owned).collect() };
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .skip(2)
+        .map(|line| line.split('|').collect())
+        .collect();
+    let listed = |row: &[&str]| names(row[1]).pop_first().expect("a package");
+    let packages: BTreeSet<String> = rows.iter().map(|row| listed(row)).collect();
+    let tools = fs::read_dir(root().join("tools")).expect("tools").flatten();
+    let tools = tools.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let all = tools.chain(PUBLISHED.map(str::to_owned)).collect();
+    assert_eq!(packages, all);
+    for row in &rows {
+        let package = listed(row);
+        let manifest = manifest(&package);
+        let dependencies = manifest.get("dependencies").and_then(toml::Value::as_table);
+        let uses = dependencies.into_iter().flat_map(toml::Table::keys);
+        let uses = uses.filter(|name| {
+            packages.contains(*name) && !["mixer-rt", "mixer-compiler"].contains(&name.as_str())
+        });
+        assert_eq!(names(row[row.len() - 2]), uses.cloned().collect(), "{package}");
+    }
+}
+
 /// Who cites the software names the version at hand.
 #[test]
 fn the_citation_has_the_version() {
@@ -98,9 +142,15 @@ fn packages_use_those_published_before() {
                 );
             }
         }
-        for key in ["description", "documentation", "readme"] {
+        for key in ["description", "documentation", "repository"] {
             assert!(manifest["package"].get(key).is_some(), "{package} has no {key}");
         }
+        // A README of another folder would have links that lead nowhere once it is packed.
+        assert_eq!(
+            manifest["package"]["readme"].as_str(),
+            Some("README.md"),
+            "{package}"
+        );
     }
 }
 

@@ -29,7 +29,6 @@ pub fn tables() -> Result<Vec<Table>, String> {
     let mut tables = tables::keys();
     tables.extend([
         of("README.md", "isolated", tables::isolated()?),
-        of("README.md", "cost", tables::cost()?),
         of("docs/evaluation.md", "accuracy", tables::accuracy()?),
         of("docs/evaluation.md", "static", tables::static_comparison()?),
         of("docs/evaluation.md", "allocators", tables::allocators()?),

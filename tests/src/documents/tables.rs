@@ -12,7 +12,6 @@ use mixer_files::report::study::Study;
 use mixer_rt::Wrench;
 
 use super::Table;
-use crate::counts;
 use crate::{airframes, allocators, bases, golden, interaction, root, thin_air};
 
 /// The airframe of the paper.
@@ -164,49 +163,6 @@ pub(super) fn isolated() -> Result<String, String> {
             "asked: roll, pitch, yaw (N m), thrust (N)",
             "isolated rotors give",
             "this mixer gives",
-        ],
-        &rows,
-    ))
-}
-
-/// What a mix costs on frames of each kind.
-pub(super) fn cost() -> Result<String, String> {
-    let (_, held) = counts::held()?;
-    let subjects = [
-        ("coaxial", "px4-y6", "Y6"),
-        ("coaxial", PAPER, "X8"),
-        ("coaxial", "x8-16in-quartic", "X8, real pair of 14 terms"),
-        ("coaxial", "px4-x12", "X12"),
-        ("one-rotor-out", PAPER, "X8, one rotor out"),
-        (
-            "sequential",
-            PAPER,
-            "X8, isolated rotors with desaturation after PX4",
-        ),
-    ];
-    let rows = subjects
-        .iter()
-        .map(|(mixer, airframe, title)| {
-            let row = held
-                .iter()
-                .find(|row| row.subject.mixer == *mixer && row.subject.airframe == *airframe)
-                .ok_or_else(|| format!("{}: no {mixer}, {airframe}", counts::file().display()))?;
-            Ok(vec![
-                (*title).to_owned(),
-                format!("{:.0}", row.mean("attainable")),
-                format!("{:.0}", row.mean("saturated")),
-                row.get("worst_found").to_string(),
-                (row.get("code_b") + row.get("tables_b")).to_string(),
-            ])
-        })
-        .collect::<Result<Vec<_>, String>>()?;
-    Ok(markdown(
-        &[
-            "mixer",
-            "attainable, mean",
-            "saturated, mean",
-            "worst found",
-            "bytes",
         ],
         &rows,
     ))

@@ -1,9 +1,9 @@
-//! `cargo page -o FOLDER`: the page of `web/` as static files.
+//! `cargo page -o FOLDER`: the page of `tools/web` as static files.
 //!
 //! ```text
 //! tools/web/src -> WebAssembly -> without what only the glue needs, packed by gzip, in base64
 //! tools/web/page + glue + module -> FOLDER/index.html, one file that needs no other; FOLDER/sw.js, which
-//!                             keeps it for the next visit without a network
+//!                                   keeps it for the next visit without a network
 //! ```
 //!
 //! The page's content policy names its scripts and its style by their digests and allows no request.
@@ -106,13 +106,15 @@ fn bundle(folder: &Path) -> Result<String, Box<dyn Error>> {
 /// Compiles the module; its path.
 fn module(root: &Path) -> Result<PathBuf, Box<dyn Error>> {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    // Of one crate type: cargo optimises at link time only then (`lto` of the profile `page`).
     let build = [
-        "build",
+        "rustc",
         "--locked",
         "--profile=page",
         "-p",
         "mixer-web",
         "--lib",
+        "--crate-type=cdylib",
         "--target",
         TARGET,
     ];

@@ -23,7 +23,7 @@ use probe::{Counter, Mixer};
 mod harness;
 
 /// A setpoint and the air's density, kg/m3.
-type Asked = (Wrench, f32);
+type Asked = (Wrench, Conditions);
 
 /// What a mixer returns.
 type Mixed<const CHANNELS: usize> = Result<Mix<CHANNELS>, SetpointError>;
@@ -34,14 +34,13 @@ macro_rules! check {
         /// # Safety
         ///
         /// `asked` is valid to read, `output` to write a [`Mixed`] of this airframe.
-        unsafe extern "C" fn mix(asked: *const Asked, output: *mut (), voltage_v: f32) {
+        unsafe extern "C" fn mix(asked: *const Asked, output: *mut (), _: f32) {
             // SAFETY: the caller's promise.
             unsafe {
-                let (setpoint, density_kg_m3) = &*asked;
-                let conditions = Conditions::at_voltage(voltage_v).in_air(*density_kg_m3);
+                let (setpoint, conditions) = *asked;
                 output
                     .cast::<Mixed<{ $module::CHANNELS }>>()
-                    .write($module::mix(setpoint, conditions))
+                    .write($module::mix(&setpoint, conditions))
             }
         }
         let mut different = 0;
@@ -100,7 +99,7 @@ impl Check {
                 };
                 let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
                 let pointer = output.as_mut_ptr().cast();
-                let asked = (setpoint, conditions.density_kg_m3);
+                let asked = (setpoint, conditions);
                 let voltage_v = conditions.voltage_v;
                 // SAFETY: the output is of the type that `mix` writes, which it does in every call; no
                 // interrupt is enabled.
@@ -188,7 +187,7 @@ unsafe fn accepted_non_finite<'a, const CHANNELS: usize>(
                 let mut output = MaybeUninit::<Mixed<CHANNELS>>::uninit();
                 // SAFETY: the output is of the type that `mix` writes, which it does in every call.
                 let mixed = unsafe {
-                    let asked = (Wrench::from_array(setpoint), conditions.density_kg_m3);
+                    let asked = (Wrench::from_array(setpoint), conditions);
                     mix(&asked, output.as_mut_ptr().cast(), conditions.voltage_v);
                     output.assume_init()
                 };
