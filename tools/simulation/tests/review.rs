@@ -1,5 +1,5 @@
 //! Flights whose plant is off by a known factor, logged as the stacks log them, in wind, with noise and a battery
-//! that sags: `mixer_review` finds the factor, and its interval holds it.
+//! that sags: `mixer_files::review` finds the factor, and its interval holds it.
 
 use clap::Parser;
 use mixer_compiler::{Compiled, Source};
